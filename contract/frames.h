@@ -1,0 +1,59 @@
+// Messages between runner and engine: a header of eight bytes, then JSON.
+//
+//   bytes 0-3  "PCF1": the letters PCF and the version of this format
+//   bytes 4-7  length of the payload, unsigned, little-endian, at most 64 MiB
+//   then       the payload: one JSON object in UTF-8 whose "type" names the message
+//
+// schema/README.md lists the messages.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "contract/json.h"
+
+namespace peclet {
+
+constexpr std::size_t largest_frame = std::size_t{64} << 20;
+
+// The peer sent something that is no frame: wrong magic or version, oversize, no JSON object, no "type".
+class FrameError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+std::string encode_frame(const Json& message);
+
+// Collects bytes as they come and hands out whole messages.
+class FrameDecoder {
+ public:
+  void feed(const char* bytes, std::size_t count);
+  // The next whole message, or nothing yet. Throws FrameError; the stream is then unusable.
+  std::optional<Json> next();
+  bool empty() const { return begin_ == buffer_.size(); }
+
+ private:
+  std::string buffer_;
+  std::size_t begin_ = 0;
+};
+
+// Blocking use of one end of a socket pair; the engine's side. Does not own the descriptor.
+class FrameChannel {
+ public:
+  explicit FrameChannel(int descriptor) : descriptor_(descriptor) {}
+
+  // Sends a whole frame. Throws std::system_error; a closed peer is EPIPE, never a signal.
+  void send(const Json& message);
+
+  enum class Status { message, nothing, closed };
+  // Waits up to `patience` for a message (a negative one waits for ever).
+  Status receive(Json& message, std::chrono::milliseconds patience);
+
+ private:
+  int descriptor_;
+  FrameDecoder decoder_;
+};
+
+}  // namespace peclet

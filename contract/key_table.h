@@ -1,0 +1,56 @@
+// One typed table of keys describes a JSON document: it validates it, fills its defaults,
+// prints its JSON Schema and its page in the manual. Scene, campaign and configuration each have one.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "contract/json.h"
+
+namespace peclet {
+
+enum class KeyKind { object, array, number, integer, boolean, string, choice, number_or_auto, any };
+
+// One key of a document. `pointer` uses * for every element of an array: "/particles/species/*/radius".
+struct Key {
+  std::string pointer;
+  KeyKind kind = KeyKind::object;
+  std::string meaning;
+  std::string unit = {};         // "" where the key has none
+  bool required = false;         // whenever the object that holds it is present
+  Json default_value = nullptr;  // null: no default, the key stays absent
+  double minimum = -std::numeric_limits<double>::infinity();
+  double maximum = std::numeric_limits<double>::infinity();
+  bool above_minimum = false;             // strictly greater than `minimum`
+  bool below_maximum = false;             // strictly less than `maximum`
+  std::vector<std::string> choices = {};  // of KeyKind::choice
+  std::size_t minimum_items = 0;          // of KeyKind::array
+};
+
+class KeyTable {
+ public:
+  KeyTable(std::string title, std::vector<Key> keys);
+
+  // Checks `document` against the table: unknown keys, types, ranges, required keys; then fills the defaults.
+  // Keys are matched below `root` of the table ("" for a whole document; "/contact" for that block alone).
+  // Throws InputError with `file` and the JSON pointer of the first fault in document order.
+  Json validate(const Json& document, const std::string& file, const std::string& root = "") const;
+
+  // JSON Schema, draft 2020-12, of the whole document; unknown keys are refused.
+  Json json_schema(const std::string& identifier) const;
+
+  // A Markdown table: key, meaning, unit, default, allowed.
+  std::string markdown() const;
+
+  const std::vector<Key>& keys() const { return keys_; }
+
+ private:
+  std::string title_;
+  std::vector<Key> keys_;
+};
+
+// "must be a number > 0", "one of: a, b": what a key allows, in words.
+std::string allowed_values(const Key& key);
+
+}  // namespace peclet

@@ -1,0 +1,15 @@
+// SHA-256 of bytes, as lower-case hexadecimal.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace peclet {
+
+std::string sha256(std::string_view bytes);
+
+// Of a file's content. Throws std::system_error when it cannot be read.
+std::string sha256_of_file(const std::filesystem::path& path);
+
+}  // namespace peclet

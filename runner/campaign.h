@@ -1,0 +1,44 @@
+// A campaign as its author wrote it: what to simulate, over which state points, how well.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "contract/json.h"
+#include "contract/key_table.h"
+
+namespace peclet::runner {
+
+// One scene of the sweep. Its identity is the SHA-256 of the canonical JSON of the scene, so the same scene
+// in another campaign, or written with its keys in another order, is the same point.
+struct StatePoint {
+  std::string hash;
+  Json scene;
+  Json settings;      // what the sweep set: {"/peclet": 10, "/volume_fraction": 0.5}
+  std::string label;  // for people: "peclet=10 volume_fraction=0.5"
+};
+
+struct Target {
+  std::string observable;     // a number in the result's "mean"
+  double relative_tolerance;  // half-width of the interval over |mean|
+  double confidence;          // of the two-sided interval
+};
+
+struct Campaign {
+  std::string name;
+  Json document;                   // as read, defaults filled
+  std::vector<StatePoint> points;  // in the order of the sweep: the last entry varies fastest
+  Target target;
+  int minimum_realisations;
+  int maximum_realisations;
+  std::vector<std::string> engine;  // program and arguments
+};
+
+const KeyTable& campaign_keys();
+
+// Reads and checks a campaign. The scenes themselves are the engine's to judge.
+// Throws InputError naming file, pointer, value and what is allowed.
+Campaign read_campaign(const std::filesystem::path& path);
+
+}  // namespace peclet::runner

@@ -1,0 +1,51 @@
+// The stop rule: closed cohorts in seed order, looked at after fixed numbers of seeds.
+//
+// A cohort of n is the seeds 0 .. n-1, each in a terminal state. Because the looks are at fixed n and a look
+// only happens when its cohort is closed, the decision depends on no timing: one worker or sixty-four, killed
+// and resumed or not, give the same looks, the same deciding look and the same mean.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "runner/campaign.h"
+#include "runner/statistics.h"
+
+namespace peclet::runner {
+
+// How a seed ended; a seed that is queued or runs has no outcome yet.
+struct Outcome {
+  enum class Kind { value, lost };  // lost: the engine's verdict (blow-up, jam), or quarantined after crashes
+  Kind kind = Kind::lost;
+  double value = 0;
+  double control = 0;  // control variate of mean zero; 0 where there is none
+};
+
+enum class Verdict {
+  more,  // not within the tolerance: go on to the next look
+  converged,
+  converged_with_losses,  // within the tolerance, but seeds of the cohort were lost
+  capped,                 // the maximum is reached without convergence
+  failed                  // fewer than two values at the maximum or every seed of the first cohort lost
+};
+
+// One look at a closed cohort.
+struct Look {
+  int seeds = 0;  // n
+  int lost = 0;
+  Estimate estimate;      // of the observable
+  double half_width = 0;  // Student-t
+  Estimate controlled;    // of value + control (the control variate with coefficient -1)
+  double controlled_half_width = 0;
+  Verdict verdict = Verdict::more;
+};
+
+// Numbers of seeds at which a point is looked at: minimum, then ceil(1.25 n) each, the last one is maximum.
+std::vector<int> look_schedule(int minimum, int maximum);
+
+// All looks that the outcomes allow, in order, ending with the first that decides (any verdict but more).
+// outcomes[s] is that of seed s. A pure function: replaying it is how a stored look is checked.
+std::vector<Look> replay_looks(const std::vector<std::optional<Outcome>>& outcomes, const Target& target,
+                               int minimum, int maximum);
+
+}  // namespace peclet::runner

@@ -1,0 +1,21 @@
+// What a finite number of realisations says about a mean, and how sure it is.
+#pragma once
+
+#include <span>
+
+namespace peclet::runner {
+
+// Sample mean and its standard error s / sqrt(n), s the sample standard deviation with n - 1.
+struct Estimate {
+  int count = 0;
+  double mean = 0;
+  double standard_error = 0;  // NaN for fewer than two values
+};
+
+Estimate estimate(std::span<const double> values);
+
+// Half-width t(n - 1, (1 + confidence) / 2) * standard error of Student's interval; NaN for fewer than two
+// values.
+double student_half_width(const Estimate& estimate, double confidence);
+
+}  // namespace peclet::runner
