@@ -1,0 +1,117 @@
+// A scene: what is simulated, checked for form (the table of keys) and then for meaning.
+//
+// A block that is absent is physics that is not computed; std::optional says so here.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "contract/json.h"
+#include "contract/key_table.h"
+
+namespace peclet::engine {
+
+// Linear contact between overlapping spheres; with friction > 0 a tangential spring, with rolling stiffness a
+// rolling one. Stiffnesses in force per length, damping in force per velocity.
+struct ContactParameters {
+  double normal_stiffness = 0;
+  double normal_damping = 0;
+  double friction = 0;
+  double tangential_stiffness = 0;  // 2/7 of the normal one unless given
+  double rolling_stiffness = 0;
+  double rolling_friction = 0;  // that of sliding unless given
+};
+
+// Squeeze, shear and pump modes between near spheres, gaps as 2 (r - a_i - a_j) / (a_i + a_j).
+struct LubricationParameters {
+  double inner_gap = 1e-3;
+  double outer_gap = 0.05;
+};
+
+// Exponential repulsion: potential strength * exp(-h / kappa), kappa = relative_length (a_i + a_j), h <
+// cutoff_lengths kappa.
+struct RepulsionParameters {
+  double strength = 0;
+  double relative_length = 0.01;
+  double cutoff_lengths = 20;
+};
+
+// The physics of a scene without its particles: all that forces depend on.
+struct Physics {
+  double viscosity = 0;
+  double thermal_energy = 0;  // k_B T
+  double shear_rate = 0;      // of the streaming flow (rate y, 0, 0)
+  std::optional<ContactParameters> contact;
+  std::optional<LubricationParameters> lubrication;
+  std::optional<RepulsionParameters> repulsion;
+};
+
+struct Species {
+  double radius = 0;
+  double share = 0;  // of the volume or of the number, see Particles
+};
+
+struct Particles {
+  enum class Shares { volume, number };
+  std::size_t count = 0;
+  double density = 0;
+  double reference_radius = 0;  // the a of Pe, St and the time scales
+  Shares shares = Shares::volume;
+  std::vector<Species> species;
+};
+
+// Ends with the first of its limits that is reached; infinity where there is none.
+struct Duration {
+  double strain = std::numeric_limits<double>::infinity();
+  double brownian_times = std::numeric_limits<double>::infinity();  // units of eta a^3 / kT
+  double time = std::numeric_limits<double>::infinity();
+};
+
+// Limits that end a realisation with a named cause.
+struct Guard {
+  double largest_overlap = 0.05;       // of the smaller radius of the pair
+  double largest_displacement = 0.05;  // per step, of the particle's radius
+};
+
+struct Warning {
+  std::string code;  // "inertia-shear", "inertia-thermal", "overlap"
+  std::string message;
+};
+
+// Dimensionless groups and time scales, a = reference_radius: tau_C = sqrt(rho a^3 / k_n), tau_I = rho a^2 /
+// eta, tau_B = eta a^3 / kT, tau_S = 1 / rate, Pe = 6 pi eta a^3 rate / kT, St = tau_I / tau_S, k_hat = k_n /
+// (eta a rate). A group without meaning in the scene (tau_B without temperature) is infinite or absent in the
+// JSON (null).
+struct DerivedGroups {
+  std::optional<double> peclet, stokes, relative_stiffness;
+  std::optional<double> contact_time, inertial_time, brownian_time, shear_time;
+};
+
+struct Scene {
+  Particles particles;
+  double volume_fraction = 0;
+  Physics physics;
+  std::optional<double> timestep;  // absent: "auto"
+  Duration equilibration, production;
+  Guard guard;
+  Json document;  // as given, defaults filled
+};
+
+const KeyTable& scene_keys();
+
+// Reads and checks a scene. `file` names it in messages. Throws InputError.
+Scene read_scene(const Json& document, const std::string& file);
+
+// Reads the blocks fluid, flow, contact, lubrication, repulsion alone (a configuration's "scene").
+Physics read_physics(const Json& document, const std::string& file, const std::string& pointer);
+
+DerivedGroups derived_groups(const Scene& scene);
+Json to_json(const DerivedGroups& groups);
+
+// What the author should know before anything runs: inertia that is not small.
+std::vector<Warning> scene_warnings(const Scene& scene);
+
+}  // namespace peclet::engine
