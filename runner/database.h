@@ -1,0 +1,161 @@
+// The campaign's database: opening it safely, and reading it.
+//
+// One process writes (it holds campaign.lock and opens with open_owner); any number of others read with
+// open_reader. Writing is in queue.h. The tables are those of schema/campaign.sql.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "contract/json.h"
+#include "runner/campaign.h"
+#include "runner/cohorts.h"
+#include "runner/sqlite.h"
+
+namespace peclet::runner {
+
+// The database (or what is stored in it) is not what this program may go on with. Exit code 6.
+class IntegrityError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+enum class SeedState { queued, running, done, failed, quarantined };
+const char* to_string(SeedState state);
+SeedState seed_state(const std::string& text);
+
+const char* to_string(Verdict verdict);  // "converged-with-losses"
+Verdict verdict(const std::string& text);
+
+struct PointRecord {
+  std::int64_t id = 0;
+  std::optional<int> place;  // in the sweep; none: no longer part of it
+  std::string hash;
+  Json scene;
+  Json settings;
+  std::string label;
+  std::string engine_identity;  // "" before the first result
+  bool suspect = false;         // a seed gave two different results
+};
+
+// A seed with the columns that were taken from its result. Numbers that do not exist are absent.
+struct RealisationRecord {
+  int seed = 0;
+  SeedState state = SeedState::queued;
+  std::string cause;              // "completed", "overlap", ..., "crashed"; empty while queued or running
+  std::optional<double> value;    // of the target's observable
+  std::optional<double> control;  // of the control variate
+  std::optional<double> statistical_inefficiency, largest_overlap, cpu_seconds, wall_seconds;
+  std::string final_state_sha256, content_sha256;
+  std::optional<std::int64_t> engine;
+};
+
+struct StateCounts {
+  int queued = 0, running = 0, done = 0, failed = 0, quarantined = 0;
+  double cpu_seconds = 0;  // of done and failed together
+  int terminal() const { return done + failed + quarantined; }
+};
+
+struct AttemptRecord {
+  int seed = 0;
+  int worker = 0;
+  std::int64_t process = 0;
+  std::string host, started_at, ended_at;  // ended_at empty: still running
+  std::string outcome;                     // the list is in schema/campaign.sql
+  bool blamed = false;
+  std::int64_t step = 0;
+  std::optional<std::int64_t> exit_status, signal;
+  std::string message;
+};
+
+struct LeaseRecord {
+  int seed = 0;
+  int worker = 0;
+  std::string phase;
+  std::int64_t step = 0, steps = 0;
+  double strain = 0;
+  std::string renewed_at;
+};
+
+struct TargetRecord {
+  std::int64_t id = 0;
+  Target target;
+  int minimum = 0, maximum = 0;
+};
+
+struct LookRecord {
+  TargetRecord target;
+  Look look;
+  std::string made_at;
+};
+
+struct EventRecord {
+  std::string at, kind;
+  std::optional<std::int64_t> point;
+  std::optional<int> seed;
+  std::string message;
+};
+
+struct EngineRecord {
+  std::int64_t id = 0;
+  std::string identity;
+  Json provenance;
+};
+
+struct CampaignRecord {
+  std::string name;
+  Json document;
+  TargetRecord target;  // the present one
+  std::string created_at, updated_at;
+};
+
+class Database {
+ public:
+  // Opens or creates the database for its owner. Requires the campaign's lock.
+  // Throws IntegrityError for a file that is no campaign database, is damaged or is of a newer version, and
+  // DatabaseError.
+  static Database open_owner(const std::filesystem::path& path);
+  // Opens it for reading. All that one Database reads is one snapshot, taken at the first read.
+  // Throws as above; InputError when there is no such file.
+  static Database open_reader(const std::filesystem::path& path);
+
+  CampaignRecord campaign();
+  // The points that the sweep contains, in its order.
+  std::vector<PointRecord> points();
+  // Points of earlier versions of the sweep, in order of their first appearance.
+  std::vector<PointRecord> inactive_points();
+
+  // All functions below take PointRecord::id. Lists are in order of the seeds (then of time).
+  StateCounts counts(std::int64_t point);
+  std::vector<RealisationRecord> realisations(std::int64_t point);
+  // Index is the seed; as long as the largest known seed asks for. The input of replay_looks().
+  std::vector<std::optional<Outcome>> outcomes(std::int64_t point);
+  // The whole result with its "engine"; nothing for a seed without one.
+  std::optional<Json> result(std::int64_t point, int seed);
+  // The results of the seeds below `end`, one at a time.
+  void for_each_result(std::int64_t point, int end, const std::function<void(int seed, const Json&)>& visit);
+  std::vector<AttemptRecord> attempts(std::int64_t point);
+  std::vector<LeaseRecord> leases(std::int64_t point);
+  // Looks for the present target, by number of seeds.
+  std::vector<LookRecord> looks(std::int64_t point);
+  // Looks for every target there ever was.
+  std::vector<LookRecord> look_history(std::int64_t point);
+  // The most recent `limit` events, oldest first.
+  std::vector<EventRecord> events(int limit);
+  std::vector<EngineRecord> engines();
+
+  Connection& connection() { return *connection_; }
+
+ private:
+  explicit Database(std::unique_ptr<Connection> connection);
+  std::unique_ptr<Connection> connection_;
+  std::unique_ptr<Transaction> snapshot_;  // of a reader
+};
+
+}  // namespace peclet::runner

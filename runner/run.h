@@ -1,0 +1,27 @@
+// The verb `peclet run`: from a campaign file to converged points.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+namespace peclet::runner {
+
+struct RunOptions {
+  std::filesystem::path campaign;
+  std::filesystem::path directory;   // "": beside the campaign file
+  int workers = 0;                   // 0: cores / threads
+  int threads = 0;                   // of each worker; 0: 1, or cores / workers when workers are given
+  bool quiet = false;                // no progress
+  std::optional<double> time_limit;  // seconds until the drain
+  bool force = false;                // use a network file system all the same
+  double lease_seconds = 120;        // a worker without a new step for so long is hung
+  double checkpoint_seconds = 60;    // between two checkpoints of a realisation
+};
+
+// Runs until every point is decided or the run is stopped. The result is the exit code: 0 every point
+// converged, 3 some points capped, failed or with losses, 5 another process owns the campaign, 6 integrity,
+// 75 stopped. Throws InputError (exit code 2) before anything is written, and std::exception (exit code 1)
+// for the rest.
+int run_campaign(const RunOptions& options);
+
+}  // namespace peclet::runner

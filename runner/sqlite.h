@@ -1,0 +1,109 @@
+// SQLite with every return code checked: a connection, a prepared statement, a transaction.
+//
+// Not thread-safe: a connection and its statements belong to one thread.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace peclet::runner {
+
+// What SQLite said, where, and its extended result code. Nothing is retried or swallowed.
+class DatabaseError : public std::runtime_error {
+ public:
+  DatabaseError(const std::string& message, int code) : std::runtime_error(message), code_(code) {}
+  int code() const { return code_; }
+
+ private:
+  int code_;
+};
+
+class Connection {
+ public:
+  enum class Access { create, read_write, read_only };
+
+  // Waits up to `busy_milliseconds` for other connections' locks. Throws DatabaseError.
+  Connection(const std::string& path, Access access, int busy_milliseconds);
+  ~Connection();
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  // Runs any number of statements and ignores their rows.
+  void execute(const std::string& sql);
+  // The single integer (text) that a query gives.
+  std::int64_t integer(const std::string& sql);
+  std::string text(const std::string& sql);
+  std::int64_t last_insert_id() const;
+  // Rows changed by the last statement.
+  int changes() const;
+
+  sqlite3* handle() const { return handle_; }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+  sqlite3* handle_ = nullptr;
+};
+
+// A compiled statement: bind in order of the question marks, step, read columns from 0.
+class Statement {
+ public:
+  Statement(Connection& connection, std::string_view sql);
+  ~Statement();
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+
+  Statement& bind(std::int64_t value);
+  Statement& bind(int value) { return bind(std::int64_t{value}); }
+  Statement& bind(bool value) { return bind(std::int64_t{value}); }
+  Statement& bind(double value);  // NaN is NULL
+  Statement& bind(std::string_view value);
+  Statement& bind(const char* value) { return bind(std::string_view(value)); }
+  Statement& bind(std::nullptr_t);
+  template <typename T>
+  Statement& bind(const std::optional<T>& value) {
+    return value ? bind(*value) : bind(nullptr);
+  }
+
+  // True when there is a row to read. After the last row the statement is ready to be bound again.
+  bool step();
+  // Runs a statement that gives no rows.
+  void run();
+
+  bool is_null(int column) const;
+  std::int64_t integer(int column) const;
+  double real(int column) const;       // NULL is NaN
+  std::string text(int column) const;  // NULL is empty
+  std::optional<double> optional_real(int column) const;
+  std::optional<std::int64_t> optional_integer(int column) const;
+
+ private:
+  void check(int code) const;
+
+  Connection& connection_;
+  sqlite3_stmt* statement_ = nullptr;
+  int next_parameter_ = 1;
+};
+
+// BEGIN IMMEDIATE for a writer, BEGIN for a reader's snapshot; rolled back unless committed.
+class Transaction {
+ public:
+  enum class Kind { write, snapshot };
+  explicit Transaction(Connection& connection, Kind kind = Kind::write);
+  ~Transaction();
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+  void commit();
+
+ private:
+  Connection& connection_;
+  bool open_ = true;
+};
+
+}  // namespace peclet::runner

@@ -1,0 +1,182 @@
+-- The database of one campaign, version 1. One process writes it (the one that holds campaign.lock);
+-- everybody else opens it read-only. schema/README.md explains the tables and views to pandas users.
+--
+-- Times ending in _at are wall-clock times in UTC, for people to look at: no decision is made from them.
+
+PRAGMA application_id = 1346585164;  -- "PCLL" as a big-endian integer
+PRAGMA user_version = 1;
+
+-- What a verdict was reached for. Old targets stay, with the looks that were made for them.
+CREATE TABLE target (
+  target_id          INTEGER PRIMARY KEY,
+  observable         TEXT    NOT NULL,
+  relative_tolerance REAL    NOT NULL,
+  confidence         REAL    NOT NULL,
+  minimum            INTEGER NOT NULL,
+  maximum            INTEGER NOT NULL,
+  UNIQUE (observable, relative_tolerance, confidence, minimum, maximum)
+) STRICT;
+
+-- The campaign as last run: exactly one row.
+CREATE TABLE campaign (
+  campaign_id INTEGER PRIMARY KEY CHECK (campaign_id = 1),
+  name        TEXT    NOT NULL,
+  document    TEXT    NOT NULL CHECK (json_valid(document)),
+  target_id   INTEGER NOT NULL REFERENCES target,
+  created_at  TEXT    NOT NULL,
+  updated_at  TEXT    NOT NULL
+) STRICT;
+
+-- Where results come from, stored once. Two rows of equal identity differ in the machine only.
+CREATE TABLE engine (
+  engine_id  INTEGER PRIMARY KEY,
+  identity   TEXT    NOT NULL,         -- version, binary hash and instruction set
+  provenance TEXT    NOT NULL UNIQUE CHECK (json_valid(provenance))
+) STRICT;
+
+CREATE TABLE point (
+  point_id        INTEGER PRIMARY KEY,
+  hash            TEXT    NOT NULL UNIQUE,  -- SHA-256 of the canonical scene
+  scene           TEXT    NOT NULL CHECK (json_valid(scene)),
+  settings        TEXT    NOT NULL CHECK (json_valid(settings)),
+  label           TEXT    NOT NULL,
+  place           INTEGER UNIQUE,           -- in the sweep; NULL when the sweep no longer contains the point
+  engine_identity TEXT,                     -- of its first result; every other result must have the same
+  suspect         INTEGER NOT NULL DEFAULT 0 CHECK (suspect IN (0, 1))  -- a seed gave two different results
+) STRICT;
+
+-- One seed at one point: its state and the numbers that are asked for most.
+CREATE TABLE realisation (
+  point_id                 INTEGER NOT NULL REFERENCES point,
+  seed                     INTEGER NOT NULL CHECK (seed >= 0),
+  state                    TEXT    NOT NULL CHECK (state IN ('queued', 'running', 'done', 'failed', 'quarantined')),
+  cause                    TEXT,     -- of its ending: completed, overlap, ..., or why it is quarantined
+  value                    REAL,     -- of the target's observable; NULL without one
+  control                  REAL,     -- of the control variate; NULL without one
+  timestep                 REAL,
+  equilibration_steps      INTEGER,
+  production_steps         INTEGER,
+  production_strain        REAL,
+  statistical_inefficiency REAL,
+  largest_overlap          REAL,
+  cpu_seconds              REAL,
+  wall_seconds             REAL,
+  final_state_sha256       TEXT,
+  content_sha256           TEXT,     -- of the canonical result without its cost: what repetitions must share
+  engine_id                INTEGER REFERENCES engine,
+  PRIMARY KEY (point_id, seed),
+  CHECK ((state IN ('done', 'failed')) = (content_sha256 IS NOT NULL)),
+  CHECK ((state IN ('done', 'failed', 'quarantined')) = (cause IS NOT NULL))
+) STRICT, WITHOUT ROWID;
+
+CREATE INDEX realisation_by_state ON realisation (state, point_id);
+
+-- The whole result as the engine wrote it, apart from "engine", which is in the table of that name.
+CREATE TABLE result (
+  point_id INTEGER NOT NULL,
+  seed     INTEGER NOT NULL,
+  document TEXT    NOT NULL CHECK (json_valid(document)),
+  PRIMARY KEY (point_id, seed),
+  FOREIGN KEY (point_id, seed) REFERENCES realisation
+) STRICT;
+
+-- Every time a worker was given a seed. blamed: counts against the seed.
+CREATE TABLE attempt (
+  attempt_id  INTEGER PRIMARY KEY,
+  point_id    INTEGER NOT NULL,
+  seed        INTEGER NOT NULL,
+  worker      INTEGER NOT NULL,
+  process     INTEGER NOT NULL,
+  host        TEXT    NOT NULL,
+  engine_id   INTEGER NOT NULL REFERENCES engine,
+  started_at  TEXT    NOT NULL,
+  ended_at    TEXT,
+  outcome     TEXT    NOT NULL DEFAULT 'running' CHECK (outcome IN
+                ('running', 'result', 'crashed', 'hung', 'garbled', 'refused', 'drained', 'killed', 'abandoned')),
+  blamed      INTEGER NOT NULL DEFAULT 0 CHECK (blamed IN (0, 1)),
+  step        INTEGER NOT NULL DEFAULT 0,  -- the last one it reported
+  exit_status INTEGER,
+  signal      INTEGER,
+  message     TEXT,
+  FOREIGN KEY (point_id, seed) REFERENCES realisation
+) STRICT;
+
+CREATE INDEX attempt_by_seed ON attempt (point_id, seed);
+
+-- Who runs a seed now and how far it is; refreshed every few seconds.
+CREATE TABLE lease (
+  point_id   INTEGER NOT NULL,
+  seed       INTEGER NOT NULL,
+  attempt_id INTEGER NOT NULL REFERENCES attempt,
+  worker     INTEGER NOT NULL,
+  phase      TEXT    NOT NULL,
+  step       INTEGER NOT NULL,
+  steps      INTEGER NOT NULL,  -- the engine's estimate of the total
+  strain     REAL    NOT NULL,
+  renewed_at TEXT    NOT NULL,
+  PRIMARY KEY (point_id, seed),
+  FOREIGN KEY (point_id, seed) REFERENCES realisation
+) STRICT, WITHOUT ROWID;
+
+-- What the closed cohort of the first `seeds` seeds said. NULL: does not exist for so few values.
+CREATE TABLE look (
+  point_id                  INTEGER NOT NULL REFERENCES point,
+  target_id                 INTEGER NOT NULL REFERENCES target,
+  seeds                     INTEGER NOT NULL,
+  lost                      INTEGER NOT NULL,
+  count                     INTEGER NOT NULL,
+  mean                      REAL,
+  standard_error            REAL,
+  half_width                REAL,
+  controlled_mean           REAL,
+  controlled_standard_error REAL,
+  controlled_half_width     REAL,
+  verdict                   TEXT    NOT NULL CHECK (verdict IN
+                              ('more', 'converged', 'converged-with-losses', 'capped', 'failed')),
+  made_at                   TEXT    NOT NULL,
+  PRIMARY KEY (point_id, target_id, seeds)
+) STRICT, WITHOUT ROWID;
+
+-- What a person may want to know afterwards.
+CREATE TABLE event (
+  event_id INTEGER PRIMARY KEY,
+  at       TEXT    NOT NULL,
+  kind     TEXT    NOT NULL,
+  point_id INTEGER REFERENCES point,
+  seed     INTEGER,
+  message  TEXT    NOT NULL
+) STRICT;
+
+-- The views: what people read. They show the points that the sweep contains.
+
+CREATE VIEW points AS
+SELECT p.place, p.label, p.hash, p.settings, p.suspect,
+       (SELECT count(*) FROM realisation r WHERE r.point_id = p.point_id AND r.state = 'done')        AS done,
+       (SELECT count(*) FROM realisation r WHERE r.point_id = p.point_id AND r.state = 'failed')      AS failed,
+       (SELECT count(*) FROM realisation r WHERE r.point_id = p.point_id AND r.state = 'quarantined') AS quarantined,
+       (SELECT count(*) FROM realisation r WHERE r.point_id = p.point_id AND r.state = 'running')     AS running,
+       (SELECT sum(cpu_seconds) FROM realisation r WHERE r.point_id = p.point_id)                     AS cpu_seconds
+FROM point p WHERE p.place IS NOT NULL ORDER BY p.place;
+
+CREATE VIEW realisations AS
+SELECT p.place, p.label, p.hash, r.seed, r.state, r.cause, r.value, r.control, r.timestep, r.equilibration_steps,
+       r.production_steps, r.production_strain, r.statistical_inefficiency, r.largest_overlap, r.cpu_seconds,
+       r.wall_seconds, r.final_state_sha256, e.identity AS engine, d.document AS result
+FROM realisation r
+JOIN point p USING (point_id)
+LEFT JOIN engine e USING (engine_id)
+LEFT JOIN result d USING (point_id, seed)
+WHERE p.place IS NOT NULL ORDER BY p.place, r.seed;
+
+-- The last look at each point for the campaign's present target.
+CREATE VIEW estimates AS
+SELECT p.place, p.label, p.hash, t.observable, t.relative_tolerance, t.confidence, l.seeds, l.lost, l.count, l.mean,
+       l.standard_error, l.half_width, l.controlled_mean, l.controlled_standard_error, l.controlled_half_width,
+       l.verdict
+FROM look l
+JOIN campaign c USING (target_id)
+JOIN target t USING (target_id)
+JOIN point p USING (point_id)
+WHERE p.place IS NOT NULL
+  AND l.seeds = (SELECT max(m.seeds) FROM look m WHERE m.point_id = l.point_id AND m.target_id = l.target_id)
+ORDER BY p.place;
