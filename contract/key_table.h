@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "contract/json.h"
@@ -13,6 +14,7 @@ namespace peclet {
 enum class KeyKind { object, array, number, integer, boolean, string, choice, number_or_auto, any };
 
 // One key of a document. `pointer` uses * for every element of an array: "/particles/species/*/radius".
+// An object or array with no key below it in the table may hold anything.
 struct Key {
   std::string pointer;
   KeyKind kind = KeyKind::object;
@@ -33,8 +35,11 @@ class KeyTable {
   KeyTable(std::string title, std::vector<Key> keys);
 
   // Checks `document` against the table: unknown keys, types, ranges, required keys; then fills the defaults.
+  // An absent object is filled in only when it has a default itself ({}); whole numbers become integers where
+  // the table says so.
   // Keys are matched below `root` of the table ("" for a whole document; "/contact" for that block alone).
-  // Throws InputError with `file` and the JSON pointer of the first fault in document order.
+  // Throws InputError with `file` and the JSON pointer, from `document`, of the first fault: keys in their
+  // (sorted) order, then those that are missing, in the order of the table.
   Json validate(const Json& document, const std::string& file, const std::string& root = "") const;
 
   // JSON Schema, draft 2020-12, of the whole document; unknown keys are refused.
@@ -45,12 +50,20 @@ class KeyTable {
 
   const std::vector<Key>& keys() const { return keys_; }
 
+  // The key of that pointer; null when there is none.
+  const Key* find(std::string_view pointer) const;
+  // The keys directly below `pointer`, in the order of the table.
+  std::vector<const Key*> below(std::string_view pointer) const;
+
  private:
   std::string title_;
   std::vector<Key> keys_;
 };
 
-// "must be a number > 0", "one of: a, b": what a key allows, in words.
+// "must be a number > 0", "must be one of: a, b": what a key allows, in words.
 std::string allowed_values(const Key& key);
+
+// `value` as compact JSON for a message, shortened beyond 60 characters.
+std::string shortened(const Json& value);
 
 }  // namespace peclet

@@ -1,0 +1,147 @@
+// What a table of keys looks like to others: in words, as JSON Schema, as a page of the manual.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "contract/key_table.h"
+
+namespace peclet {
+
+namespace {
+
+// " >= 1 and <= 5"; nothing where there is no bound.
+std::string range_in_words(const Key& key) {
+  std::string words;
+  if (std::isfinite(key.minimum)) {
+    words += fmt::format(" {} {}", key.above_minimum ? ">" : ">=", key.minimum);
+  }
+  if (std::isfinite(key.maximum)) {
+    words +=
+        fmt::format("{} {} {}", words.empty() ? "" : " and", key.below_maximum ? "<" : "<=", key.maximum);
+  }
+  return words;
+}
+
+// A bound as people and canonical JSON write it: 1, not 1.0.
+Json bound(double number) { return Json::parse(canonical_json(number)); }
+
+void add_range(const Key& key, Json& schema) {
+  if (std::isfinite(key.minimum)) {
+    schema[key.above_minimum ? "exclusiveMinimum" : "minimum"] = bound(key.minimum);
+  }
+  if (std::isfinite(key.maximum)) {
+    schema[key.below_maximum ? "exclusiveMaximum" : "maximum"] = bound(key.maximum);
+  }
+}
+
+void add_members(const KeyTable& table, const std::string& pointer, Json& schema);
+
+Json schema_of(const KeyTable& table, const Key& key) {
+  Json schema = Json::object();
+  switch (key.kind) {
+    case KeyKind::any:
+      break;
+    case KeyKind::object:
+      add_members(table, key.pointer, schema);
+      break;
+    case KeyKind::array:
+      schema["type"] = "array";
+      if (key.minimum_items > 0) schema["minItems"] = key.minimum_items;
+      if (const Key* element = table.find(key.pointer + "/*")) schema["items"] = schema_of(table, *element);
+      break;
+    case KeyKind::boolean:
+      schema["type"] = "boolean";
+      break;
+    case KeyKind::string:
+      schema["type"] = "string";
+      break;
+    case KeyKind::choice:
+      schema["enum"] = key.choices;
+      break;
+    case KeyKind::integer:
+    case KeyKind::number:
+      schema["type"] = key.kind == KeyKind::integer ? "integer" : "number";
+      add_range(key, schema);
+      break;
+    case KeyKind::number_or_auto: {
+      Json number = {{"type", "number"}};
+      add_range(key, number);
+      schema["anyOf"] = Json::array({{{"const", "auto"}}, number});
+      break;
+    }
+  }
+  if (!key.meaning.empty())
+    schema["description"] = key.meaning + (key.unit.empty() ? "" : " [" + key.unit + "]");
+  if (!key.default_value.is_null()) schema["default"] = key.default_value;
+  return schema;
+}
+
+void add_members(const KeyTable& table, const std::string& pointer, Json& schema) {
+  schema["type"] = "object";
+  const std::vector<const Key*> keys = table.below(pointer);
+  if (keys.empty()) return;  // holds anything
+  schema["additionalProperties"] = false;
+  for (const Key* key : keys) {
+    const std::string name = key->pointer.substr(key->pointer.rfind('/') + 1);
+    schema["properties"][name] = schema_of(table, *key);
+    if (key->required) schema["required"].push_back(name);
+  }
+}
+
+// A cell of a Markdown table.
+std::string cell(std::string text) {
+  for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2)) {
+    text.insert(at, "\\");
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string allowed_values(const Key& key) {
+  switch (key.kind) {
+    case KeyKind::any:
+      return "may be anything";
+    case KeyKind::object:
+      return "must be an object";
+    case KeyKind::array:
+      return key.minimum_items == 0 ? "must be an array"
+                                    : fmt::format("must be an array of {} or more", key.minimum_items);
+    case KeyKind::boolean:
+      return "must be true or false";
+    case KeyKind::string:
+      return "must be a string";
+    case KeyKind::choice:
+      return fmt::format("must be one of: {}", fmt::join(key.choices, ", "));
+    case KeyKind::integer:
+      return "must be an integer" + range_in_words(key);
+    case KeyKind::number:
+      return "must be a number" + range_in_words(key);
+    case KeyKind::number_or_auto:
+      return "must be a number" + range_in_words(key) + " or \"auto\"";
+  }
+  return "";
+}
+
+Json KeyTable::json_schema(const std::string& identifier) const {
+  Json schema = {
+      {"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"$id", identifier}, {"title", title_}};
+  add_members(*this, "", schema);
+  return schema;
+}
+
+std::string KeyTable::markdown() const {
+  std::string page = "| key | meaning | unit | default | allowed |\n|---|---|---|---|---|\n";
+  for (const Key& key : keys_) {
+    std::string fallback = key.required ? "required" : "";
+    if (!key.default_value.is_null()) fallback = fmt::format("`{}`", key.default_value.dump());
+    std::string allowed = allowed_values(key);
+    if (allowed.starts_with("must be ")) allowed = allowed.substr(std::string_view("must be ").size());
+    page += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.pointer, cell(key.meaning), cell(key.unit),
+                        cell(fallback), cell(allowed));
+  }
+  return page;
+}
+
+}  // namespace peclet
