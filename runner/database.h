@@ -9,22 +9,16 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "contract/json.h"
 #include "runner/campaign.h"
 #include "runner/cohorts.h"
+#include "runner/integrity_error.h"
 #include "runner/sqlite.h"
 
 namespace peclet::runner {
-
-// The database (or what is stored in it) is not what this program may go on with. Exit code 6.
-class IntegrityError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 enum class SeedState { queued, running, done, failed, quarantined };
 const char* to_string(SeedState state);

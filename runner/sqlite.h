@@ -14,7 +14,8 @@ struct sqlite3_stmt;
 
 namespace peclet::runner {
 
-// What SQLite said, where, and its extended result code. Nothing is retried or swallowed.
+// What SQLite said, where, and its extended result code. Nothing is retried or swallowed; a file that is
+// damaged or no database at all is an IntegrityError instead.
 class DatabaseError : public std::runtime_error {
  public:
   DatabaseError(const std::string& message, int code) : std::runtime_error(message), code_(code) {}

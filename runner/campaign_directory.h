@@ -1,0 +1,70 @@
+// The folder of a campaign: where its files are, and who may write them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+namespace peclet::runner {
+
+// Names of everything below the folder; nothing here touches the disk.
+class CampaignDirectory {
+ public:
+  explicit CampaignDirectory(std::filesystem::path root) : root_(std::move(root)) {}
+
+  const std::filesystem::path& root() const { return root_; }
+  std::filesystem::path database() const { return root_ / "campaign.db"; }
+  std::filesystem::path lock() const { return root_ / "campaign.lock"; }
+  std::filesystem::path spool() const { return root_ / "spool"; }
+  std::filesystem::path rejected() const { return spool() / "rejected"; }
+  std::filesystem::path checkpoints() const { return root_ / "checkpoints"; }
+  std::filesystem::path failures() const { return root_ / "failures"; }
+  std::filesystem::path logs() const { return root_ / "logs"; }
+
+  // Of one seed, whoever runs it: the next attempt resumes what the last one left.
+  std::filesystem::path checkpoint(const std::string& hash, int seed) const;
+  // Of one attempt: a worker that outlived its owner never writes where a later attempt does.
+  std::filesystem::path spool_file(const std::string& hash, int seed, std::int64_t attempt) const;
+  std::filesystem::path worker_log(int worker) const;
+
+ private:
+  std::filesystem::path root_;
+};
+
+// `chosen`, or when that is empty "<stem>.peclet" beside the campaign file; an absolute path.
+CampaignDirectory campaign_directory(const std::filesystem::path& campaign_file,
+                                     const std::filesystem::path& chosen);
+
+// Makes the folder and those below it. Throws std::filesystem::filesystem_error.
+void create_folders(const CampaignDirectory& directory);
+
+// The kind of network file system that `path` (or the nearest folder above it that exists) is on, if it is on
+// one.
+std::optional<std::string> network_file_system(const std::filesystem::path& path);
+
+// Another process owns the campaign. Exit code 5.
+class OwnedByAnother : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// The right to write a campaign, held from construction to destruction or to the end of the process.
+class OwnerLock {
+ public:
+  // Requires the folder to exist. Throws OwnedByAnother naming the owner's process, std::system_error.
+  explicit OwnerLock(const CampaignDirectory& directory);
+  ~OwnerLock();
+  OwnerLock(const OwnerLock&) = delete;
+  OwnerLock& operator=(const OwnerLock&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
+
+// The process that owns the campaign now, without waiting for it or disturbing it; nothing when nobody does.
+// The number is 0 while the owner has not written it yet.
+std::optional<std::int64_t> current_owner(const CampaignDirectory& directory);
+
+}  // namespace peclet::runner

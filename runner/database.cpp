@@ -1,0 +1,123 @@
+#include "runner/database.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "contract/input_error.h"
+#include "runner/campaign_sql.h"
+
+namespace peclet::runner {
+namespace {
+
+// As in schema/campaign.sql.
+constexpr std::int64_t our_application = 1346585164;
+constexpr std::int64_t newest_version = 1;
+
+constexpr std::array<std::pair<SeedState, const char*>, 5> state_names{
+    {{SeedState::queued, "queued"},
+     {SeedState::running, "running"},
+     {SeedState::done, "done"},
+     {SeedState::failed, "failed"},
+     {SeedState::quarantined, "quarantined"}}};
+
+constexpr std::array<std::pair<Verdict, const char*>, 5> verdict_names{
+    {{Verdict::more, "more"},
+     {Verdict::converged, "converged"},
+     {Verdict::converged_with_losses, "converged-with-losses"},
+     {Verdict::capped, "capped"},
+     {Verdict::failed, "failed"}}};
+
+template <typename Names, typename Value>
+const char* name_of(const Names& names, Value value) {
+  for (const auto& [known, name] : names) {
+    if (known == value) return name;
+  }
+  return "?";
+}
+
+template <typename Value, typename Names>
+Value value_of(const Names& names, const std::string& text) {
+  for (const auto& [known, name] : names) {
+    if (name == text) return known;
+  }
+  throw IntegrityError("the database holds an unknown state: " + text);
+}
+
+// An owner that died between creating the file and filling it leaves nothing in it.
+bool is_empty(Connection& connection) {
+  return connection.integer("PRAGMA application_id") == 0 &&
+         connection.integer("SELECT count(*) FROM sqlite_schema") == 0;
+}
+
+void check_kind(Connection& connection) {
+  const std::int64_t application = connection.integer("PRAGMA application_id");
+  if (application != our_application) {
+    throw IntegrityError(connection.path() + ": is a database, but not one of a peclet campaign");
+  }
+  const std::int64_t version = connection.integer("PRAGMA user_version");
+  if (version > newest_version) {
+    throw IntegrityError(fmt::format(
+        "{}: was written by a newer peclet (version {} of its tables; this program knows versions up to "
+        "{}); use that peclet or a newer one",
+        connection.path(), version, newest_version));
+  }
+  if (version < newest_version) {
+    throw IntegrityError(
+        fmt::format("{}: has tables of version {}, which never existed", connection.path(), version));
+  }
+}
+
+void create_tables(Connection& connection) {
+  Transaction creation(connection);
+  connection.execute(campaign_sql);
+  creation.commit();
+}
+
+}  // namespace
+
+const char* to_string(SeedState state) { return name_of(state_names, state); }
+
+SeedState seed_state(const std::string& text) { return value_of<SeedState>(state_names, text); }
+
+const char* to_string(Verdict verdict) { return name_of(verdict_names, verdict); }
+
+Verdict verdict(const std::string& text) { return value_of<Verdict>(verdict_names, text); }
+
+Database::Database(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}
+
+Database Database::open_owner(const std::filesystem::path& path) {
+  // Readers never hold a lock that blocks the writer in WAL mode; only a checkpoint may have to wait.
+  Database database(std::make_unique<Connection>(path.string(), Connection::Access::create, 10'000));
+  Connection& connection = database.connection();
+  const bool fresh = is_empty(connection);
+  if (!fresh) check_kind(connection);
+  connection.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
+  if (connection.text("PRAGMA journal_mode") != "wal") {
+    throw DatabaseError(connection.path() + ": cannot keep a write-ahead log on this file system", 0);
+  }
+  if (fresh) {
+    create_tables(connection);
+  } else if (const std::string verdict = connection.text("PRAGMA quick_check(1)"); verdict != "ok") {
+    throw IntegrityError(fmt::format("{}: is damaged: {}", connection.path(), verdict));
+  }
+  return database;
+}
+
+Database Database::open_reader(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) {
+    throw InputError(path.string(), "", "",
+                     "no such database; has the campaign been started with `peclet run`?");
+  }
+  Database database(std::make_unique<Connection>(path.string(), Connection::Access::read_only, 5'000));
+  database.snapshot_ = std::make_unique<Transaction>(database.connection(), Transaction::Kind::snapshot);
+  if (is_empty(database.connection())) {
+    throw InputError(path.string(), "", "", "the campaign is only just being set up; try again in a moment");
+  }
+  check_kind(database.connection());
+  return database;
+}
+
+}  // namespace peclet::runner

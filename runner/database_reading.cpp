@@ -1,0 +1,262 @@
+// The read-only half of database.h: rows into records.
+#include <cmath>
+#include <utility>
+
+#include "runner/database.h"
+
+namespace peclet::runner {
+namespace {
+
+constexpr const char* point_columns =
+    "SELECT point_id, place, hash, scene, settings, label, engine_identity, suspect FROM point ";
+
+std::vector<PointRecord> read_points(Connection& connection, const std::string& which) {
+  Statement query(connection, point_columns + which);
+  std::vector<PointRecord> points;
+  while (query.step()) {
+    PointRecord point;
+    point.id = query.integer(0);
+    if (!query.is_null(1)) point.place = static_cast<int>(query.integer(1));
+    point.hash = query.text(2);
+    point.scene = Json::parse(query.text(3));
+    point.settings = Json::parse(query.text(4));
+    point.label = query.text(5);
+    point.engine_identity = query.text(6);
+    point.suspect = query.integer(7) != 0;
+    points.push_back(std::move(point));
+  }
+  return points;
+}
+
+TargetRecord read_target(const Statement& query, int column) {
+  TargetRecord record;
+  record.id = query.integer(column);
+  record.target = {query.text(column + 1), query.real(column + 2), query.real(column + 3)};
+  record.minimum = static_cast<int>(query.integer(column + 4));
+  record.maximum = static_cast<int>(query.integer(column + 5));
+  return record;
+}
+
+std::vector<LookRecord> read_looks(Connection& connection, std::int64_t point, const std::string& which) {
+  Statement query(
+      connection,
+      "SELECT target_id, observable, relative_tolerance, confidence, minimum, maximum, seeds, lost, count,"
+      " mean, standard_error, half_width, controlled_mean, controlled_standard_error,"
+      " controlled_half_width, verdict, made_at FROM look JOIN target USING (target_id) WHERE point_id = ? " +
+          which + " ORDER BY target_id, seeds");
+  query.bind(point);
+  std::vector<LookRecord> looks;
+  while (query.step()) {
+    LookRecord record;
+    record.target = read_target(query, 0);
+    Look& look = record.look;
+    look.seeds = static_cast<int>(query.integer(6));
+    look.lost = static_cast<int>(query.integer(7));
+    const int count = static_cast<int>(query.integer(8));
+    look.estimate = {count, query.real(9), query.real(10)};
+    look.half_width = query.real(11);
+    look.controlled = {count, query.real(12), query.real(13)};
+    look.controlled_half_width = query.real(14);
+    look.verdict = verdict(query.text(15));
+    record.made_at = query.text(16);
+    looks.push_back(std::move(record));
+  }
+  return looks;
+}
+
+Json with_engine(const std::string& document, const std::string& provenance) {
+  Json result = Json::parse(document);
+  result["engine"] = Json::parse(provenance);
+  return result;
+}
+
+constexpr const char* result_columns =
+    "SELECT seed, document, provenance FROM result JOIN realisation USING (point_id, seed) JOIN engine USING "
+    "(engine_id) WHERE point_id = ? ";
+
+}  // namespace
+
+CampaignRecord Database::campaign() {
+  Statement query(
+      *connection_,
+      "SELECT target_id, observable, relative_tolerance, confidence, minimum, maximum, name, document,"
+      " created_at, updated_at FROM campaign JOIN target USING (target_id)");
+  if (!query.step()) throw IntegrityError(connection_->path() + ": holds no campaign");
+  CampaignRecord record;
+  record.target = read_target(query, 0);
+  record.name = query.text(6);
+  record.document = Json::parse(query.text(7));
+  record.created_at = query.text(8);
+  record.updated_at = query.text(9);
+  return record;
+}
+
+std::vector<PointRecord> Database::points() {
+  return read_points(*connection_, "WHERE place IS NOT NULL ORDER BY place");
+}
+
+std::vector<PointRecord> Database::inactive_points() {
+  return read_points(*connection_, "WHERE place IS NULL ORDER BY point_id");
+}
+
+StateCounts Database::counts(std::int64_t point) {
+  Statement query(*connection_,
+                  "SELECT state, count(*), total(cpu_seconds) FROM realisation WHERE point_id = ? "
+                  "GROUP BY state");
+  query.bind(point);
+  StateCounts counts;
+  while (query.step()) {
+    const int count = static_cast<int>(query.integer(1));
+    counts.cpu_seconds += query.real(2);
+    switch (seed_state(query.text(0))) {
+      case SeedState::queued:
+        counts.queued = count;
+        break;
+      case SeedState::running:
+        counts.running = count;
+        break;
+      case SeedState::done:
+        counts.done = count;
+        break;
+      case SeedState::failed:
+        counts.failed = count;
+        break;
+      case SeedState::quarantined:
+        counts.quarantined = count;
+        break;
+    }
+  }
+  return counts;
+}
+
+std::vector<RealisationRecord> Database::realisations(std::int64_t point) {
+  Statement query(
+      *connection_,
+      "SELECT seed, state, cause, value, control, statistical_inefficiency, largest_overlap, cpu_seconds,"
+      " wall_seconds, final_state_sha256, content_sha256, engine_id FROM realisation WHERE point_id = ? "
+      "ORDER BY seed");
+  query.bind(point);
+  std::vector<RealisationRecord> realisations;
+  while (query.step()) {
+    RealisationRecord record;
+    record.seed = static_cast<int>(query.integer(0));
+    record.state = seed_state(query.text(1));
+    record.cause = query.text(2);
+    record.value = query.optional_real(3);
+    record.control = query.optional_real(4);
+    record.statistical_inefficiency = query.optional_real(5);
+    record.largest_overlap = query.optional_real(6);
+    record.cpu_seconds = query.optional_real(7);
+    record.wall_seconds = query.optional_real(8);
+    record.final_state_sha256 = query.text(9);
+    record.content_sha256 = query.text(10);
+    record.engine = query.optional_integer(11);
+    realisations.push_back(std::move(record));
+  }
+  return realisations;
+}
+
+std::vector<std::optional<Outcome>> Database::outcomes(std::int64_t point) {
+  Statement query(*connection_,
+                  "SELECT seed, state, value, control FROM realisation WHERE point_id = ? AND state IN "
+                  "('done', 'failed', 'quarantined') ORDER BY seed");
+  query.bind(point);
+  std::vector<std::optional<Outcome>> outcomes;
+  while (query.step()) {
+    outcomes.resize(static_cast<std::size_t>(query.integer(0)) + 1);
+    if (seed_state(query.text(1)) != SeedState::done) {
+      outcomes.back() = Outcome{Outcome::Kind::lost, 0, 0};
+    } else if (const std::optional<double> value = query.optional_real(2)) {
+      outcomes.back() = Outcome{Outcome::Kind::value, *value, query.optional_real(3).value_or(0)};
+    } else {
+      outcomes.pop_back();  // done, but without this observable: run_campaign() refuses to go on with it
+    }
+  }
+  return outcomes;
+}
+
+std::optional<Json> Database::result(std::int64_t point, int seed) {
+  Statement query(*connection_, std::string(result_columns) + "AND seed = ?");
+  query.bind(point).bind(seed);
+  if (!query.step()) return std::nullopt;
+  return with_engine(query.text(1), query.text(2));
+}
+
+void Database::for_each_result(std::int64_t point, int end,
+                               const std::function<void(int seed, const Json&)>& visit) {
+  Statement query(*connection_, std::string(result_columns) + "AND seed < ? ORDER BY seed");
+  query.bind(point).bind(end);
+  while (query.step()) {
+    visit(static_cast<int>(query.integer(0)), with_engine(query.text(1), query.text(2)));
+  }
+}
+
+std::vector<AttemptRecord> Database::attempts(std::int64_t point) {
+  Statement query(
+      *connection_,
+      "SELECT seed, worker, process, host, started_at, ended_at, outcome, blamed, step, exit_status, signal,"
+      " message FROM attempt WHERE point_id = ? ORDER BY seed, attempt_id");
+  query.bind(point);
+  std::vector<AttemptRecord> attempts;
+  while (query.step()) {
+    AttemptRecord record;
+    record.seed = static_cast<int>(query.integer(0));
+    record.worker = static_cast<int>(query.integer(1));
+    record.process = query.integer(2);
+    record.host = query.text(3);
+    record.started_at = query.text(4);
+    record.ended_at = query.text(5);
+    record.outcome = query.text(6);
+    record.blamed = query.integer(7) != 0;
+    record.step = query.integer(8);
+    record.exit_status = query.optional_integer(9);
+    record.signal = query.optional_integer(10);
+    record.message = query.text(11);
+    attempts.push_back(std::move(record));
+  }
+  return attempts;
+}
+
+std::vector<LeaseRecord> Database::leases(std::int64_t point) {
+  Statement query(*connection_,
+                  "SELECT seed, worker, phase, step, steps, strain, renewed_at FROM lease "
+                  "WHERE point_id = ? ORDER BY seed");
+  query.bind(point);
+  std::vector<LeaseRecord> leases;
+  while (query.step()) {
+    leases.push_back({static_cast<int>(query.integer(0)), static_cast<int>(query.integer(1)), query.text(2),
+                      query.integer(3), query.integer(4), query.real(5), query.text(6)});
+  }
+  return leases;
+}
+
+std::vector<LookRecord> Database::looks(std::int64_t point) {
+  return read_looks(*connection_, point, "AND target_id = (SELECT target_id FROM campaign)");
+}
+
+std::vector<LookRecord> Database::look_history(std::int64_t point) {
+  return read_looks(*connection_, point, "");
+}
+
+std::vector<EventRecord> Database::events(int limit) {
+  Statement query(*connection_,
+                  "SELECT at, kind, point_id, seed, message FROM (SELECT * FROM event ORDER BY event_id "
+                  "DESC LIMIT ?) ORDER BY event_id");
+  query.bind(limit);
+  std::vector<EventRecord> events;
+  while (query.step()) {
+    EventRecord record{query.text(0), query.text(1), query.optional_integer(2), std::nullopt, query.text(4)};
+    if (!query.is_null(3)) record.seed = static_cast<int>(query.integer(3));
+    events.push_back(std::move(record));
+  }
+  return events;
+}
+
+std::vector<EngineRecord> Database::engines() {
+  Statement query(*connection_, "SELECT engine_id, identity, provenance FROM engine ORDER BY engine_id");
+  std::vector<EngineRecord> engines;
+  while (query.step()) engines.push_back({query.integer(0), query.text(1), Json::parse(query.text(2))});
+  return engines;
+}
+
+}  // namespace peclet::runner

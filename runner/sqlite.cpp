@@ -1,0 +1,172 @@
+#include "runner/sqlite.h"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <cmath>
+#include <limits>
+
+#include "runner/integrity_error.h"
+
+namespace peclet::runner {
+namespace {
+
+[[noreturn]] void fail(const std::string& path, sqlite3* handle, int code, std::string_view doing) {
+  const std::string said = handle != nullptr ? sqlite3_errmsg(handle) : sqlite3_errstr(code);
+  const std::string message = fmt::format("{}: {} (SQLite code {}) while: {}", path, said, code, doing);
+  const int primary = code & 0xff;
+  if (primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB) throw IntegrityError(message);
+  throw DatabaseError(message, code);
+}
+
+int flags_of(Connection::Access access) {
+  switch (access) {
+    case Connection::Access::create:
+      return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+    case Connection::Access::read_write:
+      return SQLITE_OPEN_READWRITE;
+    case Connection::Access::read_only:
+      break;
+  }
+  return SQLITE_OPEN_READONLY;
+}
+
+}  // namespace
+
+Connection::Connection(const std::string& path, Access access, int busy_milliseconds) : path_(path) {
+  const int code = sqlite3_open_v2(path.c_str(), &handle_,
+                                   flags_of(access) | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, nullptr);
+  if (code != SQLITE_OK) {
+    sqlite3* const broken = handle_;
+    handle_ = nullptr;
+    const std::string said = broken != nullptr ? sqlite3_errmsg(broken) : sqlite3_errstr(code);
+    sqlite3_close_v2(broken);
+    throw DatabaseError(fmt::format("{}: {} (SQLite code {}) while opening it", path, said, code), code);
+  }
+  sqlite3_busy_timeout(handle_, busy_milliseconds);
+}
+
+Connection::~Connection() { sqlite3_close_v2(handle_); }
+
+void Connection::execute(const std::string& sql) {
+  const int code = sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr);
+  if (code != SQLITE_OK) fail(path_, handle_, code, sql);
+}
+
+std::int64_t Connection::integer(const std::string& sql) {
+  Statement query(*this, sql);
+  query.step();
+  return query.integer(0);
+}
+
+std::string Connection::text(const std::string& sql) {
+  Statement query(*this, sql);
+  query.step();
+  return query.text(0);
+}
+
+std::int64_t Connection::last_insert_id() const { return sqlite3_last_insert_rowid(handle_); }
+
+int Connection::changes() const { return sqlite3_changes(handle_); }
+
+Statement::Statement(Connection& connection, std::string_view sql) : connection_(connection) {
+  check(sqlite3_prepare_v3(connection.handle(), sql.data(), static_cast<int>(sql.size()),
+                           SQLITE_PREPARE_PERSISTENT, &statement_, nullptr));
+}
+
+Statement::~Statement() { sqlite3_finalize(statement_); }
+
+void Statement::check(int code) const {
+  if (code == SQLITE_OK) return;
+  const char* const sql = statement_ != nullptr ? sqlite3_sql(statement_) : "preparing a statement";
+  fail(connection_.path(), connection_.handle(), code, sql);
+}
+
+Statement& Statement::bind(std::int64_t value) {
+  check(sqlite3_bind_int64(statement_, next_parameter_++, value));
+  return *this;
+}
+
+Statement& Statement::bind(double value) {
+  if (std::isnan(value)) return bind(nullptr);
+  check(sqlite3_bind_double(statement_, next_parameter_++, value));
+  return *this;
+}
+
+Statement& Statement::bind(std::string_view value) {
+  check(sqlite3_bind_text64(statement_, next_parameter_++, value.data(), value.size(), SQLITE_TRANSIENT,
+                            SQLITE_UTF8));
+  return *this;
+}
+
+Statement& Statement::bind(std::nullptr_t) {
+  check(sqlite3_bind_null(statement_, next_parameter_++));
+  return *this;
+}
+
+bool Statement::step() {
+  const int code = sqlite3_step(statement_);
+  if (code == SQLITE_ROW) return true;
+  if (code != SQLITE_DONE) {
+    const std::string sql = sqlite3_sql(statement_);
+    // Read the message before the statement is reset.
+    try {
+      fail(connection_.path(), connection_.handle(), code, sql);
+    } catch (...) {
+      sqlite3_reset(statement_);
+      throw;
+    }
+  }
+  check(sqlite3_reset(statement_));
+  next_parameter_ = 1;
+  return false;
+}
+
+void Statement::run() {
+  while (step()) {
+  }
+}
+
+bool Statement::is_null(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_NULL; }
+
+std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(statement_, column); }
+
+double Statement::real(int column) const {
+  return is_null(column) ? std::numeric_limits<double>::quiet_NaN()
+                         : sqlite3_column_double(statement_, column);
+}
+
+std::string Statement::text(int column) const {
+  const void* const bytes = sqlite3_column_blob(statement_, column);
+  if (bytes == nullptr) return {};
+  return {static_cast<const char*>(bytes),
+          static_cast<std::size_t>(sqlite3_column_bytes(statement_, column))};
+}
+
+std::optional<double> Statement::optional_real(int column) const {
+  if (is_null(column)) return std::nullopt;
+  return real(column);
+}
+
+std::optional<std::int64_t> Statement::optional_integer(int column) const {
+  if (is_null(column)) return std::nullopt;
+  return integer(column);
+}
+
+Transaction::Transaction(Connection& connection, Kind kind) : connection_(connection) {
+  connection_.execute(kind == Kind::write ? "BEGIN IMMEDIATE" : "BEGIN");
+}
+
+Transaction::~Transaction() {
+  // Also after a failed commit; SQLite may have rolled back by itself, and then there is nothing to undo.
+  if (open_ && sqlite3_get_autocommit(connection_.handle()) == 0) {
+    sqlite3_exec(connection_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
+  }
+}
+
+void Transaction::commit() {
+  connection_.execute("COMMIT");
+  open_ = false;
+}
+
+}  // namespace peclet::runner
