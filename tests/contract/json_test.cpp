@@ -1,0 +1,103 @@
+#include "contract/json.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "contract/input_error.h"
+
+namespace peclet {
+namespace {
+
+std::string message_of(const std::string& text) {
+  try {
+    parse_json(text, "f.json");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Json, FaultsAreNamedWithFileLineAndColumn) {
+  const struct {
+    const char* text;
+    const char* start;
+    const char* fragment;
+  } faults[] = {
+      {"", "f.json: line 1, column 1: ", "unexpected end of input"},
+      {"{\"a\": 1,\n \"b\": }", "f.json: line 2, column 7: ", "unexpected '}'"},
+      {"{\"a\": 1}\n{}", "f.json: line 2, column 1: ", "expected end of input"},
+      {"{\"a\": 1, // no\n}", "f.json: line 1, column 10: ", "invalid literal"},
+      {"[1, 2", "f.json: line 1, column 6: ", "unexpected end of input"},
+      {"[\"äö\", x]", "f.json: line 1, column 8: ", "invalid literal"},
+      {"{\n  \"a\": 1,\n  \"a\": 2\n}", "f.json: line 3, column 5: ", "duplicate key \"a\""},
+      {"[{\"x\": {\"y\": 1, \"y\": 1}}]", "f.json: line 1, column 19: ", "duplicate key \"y\""},
+      {"[NaN]", "f.json: line 1, column 2: ", "invalid literal"},
+      {"[1e999]", "f.json: line 1, column 7: ", "number overflow"},
+  };
+  for (const auto& fault : faults) {
+    const std::string message = message_of(fault.text);
+    EXPECT_TRUE(message.starts_with(fault.start)) << message;
+    EXPECT_NE(message.find(fault.fragment), std::string::npos) << message;
+    EXPECT_EQ(message.find("json.exception"), std::string::npos) << message;
+  }
+}
+
+TEST(Json, TheSameKeyInTwoObjectsIsNoDuplicate) {
+  EXPECT_EQ(parse_json(R"([{"a": {"a": 1}}, {"a": 2}])", "f")[1]["a"], 2);
+}
+
+TEST(Json, BottomlessNestingIsRefused) {
+  EXPECT_NE(message_of(std::string(1000000, '[')).find("nested more than"), std::string::npos);
+}
+
+TEST(Json, AFileThatIsAbsentIsAnInputError) {
+  try {
+    read_json("/nonexistent/scene.json");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "/nonexistent/scene.json: cannot be read: No such file or directory");
+  }
+}
+
+TEST(CanonicalJson, EqualNumbersHaveOneSpelling) {
+  for (const char* one : {"1", "1.0", "1e0", "10e-1"})
+    EXPECT_EQ(canonical_json(Json::parse(one)), "1") << one;
+  for (const char* zero : {"0", "-0", "0.0", "-0.0"})
+    EXPECT_EQ(canonical_json(Json::parse(zero)), "0") << zero;
+  EXPECT_EQ(canonical_json(Json::parse("-3.0")), "-3");
+  EXPECT_EQ(canonical_json(Json::parse("0.10")), "0.1");
+  EXPECT_EQ(canonical_json(Json::parse("9007199254740991.0")), "9007199254740991");
+}
+
+TEST(CanonicalJson, DoesNotDependOnTheOrderOfKeysOrOnBlanks) {
+  EXPECT_EQ(canonical_json(Json::parse("{ \"b\" : [1.0, true, null],\n \"a\" : \"x\\u0041\" }")),
+            R"({"a":"xA","b":[1,true,null]})");
+}
+
+TEST(CanonicalJson, ReadsBackAsTheSameNumber) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> mantissa(-1, 1);
+  std::uniform_int_distribution<int> exponent(-300, 300);
+  for (int i = 0; i < 10000; ++i) {
+    const double number = std::ldexp(mantissa(random), exponent(random));
+    EXPECT_EQ(Json::parse(canonical_json(number)).get<double>(), number);
+  }
+}
+
+TEST(CanonicalJson, RefusesWhatIsNotFinite) {
+  EXPECT_THROW(canonical_json(Json{{"a", std::numeric_limits<double>::quiet_NaN()}}), std::invalid_argument);
+  EXPECT_THROW(canonical_json(-std::numeric_limits<double>::infinity()), std::invalid_argument);
+}
+
+TEST(InputError, LeavesOutWhatIsEmptyAndCanBeSeenFromOutside) {
+  const InputError error("", "/viscosity", "-1", "must be a number > 0");
+  EXPECT_STREQ(error.what(), "/viscosity: -1: must be a number > 0");
+  EXPECT_STREQ(error.within("c.json", "/scene/fluid").what(),
+               "c.json: /scene/fluid/viscosity: -1: must be a number > 0");
+}
+
+}  // namespace
+}  // namespace peclet
