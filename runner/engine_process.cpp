@@ -1,0 +1,165 @@
+#include "runner/engine_process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "contract/input_error.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_program(const fs::path& path) { return fs::is_regular_file(path) && access(path.c_str(), X_OK) == 0; }
+
+std::vector<fs::path> search_path() {
+  std::vector<fs::path> folders{fs::read_symlink("/proc/self/exe").parent_path()};
+  const char* const path = std::getenv("PATH");
+  std::string_view rest = path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin";
+  while (!rest.empty()) {
+    const std::size_t colon = rest.find(':');
+    if (colon != 0) folders.emplace_back(rest.substr(0, colon));
+    rest = colon == std::string_view::npos ? std::string_view{} : rest.substr(colon + 1);
+  }
+  return folders;
+}
+
+void check(int error, const char* doing) {
+  if (error != 0) throw std::system_error(error, std::generic_category(), doing);
+}
+
+// The settings of posix_spawn(3), which own memory.
+class SpawnSettings {
+ public:
+  SpawnSettings(int socket, const fs::path& log) {
+    check(posix_spawn_file_actions_init(&actions_), "posix_spawn");
+    check(posix_spawnattr_init(&attributes_), "posix_spawn");
+    check(posix_spawn_file_actions_adddup2(&actions_, socket, 0), "posix_spawn");
+    check(posix_spawn_file_actions_addopen(&actions_, 1, log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644),
+          log.c_str());
+    check(posix_spawn_file_actions_adddup2(&actions_, 1, 2), "posix_spawn");
+
+    // The owner takes signals from a descriptor and has them blocked; the engine starts with the usual ones.
+    sigset_t none, all;
+    sigemptyset(&none);
+    sigfillset(&all);
+    check(posix_spawnattr_setsigmask(&attributes_, &none), "posix_spawn");
+    check(posix_spawnattr_setsigdefault(&attributes_, &all), "posix_spawn");
+    check(posix_spawnattr_setpgroup(&attributes_, 0), "posix_spawn");
+    check(posix_spawnattr_setflags(&attributes_,
+                                   POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF),
+          "posix_spawn");
+  }
+  ~SpawnSettings() {
+    posix_spawn_file_actions_destroy(&actions_);
+    posix_spawnattr_destroy(&attributes_);
+  }
+  SpawnSettings(const SpawnSettings&) = delete;
+  SpawnSettings& operator=(const SpawnSettings&) = delete;
+
+  const posix_spawn_file_actions_t* actions() const { return &actions_; }
+  const posix_spawnattr_t* attributes() const { return &attributes_; }
+
+ private:
+  posix_spawn_file_actions_t actions_;
+  posix_spawnattr_t attributes_;
+};
+
+}  // namespace
+
+EngineCommand resolve_engine(const Campaign& campaign, const fs::path& campaign_file) {
+  const std::string& name = campaign.engine.at(0);
+  EngineCommand command{{}, {campaign.engine.begin() + 1, campaign.engine.end()}};
+  if (name.find('/') != std::string::npos) {
+    command.program = (fs::absolute(campaign_file).parent_path() / name).lexically_normal();
+    if (is_program(command.program)) return command;
+    throw InputError(campaign_file.string(), "/engine/0", name,
+                     fmt::format("must be a program; there is none at {}", command.program.string()));
+  }
+  for (const fs::path& folder : search_path()) {
+    command.program = folder / name;
+    if (is_program(command.program)) return command;
+  }
+  throw InputError(campaign_file.string(), "/engine/0", name, "must be a program beside peclet or on PATH");
+}
+
+std::string to_string(const ExitStatus& ending) {
+  if (ending.signal) return fmt::format("signal {} ({})", *ending.signal, strsignal(*ending.signal));
+  return fmt::format("exit status {}", ending.status.value_or(-1));
+}
+
+EngineProcess::EngineProcess(const EngineCommand& command, const fs::path& log) {
+  int ends[2];
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) check(errno, "socketpair");
+  const SpawnSettings settings(ends[1], log);
+  std::vector<std::string> words{command.program.string()};
+  words.insert(words.end(), command.arguments.begin(), command.arguments.end());
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  const int error = posix_spawn(&process_, command.program.c_str(), settings.actions(), settings.attributes(),
+                                arguments.data(), environ);
+  close(ends[1]);
+  if (error != 0) {
+    close(ends[0]);
+    throw std::system_error(error, std::generic_category(), command.program.string());
+  }
+  descriptor_ = ends[0];
+}
+
+EngineProcess::EngineProcess(EngineProcess&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)), process_(std::exchange(other.process_, -1)) {}
+
+EngineProcess::~EngineProcess() {
+  hang_up();
+  if (process_ < 0) return;
+  const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  while (std::chrono::steady_clock::now() < patience) {
+    if (reap()) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  kill();
+  waitpid(process_, nullptr, 0);
+}
+
+void EngineProcess::hang_up() {
+  if (descriptor_ >= 0) close(descriptor_);
+  descriptor_ = -1;
+}
+
+void EngineProcess::kill() const {
+  if (process_ > 0) ::kill(process_, SIGKILL);
+}
+
+std::optional<ExitStatus> EngineProcess::reap() {
+  int status = 0;
+  pid_t ended = 0;
+  do {
+    ended = waitpid(process_, &status, WNOHANG);
+  } while (ended < 0 && errno == EINTR);
+  if (ended == 0) return std::nullopt;
+  if (ended < 0) check(errno, "waitpid");
+  process_ = -1;
+  ExitStatus ending;
+  if (WIFSIGNALED(status)) {
+    ending.signal = WTERMSIG(status);
+  } else {
+    ending.status = WEXITSTATUS(status);
+  }
+  return ending;
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,61 @@
+// One running engine: a child process whose standard input is one end of a socket pair.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/campaign.h"
+
+namespace peclet::runner {
+
+struct EngineCommand {
+  std::filesystem::path program;
+  std::vector<std::string> arguments;  // without the program
+};
+
+// Finds campaign.engine[0]: absolute, or with a slash relative to the campaign file's folder; else beside the
+// running program, else on PATH. Throws InputError at /engine/0 of `campaign_file`.
+EngineCommand resolve_engine(const Campaign& campaign, const std::filesystem::path& campaign_file);
+
+// How a process ended.
+struct ExitStatus {
+  std::optional<int> status;  // of exit()
+  std::optional<int> signal;  // that killed it
+};
+
+// "exit status 3", "signal 11 (Segmentation fault)"
+std::string to_string(const ExitStatus& ending);
+
+// Movable owner of the process and of our end of its socket.
+class EngineProcess {
+ public:
+  // Starts the engine in a process group of its own, so that a Ctrl-C at the terminal reaches only its owner.
+  // What it prints is appended to `log` (/dev/null for nowhere). Our end of the socket is close-on-exec, so
+  // an owner's death is the end of file that tells the engine to checkpoint and leave. Throws
+  // std::system_error.
+  EngineProcess(const EngineCommand& command, const std::filesystem::path& log);
+  // Closes the socket, waits briefly for the engine to leave by itself, then kills it.
+  ~EngineProcess();
+  EngineProcess(EngineProcess&& other) noexcept;
+  EngineProcess& operator=(EngineProcess&&) = delete;
+
+  int descriptor() const { return descriptor_; }
+  pid_t process() const { return process_; }
+
+  // Closes our end of the socket: the engine checkpoints and leaves.
+  void hang_up();
+  // SIGKILL. The ending is still to be reaped.
+  void kill() const;
+  // How it ended, once it has; afterwards the process no longer exists.
+  std::optional<ExitStatus> reap();
+
+ private:
+  int descriptor_ = -1;
+  pid_t process_ = -1;  // -1: reaped
+};
+
+}  // namespace peclet::runner

@@ -1,0 +1,22 @@
+// SIGINT and SIGTERM as something to poll for.
+#pragma once
+
+namespace peclet::runner {
+
+// From construction to destruction both signals are blocked in this thread and read from a descriptor
+// instead. Threads that are started meanwhile inherit that.
+class StopSignals {
+ public:
+  StopSignals();
+  ~StopSignals();
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+  int descriptor() const { return descriptor_; }
+  // Takes one signal that has come, if any.
+  bool take();
+
+ private:
+  int descriptor_ = -1;
+};
+
+}  // namespace peclet::runner

@@ -1,0 +1,204 @@
+#include "runner/worker_process.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+namespace peclet::runner {
+namespace {
+
+using Time = std::chrono::steady_clock;
+
+// An engine that has closed its socket is on its way out; one that is not gone after this is killed.
+constexpr std::chrono::seconds leaving_patience{2};
+// How soon to look again for the ending of a process that has closed its socket.
+constexpr std::chrono::milliseconds reaping_interval{2};
+
+constexpr std::array<const char*, 3> phases{"packing", "equilibration", "production"};
+
+int phase_number(const std::string& name) {
+  const auto found = std::find(phases.begin(), phases.end(), name);
+  if (found == phases.end()) throw FrameError("unknown phase: " + name);
+  return static_cast<int>(found - phases.begin());
+}
+
+Json job_frame(const Job& job) {
+  return {{"type", "job"},
+          {"job", job.attempt},
+          {"point", job.point},
+          {"seed", job.seed},
+          {"scene", job.scene},
+          {"threads", job.threads},
+          {"checkpoint", job.checkpoint.string()},
+          {"checkpoint_seconds", job.checkpoint_seconds},
+          {"progress_seconds", job.progress_seconds},
+          {"spool", job.spool.string()},
+          {"failures", job.failures.string()}};
+}
+
+// Throws FrameError or Json::exception for a message that a worker does not send.
+WorkerEvent as_event(int worker, const Json& message) {
+  const std::string& type = message.at("type").get_ref<const std::string&>();
+  if (type == "hello") {
+    if (message.at("protocol") != 1)
+      throw FrameError("protocol " + message.at("protocol").dump() + ", not 1");
+    if (!message.at("engine").is_object()) throw FrameError("hello without an engine");
+    return Hello{worker, message.at("engine")};
+  }
+  if (type == "progress") {
+    return Progressed{worker,
+                      message.at("job").get<std::int64_t>(),
+                      phase_number(message.at("phase").get<std::string>()),
+                      message.at("step").get<std::int64_t>(),
+                      message.at("steps").get<std::int64_t>(),
+                      message.at("strain").get<double>()};
+  }
+  if (type == "result") {
+    return ResultSpooled{worker, message.at("job").get<std::int64_t>(),
+                         message.at("spool").get<std::string>(), message.at("sha256").get<std::string>()};
+  }
+  if (type == "failed") {
+    return JobFailed{worker, message.at("job").get<std::int64_t>(), message.at("message").get<std::string>()};
+  }
+  if (type == "drained") {
+    return Drained{worker, message.at("job").get<std::int64_t>(), message.at("step").get<std::int64_t>()};
+  }
+  throw FrameError("unexpected message: " + type);
+}
+
+}  // namespace
+
+const char* phase_name(int phase) { return phases.at(static_cast<std::size_t>(phase)); }
+
+ProcessPool::ProcessPool(int workers, EngineCommand command, CampaignDirectory directory,
+                         StopSignals& signals)
+    : command_(std::move(command)), directory_(std::move(directory)), signals_(signals) {
+  workers_.resize(static_cast<std::size_t>(workers));
+}
+
+ProcessPool::~ProcessPool() {
+  for (const std::unique_ptr<Worker>& worker : workers_) {
+    if (worker) worker->process.hang_up();
+  }
+}
+
+void ProcessPool::start(int worker) {
+  workers_.at(static_cast<std::size_t>(worker)) =
+      std::make_unique<Worker>(Worker{EngineProcess(command_, directory_.worker_log(worker))});
+}
+
+std::int64_t ProcessPool::process(int worker) const {
+  const std::unique_ptr<Worker>& running = workers_.at(static_cast<std::size_t>(worker));
+  return running ? running->process.process() : 0;
+}
+
+void ProcessPool::assign(int worker, const Job& job) { send(worker, job_frame(job)); }
+
+void ProcessPool::drain(int worker) { send(worker, {{"type", "drain"}}); }
+
+void ProcessPool::kill(int worker) {
+  if (const auto& running = workers_.at(static_cast<std::size_t>(worker))) running->process.kill();
+}
+
+void ProcessPool::send(int number, const Json& message) {
+  const auto& worker = workers_.at(static_cast<std::size_t>(number));
+  if (!worker || worker->deaf) return;
+  worker->unsent += encode_frame(message);
+  flush(*worker);
+}
+
+void ProcessPool::flush(Worker& worker) {
+  while (!worker.unsent.empty()) {
+    const ssize_t sent = ::send(worker.process.descriptor(), worker.unsent.data(), worker.unsent.size(),
+                                MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return;
+    if (sent < 0) {  // it has gone; the end of the stream and its ending are about to say so
+      worker.unsent.clear();
+      return;
+    }
+    worker.unsent.erase(0, static_cast<std::size_t>(sent));
+  }
+}
+
+std::vector<WorkerEvent> ProcessPool::wait(std::chrono::milliseconds patience) {
+  std::vector<pollfd> watched{{signals_.descriptor(), POLLIN, 0}};
+  std::vector<int> numbers{-1};
+  for (int number = 0; number < size(); ++number) {
+    const auto& worker = workers_[static_cast<std::size_t>(number)];
+    if (!worker) continue;
+    if (worker->deaf) {
+      patience = std::min(patience, reaping_interval);
+      continue;
+    }
+    const short what = static_cast<short>(worker->unsent.empty() ? POLLIN : POLLIN | POLLOUT);
+    watched.push_back({worker->process.descriptor(), what, 0});
+    numbers.push_back(number);
+  }
+  const int ready = poll(watched.data(), watched.size(), static_cast<int>(patience.count()));
+  if (ready < 0 && errno != EINTR) throw std::system_error(errno, std::generic_category(), "poll");
+
+  std::vector<WorkerEvent> events;
+  if (ready > 0) {
+    while (signals_.take()) events.emplace_back(StopSignal{});
+    for (std::size_t i = 1; i < watched.size(); ++i) {
+      if ((watched[i].revents & POLLOUT) != 0) flush(*workers_[static_cast<std::size_t>(numbers[i])]);
+      if ((watched[i].revents & ~POLLOUT) != 0) receive(numbers[i], events);
+    }
+  }
+  for (int number = 0; number < size(); ++number) reap(number, events);
+  return events;
+}
+
+// Takes everything that has come (a socket holds less than this), so that leases are judged by the latest news; a
+// worker that floods us does not keep us from the others.
+void ProcessPool::receive(int number, std::vector<WorkerEvent>& events) {
+  Worker& worker = *workers_[static_cast<std::size_t>(number)];
+  std::array<char, 65536> bytes;
+  for (int reads = 0; reads < 64 && !worker.deaf; ++reads) {
+    const ssize_t count = recv(worker.process.descriptor(), bytes.data(), bytes.size(), MSG_DONTWAIT);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return;
+    if (count <= 0) {
+      worker.deaf = true;
+      worker.grace = Time::now() + leaving_patience;
+      return;
+    }
+    worker.decoder.feed(bytes.data(), static_cast<std::size_t>(count));
+    hear(number, events);
+  }
+}
+
+void ProcessPool::hear(int number, std::vector<WorkerEvent>& events) {
+  Worker& worker = *workers_[static_cast<std::size_t>(number)];
+  try {
+    while (const std::optional<Json> message = worker.decoder.next())
+      events.push_back(as_event(number, *message));
+    return;
+  } catch (const FrameError& error) {
+    events.emplace_back(Garbled{number, error.what()});
+  } catch (const Json::exception& error) {
+    events.emplace_back(Garbled{number, error.what()});
+  }
+  worker.process.kill();
+  worker.deaf = true;
+}
+
+void ProcessPool::reap(int number, std::vector<WorkerEvent>& events) {
+  std::unique_ptr<Worker>& worker = workers_[static_cast<std::size_t>(number)];
+  if (!worker || !worker->deaf) return;
+  if (const std::optional<ExitStatus> ending = worker->process.reap()) {
+    events.emplace_back(Exited{number, *ending});
+    worker.reset();
+  } else if (worker->grace && Time::now() > *worker->grace) {
+    worker->process.kill();
+  }
+}
+
+}  // namespace peclet::runner
