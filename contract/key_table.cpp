@@ -89,8 +89,9 @@ class Validation {
     const std::vector<const Key*> keys = table_.below(pattern);
     if (keys.empty()) return;
     for (const auto& [name, value] : object.items()) {
-      const Key* key = table_.find(pattern + '/' + name);
-      if (key == nullptr || name == "*") refuse_unknown(keys, pointer + '/' + escaped(name));
+      const bool is_plain = name != "*" && name.find('/') == std::string::npos;
+      const Key* key = is_plain ? table_.find(pattern + '/' + name) : nullptr;
+      if (key == nullptr) refuse_unknown(keys, pointer + '/' + escaped(name));
       check_value(value, *key, pointer + '/' + escaped(name));
     }
     for (const Key* key : keys) {

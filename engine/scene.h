@@ -51,7 +51,7 @@ struct Physics {
 
 struct Species {
   double radius = 0;
-  double share = 0;  // of the volume or of the number, see Particles
+  double share = 0;  // of the volume or of the number, see Particles; the shares add up to 1
 };
 
 struct Particles {
@@ -63,7 +63,9 @@ struct Particles {
   std::vector<Species> species;
 };
 
-// Ends with the first of its limits that is reached; infinity where there is none.
+// Ends with the first of its limits that is reached; infinity where there is none or where the scene cannot
+// reach it (strain without shear, Brownian times without temperature). One at least is finite. A limit of 0 in
+// the document makes time 0 and the others infinite.
 struct Duration {
   double strain = std::numeric_limits<double>::infinity();
   double brownian_times = std::numeric_limits<double>::infinity();  // units of eta a^3 / kT

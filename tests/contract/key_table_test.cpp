@@ -91,6 +91,7 @@ TEST(KeyTable, EachFaultIsNamedWithPointerValueAndWhatIsAllowed) {
       {R"({"box": {"length": 1, "lenght": 1}})", "/box/lenght", "unknown key",
        "allowed keys: length, cells, shape"},
       {R"({"box": {"length": 1}, "a/b~": 1})", "/a~1b~0", "unknown key", "allowed keys: box, balls"},
+      {R"({"box": {"length": 1}, "box/cells": 1})", "/box~1cells", "unknown key", "allowed keys: box, balls"},
       {R"({"box": {"length": 1}, "*": 1})", "/*", "unknown key", "allowed keys: box, balls"},
   };
   for (const auto& fault : faults) {
