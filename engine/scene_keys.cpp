@@ -1,4 +1,6 @@
 // Every key of a scene: the one list behind validation, schema/scene.schema.json and the manual's page.
+#include <utility>
+
 #include "engine/scene.h"
 
 namespace peclet::engine {
