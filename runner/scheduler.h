@@ -46,6 +46,8 @@ class Scheduler {
   int wanted(int point) const;
   // Of these, how many have ended.
   int ended(int point) const;
+  // Seeds of the point that run or have ended.
+  int begun(int point) const { return point_at(point).begun; }
   int points() const { return static_cast<int>(points_.size()); }
 
  private:

@@ -1,0 +1,306 @@
+#include "runner/dispatcher.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <tuple>
+#include <variant>
+
+namespace peclet::runner {
+namespace {
+
+using std::chrono::seconds;
+
+// The longest that a turn waits: leases and the time limit are judged at least this often.
+constexpr std::chrono::milliseconds longest_wait{500};
+constexpr seconds report_interval{1};
+constexpr seconds lease_display_interval{2};
+// Workers that have not checkpointed and left by then are killed; the seeds lose what came after the last
+// checkpoint.
+constexpr seconds drain_patience{60};
+constexpr seconds surplus_patience{10};
+constexpr seconds hello_patience{60};
+// An engine that exits by itself this often before it is given anything to do will not do better the next
+// time.
+constexpr int most_early_exits = 3;
+// The same for kills from outside, which may be somebody's fault drill.
+constexpr int most_early_kills = 100;
+
+}  // namespace
+
+Dispatcher::Dispatcher(Database& database, Ledger& ledger, WorkerPool& pool, RunListener& listener,
+                       DispatchSettings settings, Clock clock)
+    : database_(database),
+      ledger_(ledger),
+      pool_(pool),
+      listener_(listener),
+      settings_(settings),
+      clock_(std::move(clock)),
+      workers_(static_cast<std::size_t>(pool.size())),
+      started_(clock_()),
+      reported_(started_),
+      leases_shown_(started_),
+      stopping_since_(started_) {}
+
+Dispatcher::Ending Dispatcher::run() {
+  while (!ledger_.scheduler().finished() && stopping_ == Stopping::no) turn();
+  if (stopping_ == Stopping::no) stop(Stopping::finished);
+  while (anyone_there()) turn();
+  // A worker that outlived an earlier owner may have left a result meanwhile.
+  ledger_.ingest_spool();
+  return ledger_.scheduler().finished() ? Ending::finished : Ending::stopped;
+}
+
+bool Dispatcher::anyone_there() const {
+  return std::any_of(workers_.begin(), workers_.end(),
+                     [](const Worker& worker) { return worker.stage != Stage::absent; });
+}
+
+void Dispatcher::turn() {
+  start_workers();
+  const std::vector<WorkerEvent> events = pool_.wait(longest_wait);
+  Transaction booking(database_.connection());
+  for (const WorkerEvent& event : events) {
+    std::visit([this](const auto& happened) { handle(happened); }, event);
+  }
+  judge_leases();
+  give_out_seeds();
+  show_leases();
+  booking.commit();
+
+  for (const auto& [worker, job] : to_send_) pool_.assign(worker, job);
+  to_send_.clear();
+  ledger_.after_commit();
+  report();
+}
+
+void Dispatcher::start_workers() {
+  if (stopping_ != Stopping::no) return;
+  for (int number = 0; number < pool_.size(); ++number) {
+    if (at(number).stage != Stage::absent) continue;
+    pool_.start(number);
+    at(number) = Worker{Stage::starting, clock_()};
+  }
+}
+
+void Dispatcher::give_out_seeds() {
+  if (stopping_ != Stopping::no || ledger_.scheduler().finished()) return;
+  for (int number = 0; number < pool_.size(); ++number) {
+    Worker& worker = at(number);
+    if (worker.stage != Stage::idle) continue;
+    std::optional<Grant> grant = ledger_.give_out(number, pool_.process(number), worker.engine);
+    if (!grant) return;
+    grant->job.threads = settings_.threads;
+    grant->job.checkpoint_seconds = settings_.checkpoint_seconds;
+    // Several reports fit into a lease.
+    grant->job.progress_seconds = std::min(1.0, settings_.lease.count() / 5);
+    to_send_.emplace_back(number, grant->job);
+    worker.stage = Stage::busy;
+    worker.since = clock_();
+    worker.assignment = Assignment{std::move(*grant)};
+    worker.assignment->renewed = worker.since;
+  }
+}
+
+void Dispatcher::judge_leases() {
+  const Time now = clock_();
+  for (int number = 0; number < pool_.size(); ++number) {
+    const Worker& worker = at(number);
+    if (worker.condemned) continue;
+    if (worker.stage == Stage::starting && now - worker.since > hello_patience) {
+      condemn(number, AttemptOutcome::hung, "it did not say hello");
+    }
+    if (worker.stage == Stage::busy && now - worker.assignment->renewed > settings_.lease) {
+      condemn(
+          number, AttemptOutcome::hung,
+          fmt::format("no new step after {} for {:g} s", worker.assignment->step, settings_.lease.count()));
+    }
+  }
+  if (settings_.time_limit && stopping_ == Stopping::no && now - started_ >= *settings_.time_limit) {
+    listener_.note("the time limit is reached: workers checkpoint and stop");
+    stop(Stopping::draining);
+  }
+  const seconds patience = stopping_ == Stopping::finished ? surplus_patience : drain_patience;
+  if ((stopping_ == Stopping::finished || stopping_ == Stopping::draining) &&
+      now - stopping_since_ > patience) {
+    stop(Stopping::at_once);
+  }
+}
+
+void Dispatcher::show_leases() {
+  if (clock_() - leases_shown_ < lease_display_interval) return;
+  leases_shown_ = clock_();
+  for (Worker& worker : workers_) {
+    if (!worker.assignment || worker.assignment->shown) continue;
+    Assignment& about = *worker.assignment;
+    ledger_.renew_lease(about.grant, about.phase, about.step, about.steps, about.strain);
+    about.shown = true;
+  }
+}
+
+void Dispatcher::stop(Stopping why) {
+  stopping_ = why;
+  stopping_since_ = clock_();
+  for (int number = 0; number < pool_.size(); ++number) {
+    if (at(number).stage == Stage::absent) continue;
+    if (why == Stopping::at_once) {
+      pool_.kill(number);
+    } else {
+      pool_.drain(number);
+    }
+  }
+}
+
+void Dispatcher::report() {
+  const Time now = clock_();
+  if (now - reported_ < report_interval) return;
+  reported_ = now;
+  RunReport report = ledger_.report(pool_.size());
+  report.workers = pool_.size();
+  report.results = results_;
+  report.elapsed = std::chrono::duration<double>(now - started_).count();
+  listener_.report(report);
+}
+
+bool Dispatcher::has_job(int worker, std::int64_t job) {
+  const Worker& about = at(worker);
+  if (about.condemned) return false;
+  if (about.assignment && about.assignment->grant.job.attempt == job) return true;
+  condemn(worker, AttemptOutcome::garbled, fmt::format("spoke of job {}, which it does not have", job));
+  return false;
+}
+
+void Dispatcher::condemn(int number, AttemptOutcome outcome, const std::string& message) {
+  Worker& worker = at(number);
+  worker.condemned = outcome;
+  worker.message = message;
+  pool_.kill(number);
+}
+
+void Dispatcher::set_idle(int number) {
+  Worker& worker = at(number);
+  worker.assignment.reset();
+  worker.stage = Stage::idle;
+  worker.since = clock_();
+}
+
+void Dispatcher::end_assignment(int number, const AttemptEnd& end) {
+  AttemptEnd complete = end;
+  complete.step = at(number).assignment->step;
+  ledger_.end_attempt(at(number).assignment->grant, complete);
+  set_idle(number);
+}
+
+void Dispatcher::handle(const Hello& event) {
+  Worker& worker = at(event.worker);
+  if (worker.condemned) return;
+  if (worker.stage != Stage::starting) {
+    condemn(event.worker, AttemptOutcome::garbled, "said hello twice");
+    return;
+  }
+  worker.engine = ledger_.admit_engine(event.engine);
+  set_idle(event.worker);
+}
+
+void Dispatcher::handle(const Progressed& event) {
+  if (!has_job(event.worker, event.job)) return;
+  Assignment& about = *at(event.worker).assignment;
+  // Steps count; being alive does not.
+  if (std::tie(event.phase, event.step) > std::tie(about.phase, about.step)) about.renewed = clock_();
+  about.phase = event.phase;
+  about.step = event.step;
+  about.steps = event.steps;
+  about.strain = event.strain;
+  about.shown = false;
+}
+
+void Dispatcher::handle(const ResultSpooled& event) {
+  if (!has_job(event.worker, event.job)) return;
+  const Assignment& about = *at(event.worker).assignment;
+  std::string why;
+  if (event.spool != about.grant.job.spool) {
+    condemn(event.worker, AttemptOutcome::garbled, "spooled its result elsewhere");
+  } else if (ledger_.take_result(about.grant, event.sha256, about.step, why)) {
+    ++results_;
+    early_exits_ = 0;
+    set_idle(event.worker);
+  } else {
+    condemn(event.worker, AttemptOutcome::garbled, why);
+  }
+}
+
+void Dispatcher::handle(const JobFailed& event) {
+  if (!has_job(event.worker, event.job)) return;
+  end_assignment(event.worker, {AttemptOutcome::refused, 0, {}, event.message});
+}
+
+void Dispatcher::handle(const Drained& event) {
+  if (!has_job(event.worker, event.job)) return;
+  at(event.worker).assignment->step = event.step;
+  end_assignment(event.worker, {AttemptOutcome::drained});
+  pool_.drain(event.worker);  // an idle engine leaves
+}
+
+void Dispatcher::handle(const Garbled& event) {
+  condemn(event.worker, AttemptOutcome::garbled, event.message);
+}
+
+void Dispatcher::handle(const Exited& event) {
+  Worker& worker = at(event.worker);
+  const Stage stage = worker.stage;
+  if (worker.assignment) {
+    exited_during_job(event.worker, event.ending);
+  } else {
+    exited_without_job(event.worker, event.ending, stage);
+  }
+  worker = Worker{};
+}
+
+void Dispatcher::exited_during_job(int number, const ExitStatus& ending) {
+  const Worker& worker = at(number);
+  const Grant& grant = worker.assignment->grant;
+  // A result may be durable although nobody could announce it any more; one that was turned down stays so.
+  std::string why;
+  if (worker.condemned != AttemptOutcome::garbled && std::filesystem::exists(grant.job.spool) &&
+      ledger_.take_result(grant, "", worker.assignment->step, why)) {
+    ++results_;
+    set_idle(number);
+    return;
+  }
+  AttemptEnd end{outcome_of(ending), 0, ending, to_string(ending)};
+  if (worker.condemned) {
+    end.outcome = *worker.condemned;
+    end.message = worker.message;
+  } else if (stopping_ == Stopping::at_once || (stopping_ != Stopping::no && ending.status == 0)) {
+    end.outcome = AttemptOutcome::drained;
+  }
+  end_assignment(number, end);
+}
+
+void Dispatcher::exited_without_job(int number, const ExitStatus& ending, Stage stage) {
+  if (stopping_ != Stopping::no) return;
+  const bool own_doing = at(number).condemned || outcome_of(ending) != AttemptOutcome::killed;
+  const std::string how = at(number).message.empty() ? to_string(ending) : at(number).message;
+  listener_.warn(fmt::format("worker {} ended {}: {}", number,
+                             stage == Stage::starting ? "before it said hello" : "without a job", how));
+  early_exits_ += own_doing ? most_early_kills / most_early_exits + 1 : 1;
+  if (early_exits_ > most_early_kills) {
+    throw EngineError(
+        fmt::format("the engine does not stay until it is given work: {}; what it printed is in the log "
+                    "of worker {}",
+                    how, number));
+  }
+}
+
+void Dispatcher::handle(const StopSignal&) {
+  if (stopping_ == Stopping::draining || stopping_ == Stopping::finished) {
+    listener_.note("stopping at once");
+    stop(Stopping::at_once);
+  } else if (stopping_ == Stopping::no) {
+    listener_.note("workers checkpoint and stop; a second signal stops at once");
+    stop(Stopping::draining);
+  }
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,108 @@
+// Gives seeds to workers and hears what becomes of them, until every point is decided or the run is stopped.
+//
+// One turn: hear what happened, book all of it in one transaction, and act only after the commit: a job is
+// sent when its attempt is durable, a spool file goes when its result is.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runner/ledger.h"
+#include "runner/worker_pool.h"
+
+namespace peclet::runner {
+
+// An engine that does not start, or does not live until it is given work. Exit code 1.
+class EngineError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct DispatchSettings {
+  int threads = 1;  // of each worker
+  std::chrono::duration<double> lease{120};
+  double checkpoint_seconds = 60;
+  std::optional<std::chrono::duration<double>> time_limit{};
+};
+
+class Dispatcher {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+  using Clock = std::function<Time()>;
+
+  // All references must outlive the dispatcher.
+  Dispatcher(Database& database, Ledger& ledger, WorkerPool& pool, RunListener& listener,
+             DispatchSettings settings, Clock clock);
+
+  enum class Ending { finished, stopped };
+  // Throws IntegrityError (an engine of another identity), InputError (a target that results do not have),
+  // EngineError, DatabaseError. Whatever was reported until then is in the database or in the spool.
+  Ending run();
+
+ private:
+  // A seed in the hands of a worker, and how far it is.
+  struct Assignment {
+    Grant grant;
+    int phase = 0;
+    std::int64_t step = 0, steps = 0;
+    double strain = 0;
+    Time renewed{};      // when it last came forward
+    bool shown = false;  // the database says how far it is
+  };
+  enum class Stage { absent, starting, idle, busy };
+  struct Worker {
+    Stage stage = Stage::absent;
+    Time since{};  // of the stage
+    std::int64_t engine = 0;
+    std::optional<Assignment> assignment{};
+    std::optional<AttemptOutcome> condemned{};  // killed by us, and why
+    std::string message{};
+  };
+  enum class Stopping { no, finished, draining, at_once };
+
+  void handle(const Hello& event);
+  void handle(const Progressed& event);
+  void handle(const ResultSpooled& event);
+  void handle(const JobFailed& event);
+  void handle(const Drained& event);
+  void handle(const Garbled& event);
+  void handle(const Exited& event);
+  void handle(const StopSignal& event);
+
+  void turn();
+  void start_workers();
+  void give_out_seeds();
+  void judge_leases();
+  void show_leases();
+  void stop(Stopping why);
+  void report();
+
+  bool has_job(int worker, std::int64_t job);
+  void condemn(int worker, AttemptOutcome outcome, const std::string& message);
+  void set_idle(int worker);
+  void end_assignment(int worker, const AttemptEnd& end);
+  void exited_during_job(int worker, const ExitStatus& ending);
+  void exited_without_job(int worker, const ExitStatus& ending, Stage stage);
+  Worker& at(int worker) { return workers_.at(static_cast<std::size_t>(worker)); }
+  bool anyone_there() const;
+
+  Database& database_;
+  Ledger& ledger_;
+  WorkerPool& pool_;
+  RunListener& listener_;
+  DispatchSettings settings_;
+  Clock clock_;
+  std::vector<Worker> workers_;
+  std::vector<std::pair<int, Job>> to_send_;  // after the commit
+  Stopping stopping_ = Stopping::no;
+  Time started_, reported_, leases_shown_, stopping_since_;
+  int results_ = 0;
+  int early_exits_ = 0;  // of workers without a job, in a row
+};
+
+}  // namespace peclet::runner

@@ -1,0 +1,258 @@
+#include "runner/ledger.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "contract/input_error.h"
+#include "runner/spool.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string names_of_numbers(const Json& mean) {
+  std::string names;
+  for (const auto& [name, value] : mean.items()) {
+    if (value.is_number()) names += (names.empty() ? "" : ", ") + name;
+  }
+  return names;
+}
+
+}  // namespace
+
+Ledger::Ledger(Database& database, const Campaign& campaign, CampaignDirectory directory,
+               RunListener& listener, int retries)
+    : database_(database),
+      queue_(database),
+      campaign_(campaign),
+      directory_(std::move(directory)),
+      listener_(listener),
+      retries_(retries),
+      points_(database.points()) {
+  for (const PointRecord& known : points_) places_[known.hash] = *known.place;
+  costs_.resize(points_.size());
+  running_.resize(points_.size());
+  ingest_spool();
+  if (const int recovered = queue_.recover(); recovered > 0) {
+    listener_.note(fmt::format("{} seeds that an earlier run left unfinished go on", recovered));
+  }
+  load();
+}
+
+void Ledger::load() {
+  std::vector<std::vector<std::optional<Outcome>>> outcomes;
+  for (const PointRecord& known : points_) {
+    outcomes.push_back(database_.outcomes(known.id));
+    for (const RealisationRecord& record : database_.realisations(known.id)) {
+      if (record.wall_seconds) costs_[static_cast<std::size_t>(*known.place)].add(*record.wall_seconds);
+    }
+  }
+  scheduler_.emplace(std::move(outcomes), campaign_.target, campaign_.minimum_realisations,
+                     campaign_.maximum_realisations);
+  Transaction booking(database_.connection());
+  for (int place = 0; place < scheduler_->points(); ++place) {
+    queue_.store_looks(point(place).id, scheduler_->looks(place));
+    if (!scheduler_->decided(place)) queue_.enqueue(point(place).id, scheduler_->wanted(place));
+  }
+  booking.commit();
+}
+
+void Ledger::ingest_spool() {
+  // Files are committed one by one: a crash in between finds the rest where it was.
+  for (const fs::path& file : spool_files(directory_)) {
+    Transaction booking(database_.connection());
+    try {
+      take(read_spool_file(file, ""), file);
+    } catch (const ResultError& error) {
+      turn_down(file, error.what());
+    }
+    booking.commit();
+    after_commit();
+  }
+}
+
+Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
+  const Stored stored = queue_.store(result, campaign_.target.observable);
+  switch (stored) {
+    case Stored::stored:
+    case Stored::duplicate:
+      to_remove_.push_back(spool);
+      to_remove_.push_back(directory_.checkpoint(result.point, result.seed));
+      break;
+    case Stored::conflict:
+      turn_down(spool, "another run of the same seed gave another result");
+      return stored;
+    case Stored::mixed_engine:
+      turn_down(spool, "its point has results of another engine");
+      return stored;
+    case Stored::unknown_point:
+      turn_down(spool, "it belongs to no point of this campaign");
+      return stored;
+  }
+  const auto place = places_.find(result.point);
+  if (stored == Stored::duplicate || place == places_.end()) return stored;
+  const Observed observed = observe(result.document, campaign_.target.observable);
+  if (result.completed() && !observed.value) lacking_ = names_of_numbers(result.document["mean"]);
+  if (!scheduler_) return stored;  // load() finds it
+  if (result.document["cost"]["wall_seconds"].is_number()) {
+    costs_[static_cast<std::size_t>(place->second)].add(
+        result.document["cost"]["wall_seconds"].get<double>());
+  }
+  const Outcome outcome = observed.value
+                              ? Outcome{Outcome::Kind::value, *observed.value, observed.control.value_or(0)}
+                              : Outcome{};
+  if (!result.completed()) {
+    listener_.note(fmt::format("{}: ended with {}", name({place->second, result.seed}), result.cause));
+  }
+  book_outcome({place->second, result.seed}, outcome);
+  return stored;
+}
+
+void Ledger::turn_down(const fs::path& spool, const std::string& why) {
+  const std::string message = fmt::format("{} is not taken: {}", spool.filename().string(), why);
+  queue_.event("rejected", std::nullopt, std::nullopt, message);
+  listener_.warn(fmt::format("{}; it is kept in {}", message, directory_.rejected().string()));
+  if (fs::exists(spool)) to_reject_.push_back(spool);
+}
+
+void Ledger::book_outcome(SeedId id, const Outcome& outcome) {
+  if (!scheduler_->end(id, outcome)) return;
+  const PointRecord& about = point(id.point);
+  queue_.store_looks(about.id, scheduler_->looks(id.point));
+  if (!scheduler_->decided(id.point)) {
+    queue_.enqueue(about.id, scheduler_->wanted(id.point));
+    return;
+  }
+  const Look& last = scheduler_->looks(id.point).back();
+  const std::string message = fmt::format("{} after {} seeds", to_string(last.verdict), last.seeds);
+  queue_.event("decided", about.id, std::nullopt, message);
+  listener_.note(fmt::format("{}: {}", about.label, message));
+}
+
+std::optional<Grant> Ledger::give_out(int worker, std::int64_t process, std::int64_t engine) {
+  const std::optional<SeedId> id = scheduler_->next();
+  if (!id) return std::nullopt;
+  const PointRecord& about = point(id->point);
+  Grant grant{*id, {}};
+  grant.job.attempt = queue_.begin_attempt(about.id, id->seed, worker, process, engine);
+  grant.job.point = about.hash;
+  grant.job.seed = id->seed;
+  grant.job.scene = about.scene;
+  grant.job.checkpoint = directory_.checkpoint(about.hash, id->seed);
+  grant.job.spool = directory_.spool_file(about.hash, id->seed, grant.job.attempt);
+  grant.job.failures = directory_.failures();
+  scheduler_->begin(*id);
+  ++running_[static_cast<std::size_t>(id->point)];
+  return grant;
+}
+
+bool Ledger::take_result(const Grant& grant, const std::string& sha256, std::int64_t step, std::string& why) {
+  try {
+    const RealisationResult result = read_spool_file(grant.job.spool, sha256);
+    if (result.point != grant.job.point || result.seed != grant.job.seed) {
+      throw ResultError("it is of another point or seed than the job");
+    }
+    if (engine_identity(result.document.at("engine")) != identity_) {
+      throw ResultError("it names another engine than the worker's hello");
+    }
+    take(result, grant.job.spool);
+  } catch (const ResultError& error) {
+    why = error.what();
+    turn_down(grant.job.spool, why);
+    return false;
+  }
+  --running_[static_cast<std::size_t>(grant.id.point)];
+  queue_.end_attempt(grant.job.attempt, {AttemptOutcome::result, step});
+  return true;
+}
+
+void Ledger::end_attempt(const Grant& grant, const AttemptEnd& end) {
+  const PointRecord& about = point(grant.id.point);
+  --running_[static_cast<std::size_t>(grant.id.point)];
+  queue_.end_attempt(grant.job.attempt, end);
+  const Sentence sentence = judge(queue_.history(about.id, grant.id.seed), retries_);
+  if (sentence.discard_checkpoint) to_remove_.push_back(grant.job.checkpoint);
+  if (is_blamed(end.outcome)) {
+    listener_.warn(fmt::format("{}: {}{}{}; {}", name(grant.id), to_string(end.outcome),
+                               end.message.empty() ? "" : ": ", end.message,
+                               sentence.quarantine ? "it is given up" : "it is tried again"));
+  }
+  if (!sentence.quarantine) {
+    queue_.requeue(about.id, grant.id.seed);
+    scheduler_->give_back(grant.id);
+    return;
+  }
+  queue_.quarantine(about.id, grant.id.seed, sentence.cause);
+  book_outcome(grant.id, Outcome{});
+}
+
+void Ledger::renew_lease(const Grant& grant, int phase, std::int64_t step, std::int64_t steps,
+                         double strain) {
+  queue_.renew_lease(grant.job.attempt, phase_name(phase), step, steps, strain);
+}
+
+std::int64_t Ledger::admit_engine(const Json& engine) {
+  std::string identity;
+  try {
+    identity = engine_identity(engine);
+  } catch (const ResultError& error) {
+    throw IntegrityError(fmt::format("the engine's hello does not say what it is: {}", error.what()));
+  }
+  if (!identity_.empty() && identity_ != identity) {
+    throw IntegrityError(fmt::format("the engine changed while the campaign ran: it was {}, now it is {}",
+                                     identity_, identity));
+  }
+  for (const PointRecord& about : points_) {
+    const bool open = !scheduler_->decided(*about.place);
+    if (open && !about.engine_identity.empty() && about.engine_identity != identity) {
+      throw IntegrityError(
+          fmt::format("{}: has results of engine {}, but the engine now is {}; one point never mixes "
+                      "two: run with the old engine, or start in another --directory",
+                      about.label, about.engine_identity, identity));
+    }
+  }
+  identity_ = identity;
+  return queue_.engine(engine);
+}
+
+void Ledger::after_commit() {
+  for (const fs::path& file : to_remove_) fs::remove(file);
+  for (const fs::path& file : to_reject_) reject(directory_, file);
+  to_remove_.clear();
+  to_reject_.clear();
+  if (!lacking_.empty()) {
+    throw InputError(campaign_.name, "/target/observable", campaign_.target.observable,
+                     "must be a number that the results have: " + lacking_);
+  }
+}
+
+RunReport Ledger::report(int workers) const {
+  RunReport report;
+  report.points = scheduler_->points();
+  std::vector<PointForecast> forecasts;
+  for (int place = 0; place < report.points; ++place) {
+    const std::vector<Look>& looks = scheduler_->looks(place);
+    const bool decided = scheduler_->decided(place);
+    const auto index = static_cast<std::size_t>(place);
+    report.decided += decided ? 1 : 0;
+    report.converged += decided && (looks.back().verdict == Verdict::converged ||
+                                    looks.back().verdict == Verdict::converged_with_losses)
+                            ? 1
+                            : 0;
+    report.seeds_ended += scheduler_->ended(place);
+    report.seeds_wanted += scheduler_->wanted(place);
+    report.busy += running_[index];
+    forecasts.push_back({costs_[index], looks, scheduler_->begun(place), decided});
+  }
+  report.to_go = time_to_go(forecasts, campaign_.target, campaign_.minimum_realisations,
+                            campaign_.maximum_realisations, workers);
+  return report;
+}
+
+std::string Ledger::name(SeedId id) const {
+  return fmt::format("{} seed {}", point(id.point).label, id.seed);
+}
+
+}  // namespace peclet::runner

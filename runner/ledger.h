@@ -1,0 +1,86 @@
+// What has become of every seed: the scheduler's picture, the database and the spool, kept in step.
+//
+// The writing functions run inside a Transaction of the caller; what must happen to files only after its
+// commit is kept until after_commit(). So whatever is killed when, database and spool together know every
+// result, once.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/campaign_directory.h"
+#include "runner/queue.h"
+#include "runner/run_listener.h"
+#include "runner/scheduler.h"
+#include "runner/worker_pool.h"
+
+namespace peclet::runner {
+
+// A seed that has been given to a worker.
+struct Grant {
+  SeedId id;
+  Job job;
+};
+
+class Ledger {
+ public:
+  // Requires that the database has adopted the campaign. Takes in what earlier runs left in the spool, then
+  // puts the seeds of a dead owner back. All references must outlive the ledger.
+  Ledger(Database& database, const Campaign& campaign, CampaignDirectory directory, RunListener& listener,
+         int retries);
+
+  // Takes in every spool file that is there; in a transaction of its own.
+  void ingest_spool();
+
+  // Books the next seed as running; nothing when there is none to run now.
+  std::optional<Grant> give_out(int worker, std::int64_t process, std::int64_t engine);
+  // Books a result that a worker has announced (`sha256`) or left behind (""). False: it is none and has been
+  // turned down; `why` says so, and the attempt has not ended.
+  bool take_result(const Grant& grant, const std::string& sha256, std::int64_t step, std::string& why);
+  // Books any other end of an attempt: the seed is queued again, or given up.
+  void end_attempt(const Grant& grant, const AttemptEnd& end);
+  void renew_lease(const Grant& grant, int phase, std::int64_t step, std::int64_t steps, double strain);
+
+  // The engine's row. Throws IntegrityError when a point that is still to be run has results of another
+  // engine, or when this run has started with another one.
+  std::int64_t admit_engine(const Json& engine);
+
+  // Removes and moves files whose results are durable now. Throws InputError when results lack the
+  // observable.
+  void after_commit();
+
+  const Scheduler& scheduler() const { return *scheduler_; }
+  // Points, seeds and time to go with so many workers; the rest of the report is the caller's.
+  RunReport report(int workers) const;
+  // "peclet=10 seed 3", for people
+  std::string name(SeedId id) const;
+
+ private:
+  const PointRecord& point(int place) const { return points_.at(static_cast<std::size_t>(place)); }
+  void load();
+  Stored take(const RealisationResult& result, const std::filesystem::path& spool);
+  void book_outcome(SeedId id, const Outcome& outcome);
+  void turn_down(const std::filesystem::path& spool, const std::string& why);
+
+  Database& database_;
+  Queue queue_;
+  const Campaign& campaign_;
+  CampaignDirectory directory_;
+  RunListener& listener_;
+  int retries_;
+  std::vector<PointRecord> points_;
+  std::map<std::string, int> places_;  // of the points, by hash
+  std::vector<Cost> costs_;
+  std::vector<int> running_;  // workers on each point
+  std::optional<Scheduler> scheduler_;
+  std::string identity_;  // of this run's engine
+  std::string lacking_;   // what results have instead of the target's observable
+
+  std::vector<std::filesystem::path> to_remove_, to_reject_;
+};
+
+}  // namespace peclet::runner

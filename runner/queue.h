@@ -1,0 +1,75 @@
+// Everything that is written to the campaign's database: seeds, attempts, leases, results, looks, events.
+//
+// Requires a Database of open_owner. adopt() and recover() commit by themselves; the other writing functions
+// are for use inside one Transaction of the caller, who so decides what becomes durable together.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/blame.h"
+#include "runner/database.h"
+#include "runner/realisation_result.h"
+
+namespace peclet::runner {
+
+struct AttemptEnd {
+  AttemptOutcome outcome = AttemptOutcome::result;
+  std::int64_t step = 0;
+  ExitStatus ending{};
+  std::string message{};
+};
+
+// What became of a result that was offered.
+enum class Stored {
+  stored,
+  duplicate,     // the seed has this very content already
+  conflict,      // the seed has another content: the point is now suspect
+  mixed_engine,  // the point has results of another engine
+  unknown_point
+};
+
+class Queue {
+ public:
+  explicit Queue(Database& database) : database_(database), connection_(database.connection()) {}
+
+  // Makes the database that of `campaign`: its points in their order, its target. Points that are no longer
+  // in the sweep stay, inactive. Throws InputError, with nothing written, when finished realisations lack the
+  // observable.
+  void adopt(const Campaign& campaign);
+  // Puts the seeds that a dead owner left running back, without blame. Returns how many.
+  int recover();
+
+  // The seeds 0 .. end - 1 that are not known yet become queued.
+  void enqueue(std::int64_t point, int end);
+  // The seed runs; returns the attempt's number.
+  std::int64_t begin_attempt(std::int64_t point, int seed, int worker, std::int64_t process,
+                             std::int64_t engine);
+  void renew_lease(std::int64_t attempt, const char* phase, std::int64_t step, std::int64_t steps,
+                   double strain);
+  void end_attempt(std::int64_t attempt, const AttemptEnd& end);
+  std::vector<PastAttempt> history(std::int64_t point, int seed);
+  void requeue(std::int64_t point, int seed);
+  void quarantine(std::int64_t point, int seed, const std::string& cause);
+
+  Stored store(const RealisationResult& result, const std::string& observable);
+  void store_looks(std::int64_t point, const std::vector<Look>& looks);
+  // The engine's row, new when it was never seen before.
+  std::int64_t engine(const Json& provenance);
+  void event(const std::string& kind, std::optional<std::int64_t> point, std::optional<int> seed,
+             const std::string& message);
+
+ private:
+  std::int64_t adopt_target(const Campaign& campaign);
+  void adopt_points(const Campaign& campaign);
+  void observe_again(const Campaign& campaign);
+  void store_numbers(std::int64_t point, const RealisationResult& result, const std::string& observable,
+                     std::int64_t engine);
+
+  Database& database_;
+  Connection& connection_;
+};
+
+}  // namespace peclet::runner

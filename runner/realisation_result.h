@@ -1,0 +1,43 @@
+// The result of one realisation as an engine wrote it: checked, and what the runner takes from it.
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "contract/json.h"
+
+namespace peclet::runner {
+
+// A text that is no result (schema/result.schema.json says what one is).
+class ResultError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct RealisationResult {
+  Json document;  // whole
+  std::string point;
+  int seed = 0;
+  std::string cause;           // of the ending: "completed", "overlap", ...
+  std::string content_sha256;  // of what repetitions must share
+  bool completed() const { return cause == "completed"; }
+};
+
+// Throws ResultError naming what is wrong.
+RealisationResult parse_result(std::string_view text);
+
+// Engine version, instruction set and hash of the binary: results of one point share it.
+// Throws ResultError when one of the three is missing.
+std::string engine_identity(const Json& engine);
+
+struct Observed {
+  std::optional<double> value;    // of the observable; none after a blow-up, or where it does not exist
+  std::optional<double> control;  // variate of mean zero that belongs to it
+};
+
+// The pairwise Brownian stress is the control variate of the relative viscosities and of nothing else.
+Observed observe(const Json& result, const std::string& observable);
+
+}  // namespace peclet::runner

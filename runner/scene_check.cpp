@@ -1,0 +1,98 @@
+#include "runner/scene_check.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <system_error>
+
+#include "contract/frames.h"
+#include "contract/input_error.h"
+
+namespace peclet::runner {
+namespace {
+
+constexpr std::chrono::minutes patience{1};
+
+// One engine that is asked questions.
+class Conversation {
+ public:
+  explicit Conversation(const EngineCommand& command)
+      : command_(command), process_(command, "/dev/null"), channel_(process_.descriptor()) {
+    const Json hello = receive();
+    if (hello.at("type") != "hello" || hello.at("protocol") != 1)
+      unsuitable("does not say hello in protocol 1");
+    identity_ = hello.at("engine");
+  }
+
+  Json ask(const Json& question) {
+    try {
+      channel_.send(question);
+    } catch (const std::system_error& error) {
+      unsuitable(error.what());
+    }
+    return receive();
+  }
+
+  const Json& identity() const { return identity_; }
+
+ private:
+  Json receive() {
+    Json message;
+    try {
+      switch (channel_.receive(message, patience)) {
+        case FrameChannel::Status::message:
+          return message;
+        case FrameChannel::Status::nothing:
+          unsuitable("does not answer");
+        case FrameChannel::Status::closed:
+          unsuitable("left without an answer");
+      }
+    } catch (const FrameError& error) {
+      unsuitable(error.what());
+    }
+    return message;
+  }
+
+  [[noreturn]] void unsuitable(const std::string& why) const {
+    throw std::runtime_error(
+        fmt::format("{}: {}; is it an engine that speaks peclet's frames?", command_.program.string(), why));
+  }
+
+  EngineCommand command_;
+  EngineProcess process_;
+  FrameChannel channel_;
+  Json identity_;
+};
+
+SceneAnswer read_answer(const Json& message, const Json& identity) {
+  SceneAnswer answer;
+  answer.timestep = message.at("timestep").get<double>();
+  answer.steps = message.at("steps").get<double>();
+  answer.particles = message.at("particles").get<std::int64_t>();
+  answer.derived = message.at("derived");
+  for (const Json& warning : message.at("warnings")) answer.warnings.push_back(warning.at("message"));
+  answer.identity = identity;
+  return answer;
+}
+
+}  // namespace
+
+std::vector<SceneAnswer> check_scenes(const Campaign& campaign, const std::filesystem::path& campaign_file,
+                                      const EngineCommand& command) {
+  Conversation engine(command);
+  std::vector<SceneAnswer> answers;
+  for (const StatePoint& point : campaign.points) {
+    const Json answer =
+        engine.ask({{"type", "validate"}, {"request", answers.size()}, {"scene", point.scene}});
+    if (answer.at("type") == "refused") {
+      const std::string of_point = point.label.empty() ? "" : fmt::format(" (in the point {})", point.label);
+      throw InputError("", answer.at("pointer").get<std::string>(), answer.at("value").get<std::string>(),
+                       answer.at("allowed").get<std::string>() + of_point)
+          .within(campaign_file.string(), "/scene");
+    }
+    answers.push_back(read_answer(answer, engine.identity()));
+  }
+  return answers;
+}
+
+}  // namespace peclet::runner

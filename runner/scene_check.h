@@ -1,0 +1,29 @@
+// What the engine says about the scenes of a campaign before anything runs.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "contract/json.h"
+#include "runner/campaign.h"
+#include "runner/engine_process.h"
+
+namespace peclet::runner {
+
+struct SceneAnswer {
+  double timestep = 0;
+  double steps = 0;  // estimate of the whole realisation
+  std::int64_t particles = 0;
+  Json derived;
+  std::vector<std::string> warnings;  // in words
+  Json identity;                      // of the engine that says so
+};
+
+// Asks an engine process about every point; answers in the order of the points. Writes nothing.
+// Throws InputError at /scene... of `campaign_file`, naming the point, for a scene that the engine refuses;
+// std::runtime_error for an engine that cannot be started or does not answer within a minute.
+std::vector<SceneAnswer> check_scenes(const Campaign& campaign, const std::filesystem::path& campaign_file,
+                                      const EngineCommand& command);
+
+}  // namespace peclet::runner

@@ -1,0 +1,70 @@
+#include "runner/spool.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <system_error>
+
+#include "contract/durable_file.h"
+#include "contract/sha256.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+
+// write_durably() names its temporary files NAME.PROCESS.COUNT.tmp. Nothing: not such a name.
+std::optional<int> writer_of(const fs::path& temporary) {
+  const std::string process = temporary.stem().stem().extension().string();  // ".PROCESS"
+  int number = 0;
+  if (process.size() < 2) return std::nullopt;
+  const auto [end, error] = std::from_chars(process.data() + 1, process.data() + process.size(), number);
+  if (error != std::errc{} || end != process.data() + process.size() || number <= 0) return std::nullopt;
+  return number;
+}
+
+}  // namespace
+
+RealisationResult read_spool_file(const fs::path& path, const std::string& sha256) {
+  std::string text;
+  try {
+    text = read_file(path);
+  } catch (const std::system_error& error) {
+    throw ResultError(error.what());
+  }
+  if (!sha256.empty() && peclet::sha256(text) != sha256) {
+    throw ResultError("its bytes do not have the hash that the engine gave");
+  }
+  return parse_result(text);
+}
+
+std::vector<fs::path> spool_files(const CampaignDirectory& directory) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory.spool())) {
+    if (entry.is_regular_file() && entry.path().extension() != ".tmp") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+fs::path reject(const CampaignDirectory& directory, const fs::path& path) {
+  fs::path target = directory.rejected() / path.filename();
+  for (int count = 1; fs::exists(target); ++count) {
+    target = directory.rejected() / fmt::format("{}.{}", path.filename().string(), count);
+  }
+  fs::rename(path, target);
+  return target;
+}
+
+void remove_unfinished_files(const fs::path& folder) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() != ".tmp") continue;
+    const std::optional<int> writer = writer_of(entry.path());
+    if (writer && kill(*writer, 0) != 0 && errno == ESRCH) fs::remove(entry.path());
+  }
+}
+
+}  // namespace peclet::runner

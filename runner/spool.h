@@ -1,0 +1,26 @@
+// The spool: results that an engine has made durable and that the owner has not committed yet.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "runner/campaign_directory.h"
+#include "runner/realisation_result.h"
+
+namespace peclet::runner {
+
+// Reads one spool file; `sha256` is what the engine says about its bytes ("" when nobody is left to say it).
+// Throws ResultError when it is absent, differs or is no result.
+RealisationResult read_spool_file(const std::filesystem::path& path, const std::string& sha256);
+
+// Complete spool files, by name.
+std::vector<std::filesystem::path> spool_files(const CampaignDirectory& directory);
+
+// Moves a file to spool/rejected/ under a name that is free there, and says where it is now.
+std::filesystem::path reject(const CampaignDirectory& directory, const std::filesystem::path& path);
+
+// Removes the unfinished temporary files in `folder` whose writers no longer run.
+void remove_unfinished_files(const std::filesystem::path& folder);
+
+}  // namespace peclet::runner
