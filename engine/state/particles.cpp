@@ -1,0 +1,54 @@
+#include "engine/state/particles.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace peclet::engine {
+
+std::vector<double> distinct_radii(const std::vector<double>& radius) {
+  std::vector<double> distinct = radius;
+  std::sort(distinct.begin(), distinct.end());
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  return distinct;
+}
+
+ParticleState make_particles(const std::vector<double>& radius, double density) {
+  ParticleState particles;
+  particles.radius = radius;
+  const std::vector<double> sizes = distinct_radii(radius);
+  for (const double a : radius) {
+    const double mass = 4.0 / 3.0 * std::numbers::pi * density * a * a * a;
+    particles.mass.push_back(mass);
+    particles.inertia.push_back(0.4 * mass * a * a);
+    const auto place = std::lower_bound(sizes.begin(), sizes.end(), a);
+    particles.size_class.push_back(static_cast<std::uint16_t>(place - sizes.begin()));
+  }
+  particles.position = particles.velocity = particles.angular_velocity = VectorField(radius.size());
+  particles.image.resize(radius.size());
+  return particles;
+}
+
+void wrap_into_cell(ParticleState& particles, const ShearedBox& box) {
+  for (std::size_t i = 0; i < particles.count(); ++i) {
+    const Vector3 place = box.fractional(particles.position[i]);
+    const LatticeShift removed = {static_cast<std::int32_t>(std::floor(place.x)),
+                                  static_cast<std::int32_t>(std::floor(place.y)),
+                                  static_cast<std::int32_t>(std::floor(place.z))};
+    if (removed == LatticeShift{}) {
+      continue;
+    }
+    particles.position.set(i, particles.position[i] - box.displacement(removed));
+    particles.velocity.x[i] -= box.velocity_offset(removed);
+    particles.image[i] = particles.image[i] + removed;
+  }
+}
+
+double solid_volume(const ParticleState& particles) {
+  double volume = 0;
+  for (const double a : particles.radius) {
+    volume += 4.0 / 3.0 * std::numbers::pi * a * a * a;
+  }
+  return volume;
+}
+
+}  // namespace peclet::engine

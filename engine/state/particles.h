@@ -1,0 +1,38 @@
+// What every particle carries.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/state/sheared_box.h"
+#include "engine/state/vector3.h"
+
+namespace peclet::engine {
+
+// Spheres in the laboratory frame. Positions may lie outside the cell; position and velocity then belong to
+// the image at that place (its velocity follows the streaming flow there). `image` counts the lattice vectors
+// that wrapping has removed, in the current basis: position + image A is the unwrapped place.
+struct ParticleState {
+  std::vector<double> radius, mass, inertia;  // inertia 2/5 m a^2
+  std::vector<std::uint16_t> size_class;      // index into the table of distinct radii
+  VectorField position, velocity, angular_velocity;
+  std::vector<LatticeShift> image;
+
+  std::size_t count() const { return radius.size(); }
+};
+
+// `count` spheres at rest at the origin; the distinct radii in ascending order are the size classes.
+// mass = 4/3 pi density a^3.
+ParticleState make_particles(const std::vector<double>& radius, double density);
+
+// The distinct values of `radius` in ascending order.
+std::vector<double> distinct_radii(const std::vector<double>& radius);
+
+// Moves every particle into the cell by lattice vectors and its velocity along with it: u_x -= rate Ly ky for
+// ky removed vectors A2.
+void wrap_into_cell(ParticleState& particles, const ShearedBox& box);
+
+// Total volume of the spheres.
+double solid_volume(const ParticleState& particles);
+
+}  // namespace peclet::engine
