@@ -1,0 +1,32 @@
+// Drag of the solvent on single spheres, and the noise that belongs to it.
+#pragma once
+
+#include <numbers>
+
+#include "engine/state/vector3.h"
+
+namespace peclet::engine {
+
+// zeta = 6 pi eta a and zeta_r = 8 pi eta a^3.
+inline double translational_drag(double viscosity, double radius) {
+  return 6 * std::numbers::pi * viscosity * radius;
+}
+inline double rotational_drag(double viscosity, double radius) {
+  return 8 * std::numbers::pi * viscosity * radius * radius * radius;
+}
+
+// Streaming flow U = (rate y, 0, 0) and half its vorticity Omega = (0, 0, -rate / 2).
+inline Vector3 streaming_velocity(double shear_rate, double y) { return {shear_rate * y, 0, 0}; }
+inline Vector3 streaming_spin(double shear_rate) { return {0, 0, -0.5 * shear_rate}; }
+
+// F = zeta (U(x) - U_i), T = zeta_r (Omega - Omega_i). Li, Royer & Ness (2023) eqs. 5, 6.
+inline Vector3 drag_force(double zeta, const Vector3& streaming, const Vector3& velocity) {
+  return zeta * (streaming - velocity);
+}
+
+// c sqrt(zeta) psi with c = sqrt(2 kT / dt), psi standard normal, likewise for the torque. Eqs. 20, 21.
+inline Vector3 drag_noise(double amplitude, double zeta, const Vector3& psi) {
+  return (amplitude * std::sqrt(zeta)) * psi;
+}
+
+}  // namespace peclet::engine

@@ -1,0 +1,37 @@
+// Sliding friction with history.
+//
+// Levers reach the middle of the overlap, l_i = a_i - delta/2, l_j = a_j - delta/2, so l_i + l_j = r: then a
+// pair's torques balance exactly and a rigid rotation of both spheres is no slip. (The published levers a_i,
+// a_j do neither.)
+#pragma once
+
+#include "engine/terms/tangential_spring.h"
+
+namespace peclet::engine {
+
+struct ContactLevers {
+  double first, second;
+};
+
+inline ContactLevers contact_levers(double radius_first, double radius_second, const PairGeometry& pair) {
+  const double half_overlap = 0.5 * pair.overlap();
+  return {radius_first - half_overlap, radius_second - half_overlap};
+}
+
+// v_t = (1 - n n).(U_j - U_i) - (l_i Omega_i + l_j Omega_j) x n, of j's surface relative to i's.
+// Li, Royer & Ness (2023) eq. 4; Monti et al. (2021) eq. 4b.
+inline Vector3 slip_velocity(const ContactLevers& lever, const PairGeometry& pair, const PairMotion& motion) {
+  const Vector3 spin = lever.first * motion.spin_first + lever.second * motion.spin_second;
+  return across(motion.velocity, pair.normal) - cross(spin, pair.normal);
+}
+
+// F_i = k_t s, T_i = l_i n x F_i, T_j = l_j n x F_i. The sign of s is that of the displacement of j relative
+// to i. Monti et al. (2021) eqs. 4c-e.
+inline PairLoad friction_load(double tangential_stiffness, const Vector3& spring, const ContactLevers& lever,
+                              const PairGeometry& pair) {
+  const Vector3 force = tangential_stiffness * spring;
+  const Vector3 moment = cross(pair.normal, force);
+  return {force, lever.first * moment, lever.second * moment};
+}
+
+}  // namespace peclet::engine

@@ -1,0 +1,27 @@
+// Lubrication forces from the resistance of a pair.
+#pragma once
+
+#include "engine/terms/pair_resistance.h"
+
+namespace peclet::engine {
+
+// With U = U_j - U_i, T = 1 - n n:
+//   F_i = (X_A n n + Y_A T).U + Y_B11 Omega_i x n + Y_B21 Omega_j x n
+//   T_i = Y_B11 U x n - T.(Y_C11 Omega_i + Y_C12 Omega_j)
+//   T_j = Y_B21 U x n - T.(Y_C12 Omega_i + Y_C22 Omega_j)
+// Li, Royer & Ness (2023) eqs. 8, 13, 14. Laboratory velocities: the rate of strain is in U already.
+inline PairLoad lubrication_load(const PairResistance& R, const PairGeometry& pair,
+                                 const PairMotion& motion) {
+  const Vector3& n = pair.normal;
+  const double closing = dot(motion.velocity, n);
+  const Vector3 sliding = motion.velocity - closing * n;
+  const Vector3 pumped = R.pump_first * motion.spin_first + R.pump_second * motion.spin_second;
+  const Vector3 turned = cross(motion.velocity, n);
+  const Vector3 twisted_first = R.twist_first * motion.spin_first + R.twist_cross * motion.spin_second;
+  const Vector3 twisted_second = R.twist_cross * motion.spin_first + R.twist_second * motion.spin_second;
+  return {(R.squeeze * closing) * n + R.shear * sliding + cross(pumped, n),
+          R.pump_first * turned - across(twisted_first, n),
+          R.pump_second * turned - across(twisted_second, n)};
+}
+
+}  // namespace peclet::engine

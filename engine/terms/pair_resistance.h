@@ -1,0 +1,77 @@
+// The resistance of two near spheres: the one source of lubrication forces, pairwise noise and implicit
+// matrices.
+//
+// Squeeze (X_A), shear (Y_A), pump (Y_B) and twist (Y_C) modes of Kim & Karrila as Li, Royer & Ness (2023)
+// use them, eqs. 9-12 and 15-18, with the viscosity inside the coefficients. With L = ln(1/xi), beta = a_j /
+// a_i:
+//   X_A   = 6 pi eta a_i [2 beta^2/(1+beta)^3 / xi + beta (1 + 7 beta + beta^2)/(5 (1+beta)^3) L]
+//   Y_A   = 6 pi eta a_i 4 beta (2 + beta + 2 beta^2)/(15 (1+beta)^3) L
+//   Y_B11 = -4 pi eta a_i^2 beta (4 + beta)/(5 (1+beta)^2) L           Y_B21: i and j exchanged
+//   Y_C11 = 8 pi eta a_i^3 2 beta/(5 (1+beta)) L                        Y_C22: i and j exchanged
+//   Y_C12 = 8 pi eta a_i^3 beta^2/(10 (1+beta)) L
+// Corrected against the print: Y_B is multiplied by q = r/(a_i + a_j) and Y_C by q^2. Only then does a rigid
+// rotation of the pair feel nothing at any gap; the matrix stays symmetric, positive semidefinite, of rank
+// five. Below the inner gap, also in overlap, the coefficients keep their value there (q does not); beyond
+// the outer gap there is no lubrication, and no offset makes it vanish smoothly.
+#pragma once
+
+#include <algorithm>
+#include <numbers>
+
+#include "engine/terms/pair.h"
+
+namespace peclet::engine {
+
+// What depends on the two radii alone: the coefficients of 1/xi and of L.
+struct ResistanceConstants {
+  double squeeze_inverse, squeeze_logarithm;      // X_A
+  double shear;                                   // Y_A
+  double pump_first, pump_second;                 // Y_B11, Y_B21
+  double twist_first, twist_cross, twist_second;  // Y_C11, Y_C12, Y_C22
+};
+
+inline ResistanceConstants resistance_constants(double viscosity, double radius_first, double radius_second) {
+  const double b = radius_second / radius_first, c = 1 / b;
+  const double one = 1 + b, cube = one * one * one;
+  const double pi_eta = std::numbers::pi * viscosity;
+  const double six = 6 * pi_eta * radius_first;
+  const double eight = 8 * pi_eta * radius_first * radius_first * radius_first;
+  return {
+      .squeeze_inverse = six * 2 * b * b / cube,
+      .squeeze_logarithm = six * b * (1 + 7 * b + b * b) / (5 * cube),
+      .shear = six * 4 * b * (2 + b + 2 * b * b) / (15 * cube),
+      .pump_first = -4 * pi_eta * radius_first * radius_first * b * (4 + b) / (5 * one * one),
+      .pump_second = -4 * pi_eta * radius_second * radius_second * c * (4 + c) / (5 * (1 + c) * (1 + c)),
+      .twist_first = eight * 2 * b / (5 * one),
+      .twist_cross = eight * b * b / (10 * one),
+      .twist_second = 8 * pi_eta * radius_second * radius_second * radius_second * 2 * c / (5 * (1 + c)),
+  };
+}
+
+struct PairResistance {
+  double squeeze;
+  double shear;
+  double pump_first, pump_second;
+  double twist_first, twist_cross, twist_second;
+};
+
+// At the centre distance of `pair`; the caller has made sure that it lies within the outer gap.
+inline PairResistance pair_resistance(const ResistanceConstants& k, double inner_gap,
+                                      const PairGeometry& pair) {
+  const double gap = std::max(2 * pair.surface_distance() / pair.sum_of_radii, inner_gap);
+  const double inverse = 1 / gap;
+  const double logarithm = std::log(inverse);
+  const double lever = pair.distance / pair.sum_of_radii;
+  const double pump = lever * logarithm, twist = lever * pump;
+  return {
+      .squeeze = k.squeeze_inverse * inverse + k.squeeze_logarithm * logarithm,
+      .shear = k.shear * logarithm,
+      .pump_first = k.pump_first * pump,
+      .pump_second = k.pump_second * pump,
+      .twist_first = k.twist_first * twist,
+      .twist_cross = k.twist_cross * twist,
+      .twist_second = k.twist_second * twist,
+  };
+}
+
+}  // namespace peclet::engine
