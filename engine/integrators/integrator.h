@@ -1,0 +1,31 @@
+// One step in time, whatever the method.
+#pragma once
+
+#include "engine/kernels/pair_pass.h"
+#include "engine/state/system.h"
+
+namespace peclet::engine {
+
+// What a step says about itself.
+struct StepReport {
+  PairSums sums;  // at the configuration whose forces move the particles
+  double largest_displacement =
+      0;  // of a particle relative to the streaming flow, in this step; NaN if one is not finite
+};
+
+// Owns the forces between steps; the system belongs to the caller. After start() or load(), each advance()
+// takes the system from one step to the next: positions, velocities, springs, box, list and step counter.
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+
+  virtual double timestep() const = 0;
+  virtual void start(System& system) = 0;
+  virtual StepReport advance(System& system) = 0;
+
+  // What the integrator keeps between steps besides the system.
+  virtual void save(ArchiveWriter& archive) const = 0;
+  virtual void load(const System& system, ArchiveReader& archive) = 0;
+};
+
+}  // namespace peclet::engine

@@ -1,0 +1,95 @@
+#include "engine/integrators/stability.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "contract/input_error.h"
+#include "engine/terms/drag.h"
+#include "engine/terms/pair_resistance.h"
+
+namespace peclet::engine {
+namespace {
+
+double mass_of(const Scene& scene, double radius) {
+  return 4.0 / 3.0 * std::numbers::pi * scene.particles.density * radius * radius * radius;
+}
+
+PairRates rates_of_pair(const Scene& scene, double first, double second) {
+  const Physics& physics = scene.physics;
+  const double mobility = 1 / mass_of(scene, first) + 1 / mass_of(scene, second);
+  const double sum = first + second;
+  PairRates rates{};
+  rates.damping = std::max(translational_drag(physics.viscosity, first) / mass_of(scene, first),
+                           translational_drag(physics.viscosity, second) / mass_of(scene, second));
+  if (physics.lubrication) {
+    const PairGeometry touching = {{sum, 0, 0}, {1, 0, 0}, sum, sum};
+    const PairResistance resistance = pair_resistance(resistance_constants(physics.viscosity, first, second),
+                                                      physics.lubrication->inner_gap, touching);
+    rates.damping += resistance.squeeze * mobility;
+  }
+  if (physics.contact) {
+    const ContactParameters& contact = *physics.contact;
+    // A tangential spring acts on centres and, through levers a, on spins with 2/5 m a^2: 1 + 5/2 times as
+    // stiff.
+    const double tangential = contact.friction > 0 ? 3.5 * contact.tangential_stiffness : 0;
+    // A rolling spring turns both spheres through the reduced diameter, at most the diameter of the smaller
+    // one.
+    const double reduced = 2 * first * second / sum;
+    const double smaller = std::min(first, second);
+    const double rolling = 2.5 * contact.rolling_stiffness * (reduced / smaller) * (reduced / smaller);
+    rates.frequency_squared = std::max({contact.normal_stiffness, tangential, rolling}) * mobility;
+    rates.damping += contact.normal_damping * mobility;
+  }
+  if (physics.repulsion) {
+    const double length = physics.repulsion->relative_length * sum;
+    rates.frequency_squared += physics.repulsion->strength / (length * length) * mobility;
+  }
+  return rates;
+}
+
+double stable_step(const PairRates& rates) {
+  const double l = packing_factor * rates.damping, w2 = packing_factor * rates.frequency_squared;
+  // 4 / (l + sqrt(l^2 + 4 w^2)) is the positive root of w^2 dt^2 + 2 l dt = 4, also for w = 0.
+  return 4 / (l + std::sqrt(l * l + 4 * w2));
+}
+
+}  // namespace
+
+PairRates stiffest_pair(const Scene& scene) {
+  PairRates stiffest{};
+  double smallest_step = std::numeric_limits<double>::infinity();
+  for (const Species& first : scene.particles.species) {
+    for (const Species& second : scene.particles.species) {
+      const PairRates rates = rates_of_pair(scene, first.radius, second.radius);
+      if (stable_step(rates) < smallest_step) {
+        smallest_step = stable_step(rates);
+        stiffest = rates;
+      }
+    }
+  }
+  return stiffest;
+}
+
+double largest_timestep(const Scene& scene) { return stable_step(stiffest_pair(scene)); }
+
+double automatic_timestep(const Scene& scene) { return 0.5 * largest_timestep(scene); }
+
+double resolved_timestep(const Scene& scene, const std::string& file) {
+  if (!scene.timestep) {
+    return automatic_timestep(scene);
+  }
+  const double largest = largest_timestep(scene);
+  if (*scene.timestep > largest) {
+    throw InputError(
+        file, "/integrator/timestep", fmt::format("{}", *scene.timestep),
+        fmt::format("must be at most {:.4g}, the largest stable step of the scene's stiffest pair in a "
+                    "dense packing (or \"auto\", half of that)",
+                    largest));
+  }
+  return *scene.timestep;
+}
+
+}  // namespace peclet::engine

@@ -1,0 +1,110 @@
+#include "engine/integrators/velocity_verlet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace peclet::engine {
+
+VelocityVerlet::VelocityVerlet(ForceField field, const ParticleState& particles, double timestep)
+    : field_(std::move(field)), timestep_(timestep), force_(particles.count()), torque_(particles.count()) {
+  for (std::size_t i = 0; i < particles.count(); ++i) {
+    half_step_over_mass_.push_back(0.5 * timestep / particles.mass[i]);
+    half_step_over_inertia_.push_back(0.5 * timestep / particles.inertia[i]);
+  }
+}
+
+void VelocityVerlet::start(System& system) {
+  rebuild_neighbours(system);
+  displacement_bound_ = 0;
+  field_.evaluate(system, force_, torque_);
+}
+
+StepReport VelocityVerlet::advance(System& system) {
+  kick(system.particles);
+  const double speed = drift(system.particles);
+  ++system.step;
+  system.box.set_strain(system.box.shear_rate() * timestep_ * static_cast<double>(system.step));
+  // Beyond all bounds there are no neighbours to be found; whoever asked for the step sees why.
+  if (!(speed * timestep_ < system.list.ranges().largest())) {
+    return {{}, speed * timestep_};
+  }
+  keep_list(system, speed);
+  const PairSums sums = field_.evaluate(system, force_, torque_);
+  kick(system.particles);
+  return {sums, speed * timestep_};
+}
+
+void VelocityVerlet::kick(ParticleState& particles) const {
+  const auto add = [&](std::vector<double>& velocity, const std::vector<double>& factor,
+                       const std::vector<double>& force) {
+    const std::size_t count = velocity.size();
+    double* v = velocity.data();
+    const double *f = force.data(), *k = factor.data();
+#pragma omp parallel for simd schedule(static) num_threads(field_.threads()) if (parallel \
+                                                                                 : field_.threads() > 1)
+    for (std::size_t i = 0; i < count; ++i) {
+      v[i] += k[i] * f[i];
+    }
+  };
+  add(particles.velocity.x, half_step_over_mass_, force_.x);
+  add(particles.velocity.y, half_step_over_mass_, force_.y);
+  add(particles.velocity.z, half_step_over_mass_, force_.z);
+  add(particles.angular_velocity.x, half_step_over_inertia_, torque_.x);
+  add(particles.angular_velocity.y, half_step_over_inertia_, torque_.y);
+  add(particles.angular_velocity.z, half_step_over_inertia_, torque_.z);
+}
+
+// Moves the particles; returns the largest speed relative to the streaming flow, NaN if one is not finite.
+double VelocityVerlet::drift(ParticleState& particles) const {
+  const double dt = timestep_, rate = field_.physics().shear_rate;
+  const std::size_t count = particles.count();
+  double *x = particles.position.x.data(), *y = particles.position.y.data(), *z = particles.position.z.data();
+  const double *u = particles.velocity.x.data(), *v = particles.velocity.y.data(),
+               *w = particles.velocity.z.data();
+  double largest = 0;
+  int unbounded = 0;  // max() would pass over a NaN
+#pragma omp parallel for simd schedule(static) num_threads(field_.threads()) if (parallel                \
+                                                                                 : field_.threads() > 1) \
+    reduction(max                                                                                        \
+              : largest) reduction(|                                                                     \
+                                   : unbounded)
+  for (std::size_t i = 0; i < count; ++i) {
+    const double peculiar = u[i] - rate * y[i];
+    const double squared = peculiar * peculiar + v[i] * v[i] + w[i] * w[i];
+    largest = largest > squared ? largest : squared;
+    unbounded |= !(squared <= std::numeric_limits<double>::max());
+    x[i] += dt * u[i];
+    y[i] += dt * v[i];
+    z[i] += dt * w[i];
+  }
+  return unbounded != 0 ? std::numeric_limits<double>::quiet_NaN() : std::sqrt(largest);
+}
+
+void VelocityVerlet::keep_list(System& system, double speed) {
+  // A displacement d grows by dt (u - rate y_reference) = dt (peculiar velocity + rate d_y).
+  displacement_bound_ += timestep_ * (speed + system.box.shear_rate() * displacement_bound_);
+  const double allowed = system.list.allowed_displacement(system.box);
+  if (displacement_bound_ < allowed) {
+    return;
+  }
+  displacement_bound_ = system.list.largest_displacement(system.particles, system.box);
+  if (!(displacement_bound_ < allowed)) {
+    rebuild_neighbours(system);
+    displacement_bound_ = 0;
+  }
+}
+
+void VelocityVerlet::save(ArchiveWriter& archive) const {
+  archive.put(force_);
+  archive.put(torque_);
+  archive.put(displacement_bound_);
+}
+
+void VelocityVerlet::load(const System& system, ArchiveReader& archive) {
+  force_ = archive.get_field(system.particles.count());
+  torque_ = archive.get_field(system.particles.count());
+  displacement_bound_ = archive.get<double>();
+}
+
+}  // namespace peclet::engine

@@ -1,0 +1,39 @@
+// Velocity Verlet with half-step velocities: the published method and the reference of every other.
+//
+//   U' = U + dt/2 a;  x += dt U';  springs advance with U';  a = F(x, U', fresh noise) / m;  U = U' + dt/2 a
+// and likewise for angular velocities with the moment of inertia. The forces see the half-step velocities;
+// noise is drawn once a step and serves both halves. For x'' = -w^2 x - l x' the scheme is stable if and only
+// if w^2 dt^2 + 2 l dt < 4, and the variance of full-step velocities is exactly kT/m at any stable step (that
+// of half-step velocities is larger).
+#pragma once
+
+#include "engine/integrators/integrator.h"
+#include "engine/kernels/force_field.h"
+
+namespace peclet::engine {
+
+class VelocityVerlet final : public Integrator {
+ public:
+  VelocityVerlet(ForceField field, const ParticleState& particles, double timestep);
+
+  double timestep() const override { return timestep_; }
+  void start(System& system) override;
+  StepReport advance(System& system) override;
+  void save(ArchiveWriter& archive) const override;
+  void load(const System& system, ArchiveReader& archive) override;
+
+ private:
+  void kick(ParticleState& particles) const;
+  double drift(ParticleState& particles) const;
+  void keep_list(System& system, double speed);
+
+  ForceField field_;
+  double timestep_;
+  std::vector<double> half_step_over_mass_, half_step_over_inertia_;
+  VectorField force_, torque_;
+  // An upper bound of the displacements since the list was built, raised by every step's largest one and
+  // replaced by the true value only when it reaches what the list allows.
+  double displacement_bound_ = 0;
+};
+
+}  // namespace peclet::engine

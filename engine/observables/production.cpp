@@ -1,0 +1,48 @@
+#include "engine/observables/production.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace peclet::engine {
+
+void Production::add_step(std::uint64_t index, const PairSums& sums) {
+  BlockSums& block = block_of(index);
+  ++block.steps;
+  for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
+    block.stress[t] += sums.stress[t];
+  }
+  block.contacts += static_cast<double>(sums.contacts);
+}
+
+void Production::add_sample(std::uint64_t index, const SymmetricTensor& structural_brownian,
+                            const KineticTemperatures& temperature) {
+  BlockSums& block = block_of(index);
+  ++block.samples;
+  block.structural_brownian += structural_brownian;
+  block.temperature.translational += temperature.translational;
+  block.temperature.rotational += temperature.rotational;
+}
+
+double statistical_inefficiency(const std::vector<double>& series) {
+  const auto count = static_cast<double>(series.size());
+  const double mean = std::accumulate(series.begin(), series.end(), 0.0) / count;
+  const auto covariance = [&](std::size_t lag) {
+    double sum = 0;
+    for (std::size_t k = 0; k + lag < series.size(); ++k) {
+      sum += (series[k] - mean) * (series[k + lag] - mean);
+    }
+    return sum / count;
+  };
+  const double variance = covariance(0);
+  double inefficiency = 1;
+  for (std::size_t lag = 1; variance > 0 && lag < series.size(); ++lag) {
+    const double correlation = covariance(lag) / variance;
+    if (correlation <= 0) {
+      break;
+    }
+    inefficiency += 2 * correlation;
+  }
+  return inefficiency;
+}
+
+}  // namespace peclet::engine

@@ -1,0 +1,49 @@
+// Sums over the production window, in 32 consecutive blocks.
+#pragma once
+
+#include <array>
+
+#include "engine/kernels/pair_pass.h"
+#include "engine/observables/structure.h"
+#include "engine/state/archive.h"
+
+namespace peclet::engine {
+
+constexpr std::size_t count_of_blocks = 32;
+
+struct BlockSums {
+  std::uint64_t steps = 0;  // every step adds to the stress: thinning would destroy the Brownian part
+  std::array<SymmetricTensor, count_of_stress_terms> stress{};  // sum over pairs of sym(r F)
+  double contacts = 0;
+  std::uint64_t samples = 0;  // the rest is sampled
+  SymmetricTensor structural_brownian;
+  KineticTemperatures temperature{};
+};
+
+class Production {
+ public:
+  // Of a window of `steps` steps, at least one for each block.
+  explicit Production(std::uint64_t steps) : steps_(steps) {}
+
+  // `index` counts the steps of the window from 0.
+  void add_step(std::uint64_t index, const PairSums& sums);
+  void add_sample(std::uint64_t index, const SymmetricTensor& structural_brownian,
+                  const KineticTemperatures& temperature);
+
+  const std::array<BlockSums, count_of_blocks>& blocks() const { return blocks_; }
+
+  void save(ArchiveWriter& archive) const { archive.put(blocks_); }
+  void load(ArchiveReader& archive) { blocks_ = archive.get<std::array<BlockSums, count_of_blocks>>(); }
+
+ private:
+  BlockSums& block_of(std::uint64_t index) { return blocks_[index * count_of_blocks / steps_]; }
+
+  std::uint64_t steps_;
+  std::array<BlockSums, count_of_blocks> blocks_{};
+};
+
+// 1 + 2 sum of the autocorrelation of `series` up to its first value that is not positive: by how many times
+// fewer independent values it has than entries. At least 1; 1 for a constant series.
+double statistical_inefficiency(const std::vector<double>& series);
+
+}  // namespace peclet::engine

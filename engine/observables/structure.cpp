@@ -1,0 +1,44 @@
+#include "engine/observables/structure.h"
+
+#include "engine/kernels/pair_access.h"
+#include "engine/terms/drag.h"
+
+namespace peclet::engine {
+
+SymmetricTensor structural_brownian_stress(const System& system, const std::vector<PairKind>& kinds,
+                                           double thermal_energy) {
+  SymmetricTensor sum;
+  if (!(thermal_energy > 0)) {
+    return sum;
+  }
+  const std::vector<ImageFrame> frames = image_frames(system.list, system.box);
+  for (const Pair& pair : system.list.pairs()) {
+    const PairKind& kind = kinds[pair.kind];
+    const Vector3 r = separation(system.particles, pair, frames[pair.image]);
+    const double squared = dot(r, r);
+    const auto within = [&](double radius) {
+      const double reach = kind.sum_of_radii + structural_shell * radius;
+      return squared < reach * reach ? 1 : 0;
+    };
+    if (const int sides = within(kind.radius_first) + within(kind.radius_second); sides > 0) {
+      sum += (sides / squared) * symmetric_dyad(r, r);
+    }
+  }
+  return (-thermal_energy / (structural_shell * system.box.volume())) * sum;
+}
+
+KineticTemperatures kinetic_temperatures(const System& system) {
+  const ParticleState& particles = system.particles;
+  const double rate = system.box.shear_rate();
+  double translational = 0, rotational = 0;
+  for (std::size_t i = 0; i < particles.count(); ++i) {
+    const Vector3 u = particles.velocity[i] - streaming_velocity(rate, particles.position.y[i]);
+    const Vector3 w = particles.angular_velocity[i] - streaming_spin(rate);
+    translational += particles.mass[i] * dot(u, u);
+    rotational += particles.inertia[i] * dot(w, w);
+  }
+  const double degrees = 3 * static_cast<double>(particles.count());
+  return {translational / degrees, rotational / degrees};
+}
+
+}  // namespace peclet::engine

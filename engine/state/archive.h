@@ -1,0 +1,105 @@
+// Plain values in a fixed order, as bytes of this machine: the inside of a checkpoint.
+#pragma once
+
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "engine/state/vector3.h"
+
+namespace peclet::engine {
+
+// The bytes end too early, or a count is not the expected one.
+class ArchiveError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class ArchiveWriter {
+ public:
+  template <class Value>
+  requires std::is_trivially_copyable_v<Value>
+  void put(const Value& value) { bytes_.append(reinterpret_cast<const char*>(&value), sizeof value); }
+
+  template <class Value>
+  void put(const std::vector<Value>& values) {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    put(static_cast<std::uint64_t>(values.size()));
+    bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value));
+  }
+
+  void put(const std::string& text) { put(std::vector<char>(text.begin(), text.end())); }
+
+  void put(const VectorField& field) {
+    put(field.x);
+    put(field.y);
+    put(field.z);
+  }
+
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+class ArchiveReader {
+ public:
+  explicit ArchiveReader(std::string_view bytes) : rest_(bytes) {}
+
+  template <class Value>
+  Value get() {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    Value value;
+    std::memcpy(&value, take(sizeof value), sizeof value);
+    return value;
+  }
+
+  template <class Value>
+  std::vector<Value> get_vector(std::size_t expected) {
+    const auto count = get<std::uint64_t>();
+    if (count != expected) {
+      throw ArchiveError("holds " + std::to_string(count) + " values where " + std::to_string(expected) +
+                         " belong");
+    }
+    std::vector<Value> values(expected);
+    if (expected > 0) {
+      std::memcpy(values.data(), take(expected * sizeof(Value)), expected * sizeof(Value));
+    }
+    return values;
+  }
+
+  std::string get_string() {
+    const auto count = get<std::uint64_t>();
+    if (count > rest_.size()) {
+      throw ArchiveError("ends too early");
+    }
+    return std::string(take(count), count);
+  }
+
+  VectorField get_field(std::size_t expected) {
+    VectorField field;
+    field.x = get_vector<double>(expected);
+    field.y = get_vector<double>(expected);
+    field.z = get_vector<double>(expected);
+    return field;
+  }
+
+  bool at_end() const { return rest_.empty(); }
+
+ private:
+  const char* take(std::size_t count) {
+    if (count > rest_.size()) {
+      throw ArchiveError("ends too early");
+    }
+    const char* begin = rest_.data();
+    rest_.remove_prefix(count);
+    return begin;
+  }
+
+  std::string_view rest_;
+};
+
+}  // namespace peclet::engine

@@ -1,0 +1,35 @@
+// Random initial packings without overlap.
+#pragma once
+
+#include <stdexcept>
+
+#include "engine/scene.h"
+#include "engine/state/particles.h"
+
+namespace peclet::engine {
+
+// The spheres cannot be brought apart at this volume fraction.
+class PackingError : public std::runtime_error {
+ public:
+  PackingError(double wanted, double reached);
+  double reached() const { return reached_; }  // at which the best arrangement found is free of overlap
+
+ private:
+  double reached_;
+};
+
+// Radii of all spheres, species by species. The number of each is its number share, or its volume share over
+// a^3, of `count`, rounded by largest remainders.
+std::vector<double> species_radii(const Particles& particles);
+
+// Edge of the cube in which these spheres have this volume fraction.
+double cube_edge(const std::vector<double>& radius, double volume_fraction);
+
+// Gives the spheres random places (keyed by seed) in the box at rest, then minimises the energy sum 1/2
+// (sigma_ij - r)^2 of overlaps with FIRE (Bitzek et al. 2006), sigma_ij a thousandth above a_i + a_j, until
+// no two spheres overlap: surfaces are then apart by at least 2e-4 of a_i + a_j. Reaches a volume fraction of
+// about 0.64 for 1:1.4 in equal volumes. Velocities are left at zero. Throws PackingError when the overlaps
+// cannot be removed, std::invalid_argument when a sphere overlaps its own image.
+void place_randomly(ParticleState& particles, const ShearedBox& box, std::uint64_t seed);
+
+}  // namespace peclet::engine
