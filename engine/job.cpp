@@ -1,0 +1,154 @@
+#include "engine/job.h"
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+
+#include "contract/provenance.h"
+#include "contract/sha256.h"
+#include "engine/state/packing.h"
+
+namespace peclet::engine {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// What this realisation has cost, in this process and in those before it.
+class Meter {
+ public:
+  explicit Meter(Spent before) : before_(before), processor_(processor_seconds()), start_(Clock::now()) {}
+
+  Spent spent() const {
+    return {before_.processor_seconds + processor_seconds() - processor_,
+            before_.wall_seconds + std::chrono::duration<double>(Clock::now() - start_).count()};
+  }
+  void add(const Spent& earlier) {
+    before_.processor_seconds += earlier.processor_seconds;
+    before_.wall_seconds += earlier.wall_seconds;
+  }
+
+ private:
+  Spent before_;
+  double processor_;
+  Clock::time_point start_;
+};
+
+Progress progress_of(const Simulation& simulation) {
+  const std::uint64_t step = simulation.system().step;
+  return {step < simulation.schedule().equilibration ? "equilibration" : "production", step,
+          simulation.schedule().total(), simulation.system().box.strain()};
+}
+
+class Job {
+ public:
+  Job(const JobSpecification& job, const JobEvents& events)
+      : job_(job),
+        events_(events),
+        meter_(Spent{}),
+        scene_(read_scene(job.scene, job.scene_name)),
+        schedule_(make_schedule(scene_, job.scene_name)),
+        identity_{sha256(canonical_json(scene_.document)), job.header.seed,
+                  provenance().at("binary_sha256").get<std::string>()} {}
+
+  std::optional<Json> run() {
+    std::optional<Ending> ending;
+    try {
+      begin();
+      ending = loop();
+    } catch (const PackingError& error) {
+      return make_unpacked_result(job_.header, scene_, schedule_, error.what(), meter_.spent());
+    }
+    if (!ending) {
+      write_checkpoint(job_.checkpoint, identity_, meter_.spent(), *simulation_);
+      return std::nullopt;
+    }
+    return make_result(job_.header, scene_, *simulation_, *ending, saved_state(*ending), meter_.spent());
+  }
+
+ private:
+  void construct() {
+    simulation_ =
+        std::make_unique<Simulation>(scene_, schedule_, job_.header.seed, job_.threads, job_.scene_name);
+  }
+
+  void begin() {
+    construct();
+    if (!job_.checkpoint.empty() && std::filesystem::exists(job_.checkpoint) && resume()) {
+      return;
+    }
+    events_.progress({"packing", 0, schedule_.total(), 0});
+    simulation_->start();
+  }
+
+  bool resume() {
+    try {
+      meter_.add(read_checkpoint(job_.checkpoint, identity_, *simulation_));
+      return true;
+    } catch (const CheckpointError& error) {
+      if (!job_.restart_on_bad_checkpoint) {
+        throw;
+      }
+      // Results depend on scene, seed and binary alone, so starting again only costs time.
+      events_.remark(std::string(error.what()) + ": set aside, the realisation starts again");
+      std::filesystem::rename(job_.checkpoint, job_.checkpoint.string() + ".rejected");
+      construct();
+      return false;
+    }
+  }
+
+  // Until the end, or until a drain is requested.
+  std::optional<Ending> loop() {
+    // Some 65 000 particle-steps are about ten milliseconds.
+    const std::uint64_t stride = std::max<std::uint64_t>(1, 65536 / scene_.particles.count);
+    Clock::time_point last_checkpoint = Clock::now();
+    while (true) {
+      if (std::optional<Ending> ending = simulation_->advance(stride)) {
+        return ending;
+      }
+      events_.progress(progress_of(*simulation_));
+      if (job_.checkpoint.empty()) {
+        continue;
+      }
+      if (events_.drain_requested()) {
+        return std::nullopt;
+      }
+      if (std::chrono::duration<double>(Clock::now() - last_checkpoint).count() > job_.checkpoint_seconds) {
+        write_checkpoint(job_.checkpoint, identity_, meter_.spent(), *simulation_);
+        last_checkpoint = Clock::now();
+      }
+    }
+  }
+
+  // A realisation that broke off leaves its last state where people can look at it.
+  std::string saved_state(const Ending& ending) const {
+    if (ending.cause == Ending::Cause::completed || job_.failures.empty()) {
+      return "";
+    }
+    const std::string name =
+        job_.header.point.substr(0, 12) + "-" + std::to_string(job_.header.seed) + ".state";
+    write_checkpoint(job_.failures / name, identity_, meter_.spent(), *simulation_);
+    return name;
+  }
+
+  const JobSpecification& job_;
+  const JobEvents& events_;
+  Meter meter_;
+  Scene scene_;
+  Schedule schedule_;
+  CheckpointIdentity identity_;
+  std::unique_ptr<Simulation> simulation_;
+};
+
+}  // namespace
+
+std::optional<Json> run_job(const JobSpecification& job, const JobEvents& events) {
+  return Job(job, events).run();
+}
+
+}  // namespace peclet::engine

@@ -1,0 +1,41 @@
+// One realisation from its scene to its result, with checkpoints on the way.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+#include "engine/result.h"
+
+namespace peclet::engine {
+
+struct JobSpecification {
+  ResultHeader header;
+  Json scene;
+  std::string scene_name;  // in messages
+  int threads = 1;
+  std::filesystem::path checkpoint;  // resumed from when it exists; empty: none is written
+  double checkpoint_seconds = 300;
+  std::filesystem::path failures;  // folder for the state of a realisation that broke off; empty: not saved
+  bool restart_on_bad_checkpoint =
+      false;  // an unusable checkpoint is set aside (.rejected) instead of ending the job
+};
+
+struct Progress {
+  const char* phase;  // "packing", "equilibration", "production"
+  std::uint64_t step, steps;
+  double strain;
+};
+
+// What the surroundings of a job may ask and hear, several times a second.
+struct JobEvents {
+  std::function<bool()> drain_requested = [] { return false; };
+  std::function<void(const Progress&)> progress = [](const Progress&) {};
+  std::function<void(const std::string&)> remark = [](const std::string&) {};  // for a log
+};
+
+// The result, or nothing when the job was drained: its checkpoint is then on disk.
+// Throws InputError, CheckpointError, std::system_error.
+std::optional<Json> run_job(const JobSpecification& job, const JobEvents& events);
+
+}  // namespace peclet::engine

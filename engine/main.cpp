@@ -1,0 +1,115 @@
+// peclet-engine: one realisation, a worker, a single evaluation, or a benchmark.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <thread>
+
+#include "contract/durable_file.h"
+#include "contract/input_error.h"
+#include "contract/provenance.h"
+#include "engine/benchmark.h"
+#include "engine/configuration.h"
+#include "engine/job.h"
+#include "engine/serve.h"
+
+namespace {
+
+using namespace peclet;
+using namespace peclet::engine;
+
+// What `peclet run` means by them, too.
+constexpr int success = 0, failure = 1, bad_input = 2, broke_off = 3, bad_state = 6;
+
+struct RunOptions {
+  std::string scene, output, checkpoint;
+  std::uint64_t seed = 0;
+  int threads = 1;
+};
+
+int run(const RunOptions& options) {
+  JobSpecification job;
+  job.header.seed = options.seed;
+  job.scene = read_json(options.scene);
+  job.scene_name = options.scene;
+  job.threads = options.threads;
+  job.checkpoint = options.checkpoint;
+  const Json result = run_job(job, {}).value();
+  const std::string text = result.dump(1) + "\n";
+  if (options.output.empty()) {
+    fmt::print("{}", text);
+  } else {
+    write_durably(options.output, text);
+  }
+  const Json& ending = result.at("ending");
+  if (ending.at("cause") == "completed") {
+    return success;
+  }
+  fmt::print(stderr, "{}: broke off at step {} ({}): {}\n", options.scene,
+             ending.at("step").get<std::uint64_t>(), ending.at("cause").get<std::string>(),
+             ending.at("message").get<std::string>());
+  return broke_off;
+}
+
+int forces(const std::string& path) {
+  const Configuration configuration = read_configuration(read_json(path), path);
+  try {
+    fmt::print("{}\n", evaluate_configuration(configuration).dump());
+  } catch (const std::invalid_argument& error) {
+    throw InputError(path, "/state/box/lengths", "", error.what());
+  }
+  return success;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"The particle engine of peclet: Langevin dynamics of dense suspensions."};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", version() + " " + provenance().at("git_commit").get<std::string>());
+
+  RunOptions options;
+  CLI::App* run_command = app.add_subcommand("run", "One realisation of a scene; prints the result as JSON");
+  run_command->add_option("scene", options.scene, "Scene, a JSON file")->required();
+  run_command->add_option("--seed", options.seed, "Seed of packing and noise")->capture_default_str();
+  run_command->add_option("--threads", options.threads, "Threads of the pair loop")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024));
+  run_command->add_option("--output", options.output, "File for the result instead of standard output");
+  run_command->add_option("--checkpoint", options.checkpoint,
+                          "File that is written every five minutes and resumed from when it exists");
+  CLI::App* serve_command = app.add_subcommand("serve", "Work for `peclet run`: frames on standard input");
+  std::string configuration;
+  CLI::App* forces_command =
+      app.add_subcommand("forces", "Forces, torques and stress of one configuration, term by term");
+  forces_command->add_option("configuration", configuration, "Configuration, a JSON file")->required();
+  std::vector<std::string> cases;
+  CLI::App* bench_command = app.add_subcommand("bench", "Processor time per particle and step");
+  bench_command->add_option("case", cases, "Names of cases; all of them when none is given");
+  CLI11_PARSE(app, argc, argv);
+
+  try {
+    if (*run_command) {
+      return run(options);
+    }
+    if (*serve_command) {
+      return serve(0);
+    }
+    if (*forces_command) {
+      return forces(configuration);
+    }
+    if (*bench_command) {
+      return run_benchmarks(cases);
+    }
+  } catch (const InputError& error) {
+    fmt::print(stderr, "peclet-engine: {}\n", error.what());
+    return bad_input;
+  } catch (const CheckpointError& error) {
+    fmt::print(stderr, "peclet-engine: {}\n", error.what());
+    return bad_state;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "peclet-engine: {}\n", error.what());
+    return failure;
+  }
+  return failure;
+}

@@ -1,0 +1,200 @@
+#include "engine/result.h"
+
+#include <array>
+#include <functional>
+
+#include "contract/provenance.h"
+#include "contract/sha256.h"
+#include "engine/kernels/terms.h"
+
+namespace peclet::engine {
+namespace {
+
+Json to_json(const SymmetricTensor& t) { return {t.xx, t.yy, t.zz, t.xy, t.xz, t.yz}; }
+
+// Turns sums into means in the units of the result.
+class Reduction {
+ public:
+  Reduction(const Scene& scene, const Simulation& simulation)
+      : physics_(scene.physics),
+        terms_(required_terms(scene.physics)),
+        volume_(simulation.system().box.volume()),
+        volume_fraction_(solid_volume(simulation.system().particles) / volume_),
+        particles_(static_cast<double>(simulation.system().particles.count())),
+        unit_(physics_.shear_rate > 0 ? physics_.viscosity * physics_.shear_rate : 1) {}
+
+  Json means(const BlockSums& sums) const {
+    Json stress = Json::object();
+    SymmetricTensor total;
+    const auto part = [&](const char* name, const SymmetricTensor& value) {
+      stress[name] = to_json(value);
+      total += value;
+    };
+    if (physics_.shear_rate > 0) {
+      SymmetricTensor solvent, stresslet;
+      solvent.xy = 1;
+      stresslet.xy = 2.5 * volume_fraction_;
+      part("solvent", solvent);
+      part("stresslet", stresslet);
+    }
+    const double per_step = 1 / (static_cast<double>(sums.steps) * volume_ * unit_);
+    SymmetricTensor pairs, brownian;
+    for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
+      const auto term = static_cast<StressTerm>(t);
+      const SymmetricTensor mean = per_step * sums.stress[t];
+      if (term == StressTerm::brownian_lubrication) {
+        brownian = mean;  // of mean zero: never part of the total
+      } else if (has_stress_term(terms_, term)) {
+        part(name_of(term), mean);
+        pairs += mean;
+      }
+    }
+    stress["total"] = to_json(total);
+    const bool sheared = physics_.shear_rate > 0;
+    const double per_sample = 1 / static_cast<double>(sums.samples);
+    return {
+        {"stress", stress},
+        {"brownian_pairwise", to_json(brownian)},
+        {"brownian_structural", to_json((per_sample / unit_) * sums.structural_brownian)},
+        {"relative_viscosity", sheared ? Json(total.xy) : Json()},
+        {"relative_viscosity_pair", sheared ? Json(pairs.xy) : Json()},
+        {"first_normal_difference", total.xx - total.yy},
+        {"second_normal_difference", total.yy - total.zz},
+        {"pressure", -(total.xx + total.yy + total.zz) / 3},
+        {"control_variates", {{"brownian_pairwise", terms_.noise && sheared ? Json(brownian.xy) : Json()}}},
+        {"contacts_per_particle", 2 * sums.contacts / (static_cast<double>(sums.steps) * particles_)},
+        {"kinetic_temperature", per_sample * sums.temperature.translational},
+        {"rotational_temperature", per_sample * sums.temperature.rotational}};
+  }
+
+ private:
+  const Physics& physics_;
+  Terms terms_;
+  double volume_, volume_fraction_, particles_, unit_;
+};
+
+BlockSums whole_window(const Production& production) {
+  BlockSums all;
+  for (const BlockSums& block : production.blocks()) {
+    all.steps += block.steps;
+    all.samples += block.samples;
+    all.contacts += block.contacts;
+    for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
+      all.stress[t] += block.stress[t];
+    }
+    all.structural_brownian += block.structural_brownian;
+    all.temperature.translational += block.temperature.translational;
+    all.temperature.rotational += block.temperature.rotational;
+  }
+  return all;
+}
+
+// Turns a list of equal objects into one object of lists.
+Json transposed(const std::vector<Json>& rows) {
+  if (!rows.front().is_object()) {
+    return rows;
+  }
+  Json columns = Json::object();
+  for (const auto& [name, value] : rows.front().items()) {
+    std::vector<Json> column;
+    for (const Json& row : rows) {
+      column.push_back(row.at(name));
+    }
+    columns[name] = transposed(column);
+  }
+  return columns;
+}
+
+Json ending_json(const Ending& ending, const std::string& saved_state) {
+  return {{"cause", name_of(ending.cause)},
+          {"step", ending.step},
+          {"message", ending.message},
+          {"state", saved_state.empty() ? Json() : Json(saved_state)}};
+}
+
+Json warnings_json(const std::vector<Warning>& warnings) {
+  Json list = Json::array();
+  for (const Warning& warning : warnings) {
+    list.push_back({{"code", warning.code}, {"message", warning.message}});
+  }
+  return list;
+}
+
+Json common_part(const ResultHeader& header, const Scene& scene, const Schedule& schedule,
+                 std::uint64_t steps, const Spent& spent) {
+  const double dt = schedule.timestep, rate = scene.physics.shear_rate;
+  const std::uint64_t before = std::min(steps, schedule.equilibration), after = steps - before;
+  const auto of_phases = [&](double factor) {
+    return Json{{"equilibration", factor * static_cast<double>(before)},
+                {"production", factor * static_cast<double>(after)}};
+  };
+  return {{"schema_version", 1},
+          {"point", header.point},
+          {"seed", header.seed},
+          {"timestep", dt},
+          {"steps", {{"equilibration", before}, {"production", after}}},
+          {"time", of_phases(dt)},
+          {"strain", of_phases(dt * rate)},
+          {"derived", to_json(derived_groups(scene))},
+          {"units", rate > 0 ? "viscosity * shear_rate" : "scene"},
+          {"mean", nullptr},
+          {"blocks", nullptr},
+          {"statistical_inefficiency", nullptr},
+          {"cost", {{"cpu_seconds", spent.processor_seconds}, {"wall_seconds", spent.wall_seconds}}},
+          {"engine", engine_identity()}};
+}
+
+}  // namespace
+
+Json make_result(const ResultHeader& header, const Scene& scene, const Simulation& simulation,
+                 const Ending& ending, const std::string& saved_state, const Spent& spent) {
+  Json result = common_part(header, scene, simulation.schedule(), simulation.system().step, spent);
+  std::vector<Warning> warnings = scene_warnings(scene);
+  if (const double overlap = simulation.largest_overlap(); overlap > 0.01) {
+    warnings.push_back(
+        {"overlap", "spheres overlapped by " + Json(overlap).dump() +
+                        " of a radius, more than 0.01: the contacts are too soft for this stress"});
+  }
+  result["warnings"] = warnings_json(warnings);
+  result["ending"] = ending_json(ending, saved_state);
+  result["largest_overlap"] = simulation.largest_overlap();
+  ArchiveWriter state;
+  save(simulation.system(), state);
+  result["final_state_sha256"] = sha256(state.bytes());
+  if (ending.cause == Ending::Cause::completed) {
+    const Reduction reduction(scene, simulation);
+    std::vector<Json> blocks;
+    std::vector<double> series;
+    for (const BlockSums& block : simulation.production().blocks()) {
+      blocks.push_back(reduction.means(block));
+      const Json& value = blocks.back().at(scene.physics.shear_rate > 0 ? "relative_viscosity" : "pressure");
+      series.push_back(value.get<double>());
+    }
+    result["mean"] = reduction.means(whole_window(simulation.production()));
+    result["blocks"] = transposed(blocks);
+    result["statistical_inefficiency"] = statistical_inefficiency(series);
+  }
+  return result;
+}
+
+Json make_unpacked_result(const ResultHeader& header, const Scene& scene, const Schedule& schedule,
+                          const std::string& message, const Spent& spent) {
+  Json result = common_part(header, scene, schedule, 0, spent);
+  result["warnings"] = warnings_json(scene_warnings(scene));
+  result["ending"] = ending_json({Ending::Cause::packing, 0, message}, "");
+  result["largest_overlap"] = nullptr;
+  result["final_state_sha256"] = nullptr;
+  return result;
+}
+
+const Json& engine_identity() {
+  static const Json identity = [] {
+    Json all = provenance();
+    // The kernels are portable, but the C library picks its logarithms and cosines by what the processor has.
+    all["instruction_set"] = __builtin_cpu_supports("fma") != 0 ? "x86-64, libm with fma" : "x86-64";
+    return all;
+  }();
+  return identity;
+}
+
+}  // namespace peclet::engine

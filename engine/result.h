@@ -1,0 +1,31 @@
+// The JSON that a realisation leaves behind; schema/result.schema.json describes it.
+#pragma once
+
+#include <string>
+
+#include "contract/json.h"
+#include "engine/checkpoint.h"
+#include "engine/scene.h"
+#include "engine/simulation.h"
+
+namespace peclet::engine {
+
+struct ResultHeader {
+  std::string point;  // identity of the state point in its campaign; empty for a single run
+  std::uint64_t seed = 0;
+};
+
+// Means over the production window, in all and in its blocks. Stresses are divided by viscosity * shear_rate,
+// or are in the scene's units where the rate is zero. Without a completed window "mean" and "blocks" are
+// null: never a number.
+Json make_result(const ResultHeader& header, const Scene& scene, const Simulation& simulation,
+                 const Ending& ending, const std::string& saved_state, const Spent& spent);
+
+// Of a realisation whose spheres could not be packed.
+Json make_unpacked_result(const ResultHeader& header, const Scene& scene, const Schedule& schedule,
+                          const std::string& message, const Spent& spent);
+
+// Provenance of this engine with the instruction set that its results depend on.
+const Json& engine_identity();
+
+}  // namespace peclet::engine

@@ -1,0 +1,180 @@
+#include "engine/simulation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "contract/input_error.h"
+#include "engine/integrators/stability.h"
+#include "engine/integrators/velocity_verlet.h"
+#include "engine/random/keyed_random.h"
+#include "engine/state/packing.h"
+#include "engine/terms/drag.h"
+
+namespace peclet::engine {
+namespace {
+
+// Between samples of what is not accumulated at every step: seldom enough to cost less than a hundredth of a
+// run.
+constexpr std::uint64_t sampling_interval = 50;
+
+// Room for non-affine motion before the list is rebuilt, in radii of the smallest sphere. A small one keeps
+// the list close to the pairs that act.
+constexpr double skin = 0.08;
+
+std::uint64_t steps_of(const Duration& duration, const Scene& scene, double timestep) {
+  const Physics& physics = scene.physics;
+  double time = duration.time;
+  if (physics.shear_rate > 0) {
+    time = std::min(time, duration.strain / physics.shear_rate);
+  }
+  if (physics.thermal_energy > 0) {
+    const double a = scene.particles.reference_radius;
+    time = std::min(time, duration.brownian_times * physics.viscosity * a * a * a / physics.thermal_energy);
+  }
+  // A duration that is a whole number of steps must not gain one by rounding.
+  return static_cast<std::uint64_t>(std::ceil(time / timestep * (1 - 1e-12)));
+}
+
+// The streaming flow's velocities, and those of equilibrium where there is a temperature.
+void set_initial_velocities(ParticleState& particles, const Physics& physics, std::uint64_t seed) {
+  const KeyedRandom random(seed, Purpose::initial_velocity);
+  for (std::uint32_t i = 0; i < particles.count(); ++i) {
+    Vector3 velocity = streaming_velocity(physics.shear_rate, particles.position.y[i]);
+    Vector3 spin = streaming_spin(physics.shear_rate);
+    if (physics.thermal_energy > 0) {
+      const NormalPair normals = random.normals(0, i);
+      velocity += std::sqrt(physics.thermal_energy / particles.mass[i]) * normals.first;
+      spin += std::sqrt(physics.thermal_energy / particles.inertia[i]) * normals.second;
+    }
+    particles.velocity.set(i, velocity);
+    particles.angular_velocity.set(i, spin);
+  }
+}
+
+}  // namespace
+
+const char* name_of(Ending::Cause cause) {
+  switch (cause) {
+    case Ending::Cause::completed:
+      return "completed";
+    case Ending::Cause::overlap:
+      return "overlap";
+    case Ending::Cause::displacement:
+      return "displacement";
+    case Ending::Cause::non_finite:
+      return "non-finite";
+    case Ending::Cause::packing:
+      return "packing";
+  }
+  return "";
+}
+
+Schedule make_schedule(const Scene& scene, const std::string& file) {
+  Schedule schedule;
+  schedule.timestep = resolved_timestep(scene, file);
+  schedule.equilibration = steps_of(scene.equilibration, scene, schedule.timestep);
+  schedule.production = steps_of(scene.production, scene, schedule.timestep);
+  if (schedule.production < count_of_blocks) {
+    throw InputError(file, "/duration/production", scene.document.at("duration").at("production").dump(),
+                     fmt::format("must last at least {} steps of {:.4g}, one for each block", count_of_blocks,
+                                 schedule.timestep));
+  }
+  return schedule;
+}
+
+Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64_t seed, int threads,
+                       const std::string& file)
+    : scene_(scene), schedule_(schedule), seed_(seed), production_(schedule.production) {
+  const Physics& physics = scene.physics;
+  const std::vector<double> radius = species_radii(scene.particles);
+  const std::vector<double> sizes = distinct_radii(radius);
+  const double edge = cube_edge(radius, scene.volume_fraction);
+  kinds_ = make_pair_kinds(physics, sizes);
+  const double range = range_table(kinds_, sizes.size()).largest();
+  if (!(edge > range)) {
+    throw InputError(
+        file, "/particles/count", std::to_string(scene.particles.count),
+        fmt::format(
+            "must fill a box larger than the range of the forces, {:.4g}, at this volume fraction (its edge "
+            "would be {:.4g})",
+            range, edge));
+  }
+  smallest_radius_ = sizes.front();
+  system_.particles = make_particles(radius, scene.particles.density);
+  system_.box = ShearedBox({edge, edge, edge}, physics.shear_rate);
+  system_.list = NeighbourList(range_table(kinds_, sizes.size()), skin * smallest_radius_);
+  integrator_ = std::make_unique<VelocityVerlet>(
+      ForceField(physics, system_.particles, schedule.timestep, seed, threads), system_.particles,
+      schedule.timestep);
+}
+
+void Simulation::start() {
+  place_randomly(system_.particles, system_.box, seed_);
+  set_initial_velocities(system_.particles, scene_.physics, seed_);
+  integrator_->start(system_);
+}
+
+std::optional<Ending> Simulation::advance(std::uint64_t steps) {
+  const std::uint64_t last = std::min(system_.step + steps, schedule_.total());
+  while (system_.step < last) {
+    const StepReport report = integrator_->advance(system_);
+    if (std::optional<Ending> ending = verdict(report)) {
+      return ending;
+    }
+    if (system_.step > schedule_.equilibration) {
+      observe(report);
+    }
+  }
+  if (system_.step == schedule_.total()) {
+    return Ending{Ending::Cause::completed, system_.step, "the production window is complete"};
+  }
+  return std::nullopt;
+}
+
+std::optional<Ending> Simulation::verdict(const StepReport& report) const {
+  const double displacement = report.largest_displacement / smallest_radius_;
+  if (!std::isfinite(displacement) || !report.sums.finite) {
+    return Ending{Ending::Cause::non_finite, system_.step, "a position or velocity is not finite"};
+  }
+  if (displacement > scene_.guard.largest_displacement) {
+    return Ending{Ending::Cause::displacement, system_.step,
+                  fmt::format("a particle moved {:.3g} radii in one step, more than {:.3g}", displacement,
+                              scene_.guard.largest_displacement)};
+  }
+  if (report.sums.largest_overlap > scene_.guard.largest_overlap) {
+    return Ending{Ending::Cause::overlap, system_.step,
+                  fmt::format("two particles overlap by {:.3g} radii, more than {:.3g}: jammed, or too soft",
+                              report.sums.largest_overlap, scene_.guard.largest_overlap)};
+  }
+  return std::nullopt;
+}
+
+void Simulation::observe(const StepReport& report) {
+  const std::uint64_t index = system_.step - schedule_.equilibration - 1;
+  production_.add_step(index, report.sums);
+  largest_overlap_ = std::max(largest_overlap_, report.sums.largest_overlap);
+  // A short window is sampled at every step so that each block has its samples.
+  const std::uint64_t interval = std::min(sampling_interval, schedule_.production / count_of_blocks);
+  if (index % interval == 0) {
+    production_.add_sample(index, structural_brownian_stress(system_, kinds_, scene_.physics.thermal_energy),
+                           kinetic_temperatures(system_));
+  }
+}
+
+void Simulation::save(ArchiveWriter& archive) const {
+  engine::save(system_, archive);
+  integrator_->save(archive);
+  production_.save(archive);
+  archive.put(largest_overlap_);
+}
+
+void Simulation::load(ArchiveReader& archive) {
+  engine::load(system_, archive);
+  integrator_->load(system_, archive);
+  production_.load(archive);
+  largest_overlap_ = archive.get<double>();
+}
+
+}  // namespace peclet::engine

@@ -1,0 +1,71 @@
+// The time loop of one realisation.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "engine/integrators/integrator.h"
+#include "engine/observables/production.h"
+#include "engine/scene.h"
+
+namespace peclet::engine {
+
+// Steps of the two phases; the step size is constant, so they are known before the first one.
+struct Schedule {
+  double timestep = 0;
+  std::uint64_t equilibration = 0, production = 0;
+
+  std::uint64_t total() const { return equilibration + production; }
+};
+
+// Throws InputError when the step is too large or the production window shorter than its 32 blocks.
+Schedule make_schedule(const Scene& scene, const std::string& file);
+
+// Why a realisation is over.
+struct Ending {
+  enum class Cause { completed, overlap, displacement, non_finite, packing };
+  Cause cause = Cause::completed;
+  std::uint64_t step = 0;
+  std::string message;
+};
+
+const char* name_of(Ending::Cause cause);  // "completed", "overlap", "displacement", "non-finite", "packing"
+
+class Simulation {
+ public:
+  // Spheres without places: start() or load() comes next. Throws InputError where the box is smaller than the
+  // range of the forces.
+  Simulation(const Scene& scene, const Schedule& schedule, std::uint64_t seed, int threads,
+             const std::string& file);
+
+  // Packs the spheres, gives them the streaming flow's velocities (and thermal ones) and evaluates the first
+  // forces. Throws PackingError.
+  void start();
+
+  // Up to `steps` more steps; returns how the realisation ended once it has.
+  std::optional<Ending> advance(std::uint64_t steps);
+
+  const System& system() const { return system_; }
+  const Schedule& schedule() const { return schedule_; }
+  const Production& production() const { return production_; }
+  double largest_overlap() const { return largest_overlap_; }  // over the smaller radius, in production
+
+  void save(ArchiveWriter& archive) const;
+  void load(ArchiveReader& archive);
+
+ private:
+  std::optional<Ending> verdict(const StepReport& report) const;
+  void observe(const StepReport& report);
+
+  Scene scene_;
+  Schedule schedule_;
+  std::uint64_t seed_;
+  System system_;
+  std::vector<PairKind> kinds_;
+  std::unique_ptr<Integrator> integrator_;
+  Production production_;
+  double smallest_radius_;
+  double largest_overlap_ = 0;
+};
+
+}  // namespace peclet::engine
