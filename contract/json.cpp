@@ -92,7 +92,9 @@ void write_canonical(const Json& value, std::string& out) {
     out += '{';
     const char* separator = "";
     for (const auto& [key, member] : value.items()) {
-      out += separator + Json(key).dump() + ':';
+      out += separator;
+      out += Json(key).dump();
+      out += ':';
       write_canonical(member, out);
       separator = ",";
     }

@@ -71,8 +71,9 @@ Json schema_of(const KeyTable& table, const Key& key) {
       break;
     }
   }
-  if (!key.meaning.empty())
-    schema["description"] = key.meaning + (key.unit.empty() ? "" : " [" + key.unit + "]");
+  if (!key.meaning.empty()) {
+    schema["description"] = key.unit.empty() ? key.meaning : fmt::format("{} [{}]", key.meaning, key.unit);
+  }
   if (!key.default_value.is_null()) schema["default"] = key.default_value;
   return schema;
 }
@@ -90,11 +91,13 @@ void add_members(const KeyTable& table, const std::string& pointer, Json& schema
 }
 
 // A cell of a Markdown table.
-std::string cell(std::string text) {
-  for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2)) {
-    text.insert(at, "\\");
+std::string cell(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '|') escaped += '\\';
+    escaped += c;
   }
-  return text;
+  return escaped;
 }
 
 }  // namespace
