@@ -167,6 +167,7 @@ bool Dispatcher::has_job(int worker, std::int64_t job) {
   const Worker& about = at(worker);
   if (about.condemned) return false;
   if (about.assignment && about.assignment->grant.job.attempt == job) return true;
+  if (about.finished_job == job) return false;  // said once too often, which does no harm
   condemn(worker, AttemptOutcome::garbled, fmt::format("spoke of job {}, which it does not have", job));
   return false;
 }
@@ -180,6 +181,7 @@ void Dispatcher::condemn(int number, AttemptOutcome outcome, const std::string& 
 
 void Dispatcher::set_idle(int number) {
   Worker& worker = at(number);
+  if (worker.assignment) worker.finished_job = worker.assignment->grant.job.attempt;
   worker.assignment.reset();
   worker.stage = Stage::idle;
   worker.since = clock_();

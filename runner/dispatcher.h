@@ -60,6 +60,7 @@ class Dispatcher {
     Time since{};  // of the stage
     std::int64_t engine = 0;
     std::optional<Assignment> assignment{};
+    std::int64_t finished_job = 0;              // the last one; attempts are numbered from 1
     std::optional<AttemptOutcome> condemned{};  // killed by us, and why
     std::string message{};
   };

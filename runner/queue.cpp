@@ -152,7 +152,7 @@ void Queue::quarantine(std::int64_t point, int seed, const std::string& cause) {
 Stored Queue::store(const RealisationResult& result, const std::string& observable) {
   Statement known(
       connection_,
-      "SELECT point_id, coalesce(engine_identity, ''), content_sha256, state FROM point LEFT JOIN "
+      "SELECT point.point_id, coalesce(engine_identity, ''), content_sha256, state FROM point LEFT JOIN "
       "realisation ON realisation.point_id = point.point_id AND seed = ? WHERE hash = ?");
   known.bind(result.seed).bind(result.point);
   if (!known.step()) return Stored::unknown_point;

@@ -70,16 +70,16 @@ std::int64_t Connection::last_insert_id() const { return sqlite3_last_insert_row
 int Connection::changes() const { return sqlite3_changes(handle_); }
 
 Statement::Statement(Connection& connection, std::string_view sql) : connection_(connection) {
-  check(sqlite3_prepare_v3(connection.handle(), sql.data(), static_cast<int>(sql.size()),
-                           SQLITE_PREPARE_PERSISTENT, &statement_, nullptr));
+  const int code = sqlite3_prepare_v3(connection.handle(), sql.data(), static_cast<int>(sql.size()),
+                                      SQLITE_PREPARE_PERSISTENT, &statement_, nullptr);
+  if (code != SQLITE_OK) fail(connection.path(), connection.handle(), code, sql);
 }
 
 Statement::~Statement() { sqlite3_finalize(statement_); }
 
 void Statement::check(int code) const {
   if (code == SQLITE_OK) return;
-  const char* const sql = statement_ != nullptr ? sqlite3_sql(statement_) : "preparing a statement";
-  fail(connection_.path(), connection_.handle(), code, sql);
+  fail(connection_.path(), connection_.handle(), code, sqlite3_sql(statement_));
 }
 
 Statement& Statement::bind(std::int64_t value) {

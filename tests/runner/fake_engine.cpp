@@ -1,0 +1,225 @@
+// An engine without physics that speaks the frames: the runner's proof that it knows no engine from inside.
+//
+// A realisation is a chain of mixed 64-bit states, started by point and seed; its relative viscosity is a
+// normal variate made of the last state. So a result depends on every step, and resuming in the wrong place
+// would show.
+//
+//   PECLET_FAKE_STEPS (10), PECLET_FAKE_STEP_MS (0)     length of a realisation
+//   PECLET_FAKE_MEAN (10), PECLET_FAKE_DEVIATION (1)    of the relative viscosity
+//   PECLET_FAKE_PADDING (0)                             numbers that make its result longer
+//   PECLET_FAKE_IDENTITY ("fake")                       what its binary is said to be
+//   PECLET_FAKE_DRIFT                                   set: results differ from those without it
+//   PECLET_FAKE_FAULTS, PECLET_FAKE_CRASH_PROBABILITY   see fake_faults.h
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <numbers>
+#include <thread>
+
+#include "contract/durable_file.h"
+#include "contract/frames.h"
+#include "contract/sha256.h"
+#include "tests/runner/fake_faults.h"
+
+namespace peclet::fake {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+Json engine() {
+  const char* const name = std::getenv("PECLET_FAKE_IDENTITY");
+  return {{"version", "0.0.0"},       {"git_commit", "unknown"},
+          {"git_dirty", nullptr},     {"binary_sha256", sha256(name == nullptr ? "fake" : name)},
+          {"compiler", "none"},       {"flags", ""},
+          {"build_type", "none"},     {"cpu", "none"},
+          {"instruction_set", "none"}};
+}
+
+struct State {
+  std::uint64_t value = 0;
+  int step = 0;
+};
+
+class Engine {
+ public:
+  int run() {
+    channel_.send({{"type", "hello"}, {"protocol", 1}, {"program", "fake-engine"}, {"engine", engine()}});
+    Json message;
+    while (!leave_ && channel_.receive(message, milliseconds(-1)) == FrameChannel::Status::message) {
+      const std::string type = message.at("type");
+      if (type == "validate") validate(message);
+      if (type == "job") run_job(message);
+      if (type == "drain" || type == "stop") break;
+    }
+    return 0;
+  }
+
+ private:
+  void validate(const Json& message) {
+    const Json::json_pointer viscosity("/fluid/viscosity");
+    const Json& scene = message.at("scene");
+    if (scene.contains(viscosity) && scene.at(viscosity).is_number() && scene.at(viscosity) <= 0) {
+      channel_.send({{"type", "refused"},
+                     {"request", message.at("request")},
+                     {"pointer", viscosity.to_string()},
+                     {"value", scene.at(viscosity).dump()},
+                     {"allowed", "must be a number > 0"}});
+      return;
+    }
+    channel_.send({{"type", "validated"},
+                   {"request", message.at("request")},
+                   {"timestep", 0.001},
+                   {"steps", steps_},
+                   {"particles", 1},
+                   {"derived", Json::object()},
+                   {"warnings", Json::array()}});
+  }
+
+  void run_job(const Json& job) {
+    const std::string point = job.at("point");
+    const int seed = job.at("seed");
+    const std::filesystem::path checkpoint(job.at("checkpoint").get<std::string>());
+    const Fault fault = fault_of(point, seed, count_try(job.at("failures").get<std::string>(), point, seed));
+    State state{mix(first_bits(point) ^ static_cast<std::uint64_t>(seed)), 0};
+    if (std::filesystem::exists(checkpoint)) {
+      const Json saved = Json::parse(read_file(checkpoint));
+      state = {saved.at("value").get<std::uint64_t>(), saved.at("step").get<int>()};
+    }
+    if (std::getenv("PECLET_FAKE_DRIFT") != nullptr) state.value = mix(state.value);
+    const auto start = steady_clock::now();
+    auto saved = start, told = start;
+    for (; state.step < steps_; ++state.step) {
+      if (state.step >= steps_ / 2) go_wrong(fault, job);
+      if (told_to_leave(job, state, checkpoint)) return;
+      state.value = mix(state.value + static_cast<std::uint64_t>(state.step));
+      const auto now = steady_clock::now();
+      if (std::chrono::duration<double>(now - told).count() >= job.at("progress_seconds").get<double>()) {
+        told = now;
+        progress(job, state.step + 1);
+      }
+      if (std::chrono::duration<double>(now - saved).count() >= job.at("checkpoint_seconds").get<double>()) {
+        saved = now;
+        save({state.value, state.step + 1}, checkpoint);
+      }
+    }
+    finish(job, state, fault, std::chrono::duration<double>(steady_clock::now() - start).count());
+  }
+
+  void go_wrong(Fault fault, const Json& job) {
+    if (fault == Fault::crash) std::abort();
+    if (fault == Fault::exit) std::_Exit(3);
+    if (fault == Fault::kill) kill(getpid(), SIGKILL);
+    if (fault == Fault::garble && write(0, "this is no frame", 16) < 0) std::abort();
+    if (fault == Fault::hang || fault == Fault::garble) {
+      for (;;) {
+        std::this_thread::sleep_for(milliseconds(20));
+        if (fault == Fault::hang) progress(job, steps_ / 2);  // alive, but standing still
+      }
+    }
+  }
+
+  void progress(const Json& job, int step) {
+    channel_.send({{"type", "progress"},
+                   {"job", job.at("job")},
+                   {"phase", "production"},
+                   {"step", step},
+                   {"steps", steps_},
+                   {"strain", 0.1 * step}});
+  }
+
+  // Waits for one step's time and hears what the owner has to say meanwhile.
+  bool told_to_leave(const Json& job, const State& state, const std::filesystem::path& checkpoint) {
+    Json message;
+    const FrameChannel::Status status = channel_.receive(message, step_time_);
+    if (status == FrameChannel::Status::nothing) return false;
+    leave_ = true;
+    if (status == FrameChannel::Status::message && message.at("type") == "stop") return true;
+    save(state, checkpoint);
+    if (status == FrameChannel::Status::message) {
+      channel_.send({{"type", "drained"}, {"job", job.at("job")}, {"step", state.step}});
+    }
+    return true;
+  }
+
+  static void save(const State& state, const std::filesystem::path& checkpoint) {
+    write_durably(checkpoint, Json{{"value", state.value}, {"step", state.step}}.dump());
+  }
+
+  void finish(const Json& job, const State& state, Fault fault, double wall_seconds) {
+    if (fault == Fault::refuse) {
+      channel_.send(
+          {{"type", "failed"}, {"job", job.at("job")}, {"message", "this engine does not want to"}});
+      return;
+    }
+    Json result = outcome(job, state, fault == Fault::overlap);
+    result["cost"] = {{"cpu_seconds", wall_seconds}, {"wall_seconds", wall_seconds}};
+    const std::string text = result.dump();
+    write_durably(job.at("spool").get<std::string>(), text);
+    if (fault == Fault::mute) std::abort();
+    const Json frame{{"type", "result"},
+                     {"job", job.at("job")},
+                     {"spool", job.at("spool")},
+                     {"sha256", sha256(fault == Fault::lie ? "something else" : text)}};
+    channel_.send(frame);
+    if (fault == Fault::twice) channel_.send(frame);
+  }
+
+  Json outcome(const Json& job, const State& state, bool blown_up) const {
+    // Box and Muller's normal variate of two uniform ones; the first never vanishes.
+    const double first = (static_cast<double>(mix(state.value) >> 11) + 1) * 0x1p-53;
+    const double second = static_cast<double>(mix(state.value + 1) >> 11) * 0x1p-53;
+    const double normal = std::sqrt(-2 * std::log(first)) * std::cos(2 * std::numbers::pi * second);
+    const double viscosity = setting("PECLET_FAKE_MEAN", 10) + setting("PECLET_FAKE_DEVIATION", 1) * normal;
+    Json result{
+        {"schema_version", 1},
+        {"point", job.at("point")},
+        {"seed", job.at("seed")},
+        {"ending", {{"cause", "completed"}, {"step", state.step}, {"message", ""}, {"state", nullptr}}},
+        {"timestep", 0.001},
+        {"steps", {{"equilibration", 0}, {"production", state.step}}},
+        {"strain", {{"equilibration", 0}, {"production", 0.1 * state.step}}},
+        {"time", {{"equilibration", 0}, {"production", 0.001 * state.step}}},
+        {"derived", Json::object()},
+        {"warnings", Json::array()},
+        {"units", "scene"},
+        {"mean", {{"relative_viscosity", viscosity}, {"control_variates", {{"brownian_pairwise", nullptr}}}}},
+        {"blocks", {{"relative_viscosity", std::vector<double>(32, viscosity)}}},
+        {"statistical_inefficiency", 1},
+        {"largest_overlap", 0},
+        {"final_state_sha256", sha256(std::to_string(state.value))},
+        {"engine", engine()}};
+    if (const auto padding = static_cast<std::size_t>(setting("PECLET_FAKE_PADDING", 0)); padding > 0) {
+      result["blocks"]["padding"] = std::vector<double>(padding, normal);
+    }
+    if (blown_up) {
+      result["ending"] = {
+          {"cause", "overlap"}, {"step", state.step}, {"message", "as asked"}, {"state", nullptr}};
+      result["mean"] = result["blocks"] = nullptr;
+    }
+    return result;
+  }
+
+  FrameChannel channel_{0};
+  int steps_ = static_cast<int>(setting("PECLET_FAKE_STEPS", 10));
+  milliseconds step_time_{static_cast<int>(setting("PECLET_FAKE_STEP_MS", 0))};
+  bool leave_ = false;
+};
+
+}  // namespace
+}  // namespace peclet::fake
+
+int main() {
+  try {
+    return peclet::fake::Engine().run();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "fake engine: %s\n", error.what());
+    return 1;
+  }
+}
