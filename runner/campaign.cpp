@@ -1,0 +1,54 @@
+#include "runner/campaign.h"
+
+#include <fmt/format.h>
+
+#include "contract/input_error.h"
+#include "runner/sweep.h"
+
+namespace peclet::runner {
+namespace {
+
+Json validated(const Json& document, const std::string& file) {
+  try {
+    return campaign_keys().validate(document, file);
+  } catch (const InputError& error) {
+    const bool looks_like_percent =
+        error.pointer() == "/target/relative_tolerance" && error.value() != "missing";
+    if (!looks_like_percent) throw;
+    throw InputError(file, error.pointer(), error.value(), error.allowed() + "; 5 % is written 0.05");
+  }
+}
+
+void check_name(const std::string& name, const std::string& file) {
+  constexpr const char* allowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
+  if (name.empty() || name.find_first_not_of(allowed) != std::string::npos) {
+    throw InputError(file, "/name", shortened(name),
+                     "must be letters, digits, dots, underscores and hyphens");
+  }
+}
+
+}  // namespace
+
+Campaign read_campaign(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  Campaign campaign;
+  campaign.document = validated(read_json(path), file);
+  const Json& document = campaign.document;
+  campaign.name = document["name"].get<std::string>();
+  check_name(campaign.name, file);
+
+  const Json& target = document["target"];
+  campaign.target = {target["observable"].get<std::string>(), target["relative_tolerance"].get<double>(),
+                     target["confidence"].get<double>()};
+  campaign.minimum_realisations = document["realisations"]["minimum"].get<int>();
+  campaign.maximum_realisations = document["realisations"]["maximum"].get<int>();
+  if (campaign.maximum_realisations < campaign.minimum_realisations) {
+    throw InputError(file, "/realisations/maximum", fmt::format("{}", campaign.maximum_realisations),
+                     fmt::format("must be an integer >= minimum, {}", campaign.minimum_realisations));
+  }
+  campaign.engine = document["engine"].get<std::vector<std::string>>();
+  campaign.points = sweep_points(document["scene"], read_sweep(document["sweep"], file), campaign.name, file);
+  return campaign;
+}
+
+}  // namespace peclet::runner
