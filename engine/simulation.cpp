@@ -90,6 +90,12 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
   const Physics& physics = scene.physics;
   const std::vector<double> radius = species_radii(scene.particles);
   const std::vector<double> sizes = distinct_radii(radius);
+  for (const Species& species : scene.particles.species) {
+    if (std::find(radius.begin(), radius.end(), species.radius) == radius.end()) {
+      throw InputError(file, "/particles/count", std::to_string(scene.particles.count),
+                       fmt::format("must be large enough for one sphere of radius {}", species.radius));
+    }
+  }
   const double edge = cube_edge(radius, scene.volume_fraction);
   kinds_ = make_pair_kinds(physics, sizes);
   const double range = range_table(kinds_, sizes.size()).largest();

@@ -1,0 +1,86 @@
+#!/usr/bin/env bash
+# Sets the project up on Debian 12 and shows it at work. Asks nothing; may be repeated at any time.
+#
+#   ./bootstrap.sh demo    install the packages, build, run the demonstration campaign, print its table
+#   ./bootstrap.sh test    install the packages, build, run every test
+#   ./bootstrap.sh lint    formatting and clang-tidy of the whole source
+#   ./bootstrap.sh deps    install the packages only
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+packages=(
+  g++ cmake ninja-build pkg-config git                                     # to build
+  nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev                 # both programs
+  librandom123-dev libsodium-dev libsqlite3-dev libboost-dev
+  libgtest-dev python3 python3-jsonschema sqlite3                         # the tests
+  clang-format clang-tidy                                                 # the source
+)
+
+say() { printf '\n== %s\n' "$*"; }
+
+deps() {
+  local missing=() package
+  for package in "${packages[@]}"; do
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+  done
+  if [ ${#missing[@]} -eq 0 ]; then
+    say "All ${#packages[@]} Debian packages are installed."
+    return
+  fi
+  local root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    # Without a terminal to ask on, sudo must be allowed already.
+    command -v sudo >/dev/null && sudo -n true 2>/dev/null || {
+      echo "bootstrap.sh: these packages are missing and need root or passwordless sudo: ${missing[*]}" >&2
+      exit 1
+    }
+    root=(sudo -n)
+  fi
+  say "Installing Debian packages: ${missing[*]}"
+  "${root[@]}" apt-get update -qq
+  "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" \
+    </dev/null >/dev/null
+}
+
+build() {
+  local tests=$1
+  shift
+  say "Building the release programs into build/release"
+  cmake --preset release -DBUILD_TESTING="$tests" >/dev/null
+  cmake --build --preset release "$@"
+}
+
+demo() {
+  build ON --target peclet peclet-engine
+  # A campaign belongs to the engine that computed it: another build starts another one.
+  local folder
+  folder=build/demo-$(sha256sum build/release/bin/peclet-engine | cut -c1-12).peclet
+  say "Running results/demo/campaign.json into $folder (three Péclet numbers, ten seeds each; minutes)"
+  echo "   Stop it with Ctrl-C and start again: it goes on where it was."
+  build/release/bin/peclet run results/demo/campaign.json --directory "$folder"
+}
+
+run_tests() {
+  build ON
+  say "Running every test"
+  ctest --preset release --parallel 2
+}
+
+lint() {
+  say "Formatting"
+  git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run --Werror
+  build ON
+  say "clang-tidy"
+  git ls-files '*.cpp' | xargs -P "$(nproc)" -n 4 clang-tidy --quiet -p build/release
+}
+
+case "${1:-}" in
+  demo) deps && demo ;;
+  test) deps && run_tests ;;
+  lint) deps && lint ;;
+  deps) deps ;;
+  *)
+    sed -n '2,7s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
+    exit 2
+    ;;
+esac
