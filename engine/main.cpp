@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <exception>
-#include <thread>
 
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
@@ -19,7 +19,14 @@ using namespace peclet;
 using namespace peclet::engine;
 
 // What `peclet run` means by them, too.
-constexpr int success = 0, failure = 1, bad_input = 2, broke_off = 3, bad_state = 6;
+constexpr int success = 0, failure = 1, bad_input = 2, broke_off = 3, bad_state = 6, stopped = 75;
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+void request_stop(int signal) {
+  stop_requested = 1;
+  std::signal(signal, SIG_DFL);  // the second one stops at once
+}
 
 struct RunOptions {
   std::string scene, output, checkpoint;
@@ -34,7 +41,18 @@ int run(const RunOptions& options) {
   job.scene_name = options.scene;
   job.threads = options.threads;
   job.checkpoint = options.checkpoint;
-  const Json result = run_job(job, {}).value();
+  JobEvents events;
+  if (!options.checkpoint.empty()) {
+    std::signal(SIGINT, request_stop);
+    std::signal(SIGTERM, request_stop);
+    events.drain_requested = [] { return stop_requested != 0; };
+  }
+  const std::optional<Json> finished = run_job(job, events);
+  if (!finished) {
+    fmt::print(stderr, "peclet-engine: stopped; the same command goes on from {}\n", options.checkpoint);
+    return stopped;
+  }
+  const Json& result = *finished;
   const std::string text = result.dump(1) + "\n";
   if (options.output.empty()) {
     fmt::print("{}", text);
