@@ -5,7 +5,7 @@
 
 #include "contract/input_error.h"
 #include "runner/campaign.h"
-#include "temporary_folder.h"
+#include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {
 namespace {
@@ -63,7 +63,8 @@ const Fault faults[] = {
      "must be a number > 0 and < 1; 5 % is written 0.05"},
     {R"({"target": {"relative_tolerance": 0}})", "/target/relative_tolerance", "0", "> 0 and < 1"},
     {R"({"target": {"relative_tolerance": "5%"}})", "/target/relative_tolerance", "5%", "must be a number"},
-    {R"({"target": {"relative_tolerance": null}})", "/target/relative_tolerance", "missing", "must be a number"},
+    {R"({"target": {"relative_tolerance": null}})", "/target/relative_tolerance", "missing",
+     "must be a number"},
     {R"({"target": {"confidence": 95}})", "/target/confidence", "95", "> 0.5 and < 1"},
     {R"({"target": {"observable": 1}})", "/target/observable", "1", "must be a string"},
     {R"({"realisations": {"minimum": 1}})", "/realisations/minimum", "1", "integer >= 2 and <= 1000000"},

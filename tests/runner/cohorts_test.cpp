@@ -29,9 +29,8 @@ Outcomes alternating(int count, double mean, double spread) {
 Outcomes all_lost(int count) { return Outcomes(static_cast<std::size_t>(count), lost()); }
 
 TEST(Cohorts, LooksAreAtTheMinimumThenAQuarterMoreRoundedUpAndLastAtTheMaximum) {
-  EXPECT_EQ(look_schedule(10, 800),
-            (std::vector<int>{10,  13,  17,  22,  28,  35,  44,  55,  69,  87,
-                              109, 137, 172, 215, 269, 337, 422, 528, 660, 800}));
+  EXPECT_EQ(look_schedule(10, 800), (std::vector<int>{10,  13,  17,  22,  28,  35,  44,  55,  69,  87,
+                                                      109, 137, 172, 215, 269, 337, 422, 528, 660, 800}));
   EXPECT_EQ(look_schedule(2, 7), (std::vector<int>{2, 3, 4, 5, 7}));
   EXPECT_EQ(look_schedule(8, 10), (std::vector<int>{8, 10}));
   EXPECT_EQ(look_schedule(6, 6), (std::vector<int>{6}));
@@ -132,8 +131,8 @@ TEST(Cohorts, OutcomesBeyondTheDecidingLookChangeNothing) {
   EXPECT_EQ(many[0].estimate.mean, few[0].estimate.mean);
 }
 
-// Seeds end in 200 random orders; after each one the looks are replayed from what is known by then. Every order
-// ends with the same looks, bit for bit, and no look is ever taken back or changed on the way.
+// Seeds end in 200 random orders; after each one the looks are replayed from what is known by then. Every
+// order ends with the same looks, bit for bit, and no look is ever taken back or changed on the way.
 TEST(Cohorts, AnswerDoesNotDependOnTheOrderOfArrival) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal(10, 2.5);

@@ -41,23 +41,23 @@ Coverage simulate(int replications, double spread, double tolerance, unsigned st
   return {static_cast<double>(covered) / replications, looks_made / replications, deviation / replications};
 }
 
-// A spread of 20 % and a tolerance of 7 % need about 34 seeds, so that the decision may fall at any of the looks
-// at 10, 13, 17, 22, 28, 35, 44 ... Stopping when the interval happens to be narrow costs coverage: about 93.7 %
-// is what is known of this rule instead of 95 %. Of 4000 replications the share has a standard error of 0.38 %,
-// so a rule with 93.7 % leaves the band below by chance less than once in 10^5 (4.5 and 6 standard errors); the
-// seed is fixed.
+// A spread of 20 % and a tolerance of 7 % need about 34 seeds, so that the decision may fall at any of the
+// looks at 10, 13, 17, 22, 28, 35, 44 ... Stopping when the interval happens to be narrow costs coverage:
+// about 93.7 % is what is known of this rule instead of 95 %. Of 4000 replications the share has a standard
+// error of 0.38 %, so a rule with 93.7 % leaves the band below by chance less than once in 10^5 (4.5 and 6
+// standard errors); the seed is fixed.
 TEST(Coverage, OfTheStopRuleStaysNearItsNominalValue) {
   const Coverage coverage = simulate(4000, 0.20, 0.07, 20260101);
   EXPECT_GT(coverage.mean_looks, 4);
   EXPECT_GT(coverage.covered, 0.92);
   EXPECT_LT(coverage.covered, 0.96);
-  // The mean of a standard score over 4000 has a standard error of about 1.1 / sqrt(4000) = 0.017; beyond 0.08
-  // by chance less than once in 10^5.
+  // The mean of a standard score over 4000 has a standard error of about 1.1 / sqrt(4000) = 0.017; beyond
+  // 0.08 by chance less than once in 10^5.
   EXPECT_LT(std::abs(coverage.bias), 0.08);
 }
 
-// With a tolerance that the first look meets always, the rule is Student's interval, which is exact: 95 % with a
-// standard error of 0.34 %; outside the band by chance less than once in 10^4 (4 standard errors).
+// With a tolerance that the first look meets always, the rule is Student's interval, which is exact: 95 %
+// with a standard error of 0.34 %; outside the band by chance less than once in 10^4 (4 standard errors).
 TEST(Coverage, WithoutRepeatedLooksIsStudents) {
   const Coverage coverage = simulate(4000, 0.02, 0.20, 20260102);
   EXPECT_EQ(coverage.mean_looks, 1);

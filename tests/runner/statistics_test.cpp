@@ -1,10 +1,10 @@
 // Means, standard errors and Student intervals against closed forms and printed tables.
+#include "runner/statistics.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
-
-#include "runner/statistics.h"
 
 namespace peclet::runner {
 namespace {

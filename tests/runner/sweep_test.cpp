@@ -22,9 +22,10 @@ std::vector<std::string> labels(const char* sweep) {
 }
 
 TEST(Sweep, AGridVariesItsLastEntryFastest) {
-  EXPECT_EQ(labels(R"([{"set": "/peclet", "values": [1, 10]}, {"set": "/volume_fraction", "values": [0.4, 0.5]}])"),
-            (std::vector<std::string>{"peclet=1 volume_fraction=0.4", "peclet=1 volume_fraction=0.5",
-                                      "peclet=10 volume_fraction=0.4", "peclet=10 volume_fraction=0.5"}));
+  EXPECT_EQ(
+      labels(R"([{"set": "/peclet", "values": [1, 10]}, {"set": "/volume_fraction", "values": [0.4, 0.5]}])"),
+      (std::vector<std::string>{"peclet=1 volume_fraction=0.4", "peclet=1 volume_fraction=0.5",
+                                "peclet=10 volume_fraction=0.4", "peclet=10 volume_fraction=0.5"}));
 }
 
 TEST(Sweep, PointersOfOneEntryAreSetInStep) {
@@ -56,10 +57,12 @@ TEST(Sweep, NothingButWhatIsSetDiffersFromTheScene) {
   EXPECT_EQ(point.hash, sha256(canonical_json(expected)));
 }
 
-// SHA-256 of {"fluid":{"viscosity":1},"peclet":5,"species":[{"radius":1},{"radius":1.4}],"volume_fraction":0.5}
-// as coreutils' sha256sum gives it.
+// SHA-256 of
+// {"fluid":{"viscosity":1},"peclet":5,"species":[{"radius":1},{"radius":1.4}],"volume_fraction":0.5} as
+// coreutils' sha256sum gives it.
 TEST(Sweep, TheHashIsThatOfTheCanonicalText) {
-  EXPECT_EQ(points(R"([{"set": "/peclet", "values": [5.0]}])")[0].hash, "0012771b251d2d6200575c815f2ea200fa8553d2a032df0bc5920602fdb96973");
+  EXPECT_EQ(points(R"([{"set": "/peclet", "values": [5.0]}])")[0].hash,
+            "0012771b251d2d6200575c815f2ea200fa8553d2a032df0bc5920602fdb96973");
 }
 
 TEST(Sweep, ACampaignWithoutOneHasOnePointOfItsOwnName) {
