@@ -13,7 +13,7 @@ namespace peclet::runner {
 namespace {
 
 // As in schema/campaign.sql.
-constexpr std::int64_t our_application = 1346585164;
+constexpr std::int64_t our_application = 1346587724;
 constexpr std::int64_t newest_version = 1;
 
 constexpr std::array<std::pair<SeedState, const char*>, 5> state_names{

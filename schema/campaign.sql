@@ -3,7 +3,7 @@
 --
 -- Times ending in _at are wall-clock times in UTC, for people to look at: no decision is made from them.
 
-PRAGMA application_id = 1346585164;  -- "PCLL" as a big-endian integer
+PRAGMA application_id = 1346587724;  -- "PCLL" as a big-endian integer
 PRAGMA user_version = 1;
 
 -- What a verdict was reached for. Old targets stay, with the looks that were made for them.

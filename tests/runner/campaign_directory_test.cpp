@@ -1,0 +1,70 @@
+#include "runner/campaign_directory.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "tests/runner/runner_fixture.h"
+
+namespace peclet::runner {
+namespace {
+
+TEST(CampaignDirectory, LiesBesideTheCampaignUnlessChosen) {
+  EXPECT_EQ(campaign_directory("/data/flow.json", "").root(), "/data/flow.peclet");
+  EXPECT_EQ(campaign_directory("/data/phi-0.50.json", "").root(), "/data/phi-0.50.peclet");
+  EXPECT_EQ(campaign_directory("/data/flow.json", "/elsewhere").root(), "/elsewhere");
+}
+
+TEST(CampaignDirectory, AttemptsShareACheckpointAndNeverASpoolFile) {
+  const CampaignDirectory directory("/data/flow.peclet");
+  const std::string hash(64, 'a'), other(64, 'b');
+  EXPECT_NE(directory.spool_file(hash, 3, 1), directory.spool_file(hash, 3, 2));
+  EXPECT_NE(directory.checkpoint(hash, 3), directory.checkpoint(hash, 4));
+  EXPECT_NE(directory.checkpoint(hash, 3), directory.checkpoint(other, 3));
+}
+
+TEST(CampaignDirectory, ALocalFileSystemIsNoNetwork) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(network_file_system(folder.path() / "not" / "there" / "yet"), std::nullopt);
+}
+
+TEST(OwnerLock, ASecondOwnerIsToldWhoOwnsTheCampaign) {
+  const TemporaryFolder folder;
+  const CampaignDirectory directory(folder.path());
+  const OwnerLock lock(directory);
+  try {
+    const OwnerLock second(directory);
+    FAIL() << "two owners";
+  } catch (const OwnedByAnother& refusal) {
+    EXPECT_NE(std::string(refusal.what()).find("process " + std::to_string(getpid())), std::string::npos);
+  }
+}
+
+TEST(OwnerLock, EndsWithItsHolder) {
+  const TemporaryFolder folder;
+  const CampaignDirectory directory(folder.path());
+  EXPECT_EQ(current_owner(directory), std::nullopt);
+  {
+    const OwnerLock lock(directory);
+    EXPECT_EQ(current_owner(directory), getpid());
+  }
+  EXPECT_EQ(current_owner(directory), std::nullopt);
+  EXPECT_NO_THROW(OwnerLock{directory});
+}
+
+TEST(OwnerLock, DiesWithAKilledProcess) {
+  const TemporaryFolder folder;
+  const CampaignDirectory directory(folder.path());
+  const pid_t child = fork();
+  if (child == 0) {
+    const OwnerLock lock(directory);
+    kill(getpid(), SIGKILL);
+  }
+  waitpid(child, nullptr, 0);
+  EXPECT_NO_THROW(OwnerLock{directory});
+}
+
+}  // namespace
+}  // namespace peclet::runner

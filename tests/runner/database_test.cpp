@@ -1,0 +1,136 @@
+#include "runner/database.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "contract/input_error.h"
+#include "contract/sha256.h"
+#include "runner/queue.h"
+#include "tests/runner/runner_fixture.h"
+
+namespace peclet::runner {
+namespace {
+
+class Databases : public testing::Test {
+ protected:
+  std::filesystem::path path() const { return folder_.path() / "campaign.db"; }
+  TemporaryFolder folder_;
+};
+
+TEST_F(Databases, IsDurableStrictAndOurs) {
+  Database database = Database::open_owner(path());
+  Connection& connection = database.connection();
+  EXPECT_EQ(connection.text("PRAGMA journal_mode"), "wal");
+  EXPECT_EQ(connection.integer("PRAGMA synchronous"), 2);  // FULL
+  EXPECT_EQ(connection.integer("PRAGMA foreign_keys"), 1);
+  EXPECT_EQ(connection.integer("PRAGMA user_version"), 1);
+  EXPECT_EQ(connection.integer("PRAGMA application_id"), 0x50434c4c);  // "PCLL"
+  EXPECT_EQ(connection.integer(
+                "SELECT count(*) FROM pragma_table_list WHERE type = 'table' AND schema = 'main' AND "
+                "name NOT LIKE 'sqlite_%' AND NOT strict"),
+            0);
+}
+
+TEST_F(Databases, AFileThatIsNoDatabaseIsLeftAlone) {
+  const std::string text(5000, 'x');
+  std::ofstream(path()) << text;
+  EXPECT_THROW(Database::open_owner(path()), IntegrityError);
+  EXPECT_THROW(Database::open_reader(path()), IntegrityError);
+  std::ifstream file(path());
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), text);
+}
+
+TEST_F(Databases, SomebodyElsesDatabaseIsLeftAlone) {
+  Connection(path().string(), Connection::Access::create, 0).execute("CREATE TABLE music (title TEXT)");
+  EXPECT_THROW(Database::open_owner(path()), IntegrityError);
+  EXPECT_THROW(Database::open_reader(path()), IntegrityError);
+}
+
+TEST_F(Databases, ANewerVersionAsksForANewerProgram) {
+  Database::open_owner(path()).connection().execute("PRAGMA user_version = 2");
+  for (const bool owner : {true, false}) {
+    try {
+      owner ? Database::open_owner(path()) : Database::open_reader(path());
+      FAIL() << "opened";
+    } catch (const IntegrityError& error) {
+      EXPECT_NE(std::string(error.what()).find("newer peclet (version 2"), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST_F(Databases, DamageIsFoundWhenTheOwnerOpens) {
+  {
+    Database database = Database::open_owner(path());
+    Queue(database).adopt(plain_campaign(200, 4, 40, 0.05));
+  }
+  {
+    std::fstream file(path(), std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(3 * 4096);
+    file << std::string(8192, '\xff');
+  }
+  EXPECT_THROW(Database::open_owner(path()), IntegrityError);
+}
+
+TEST_F(Databases, AReaderCannotWrite) {
+  Database::open_owner(path());
+  Database reader = Database::open_reader(path());
+  EXPECT_THROW(reader.connection().execute("DELETE FROM point"), DatabaseError);
+}
+
+TEST_F(Databases, AReaderOfNothingIsToldHowToStart) {
+  EXPECT_THROW(Database::open_reader(path()), InputError);
+  EXPECT_FALSE(std::filesystem::exists(path()));
+}
+
+TEST_F(Databases, AReaderSeesOneMomentWhileTheOwnerGoesOn) {
+  Database owner = Database::open_owner(path());
+  const Campaign campaign = plain_campaign(1, 4, 40, 0.05);
+  Queue queue(owner);
+  queue.adopt(campaign);
+  Database reader = Database::open_reader(path());
+  const std::int64_t point = reader.points().at(0).id;
+  EXPECT_EQ(reader.counts(point).done, 0);
+  queue.store(parse_result(plain_result(campaign.points[0].hash, 0, 11).dump()), "relative_viscosity");
+  EXPECT_EQ(reader.counts(point).done, 0);
+  EXPECT_EQ(Database::open_reader(path()).counts(point).done, 1);
+}
+
+TEST_F(Databases, ABusyDatabaseIsAnErrorAndNotSilence) {
+  Database owner = Database::open_owner(path());
+  const Transaction held(owner.connection());
+  Connection second(path().string(), Connection::Access::read_write, 0);
+  EXPECT_THROW(Transaction{second}, DatabaseError);
+}
+
+TEST_F(Databases, AnUncommittedTransactionLeavesNothing) {
+  Database owner = Database::open_owner(path());
+  try {
+    const Transaction doomed(owner.connection());
+    owner.connection().execute("INSERT INTO event (at, kind, message) VALUES ('now', 'test', 'lost')");
+    throw std::runtime_error("something else goes wrong");
+  } catch (const std::runtime_error&) {
+  }
+  EXPECT_TRUE(owner.events(10).empty());
+}
+
+TEST_F(Databases, NumbersThatDoNotExistAreNull) {
+  Database owner = Database::open_owner(path());
+  Queue queue(owner);
+  queue.adopt(plain_campaign(1, 4, 40, 0.05));
+  Look look;
+  look.seeds = 4;
+  look.lost = 3;
+  look.estimate = {1, 12, std::nan("")};
+  look.half_width = std::nan("");
+  look.verdict = Verdict::more;
+  queue.store_looks(1, {look});
+  EXPECT_EQ(owner.connection().integer("SELECT half_width IS NULL FROM estimates"), 1);
+  ASSERT_EQ(owner.looks(1).size(), 1U);
+  EXPECT_TRUE(std::isnan(owner.looks(1)[0].look.half_width));
+  EXPECT_EQ(owner.looks(1)[0].look.estimate.mean, 12);
+}
+
+}  // namespace
+}  // namespace peclet::runner

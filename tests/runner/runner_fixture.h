@@ -1,0 +1,50 @@
+// A campaign in a temporary folder, and results made by hand.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "contract/json.h"
+#include "runner/campaign.h"
+#include "runner/campaign_directory.h"
+#include "runner/run_listener.h"
+
+namespace peclet::runner {
+
+// Removed with everything in it at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// As many points as asked for, without a file: scenes {"point": 0}, {"point": 1} ...
+Campaign plain_campaign(int points, int minimum, int maximum, double tolerance);
+
+// A well-formed result of schema/result.schema.json; `identity` names the engine's binary.
+Json plain_result(const std::string& point, int seed, double viscosity,
+                  const std::string& identity = "engine");
+
+// The engine that plain_result() names.
+Json plain_engine(const std::string& identity = "engine");
+
+// Keeps what it is told.
+class SilentListener : public RunListener {
+ public:
+  void note(const std::string& message) override { notes.push_back(message); }
+  void warn(const std::string& message) override { warnings.push_back(message); }
+  void report(const RunReport& report) override { last = report; }
+  std::vector<std::string> notes, warnings;
+  RunReport last;
+};
+
+}  // namespace peclet::runner

@@ -1,0 +1,183 @@
+#include "runner/scheduler.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace peclet::runner {
+namespace {
+
+using Outcomes = std::vector<std::vector<std::optional<Outcome>>>;
+
+Outcome value(double number) { return {Outcome::Kind::value, number, 0}; }
+
+// Two values so far apart, or so near, that no reasonable interval could decide otherwise at 5 %.
+Outcome scattered(int seed) { return value(seed % 2 == 0 ? 1 : 19); }
+Outcome steady(int seed) { return value(seed % 2 == 0 ? 10 : 10.01); }
+
+const Target five_percent{"relative_viscosity", 0.05, 0.95};
+
+// Looks at 4, 5, 7, 9, 12 ... (each the ceiling of 1.25 times the last).
+Scheduler fresh(int points, int minimum = 4, int maximum = 40) {
+  return {Outcomes(static_cast<std::size_t>(points)), five_percent, minimum, maximum};
+}
+
+SeedId take(Scheduler& scheduler) {
+  const std::optional<SeedId> id = scheduler.next();
+  if (!id) throw std::logic_error("nothing to run");
+  scheduler.begin(*id);
+  return *id;
+}
+
+TEST(Scheduler, PointsComeForwardTogetherInTheOrderOfTheSweep) {
+  Scheduler scheduler = fresh(3);
+  std::vector<SeedId> taken;
+  for (int i = 0; i < 7; ++i) taken.push_back(take(scheduler));
+  EXPECT_EQ(taken, (std::vector<SeedId>{{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {2, 1}, {0, 2}}));
+}
+
+TEST(Scheduler, ThePointFurthestBehindGoesFirst) {
+  Outcomes known(2);
+  for (int seed = 0; seed < 3; ++seed) known[0].push_back(steady(seed));
+  Scheduler scheduler(known, five_percent, 4, 40);
+  EXPECT_EQ(take(scheduler), (SeedId{1, 0}));
+  EXPECT_EQ(take(scheduler), (SeedId{1, 1}));
+  EXPECT_EQ(take(scheduler), (SeedId{1, 2}));
+  EXPECT_EQ(take(scheduler), (SeedId{0, 3}));
+}
+
+TEST(Scheduler, RunsAheadByOneLookWhenAllNeededSeedsAreOutAndNoFurther) {
+  Scheduler scheduler = fresh(1);
+  for (int seed = 0; seed < 5; ++seed) EXPECT_EQ(take(scheduler), (SeedId{0, seed}));
+  EXPECT_EQ(scheduler.next(), std::nullopt);
+}
+
+TEST(Scheduler, NeededSeedsGoBeforeSurplusOnes) {
+  Scheduler scheduler = fresh(2);
+  for (int i = 0; i < 8; ++i) EXPECT_LT(take(scheduler).seed, 4);
+  EXPECT_EQ(take(scheduler), (SeedId{0, 4}));
+}
+
+TEST(Scheduler, ASeedThatComesBackIsTheNextToGo) {
+  Scheduler scheduler = fresh(1);
+  for (int i = 0; i < 4; ++i) take(scheduler);
+  scheduler.give_back({0, 1});
+  EXPECT_EQ(take(scheduler), (SeedId{0, 1}));
+}
+
+TEST(Scheduler, LooksOnlyAtClosedCohorts) {
+  Scheduler scheduler = fresh(1);
+  for (int i = 0; i < 5; ++i) take(scheduler);
+  for (const int seed : {4, 3, 2, 1}) {
+    EXPECT_FALSE(scheduler.end({0, seed}, steady(seed)));
+    EXPECT_TRUE(scheduler.looks(0).empty());
+  }
+  EXPECT_TRUE(scheduler.end({0, 0}, steady(0)));
+  ASSERT_EQ(scheduler.looks(0).size(), 1U);
+  EXPECT_EQ(scheduler.looks(0)[0].seeds, 4);  // seed 4 is surplus
+  EXPECT_TRUE(scheduler.finished());
+}
+
+TEST(Scheduler, ADecidedPointGetsNoMoreSeeds) {
+  Scheduler scheduler = fresh(2);
+  for (int i = 0; i < 8; ++i) take(scheduler);
+  for (int seed = 0; seed < 4; ++seed) scheduler.end({0, seed}, steady(seed));
+  EXPECT_TRUE(scheduler.decided(0));
+  EXPECT_EQ(take(scheduler).point, 1);
+  EXPECT_EQ(scheduler.next(), std::nullopt);
+}
+
+TEST(Scheduler, AnUndecidedLookAsksForTheSeedsOfTheNextOne) {
+  Scheduler scheduler = fresh(1);
+  for (int seed = 0; seed < 4; ++seed) {
+    take(scheduler);
+    scheduler.end({0, seed}, scattered(seed));
+  }
+  EXPECT_EQ(scheduler.wanted(0), 5);
+  EXPECT_EQ(scheduler.ended(0), 4);
+  EXPECT_FALSE(scheduler.finished());
+}
+
+TEST(Scheduler, StopsAtTheMaximum) {
+  Scheduler scheduler = fresh(1, 4, 6);
+  for (int seed = 0; seed < 6; ++seed) {
+    take(scheduler);
+    scheduler.end({0, seed}, scattered(seed));
+  }
+  EXPECT_TRUE(scheduler.finished());
+  EXPECT_EQ(scheduler.looks(0).back().verdict, Verdict::capped);
+  EXPECT_EQ(scheduler.next(), std::nullopt);
+}
+
+TEST(Scheduler, ATighterToleranceReopensAPointAndRunsNothingTwice) {
+  Outcomes known(1);
+  for (int seed = 0; seed < 7; ++seed) known[0].push_back(steady(seed));
+  Scheduler loose(known, five_percent, 4, 40);
+  EXPECT_TRUE(loose.finished());
+  Scheduler tight(known, {"relative_viscosity", 1e-6, 0.95}, 4, 40);
+  EXPECT_FALSE(tight.finished());
+  EXPECT_EQ(tight.looks(0).size(), 3U);  // at 4, 5 and 7: surplus seeds are used
+  EXPECT_EQ(take(tight), (SeedId{0, 7}));
+}
+
+TEST(Scheduler, ALowerMaximumLeavesLaterSeedsOutOfTheLooks) {
+  Outcomes known(1);
+  for (int seed = 0; seed < 20; ++seed) known[0].push_back(scattered(seed));
+  const Scheduler scheduler(known, five_percent, 4, 9);
+  EXPECT_TRUE(scheduler.finished());
+  EXPECT_EQ(scheduler.looks(0).back().seeds, 9);
+}
+
+TEST(Scheduler, ALateResultOfALostSeedIsLookedAtAgain) {
+  Scheduler scheduler = fresh(1);
+  for (int seed = 0; seed < 4; ++seed) {
+    take(scheduler);
+    scheduler.end({0, seed}, seed == 2 ? Outcome{} : steady(seed));
+  }
+  EXPECT_EQ(scheduler.looks(0).back().verdict, Verdict::converged_with_losses);
+  EXPECT_TRUE(scheduler.end({0, 2}, steady(2)));
+  EXPECT_EQ(scheduler.looks(0).back().verdict, Verdict::converged);
+}
+
+// The promise of the whole runner, for the decision alone: workers in any number, ending in any order.
+TEST(Scheduler, LooksDoNotDependOnWorkersOrOrderOfArrival) {
+  const auto outcome = [](SeedId id) {
+    std::mt19937 generator(static_cast<unsigned>(1000 * id.point + id.seed));
+    if (generator() % 10 == 0) return Outcome{};
+    return value(10 + std::normal_distribution<double>(0, 1 + id.point)(generator));
+  };
+  std::vector<std::vector<Look>> expected;
+  for (unsigned trial = 0; trial < 40; ++trial) {
+    std::mt19937 generator(trial);
+    const std::size_t workers = trial == 0 ? 1 : 1 + generator() % 16;
+    Scheduler scheduler = fresh(3, 4, 60);
+    std::vector<SeedId> out;
+    while (!scheduler.finished()) {
+      while (out.size() < workers && scheduler.next()) out.push_back(take(scheduler));
+      ASSERT_FALSE(out.empty());
+      std::swap(out[generator() % out.size()], out.back());
+      if (generator() % 5 == 0) {
+        scheduler.give_back(out.back());
+      } else {
+        scheduler.end(out.back(), outcome(out.back()));
+      }
+      out.pop_back();
+    }
+    for (int point = 0; point < 3; ++point) {
+      const std::vector<Look>& looks = scheduler.looks(point);
+      if (trial == 0) {
+        expected.push_back(looks);
+        continue;
+      }
+      const std::vector<Look>& first = expected[static_cast<std::size_t>(point)];
+      ASSERT_EQ(looks.size(), first.size()) << "trial " << trial;
+      EXPECT_EQ(looks.back().seeds, first.back().seeds);
+      EXPECT_EQ(looks.back().verdict, first.back().verdict);
+      EXPECT_EQ(looks.back().estimate.mean, first.back().estimate.mean);  // the same bits
+    }
+  }
+}
+
+}  // namespace
+}  // namespace peclet::runner

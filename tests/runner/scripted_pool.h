@@ -1,0 +1,61 @@
+// A worker pool without processes: the test says what its workers say.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "runner/worker_pool.h"
+
+namespace peclet::runner {
+
+class ScriptedPool : public WorkerPool {
+ public:
+  explicit ScriptedPool(int workers) : workers_(static_cast<std::size_t>(workers)) {}
+
+  int size() const override { return static_cast<int>(workers_.size()); }
+  void start(int worker) override;
+  std::int64_t process(int worker) const override { return 1000 + worker; }
+  void assign(int worker, const Job& job) override;
+  void drain(int worker) override;
+  void kill(int worker) override;
+  // The events that have been said since; asks `script` for more when there are none. Time passes by
+  // `patience` when there still are none.
+  std::vector<WorkerEvent> wait(std::chrono::milliseconds patience) override;
+
+  void say(WorkerEvent event) { said_.push_back(std::move(event)); }
+  // The worker spools a result for its job and says so.
+  void finish(int worker, double viscosity);
+  // Spools it without a word.
+  void spool(int worker, double viscosity) const;
+  bool has_job(int worker) const { return at(worker).job.has_value(); }
+  const Job& job(int worker) const { return *at(worker).job; }
+  bool alive(int worker) const { return at(worker).alive; }
+
+  // Called whenever the dispatcher waits and nothing has been said.
+  std::function<void()> script;
+  // Said at the start of every process.
+  std::string identity = "engine";
+  bool says_hello = true;
+  bool leaves_when_drained = true;
+
+  std::chrono::steady_clock::time_point now{};  // the test's time
+  int starts = 0;
+  std::vector<Job> assigned;
+
+ private:
+  struct Worker {
+    bool alive = false;
+    std::optional<Job> job;
+  };
+  const Worker& at(int worker) const { return workers_.at(static_cast<std::size_t>(worker)); }
+  Worker& at(int worker) { return workers_.at(static_cast<std::size_t>(worker)); }
+
+  std::vector<Worker> workers_;
+  std::deque<WorkerEvent> said_;
+};
+
+}  // namespace peclet::runner
