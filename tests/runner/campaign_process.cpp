@@ -1,0 +1,128 @@
+#include "tests/runner/campaign_process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <stdexcept>
+#include <thread>
+
+#include "contract/durable_file.h"
+#include "contract/input_error.h"
+
+namespace peclet::runner {
+namespace {
+
+// As main.cpp does it.
+int exit_code_of(const RunOptions& options) {
+  try {
+    return run_campaign(options);
+  } catch (const InputError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 2;
+  } catch (const OwnedByAnother& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 5;
+  } catch (const IntegrityError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 6;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace
+
+CampaignOnDisk::CampaignOnDisk(int points) : directory_(folder_.path() / "test.peclet") {
+  document = {
+      {"name", "test"},
+      {"scene", {{"fluid", {{"viscosity", 1}}}, {"peclet", 1}}},
+      {"sweep", {{{"set", "/peclet"}, {"values", Json::array()}}}},
+      {"target", {{"observable", "relative_viscosity"}, {"relative_tolerance", 0.05}, {"confidence", 0.95}}},
+      {"realisations", {{"minimum", 5}, {"maximum", 60}}},
+      {"engine", {FAKE_ENGINE, "serve"}}};
+  for (int point = 1; point <= points; ++point) document["sweep"][0]["values"].push_back(point);
+  options.campaign = folder_.path() / "test.json";
+  options.workers = 2;
+  options.threads = 1;
+}
+
+void CampaignOnDisk::start(const Environment& environment) {
+  std::ofstream(options.campaign) << document.dump(2);
+  std::fflush(nullptr);
+  process_ = fork();
+  if (process_ < 0) throw std::runtime_error("fork");
+  if (process_ > 0) return;
+  const int log = open((folder_.path() / "run.log").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
+  dup2(log, STDOUT_FILENO);
+  dup2(log, STDERR_FILENO);
+  for (const auto& [name, value] : environment) setenv(name.c_str(), value.c_str(), 1);
+  const int code = exit_code_of(options);
+  std::fflush(nullptr);
+  _exit(code);
+}
+
+int CampaignOnDisk::finish() {
+  int status = 0;
+  waitpid(process_, &status, 0);
+  process_ = -1;
+  return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+int CampaignOnDisk::run(const Environment& environment) {
+  start(environment);
+  return finish();
+}
+
+void CampaignOnDisk::signal(int number) const { kill(process_, number); }
+
+void CampaignOnDisk::kill_workers() const {
+  const std::string own = std::to_string(process_);
+  std::ifstream children(fmt::format("/proc/{}/task/{}/children", own, own));
+  for (pid_t child = 0; children >> child;) kill(child, SIGKILL);
+}
+
+void CampaignOnDisk::wait_for_results(int count) const {
+  const auto patience = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (std::chrono::steady_clock::now() < patience) {
+    try {
+      if (this->count("SELECT count(*) FROM realisation WHERE state = 'done'") >= count) return;
+    } catch (const std::exception&) {  // not there yet
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  throw std::runtime_error("the run gives no results:\n" + log());
+}
+
+std::int64_t CampaignOnDisk::count(const std::string& sql) const {
+  Database database = reader();
+  return database.connection().integer(sql);
+}
+
+std::string CampaignOnDisk::answer() const {
+  std::string answer;
+  Database database = reader();
+  for (const PointRecord& point : database.points()) {
+    const std::vector<LookRecord> looks = database.looks(point.id);
+    for (const LookRecord& record : looks) {
+      answer +=
+          fmt::format("{} look {} {} {} {}\n", point.label, record.look.seeds, record.look.estimate.mean,
+                      record.look.half_width, to_string(record.look.verdict));
+    }
+    for (const RealisationRecord& record : database.realisations(point.id)) {
+      if (looks.empty() || record.seed >= looks.back().look.seeds) continue;
+      answer +=
+          fmt::format("{} seed {} {} {}\n", point.label, record.seed, record.cause, record.content_sha256);
+    }
+  }
+  return answer;
+}
+
+std::string CampaignOnDisk::log() const { return read_file(folder_.path() / "run.log"); }
+
+}  // namespace peclet::runner

@@ -1,0 +1,53 @@
+// `peclet run` of a campaign with the fake engine in a process of its own, to be signalled and killed.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "contract/json.h"
+#include "runner/database.h"
+#include "runner/run.h"
+#include "tests/runner/runner_fixture.h"
+
+namespace peclet::runner {
+
+using Environment = std::map<std::string, std::string>;
+
+// A campaign file in a temporary folder, and runs of it.
+class CampaignOnDisk {
+ public:
+  explicit CampaignOnDisk(int points = 2);
+
+  Json document;  // written at each start
+  RunOptions options;
+
+  // Starts a run in a child process; finish() waits for it.
+  void start(const Environment& environment = {});
+  // Its exit code as the program's; -N when signal N killed it.
+  int finish();
+  int run(const Environment& environment = {});
+  void signal(int number) const;
+  // Kills all of its workers.
+  void kill_workers() const;
+  // Waits until so many realisations are done. Throws when that takes a minute.
+  void wait_for_results(int count) const;
+
+  const CampaignDirectory& directory() const { return directory_; }
+  Database reader() const { return Database::open_reader(directory_.database()); }
+  std::int64_t count(const std::string& sql) const;
+  // What must not depend on what happened to the processes: all looks, and the contents of the seeds that
+  // decided.
+  std::string answer() const;
+  std::string log() const;
+
+ private:
+  TemporaryFolder folder_;
+  CampaignDirectory directory_;
+  pid_t process_ = -1;
+};
+
+}  // namespace peclet::runner
