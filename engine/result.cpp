@@ -97,6 +97,7 @@ Json transposed(const std::vector<Json>& rows) {
   Json columns = Json::object();
   for (const auto& [name, value] : rows.front().items()) {
     std::vector<Json> column;
+    column.reserve(rows.size());
     for (const Json& row : rows) {
       column.push_back(row.at(name));
     }
