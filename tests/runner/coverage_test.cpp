@@ -51,9 +51,9 @@ TEST(Coverage, OfTheStopRuleStaysNearItsNominalValue) {
   EXPECT_GT(coverage.mean_looks, 4);
   EXPECT_GT(coverage.covered, 0.92);
   EXPECT_LT(coverage.covered, 0.96);
-  // The mean of a standard score over 4000 has a standard error of about 1.1 / sqrt(4000) = 0.017; beyond
-  // 0.08 by chance less than once in 10^5.
-  EXPECT_LT(std::abs(coverage.bias), 0.08);
+  // The tolerance is relative, so cohorts whose mean is too large stop a little earlier: a bias of about 0.05
+  // standard errors. The mean of 4000 such scores has a standard error of 0.017, so chance is 9 of these away.
+  EXPECT_LT(std::abs(coverage.bias), 0.2);
 }
 
 // With a tolerance that the first look meets always, the rule is Student's interval, which is exact: 95 %

@@ -1,0 +1,80 @@
+#include "runner/database_summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace peclet::runner {
+namespace {
+
+struct Aggregate {
+  StateCounts counts;
+  Estimate so_far{0, std::nan(""), std::nan("")};
+};
+
+// Two passes over the values, so that their spread does not drown in a large mean.
+std::map<std::int64_t, Aggregate> read_aggregates(Connection& connection) {
+  Statement query(connection,
+                  "SELECT r.point_id, sum(state = 'queued'), sum(state = 'running'), sum(state = 'done'),"
+                  " sum(state = 'failed'), sum(state = 'quarantined'), total(cpu_seconds), count(value),"
+                  " mean, sum((value - mean) * (value - mean))"
+                  " FROM realisation r JOIN (SELECT point_id, avg(value) AS mean FROM realisation GROUP BY"
+                  " point_id) USING (point_id) GROUP BY r.point_id");
+  std::map<std::int64_t, Aggregate> aggregates;
+  while (query.step()) {
+    Aggregate& aggregate = aggregates[query.integer(0)];
+    const auto count = [&](int column) { return static_cast<int>(query.integer(column)); };
+    aggregate.counts = {count(1), count(2), count(3), count(4), count(5), query.real(6)};
+    aggregate.so_far.count = count(7);
+    aggregate.so_far.mean = query.real(8);
+    const double values = query.real(7);
+    if (values >= 2) aggregate.so_far.standard_error = std::sqrt(query.real(9) / (values - 1) / values);
+  }
+  return aggregates;
+}
+
+std::map<std::int64_t, std::map<std::string, int>> read_losses(Connection& connection) {
+  Statement query(connection,
+                  "SELECT point_id, cause, count(*) FROM realisation WHERE state IN ('failed', 'quarantined')"
+                  " GROUP BY point_id, cause");
+  std::map<std::int64_t, std::map<std::string, int>> losses;
+  while (query.step()) losses[query.integer(0)][query.text(1)] = static_cast<int>(query.integer(2));
+  return losses;
+}
+
+int count_ended(Connection& connection, std::int64_t point, int end) {
+  Statement query(connection,
+                  "SELECT count(*) FROM realisation WHERE point_id = ? AND seed < ? AND state IN ('done',"
+                  " 'failed', 'quarantined')");
+  query.bind(point).bind(end).step();
+  return static_cast<int>(query.integer(0));
+}
+
+}  // namespace
+
+std::vector<PointSummary> summarise_points(Database& database, const TargetRecord& target) {
+  Connection& connection = database.connection();
+  std::map<std::int64_t, Aggregate> aggregates = read_aggregates(connection);
+  std::map<std::int64_t, std::map<std::string, int>> losses = read_losses(connection);
+  const std::vector<int> schedule = look_schedule(target.minimum, target.maximum);
+
+  std::vector<PointSummary> summaries;
+  for (PointRecord& point : database.points()) {
+    PointSummary summary;
+    const Aggregate& aggregate = aggregates[point.id];
+    summary.counts = aggregate.counts;
+    summary.so_far = aggregate.so_far;
+    summary.losses = std::move(losses[point.id]);
+    for (LookRecord& record : database.looks(point.id)) summary.looks.push_back(record.look);
+    summary.decided = !summary.looks.empty() && summary.looks.back().verdict != Verdict::more;
+    const int seen = summary.looks.empty() ? 0 : summary.looks.back().seeds;
+    summary.wanted = summary.decided ? seen : *std::upper_bound(schedule.begin(), schedule.end() - 1, seen);
+    summary.wanted_ended = count_ended(connection, point.id, summary.wanted);
+    if (summary.counts.running > 0) summary.leases = database.leases(point.id);
+    summary.point = std::move(point);
+    summaries.push_back(std::move(summary));
+  }
+  return summaries;
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,31 @@
+// All that `status` shows of a point, from aggregates: no result is read, however many there are.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "runner/database.h"
+
+namespace peclet::runner {
+
+struct PointSummary {
+  PointRecord point;
+  StateCounts counts;
+  Estimate so_far;  // over all seeds that have ended with a value, in whatever order they came
+  std::map<std::string, int> losses;  // seeds by cause
+  std::vector<Look> looks;            // for the present target
+  bool decided = false;
+  int wanted = 0;        // seeds of the next look; of a decided point those of the deciding one
+  int wanted_ended = 0;  // of these, how many have ended
+  std::vector<LeaseRecord> leases;
+
+  int lost() const { return counts.failed + counts.quarantined; }
+  // Seeds of a decided point that have ended beyond the deciding look.
+  int surplus() const { return decided ? counts.terminal() - wanted_ended : 0; }
+};
+
+// The points of the sweep, in its order.
+std::vector<PointSummary> summarise_points(Database& database, const TargetRecord& target);
+
+}  // namespace peclet::runner

@@ -1,0 +1,138 @@
+#include "runner/explain.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "contract/input_error.h"
+#include "runner/explain_attempts.h"
+#include "runner/forecast.h"
+#include "runner/number_text.h"
+#include "runner/status.h"
+#include "runner/text_table.h"
+
+namespace peclet::runner {
+namespace {
+
+bool has_name(const PointRecord& point, const std::string& name) {
+  return point.label == name || (name.size() >= 4 && point.hash.starts_with(name));
+}
+
+std::vector<PointSummary> selected(std::vector<PointSummary> points, const std::string& name) {
+  if (name.empty()) return points;
+  std::vector<std::string> labels;
+  std::vector<PointSummary> found;
+  for (PointSummary& point : points) {
+    labels.push_back(point.point.label);
+    if (has_name(point.point, name)) found.push_back(std::move(point));
+  }
+  if (found.size() == 1) return found;
+  constexpr std::size_t most_labels = 12;
+  const std::string more = labels.size() > most_labels ? ", ..." : "";
+  labels.resize(std::min(labels.size(), most_labels));
+  throw InputError(
+      "", "", name,
+      fmt::format("must be the label of one point, or 4 or more digits of its hash; labels: {}{}",
+                  fmt::join(labels, ", "), more));
+}
+
+double relative_width(const Look& look) { return look.half_width / std::abs(look.estimate.mean); }
+
+// Seeds that the tolerance would take, as the half-width falls with 1 / sqrt(n).
+std::string seeds_for(const Look& look, const Target& target) {
+  const double ratio = relative_width(look) / target.relative_tolerance;
+  return std::isfinite(ratio) ? fmt::format("about {}", rough(std::ceil(look.seeds * ratio * ratio)))
+                              : "more";
+}
+
+std::string reason(const PointSummary& point, const Target& target) {
+  const std::string tolerance = percent(target.relative_tolerance);
+  if (!point.decided) {
+    return fmt::format("{} of the {} seeds of the next look have ended, {} run", point.wanted_ended,
+                       point.wanted, point.counts.running);
+  }
+  const Look& look = point.looks.back();
+  switch (look.verdict) {
+    case Verdict::converged:
+    case Verdict::converged_with_losses:
+      return fmt::format("{} seeds give {}, within the tolerance of {}", look.seeds,
+                         percent(relative_width(look)), tolerance);
+    case Verdict::capped:
+      return fmt::format("all {} seeds that are allowed give {}, not within the tolerance of {}", look.seeds,
+                         percent(relative_width(look)), tolerance);
+    case Verdict::failed:
+      return fmt::format("{} of {} seeds are lost", look.lost, look.seeds);
+    case Verdict::more:
+      break;
+  }
+  return "";
+}
+
+std::string next_step(const PointSummary& point, const TargetRecord& target,
+                      const CampaignDirectory& directory) {
+  if (point.point.suspect) {
+    return "find out why one seed gave two results (see the events and spool/rejected/) before trusting any";
+  }
+  if (!point.decided) {
+    if (point.looks.empty()) return fmt::format("the first look, at {} seeds", point.wanted);
+    return fmt::format("the look at {} seeds; {} are expected to be enough", point.wanted,
+                       expected_seeds(point.looks, target.target, target.minimum, target.maximum));
+  }
+  const Look& look = point.looks.back();
+  switch (look.verdict) {
+    case Verdict::converged:
+      return "nothing; a smaller /target/relative_tolerance reopens it";
+    case Verdict::converged_with_losses:
+      return fmt::format("see why seeds are lost: the mean leaves them out (states in {})",
+                         directory.failures().string());
+    case Verdict::capped:
+      return fmt::format(
+          "a larger /realisations/maximum ({} seeds) or /target/relative_tolerance, and run again",
+          seeds_for(look, target.target));
+    case Verdict::failed:
+      return fmt::format("change the scene: states are in {}, logs in {}", directory.failures().string(),
+                         directory.logs().string());
+    case Verdict::more:
+      break;
+  }
+  return "";
+}
+
+std::string looks_table(const std::vector<Look>& looks, const Target& target) {
+  if (looks.empty()) return "  no look yet\n";
+  TextTable table;
+  for (const char* const title :
+       {"look at", "lost", "mean ± half-width", "relative", "tolerance", "controlled"}) {
+    table.add_column(title);
+  }
+  table.add_column("verdict", TextTable::Align::left);
+  for (const Look& look : looks) {
+    table.add_row({fmt::format("{}", look.seeds), fmt::format("{}", look.lost),
+                   with_error(look.estimate.mean, look.half_width), percent(relative_width(look)),
+                   percent(target.relative_tolerance),
+                   with_error(look.controlled.mean, look.controlled_half_width), to_string(look.verdict)});
+  }
+  return table.text("  ");
+}
+
+}  // namespace
+
+std::string explain(Database& database, const CampaignDirectory& directory, const std::string& point) {
+  const TargetRecord target = database.campaign().target;
+  std::string text;
+  for (const PointSummary& summary : selected(summarise_points(database, target), point)) {
+    text += text.empty() ? "" : "\n";
+    text += fmt::format("{}  ({})\n", summary.point.label, summary.point.hash.substr(0, 12));
+    text += fmt::format("  {}: {}\n", verdict_text(summary), reason(summary, target.target));
+    text += looks_table(summary.looks, target.target);
+    text += losses_text(database, summary.point.id);
+    text += attempts_text(database, summary.point.id);
+    text += fmt::format("  next: {}\n", next_step(summary, target, directory));
+  }
+  return text;
+}
+
+}  // namespace peclet::runner

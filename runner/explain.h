@@ -1,0 +1,21 @@
+// The verb `peclet explain`: why a point is where it is, and what would bring it further.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "runner/campaign_directory.h"
+#include "runner/database.h"
+
+namespace peclet::runner {
+
+struct ExplainOptions {
+  std::filesystem::path campaign;  // file or folder
+  std::filesystem::path directory;
+  std::string point;  // label, or at least 4 digits of the hash; "": all points
+};
+
+// Throws InputError for a name that no point, or more than one, has.
+std::string explain(Database& database, const CampaignDirectory& directory, const std::string& point);
+
+}  // namespace peclet::runner

@@ -1,0 +1,93 @@
+// peclet: campaigns of realisations, from scenes to converged averages.
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <exception>
+#include <system_error>
+
+#include "contract/durable_file.h"
+#include "contract/input_error.h"
+#include "runner/open_campaign.h"
+#include "runner/options.h"
+
+namespace {
+
+using namespace peclet::runner;
+
+constexpr int exit_error = 1;
+constexpr int exit_input = 2;
+constexpr int exit_owned = 5;
+constexpr int exit_integrity = 6;
+
+// A full disk behind `peclet export > file` must not look like success.
+void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw std::system_error(errno, std::generic_category(), "standard output");
+  }
+}
+
+int perform(const ValidateOptions& options) {
+  print(validate_campaign(options));
+  return 0;
+}
+
+int perform(const PlanOptions& options) {
+  print(plan_campaign(options));
+  return 0;
+}
+
+int perform(const RunOptions& options) { return run_campaign(options); }
+
+int perform(const StatusOptions& options) {
+  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  CampaignStatus status = read_status(open.database);
+  status.owner = current_owner(open.directory);
+  print(options.json ? status_json(status).dump(2) + '\n' : status_table(status) + workers_text(status));
+  if (const std::string note = difference_from_file(options.campaign, status.campaign); !note.empty()) {
+    fmt::print(stderr, "note: {}\n", note);
+  }
+  return options.check ? standing(status) : 0;
+}
+
+int perform(const ExplainOptions& options) {
+  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  print(explain(open.database, open.directory, options.point));
+  return 0;
+}
+
+int perform(const ExportOptions& options) {
+  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  const std::string text = options.format == ExportFormat::csv
+                               ? export_csv(open.database, options.canonical)
+                               : export_json(open.database, options.canonical);
+  if (options.output.empty()) {
+    print(text);
+  } else {
+    peclet::write_durably(options.output, text);
+  }
+  return 0;
+}
+
+int complain(const std::exception& error, int code) {
+  fmt::print(stderr, "peclet: {}\n", error.what());
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const CommandLine command = read_command_line(argc, argv);
+    if (!command.verb) return command.exit_code;
+    return std::visit([](const auto& options) { return perform(options); }, *command.verb);
+  } catch (const peclet::InputError& error) {
+    return complain(error, exit_input);
+  } catch (const OwnedByAnother& error) {
+    return complain(error, exit_owned);
+  } catch (const IntegrityError& error) {
+    return complain(error, exit_integrity);
+  } catch (const std::exception& error) {
+    return complain(error, exit_error);
+  }
+}

@@ -1,0 +1,46 @@
+#include "runner/open_campaign.h"
+
+#include <fmt/format.h>
+
+#include "contract/input_error.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+
+CampaignDirectory locate(const fs::path& given, const fs::path& chosen) {
+  const bool is_folder = fs::is_directory(given);
+  CampaignDirectory directory = is_folder ? CampaignDirectory(fs::absolute(given).lexically_normal())
+                                          : campaign_directory(given, chosen);
+  if (fs::exists(directory.database())) return directory;
+  if (is_folder) {
+    throw InputError(given.string(), "", "",
+                     "no campaign has been run in this folder; give the campaign file or its .peclet folder");
+  }
+  if (!fs::exists(given)) throw InputError(given.string(), "", "", "no such file or folder");
+  throw InputError(given.string(), "", "",
+                   fmt::format("has not been run yet (there is no {}); start it with `peclet run`",
+                               directory.database().string()));
+}
+
+}  // namespace
+
+OpenCampaign open_campaign(const fs::path& given, const fs::path& chosen) {
+  CampaignDirectory directory = locate(given, chosen);
+  Database database = Database::open_reader(directory.database());
+  return {std::move(directory), std::move(database)};
+}
+
+std::string difference_from_file(const fs::path& given, const CampaignRecord& campaign) {
+  if (!fs::is_regular_file(given)) return "";
+  try {
+    if (read_campaign(given).document == campaign.document) return "";
+    return given.string() + " has changed since it was last run; `peclet run` takes the changes up";
+  } catch (const InputError& error) {
+    return fmt::format("the campaign file has changed since it was last run and has a fault: {}",
+                       error.what());
+  }
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,24 @@
+// Finding and opening a campaign that has been run, for those who only look at it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "runner/campaign_directory.h"
+#include "runner/database.h"
+
+namespace peclet::runner {
+
+struct OpenCampaign {
+  CampaignDirectory directory;
+  Database database;  // a reader's
+};
+
+// `given` is a campaign's folder, or its file (whose folder is `chosen`, or beside it when that is empty).
+// Throws InputError when there is no campaign there that has been run, IntegrityError, DatabaseError.
+OpenCampaign open_campaign(const std::filesystem::path& given, const std::filesystem::path& chosen);
+
+// What a person should know when the campaign file is no longer what was run: a sentence, or nothing.
+std::string difference_from_file(const std::filesystem::path& given, const CampaignRecord& campaign);
+
+}  // namespace peclet::runner

@@ -1,0 +1,169 @@
+#include "runner/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "contract/provenance.h"
+
+namespace peclet::runner {
+namespace {
+
+constexpr int exit_usage = 2;
+
+std::string version_text() {
+  const Json& origin = provenance();
+  return fmt::format("peclet {} (commit {}{})", version(), origin.value("git_commit", "unknown"),
+                     origin.value("git_dirty", Json()) == true ? ", with changes" : "");
+}
+
+const char* const for_all_verbs =
+    "Exit codes: 0 done (run: every point converged); 1 error; 2 usage or faulty input; 3 finished, but\n"
+    "some points are capped, failed or lost seeds; 4 not finished (status --check); 5 another process\n"
+    "owns the campaign; 6 integrity; 75 stopped, and can be resumed.";
+
+// One function a verb: its options and its help.
+class Reader {
+ public:
+  Reader() {
+    app_.require_subcommand(1);
+    app_.set_version_flag("--version", version_text());
+    app_.footer(for_all_verbs);
+    add_validate();
+    add_plan();
+    add_run();
+    add_status();
+    add_explain();
+    add_export();
+  }
+
+  CommandLine read(int argc, char** argv) {
+    try {
+      app_.parse(argc, argv);
+    } catch (const CLI::ParseError& end) {
+      return {std::nullopt, app_.exit(end) == 0 ? 0 : exit_usage};
+    }
+    return {verb_, 0};
+  }
+
+ private:
+  CLI::App* add_verb(const char* name, const char* description, const char* example) {
+    CLI::App* const verb = app_.add_subcommand(name, description);
+    verb->footer(std::string("Example: ") + example);
+    return verb;
+  }
+
+  static void add_file(CLI::App* verb, std::filesystem::path& path) {
+    verb->add_option("campaign", path, "Campaign file (JSON)")->required();
+  }
+  static void add_file_or_folder(CLI::App* verb, std::filesystem::path& path) {
+    verb->add_option("campaign", path, "Campaign file, or its .peclet folder")->required();
+  }
+  static void add_directory(CLI::App* verb, std::filesystem::path& path) {
+    verb->add_option("--directory", path,
+                     "Folder of the campaign's database and checkpoints; NAME.peclet beside "
+                     "NAME.json unless given");
+  }
+  // The verb that was named becomes the command.
+  template <typename Options>
+  void choose(CLI::App* verb, const Options& options) {
+    verb->callback([this, &options] { verb_ = options; });
+  }
+
+  void add_validate() {
+    CLI::App* const verb = add_verb("validate", "Check a campaign and all its scenes; writes nothing",
+                                    "peclet validate flow-curve.json");
+    add_file(verb, validate_.campaign);
+    verb->add_flag("--json", validate_.json, "For programs");
+    choose(verb, validate_);
+  }
+
+  void add_plan() {
+    CLI::App* const verb = add_verb("plan", "Say how much work a campaign may be; writes nothing",
+                                    "peclet plan flow-curve.json");
+    add_file(verb, plan_.campaign);
+    add_directory(verb, plan_.directory);
+    verb->add_flag("--json", plan_.json, "For programs");
+    choose(verb, plan_);
+  }
+
+  void add_run() {
+    CLI::App* const verb =
+        add_verb("run", "Run a campaign until every point is decided; go on with one that was stopped",
+                 "peclet run flow-curve.json --workers 8");
+    add_file(verb, run_.campaign);
+    add_directory(verb, run_.directory);
+    verb->add_option("--workers", run_.workers, "Engine processes; cores / threads unless given")
+        ->check(CLI::Range(1, 100'000));
+    verb->add_option("--threads", run_.threads, "Threads of each; 1, or cores / workers, unless given")
+        ->check(CLI::Range(1, 4096));
+    verb->add_option("--time-limit", run_.time_limit, "Seconds after which workers checkpoint and stop")
+        ->check(CLI::PositiveNumber);
+    verb->add_option("--lease", run_.lease_seconds,
+                     "Seconds without a new step after which a worker counts as hung")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    verb->add_option("--checkpoint", run_.checkpoint_seconds, "Seconds between checkpoints of a realisation")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    verb->add_flag("--quiet", run_.quiet, "No progress on stderr");
+    verb->add_flag("--force", run_.force, "Use a network file system all the same, at your own risk");
+    choose(verb, run_);
+  }
+
+  void add_status() {
+    CLI::App* const verb = add_verb("status", "Show how far every point is, also while it runs",
+                                    "peclet status flow-curve.json --check");
+    add_file_or_folder(verb, status_.campaign);
+    add_directory(verb, status_.directory);
+    verb->add_flag("--json", status_.json, "For programs");
+    verb->add_flag(
+        "--check", status_.check,
+        "Leave with 0 (every point converged), 3 (decided, but not all converged), 4 (not finished) or "
+        "6 (suspect)");
+    choose(verb, status_);
+  }
+
+  void add_explain() {
+    CLI::App* const verb = add_verb("explain", "Say why points are where they are, and what comes next",
+                                    "peclet explain flow-curve.json peclet=10");
+    add_file_or_folder(verb, explain_.campaign);
+    verb->add_option("point", explain_.point,
+                     "Label of a point, or 4 or more digits of its hash; all unless given");
+    add_directory(verb, explain_.directory);
+    choose(verb, explain_);
+  }
+
+  void add_export() {
+    CLI::App* const verb = add_verb("export", "Print the results for programs to read",
+                                    "peclet export flow-curve.json --csv --output flow-curve.csv");
+    add_file_or_folder(verb, export_.campaign);
+    add_directory(verb, export_.directory);
+    CLI::Option* const json = verb->add_flag_callback(
+        "--json", [this] { export_.format = ExportFormat::json; }, "Everything, seed by seed (the default)");
+    CLI::Option* const csv = verb->add_flag_callback(
+        "--csv", [this] { export_.format = ExportFormat::csv; }, "One row per point");
+    csv->excludes(json);
+    verb->add_flag("--canonical", export_.canonical,
+                   "Only what depends on campaign, seeds and engine: equal runs give equal bytes");
+    verb->add_option("--output", export_.output,
+                     "File to write, whole or not at all; standard output unless given");
+    choose(verb, export_);
+  }
+
+  CLI::App app_{"Campaigns of dense-suspension simulations: from a scene to converged averages", "peclet"};
+  std::optional<Verb> verb_;
+  ValidateOptions validate_;
+  PlanOptions plan_;
+  RunOptions run_;
+  StatusOptions status_;
+  ExplainOptions explain_;
+  ExportOptions export_;
+};
+
+}  // namespace
+
+CommandLine read_command_line(int argc, char** argv) { return Reader().read(argc, argv); }
+
+}  // namespace peclet::runner

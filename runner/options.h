@@ -1,0 +1,26 @@
+// The command line of `peclet`, read.
+#pragma once
+
+#include <optional>
+#include <variant>
+
+#include "runner/explain.h"
+#include "runner/export.h"
+#include "runner/plan.h"
+#include "runner/run.h"
+#include "runner/status.h"
+#include "runner/validate.h"
+
+namespace peclet::runner {
+
+using Verb =
+    std::variant<ValidateOptions, PlanOptions, RunOptions, StatusOptions, ExplainOptions, ExportOptions>;
+
+struct CommandLine {
+  std::optional<Verb> verb;  // nothing: there is nothing left to do but to leave with
+  int exit_code = 0;         // 0 after help or version, 2 after a fault, both printed already
+};
+
+CommandLine read_command_line(int argc, char** argv);
+
+}  // namespace peclet::runner

@@ -1,0 +1,105 @@
+#include "runner/status.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace peclet::runner {
+namespace {
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json estimate_json(const Estimate& estimate) {
+  return {{"count", estimate.count},
+          {"mean", number(estimate.mean)},
+          {"standard_error", number(estimate.standard_error)}};
+}
+
+Json lease_json(const LeaseRecord& lease) {
+  return {
+      {"seed", lease.seed},   {"worker", lease.worker}, {"phase", lease.phase},          {"step", lease.step},
+      {"steps", lease.steps}, {"strain", lease.strain}, {"renewed_at", lease.renewed_at}};
+}
+
+Json point_json(const PointSummary& point) {
+  Json workers = Json::array();
+  for (const LeaseRecord& lease : point.leases) workers.push_back(lease_json(lease));
+  const StateCounts& counts = point.counts;
+  return {{"label", point.point.label},
+          {"hash", point.point.hash},
+          {"settings", point.point.settings},
+          {"verdict", point.decided ? Json(to_string(point.looks.back().verdict)) : Json(nullptr)},
+          {"suspect", point.point.suspect},
+          {"seeds",
+           {{"wanted", point.wanted},
+            {"wanted_ended", point.wanted_ended},
+            {"queued", counts.queued},
+            {"running", counts.running},
+            {"done", counts.done},
+            {"failed", counts.failed},
+            {"quarantined", counts.quarantined},
+            {"surplus", point.surplus()}}},
+          {"losses", point.losses},
+          {"so_far", estimate_json(point.so_far)},
+          {"look", point.looks.empty() ? Json(nullptr) : look_json(point.looks.back())},
+          {"cpu_seconds", counts.cpu_seconds},
+          {"workers", workers}};
+}
+
+}  // namespace
+
+CampaignStatus read_status(Database& database) {
+  CampaignStatus status;
+  status.campaign = database.campaign();
+  status.points = summarise_points(database, status.campaign.target);
+  return status;
+}
+
+int standing(const CampaignStatus& status) {
+  const auto any = [&](auto is) { return std::any_of(status.points.begin(), status.points.end(), is); };
+  if (any([](const PointSummary& point) { return point.point.suspect; })) return 6;
+  if (any([](const PointSummary& point) { return !point.decided; })) return 4;
+  if (any([](const PointSummary& point) { return point.looks.back().verdict != Verdict::converged; }))
+    return 3;
+  return 0;
+}
+
+std::string verdict_text(const PointSummary& point) {
+  std::string text = "open";
+  if (point.decided) {
+    const Look& look = point.looks.back();
+    text = to_string(look.verdict);
+    if (look.verdict == Verdict::converged_with_losses) text += fmt::format("({})", look.lost);
+  }
+  return point.point.suspect ? text + ", suspect" : text;
+}
+
+Json look_json(const Look& look) {
+  Json json = estimate_json(look.estimate);
+  json["seeds"] = look.seeds;
+  json["lost"] = look.lost;
+  json["half_width"] = number(look.half_width);
+  json["controlled"] = estimate_json(look.controlled);
+  json["controlled"]["half_width"] = number(look.controlled_half_width);
+  json["verdict"] = to_string(look.verdict);
+  return json;
+}
+
+Json status_json(const CampaignStatus& status) {
+  const TargetRecord& target = status.campaign.target;
+  Json points = Json::array();
+  for (const PointSummary& point : status.points) points.push_back(point_json(point));
+  return {{"schema_version", 1},
+          {"campaign", status.campaign.name},
+          {"target",
+           {{"observable", target.target.observable},
+            {"relative_tolerance", target.target.relative_tolerance},
+            {"confidence", target.target.confidence}}},
+          {"realisations", {{"minimum", target.minimum}, {"maximum", target.maximum}}},
+          {"owner", status.owner ? Json(*status.owner) : Json(nullptr)},
+          {"standing", standing(status)},
+          {"points", points}};
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,47 @@
+// The verb `peclet status`: how far every point is, and with what result so far.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "contract/json.h"
+#include "runner/database_summary.h"
+
+namespace peclet::runner {
+
+struct StatusOptions {
+  std::filesystem::path campaign;  // file or folder
+  std::filesystem::path directory;
+  bool json = false;
+  bool check = false;  // the exit code says how the campaign stands
+};
+
+struct CampaignStatus {
+  CampaignRecord campaign;
+  std::vector<PointSummary> points;
+  std::optional<std::int64_t> owner;  // process that runs it now
+};
+
+CampaignStatus read_status(Database& database);
+
+// 0 every point converged; 3 decided, but some capped, failed or with losses; 4 not finished; 6 some point is
+// suspect: a seed gave two different results.
+int standing(const CampaignStatus& status);
+
+// "converged", "converged-with-losses(2)", "capped", "failed", "open"; with "suspect" where it is.
+std::string verdict_text(const PointSummary& point);
+
+// The table and its totals, as `peclet run` prints them at the end.
+std::string status_table(Database& database);
+std::string status_table(const CampaignStatus& status);
+// Who runs it and how far the workers are; nothing when the campaign is decided and nobody runs it.
+std::string workers_text(const CampaignStatus& status);
+Json status_json(const CampaignStatus& status);
+
+// An estimate with its half-width; numbers that do not exist are null.
+Json look_json(const Look& look);
+
+}  // namespace peclet::runner
