@@ -50,7 +50,7 @@ class Quench {
       if (overlaps.largest < (1 - smallest_gap) * inflation || overlaps.force_squared == 0) {
         return closest();
       }
-      if (overlaps.force_squared < 1e-24 * static_cast<double>(particles_.count())) {
+      if (overlaps.force_squared < force_squared_of_jam()) {
         return closest();  // a minimum with overlaps: jammed
       }
       if (overlaps.power > 0) {
@@ -122,6 +122,12 @@ class Quench {
     }
   }
 
+  // Net forces have units of length here: those of 1e-12 radii are none.
+  double force_squared_of_jam() const {
+    const double radius = *std::min_element(particles_.radius.begin(), particles_.radius.end());
+    return 1e-24 * radius * radius * static_cast<double>(particles_.count());
+  }
+
   double closest() {
     double smallest = 1 + inflation;
     for (const Pair& pair : list_.pairs()) {
@@ -138,12 +144,28 @@ class Quench {
   double step_;
 };
 
+// The largest volume fraction, to 0.005, at which the spheres were brought apart starting from where they
+// stand, free of overlap at `scale` times their radii: these shrink and grow again by bisection.
+double reached_volume_fraction(ParticleState particles, const ShearedBox& box, double scale) {
+  const std::vector<double> radius = particles.radius;
+  const double wanted = solid_volume(particles) / box.volume();
+  double free = wanted * scale * scale * scale, jammed = wanted;
+  while (jammed - free > 0.005) {
+    const double middle = 0.5 * (free + jammed), shrunk = std::cbrt(middle / wanted);
+    for (std::size_t i = 0; i < radius.size(); ++i) {
+      particles.radius[i] = shrunk * radius[i];
+    }
+    particles.velocity = VectorField(radius.size());
+    (Quench(particles, box).run() > 1 ? free : jammed) = middle;
+  }
+  return free;
+}
+
 }  // namespace
 
 PackingError::PackingError(double wanted, double reached)
     : std::runtime_error(fmt::format(
-          "no packing without overlap was found at volume fraction {:.4f}; the best one is free of "
-          "overlap up to {:.4f}",
+          "no packing without overlap was found at volume fraction {:.4f}; the densest one found has {:.3f}",
           wanted, reached)),
       reached_(reached) {}
 
@@ -192,8 +214,8 @@ void place_randomly(ParticleState& particles, const ShearedBox& box, std::uint64
   }
   const double closest = Quench(particles, box).run();
   if (!(closest > 1)) {
-    const double wanted = solid_volume(particles) / box.volume();
-    throw PackingError(wanted, wanted * closest * closest * closest);
+    throw PackingError(solid_volume(particles) / box.volume(),
+                       reached_volume_fraction(particles, box, closest));
   }
   particles.velocity = VectorField(particles.count());
 }
