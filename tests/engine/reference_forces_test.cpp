@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "contract/json.h"
@@ -44,7 +45,7 @@ double largest_difference(const Json& a, const Json& b) {
     return std::abs(a.get<double>() - b.get<double>());
   }
   if (!a.is_array() || !b.is_array() || a.size() != b.size()) {
-    return INFINITY;
+    return std::numeric_limits<double>::infinity();
   }
   double largest = 0;
   for (std::size_t k = 0; k < a.size(); ++k) {
