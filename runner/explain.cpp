@@ -41,6 +41,10 @@ std::vector<PointSummary> selected(std::vector<PointSummary> points, const std::
 
 double relative_width(const Look& look) { return look.half_width / std::abs(look.estimate.mean); }
 
+std::string tolerance_text(const Target& target) {
+  return fmt::format("{:g} %", 100 * target.relative_tolerance);
+}
+
 // Seeds that the tolerance would take, as the half-width falls with 1 / sqrt(n).
 std::string seeds_for(const Look& look, const Target& target) {
   const double ratio = relative_width(look) / target.relative_tolerance;
@@ -49,7 +53,7 @@ std::string seeds_for(const Look& look, const Target& target) {
 }
 
 std::string reason(const PointSummary& point, const Target& target) {
-  const std::string tolerance = percent(target.relative_tolerance);
+  const std::string tolerance = tolerance_text(target);
   if (!point.decided) {
     return fmt::format("{} of the {} seeds of the next look have ended, {} run", point.wanted_ended,
                        point.wanted, point.counts.running);
@@ -105,15 +109,15 @@ std::string looks_table(const std::vector<Look>& looks, const Target& target) {
   if (looks.empty()) return "  no look yet\n";
   TextTable table;
   for (const char* const title :
-       {"look at", "lost", "mean ± half-width", "relative", "tolerance", "controlled"}) {
+       {"seeds", "lost", "mean ± half-width", "relative", "tolerance", "controlled"}) {
     table.add_column(title);
   }
   table.add_column("verdict", TextTable::Align::left);
   for (const Look& look : looks) {
     table.add_row({fmt::format("{}", look.seeds), fmt::format("{}", look.lost),
                    with_error(look.estimate.mean, look.half_width), percent(relative_width(look)),
-                   percent(target.relative_tolerance),
-                   with_error(look.controlled.mean, look.controlled_half_width), to_string(look.verdict)});
+                   tolerance_text(target), with_error(look.controlled.mean, look.controlled_half_width),
+                   to_string(look.verdict)});
   }
   return table.text("  ");
 }

@@ -11,18 +11,19 @@
 namespace peclet::runner {
 namespace {
 
-std::string ending_text(const AttemptRecord& attempt) {
+// What the runner wrote down, or how the process ended.
+std::string account(const AttemptRecord& attempt) {
+  if (!attempt.message.empty()) return ": " + attempt.message;
   if (!attempt.exit_status && !attempt.signal) return "";
   ExitStatus ending;
   if (attempt.exit_status) ending.status = static_cast<int>(*attempt.exit_status);
   if (attempt.signal) ending.signal = static_cast<int>(*attempt.signal);
-  return ", " + to_string(ending);
+  return ": " + to_string(ending);
 }
 
 std::string line(const AttemptRecord& attempt) {
-  return fmt::format("    seed {} {} at step {}{}{}{}, {}\n", attempt.seed, attempt.outcome, attempt.step,
-                     ending_text(attempt), attempt.message.empty() ? "" : ": ", attempt.message,
-                     attempt.ended_at);
+  return fmt::format("    {} seed {} {} at step {}{}\n", attempt.ended_at, attempt.seed, attempt.outcome,
+                     attempt.step, account(attempt));
 }
 
 }  // namespace
@@ -53,9 +54,10 @@ std::string attempts_text(Database& database, std::int64_t point) {
     ++outcomes[attempt.outcome];
     if (attempt.blamed) blamed.push_back(line(attempt));
   }
-  std::string text = fmt::format("  attempts: {}", attempts.size());
-  for (const auto& [outcome, count] : outcomes) text += fmt::format(", {} {}", count, outcome);
-  text += '\n';
+  if (attempts.empty()) return "";
+  std::vector<std::string> counts;
+  for (const auto& [outcome, count] : outcomes) counts.push_back(fmt::format("{} {}", count, outcome));
+  std::string text = fmt::format("  attempts: {} ({})\n", attempts.size(), fmt::join(counts, ", "));
   const std::size_t first = blamed.size() > most_lines ? blamed.size() - most_lines : 0;
   for (std::size_t i = first; i < blamed.size(); ++i) text += blamed[i];
   return text;

@@ -7,6 +7,7 @@
 #include "runner/campaign_directory.h"
 #include "runner/database_summary.h"
 #include "runner/number_text.h"
+#include "runner/point_columns.h"
 #include "runner/scene_check.h"
 #include "runner/text_table.h"
 
@@ -69,20 +70,30 @@ Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_ste
 }
 
 std::string plan_text(const Plan& plan) {
+  std::vector<std::string> labels;
+  for (const PointPlan& point : plan.points) labels.push_back(point.label);
+  const PointColumns columns(labels);
   TextTable table;
-  table.add_column("point", TextTable::Align::left);
-  for (const char* const title :
-       {"particle-steps per seed", "CPU seconds per seed", "CPU hours, minimum", "CPU hours, maximum"}) {
-    table.add_column(title);
-  }
+  columns.add_to(table);
+  table.add_column("particle-steps/seed");
+  table.add_column("CPU s/seed");
+  table.add_column(fmt::format("CPU h, {} seeds", plan.minimum));
+  table.add_column(fmt::format("CPU h, {} seeds", plan.maximum));
   double steps = 0;
-  for (const PointPlan& point : plan.points) {
-    table.add_row({point.label, rough(point.particle_steps), cost_text(point.cost),
-                   rough(hours(point, plan.minimum)), rough(hours(point, plan.maximum))});
+  const auto add_row = [&](std::vector<std::string> row, const std::vector<std::string>& rest) {
+    row.insert(row.end(), rest.begin(), rest.end());
+    table.add_row(std::move(row));
+  };
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const PointPlan& point = plan.points[i];
+    add_row(columns.cells(i), {rough(point.particle_steps), cost_text(point.cost),
+                               rough(hours(point, plan.minimum)), rough(hours(point, plan.maximum))});
     steps += point.particle_steps;
   }
-  table.add_row({"all", rough(steps), "", rough(total_hours(plan, plan.minimum)),
-                 rough(total_hours(plan, plan.maximum))});
+  std::vector<std::string> all(columns.count());
+  all.front() = "all";
+  add_row(all,
+          {rough(steps), "", rough(total_hours(plan, plan.minimum)), rough(total_hours(plan, plan.maximum))});
   const bool unknown = std::isnan(total_hours(plan, 1));
   return fmt::format("{}: {} points, {} to {} seeds each\n\n{}\n{}", plan.campaign, plan.points.size(),
                      plan.minimum, plan.maximum, table.text(),

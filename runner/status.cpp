@@ -66,11 +66,11 @@ int standing(const CampaignStatus& status) {
 }
 
 std::string verdict_text(const PointSummary& point) {
-  std::string text = "open";
-  if (point.decided) {
-    const Look& look = point.looks.back();
-    text = to_string(look.verdict);
-    if (look.verdict == Verdict::converged_with_losses) text += fmt::format("({})", look.lost);
+  std::string text = point.decided ? to_string(point.looks.back().verdict) : "open";
+  if (point.decided && point.looks.back().verdict == Verdict::converged_with_losses) {
+    text += fmt::format("({})", point.looks.back().lost);
+  } else if (point.lost() > 0) {
+    text += fmt::format(", {} lost", point.lost());
   }
   return point.point.suspect ? text + ", suspect" : text;
 }

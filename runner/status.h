@@ -31,7 +31,7 @@ CampaignStatus read_status(Database& database);
 // suspect: a seed gave two different results.
 int standing(const CampaignStatus& status);
 
-// "converged", "converged-with-losses(2)", "capped", "failed", "open"; with "suspect" where it is.
+// "converged", "converged-with-losses(2)", "capped, 2 lost", "failed, 10 lost", "open"; "open, suspect".
 std::string verdict_text(const PointSummary& point);
 
 // The table and its totals, as `peclet run` prints them at the end.

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "runner/number_text.h"
+#include "runner/point_columns.h"
+#include "runner/progress.h"
 #include "runner/status.h"
 #include "runner/text_table.h"
 
@@ -18,37 +20,24 @@ std::string interval(double mean, double half_width) {
   return fmt::format("{} ({})", with_error(mean, half_width), relative_width(half_width, mean));
 }
 
-// Columns that would say nothing are left out, so that the rest fits on a terminal.
-struct Shown {
-  bool lost = false, controlled = false;
-};
-
-Shown worth_showing(const CampaignStatus& status) {
-  Shown shown;
-  for (const PointSummary& point : status.points) {
-    shown.lost = shown.lost || point.lost() > 0;
-    for (const Look& look : point.looks) {
-      shown.controlled = shown.controlled || look.controlled.mean != look.estimate.mean;
-    }
-  }
-  return shown;
+// Without Brownian motion the control variate is zero, and its column would only repeat another.
+bool has_control(const CampaignStatus& status) {
+  return std::any_of(status.points.begin(), status.points.end(), [](const PointSummary& point) {
+    return !point.looks.empty() && point.looks.back().controlled.mean != point.looks.back().estimate.mean &&
+           point.looks.back().estimate.count > 0;
+  });
 }
 
-std::vector<std::string> row(const PointSummary& point, Shown shown) {
-  const Look none{0,
-                  0,
-                  {0, std::nan(""), std::nan("")},
-                  std::nan(""),
-                  {0, std::nan(""), std::nan("")},
-                  std::nan(""),
-                  Verdict::more};
-  const Look& look = point.looks.empty() ? none : point.looks.back();
-  std::vector<std::string> cells{point.point.label, fmt::format("{}/{}", point.wanted_ended, point.wanted)};
-  if (shown.lost) cells.push_back(fmt::format("{}", point.lost()));
-  cells.push_back(with_error(point.so_far.mean, point.so_far.standard_error));
-  cells.push_back(interval(look.estimate.mean, look.half_width));
-  if (shown.controlled) {
-    cells.push_back(look.seeds == 0 ? "-" : with_error(look.controlled.mean, look.controlled_half_width));
+std::vector<std::string> cells(const PointSummary& point, bool with_control) {
+  std::vector<std::string> cells{fmt::format("{}/{}", point.wanted_ended, point.wanted),
+                                 with_error(point.so_far.mean, point.so_far.standard_error)};
+  if (point.looks.empty()) {
+    cells.emplace_back("-");
+    if (with_control) cells.emplace_back("-");
+  } else {
+    const Look& look = point.looks.back();
+    cells.push_back(interval(look.estimate.mean, look.half_width));
+    if (with_control) cells.push_back(with_error(look.controlled.mean, look.controlled_half_width));
   }
   cells.push_back(verdict_text(point));
   return cells;
@@ -61,65 +50,70 @@ std::string heading(const CampaignStatus& status) {
                      100 * target.target.confidence, target.minimum, target.maximum);
 }
 
-std::string legend(const CampaignStatus& status, Shown shown) {
+std::string legend(const CampaignStatus& status, bool with_control) {
   return fmt::format(
       "so far: mean ± standard error of all seeds that have ended; look: mean ± half-width of the\n"
       "{:g} % interval at the last look{}\n",
       100 * status.campaign.target.target.confidence,
-      shown.controlled ? "; controlled: the same with the control variate" : "");
+      with_control ? "; controlled: the same with the control variate" : "");
 }
 
-std::string point_totals(const CampaignStatus& status) {
-  int open = 0;
-  std::map<std::string, int> decided;
-  for (const PointSummary& point : status.points) {
-    if (point.decided) {
-      ++decided[to_string(point.looks.back().verdict)];
-    } else {
-      ++open;
-    }
-  }
-  std::string text = fmt::format("points: {}", status.points.size());
-  for (const auto& [verdict, count] : decided) text += fmt::format(", {} {}", count, verdict);
-  if (open > 0) text += fmt::format(", {} open", open);
+// "3 capped, 2 open"
+std::string listed(const std::map<std::string, int>& counts) {
+  std::string text;
+  for (const auto& [name, count] : counts)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name);
   return text;
 }
 
+std::string point_totals(const CampaignStatus& status) {
+  std::map<std::string, int> verdicts;
+  for (const PointSummary& point : status.points) {
+    ++verdicts[point.decided ? to_string(point.looks.back().verdict) : "open"];
+  }
+  return fmt::format("{} point{}: {}\n", status.points.size(), status.points.size() == 1 ? "" : "s",
+                     listed(verdicts));
+}
+
 std::string seed_totals(const CampaignStatus& status) {
-  int ended = 0, running = 0, surplus = 0;
+  int ended = 0, running = 0, surplus = 0, lost = 0;
   double cpu_seconds = 0;
   std::map<std::string, int> losses;
   for (const PointSummary& point : status.points) {
     ended += point.counts.terminal();
     running += point.counts.running;
     surplus += point.surplus();
+    lost += point.lost();
     cpu_seconds += point.counts.cpu_seconds;
     for (const auto& [cause, count] : point.losses) losses[cause] += count;
   }
-  std::string text = fmt::format("seeds: {} ended", ended);
-  for (const auto& [cause, count] : losses) text += fmt::format(", {} lost ({})", count, cause);
-  if (running > 0) text += fmt::format(", {} running", running);
+  std::string text = fmt::format("{} seeds ended", ended);
+  if (lost > 0) text += fmt::format(", {} of them lost ({})", lost, listed(losses));
   if (surplus > 0) text += fmt::format(", {} surplus", surplus);
-  const bool short_run = cpu_seconds < 3600;
-  return text + (short_run ? fmt::format("; {} CPU minutes", rough(cpu_seconds / 60))
-                           : fmt::format("; {} CPU hours", rough(cpu_seconds / 3600)));
+  if (running > 0) text += fmt::format("; {} running", running);
+  return text + fmt::format("; processor time {}\n", duration_text(cpu_seconds));
 }
 
 }  // namespace
 
 std::string status_table(const CampaignStatus& status) {
-  const Shown shown = worth_showing(status);
+  const bool with_control = has_control(status);
+  std::vector<std::string> labels;
+  for (const PointSummary& point : status.points) labels.push_back(point.point.label);
+  const PointColumns points(labels);
   TextTable table;
-  table.add_column("point", TextTable::Align::left);
-  table.add_column("seeds");
-  if (shown.lost) table.add_column("lost");
-  table.add_column("so far");
-  table.add_column("look");
-  if (shown.controlled) table.add_column("controlled");
+  points.add_to(table);
+  for (const char* const title : {"seeds", "so far", "look"}) table.add_column(title);
+  if (with_control) table.add_column("controlled");
   table.add_column("verdict", TextTable::Align::left);
-  for (const PointSummary& point : status.points) table.add_row(row(point, shown));
-  return heading(status) + table.text() + '\n' + legend(status, shown) + point_totals(status) + '\n' +
-         seed_totals(status) + '\n';
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    std::vector<std::string> row = points.cells(i);
+    const std::vector<std::string> rest = cells(status.points[i], with_control);
+    row.insert(row.end(), rest.begin(), rest.end());
+    table.add_row(std::move(row));
+  }
+  return heading(status) + table.text() + '\n' + legend(status, with_control) + '\n' + point_totals(status) +
+         seed_totals(status);
 }
 
 std::string status_table(Database& database) { return status_table(read_status(database)); }

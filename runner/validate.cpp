@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runner/number_text.h"
+#include "runner/point_columns.h"
 #include "runner/scene_check.h"
 #include "runner/text_table.h"
 
@@ -47,13 +48,16 @@ std::string cell(const Json& derived, const std::string& key) {
 
 std::string points_table(const Campaign& campaign, const std::vector<SceneAnswer>& answers) {
   const std::vector<Derived> columns = derived_columns(answers);
+  std::vector<std::string> labels;
+  for (const StatePoint& point : campaign.points) labels.push_back(point.label);
+  const PointColumns points(labels);
   TextTable table;
-  table.add_column("point", TextTable::Align::left);
+  points.add_to(table);
   for (const Derived& column : columns) table.add_column(column.heading);
   for (const char* const title : {"particles", "timestep", "steps"}) table.add_column(title);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const SceneAnswer& answer = answers[i];
-    std::vector<std::string> cells{campaign.points[i].label};
+    std::vector<std::string> cells = points.cells(i);
     for (const Derived& column : columns) cells.push_back(cell(answer.derived, column.key));
     cells.push_back(fmt::format("{}", answer.particles));
     cells.push_back(rough(answer.timestep));
