@@ -1,0 +1,39 @@
+#include "tests/physics/laboratory.h"
+
+namespace peclet::engine {
+namespace {
+
+System empty_system(const Experiment& experiment) {
+  System system;
+  system.particles = make_particles(experiment.radius, experiment.density);
+  system.box = experiment.box;
+  const std::vector<double> sizes = distinct_radii(experiment.radius);
+  const RangeTable ranges = range_table(make_pair_kinds(experiment.physics, sizes), sizes.size());
+  system.list = NeighbourList(ranges, experiment.skin);
+  return system;
+}
+
+}  // namespace
+
+Laboratory::Laboratory(const Experiment& experiment)
+    : physics_(experiment.physics),
+      system_(empty_system(experiment)),
+      integrator_(ForceField(experiment.physics, system_.particles, experiment.timestep, experiment.seed,
+                             /*threads=*/1),
+                  system_.particles, experiment.timestep) {}
+
+void Laboratory::thermalise(std::mt19937_64& generator) {
+  std::normal_distribution<double> normal;
+  const auto vector = [&](double inertia) {
+    const double scale = std::sqrt(physics_.thermal_energy / inertia);
+    const double x = normal(generator), y = normal(generator), z = normal(generator);
+    return scale * Vector3{x, y, z};
+  };
+  ParticleState& all = system_.particles;
+  for (std::size_t i = 0; i < all.count(); ++i) {
+    all.velocity.set(i, all.velocity[i] + vector(all.mass[i]));
+    all.angular_velocity.set(i, all.angular_velocity[i] + vector(all.inertia[i]));
+  }
+}
+
+}  // namespace peclet::engine
