@@ -1,0 +1,154 @@
+// Springs outlive wrapping, flips of the box and rebuilds of the list.
+#include "engine/state/contact_history.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+#include <stdexcept>
+
+#include "engine/kernels/force_field.h"
+#include "tests/engine/dense_suspension.h"
+
+namespace peclet::engine {
+namespace {
+
+const Physics physics = physics_with({.lubrication = true,
+                                      .contact = true,
+                                      .damping = true,
+                                      .friction = true,
+                                      .rolling = true,
+                                      .repulsion = true});
+
+// With a timestep of 0 the springs act as they are.
+std::vector<double> loads_of(System system) {
+  const std::size_t count = system.particles.count();
+  VectorField force(count), torque(count);
+  ForceField(physics, system.particles, 0, 1, 1).evaluate(system, force, torque);
+  std::vector<double> all;
+  for (const VectorField* field : {&force, &torque}) {
+    for (std::size_t i = 0; i < count; ++i) {
+      all.insert(all.end(), {field->x[i], field->y[i], field->z[i]});
+    }
+  }
+  return all;
+}
+
+double largest(const std::vector<double>& values) {
+  double most = 0;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  return most;
+}
+
+void expect_same_loads(const System& before, const System& after) {
+  const std::vector<double> a = loads_of(before), b = loads_of(after);
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    EXPECT_NEAR(a[k], b[k], 1e-12 * largest(a));
+  }
+}
+
+// The springs of all contacts by their particles: no two of them meet twice here.
+std::map<std::pair<std::uint32_t, std::uint32_t>, ContactSprings> springs_by_particles(const System& system) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, ContactSprings> springs;
+  for (const HeldContact& held : held_contacts(system.list, system.particles.image, system.springs)) {
+    EXPECT_TRUE(springs.emplace(std::pair(held.first, held.second), held.springs).second);
+  }
+  return springs;
+}
+
+void expect_same_springs(const System& before, const System& after) {
+  const auto a = springs_by_particles(before), b = springs_by_particles(after);
+  ASSERT_GT(a.size(), 100u);
+  ASSERT_EQ(a.size(), b.size());
+  for (const auto& [particles, springs] : a) {
+    ASSERT_TRUE(b.count(particles));
+    EXPECT_EQ(std::memcmp(&springs, &b.at(particles), sizeof springs), 0);
+  }
+}
+
+TEST(ContactHistory, SurvivesWrapping) {
+  const System before = dense_suspension(physics, 200, 1);  // a third of the particles stands outside
+  System after = before;
+  rebuild_neighbours(after);
+  EXPECT_EQ(after.box.flips(), 0);
+  EXPECT_NE(after.particles.image, before.particles.image);
+  expect_same_springs(before, after);
+  expect_same_loads(before, after);
+}
+
+TEST(ContactHistory, SurvivesFlipsInEitherDirection) {
+  for (const std::int32_t flips : {-2, -1, 1}) {
+    System before = dense_suspension(physics, 200, 2);
+    before.box.flip(flips);  // another basis of the same lattice, too steep
+    before.list.build(before.particles, before.box);
+    before.springs.assign(before.list.pairs().size(), {});
+    const System original = dense_suspension(physics, 200, 2);
+    std::vector<HeldContact> held = held_contacts(original.list, original.particles.image, original.springs);
+    for (HeldContact& contact : held) contact.image = ShearedBox::rebased(contact.image, flips);
+    before.springs = placed_contacts(before.list, before.particles.image, held);
+    System after = before;
+    rebuild_neighbours(after);
+    EXPECT_EQ(after.box.flips(), 0);
+    expect_same_springs(original, before);
+    expect_same_springs(before, after);
+    expect_same_loads(original, after);
+  }
+}
+
+// All particles drift together, several times through the cell: nothing changes between them.
+TEST(ContactHistory, SurvivesManyPassagesThroughTheBoundaries) {
+  const System start = dense_suspension(physics, 200, 3);
+  System system = start;
+  const Vector3 way = {2.9, 1.7, -2.3};
+  for (int step = 0; step < 12; ++step) {
+    for (std::size_t i = 0; i < 200; ++i) {
+      system.particles.position.set(i, system.particles.position[i] + way);
+      system.particles.velocity.x[i] += physics.shear_rate * way.y;
+    }
+    rebuild_neighbours(system);
+    expect_same_springs(start, system);
+  }
+  expect_same_loads(start, system);
+}
+
+// Carried by the flow through strains that flip the box again and again, each particle ends where the flow
+// takes it.
+TEST(ContactHistory, UnwrappedPlacesFollowTheFlowThroughFlips) {
+  System system = dense_suspension(physics, 50, 3);
+  system.springs.assign(system.list.pairs().size(), {});
+  rebuild_neighbours(system);
+  const auto unwrapped = [&](std::size_t i) {
+    return system.particles.position[i] + system.box.displacement(system.particles.image[i]);
+  };
+  std::vector<Vector3> expected;
+  for (std::size_t i = 0; i < 50; ++i) {
+    const Vector3 x = unwrapped(i);
+    expected.push_back(x + Vector3{2.4 * x.y, 0, 0});
+  }
+  for (int step = 1; step <= 12; ++step) {
+    for (std::size_t i = 0; i < 50; ++i) {
+      system.particles.position.x[i] += 0.2 * system.particles.position.y[i];
+    }
+    system.box.set_strain(0.2 * step);
+    rebuild_neighbours(system);
+  }
+  EXPECT_EQ(system.box.flips(), 3);  // the tilt began at 0.31 and would have ended at 2.71 edges
+  for (std::size_t i = 0; i < 50; ++i) {
+    EXPECT_NEAR(norm(unwrapped(i) - expected[i]), 0, 1e-10);
+  }
+}
+
+TEST(ContactHistory, MissesNoContactInSilence) {
+  System system = dense_suspension(physics, 60, 4);
+  const std::vector<HeldContact> held = {{0, 1, {9, 9, 9}, {{1, 0, 0}, {}}}};
+  EXPECT_THROW(placed_contacts(system.list, system.particles.image, held), std::logic_error);
+}
+
+TEST(ContactHistory, SpringsOfZeroAreNotHeld) {
+  System system = dense_suspension(physics, 60, 4);
+  system.springs.assign(system.list.pairs().size(), {});
+  EXPECT_TRUE(held_contacts(system.list, system.particles.image, system.springs).empty());
+}
+
+}  // namespace
+}  // namespace peclet::engine
