@@ -2,25 +2,10 @@
 
 #include <Random123/threefry.h>
 
-#include <cmath>
-#include <numbers>
+#include "engine/random/box_muller.h"
 
 namespace peclet::engine {
 namespace {
-
-// Box-Muller: two normals from two uniforms, the first in (0, 1] so that its logarithm is finite.
-struct TwoNormals {
-  double a, b;
-};
-
-TwoNormals box_muller(std::uint32_t bits_radius, std::uint32_t bits_angle) {
-  constexpr float unit = 0x1p-32F;
-  const float u = (static_cast<float>(bits_radius) + 0.5F) * unit;
-  const float radius = std::sqrt(-2.0F * std::log(u < 1.0F ? u : 1.0F));
-  const float angle =
-      static_cast<float>(static_cast<std::int32_t>(bits_angle)) * (2.0F * unit * std::numbers::pi_v<float>);
-  return {static_cast<double>(radius * std::cos(angle)), static_cast<double>(radius * std::sin(angle))};
-}
 
 std::uint32_t low(std::uint64_t word) { return static_cast<std::uint32_t>(word); }
 std::uint32_t high(std::uint64_t word) { return static_cast<std::uint32_t>(word >> 32); }

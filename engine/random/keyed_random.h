@@ -27,7 +27,7 @@ class KeyedRandom {
       : seed_(seed), purpose_(static_cast<std::uint64_t>(purpose)) {}
 
   // Of a particle at a step. Box-Muller from 32-bit uniforms in single precision: steps of 6e-8 relative,
-  // largest value 6.7, variance exact to 1e-6 (tests/engine/keyed_random_test.cpp).
+  // largest value 6.8, variance exact to 1e-6 (tests/engine/keyed_random_test.cpp).
   NormalPair normals(std::uint64_t step, std::uint32_t particle) const;
 
   // Of a pair at a step. `first` < `second` fixes the sign of the pair's forces.
