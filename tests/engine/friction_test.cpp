@@ -1,0 +1,179 @@
+// Springs of sliding and of rolling: kinematics, loads, and the rules of their memory.
+#include "engine/terms/friction.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "engine/kernels/pair_terms.h"
+#include "engine/terms/rolling.h"
+#include "tests/engine/two_spheres.h"
+
+namespace peclet::engine {
+namespace {
+
+constexpr Vector3 n = {0, 0, 1};
+constexpr double boundless = std::numeric_limits<double>::infinity();
+
+TEST(Slip, IsZeroForARigidMotionOfThePair) {
+  Draws draws(61);
+  for (const double ratio : size_ratios) {
+    for (const double gap : {-0.05, -0.01, -1e-3}) {
+      const PairGeometry pair = pair_at(1, ratio, gap, draws.direction());
+      const Vector3 spin = draws.direction();
+      const Vector3 slip =
+          slip_velocity(contact_levers(1, ratio, pair), pair, {cross(spin, pair.separation), spin, spin});
+      EXPECT_LT(norm(slip), 1e-14 * pair.distance);
+    }
+  }
+}
+
+// Two gears: equal and opposite surface speeds slip, equal ones roll.
+TEST(Slip, OfSpinningSpheresIsThatOfTheirSurfaces) {
+  const PairGeometry pair = pair_at(1, 2, -1e-9, {1, 0, 0});
+  const ContactLevers lever = contact_levers(1, 2, pair);
+  // j's surface at its near end moves by Omega_j x (-l_j n), i's by Omega_i x l_i n.
+  const Vector3 both = slip_velocity(lever, pair, {{}, {0, 0, 1}, {0, 0, 1}});
+  EXPECT_NEAR(both.y, -3, 1e-8);
+  const Vector3 gears = slip_velocity(lever, pair, {{}, {0, 0, 2}, {0, 0, -1}});
+  EXPECT_NEAR(norm(gears), 0, 1e-8);
+}
+
+TEST(Slip, IgnoresTheNormalVelocity) {
+  const PairGeometry pair = pair_at(1, 1, -0.01, n);
+  EXPECT_EQ(norm(slip_velocity(contact_levers(1, 1, pair), pair, {{0, 0, 5}, {}, {}})), 0);
+}
+
+TEST(Friction, TorquesBalanceTheForceOfThePair) {
+  Draws draws(62);
+  for (const double ratio : size_ratios) {
+    const PairGeometry pair = pair_at(1, ratio, -0.02, draws.direction());
+    const PairLoad load =
+        friction_load(3e3, across(draws.vector(), pair.normal), contact_levers(1, ratio, pair), pair);
+    const Vector3 net = load.torque_first + load.torque_second - cross(pair.separation, load.force);
+    EXPECT_LT(norm(net), 1e-13 * norm(load.force));
+  }
+}
+
+TEST(Friction, DragsTheFirstSphereAlongWithTheSecond) {
+  const PairGeometry pair = pair_at(1, 1, -0.01, n);
+  const PairMotion motion = {{1, 0, 0}, {}, {}};
+  const ContactLevers lever = contact_levers(1, 1, pair);
+  const Vector3 spring = advanced_spring({}, n, 1e-3 * slip_velocity(lever, pair, motion), boundless);
+  const PairLoad load = friction_load(2000, spring, lever, pair);
+  EXPECT_NEAR(load.force.x, 2, 1e-12);  // k_t times the way slipped, on i along the motion of j
+  EXPECT_GT(dissipated(load, motion), 0);
+}
+
+TEST(Rolling, GivesACoupleThatOpposesTheDifferenceOfSpins) {
+  const PairGeometry pair = pair_at(1, 1.4, -0.01, n);
+  const double reduced = 2 * 1.4 / 2.4;
+  const PairMotion motion = {{}, {0.3, -0.2, 5}, {-0.1, 0, 2}};
+  const Vector3 spring = 1e-3 * rolling_velocity(reduced, pair, motion);
+  const PairLoad load = rolling_load(700, spring, reduced, pair);
+  EXPECT_EQ(norm(load.force), 0);
+  EXPECT_EQ(norm(load.torque_first + load.torque_second), 0);
+  // -a^2 k_r times the tangential angle rolled, on i.
+  const Vector3 rolled = 1e-3 * across(motion.spin_first - motion.spin_second, n);
+  EXPECT_NEAR(norm(load.torque_first + reduced * reduced * 700 * rolled), 0, 1e-12);
+  EXPECT_GT(dissipated(load, motion), 0);
+}
+
+TEST(Spring, TurnsWithTheContactAndKeepsItsLength) {
+  Draws draws(63);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Vector3 before = draws.direction(), after = draws.direction();
+    const Vector3 spring = across(draws.vector(), before);
+    const Vector3 turned = advanced_spring(spring, after, {}, boundless);
+    EXPECT_NEAR(norm(turned), norm(spring), 1e-14);
+    EXPECT_NEAR(dot(turned, after), 0, 1e-14);
+    // Into the direction of its projection on the new plane.
+    EXPECT_NEAR(norm(cross(turned, across(spring, after))), 0, 1e-14);
+    EXPECT_GT(dot(turned, spring), 0);
+  }
+}
+
+TEST(Spring, IsStretchedAfterItWasTurned) {
+  const Vector3 spring = advanced_spring({0, 0, 2}, {0, 0.6, 0.8}, {5, 0, 0}, boundless);
+  // (0, 0, 2) in the plane across (0, 0.6, 0.8) is along (0, -0.8, 0.6).
+  EXPECT_NEAR(norm(spring - Vector3{5, -1.6, 1.2}), 0, 1e-14);
+}
+
+TEST(Spring, IsCutToTheLongestThatFrictionBearsAndNeverWindsUp) {
+  Vector3 spring;
+  for (int step = 0; step < 1000; ++step) {
+    spring = advanced_spring(spring, n, {0.01, 0, 0}, 0.05);
+    EXPECT_LE(norm(spring), 0.05 * (1 + 1e-15));
+  }
+  spring = advanced_spring(spring, n, {-0.01, 0, 0}, 0.05);  // the first step back unloads at once
+  EXPECT_NEAR(spring.x, 0.04, 1e-15);
+}
+
+TEST(Spring, VanishesAlongTheNormal) {
+  EXPECT_EQ(norm(advanced_spring({0, 0, 3}, n, {}, boundless)), 0);
+  EXPECT_EQ(norm(advanced_spring({}, n, {}, boundless)), 0);
+}
+
+// One pair under all rules at once: k_n = 1e4, k_t = 2857, mu = 0.5, k_r = 700, mu_r = 0.2.
+class ContactOfTwo : public testing::Test {
+ protected:
+  static constexpr Terms terms = {.contact = true, .friction = true, .rolling = true};
+
+  TermLoads after_step(double gap, const PairMotion& motion) {
+    const auto no_noise = [] { return NormalPair{}; };
+    return pair_terms<terms>(pair_parameters(physics_, 1e-3), kind_, pair_at(1, 1, gap, n), motion, &springs_,
+                             no_noise);
+  }
+
+  Physics physics_ = [] {
+    Physics physics;
+    physics.viscosity = 0.1;
+    physics.contact = ContactParameters{.normal_stiffness = 1e4,
+                                        .friction = 0.5,
+                                        .tangential_stiffness = 2857,
+                                        .rolling_stiffness = 700,
+                                        .rolling_friction = 0.2};
+    return physics;
+  }();
+  PairKind kind_ = make_pair_kinds(physics_, {1.0}).front();
+  ContactSprings springs_;
+};
+
+TEST_F(ContactOfTwo, SlidesAtTheCoulombForce) {
+  for (int step = 0; step < 100; ++step) {
+    const TermLoads loads = after_step(-0.01, {{1, 0, 0}, {}, {}});
+    EXPECT_LE(norm(loads.friction.force), 0.5 * norm(loads.contact_normal) * (1 + 1e-14));
+  }
+  const TermLoads loads = after_step(-0.01, {{1, 0, 0}, {}, {}});
+  EXPECT_NEAR(norm(loads.friction.force), 0.5 * norm(loads.contact_normal), 1e-12);
+}
+
+TEST_F(ContactOfTwo, RollsAtTheLargestCouple) {
+  TermLoads loads;
+  for (int step = 0; step < 1000; ++step) {
+    loads = after_step(-0.01, {{}, {3, 0, 0}, {-3, 0, 0}});
+  }
+  EXPECT_NEAR(norm(loads.rolling.torque_first), 0.2 * norm(loads.contact_normal), 1e-12);  // a = 1
+}
+
+TEST_F(ContactOfTwo, ForgetsWhenItOpens) {
+  after_step(-0.01, {{0.3, 0, 0}, {1, 0, 0}, {}});
+  EXPECT_GT(norm(springs_.tangential), 0);
+  EXPECT_GT(norm(springs_.rolling), 0);
+  after_step(0, {{1, 0, 0}, {}, {}});
+  EXPECT_EQ(norm(springs_.tangential), 0);
+  EXPECT_EQ(norm(springs_.rolling), 0);
+  const TermLoads again = after_step(-0.01, {{}, {}, {}});
+  EXPECT_EQ(norm(again.friction.force), 0);
+}
+
+TEST_F(ContactOfTwo, IsCutWhenTheNormalForceFalls) {
+  after_step(-0.01, {{10, 0, 0}, {}, {}});
+  const double before = norm(springs_.tangential);
+  after_step(-0.002, {{}, {}, {}});
+  EXPECT_LT(norm(springs_.tangential), before);
+  EXPECT_NEAR(norm(springs_.tangential), 0.5 * 1e4 * 0.004 * 0.5 / 2857, 1e-15);
+}
+
+}  // namespace
+}  // namespace peclet::engine
