@@ -46,6 +46,8 @@ void Ledger::load() {
   for (const PointRecord& known : points_) {
     outcomes.push_back(database_.outcomes(known.id));
     for (const RealisationRecord& record : database_.realisations(known.id)) {
+      // A worker that outlived its owner may have saved one after its seed had ended elsewhere.
+      if (!record.cause.empty()) fs::remove(directory_.checkpoint(known.hash, record.seed));
       if (record.wall_seconds) costs_[static_cast<std::size_t>(*known.place)].add(*record.wall_seconds);
     }
   }

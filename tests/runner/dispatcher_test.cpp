@@ -356,5 +356,14 @@ TEST_F(Dispatching, LeftoversOfTheSpoolAreTakenBeforeAnythingIsGivenOut) {
   EXPECT_TRUE(std::filesystem::exists(directory_.rejected() / "damaged.json"));
 }
 
+TEST_F(Dispatching, ACheckpointThatCameAfterTheResultGoesAtTheNextStart) {
+  pool_.script = [this] { finish_all(); };
+  run();
+  const std::filesystem::path stale = directory_.checkpoint(campaign_.points[0].hash, 1);
+  write_durably(stale, "of a worker that outlived its owner");
+  run();
+  EXPECT_FALSE(std::filesystem::exists(stale));
+}
+
 }  // namespace
 }  // namespace peclet::runner
