@@ -169,8 +169,9 @@ std::optional<Look> checked_look(Database& database, const PointRecord& point, c
 std::string export_json(Database& database, bool canonical) {
   // Point by point, so that the memory is that of one point and the text.
   const CampaignRecord campaign = database.campaign();
+  const Json outermost = heading(database, campaign, canonical);
   std::string text;
-  for (const auto& [key, value] : heading(database, campaign, canonical).items()) {
+  for (const auto& [key, value] : outermost.items()) {
     text += (text.empty() ? "{" : ",") + Json(key).dump() + ':';
     if (key != "points") {
       text += canonical_json(value);

@@ -8,7 +8,8 @@ namespace peclet::runner {
 
 void MeanEstimates::add(const Json& mean) {
   if (!mean.is_object()) return;
-  for (const auto& [pointer, value] : mean.flatten().items()) {
+  const Json flat = mean.flatten();
+  for (const auto& [pointer, value] : flat.items()) {
     if (value.is_number()) values_[pointer].push_back(value.get<double>());
   }
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <string>
 
 #include "contract/provenance.h"
@@ -28,7 +29,7 @@ class Reader {
  public:
   Reader() {
     app_.require_subcommand(1);
-    app_.set_version_flag("--version", version_text());
+    app_.set_version_flag("--version", std::function<std::string()>(version_text));  // reads the program file
     app_.footer(for_all_verbs);
     add_validate();
     add_plan();
@@ -42,12 +43,21 @@ class Reader {
     try {
       app_.parse(argc, argv);
     } catch (const CLI::ParseError& end) {
+      if (argc > 1 && !is_verb_or_option(argv[1])) {
+        fmt::print(stderr, "peclet: {}: there is no such verb; `peclet --help` lists them\n", argv[1]);
+        return {std::nullopt, exit_usage};
+      }
       return {std::nullopt, app_.exit(end) == 0 ? 0 : exit_usage};
     }
     return {verb_, 0};
   }
 
  private:
+  bool is_verb_or_option(const std::string& word) {
+    const auto has_name = [&](const CLI::App* verb) { return verb->get_name() == word; };
+    return word.starts_with("-") || !app_.get_subcommands(has_name).empty();
+  }
+
   CLI::App* add_verb(const char* name, const char* description, const char* example) {
     CLI::App* const verb = app_.add_subcommand(name, description);
     verb->footer(std::string("Example: ") + example);

@@ -9,6 +9,7 @@
 #include "contract/durable_file.h"
 #include "contract/key_table.h"
 #include "engine/scene.h"
+#include "runner/campaign.h"
 
 namespace {
 
@@ -32,6 +33,7 @@ std::string with_block_renewed(std::string page, const Document& document) {
 void write_schemas(const std::filesystem::path& folder) {
   const Document documents[] = {
       {"scene", peclet::engine::scene_keys()},
+      {"campaign", peclet::runner::campaign_keys()},
   };
   std::string page = peclet::read_file(folder / "README.md");
   for (const Document& document : documents) {
