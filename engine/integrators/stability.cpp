@@ -17,19 +17,46 @@ double mass_of(const Scene& scene, double radius) {
   return 4.0 / 3.0 * std::numbers::pi * scene.particles.density * radius * radius * radius;
 }
 
+struct SpherePair {
+  double first, second;  // radii
+  double mass_first, mass_second;
+  double mobility;  // 1/m_i + 1/m_j
+};
+
+// Largest rate at which a pair's translations are damped: one-body drag and squeezing.
+double translational_damping(const Physics& physics, const PairResistance& resistance, double damping,
+                             const SpherePair& pair) {
+  return std::max(translational_drag(physics.viscosity, pair.first) / pair.mass_first,
+                  translational_drag(physics.viscosity, pair.second) / pair.mass_second) +
+         (resistance.squeeze + damping) * pair.mobility;
+}
+
+// Bound of the rate at which its spins are: their drag (10/3 of the translational rate) and the trace of the
+// shearing and twisting modes. It decides only where lubrication is weak or absent.
+double rotational_damping(const Physics& physics, const PairResistance& resistance, const SpherePair& pair) {
+  const double inertia_first = 0.4 * pair.mass_first * pair.first * pair.first;
+  const double inertia_second = 0.4 * pair.mass_second * pair.second * pair.second;
+  return std::max(rotational_drag(physics.viscosity, pair.first) / inertia_first,
+                  rotational_drag(physics.viscosity, pair.second) / inertia_second) +
+         resistance.shear * pair.mobility + resistance.twist_first / inertia_first +
+         resistance.twist_second / inertia_second;
+}
+
 PairRates rates_of_pair(const Scene& scene, double first, double second) {
   const Physics& physics = scene.physics;
-  const double mobility = 1 / mass_of(scene, first) + 1 / mass_of(scene, second);
-  const double sum = first + second;
-  PairRates rates{};
-  rates.damping = std::max(translational_drag(physics.viscosity, first) / mass_of(scene, first),
-                           translational_drag(physics.viscosity, second) / mass_of(scene, second));
+  const SpherePair pair = {first, second, mass_of(scene, first), mass_of(scene, second),
+                           1 / mass_of(scene, first) + 1 / mass_of(scene, second)};
+  const double mobility = pair.mobility, sum = first + second;
+  PairResistance resistance{};
   if (physics.lubrication) {
     const PairGeometry touching = {{sum, 0, 0}, {1, 0, 0}, sum, sum};
-    const PairResistance resistance = pair_resistance(resistance_constants(physics.viscosity, first, second),
-                                                      physics.lubrication->inner_gap, touching);
-    rates.damping += resistance.squeeze * mobility;
+    resistance = pair_resistance(resistance_constants(physics.viscosity, first, second),
+                                 physics.lubrication->inner_gap, touching);
   }
+  const double normal_damping = physics.contact ? physics.contact->normal_damping : 0;
+  PairRates rates{};
+  rates.damping = std::max(translational_damping(physics, resistance, normal_damping, pair),
+                           rotational_damping(physics, resistance, pair));
   if (physics.contact) {
     const ContactParameters& contact = *physics.contact;
     // A tangential spring acts on centres and, through levers a, on spins with 2/5 m a^2: 1 + 5/2 times as
@@ -41,7 +68,6 @@ PairRates rates_of_pair(const Scene& scene, double first, double second) {
     const double smaller = std::min(first, second);
     const double rolling = 2.5 * contact.rolling_stiffness * (reduced / smaller) * (reduced / smaller);
     rates.frequency_squared = std::max({contact.normal_stiffness, tangential, rolling}) * mobility;
-    rates.damping += contact.normal_damping * mobility;
   }
   if (physics.repulsion) {
     const double length = physics.repulsion->relative_length * sum;

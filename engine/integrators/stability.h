@@ -7,7 +7,8 @@ namespace peclet::engine {
 
 // Fastest modes of the stiffest pair of the scene, at the inner gap and in contact.
 struct PairRates {
-  double damping;            // 1/time: (X_A + gamma_n)(1/m_i + 1/m_j), plus the drag of the lighter sphere
+  double damping;            // 1/time: (X_A + gamma_n)(1/m_i + 1/m_j) plus the drag of the lighter sphere,
+                             // or the like of its spin where that is more
   double frequency_squared;  // 1/time^2: stiffness (1/m_i + 1/m_j), of the normal, tangential and rolling
                              // springs and the repulsion
 };
