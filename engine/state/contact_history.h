@@ -25,7 +25,7 @@ std::vector<HeldContact> held_contacts(const NeighbourList& list, const std::vec
                                        const std::vector<ContactSprings>& springs);
 
 // Springs of each pair of a new list. `wrapped` are the particles' image counters as they are now, in the
-// same basis as `held`. Throws std::logic_error when a contact is missing from the list.
+// same basis as `held`. A contact that is not listed any more has opened: its springs are forgotten.
 std::vector<ContactSprings> placed_contacts(const NeighbourList& list,
                                             const std::vector<LatticeShift>& wrapped,
                                             const std::vector<HeldContact>& held);
