@@ -1,0 +1,200 @@
+// The power that shear puts into a suspension through its stress is what is dissipated and stored.
+//
+// With peculiar velocities c = U - (rate y, 0, 0), spins w = Omega + rate / 2 z, all forces F and torques T
+// of a configuration,
+//   V rate sigma_xy = Phi + dE/dt + sum (zeta c^2 + zeta_r w^2) + sum (F.c + T.w),
+// an identity at every instant: Phi = sum over pairs v.R.v is what lubrication dissipates, E the energy of
+// contacts and repulsion, the third term the dissipation by drag, the last the work that inertia takes up,
+// whose mean over a long time is that of rate sum m c_x c_y. It ties the symmetrised stress, summed over
+// pairs once and not divided by anything but V, to forces, torques, images and levers; physics of section 15
+// item 6.
+#include <gtest/gtest.h>
+
+#include "engine/state/packing.h"
+#include "engine/terms/drag.h"
+#include "tests/physics/laboratory.h"
+#include "tests/physics/reference_resistance.h"
+
+namespace peclet::engine {
+namespace {
+
+constexpr double rate = 0.01;  // Stokes number 0.045
+constexpr double inner_gap = 1e-2, outer_gap = 0.05;
+constexpr double stiffness = 500, repulsion_strength = 1e-3, relative_length = 0.01;
+
+Physics sheared_physics() {
+  Physics physics;
+  physics.viscosity = natural_viscosity;
+  physics.shear_rate = rate;
+  physics.contact = ContactParameters{.normal_stiffness = stiffness};
+  physics.lubrication = LubricationParameters{inner_gap, outer_gap};
+  physics.repulsion = RepulsionParameters{repulsion_strength, relative_length, 20};
+  return physics;
+}
+
+// Forty spheres of radii 1 and 1.4 at a volume fraction of one half, in motion with the flow.
+Laboratory sheared_suspension(double timestep) {
+  Experiment experiment;
+  experiment.physics = sheared_physics();
+  experiment.radius.assign(28, 1.0);
+  experiment.radius.resize(40, 1.4);
+  const double edge = cube_edge(experiment.radius, 0.5);
+  experiment.box = ShearedBox({edge, edge, edge}, rate);
+  experiment.timestep = timestep;
+  Laboratory laboratory(experiment);
+  ParticleState& all = laboratory.particles();
+  place_randomly(all, experiment.box, /*seed=*/9);
+  for (std::size_t i = 0; i < all.count(); ++i) {
+    all.velocity.set(i, {rate * all.position.y[i], 0, 0});
+    all.angular_velocity.set(i, {0, 0, -0.5 * rate});
+  }
+  laboratory.start();
+  return laboratory;
+}
+
+struct PairPower {
+  double dissipated = 0;  // by lubrication
+  double stored = 0;      // dE/dt of contacts and repulsion
+  double energy = 0;
+
+  PairPower& operator+=(const PairPower& b) {
+    return dissipated += b.dissipated, stored += b.stored, energy += b.energy, *this;
+  }
+};
+
+// Of one pair from the formulas; r and du of j's image relative to i.
+PairPower power_of_pair(const ParticleState& all, std::size_t i, std::size_t j, const Vector3& r,
+                        const Vector3& du) {
+  const double sum = all.radius[i] + all.radius[j], distance = norm(r), h = distance - sum;
+  const double opening = dot(du, r) / distance;
+  PairPower power;
+  if (h <= 0.5 * outer_gap * sum) {
+    const Vector3 wi = all.angular_velocity[i], wj = all.angular_velocity[j];
+    power.dissipated =
+        quadratic_form(reference_resistance(natural_viscosity, all.radius[i], all.radius[j], r, inner_gap),
+                       {0, 0, 0, du.x, du.y, du.z, wi.x, wi.y, wi.z, wj.x, wj.y, wj.z});
+  }
+  if (h < 0) {
+    power.stored += stiffness * h * opening;
+    power.energy += 0.5 * stiffness * h * h;
+  }
+  const double length = relative_length * sum;
+  if (h < 20 * length) {
+    const double potential = repulsion_strength * std::exp(-h / length);
+    power.stored -= potential / length * opening;
+    power.energy += potential;
+  }
+  return power;
+}
+
+// Over all pairs and images of the lattice (L, 0, 0), (tilt, L, 0), (0, 0, L), whose velocity grows by rate L
+// for each L along y; nothing of the engine's list is used.
+PairPower power_of_all(const System& system) {
+  const ParticleState& all = system.particles;
+  const double edge = system.box.lengths().x, tilt = system.box.strain() * edge;
+  PairPower total;
+  for (std::size_t i = 0; i < all.count(); ++i) {
+    for (std::size_t j = i + 1; j < all.count(); ++j) {
+      const double reach = 1.2 * (all.radius[i] + all.radius[j]);
+      const Vector3 r = all.position[j] - all.position[i], u = all.velocity[j] - all.velocity[i];
+      for (const double z : {-1., 0., 1.}) {
+        for (const double y : {-1., 0., 1.}) {
+          // The images in this row that may lie near.
+          const double start = r.x + y * tilt;
+          const double x = -std::round(start / edge);
+          const Vector3 image = {start + x * edge, r.y + y * edge, r.z + z * edge};
+          if (norm(image) < reach) {
+            total += power_of_pair(all, i, j, image, {u.x + y * rate * edge, u.y, u.z});
+          }
+        }
+      }
+    }
+  }
+  return total;
+}
+
+struct SpherePower {
+  double drag = 0, inertia = 0;  // dissipated by drag; m c_x c_y rate
+  double kinetic = 0;
+};
+
+SpherePower power_of_spheres(const ParticleState& all) {
+  SpherePower power;
+  for (std::size_t i = 0; i < all.count(); ++i) {
+    const Vector3 c = all.velocity[i] - Vector3{rate * all.position.y[i], 0, 0};
+    const Vector3 w = all.angular_velocity[i] + Vector3{0, 0, 0.5 * rate};
+    const double a = all.radius[i];
+    power.drag += a * dot(c, c) + 4.0 / 3 * a * a * a * dot(w, w);  // 6 pi eta = 1
+    power.inertia += rate * all.mass[i] * c.x * c.y;
+    power.kinetic += 0.5 * (all.mass[i] * dot(c, c) + all.inertia[i] * dot(w, w));
+  }
+  return power;
+}
+
+double sum_of_stress_xy(const PairSums& sums) {
+  double xy = 0;
+  for (const SymmetricTensor& term : sums.stress) {
+    xy += term.xy;
+  }
+  return xy;
+}
+
+// Round-off alone: products of numbers of order one, thousands of them.
+TEST(EnergyBalance, HoldsAtEveryInstantOfASheardSuspension) {
+  const double timestep = 5e-3;
+  Laboratory laboratory = sheared_suspension(timestep);
+  for (int moment = 0; moment < 14; ++moment) {
+    for (int step = 0; step < 1000; ++step) {  // a strain of 0.05: the box flips on the way
+      laboratory.step();
+    }
+    System system = laboratory.system();
+    const std::size_t count = system.particles.count();
+    ForceField field(laboratory.physics(), system.particles, timestep, /*seed=*/1, /*threads=*/1);
+    VectorField force(count), torque(count);
+    const PairSums sums = field.evaluate(system, force, torque);
+    double taken_up = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vector3 c = system.particles.velocity[i] - Vector3{rate * system.particles.position.y[i], 0, 0};
+      const Vector3 w = system.particles.angular_velocity[i] + Vector3{0, 0, 0.5 * rate};
+      taken_up += dot(force[i], c) + dot(torque[i], w);
+    }
+    const PairPower pairs = power_of_all(system);
+    const SpherePower spheres = power_of_spheres(system.particles);
+    const double power_in = rate * sum_of_stress_xy(sums);
+    EXPECT_GT(pairs.dissipated, 0);
+    EXPECT_NEAR(power_in, pairs.dissipated + pairs.stored + spheres.drag + taken_up,
+                1e-11 * pairs.dissipated);
+  }
+  EXPECT_NE(laboratory.system().box.flips(), 0);
+}
+
+// What goes in over a window of half a strain, by the stress that every step reports, less what is
+// dissipated, taken up and stored meanwhile, over the former. Forces of a step see half-step velocities,
+// powers here are of full-step ones: the rest is of first order in the step.
+double relative_imbalance(double timestep) {
+  Laboratory laboratory = sheared_suspension(timestep);
+  const auto steps_of_strain = [&](double strain) { return std::lround(strain / (rate * timestep)); };
+  for (long step = steps_of_strain(0.3); step > 0; --step) {
+    laboratory.step();
+  }
+  const auto stored = [&] {
+    return power_of_all(laboratory.system()).energy + power_of_spheres(laboratory.particles()).kinetic;
+  };
+  const double before = stored();
+  double in = 0, out = 0;
+  for (long step = steps_of_strain(0.5); step > 0; --step) {
+    in += timestep * rate * sum_of_stress_xy(laboratory.step().sums);
+    const SpherePower spheres = power_of_spheres(laboratory.particles());
+    out += timestep * (power_of_all(laboratory.system()).dissipated + spheres.drag + spheres.inertia);
+  }
+  return (in - out - (stored() - before)) / in;
+}
+
+TEST(EnergyBalance, ClosesOverAWindowToFirstOrderInTheStep) {
+  const double large = relative_imbalance(6e-3), small = relative_imbalance(3e-3);
+  EXPECT_LT(std::abs(large), 5e-4);
+  EXPECT_NEAR(large / small, 2, 0.05);
+}
+
+}  // namespace
+}  // namespace peclet::engine
