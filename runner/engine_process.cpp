@@ -108,6 +108,7 @@ EngineProcess::EngineProcess(const EngineCommand& command, const fs::path& log) 
   std::vector<std::string> words{command.program.string()};
   words.insert(words.end(), command.arguments.begin(), command.arguments.end());
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   const int error = posix_spawn(&process_, command.program.c_str(), settings.actions(), settings.attributes(),

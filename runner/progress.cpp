@@ -15,6 +15,7 @@ namespace {
 
 // Off a terminal somebody reads a file: one line in so many seconds is enough.
 constexpr double seconds_between_lines = 30;
+constexpr long long minutes_of_a_day = 1440;
 
 bool colour_wanted() {
   const char* const no_colour = std::getenv("NO_COLOR");
@@ -39,7 +40,7 @@ std::string duration_text(double seconds) {
   if (whole < 90) return fmt::format("{} s", whole);
   const auto minutes = std::llround(seconds / 60);
   if (minutes < 60) return fmt::format("{} min", minutes);
-  if (minutes < 24 * 60) return fmt::format("{} h {} min", minutes / 60, minutes % 60);
+  if (minutes < minutes_of_a_day) return fmt::format("{} h {} min", minutes / 60, minutes % 60);
   const auto hours = std::llround(seconds / 3600);
   return fmt::format("{} d {} h", hours / 24, hours % 24);
 }
