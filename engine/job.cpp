@@ -13,6 +13,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// Fewer particles per thread than this lose more by waiting for each other than they gain. The result is the
+// same.
+constexpr std::size_t fewest_particles_per_thread = 4000;
+
 double processor_seconds() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -73,8 +77,10 @@ class Job {
 
  private:
   void construct() {
-    simulation_ =
-        std::make_unique<Simulation>(scene_, schedule_, job_.header.seed, job_.threads, job_.scene_name);
+    const std::size_t useful = std::max<std::size_t>(1, scene_.particles.count / fewest_particles_per_thread);
+    const int threads =
+        static_cast<int>(std::min<std::size_t>(useful, static_cast<std::size_t>(job_.threads)));
+    simulation_ = std::make_unique<Simulation>(scene_, schedule_, job_.header.seed, threads, job_.scene_name);
   }
 
   void begin() {

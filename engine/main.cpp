@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "contract/durable_file.h"
+#include "contract/frames.h"
 #include "contract/input_error.h"
 #include "contract/provenance.h"
 #include "engine/benchmark.h"
@@ -120,6 +121,9 @@ int main(int argc, char** argv) {
       return run_benchmarks(cases);
     }
   } catch (const InputError& error) {
+    fmt::print(stderr, "peclet-engine: {}\n", error.what());
+    return bad_input;
+  } catch (const FrameError& error) {
     fmt::print(stderr, "peclet-engine: {}\n", error.what());
     return bad_input;
   } catch (const CheckpointError& error) {

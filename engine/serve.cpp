@@ -11,6 +11,7 @@
 #include "contract/durable_file.h"
 #include "contract/frames.h"
 #include "contract/input_error.h"
+#include "contract/key_table.h"
 #include "contract/sha256.h"
 #include "engine/job.h"
 
@@ -39,7 +40,11 @@ class Worker {
       if (channel_.receive(message, std::chrono::milliseconds(-1)) == FrameChannel::Status::closed) {
         return 0;
       }
-      handle(message);
+      try {
+        handle(message);
+      } catch (const Json::exception& error) {
+        throw FrameError(fmt::format("the message {} is incomplete: {}", shortened(message), error.what()));
+      }
     }
     return 0;
   }
