@@ -27,6 +27,9 @@ void print(const std::string& text) {
   }
 }
 
+// What cannot be said, because standard error is closed or full, changes no exit code.
+void say(const std::string& text) { std::fputs(text.c_str(), stderr); }
+
 int perform(const ValidateOptions& options) {
   print(validate_campaign(options));
   return 0;
@@ -45,7 +48,7 @@ int perform(const StatusOptions& options) {
   status.owner = current_owner(open.directory);
   print(options.json ? status_json(status).dump(2) + '\n' : status_table(status) + workers_text(status));
   if (const std::string note = difference_from_file(options.campaign, status.campaign); !note.empty()) {
-    fmt::print(stderr, "note: {}\n", note);
+    say(fmt::format("note: {}\n", note));
   }
   return options.check ? standing(status) : 0;
 }
@@ -70,7 +73,7 @@ int perform(const ExportOptions& options) {
 }
 
 int complain(const std::exception& error, int code) {
-  fmt::print(stderr, "peclet: {}\n", error.what());
+  say(fmt::format("peclet: {}\n", error.what()));
   return code;
 }
 

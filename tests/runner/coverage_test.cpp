@@ -52,7 +52,8 @@ TEST(Coverage, OfTheStopRuleStaysNearItsNominalValue) {
   EXPECT_GT(coverage.covered, 0.92);
   EXPECT_LT(coverage.covered, 0.96);
   // The tolerance is relative, so cohorts whose mean is too large stop a little earlier: a bias of about 0.05
-  // standard errors. The mean of 4000 such scores has a standard error of 0.017, so chance is 9 of these away.
+  // standard errors. The mean of 4000 such scores has a standard error of 0.017, so chance is 9 of these
+  // away.
   EXPECT_LT(std::abs(coverage.bias), 0.2);
 }
 

@@ -1,0 +1,162 @@
+// The program itself: exit codes, one clear message for each fault, and nothing written by those who only
+// look.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+
+#include "contract/json.h"
+#include "tests/runner/runner_fixture.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Answer {
+  int code = -1;
+  std::string text;  // both outputs
+};
+
+class CommandLine : public testing::Test {
+ protected:
+  CommandLine() {
+    campaign = {{"name", "small"},
+                {"scene", {{"volume_fraction", 0.5}}},
+                {"sweep", {{{"set", "/peclet"}, {"values", {1, 10}}}}},
+                {"target", {{"relative_tolerance", 0.2}}},
+                {"realisations", {{"minimum", 5}, {"maximum", 40}}},
+                {"engine", {FAKE_ENGINE}}};
+  }
+
+  fs::path file() const { return folder_.path() / "small.json"; }
+  void write() const { std::ofstream(file()) << campaign.dump(); }
+
+  Answer peclet(const std::string& arguments) const {
+    const std::string command =
+        "cd '" + folder_.path().string() + "' && " PECLET_PROGRAM " " + arguments + " 2>&1";
+    FILE* const pipe = popen(command.c_str(), "r");
+    Answer answer;
+    std::array<char, 4096> chunk{};
+    while (const std::size_t count = fread(chunk.data(), 1, chunk.size(), pipe))
+      answer.text.append(chunk.data(), count);
+    answer.code = WEXITSTATUS(pclose(pipe));
+    return answer;
+  }
+
+  std::ptrdiff_t files() const {
+    return std::distance(fs::recursive_directory_iterator(folder_.path()),
+                         fs::recursive_directory_iterator());
+  }
+
+  Json campaign;
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(CommandLine, FaultsOfUsageAreExitCodeTwo) {
+  write();
+  for (const char* const arguments :
+       {"", "stauts small.json", "status", "run small.json --workers 0", "validate",
+        "export small.json --json --csv", "run small.json --time-limit -1", "status absent.json",
+        "explain small.json", "export ."}) {
+    const Answer answer = peclet(arguments);
+    EXPECT_EQ(answer.code, 2) << arguments << ": " << answer.text;
+    EXPECT_FALSE(answer.text.empty()) << arguments;
+  }
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(CommandLine, HelpOfEveryVerbHasAnExample) {
+  EXPECT_EQ(peclet("--version").code, 0);
+  EXPECT_TRUE(peclet("--version").text.starts_with("peclet "));
+  for (const char* const verb : {"validate", "plan", "run", "status", "explain", "export"}) {
+    const Answer answer = peclet(std::string(verb) + " --help");
+    EXPECT_EQ(answer.code, 0);
+    EXPECT_NE(answer.text.find(std::string("Example: peclet ") + verb), std::string::npos) << answer.text;
+  }
+}
+
+TEST_F(CommandLine, ValidateAndPlanWriteNothing) {
+  write();
+  const Answer valid = peclet("validate small.json");
+  EXPECT_EQ(valid.code, 0) << valid.text;
+  EXPECT_TRUE(valid.text.starts_with("small: valid; 2 points, 5 to 40 seeds each")) << valid.text;
+  EXPECT_EQ(peclet("plan small.json").code, 0);
+  EXPECT_EQ(Json::parse(peclet("validate small.json --json").text)["points"].size(), 2U);
+  EXPECT_EQ(Json::parse(peclet("plan small.json --json").text)["points"].size(), 2U);
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(CommandLine, AFaultyCampaignIsRefusedByEveryVerbThatReadsItAndNothingIsWritten) {
+  campaign["target"]["relative_tolerance"] = 5;
+  write();
+  for (const char* const verb : {"validate", "plan", "run"}) {
+    const Answer answer = peclet(std::string(verb) + " small.json");
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_EQ(answer.text,
+              "peclet: small.json: /target/relative_tolerance: 5: must be a number > 0 and < 1; 5 % is "
+              "written 0.05\n");
+  }
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(CommandLine, AnEngineThatIsNotThereIsNamed) {
+  campaign["engine"] = {"./no-such-engine"};
+  write();
+  const Answer answer = peclet("validate small.json");
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_NE(answer.text.find("small.json: /engine/0: ./no-such-engine"), std::string::npos) << answer.text;
+}
+
+TEST_F(CommandLine, AnEngineThatDoesNotSpeakTheFramesIsAnErrorNotAHang) {
+  campaign["engine"] = {"/bin/true"};
+  write();
+  const Answer answer = peclet("validate small.json");
+  EXPECT_EQ(answer.code, 1) << answer.text;
+  EXPECT_NE(answer.text.find("/bin/true"), std::string::npos) << answer.text;
+}
+
+TEST_F(CommandLine, ARunCanBeLookedAtByFileAndByFolder) {
+  write();
+  ASSERT_EQ(peclet("run small.json --workers 2 --quiet").code, 0);
+  for (const char* const given : {"small.json", "small.peclet"}) {
+    const std::string place = given;
+    EXPECT_EQ(peclet("status " + place + " --check").code, 0);
+    EXPECT_EQ(Json::parse(peclet("status " + place + " --json").text)["standing"], 0);
+    EXPECT_EQ(peclet("explain " + place + " peclet=10").code, 0);
+    EXPECT_EQ(Json::parse(peclet("export " + place).text)["points"].size(), 2U);
+  }
+  EXPECT_EQ(peclet("export small.json --csv --output small.csv").code, 0);
+  EXPECT_EQ(peclet("export small.json --csv").text, peclet("export small.peclet --csv | cat").text);
+  EXPECT_EQ(peclet("export small.json --csv > /dev/full").code, 1);
+}
+
+TEST_F(CommandLine, AChangedCampaignFileIsSaid) {
+  write();
+  ASSERT_EQ(peclet("run small.json --workers 2 --quiet").code, 0);
+  EXPECT_EQ(peclet("status small.json").text.find("note:"), std::string::npos);
+  campaign["realisations"]["maximum"] = 50;
+  write();
+  const Answer answer = peclet("status small.json");
+  EXPECT_EQ(answer.code, 0);
+  EXPECT_NE(answer.text.find("note: small.json has changed since it was last run"), std::string::npos);
+  std::ofstream(file()) << "{";
+  EXPECT_NE(peclet("status small.json").text.find("has a fault"), std::string::npos);
+}
+
+TEST_F(CommandLine, ADatabaseThatIsNoneIsExitCodeSix) {
+  write();
+  fs::create_directory(file().parent_path() / "small.peclet");
+  std::ofstream(file().parent_path() / "small.peclet/campaign.db") << std::string(5000, 'x');
+  for (const char* const verb : {"status", "explain", "export", "plan"}) {
+    EXPECT_EQ(peclet(std::string(verb) + " small.json").code, 6) << verb;
+  }
+}
+
+}  // namespace
+}  // namespace peclet::runner

@@ -1,0 +1,122 @@
+// What `status` says of points in every state.
+#include "runner/status.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "tests/runner/stored_campaign.h"
+
+namespace peclet::runner {
+namespace {
+
+// 9, 10, 11, 10: mean 10, sample variance 2/3, standard error sqrt(2/3/4) = 0.408.
+void four_values(StoredCampaign& campaign, int point, double unit) {
+  const double values[] = {-1, 0, 1, 0};
+  for (int seed = 0; seed < 4; ++seed) campaign.complete(point, seed, 10 + unit * values[seed]);
+}
+
+TEST(Status, AnOpenPointShowsTheSeedsOfItsNextLookAndAProvisionalMean) {
+  StoredCampaign campaign(1, 4, 20);
+  four_values(campaign, 0, 1);  // half-width 3.182 * 0.408 = 13 %: goes on to 5 seeds
+  const CampaignStatus status = read_status(campaign.database());
+  const PointSummary& point = status.points.at(0);
+  EXPECT_FALSE(point.decided);
+  EXPECT_EQ(point.wanted, 5);
+  EXPECT_EQ(point.wanted_ended, 4);
+  EXPECT_EQ(point.so_far.count, 4);
+  EXPECT_DOUBLE_EQ(point.so_far.mean, 10);
+  EXPECT_DOUBLE_EQ(point.so_far.standard_error, std::sqrt(2.0 / 3 / 4));
+  EXPECT_EQ(point.counts.cpu_seconds, 8);
+  EXPECT_EQ(standing(status), 4);
+  const std::string table = status_table(status);
+  EXPECT_NE(table.find("4/5  10.00 ± 0.41  10.0 ± 1.3 (13 %)"), std::string::npos) << table;
+  EXPECT_NE(table.find("1 point: 1 open\n4 seeds ended; processor time 8 s"), std::string::npos) << table;
+}
+
+TEST(Status, APointWithoutSeedsHasNoNumbers) {
+  StoredCampaign campaign(1, 4, 20);
+  const CampaignStatus status = read_status(campaign.database());
+  const Json point = status_json(status)["points"][0];
+  EXPECT_TRUE(point["look"].is_null());
+  EXPECT_TRUE(point["verdict"].is_null());
+  EXPECT_TRUE(point["so_far"]["mean"].is_null());
+  EXPECT_TRUE(point["so_far"]["standard_error"].is_null());
+  EXPECT_EQ(point["seeds"]["wanted"], 4);
+  EXPECT_NE(status_table(status).find("0/4"), std::string::npos);
+}
+
+TEST(Status, OneSeedHasAMeanButNoError) {
+  StoredCampaign campaign(1, 4, 20);
+  campaign.complete(0, 2, 10);
+  const CampaignStatus status = read_status(campaign.database());
+  const Json point = status_json(status)["points"][0];
+  EXPECT_EQ(point["so_far"]["mean"], 10);
+  EXPECT_TRUE(point["so_far"]["standard_error"].is_null());
+}
+
+TEST(Status, SeedsBeyondTheDecidingLookAreSurplus) {
+  StoredCampaign campaign(1, 4, 20);
+  four_values(campaign, 0, 0.1);
+  campaign.complete(0, 4, 1000);
+  campaign.complete(0, 6, 1000);
+  const CampaignStatus status = read_status(campaign.database());
+  EXPECT_EQ(status.points[0].surplus(), 2);
+  EXPECT_EQ(status.points[0].wanted_ended, 4);
+  EXPECT_EQ(standing(status), 0);
+  EXPECT_NE(status_table(status).find("6 seeds ended, 2 surplus"), std::string::npos) << status_table(status);
+}
+
+TEST(Status, LostSeedsAreCountedByCauseAndSaidWithTheVerdict) {
+  StoredCampaign campaign(2, 4, 20);
+  four_values(campaign, 0, 0.1);
+  four_values(campaign, 1, 0.1);
+  EXPECT_EQ(standing(read_status(campaign.database())), 0);
+
+  StoredCampaign lossy(1, 6, 20);
+  four_values(lossy, 0, 0.01);
+  lossy.blow_up(0, 4);
+  EXPECT_EQ(verdict_text(read_status(lossy.database()).points[0]), "open, 1 lost");
+  lossy.crash(0, 5);
+  const CampaignStatus status = read_status(lossy.database());
+  EXPECT_EQ(verdict_text(status.points[0]), "converged-with-losses(2)");
+  EXPECT_EQ(status.points[0].losses, (std::map<std::string, int>{{"crashed", 1}, {"overlap", 1}}));
+  EXPECT_EQ(standing(status), 3);
+}
+
+TEST(Status, ASuspectPointIsAnIntegrityFault) {
+  StoredCampaign campaign(1, 4, 20);
+  four_values(campaign, 0, 0.1);
+  campaign.repeat(0, 1, 10);
+  EXPECT_EQ(standing(read_status(campaign.database())), 0);
+  campaign.repeat(0, 1, 11);
+  const CampaignStatus status = read_status(campaign.database());
+  EXPECT_EQ(verdict_text(status.points[0]), "converged, suspect");
+  EXPECT_EQ(standing(status), 6);
+}
+
+TEST(Status, TheControlledEstimateHasAColumnWhereThereIsAControlVariate) {
+  StoredCampaign campaign(1, 4, 20);
+  four_values(campaign, 0, 0.1);  // the control variate of plain_result() is 0.25
+  const std::string table = status_table(campaign.database());
+  EXPECT_NE(table.find("10.00 ± 0.13 (1.3 %)  10.25 ± 0.13  converged"), std::string::npos) << table;
+}
+
+// 20 points with 800 seeds each. A third of a second is what a person does not notice.
+TEST(Status, OfSixteenThousandRealisationsTakesBelowAThirdOfASecond) {
+  StoredCampaign campaign(20, 10, 800);
+  campaign.database().connection().execute(
+      "WITH RECURSIVE seeds(seed) AS (SELECT 0 UNION ALL SELECT seed + 1 FROM seeds WHERE seed < 799) "
+      "INSERT INTO realisation (point_id, seed, state, cause, value, cpu_seconds, final_state_sha256, "
+      "content_sha256) SELECT point_id, seed, 'done', 'completed', 10 + seed % 7, 1, hash, hash FROM seeds, "
+      "point");
+  const auto start = std::chrono::steady_clock::now();
+  const std::string table = status_table(campaign.database());
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  EXPECT_NE(table.find("16000 seeds ended"), std::string::npos);
+  EXPECT_LT(elapsed.count(), 0.3);
+}
+
+}  // namespace
+}  // namespace peclet::runner

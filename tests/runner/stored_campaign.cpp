@@ -1,0 +1,52 @@
+#include "tests/runner/stored_campaign.h"
+
+namespace peclet::runner {
+
+StoredCampaign::StoredCampaign(int points, int minimum, int maximum)
+    : campaign_(plain_campaign(points, minimum, maximum, 0.05)),
+      database_(Database::open_owner(CampaignDirectory(folder_.path()).database())),
+      queue_(database_) {
+  queue_.adopt(campaign_);
+}
+
+void StoredCampaign::store(int point, const Json& result) {
+  Transaction booking(database_.connection());
+  const std::int64_t engine = queue_.engine(plain_engine());
+  const std::int64_t attempt = queue_.begin_attempt(id(point), result["seed"].get<int>(), 1, 4711, engine);
+  queue_.store(parse_result(result.dump()), campaign_.target.observable);
+  queue_.end_attempt(attempt, {AttemptOutcome::result, 100});
+  look(point);
+  booking.commit();
+}
+
+void StoredCampaign::look(int point) {
+  queue_.store_looks(id(point), replay_looks(database_.outcomes(id(point)), campaign_.target,
+                                             campaign_.minimum_realisations, campaign_.maximum_realisations));
+}
+
+void StoredCampaign::complete(int point, int seed, double viscosity) {
+  store(point, plain_result(campaign_.points.at(static_cast<std::size_t>(point)).hash, seed, viscosity));
+}
+
+void StoredCampaign::repeat(int point, int seed, double viscosity) {
+  const std::string& hash = campaign_.points.at(static_cast<std::size_t>(point)).hash;
+  queue_.store(parse_result(plain_result(hash, seed, viscosity).dump()), campaign_.target.observable);
+}
+
+void StoredCampaign::blow_up(int point, int seed) {
+  Json result = plain_result(campaign_.points.at(static_cast<std::size_t>(point)).hash, seed, 0);
+  result["ending"] = {{"cause", "overlap"}, {"step", 50}, {"message", "too near"}, {"state", "/somewhere"}};
+  result["mean"] = result["blocks"] = nullptr;
+  store(point, result);
+}
+
+void StoredCampaign::crash(int point, int seed) {
+  Transaction booking(database_.connection());
+  const std::int64_t attempt = queue_.begin_attempt(id(point), seed, 1, 4711, queue_.engine(plain_engine()));
+  queue_.end_attempt(attempt, {AttemptOutcome::crashed, 42, {}, "signal 11 (Segmentation fault)"});
+  queue_.quarantine(id(point), seed, "crashed");
+  look(point);
+  booking.commit();
+}
+
+}  // namespace peclet::runner

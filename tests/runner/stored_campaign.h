@@ -1,0 +1,39 @@
+// A campaign whose database is filled by hand, for tests of those who only read it.
+#pragma once
+
+#include <vector>
+
+#include "runner/database.h"
+#include "runner/queue.h"
+#include "tests/runner/runner_fixture.h"
+
+namespace peclet::runner {
+
+class StoredCampaign {
+ public:
+  // plain_campaign() with a tolerance of 5 %.
+  StoredCampaign(int points, int minimum, int maximum);
+
+  // A result of plain_result(), with an attempt of its own, and the looks that it allows.
+  void complete(int point, int seed, double viscosity);
+  // One more result of a seed that has ended.
+  void repeat(int point, int seed, double viscosity);
+  void blow_up(int point, int seed);
+  // One attempt that crashed, after which the seed is given up.
+  void crash(int point, int seed);
+
+  Database& database() { return database_; }
+  CampaignDirectory directory() const { return CampaignDirectory(folder_.path()); }
+
+ private:
+  void store(int point, const Json& result);
+  void look(int point);
+  std::int64_t id(int point) { return database_.points().at(static_cast<std::size_t>(point)).id; }
+
+  TemporaryFolder folder_;
+  Campaign campaign_;
+  Database database_;
+  Queue queue_;
+};
+
+}  // namespace peclet::runner
