@@ -144,10 +144,13 @@ std::optional<Ending> Simulation::verdict(const StepReport& report) const {
   if (!std::isfinite(displacement) || !report.sums.finite) {
     return Ending{Ending::Cause::non_finite, system_.step, "a position or velocity is not finite"};
   }
-  if (displacement > scene_.guard.largest_displacement) {
-    return Ending{Ending::Cause::displacement, system_.step,
-                  fmt::format("a particle moved {:.3g} radii in one step, more than {:.3g}", displacement,
-                              scene_.guard.largest_displacement)};
+  // Whatever the guard, spheres must not leap over each other: the integrator evaluates no forces then.
+  const double largest =
+      std::min(scene_.guard.largest_displacement, 0.5 * system_.list.ranges().largest() / smallest_radius_);
+  if (displacement > largest) {
+    return Ending{
+        Ending::Cause::displacement, system_.step,
+        fmt::format("a particle moved {:.3g} radii in one step, more than {:.3g}", displacement, largest)};
   }
   if (report.sums.largest_overlap > scene_.guard.largest_overlap) {
     return Ending{Ending::Cause::overlap, system_.step,

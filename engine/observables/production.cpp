@@ -34,8 +34,12 @@ double statistical_inefficiency(const std::vector<double>& series) {
     return sum / count;
   };
   const double variance = covariance(0);
+  // Values that differ by rounding alone say nothing.
+  if (!(variance > 1e-24 * mean * mean)) {
+    return 1;
+  }
   double inefficiency = 1;
-  for (std::size_t lag = 1; variance > 0 && lag < series.size(); ++lag) {
+  for (std::size_t lag = 1; lag < series.size(); ++lag) {
     const double correlation = covariance(lag) / variance;
     if (correlation <= 0) {
       break;

@@ -43,7 +43,7 @@ class Production {
 };
 
 // 1 + 2 sum of the autocorrelation of `series` up to its first value that is not positive: by how many times
-// fewer independent values it has than entries. At least 1; 1 for a constant series.
+// fewer independent values it has than entries. At least 1; 1 for a series that is constant but for rounding.
 double statistical_inefficiency(const std::vector<double>& series);
 
 }  // namespace peclet::engine
