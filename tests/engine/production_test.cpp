@@ -1,0 +1,88 @@
+// Blocks of the production window, and what is sampled in them.
+#include "engine/observables/production.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/engine/dense_suspension.h"
+
+namespace peclet::engine {
+namespace {
+
+TEST(Production, EveryStepGoesIntoExactlyOneOfEvenBlocks) {
+  for (const std::uint64_t steps : {32, 33, 63, 1000, 12345}) {
+    Production production(steps);
+    for (std::uint64_t index = 0; index < steps; ++index) {
+      PairSums sums;
+      sums.contacts = index;
+      production.add_step(index, sums);
+    }
+    std::uint64_t all = 0;
+    double contacts = 0;
+    for (const BlockSums& block : production.blocks()) {
+      EXPECT_GE(block.steps, steps / 32);
+      EXPECT_LE(block.steps, steps / 32 + 1);
+      all += block.steps;
+      contacts += block.contacts;
+    }
+    EXPECT_EQ(all, steps);
+    EXPECT_EQ(contacts, 0.5 * static_cast<double>(steps) * static_cast<double>(steps - 1));
+  }
+}
+
+TEST(StatisticalInefficiency, IsOneWithoutCorrelation) {
+  EXPECT_EQ(statistical_inefficiency(std::vector<double>(32, 4.2)), 1);
+  std::vector<double> alternating;
+  for (int k = 0; k < 32; ++k) alternating.push_back(k % 2 == 0 ? 1 : -1);
+  EXPECT_EQ(statistical_inefficiency(alternating), 1);
+}
+
+// 1, 1, -1, -1, ...: of the 31 products at lag one 16 are +1 and 15 are -1, over 32; at lag two all are -1.
+TEST(StatisticalInefficiency, SumsTheCorrelationUpToItsFirstZero) {
+  std::vector<double> series;
+  for (int k = 0; k < 32; ++k) series.push_back(k % 4 < 2 ? 1 : -1);
+  EXPECT_NEAR(statistical_inefficiency(series), 1 + 2.0 / 32, 1e-14);
+}
+
+// Two spheres of radii 1 and 1.4 whose surfaces are h apart along x; the shells are 0.05 and 0.07 thick.
+SymmetricTensor structural_stress_at(double h) {
+  Physics physics = physics_with({.contact = true});
+  physics.thermal_energy = 0.3;
+  System system;
+  system.particles = make_particles({1, 1.4}, 0.1);
+  system.particles.position.set(0, {5, 5, 5});
+  system.particles.position.set(1, {5 + 2.4 + h, 5, 5});
+  system.box = ShearedBox({10, 10, 10}, 0);
+  const std::vector<PairKind> kinds = make_pair_kinds(physics, {1, 1.4});
+  system.list = NeighbourList(range_table(kinds, 2), 0.1);
+  system.list.build(system.particles, system.box);
+  return structural_brownian_stress(system, kinds, physics.thermal_energy);
+}
+
+// -(kT / V) (a / Delta) n n from each side whose shell holds the other's surface, a / Delta = 20.
+TEST(StructuralBrownianStress, CountsEachSideOfAPairWithinItsOwnShell) {
+  EXPECT_NEAR(structural_stress_at(-0.01).xx, -0.3 / 1000 * 20 * 2, 1e-15);
+  EXPECT_NEAR(structural_stress_at(0.04).xx, -0.3 / 1000 * 20 * 2, 1e-15);
+  EXPECT_NEAR(structural_stress_at(0.06).xx, -0.3 / 1000 * 20, 1e-15);  // seen by the larger one alone
+  EXPECT_EQ(structural_stress_at(0.08).xx, 0);
+  EXPECT_EQ(structural_stress_at(0.04).yy, 0);
+}
+
+TEST(KineticTemperatures, AreThoseOfMotionRelativeToTheStreamingFlow) {
+  System system;
+  system.particles = make_particles({1, 1.4}, 0.1);
+  system.box = ShearedBox({10, 10, 10}, 0.7);
+  system.particles.position.set(1, {0, 3, 0});
+  system.particles.velocity.set(0, {1, 2, 2});        // 9
+  system.particles.velocity.set(1, {0.7 * 3, 0, 0});  // at rest in the flow
+  system.particles.angular_velocity.set(0, {0, 0, -0.35});
+  system.particles.angular_velocity.set(1, {0, 3, 4 - 0.35});  // 25
+  const double m0 = 0.1 * 4 * std::numbers::pi / 3, m1 = m0 * 1.4 * 1.4 * 1.4;
+  const KineticTemperatures t = kinetic_temperatures(system);
+  EXPECT_NEAR(t.translational, m0 * 9 / 6, 1e-14);
+  EXPECT_NEAR(t.rotational, 0.4 * m1 * 1.96 * 25 / 6, 1e-14);
+}
+
+}  // namespace
+}  // namespace peclet::engine

@@ -1,0 +1,157 @@
+// A run that was cut and resumed ends in the same bits as one that was not.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "engine/checkpoint.h"
+#include "engine/job.h"
+#include "tests/engine/small_scene.h"
+#include "tests/engine/temporary_folder.h"
+
+namespace peclet::engine {
+namespace {
+
+constexpr std::uint64_t seed = 3;
+constexpr std::uint64_t total_steps = 420;
+
+class ResumedRun : public testing::Test {
+ protected:
+  std::unique_ptr<Simulation> simulation(int threads = 1) const {
+    return std::make_unique<Simulation>(scene_, make_schedule(scene_, "scene.json"), seed, threads,
+                                        "scene.json");
+  }
+  std::unique_ptr<Simulation> started(int threads = 1) const {
+    auto fresh = simulation(threads);
+    fresh->start();
+    return fresh;
+  }
+
+  static std::string bytes_of(const Simulation& simulation) {
+    ArchiveWriter archive;
+    simulation.save(archive);
+    return archive.bytes();
+  }
+
+  // What the uncut run ends in.
+  const std::string& uncut() const {
+    static const std::string bytes = [this] {
+      const auto whole = started();
+      EXPECT_TRUE(whole->advance(total_steps).has_value());
+      return bytes_of(*whole);
+    }();
+    return bytes;
+  }
+
+  static std::size_t stretched_springs(const System& system) {
+    return held_contacts(system.list, system.particles.image, system.springs).size();
+  }
+
+  Scene scene_ = read_scene(small_scene(), "scene.json");
+};
+
+// The claims below say little unless this holds.
+TEST_F(ResumedRun, PassesThroughContactsRebuildsAndFlips) {
+  const auto run = started();
+  std::size_t steps_with_springs = 0;
+  while (!run->advance(1)) steps_with_springs += stretched_springs(run->system()) > 0 ? 1 : 0;
+  EXPECT_EQ(run->system().step, total_steps);
+  EXPECT_GT(steps_with_springs, 350u);
+  EXPECT_GT(run->system().list.builds(), 20u);
+  EXPECT_EQ(run->system().box.flips(), 2);
+}
+
+TEST_F(ResumedRun, EndsAsTheUncutOneWhereverItWasCut) {
+  for (const std::uint64_t cut : {0, 1, 57, 100, 101, 200, 333, 419}) {
+    const auto before = started();
+    before->advance(cut);
+    ArchiveWriter archive;
+    before->save(archive);
+    const auto after = simulation();
+    ArchiveReader reader(archive.bytes());
+    after->load(reader);
+    EXPECT_TRUE(reader.at_end());
+    EXPECT_EQ(bytes_of(*after), archive.bytes()) << "cut at " << cut;  // nothing is lost on the way
+    const std::optional<Ending> ending = after->advance(total_steps);
+    ASSERT_TRUE(ending.has_value());
+    EXPECT_EQ(ending->cause, Ending::Cause::completed);
+    EXPECT_TRUE(bytes_of(*after) == uncut()) << "cut at " << cut;
+  }
+}
+
+TEST_F(ResumedRun, EndsAsTheUncutOneAfterThreeCheckpointsOnDisk) {
+  const TemporaryFolder folder;
+  const CheckpointIdentity identity = {"scene", seed, "binary"};
+  auto run = started();
+  for (const std::uint64_t steps : {90, 111, 150}) {  // in equilibration, and twice in production
+    EXPECT_FALSE(run->advance(steps).has_value());
+    EXPECT_GT(stretched_springs(run->system()), 0u);  // in the middle of contacts with friction
+    write_checkpoint(folder / "checkpoint", identity, {1.5, 2.5}, *run);
+    run = simulation();
+    const Spent spent = read_checkpoint(folder / "checkpoint", identity, *run);
+    EXPECT_EQ(spent.processor_seconds, 1.5);
+    EXPECT_EQ(spent.wall_seconds, 2.5);
+  }
+  EXPECT_TRUE(run->advance(total_steps).has_value());
+  EXPECT_TRUE(bytes_of(*run) == uncut());
+}
+
+TEST_F(ResumedRun, EndsAsTheUncutOneOnOtherNumbersOfThreads) {
+  const auto two = started(2);
+  two->advance(total_steps);
+  EXPECT_TRUE(bytes_of(*two) == uncut());
+
+  const auto three = started(3);  // and changes it on the way
+  three->advance(200);
+  ArchiveWriter archive;
+  three->save(archive);
+  const auto one = simulation(1);
+  ArchiveReader reader(archive.bytes());
+  one->load(reader);
+  one->advance(total_steps);
+  EXPECT_TRUE(bytes_of(*one) == uncut());
+}
+
+TEST_F(ResumedRun, DoesNotDependOnHowManyStepsAreAskedForAtOnce) {
+  const auto run = started();
+  while (!run->advance(7)) {
+  }
+  EXPECT_TRUE(bytes_of(*run) == uncut());
+}
+
+TEST_F(ResumedRun, OtherSeedsEndElsewhere) {
+  Simulation other(scene_, make_schedule(scene_, "scene.json"), seed + 1, 1, "scene.json");
+  other.start();
+  other.advance(total_steps);
+  EXPECT_FALSE(bytes_of(other) == uncut());
+}
+
+// A job that is drained at every opportunity, and one that is left alone.
+TEST(ResumedJob, ResultEqualsTheUncutOneButForItsCost) {
+  const TemporaryFolder folder;
+  JobSpecification job;
+  job.header = {"point", seed};
+  // A job looks up after 65536 particle-steps, 1092 steps here.
+  job.scene = small_scene({{"duration", {{"production", {{"time", 9}}}}}});
+  job.scene_name = "scene.json";
+  Json uncut = run_job(job, {}).value();
+  EXPECT_EQ(uncut.at("ending").at("cause"), "completed");
+
+  job.checkpoint = folder / "checkpoint";
+  JobEvents drained;
+  drained.drain_requested = [] { return true; };
+  int drains = 0;
+  std::optional<Json> result;
+  while (!(result = run_job(job, drained))) {
+    ++drains;
+    EXPECT_TRUE(std::filesystem::exists(job.checkpoint));
+    job.threads = 1 + drains % 2;
+  }
+  EXPECT_GE(drains, 3);
+  EXPECT_GT(result->at("cost").at("cpu_seconds"), 0);
+  uncut.erase("cost");
+  result->erase("cost");
+  EXPECT_EQ(result->dump(), uncut.dump());
+}
+
+}  // namespace
+}  // namespace peclet::engine

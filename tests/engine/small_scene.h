@@ -1,0 +1,33 @@
+// A scene in which everything happens in a few hundred steps: contacts with friction come and go, the list is
+// rebuilt, the box flips, noise is drawn.
+#pragma once
+
+#include "contract/json.h"
+
+namespace peclet::engine {
+
+// 60 spheres, fast shear with hard collisions, a wide inner gap that allows a long step: dt = 0.002, strain
+// 0.004 a step, 100 steps of equilibration and 320 of production.
+inline Json small_scene() {
+  return Json::parse(R"({
+    "particles": {"count": 60, "density": 0.1,
+                  "species": [{"radius": 1, "volume_share": 1}, {"radius": 1.4, "volume_share": 1}]},
+    "volume_fraction": 0.45,
+    "fluid": {"viscosity": 0.1, "thermal_energy": 0.02},
+    "flow": {"shear_rate": 2},
+    "contact": {"normal_stiffness": 1e4, "friction": 0.5, "normal_damping": 0.5,
+                "rolling_stiffness": 700, "rolling_friction": 0.2},
+    "lubrication": {"form": "kim-karrila", "inner_gap": 0.03, "outer_gap": 0.1},
+    "repulsion": {"form": "exponential", "strength": 0.1, "relative_length": 0.01, "cutoff_lengths": 5},
+    "integrator": {"timestep": 0.002},
+    "guard": {"largest_overlap": 0.2, "largest_displacement": 0.2},
+    "duration": {"equilibration": {"time": 0.2}, "production": {"time": 0.64}}})");
+}
+
+inline Json small_scene(const Json& patch) {
+  Json scene = small_scene();
+  scene.merge_patch(patch);
+  return scene;
+}
+
+}  // namespace peclet::engine
