@@ -56,6 +56,7 @@ std::string attempts_text(Database& database, std::int64_t point) {
   }
   if (attempts.empty()) return "";
   std::vector<std::string> counts;
+  counts.reserve(outcomes.size());
   for (const auto& [outcome, count] : outcomes) counts.push_back(fmt::format("{} {}", count, outcome));
   std::string text = fmt::format("  attempts: {} ({})\n", attempts.size(), fmt::join(counts, ", "));
   const std::size_t first = blamed.size() > most_lines ? blamed.size() - most_lines : 0;
