@@ -50,7 +50,8 @@ class EngineProcess {
   void hang_up();
   // SIGKILL. The ending is still to be reaped.
   void kill() const;
-  // How it ended, once it has; afterwards the process no longer exists.
+  // How it ended, once it has. Requires that it has not said so before: afterwards the process no longer
+  // exists.
   std::optional<ExitStatus> reap();
 
  private:

@@ -3,15 +3,22 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <optional>
 #include <system_error>
+#include <thread>
 
 #include "contract/frames.h"
 #include "contract/input_error.h"
+#include "runner/blame.h"
 
 namespace peclet::runner {
 namespace {
 
 constexpr std::chrono::minutes patience{1};
+
+// Somebody may kill the engine that is asked; that says nothing about the scenes.
+constexpr int most_tries = 10;
+struct KilledFromOutside {};
 
 // One engine that is asked questions.
 class Conversation {
@@ -19,16 +26,17 @@ class Conversation {
   explicit Conversation(const EngineCommand& command)
       : command_(command), process_(command, "/dev/null"), channel_(process_.descriptor()) {
     const Json hello = receive();
-    if (hello.at("type") != "hello" || hello.at("protocol") != 1)
+    if (hello.at("type") != "hello" || hello.at("protocol") != 1) {
       unsuitable("does not say hello in protocol 1");
+    }
     identity_ = hello.at("engine");
   }
 
   Json ask(const Json& question) {
     try {
       channel_.send(question);
-    } catch (const std::system_error& error) {
-      unsuitable(error.what());
+    } catch (const std::system_error&) {
+      gone();
     }
     return receive();
   }
@@ -45,12 +53,26 @@ class Conversation {
         case FrameChannel::Status::nothing:
           unsuitable("does not answer");
         case FrameChannel::Status::closed:
-          unsuitable("left without an answer");
+          gone();
       }
     } catch (const FrameError& error) {
       unsuitable(error.what());
+    } catch (const std::system_error&) {
+      gone();
     }
     return message;
+  }
+
+  [[noreturn]] void gone() {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(2);
+    while (std::chrono::steady_clock::now() < end) {
+      if (const std::optional<ExitStatus> ending = process_.reap()) {
+        if (outcome_of(*ending) == AttemptOutcome::killed) throw KilledFromOutside{};
+        unsuitable("left without an answer, with " + to_string(*ending));
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    unsuitable("hung up without an answer");
   }
 
   [[noreturn]] void unsuitable(const std::string& why) const {
@@ -75,10 +97,8 @@ SceneAnswer read_answer(const Json& message, const Json& identity) {
   return answer;
 }
 
-}  // namespace
-
-std::vector<SceneAnswer> check_scenes(const Campaign& campaign, const std::filesystem::path& campaign_file,
-                                      const EngineCommand& command) {
+std::vector<SceneAnswer> ask_once(const Campaign& campaign, const std::filesystem::path& campaign_file,
+                                  const EngineCommand& command) {
   Conversation engine(command);
   std::vector<SceneAnswer> answers;
   for (const StatePoint& point : campaign.points) {
@@ -93,6 +113,23 @@ std::vector<SceneAnswer> check_scenes(const Campaign& campaign, const std::files
     answers.push_back(read_answer(answer, engine.identity()));
   }
   return answers;
+}
+
+}  // namespace
+
+std::vector<SceneAnswer> check_scenes(const Campaign& campaign, const std::filesystem::path& campaign_file,
+                                      const EngineCommand& command) {
+  for (int tries = 1; tries < most_tries; ++tries) {
+    try {
+      return ask_once(campaign, campaign_file, command);
+    } catch (const KilledFromOutside&) {
+      continue;
+    } catch (const Json::exception& error) {
+      throw std::runtime_error(
+          fmt::format("{}: gives an answer of the wrong form: {}", command.program.string(), error.what()));
+    }
+  }
+  throw std::runtime_error(command.program.string() + ": is killed again and again before it can answer");
 }
 
 }  // namespace peclet::runner
