@@ -8,6 +8,7 @@
 
 #include "contract/durable_file.h"
 #include "contract/key_table.h"
+#include "engine/configuration.h"
 #include "engine/scene.h"
 #include "runner/campaign.h"
 
@@ -34,6 +35,7 @@ void write_schemas(const std::filesystem::path& folder) {
   const Document documents[] = {
       {"scene", peclet::engine::scene_keys()},
       {"campaign", peclet::runner::campaign_keys()},
+      {"configuration", peclet::engine::configuration_keys()},
   };
   std::string page = peclet::read_file(folder / "README.md");
   for (const Document& document : documents) {

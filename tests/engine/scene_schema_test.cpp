@@ -3,6 +3,7 @@
 
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
+#include "engine/configuration.h"
 #include "engine/scene.h"
 
 namespace peclet::engine {
@@ -19,6 +20,14 @@ TEST(SceneSchema, CommittedFileIsTheTablesOwn) {
 
 TEST(SceneSchema, CommittedManualIsTheTablesOwn) {
   EXPECT_NE(read_file(source / "schema/README.md").find(scene_keys().markdown()), std::string::npos)
+      << "build the target `schemas`";
+}
+
+TEST(ConfigurationSchema, CommittedFileAndManualAreTheTablesOwn) {
+  EXPECT_EQ(read_json(source / "schema/configuration.schema.json"),
+            configuration_keys().json_schema("configuration.schema.json"))
+      << "build the target `schemas`";
+  EXPECT_NE(read_file(source / "schema/README.md").find(configuration_keys().markdown()), std::string::npos)
       << "build the target `schemas`";
 }
 
