@@ -2,7 +2,7 @@
 // and of a dense suspension with contacts, lubrication and its noise.
 //
 // Drag keeps no momentum, so every sphere has three degrees of freedom of each kind. False failures: errors
-// come from 100 blocks; Student's t with 99 degrees of freedom passes 5 with probability 2.5e-6, here in 28
+// come from 100 blocks; Student's t with 99 degrees of freedom passes 5 with probability 2.5e-6, here in 30
 // comparisons, were the seeds drawn anew.
 #include <gtest/gtest.h>
 

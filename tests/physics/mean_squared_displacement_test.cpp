@@ -2,7 +2,7 @@
 // axis, from thermal velocities; eq. 31 of Li, Royer & Ness (2023).
 //
 // False failures: 3 N independent displacements give a variance with relative error sqrt(2 / (3 N)), normal
-// to good accuracy; 5 of it is passed with probability 6e-7, here in 22 comparisons, were the seeds drawn
+// to good accuracy; 5 of it is passed with probability 6e-7, here in 17 comparisons, were the seeds drawn
 // anew.
 #include <gtest/gtest.h>
 
