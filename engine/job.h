@@ -12,8 +12,8 @@ namespace peclet::engine {
 struct JobSpecification {
   ResultHeader header;
   Json scene;
-  std::string scene_name;  // in messages
-  int threads = 1;                    // at most; a small system uses fewer
+  std::string scene_name;            // in messages
+  int threads = 1;                   // at most; a small system uses fewer
   std::filesystem::path checkpoint;  // resumed from when it exists; empty: none is written
   double checkpoint_seconds = 300;
   std::filesystem::path failures;  // folder for the state of a realisation that broke off; empty: not saved

@@ -64,8 +64,8 @@ struct Particles {
 };
 
 // Ends with the first of its limits that is reached; infinity where there is none or where the scene cannot
-// reach it (strain without shear, Brownian times without temperature). One at least is finite. A limit of 0 in
-// the document makes time 0 and the others infinite.
+// reach it (strain without shear, Brownian times without temperature). One at least is finite. A limit of 0
+// in the document makes time 0 and the others infinite.
 struct Duration {
   double strain = std::numeric_limits<double>::infinity();
   double brownian_times = std::numeric_limits<double>::infinity();  // units of eta a^3 / kT

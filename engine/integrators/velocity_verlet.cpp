@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/kernels/for_each_range.h"
+
 namespace peclet::engine {
 
 VelocityVerlet::VelocityVerlet(ForceField field, const ParticleState& particles, double timestep)
@@ -36,49 +38,53 @@ StepReport VelocityVerlet::advance(System& system) {
 }
 
 void VelocityVerlet::kick(ParticleState& particles) const {
-  const auto add = [&](std::vector<double>& velocity, const std::vector<double>& factor,
-                       const std::vector<double>& force) {
-    const std::size_t count = velocity.size();
-    double* v = velocity.data();
-    const double *f = force.data(), *k = factor.data();
-#pragma omp parallel for simd schedule(static) num_threads(field_.threads()) if (parallel \
-                                                                                 : field_.threads() > 1)
-    for (std::size_t i = 0; i < count; ++i) {
-      v[i] += k[i] * f[i];
-    }
-  };
-  add(particles.velocity.x, half_step_over_mass_, force_.x);
-  add(particles.velocity.y, half_step_over_mass_, force_.y);
-  add(particles.velocity.z, half_step_over_mass_, force_.z);
-  add(particles.angular_velocity.x, half_step_over_inertia_, torque_.x);
-  add(particles.angular_velocity.y, half_step_over_inertia_, torque_.y);
-  add(particles.angular_velocity.z, half_step_over_inertia_, torque_.z);
+  for_each_range(particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
+    const auto add = [&](std::vector<double>& velocity, const std::vector<double>& factor,
+                         const std::vector<double>& force) {
+      double* v = velocity.data();
+      const double *f = force.data(), *k = factor.data();
+#pragma omp simd
+      for (std::size_t i = begin; i < end; ++i) {
+        v[i] += k[i] * f[i];
+      }
+    };
+    add(particles.velocity.x, half_step_over_mass_, force_.x);
+    add(particles.velocity.y, half_step_over_mass_, force_.y);
+    add(particles.velocity.z, half_step_over_mass_, force_.z);
+    add(particles.angular_velocity.x, half_step_over_inertia_, torque_.x);
+    add(particles.angular_velocity.y, half_step_over_inertia_, torque_.y);
+    add(particles.angular_velocity.z, half_step_over_inertia_, torque_.z);
+  });
 }
 
 // Moves the particles; returns the largest speed relative to the streaming flow, NaN if one is not finite.
 double VelocityVerlet::drift(ParticleState& particles) const {
   const double dt = timestep_, rate = field_.physics().shear_rate;
-  const std::size_t count = particles.count();
   double *x = particles.position.x.data(), *y = particles.position.y.data(), *z = particles.position.z.data();
   const double *u = particles.velocity.x.data(), *v = particles.velocity.y.data(),
                *w = particles.velocity.z.data();
-  double largest = 0;
-  int unbounded = 0;  // max() would pass over a NaN
-#pragma omp parallel for simd schedule(static) num_threads(field_.threads()) if (parallel                \
-                                                                                 : field_.threads() > 1) \
-    reduction(max                                                                                        \
-              : largest) reduction(|                                                                     \
-                                   : unbounded)
-  for (std::size_t i = 0; i < count; ++i) {
-    const double peculiar = u[i] - rate * y[i];
-    const double squared = peculiar * peculiar + v[i] * v[i] + w[i] * w[i];
-    largest = largest > squared ? largest : squared;
-    unbounded |= !(squared <= std::numeric_limits<double>::max());
-    x[i] += dt * u[i];
-    y[i] += dt * v[i];
-    z[i] += dt * w[i];
-  }
-  return unbounded != 0 ? std::numeric_limits<double>::quiet_NaN() : std::sqrt(largest);
+  double largest_of_all = 0;
+  bool all_bounded = true;  // max() would pass over a NaN
+  for_each_range(particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
+    double largest = 0;
+    int unbounded = 0;
+#pragma omp simd reduction(max : largest) reduction(| : unbounded)
+    for (std::size_t i = begin; i < end; ++i) {
+      const double peculiar = u[i] - rate * y[i];
+      const double squared = peculiar * peculiar + v[i] * v[i] + w[i] * w[i];
+      largest = largest > squared ? largest : squared;
+      unbounded |= !(squared <= std::numeric_limits<double>::max());
+      x[i] += dt * u[i];
+      y[i] += dt * v[i];
+      z[i] += dt * w[i];
+    }
+#pragma omp critical(drift)
+    {
+      largest_of_all = std::max(largest_of_all, largest);
+      all_bounded = all_bounded && unbounded == 0;
+    }
+  });
+  return all_bounded ? std::sqrt(largest_of_all) : std::numeric_limits<double>::quiet_NaN();
 }
 
 void VelocityVerlet::keep_list(System& system, double speed) {

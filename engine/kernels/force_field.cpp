@@ -1,5 +1,6 @@
 #include "engine/kernels/force_field.h"
 
+#include "engine/kernels/for_each_range.h"
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {
@@ -32,20 +33,20 @@ void ForceField::add_one_body(const System& system, VectorField& force, VectorFi
   const ParticleState& particles = system.particles;
   const double rate = physics_.shear_rate;
   const bool noisy = physics_.thermal_energy > 0;
-  const std::size_t count = particles.count();
-#pragma omp parallel for schedule(static) num_threads(threads_) if (threads_ > 1)
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vector3 streaming = streaming_velocity(rate, particles.position.y[i]);
-    Vector3 f = drag_force(drag_[i], streaming, particles.velocity[i]);
-    Vector3 t = drag_force(rotational_drag_[i], streaming_spin(rate), particles.angular_velocity[i]);
-    if (noisy) {
-      const NormalPair normals = one_body_noise_.normals(system.step, static_cast<std::uint32_t>(i));
-      f += drag_noise(parameters_.noise_amplitude, drag_[i], normals.first);
-      t += drag_noise(parameters_.noise_amplitude, rotational_drag_[i], normals.second);
+  for_each_range(particles.count(), threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vector3 streaming = streaming_velocity(rate, particles.position.y[i]);
+      Vector3 f = drag_force(drag_[i], streaming, particles.velocity[i]);
+      Vector3 t = drag_force(rotational_drag_[i], streaming_spin(rate), particles.angular_velocity[i]);
+      if (noisy) {
+        const NormalPair normals = one_body_noise_.normals(system.step, static_cast<std::uint32_t>(i));
+        f += drag_noise(parameters_.noise_amplitude, drag_[i], normals.first);
+        t += drag_noise(parameters_.noise_amplitude, rotational_drag_[i], normals.second);
+      }
+      force.set(i, force[i] + f);
+      torque.set(i, torque[i] + t);
     }
-    force.set(i, force[i] + f);
-    torque.set(i, torque[i] + t);
-  }
+  });
 }
 
 }  // namespace peclet::engine

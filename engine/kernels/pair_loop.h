@@ -1,6 +1,7 @@
 // The pair loop itself, compiled once for each recipe.
 #pragma once
 
+#include "engine/kernels/for_each_range.h"
 #include "engine/kernels/pair_pass.h"
 
 namespace peclet::engine {
@@ -82,11 +83,12 @@ PairSums run_pair_pass(const PairPassInput& in, PairPassWork& work, std::vector<
   work.frames = image_frames(in.list, in.box);
   work.loads.resize(count);
   work.chunks.resize(chunks);
-#pragma omp parallel for schedule(static) num_threads(in.threads) if (in.threads > 1)
-  for (std::size_t c = 0; c < chunks; ++c) {
-    work.chunks[c] = sum_chunk<terms>(in, work, springs.data(), c * pairs_per_chunk,
-                                      std::min(count, (c + 1) * pairs_per_chunk));
-  }
+  for_each_range(chunks, in.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      work.chunks[c] = sum_chunk<terms>(in, work, springs.data(), c * pairs_per_chunk,
+                                        std::min(count, (c + 1) * pairs_per_chunk));
+    }
+  });
   gather_loads(in.list, work.loads, in.threads, force, torque);
   PairSums total;
   for (const PairSums& chunk : work.chunks) {

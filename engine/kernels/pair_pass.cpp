@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/kernels/for_each_range.h"
 #include "engine/kernels/pair_loop.h"
 #include "engine/kernels/recipes.h"
 
@@ -29,23 +30,23 @@ PairSums& PairSums::operator+=(const PairSums& other) {
 
 void gather_loads(const NeighbourList& list, const std::vector<PairLoad>& loads, int threads,
                   VectorField& force, VectorField& torque) {
-  const std::size_t count = force.size();
-#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
-  for (std::size_t i = 0; i < count; ++i) {
-    Vector3 f, t;
-    for (const std::uint32_t entry : list.incident(i)) {
-      const PairLoad& load = loads[entry >> 1];
-      if ((entry & 1) == 0) {
-        f += load.force;
-        t += load.torque_first;
-      } else {
-        f -= load.force;
-        t += load.torque_second;
+  for_each_range(force.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Vector3 f, t;
+      for (const std::uint32_t entry : list.incident(i)) {
+        const PairLoad& load = loads[entry >> 1];
+        if ((entry & 1) == 0) {
+          f += load.force;
+          t += load.torque_first;
+        } else {
+          f -= load.force;
+          t += load.torque_second;
+        }
       }
+      force.set(i, f);
+      torque.set(i, t);
     }
-    force.set(i, f);
-    torque.set(i, t);
-  }
+  });
 }
 
 PairPass pair_pass(const Terms& terms) {
