@@ -156,8 +156,8 @@ std::vector<WorkerEvent> ProcessPool::wait(std::chrono::milliseconds patience) {
   return events;
 }
 
-// Takes everything that has come (a socket holds less than this), so that leases are judged by the latest news; a
-// worker that floods us does not keep us from the others.
+// Takes everything that has come (a socket holds less than this), so that leases are judged by the latest
+// news; a worker that floods us does not keep us from the others.
 void ProcessPool::receive(int number, std::vector<WorkerEvent>& events) {
   Worker& worker = *workers_[static_cast<std::size_t>(number)];
   std::array<char, 65536> bytes;

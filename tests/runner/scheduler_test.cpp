@@ -32,8 +32,8 @@ SeedId take(Scheduler& scheduler) {
 
 TEST(Scheduler, PointsComeForwardTogetherInTheOrderOfTheSweep) {
   Scheduler scheduler = fresh(3);
-  std::vector<SeedId> taken;
-  for (int i = 0; i < 7; ++i) taken.push_back(take(scheduler));
+  std::vector<SeedId> taken(7);
+  for (SeedId& id : taken) id = take(scheduler);
   EXPECT_EQ(taken, (std::vector<SeedId>{{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {2, 1}, {0, 2}}));
 }
 
