@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <map>
 
 #include "engine/kernels/force_field.h"
+#include "tests/engine/bits.h"
 #include "tests/engine/dense_suspension.h"
 
 namespace peclet::engine {
@@ -61,7 +61,7 @@ void expect_same_springs(const System& before, const System& after) {
   ASSERT_EQ(a.size(), b.size());
   for (const auto& [particles, springs] : a) {
     ASSERT_TRUE(b.count(particles));
-    EXPECT_EQ(std::memcmp(&springs, &b.at(particles), sizeof springs), 0);
+    EXPECT_EQ(bits_of(springs), bits_of(b.at(particles)));
   }
 }
 

@@ -33,15 +33,15 @@ TEST(Production, EveryStepGoesIntoExactlyOneOfEvenBlocks) {
 
 TEST(StatisticalInefficiency, IsOneWithoutCorrelation) {
   EXPECT_EQ(statistical_inefficiency(std::vector<double>(32, 4.2)), 1);
-  std::vector<double> alternating;
-  for (int k = 0; k < 32; ++k) alternating.push_back(k % 2 == 0 ? 1 : -1);
+  std::vector<double> alternating(32, 1.0);
+  for (std::size_t k = 1; k < 32; k += 2) alternating[k] = -1;
   EXPECT_EQ(statistical_inefficiency(alternating), 1);
 }
 
 // 1, 1, -1, -1, ...: of the 31 products at lag one 16 are +1 and 15 are -1, over 32; at lag two all are -1.
 TEST(StatisticalInefficiency, SumsTheCorrelationUpToItsFirstZero) {
-  std::vector<double> series;
-  for (int k = 0; k < 32; ++k) series.push_back(k % 4 < 2 ? 1 : -1);
+  std::vector<double> series(32, 1.0);
+  for (std::size_t k = 0; k < 32; ++k) series[k] = k % 4 < 2 ? 1 : -1;
   EXPECT_NEAR(statistical_inefficiency(series), 1 + 2.0 / 32, 1e-14);
 }
 
