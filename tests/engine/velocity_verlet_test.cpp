@@ -151,34 +151,57 @@ TEST(VelocityVerlet, AContactThatIsTornOpenInOneStepIsForgotten) {
   EXPECT_TRUE(held_contacts(system.list, system.particles.image, system.springs).empty());
 }
 
-// The bound that the integrator keeps on displacements never lets a pair slip through, in flow, with noise,
-// through rebuilds and flips.
-TEST(VelocityVerlet, EveryInteractingPairIsInTheListAtEveryStep) {
-  const Physics physics =
-      physics_with({.lubrication = true, .noise = true, .contact = true, .friction = true});
-  System system = dense_suspension(physics, 100, 5);
-  system.particles.velocity = VectorField(100);
-  for (std::size_t i = 0; i < 100; ++i) {
-    system.particles.velocity.set(i, streaming_velocity(physics.shear_rate, system.particles.position.y[i]));
+class FlowingSuspension : public testing::Test {
+ protected:
+  FlowingSuspension() {
+    for (std::size_t i = 0; i < 100; ++i) {
+      ParticleState& particles = system_.particles;
+      particles.velocity.set(i, streaming_velocity(physics_.shear_rate, particles.position.y[i]));
+    }
+    integrator_.start(system_);
   }
-  VelocityVerlet integrator = integrator_of(physics, system, 2e-4);
-  integrator.start(system);
-  const std::vector<double>& radius = system.particles.radius;
+
+  Physics physics_ = physics_with({.lubrication = true, .noise = true, .contact = true, .friction = true});
+  System system_ = dense_suspension(physics_, 100, 5);
+  VelocityVerlet integrator_ = integrator_of(physics_, system_, 2e-4);
+};
+
+TEST_F(FlowingSuspension, EveryInteractingPairIsInTheListThroughRebuildsAndFlips) {
+  const std::vector<double>& radius = system_.particles.radius;
   for (int step = 0; step < 2000; ++step) {
-    integrator.advance(system);
-    if (step % 5 != 0) continue;
+    integrator_.advance(system_);
+    ASSERT_TRUE(system_.list.holds(system_.particles, system_.box)) << step;
+    if (step % 10 != 0) continue;
     std::set<std::tuple<std::uint32_t, std::uint32_t, LatticeShift>> listed;
-    for (const Pair& pair : system.list.pairs()) {
-      listed.emplace(pair.first, pair.second, system.list.images()[pair.image]);
+    for (const Pair& pair : system_.list.pairs()) {
+      listed.emplace(pair.first, pair.second, system_.list.images()[pair.image]);
     }
     for (const SeenPair& pair :
-         every_image(system.particles.position, system.box.lengths(), system.box.tilt(),
+         every_image(system_.particles.position, system_.box.lengths(), system_.box.tilt(),
                      [&](std::uint32_t i, std::uint32_t j) { return 1.025 * (radius[i] + radius[j]); })) {
       ASSERT_TRUE(listed.count({pair.first, pair.second, pair.image})) << step;
     }
   }
-  EXPECT_GT(system.list.builds(), 10u);
-  EXPECT_GE(system.box.flips(), 1);
+  EXPECT_GT(system_.list.builds(), 10u);
+  EXPECT_GE(system_.box.flips(), 1);
+}
+
+// Wherever the list was rebuilt, the old one did not hold any more at the places before wrapping.
+TEST_F(FlowingSuspension, TheListIsNotRebuiltTooSoon) {
+  int rebuilds = 0;
+  for (int step = 0; step < 2000; ++step) {
+    const System before = system_;
+    integrator_.advance(system_);
+    if (system_.list.builds() == before.list.builds() || system_.box.flips() != before.box.flips()) continue;
+    ParticleState unwrapped = system_.particles;
+    for (std::size_t i = 0; i < unwrapped.count(); ++i) {
+      const LatticeShift removed = unwrapped.image[i] - before.particles.image[i];
+      unwrapped.position.set(i, unwrapped.position[i] + system_.box.displacement(removed));
+    }
+    ++rebuilds;
+    EXPECT_FALSE(before.list.holds(unwrapped, system_.box)) << step;
+  }
+  EXPECT_GT(rebuilds, 10);
 }
 
 }  // namespace
