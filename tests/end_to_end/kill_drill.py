@@ -112,12 +112,14 @@ def main():
         code = drill.start().wait()
         same = drill.export() == undisturbed.export()
         counted = drill.count("SELECT count(*) FROM realisation WHERE state = 'done'")
-        results = drill.count("SELECT count(*) FROM attempt WHERE outcome = 'result'")
+        stored = drill.count("SELECT count(*) FROM result")
+        # A result that its scheduler did not live to commit is taken from the spool by the next one.
+        from_spool = counted - drill.count("SELECT count(*) FROM attempt WHERE outcome = 'result'")
         blamed = drill.count("SELECT total(blamed) FROM attempt")
-        print(f"kills: {kills}; last run: exit code {code}; same bytes: {same}; realisations {counted}, results {results}, "
-              f"attempts blamed on the engine {blamed:.0f}")
+        print(f"kills: {kills}; last run: exit code {code}; same bytes: {same}; realisations {counted}, results {stored}, "
+              f"of these {from_spool} from the spool, attempts blamed on the engine {blamed:.0f}")
         enough = sum(kills.values()) >= arguments.kills
-        return 0 if code == 0 and same and counted == results and blamed == 0 and enough else 1
+        return 0 if code == 0 and same and counted == stored and from_spool >= 0 and blamed == 0 and enough else 1
 
 
 if __name__ == "__main__":

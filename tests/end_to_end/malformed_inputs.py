@@ -170,7 +170,7 @@ class Trial:
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "run.checkpoint")
             scene = copy.deepcopy(SCENE)
-            scene["duration"]["production"] = {"strain": 50}
+            scene["duration"]["production"] = {"strain": 1e6}
             with open(os.path.join(folder, "scene.json"), "w") as f:
                 json.dump(scene, f)
             command = [self.engine, "run", "scene.json", "--checkpoint", "run.checkpoint"]
