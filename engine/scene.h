@@ -75,7 +75,7 @@ struct Duration {
 // Limits that end a realisation with a named cause.
 struct Guard {
   double largest_overlap = 0.05;       // of the smaller radius of the pair
-  double largest_displacement = 0.05;  // per step, of the particle's radius
+  double largest_displacement = 0.05;  // per step, of the smallest radius of all
 };
 
 struct Warning {

@@ -189,7 +189,8 @@ Keys run_keys() {
       with_default(block("/guard", "Limits that end a realisation as failed."), Json::object()),
       with_default(positive("/guard/largest_overlap", "", "Overlap over the smaller radius of the pair."),
                    0.05),
-      with_default(positive("/guard/largest_displacement", "", "Displacement in one step over the radius."),
+      with_default(positive("/guard/largest_displacement", "",
+                            "Displacement in one step, relative to the flow, over the smallest radius."),
                    0.05),
   });
   return keys;

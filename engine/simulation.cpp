@@ -23,7 +23,12 @@ constexpr std::uint64_t sampling_interval = 50;
 // the list close to the pairs that act.
 constexpr double skin = 0.08;
 
-std::uint64_t steps_of(const Duration& duration, const Scene& scene, double timestep) {
+// Thousands of years of computing; step counters hold far more.
+constexpr double most_steps = 1e15;
+
+// Steps of the phase called `name`. Throws InputError when there are too many to count.
+std::uint64_t steps_of(const Duration& duration, const char* name, const Scene& scene, double timestep,
+                       const std::string& file) {
   const Physics& physics = scene.physics;
   double time = duration.time;
   if (physics.shear_rate > 0) {
@@ -34,7 +39,12 @@ std::uint64_t steps_of(const Duration& duration, const Scene& scene, double time
     time = std::min(time, duration.brownian_times * physics.viscosity * a * a * a / physics.thermal_energy);
   }
   // A duration that is a whole number of steps must not gain one by rounding.
-  return static_cast<std::uint64_t>(std::ceil(time / timestep * (1 - 1e-12)));
+  const double steps = std::ceil(time / timestep * (1 - 1e-12));
+  if (!(steps <= most_steps)) {
+    throw InputError(file, std::string("/duration/") + name, scene.document.at("duration").at(name).dump(),
+                     fmt::format("must last at most {:g} steps of {:.4g}", most_steps, timestep));
+  }
+  return static_cast<std::uint64_t>(steps);
 }
 
 // The streaming flow's velocities, and those of equilibrium where there is a temperature.
@@ -74,8 +84,8 @@ const char* name_of(Ending::Cause cause) {
 Schedule make_schedule(const Scene& scene, const std::string& file) {
   Schedule schedule;
   schedule.timestep = resolved_timestep(scene, file);
-  schedule.equilibration = steps_of(scene.equilibration, scene, schedule.timestep);
-  schedule.production = steps_of(scene.production, scene, schedule.timestep);
+  schedule.equilibration = steps_of(scene.equilibration, "equilibration", scene, schedule.timestep, file);
+  schedule.production = steps_of(scene.production, "production", scene, schedule.timestep, file);
   if (schedule.production < count_of_blocks) {
     throw InputError(file, "/duration/production", scene.document.at("duration").at("production").dump(),
                      fmt::format("must last at least {} steps of {:.4g}, one for each block", count_of_blocks,

@@ -18,7 +18,8 @@ struct Schedule {
   std::uint64_t total() const { return equilibration + production; }
 };
 
-// Throws InputError when the step is too large or the production window shorter than its 32 blocks.
+// Throws InputError when the step is too large, the production window shorter than its 32 blocks, or a phase
+// longer than can be counted.
 Schedule make_schedule(const Scene& scene, const std::string& file);
 
 // Why a realisation is over.
