@@ -66,15 +66,20 @@ class Drill:
 
 
 def strike(process, whom):
+    """Kills the scheduler, one worker, or the scheduler and all workers. Returns the number of processes that were hit."""
     workers = children(process.pid)
-    if whom in ("scheduler", "both"):
+    victims = {"scheduler": [], "workers": workers[:1], "both": workers}[whom]
+    hits = 0
+    if whom != "workers":
         process.kill()
-    if whom in ("workers", "both"):
-        for worker in workers if whom == "both" else workers[:1]:
-            try:
-                os.kill(worker, signal.SIGKILL)
-            except ProcessLookupError:
-                pass
+        hits += 1
+    for worker in victims:
+        try:
+            os.kill(worker, signal.SIGKILL)
+            hits += 1
+        except ProcessLookupError:
+            pass
+    return hits
 
 
 def main():
@@ -102,8 +107,8 @@ def main():
                 print(f"the campaign was through after {sum(kills.values())} kills")
                 break
             whom = chance.choice(list(kills))
-            strike(process, whom)
-            kills[whom] += 1
+            if strike(process, whom) > 0:
+                kills[whom] += 1  # a strike at workers that are not there yet does not count
             if whom == "workers":  # the scheduler must carry on with a new one, and is then stopped the hard way
                 time.sleep(chance.uniform(0, 0.2))
                 process.kill()
