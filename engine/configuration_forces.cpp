@@ -1,12 +1,11 @@
-// The answer to `peclet-engine forces`: the same pair_terms() as in the time loop, term by term.
-#include <algorithm>
+// The answer to `peclet-engine forces`: the kernels of the time loop, term by term.
 #include <map>
+#include <string_view>
 #include <tuple>
 
 #include "engine/configuration.h"
 #include "engine/kernels/pair_access.h"
-#include "engine/kernels/pair_terms.h"
-#include "engine/kernels/recipes.h"
+#include "engine/kernels/pair_pass.h"
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {
@@ -14,15 +13,15 @@ namespace {
 
 using PairName = std::tuple<std::uint32_t, std::uint32_t, LatticeShift>;
 
+Json to_json(const Vector3& v) { return {v.x, v.y, v.z}; }
+
 Json to_json(const VectorField& field) {
   Json rows = Json::array();
   for (std::size_t i = 0; i < field.size(); ++i) {
-    rows.push_back({field.x[i], field.y[i], field.z[i]});
+    rows.push_back(to_json(field[i]));
   }
   return rows;
 }
-
-Json to_json(const Vector3& v) { return {v.x, v.y, v.z}; }
 
 Json to_json(const SymmetricTensor& t) {
   return {{t.xx, t.xy, t.xz}, {t.xy, t.yy, t.yz}, {t.xz, t.yz, t.zz}};
@@ -32,15 +31,6 @@ Json to_json(const SymmetricTensor& t) {
 class ByTerm {
  public:
   explicit ByTerm(const Configuration& configuration) : configuration_(configuration) {}
-
-  void add_pair(const char* term, const Pair& pair, const Vector3& r, const PairLoad& load) {
-    Sums& sums = of(term);
-    sums.force.set(pair.first, sums.force[pair.first] + load.force);
-    sums.force.set(pair.second, sums.force[pair.second] - load.force);
-    sums.torque.set(pair.first, sums.torque[pair.first] + load.torque_first);
-    sums.torque.set(pair.second, sums.torque[pair.second] + load.torque_second);
-    sums.stress += (1 / configuration_.box.volume()) * symmetric_dyad(r, load.force);
-  }
 
   void add_single(const char* term, std::size_t i, const Vector3& force, const Vector3& torque) {
     Sums& sums = of(term);
@@ -75,94 +65,139 @@ class ByTerm {
   std::map<std::string, Sums> sums_;
 };
 
+// A term is what the pairs do with it less what they do without it.
+struct TermRecipe {
+  const char* name;
+  Terms with, without;
+};
+
+std::vector<TermRecipe> recipes_of(const Terms& terms) {
+  std::vector<TermRecipe> recipes;
+  const Terms touching = {.contact = true}, sliding = {.contact = true, .friction = true};
+  const auto add = [&](bool present, const char* name, const Terms& with, const Terms& without) {
+    if (present) {
+      recipes.push_back({name, with, without});
+    }
+  };
+  add(terms.lubrication, "lubrication", {.lubrication = true}, {});
+  add(terms.noise, "brownian_lubrication", {.lubrication = true, .noise = true}, {.lubrication = true});
+  add(terms.contact, "contact_normal", touching, {});
+  add(terms.damping, "contact_damping", {.contact = true, .damping = true}, touching);
+  add(terms.friction, "friction", sliding, touching);
+  add(terms.rolling, "rolling", {.contact = true, .friction = true, .rolling = true}, sliding);
+  add(terms.repulsion, "repulsion", {.repulsion = true}, {});
+  return recipes;
+}
+
 class Evaluation {
  public:
   explicit Evaluation(const Configuration& configuration)
-      : configuration_(configuration), by_term_(configuration) {
-    const std::vector<double> sizes = distinct_radii(configuration.particles.radius);
+      : configuration_(configuration),
+        terms_(required_terms(configuration.physics)),
+        set_(chosen_instruction_set()),
+        by_term_(configuration) {
+    const ParticleState& particles = configuration.particles;
+    const std::vector<double> sizes = distinct_radii(particles.radius);
     kinds_ = make_pair_kinds(configuration.physics, sizes);
     list_ = NeighbourList(range_table(kinds_, sizes.size()), 0);
-    list_.build(configuration.particles, configuration.box);
-    frames_ = image_frames(list_, configuration.box);
-    for (const HeldContact& contact : configuration.springs) {
-      springs_[{contact.first, contact.second, contact.image}] = contact.springs;
-    }
+    list_.build(particles, configuration.box);
+    std::vector<HeldContact> held = configuration.springs;
+    sort_contacts(held);
+    springs_ = placed_contacts(list_, particles, held, spring_kinds(terms_));
+    noise_.resize(list_.pairs().size());
     if (configuration.noise) {
-      for (const GivenPairNoise& given : configuration.noise->pairs) {
-        noise_[{given.first, given.second, given.image}] = given.normals;
-      }
+      find_noise(*configuration.noise);
     }
   }
 
   Json run() {
-    with_recipe(required_terms(configuration_.physics), [&]<Terms terms>() {
-      add_pairs<terms>();
-      if (configuration_.advance) {
-        advance_springs<terms>();
-      }
-    });
+    for (const TermRecipe& recipe : recipes_of(terms_)) {
+      add_pairs(recipe);
+    }
     add_one_body();
     add_uniform_flow();
     Json answer = by_term_.json();
-    answer["springs"] = advanced_;
+    answer["springs"] = configuration_.advance ? advanced_springs() : Json::array();
     return answer;
   }
 
  private:
-  template <Terms terms, class Use>
-  void for_each_pair(double spring_timestep, Use&& use) {
-    const double noise_timestep = configuration_.noise ? configuration_.noise->timestep : 0;
-    PairParameters parameters = pair_parameters(configuration_.physics, noise_timestep);
-    parameters.spring_timestep = spring_timestep;
-    for (const Pair& pair : list_.pairs()) {
-      const PairKind& kind = kinds_[pair.kind];
-      const ImageFrame& frame = frames_[pair.image];
-      const PairGeometry shape = geometry(separation(configuration_.particles, pair, frame), kind);
-      const PairName name = {pair.first, pair.second, list_.images()[pair.image]};
-      const auto held = springs_.find(name);
-      ContactSprings springs = held == springs_.end() ? ContactSprings{} : held->second;
-      const TermLoads loads = pair_terms<terms>(parameters, kind, shape,
-                                                motion(configuration_.particles, pair, frame), &springs, [&] {
-                                                  const auto given = noise_.find(name);
-                                                  return given == noise_.end() ? NormalPair{} : given->second;
-                                                });
-      use(pair, shape, loads, springs);
+  struct Loads {
+    VectorField force, torque;
+    PairSums sums;
+  };
+
+  void find_noise(const GivenNoise& noise) {
+    std::map<PairName, NormalPair> given;
+    for (const GivenPairNoise& pair : noise.pairs) {
+      given[{pair.first, pair.second, pair.image}] = pair.normals;
+    }
+    for (std::size_t p = 0; p < noise_.size(); ++p) {
+      const auto found = given.find(name_of(list_.pairs()[p]));
+      noise_[p] = found == given.end() ? NormalPair{} : found->second;
     }
   }
 
-  template <Terms terms>
-  void add_pairs() {
-    for_each_pair<terms>(
-        0, [&](const Pair& pair, const PairGeometry& shape, const TermLoads& loads, const ContactSprings&) {
-          const auto add = [&](const char* term, bool present, const PairLoad& load) {
-            if (present) {
-              by_term_.add_pair(term, pair, shape.separation, load);
-            }
-          };
-          add("lubrication", terms.lubrication, loads.lubrication);
-          add("brownian_lubrication", terms.noise, loads.noise);
-          add("contact_normal", terms.contact, {loads.contact_normal, {}, {}});
-          add("contact_damping", terms.damping, {loads.contact_damping, {}, {}});
-          add("friction", terms.friction, loads.friction);
-          add("rolling", terms.rolling, loads.rolling);
-          add("repulsion", terms.repulsion, {loads.repulsion, {}, {}});
-        });
+  PairName name_of(const Pair& pair) const { return {pair.first, pair.second, list_.images()[pair.image]}; }
+
+  Loads evaluate(const Terms& terms, double spring_timestep, SpringField& springs) const {
+    const std::size_t count = configuration_.particles.count();
+    Loads loads = {VectorField(count), VectorField(count), {}};
+    PairParameters parameters =
+        pair_parameters(configuration_.physics, configuration_.noise ? configuration_.noise->timestep : 0);
+    parameters.spring_timestep = spring_timestep;
+    const PairPassInput input = {
+        .particles = configuration_.particles,
+        .list = list_,
+        .box = configuration_.box,
+        .kinds = kinds_,
+        .parameters = parameters,
+        .noise = {},
+        .given_noise = &noise_,
+    };
+    if (!list_.pairs().empty()) {
+      loads.sums = PairPass(terms, set_).evaluate(input, springs, loads.force, loads.torque);
+    }
+    return loads;
   }
 
-  template <Terms terms>
-  void advance_springs() {
-    advanced_ = Json::array();
-    for_each_pair<terms>(*configuration_.advance, [&](const Pair& pair, const PairGeometry& shape,
-                                                      const TermLoads&, const ContactSprings& springs) {
-      if (terms.friction && shape.overlap() > 0) {
-        const LatticeShift image = list_.images()[pair.image];
-        advanced_.push_back({{"i", pair.first},
-                             {"j", pair.second},
-                             {"image", {image.x, image.y, image.z}},
-                             {"tangential", to_json(springs.tangential)},
-                             {"rolling", to_json(springs.rolling)}});
+  void add_pairs(const TermRecipe& recipe) {
+    SpringField springs = springs_, untouched = springs_;
+    const Loads with = evaluate(recipe.with, 0, springs), without = evaluate(recipe.without, 0, untouched);
+    for (std::size_t i = 0; i < configuration_.particles.count(); ++i) {
+      by_term_.add_single(recipe.name, i, with.force[i] - without.force[i],
+                          with.torque[i] - without.torque[i]);
+    }
+    for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
+      if (recipe.name == std::string_view(engine::name_of(static_cast<StressTerm>(t)))) {
+        by_term_.add_stress(recipe.name, (1 / configuration_.box.volume()) * with.sums.stress[t]);
       }
-    });
+    }
+  }
+
+  Json advanced_springs() const {
+    Json advanced = Json::array();
+    if (!terms_.friction) {
+      return advanced;
+    }
+    SpringField springs = springs_;
+    evaluate(terms_, *configuration_.advance, springs);
+    const std::vector<ImageFrame> frames = image_frames(list_, configuration_.box);
+    for (std::size_t p = 0; p < list_.pairs().size(); ++p) {
+      const Pair& pair = list_.pairs()[p];
+      const PairGeometry shape =
+          geometry(separation(configuration_.particles, pair, frames[pair.image]), kinds_[pair.kind]);
+      if (!(shape.overlap() > 0)) {
+        continue;
+      }
+      const LatticeShift image = list_.images()[pair.image];
+      advanced.push_back({{"i", pair.first},
+                          {"j", pair.second},
+                          {"image", {image.x, image.y, image.z}},
+                          {"tangential", to_json(springs[p].tangential)},
+                          {"rolling", to_json(springs[p].rolling)}});
+    }
+    return advanced;
   }
 
   void add_one_body() {
@@ -171,14 +206,15 @@ class Evaluation {
     for (std::size_t i = 0; i < particles.count(); ++i) {
       const double zeta = translational_drag(physics.viscosity, particles.radius[i]);
       const double zeta_r = rotational_drag(physics.viscosity, particles.radius[i]);
-      const Vector3 streaming = streaming_velocity(physics.shear_rate, particles.position.y[i]);
+      const Vector3 streaming = streaming_velocity(physics.shear_rate, particles.position[i].y);
       by_term_.add_single(
           "drag", i, drag_force(zeta, streaming, particles.velocity[i]),
           drag_force(zeta_r, streaming_spin(physics.shear_rate), particles.angular_velocity[i]));
       if (configuration_.noise) {
         const double amplitude = std::sqrt(2 * physics.thermal_energy / configuration_.noise->timestep);
-        by_term_.add_single("brownian_drag", i, drag_noise(amplitude, zeta, configuration_.noise->force[i]),
-                            drag_noise(amplitude, zeta_r, configuration_.noise->torque[i]));
+        by_term_.add_single("brownian_drag", i,
+                            drag_noise_amplitude(amplitude, zeta) * configuration_.noise->force[i],
+                            drag_noise_amplitude(amplitude, zeta_r) * configuration_.noise->torque[i]);
       }
     }
   }
@@ -194,13 +230,13 @@ class Evaluation {
   }
 
   const Configuration& configuration_;
+  Terms terms_;
+  InstructionSet set_;
   ByTerm by_term_;
   std::vector<PairKind> kinds_;
   NeighbourList list_;
-  std::vector<ImageFrame> frames_;
-  std::map<PairName, ContactSprings> springs_;
-  std::map<PairName, NormalPair> noise_;
-  Json advanced_ = Json::array();
+  SpringField springs_;
+  std::vector<NormalPair> noise_;  // of each pair
 };
 
 }  // namespace

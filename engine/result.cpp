@@ -5,6 +5,7 @@
 
 #include "contract/provenance.h"
 #include "contract/sha256.h"
+#include "engine/kernels/instruction_set.h"
 #include "engine/kernels/terms.h"
 
 namespace peclet::engine {
@@ -191,8 +192,12 @@ Json make_unpacked_result(const ResultHeader& header, const Scene& scene, const 
 const Json& engine_identity() {
   static const Json identity = [] {
     Json all = provenance();
-    // The kernels are portable, but the C library picks its logarithms and cosines by what the processor has.
-    all["instruction_set"] = __builtin_cpu_supports("fma") != 0 ? "x86-64, libm with fma" : "x86-64";
+    // Besides the kernels, the C library picks its functions by what the processor has.
+    std::string set = name_of(chosen_instruction_set());
+#ifdef __x86_64__
+    set += __builtin_cpu_supports("fma") != 0 ? ", libm with fma" : "";
+#endif
+    all["instruction_set"] = set;
     return all;
   }();
   return identity;

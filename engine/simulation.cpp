@@ -19,9 +19,9 @@ namespace {
 // run.
 constexpr std::uint64_t sampling_interval = 50;
 
-// Room for non-affine motion before the list is rebuilt, in radii of the smallest sphere. A small one keeps
-// the list close to the pairs that act.
-constexpr double skin = 0.08;
+// Pairs are listed that much beyond their range, as a fraction of it. A small skin keeps the list close to
+// the pairs that act.
+constexpr double skin = 0.03;
 
 // Thousands of years of computing; step counters hold far more.
 constexpr double most_steps = 1e15;
@@ -51,7 +51,7 @@ std::uint64_t steps_of(const Duration& duration, const char* name, const Scene& 
 void set_initial_velocities(ParticleState& particles, const Physics& physics, std::uint64_t seed) {
   const KeyedRandom random(seed, Purpose::initial_velocity);
   for (std::uint32_t i = 0; i < particles.count(); ++i) {
-    Vector3 velocity = streaming_velocity(physics.shear_rate, particles.position.y[i]);
+    Vector3 velocity = streaming_velocity(physics.shear_rate, particles.position[i].y);
     Vector3 spin = streaming_spin(physics.shear_rate);
     if (physics.thermal_energy > 0) {
       const NormalPair normals = random.normals(0, i);
@@ -120,7 +120,8 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
   smallest_radius_ = sizes.front();
   system_.particles = make_particles(radius, scene.particles.density);
   system_.box = ShearedBox({edge, edge, edge}, physics.shear_rate);
-  system_.list = NeighbourList(range_table(kinds_, sizes.size()), skin * smallest_radius_);
+  system_.list = NeighbourList(range_table(kinds_, sizes.size()), skin);
+  system_.springs = SpringField(spring_kinds(required_terms(physics)), 0);
   integrator_ = std::make_unique<VelocityVerlet>(
       ForceField(physics, system_.particles, schedule.timestep, seed, threads), system_.particles,
       schedule.timestep);

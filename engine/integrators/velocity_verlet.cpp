@@ -4,20 +4,25 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/kernels/for_each_range.h"
+#include "engine/state/for_each_range.h"
 
 namespace peclet::engine {
 
 VelocityVerlet::VelocityVerlet(ForceField field, const ParticleState& particles, double timestep)
     : field_(std::move(field)), timestep_(timestep), force_(particles.count()), torque_(particles.count()) {
+  kicks_.resize(distinct_radii(particles.radius).size());
   for (std::size_t i = 0; i < particles.count(); ++i) {
-    half_step_over_mass_.push_back(0.5 * timestep / particles.mass[i]);
-    half_step_over_inertia_.push_back(0.5 * timestep / particles.inertia[i]);
+    kicks_[particles.size_class[i]] = {0.5 * timestep / particles.mass[i],
+                                       0.5 * timestep / particles.inertia[i]};
   }
 }
 
 void VelocityVerlet::start(System& system) {
-  rebuild_neighbours(system);
+  const SpringKinds kinds = spring_kinds(field_.terms());
+  if (system.springs.kinds() != kinds) {
+    system.springs = SpringField(kinds, system.list.pairs().size());
+  }
+  rebuild_neighbours(system, field_.threads());
   displacement_bound_ = 0;
   field_.evaluate(system, force_, torque_);
 }
@@ -39,49 +44,34 @@ StepReport VelocityVerlet::advance(System& system) {
 
 void VelocityVerlet::kick(ParticleState& particles) const {
   for_each_range(particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
-    const auto add = [&](std::vector<double>& velocity, const std::vector<double>& factor,
-                         const std::vector<double>& force) {
-      double* v = velocity.data();
-      const double *f = force.data(), *k = factor.data();
-#pragma omp simd
-      for (std::size_t i = begin; i < end; ++i) {
-        v[i] += k[i] * f[i];
-      }
-    };
-    add(particles.velocity.x, half_step_over_mass_, force_.x);
-    add(particles.velocity.y, half_step_over_mass_, force_.y);
-    add(particles.velocity.z, half_step_over_mass_, force_.z);
-    add(particles.angular_velocity.x, half_step_over_inertia_, torque_.x);
-    add(particles.angular_velocity.y, half_step_over_inertia_, torque_.y);
-    add(particles.angular_velocity.z, half_step_over_inertia_, torque_.z);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Kick& of = kicks_[particles.size_class[i]];
+      particles.velocity.row(i) += of.translational * force_.row(i);
+      particles.angular_velocity.row(i) += of.rotational * torque_.row(i);
+    }
   });
 }
 
 // Moves the particles; returns the largest speed relative to the streaming flow, NaN if one is not finite.
 double VelocityVerlet::drift(ParticleState& particles) const {
-  const double dt = timestep_, rate = field_.physics().shear_rate;
-  double *x = particles.position.x.data(), *y = particles.position.y.data(), *z = particles.position.z.data();
-  const double *u = particles.velocity.x.data(), *v = particles.velocity.y.data(),
-               *w = particles.velocity.z.data();
   double largest_of_all = 0;
-  bool all_bounded = true;  // max() would pass over a NaN
+  bool all_bounded = true;
   for_each_range(particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
-    double largest = 0;
-    int unbounded = 0;
-#pragma omp simd reduction(max : largest) reduction(| : unbounded)
+    double largest = 0, sum = 0;
+    const double rate = field_.physics().shear_rate, dt = timestep_;
     for (std::size_t i = begin; i < end; ++i) {
-      const double peculiar = u[i] - rate * y[i];
-      const double squared = peculiar * peculiar + v[i] * v[i] + w[i] * w[i];
+      const Row& u = particles.velocity.row(i);
+      Row& x = particles.position.row(i);
+      const double peculiar = u[0] - rate * x[1];
+      const double squared = peculiar * peculiar + u[1] * u[1] + u[2] * u[2];
       largest = largest > squared ? largest : squared;
-      unbounded |= !(squared <= std::numeric_limits<double>::max());
-      x[i] += dt * u[i];
-      y[i] += dt * v[i];
-      z[i] += dt * w[i];
+      sum += squared;
+      x += dt * u;
     }
 #pragma omp critical(drift)
     {
       largest_of_all = std::max(largest_of_all, largest);
-      all_bounded = all_bounded && unbounded == 0;
+      all_bounded = all_bounded && std::isfinite(sum);  // max() would pass over a NaN
     }
   });
   return all_bounded ? std::sqrt(largest_of_all) : std::numeric_limits<double>::quiet_NaN();
@@ -96,7 +86,7 @@ void VelocityVerlet::keep_list(System& system, double speed) {
   }
   displacement_bound_ = system.list.largest_displacement(system.particles, system.box);
   if (!(displacement_bound_ < allowed)) {
-    rebuild_neighbours(system);
+    rebuild_neighbours(system, field_.threads());
     displacement_bound_ = 0;
   }
 }

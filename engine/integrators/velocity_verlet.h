@@ -29,7 +29,11 @@ class VelocityVerlet final : public Integrator {
 
   ForceField field_;
   double timestep_;
-  std::vector<double> half_step_over_mass_, half_step_over_inertia_;
+  // Half a step over the mass and the moment of inertia of each size class.
+  struct Kick {
+    double translational, rotational;
+  };
+  std::vector<Kick> kicks_;
   VectorField force_, torque_;
   // An upper bound of the displacements since the list was built, raised by every step's largest one and
   // replaced by the true value only when it reaches what the list allows.

@@ -10,7 +10,7 @@ class ForceField {
  public:
   // `timestep` enters the amplitude of the noise, sqrt(2 kT / dt), and the advance of contact springs.
   ForceField(const Physics& physics, const ParticleState& particles, double timestep, std::uint64_t seed,
-             int threads);
+             int threads, InstructionSet set = chosen_instruction_set());
 
   // Overwrites force and torque with those at the system's positions and velocities, with the noise of
   // system.step; contact springs advance by one step of the present motion.
@@ -22,16 +22,23 @@ class ForceField {
   int threads() const { return threads_; }
 
  private:
-  void add_one_body(const System& system, VectorField& force, VectorField& torque) const;
+  void add_drag(const ParticleState& particles, std::size_t begin, std::size_t end, VectorField& force,
+                VectorField& torque) const;
+  void add_drag_noise(const System& system, std::size_t begin, std::size_t end, VectorField& force,
+                      VectorField& torque) const;
 
   Physics physics_;
   Terms terms_;
   std::vector<PairKind> kinds_;
   PairPass pair_pass_;
-  PairPassWork work_;
   PairParameters parameters_;
   KeyedRandom pair_noise_, one_body_noise_;
-  std::vector<double> drag_, rotational_drag_;  // of each particle
+  FillNormals fill_normals_;
+  // Of each size class: coefficients of drag, and the amplitudes of its noise.
+  struct DragOfClass {
+    double translational, rotational, force_noise, torque_noise;
+  };
+  std::vector<DragOfClass> drag_;
   int threads_;
 };
 

@@ -9,7 +9,7 @@
 namespace peclet::engine {
 
 // Displacement and velocity of every image that the list uses, at one moment.
-struct ImageFrame {
+struct alignas(32) ImageFrame {
   Vector3 displacement;
   double velocity;  // along x
 };

@@ -14,6 +14,7 @@ PairKind make_pair_kind(const Physics& physics, double first, double second) {
   kind.reduced_diameter = 2 * first * second / kind.sum_of_radii;
   if (physics.lubrication) {
     kind.resistance = resistance_constants(physics.viscosity, first, second);
+    kind.roots = root_constants(kind.resistance);
     kind.lubrication_range = kind.sum_of_radii * (1 + 0.5 * physics.lubrication->outer_gap);
   }
   if (physics.repulsion) {

@@ -1,12 +1,36 @@
 #include "engine/kernels/pair_pass.h"
 
 #include <algorithm>
+#include <stdexcept>
 
-#include "engine/kernels/for_each_range.h"
-#include "engine/kernels/pair_loop.h"
-#include "engine/kernels/recipes.h"
+#include "engine/state/for_each_range.h"
 
 namespace peclet::engine {
+namespace {
+
+PairSums total_of(const std::vector<PairSums>& blocks) {
+  PairSums total;
+  for (const PairSums& block : blocks) {
+    for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
+      total.stress[t] += block.stress[t];
+    }
+    total.contacts += block.contacts;
+    total.largest_overlap = std::max(total.largest_overlap, block.largest_overlap);
+    total.finite = total.finite && block.finite;
+  }
+  return total;
+}
+
+void add_incoming(const NeighbourList& list, const ParticleBlock& block, const VectorField& crossing,
+                  VectorField& force, VectorField& torque) {
+  for (std::uint32_t k = block.incoming_begin; k < block.incoming_end; ++k) {
+    const IncomingPair& pair = list.incoming()[k];
+    force.add(pair.particle, crossing[2 * std::size_t{pair.crossing}]);
+    torque.add(pair.particle, crossing[2 * std::size_t{pair.crossing} + 1]);
+  }
+}
+
+}  // namespace
 
 PairParameters pair_parameters(const Physics& physics, double timestep) {
   PairParameters parameters;
@@ -18,39 +42,72 @@ PairParameters pair_parameters(const Physics& physics, double timestep) {
   return parameters;
 }
 
-PairSums& PairSums::operator+=(const PairSums& other) {
-  for (std::size_t t = 0; t < stress.size(); ++t) {
-    stress[t] += other.stress[t];
+SpringKinds spring_kinds(const Terms& terms) {
+  if (!terms.friction) {
+    return SpringKinds::none;
   }
-  contacts += other.contacts;
-  largest_overlap = std::max(largest_overlap, other.largest_overlap);
-  finite = finite && other.finite;
-  return *this;
+  return terms.rolling ? SpringKinds::tangential_and_rolling : SpringKinds::tangential;
 }
 
-void gather_loads(const NeighbourList& list, const std::vector<PairLoad>& loads, int threads,
-                  VectorField& force, VectorField& torque) {
-  for_each_range(force.size(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      Vector3 f, t;
-      for (const std::uint32_t entry : list.incident(i)) {
-        const PairLoad& load = loads[entry >> 1];
-        if ((entry & 1) == 0) {
-          f += load.force;
-          t += load.torque_first;
-        } else {
-          f -= load.force;
-          t += load.torque_second;
-        }
-      }
-      force.set(i, f);
-      torque.set(i, t);
+PairKernelInput PairPass::kernel_input(const PairPassInput& input, SpringField& springs) {
+  frames_ = image_frames(input.list, input.box);
+  image_keys_.clear();
+  for (const LatticeShift image : input.list.images()) {
+    image_keys_.push_back(image_identity(image));
+  }
+  static_assert(sizeof(ImageFrame) == 4 * sizeof(double));
+  static_assert(sizeof(NormalPair) == 6 * sizeof(double));
+  PairKernelInput kernel{};
+  kernel.position = input.particles.position.data();
+  kernel.velocity = input.particles.velocity.data();
+  kernel.spin = input.particles.angular_velocity.data();
+  kernel.pairs = input.list.pairs().data();
+  kernel.images = &frames_.front().displacement.x;
+  kernel.kinds = input.kinds.data();
+  kernel.parameters = input.parameters;
+  for (std::size_t c = 0; c < springs.components(); ++c) {
+    kernel.springs[c] = springs.component(c);
+  }
+  kernel.noise = input.noise;
+  kernel.fill_normals = fill_normals_;
+  kernel.id = input.particles.id.data();
+  kernel.image_keys = image_keys_.data();
+  kernel.given_normals = input.given_noise != nullptr ? &input.given_noise->front().first.x : nullptr;
+  return kernel;
+}
+
+PairSums PairPass::evaluate(const PairPassInput& input, SpringField& springs, VectorField& force,
+                            VectorField& torque) {
+  const NeighbourList& list = input.list;
+  const bool has_springs = springs.kinds() >= spring_kinds_ && springs.size() == list.pairs().size();
+  if (spring_kinds_ != SpringKinds::none && !has_springs) {
+    throw std::invalid_argument("the springs are not those of the list of pairs");
+  }
+  const std::vector<ParticleBlock>& blocks = list.blocks();
+  const PairKernelInput kernel = kernel_input(input, springs);
+  if (crossing_.size() < 2 * list.crossings()) {
+    crossing_ = VectorField(2 * list.crossings());
+  }
+  sums_.resize(blocks.size());
+  for_each_range(blocks.size(), input.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      const ParticleBlock& block = blocks[b];
+      const std::size_t offset = 4 * std::size_t{block.begin},
+                        length = 4 * std::size_t{block.end - block.begin};
+      std::fill_n(force.data() + offset, length, 0.0);
+      std::fill_n(torque.data() + offset, length, 0.0);
+      kernel_(kernel, list.runs().data() + block.runs_begin, block.runs_end - block.runs_begin,
+              {block.begin, force.data() + offset, torque.data() + offset, crossing_.data(), &sums_[b]});
     }
   });
-}
-
-PairPass pair_pass(const Terms& terms) {
-  return with_recipe(terms, []<Terms recipe>() -> PairPass { return &run_pair_pass<recipe>; });
+  if (list.crossings() > 0) {
+    for_each_range(blocks.size(), input.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) {
+        add_incoming(list, blocks[b], crossing_, force, torque);
+      }
+    });
+  }
+  return total_of(sums_);
 }
 
 }  // namespace peclet::engine

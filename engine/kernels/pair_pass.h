@@ -1,26 +1,24 @@
 // One evaluation of all pair terms: forces and torques on particles, stress by term.
 //
-// The loop over pairs writes one load per pair; the loop over particles adds the loads of each particle's
-// pairs in the order of the list. Sums over pairs are taken in fixed chunks. So the result has the same bits
-// for any number of threads, and no two threads ever write to one place.
+// A kernel takes the pairs of one block of particles and adds their loads to that block's rows, in the order
+// of the list. What a crossing pair does to its second particle, in another block, is left aside and added
+// afterwards, in the order of `incoming`. So no two threads ever write to one place, and the result has the
+// same bits for any number of threads.
 #pragma once
 
-#include <array>
+#include <vector>
 
+#include "engine/kernels/instruction_set.h"
 #include "engine/kernels/pair_access.h"
-#include "engine/kernels/pair_terms.h"
+#include "engine/random/keyed_random.h"
+#include "engine/state/contact_history.h"
 
 namespace peclet::engine {
 
-// Sums over the pairs of one evaluation. stress is sum of sym(r F_i): divide by the volume for (1/V) sum r F.
-struct PairSums {
-  std::array<SymmetricTensor, count_of_stress_terms> stress{};
-  std::uint64_t contacts = 0;
-  double largest_overlap = 0;  // over the smaller radius of the pair
-  bool finite = true;          // no separation was NaN or infinite
+PairParameters pair_parameters(const Physics& physics, double timestep);
 
-  PairSums& operator+=(const PairSums& other);
-};
+// The springs that these terms stretch.
+SpringKinds spring_kinds(const Terms& terms);
 
 struct PairPassInput {
   const ParticleState& particles;
@@ -28,25 +26,37 @@ struct PairPassInput {
   const ShearedBox& box;
   const std::vector<PairKind>& kinds;
   PairParameters parameters;
-  KeyedRandom random;  // of pair noise
-  std::uint64_t step;  // keys the noise
-  int threads;
+  NoiseKey noise;                                        // of pairs
+  const std::vector<NormalPair>* given_noise = nullptr;  // of each pair of the list, instead
+  int threads = 1;
 };
 
-// Storage that is kept from step to step.
-struct PairPassWork {
-  std::vector<PairLoad> loads;  // of each pair of the list
-  std::vector<PairSums> chunks;
-  std::vector<ImageFrame> frames;
+class PairPass {
+ public:
+  // Throws std::invalid_argument for terms that are not valid and for a set that is not available.
+  PairPass(const Terms& terms, InstructionSet set)
+      : kernel_(pair_kernel(set, terms)),
+        fill_normals_(engine::fill_normals(set)),
+        spring_kinds_(spring_kinds(terms)) {}
+
+  // Sets force and torque to the sums over pairs (they are overwritten) and returns the sums of the stress.
+  // `springs` are those of each pair of the list; they advance with the motion. Without friction they are not
+  // touched. Throws std::invalid_argument when the springs are not those of the list, or not of the kinds
+  // that the terms stretch.
+  PairSums evaluate(const PairPassInput& input, SpringField& springs, VectorField& force,
+                    VectorField& torque);
+
+ private:
+  PairKernelInput kernel_input(const PairPassInput& input, SpringField& springs);
+
+  PairKernel kernel_;
+  FillNormals fill_normals_;
+  SpringKinds spring_kinds_;
+  // Storage that is kept from step to step.
+  std::vector<ImageFrame> frames_;
+  std::vector<std::uint64_t> image_keys_;
+  VectorField crossing_;        // force and torque on the second particle of each crossing pair
+  std::vector<PairSums> sums_;  // of each block
 };
-
-// Sets force and torque to the sums over pairs (they are overwritten) and returns the sums of the stress.
-// `springs` are those of each pair of the list; they advance with the motion. Without friction they are not
-// touched.
-using PairPass = PairSums (*)(const PairPassInput& input, PairPassWork& work,
-                              std::vector<ContactSprings>& springs, VectorField& force, VectorField& torque);
-
-// The compiled pass for these terms. Every valid combination has one.
-PairPass pair_pass(const Terms& terms);
 
 }  // namespace peclet::engine

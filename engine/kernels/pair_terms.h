@@ -1,10 +1,10 @@
-// All terms of one pair, each on its own: the physics of the pair loop as a pure function.
+// All terms of one pair, or of several side by side, each on its own: the physics of the pair loop as a pure
+// function.
 #pragma once
 
-#include "engine/kernels/pair_kinds.h"
+#include "engine/interactions.h"
+#include "engine/kernels/pair_kind.h"
 #include "engine/kernels/terms.h"
-#include "engine/random/keyed_random.h"
-#include "engine/state/contact_history.h"
 #include "engine/terms/contact.h"
 #include "engine/terms/friction.h"
 #include "engine/terms/lubrication.h"
@@ -23,62 +23,83 @@ struct PairParameters {
   double noise_amplitude = 0;  // sqrt(2 kT / dt)
 };
 
-PairParameters pair_parameters(const Physics& physics, double timestep);
-
-// Absent terms stay zero and cost nothing: a sum over a zero constant is folded away by the compiler.
-struct TermLoads {
-  PairLoad lubrication, noise, friction, rolling;
-  Vector3 contact_normal, contact_damping, repulsion;
+template <class Real>
+struct PairSpringsOf {
+  Vector3Of<Real> tangential, rolling;
 };
 
-// `noise()` returns the pair's NormalPair (theta, chi) and is only called for a lubricated pair with noise.
-// The springs advance with the motion and are forgotten when the contact opens.
-template <Terms terms, class Noise>
-inline TermLoads pair_terms(const PairParameters& parameters, const PairKind& kind, const PairGeometry& pair,
-                            const PairMotion& motion, ContactSprings* springs, Noise&& noise) {
-  TermLoads loads;
+template <class Real>
+struct PairNormalsOf {
+  Vector3Of<Real> theta, chi;
+};
+
+// Absent terms stay zero and cost nothing: a sum over a zero constant is folded away by the compiler.
+template <class Real>
+struct TermLoadsOf {
+  PairLoadOf<Real> lubrication, noise, friction, rolling;
+  Vector3Of<Real> contact_normal, contact_damping, repulsion;
+};
+
+template <Terms terms, class Real>
+PECLET_ALWAYS_INLINE void add_contact_terms(const PairParameters& parameters, const PairKind& kind,
+                                            const PairGeometryOf<Real>& pair,
+                                            const PairMotionOf<Real>& motion, PairSpringsOf<Real>& springs,
+                                            TermLoadsOf<Real>& loads) {
+  const ContactParameters& contact = parameters.contact;
+  const auto touching = pair.overlap() > 0.0;
+  loads.contact_normal = where(touching, contact_normal_force(contact.normal_stiffness, pair));
+  if constexpr (terms.damping) {
+    loads.contact_damping = where(touching, contact_damping_force(contact.normal_damping, pair, motion));
+  }
+  if constexpr (terms.friction) {
+    const Real normal_force = contact.normal_stiffness * pair.overlap();
+    const ContactLeversOf<Real> lever = contact_levers(kind.radius_first, kind.radius_second, pair);
+    const Vector3Of<Real> slip = Real{parameters.spring_timestep} * slip_velocity(lever, pair, motion);
+    const Real longest = (contact.friction / contact.tangential_stiffness) * normal_force;
+    springs.tangential = where(touching, advanced_spring(springs.tangential, pair.normal, slip, longest));
+    loads.friction = friction_load(contact.tangential_stiffness, springs.tangential, lever, pair);
+    if constexpr (terms.rolling) {
+      const Vector3Of<Real> turn =
+          Real{parameters.spring_timestep} * rolling_velocity(kind.reduced_diameter, pair, motion);
+      const Real longest_turn = (contact.rolling_friction / contact.rolling_stiffness) * normal_force;
+      springs.rolling = where(touching, advanced_spring(springs.rolling, pair.normal, turn, longest_turn));
+      loads.rolling = rolling_load(contact.rolling_stiffness, springs.rolling, kind.reduced_diameter, pair);
+    }
+  }
+}
+
+// Every pair lies within kind.range. `normals()` returns theta and chi and is called only where a pair is
+// lubricated and there is noise. The springs advance with the motion and are forgotten when the contact
+// opens.
+template <Terms terms, class Real, class Normals>
+PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& parameters, const PairKind& kind,
+                                                  const PairGeometryOf<Real>& pair,
+                                                  const PairMotionOf<Real>& motion,
+                                                  PairSpringsOf<Real>& springs, Normals&& normals) {
+  TermLoadsOf<Real> loads;
   if constexpr (terms.lubrication) {
-    if (pair.distance <= kind.lubrication_range) {
-      const PairResistance resistance =
-          pair_resistance(kind.resistance, parameters.lubrication.inner_gap, pair);
+    if (any(pair.distance <= kind.lubrication_range)) {
+      const ResistanceModesOf<Real> modes =
+          resistance_modes(parameters.lubrication.inner_gap, kind.lubrication_range, pair);
+      const PairResistanceOf<Real> resistance = pair_resistance(kind.resistance, modes);
       loads.lubrication = lubrication_load(resistance, pair, motion);
       if constexpr (terms.noise) {
-        const NormalPair normals = noise();
-        loads.noise =
-            pair_noise_load(parameters.noise_amplitude, resistance, pair, normals.first, normals.second);
+        const PairNormalsOf<Real> drawn = normals();
+        loads.noise = pair_noise_load(parameters.noise_amplitude,
+                                      resistance_roots(kind.roots, resistance.squeeze, modes), pair,
+                                      drawn.theta, drawn.chi);
       }
     }
   }
   if constexpr (terms.repulsion) {
-    if (pair.distance < kind.repulsion_range) {
-      loads.repulsion = repulsion_force(parameters.repulsion_strength, kind.repulsion_length, pair);
-    }
+    loads.repulsion = where(pair.distance < kind.repulsion_range,
+                            repulsion_force(parameters.repulsion_strength, kind.repulsion_length, pair));
   }
   if constexpr (terms.contact) {
-    const ContactParameters& contact = parameters.contact;
-    if (pair.overlap() > 0) {
-      loads.contact_normal = contact_normal_force(contact.normal_stiffness, pair);
-      if constexpr (terms.damping) {
-        loads.contact_damping = contact_damping_force(contact.normal_damping, pair, motion);
-      }
-      if constexpr (terms.friction) {
-        const double normal_force = contact.normal_stiffness * pair.overlap();
-        const ContactLevers lever = contact_levers(kind.radius_first, kind.radius_second, pair);
-        springs->tangential = advanced_spring(springs->tangential, pair.normal,
-                                              parameters.spring_timestep * slip_velocity(lever, pair, motion),
-                                              contact.friction * normal_force / contact.tangential_stiffness);
-        loads.friction = friction_load(contact.tangential_stiffness, springs->tangential, lever, pair);
-        if constexpr (terms.rolling) {
-          springs->rolling = advanced_spring(
-              springs->rolling, pair.normal,
-              parameters.spring_timestep * rolling_velocity(kind.reduced_diameter, pair, motion),
-              contact.rolling_friction * normal_force / contact.rolling_stiffness);
-          loads.rolling =
-              rolling_load(contact.rolling_stiffness, springs->rolling, kind.reduced_diameter, pair);
-        }
-      }
+    if (any(pair.overlap() > 0.0)) {
+      add_contact_terms<terms>(parameters, kind, pair, motion, springs, loads);
     } else if constexpr (terms.friction) {
-      *springs = {};
+      springs = {};
     }
   }
   return loads;

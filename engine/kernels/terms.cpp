@@ -1,5 +1,7 @@
 #include "engine/kernels/terms.h"
 
+#include "engine/scene.h"
+
 namespace peclet::engine {
 
 Terms required_terms(const Physics& physics) {

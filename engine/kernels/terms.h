@@ -1,9 +1,11 @@
 // Which pair terms a scene needs; a compile-time choice of every kernel.
 #pragma once
 
-#include "engine/scene.h"
+#include <cstddef>
 
 namespace peclet::engine {
+
+struct Physics;
 
 // A structural type: `template <Terms terms>` compiles exactly these.
 struct Terms {

@@ -32,7 +32,7 @@ KineticTemperatures kinetic_temperatures(const System& system) {
   const double rate = system.box.shear_rate();
   double translational = 0, rotational = 0;
   for (std::size_t i = 0; i < particles.count(); ++i) {
-    const Vector3 u = particles.velocity[i] - streaming_velocity(rate, particles.position.y[i]);
+    const Vector3 u = particles.velocity[i] - streaming_velocity(rate, particles.position[i].y);
     const Vector3 w = particles.angular_velocity[i] - streaming_spin(rate);
     translational += particles.mass[i] * dot(u, u);
     rotational += particles.inertia[i] * dot(w, w);

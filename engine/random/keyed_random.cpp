@@ -2,50 +2,35 @@
 
 #include <Random123/threefry.h>
 
-#include "engine/random/box_muller.h"
-
 namespace peclet::engine {
 namespace {
 
-std::uint32_t low(std::uint64_t word) { return static_cast<std::uint32_t>(word); }
-std::uint32_t high(std::uint64_t word) { return static_cast<std::uint32_t>(word >> 32); }
-
-NormalPair normal_pair(const std::array<std::uint64_t, 4>& words) {
-  const TwoNormals p = box_muller(low(words[0]), high(words[0]));
-  const TwoNormals q = box_muller(low(words[1]), high(words[1]));
-  const TwoNormals r = box_muller(low(words[2]), high(words[2]));
-  return {{p.a, p.b, q.a}, {q.b, r.a, r.b}};
+NormalPair first_of_block(const NoiseKey& key, std::uint64_t identity, std::uint64_t image) {
+  const std::uint64_t identities[identities_per_block] = {identity}, images[identities_per_block] = {image};
+  NormalBlock block;
+  baseline::fill_normals(key, identities, images, block);
+  const auto normal = [&block](int k) { return static_cast<double>(block.value[k][0]); };
+  return {{normal(0), normal(1), normal(2)}, {normal(3), normal(4), normal(5)}};
 }
 
 }  // namespace
 
-std::array<std::uint64_t, 4> KeyedRandom::bits(std::uint64_t step, std::uint64_t identity,
-                                               std::uint64_t image) const {
-  const threefry4x64_ctr_t counter = {{step, identity, image, 0}};
-  const threefry4x64_key_t key = {{seed_, purpose_, 0, 0}};
-  const threefry4x64_ctr_t out = threefry4x64(counter, key);
-  return {out.v[0], out.v[1], out.v[2], out.v[3]};
-}
-
 NormalPair KeyedRandom::normals(std::uint64_t step, std::uint32_t particle) const {
-  return normal_pair(bits(step, particle, 0));
+  return first_of_block(key(step), particle, 0);
 }
 
 NormalPair KeyedRandom::normals(std::uint64_t step, std::uint32_t first, std::uint32_t second,
                                 LatticeShift image) const {
-  const std::uint64_t identity = std::uint64_t{second} << 32 | first;
-  // Shifts between neighbours are a few lattice vectors; 21 bits hold each.
-  constexpr std::uint64_t mask = (1u << 21) - 1;
-  const std::uint64_t shift = (static_cast<std::uint64_t>(image.x) & mask) |
-                              (static_cast<std::uint64_t>(image.y) & mask) << 21 |
-                              (static_cast<std::uint64_t>(image.z) & mask) << 42;
-  return normal_pair(bits(step, identity, shift));
+  return first_of_block(key(step), pair_identity(first, second), image_identity(image));
 }
 
 Vector3 KeyedRandom::uniforms(std::uint64_t step, std::uint32_t particle) const {
-  const auto words = bits(step, particle, 0);
-  const auto unit = [](std::uint64_t word) { return (static_cast<double>(word >> 12) + 0.5) * 0x1p-52; };
-  return {unit(words[0]), unit(words[1]), unit(words[2])};
+  const threefry2x64_ctr_t counter = {{step, particle}};
+  const threefry2x64_key_t threefry_key = {{seed_, purpose_ << 60}};
+  const threefry2x64_ctr_t words = threefry2x64_R(20, counter, threefry_key);
+  constexpr std::uint64_t mask = (std::uint64_t{1} << 42) - 1;
+  const auto unit = [](std::uint64_t bits) { return (static_cast<double>(bits & mask) + 0.5) * 0x1p-42; };
+  return {unit(words.v[0]), unit(words.v[0] >> 42 | words.v[1] << 22), unit(words.v[1] >> 20)};
 }
 
 }  // namespace peclet::engine

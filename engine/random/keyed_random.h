@@ -1,13 +1,12 @@
 // Random numbers keyed by what they are for, never drawn from a stream.
 //
-// A number is a pure function of (seed, purpose, step, identity): Threefry-4x64-20 of Random123 (Salmon et
-// al. 2011), key (seed, purpose, 0, 0), counter (step, identity). So results depend on no order of particles
-// or pairs, on no number of threads and on no checkpoint, and two seeds share nothing.
+// A number is a pure function of (seed, purpose, step, identity): see normal_block.h. So results depend on no
+// order of particles or pairs, on no number of threads and on no checkpoint, and two seeds share nothing.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
+#include "engine/random/normal_block.h"
 #include "engine/state/sheared_box.h"
 #include "engine/state/vector3.h"
 
@@ -20,25 +19,36 @@ struct NormalPair {
   Vector3 first, second;
 };
 
+// What keys the noise of a pair besides its step. `first` < `second` fixes the sign of the pair's forces.
+inline std::uint64_t pair_identity(std::uint32_t first, std::uint32_t second) {
+  return std::uint64_t{second} << 32 | first;
+}
+// Shifts between neighbours are a few lattice vectors; 20 bits hold each.
+inline std::uint64_t image_identity(LatticeShift image) {
+  constexpr std::uint64_t mask = (1U << 20) - 1;
+  return (static_cast<std::uint64_t>(image.x) & mask) | (static_cast<std::uint64_t>(image.y) & mask) << 20 |
+         (static_cast<std::uint64_t>(image.z) & mask) << 40;
+}
+
 class KeyedRandom {
  public:
   KeyedRandom() = default;
   KeyedRandom(std::uint64_t seed, Purpose purpose)
       : seed_(seed), purpose_(static_cast<std::uint64_t>(purpose)) {}
 
-  // Of a particle at a step. Box-Muller from 32-bit uniforms in single precision: steps of 6e-8 relative,
-  // largest value 6.8, variance exact to 1e-6 (tests/engine/keyed_random_test.cpp).
+  NoiseKey key(std::uint64_t step) const { return {seed_, purpose_, step}; }
+
+  // Of a particle at a step. 21-bit uniforms: largest value 5.5, variance exact to 1e-6
+  // (tests/engine/keyed_random_test.cpp).
   NormalPair normals(std::uint64_t step, std::uint32_t particle) const;
 
-  // Of a pair at a step. `first` < `second` fixes the sign of the pair's forces.
+  // Of a pair at a step.
   NormalPair normals(std::uint64_t step, std::uint32_t first, std::uint32_t second, LatticeShift image) const;
 
-  // Three uniform numbers in (0, 1).
+  // Three uniform numbers in (0, 1), multiples of 2^-43.
   Vector3 uniforms(std::uint64_t step, std::uint32_t particle) const;
 
  private:
-  std::array<std::uint64_t, 4> bits(std::uint64_t step, std::uint64_t identity, std::uint64_t image) const;
-
   std::uint64_t seed_ = 0;
   std::uint64_t purpose_ = 0;
 };

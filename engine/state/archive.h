@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "engine/state/vector3.h"
+#include "engine/state/vector_field.h"
 
 namespace peclet::engine {
 
@@ -34,9 +34,10 @@ class ArchiveWriter {
   void put(const std::string& text) { put(std::vector<char>(text.begin(), text.end())); }
 
   void put(const VectorField& field) {
-    put(field.x);
-    put(field.y);
-    put(field.z);
+    put(static_cast<std::uint64_t>(field.size()));
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      put(field[i]);
+    }
   }
 
   const std::string& bytes() const { return bytes_; }
@@ -80,10 +81,11 @@ class ArchiveReader {
   }
 
   VectorField get_field(std::size_t expected) {
-    VectorField field;
-    field.x = get_vector<double>(expected);
-    field.y = get_vector<double>(expected);
-    field.z = get_vector<double>(expected);
+    const std::vector<Vector3> vectors = get_vector<Vector3>(expected);
+    VectorField field(expected);
+    for (std::size_t i = 0; i < expected; ++i) {
+      field.set(i, vectors[i]);
+    }
     return field;
   }
 

@@ -29,30 +29,45 @@ std::int32_t cell_of(double rest, std::int32_t cells) {
 
 }  // namespace
 
-CellGrid::CellGrid(const VectorField& position, const ShearedBox& box, double range) {
-  const std::size_t count = position.size();
+LatticePlaces lattice_places(const VectorField& position, const ShearedBox& box) {
+  LatticePlaces places;
+  places.fractional.reserve(position.size());
+  places.offset.reserve(position.size());
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    Vector3 place = box.fractional(position[i]);
+    places.offset.push_back({whole(place.x), whole(place.y), whole(place.z)});
+    places.fractional.push_back(place);
+  }
+  return places;
+}
+
+CellGrid::CellGrid(const LatticePlaces& places, std::span<const std::uint32_t> members, const ShearedBox& box,
+                   double range)
+    : box_(box) {
   const Vector3 widths = box.widths();
-  const Axis x = divide(widths.x, range, count), y = divide(widths.y, range, count),
-             z = divide(widths.z, range, count);
+  const Axis x = divide(widths.x, range, members.size()), y = divide(widths.y, range, members.size()),
+             z = divide(widths.z, range, members.size());
   cells_ = {x.cells, y.cells, z.cells};
   reach_ = {x.reach, y.reach, z.reach};
-  cell_.resize(count);
-  offset_.resize(count);
   first_.assign(linear({0, 0, cells_.z}) + 1, 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    Vector3 place = box.fractional(position[i]);
-    offset_[i] = {whole(place.x), whole(place.y), whole(place.z)};
-    cell_[i] = {cell_of(place.x, cells_.x), cell_of(place.y, cells_.y), cell_of(place.z, cells_.z)};
-    ++first_[linear(cell_[i]) + 1];
+  std::vector<std::size_t> cell;
+  cell.reserve(members.size());
+  for (const std::uint32_t i : members) {
+    cell.push_back(linear(cell_at(places.fractional[i])));
+    ++first_[cell.back() + 1];
   }
   for (std::size_t c = 1; c < first_.size(); ++c) {
     first_[c] += first_[c - 1];
   }
-  content_.resize(count);
+  content_.resize(members.size());
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    content_[next[linear(cell_[i])]++] = i;
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    content_[next[cell[k]]++] = {box.point_at(places.fractional[members[k]]), members[k]};
   }
+}
+
+LatticeShift CellGrid::cell_at(const Vector3& fractional) const {
+  return {cell_of(fractional.x, cells_.x), cell_of(fractional.y, cells_.y), cell_of(fractional.z, cells_.z)};
 }
 
 }  // namespace peclet::engine

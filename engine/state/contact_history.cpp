@@ -8,36 +8,67 @@ namespace {
 
 bool is_zero(const Vector3& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
 
+auto name_of(const HeldContact& contact) {
+  return std::make_tuple(contact.first, contact.second, contact.image);
+}
+
+// The name of a listed pair, without springs.
+HeldContact contact_of(const NeighbourList& list, const ParticleState& particles, const Pair& pair) {
+  return {particles.id[pair.first],
+          particles.id[pair.second],
+          list.images()[pair.image] - particles.image[pair.second] + particles.image[pair.first],
+          {}};
+}
+
 }  // namespace
 
-std::vector<HeldContact> held_contacts(const NeighbourList& list, const std::vector<LatticeShift>& wrapped,
-                                       const std::vector<ContactSprings>& springs) {
+void sort_contacts(std::vector<HeldContact>& contacts) {
+  std::sort(contacts.begin(), contacts.end(),
+            [](const HeldContact& a, const HeldContact& b) { return name_of(a) < name_of(b); });
+}
+
+std::vector<HeldContact> held_contacts(const NeighbourList& list, const ParticleState& particles,
+                                       const SpringField& springs) {
   std::vector<HeldContact> held;
+  if (springs.kinds() == SpringKinds::none) {
+    return held;
+  }
   for (std::size_t p = 0; p < springs.size(); ++p) {
-    if (is_zero(springs[p].tangential) && is_zero(springs[p].rolling)) {
+    const ContactSprings of_pair = springs[p];
+    if (is_zero(of_pair.tangential) && is_zero(of_pair.rolling)) {
       continue;
     }
-    const Pair& pair = list.pairs()[p];
-    const LatticeShift image = list.images()[pair.image] - wrapped[pair.second] + wrapped[pair.first];
-    held.push_back({pair.first, pair.second, image, springs[p]});
+    held.push_back(contact_of(list, particles, list.pairs()[p]));
+    held.back().springs = of_pair;
   }
+  sort_contacts(held);
   return held;
 }
 
-std::vector<ContactSprings> placed_contacts(const NeighbourList& list,
-                                            const std::vector<LatticeShift>& wrapped,
-                                            const std::vector<HeldContact>& held) {
-  std::vector<ContactSprings> springs(list.pairs().size());
+SpringField placed_contacts(const NeighbourList& list, const ParticleState& particles,
+                            const std::vector<HeldContact>& held, SpringKinds kinds) {
+  SpringField springs(kinds, list.pairs().size());
+  if (held.empty()) {
+    return springs;
+  }
+  // Where the contacts of each first particle begin.
+  std::vector<std::uint32_t> begin(particles.count() + 1);
   for (const HeldContact& contact : held) {
-    const LatticeShift image = contact.image + wrapped[contact.second] - wrapped[contact.first];
-    const auto wanted = std::make_tuple(contact.first, contact.second, image);
-    const auto pair = std::lower_bound(
-        list.pairs().begin(), list.pairs().end(), wanted, [&list](const Pair& candidate, const auto& key) {
-          return std::make_tuple(candidate.first, candidate.second, list.images()[candidate.image]) < key;
-        });
-    if (pair != list.pairs().end() && pair->first == contact.first && pair->second == contact.second &&
-        list.images()[pair->image] == image) {
-      springs[static_cast<std::size_t>(pair - list.pairs().begin())] = contact.springs;
+    ++begin[contact.first + 1];
+  }
+  for (std::size_t i = 0; i < particles.count(); ++i) {
+    begin[i + 1] += begin[i];
+  }
+  for (std::size_t p = 0; p < list.pairs().size(); ++p) {
+    const std::uint32_t id = particles.id[list.pairs()[p].first];
+    if (begin[id] == begin[id + 1]) {
+      continue;
+    }
+    const auto wanted = name_of(contact_of(list, particles, list.pairs()[p]));
+    for (std::uint32_t k = begin[id]; k < begin[id + 1]; ++k) {
+      if (name_of(held[k]) == wanted) {
+        springs.set(p, held[k].springs);
+      }
     }
   }
   return springs;

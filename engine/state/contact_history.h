@@ -1,6 +1,7 @@
 // Springs of touching pairs, and how they survive a rebuild of the neighbour list.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "engine/state/neighbour_list.h"
@@ -12,22 +13,73 @@ struct ContactSprings {
   Vector3 tangential, rolling;
 };
 
-// The springs of one contact under a name that outlives the list. `image` is the shift between the unwrapped
-// places of the two particles, which wrapping does not change.
+// Which springs a scene needs; the others take no memory.
+enum class SpringKinds { none, tangential, tangential_and_rolling };
+
+// The springs of each pair of a list, component by component.
+class SpringField {
+ public:
+  SpringField() = default;
+  SpringField(SpringKinds kinds, std::size_t pairs) : kinds_(kinds), pairs_(pairs) {
+    for (std::size_t c = 0; c < components(); ++c) {
+      component_[c].assign(pairs, 0.0);
+    }
+  }
+
+  SpringKinds kinds() const { return kinds_; }
+  std::size_t size() const { return pairs_; }
+  ContactSprings operator[](std::size_t pair) const {
+    ContactSprings springs;
+    if (kinds_ != SpringKinds::none) {
+      springs.tangential = {component_[0][pair], component_[1][pair], component_[2][pair]};
+    }
+    if (kinds_ == SpringKinds::tangential_and_rolling) {
+      springs.rolling = {component_[3][pair], component_[4][pair], component_[5][pair]};
+    }
+    return springs;
+  }
+  // Springs of a kind that the field does not have are dropped.
+  void set(std::size_t pair, const ContactSprings& springs) {
+    const std::array<double, 6> values = {springs.tangential.x, springs.tangential.y, springs.tangential.z,
+                                          springs.rolling.x,    springs.rolling.y,    springs.rolling.z};
+    for (std::size_t c = 0; c < components(); ++c) {
+      component_[c][pair] = values[c];
+    }
+  }
+
+  // Tangential x, y, z, rolling x, y, z; as many as the kinds have.
+  std::size_t components() const {
+    return kinds_ == SpringKinds::none ? 0 : kinds_ == SpringKinds::tangential ? 3 : 6;
+  }
+  double* component(std::size_t c) { return component_[c].data(); }
+  const std::vector<double>& values(std::size_t c) const { return component_[c]; }
+  void set_values(std::size_t c, std::vector<double> values) { component_[c] = std::move(values); }
+
+ private:
+  SpringKinds kinds_ = SpringKinds::none;
+  std::size_t pairs_ = 0;
+  std::array<std::vector<double>, 6> component_;
+};
+
+// The springs of one contact under a name that outlives the list: the ids of the two particles and the shift
+// between their unwrapped places, which wrapping does not change.
 struct HeldContact {
   std::uint32_t first, second;
   LatticeShift image;
   ContactSprings springs;
 };
 
-// All springs that are not zero, in the order of the list. springs[p] belongs to pair p.
-std::vector<HeldContact> held_contacts(const NeighbourList& list, const std::vector<LatticeShift>& wrapped,
-                                       const std::vector<ContactSprings>& springs);
+// Into the order of first id, second id and image.
+void sort_contacts(std::vector<HeldContact>& contacts);
 
-// Springs of each pair of a new list. `wrapped` are the particles' image counters as they are now, in the
-// same basis as `held`. A contact that is not listed any more has opened: its springs are forgotten.
-std::vector<ContactSprings> placed_contacts(const NeighbourList& list,
-                                            const std::vector<LatticeShift>& wrapped,
-                                            const std::vector<HeldContact>& held);
+// All springs that are not zero, sorted.
+std::vector<HeldContact> held_contacts(const NeighbourList& list, const ParticleState& particles,
+                                       const SpringField& springs);
+
+// Springs of each pair of a new list. The image counters of `particles` are as they are now, in the same
+// basis as `held`, which is sorted. A contact that is not listed any more has opened: its springs are
+// forgotten.
+SpringField placed_contacts(const NeighbourList& list, const ParticleState& particles,
+                            const std::vector<HeldContact>& held, SpringKinds kinds);
 
 }  // namespace peclet::engine

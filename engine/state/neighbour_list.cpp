@@ -1,9 +1,6 @@
 #include "engine/state/neighbour_list.h"
 
-#include <algorithm>
-#include <stdexcept>
-
-#include "engine/state/cell_grid.h"
+#include "engine/state/list_builder.h"
 
 namespace peclet::engine {
 namespace {
@@ -15,79 +12,34 @@ double smallest_stretch(double strain) {
 
 }  // namespace
 
-double RangeTable::largest() const { return *std::max_element(range_.begin(), range_.end()); }
+std::size_t count_of_blocks_of(std::size_t particles) {
+  return std::max<std::size_t>(1, (particles + particles_per_block - 1) / particles_per_block);
+}
 
-void NeighbourList::build(const ParticleState& particles, const ShearedBox& box) {
-  rebuild_from(particles.position, particles, box);
+void NeighbourList::build(const ParticleState& particles, const ShearedBox& box, int threads) {
+  rebuild_from(particles.position, particles, box, threads);
   ++builds_;
 }
 
-void NeighbourList::rebuild_from(VectorField reference, const ParticleState& particles,
-                                 const ShearedBox& box) {
+void NeighbourList::rebuild_from(VectorField reference, const ParticleState& particles, const ShearedBox& box,
+                                 int threads) {
   reference_ = std::move(reference);
   strain_at_build_ = box.strain();
-  pairs_.clear();
-  images_.assign(1, LatticeShift{});
-  const CellGrid grid(reference_, box, ranges_.largest() + skin_);
-  std::vector<CellGrid::Neighbour> near;
-  for (std::uint32_t i = 0; i < particles.count(); ++i) {
-    near.clear();
-    grid.visit_neighbours(i, [&](const CellGrid::Neighbour& other) {
-      const double range = ranges_.at(particles.size_class[i], particles.size_class[other.particle]);
-      const Vector3 separation = reference_[other.particle] + box.displacement(other.image) - reference_[i];
-      const double squared = dot(separation, separation);
-      if (other.particle == i && squared < range * range) {
-        throw std::invalid_argument("the box is so small that a particle interacts with its own image");
-      }
-      if (other.particle > i && squared < (range + skin_) * (range + skin_)) {
-        near.push_back(other);
-      }
-    });
-    std::sort(near.begin(), near.end());
-    for (const CellGrid::Neighbour& other : near) {
-      auto image = std::find(images_.begin(), images_.end(), other.image);
-      if (image == images_.end()) {
-        image = images_.insert(image, other.image);
-      }
-      const std::size_t kind =
-          particles.size_class[i] * ranges_.classes() + particles.size_class[other.particle];
-      pairs_.push_back({i, other.particle, static_cast<std::uint16_t>(image - images_.begin()),
-                        static_cast<std::uint16_t>(kind)});
-    }
-  }
-  collect_incidence(particles.count());
-}
-
-void NeighbourList::collect_incidence(std::size_t particles) {
-  first_incident_.assign(particles + 1, 0);
-  for (const Pair& pair : pairs_) {
-    ++first_incident_[pair.first + 1];
-    ++first_incident_[pair.second + 1];
-  }
-  for (std::size_t i = 0; i < particles; ++i) {
-    first_incident_[i + 1] += first_incident_[i];
-  }
-  incident_.resize(2 * pairs_.size());
-  std::vector<std::uint32_t> next(first_incident_.begin(), first_incident_.end() - 1);
-  for (std::uint32_t p = 0; p < pairs_.size(); ++p) {
-    incident_[next[pairs_[p].first]++] = 2 * p;
-    incident_[next[pairs_[p].second]++] = 2 * p + 1;
-  }
+  ListBuilder(*this, particles, box, threads).run();
 }
 
 double NeighbourList::allowed_displacement(const ShearedBox& box) const {
   const double stretch = smallest_stretch(box.strain() - strain_at_build_);
-  return 0.5 * (stretch * (ranges_.largest() + skin_) - ranges_.largest());
+  return 0.5 * ranges_.smallest() * (stretch * (1 + skin_) - 1);
 }
 
 double NeighbourList::largest_displacement(const ParticleState& particles, const ShearedBox& box) const {
   const double strain = box.strain() - strain_at_build_;
   double largest = 0;
   for (std::size_t i = 0; i < particles.count(); ++i) {
-    const double dx = particles.position.x[i] - reference_.x[i] - strain * reference_.y[i];
-    const double dy = particles.position.y[i] - reference_.y[i];
-    const double dz = particles.position.z[i] - reference_.z[i];
-    largest = std::max(largest, dx * dx + dy * dy + dz * dz);
+    const Vector3 from = reference_[i];
+    const Vector3 way = particles.position[i] - from - Vector3{strain * from.y, 0, 0};
+    largest = std::max(largest, dot(way, way));
   }
   return std::sqrt(largest);
 }

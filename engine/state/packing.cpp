@@ -15,6 +15,7 @@ namespace {
 constexpr double inflation = 1e-3;    // of the diameters that are brought apart
 constexpr double smallest_gap = 0.2;  // accepted, of that inflation
 constexpr int most_iterations = 40000;
+constexpr double skin = 0.15;  // of the ranges
 
 // Overlaps of the inflated spheres at one configuration.
 struct Overlaps {
@@ -34,7 +35,7 @@ class Quench {
         ranges.at(a, b) = (1 + inflation) * (sizes[a] + sizes[b]);
       }
     }
-    list_ = NeighbourList(ranges, 0.3 * sizes.front());
+    list_ = NeighbourList(ranges, skin);
     list_.build(particles_, box_);
     step_ = 0.1;
   }
@@ -75,9 +76,7 @@ class Quench {
     if (!list_.holds(particles_, box_)) {
       list_.build(particles_, box_);
     }
-    for (std::vector<double>* component : {&force_.x, &force_.y, &force_.z}) {
-      std::fill(component->begin(), component->end(), 0.0);
-    }
+    force_ = VectorField(particles_.count());
     Overlaps overlaps;
     for (const Pair& pair : list_.pairs()) {
       const double contact = particles_.radius[pair.first] + particles_.radius[pair.second];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <numeric>
 
 namespace peclet::engine {
 
@@ -25,6 +26,8 @@ ParticleState make_particles(const std::vector<double>& radius, double density) 
   }
   particles.position = particles.velocity = particles.angular_velocity = VectorField(radius.size());
   particles.image.resize(radius.size());
+  particles.id.resize(radius.size());
+  std::iota(particles.id.begin(), particles.id.end(), 0U);
   return particles;
 }
 
@@ -38,7 +41,7 @@ void wrap_into_cell(ParticleState& particles, const ShearedBox& box) {
       continue;
     }
     particles.position.set(i, particles.position[i] - box.displacement(removed));
-    particles.velocity.x[i] -= box.velocity_offset(removed);
+    particles.velocity.add(i, {-box.velocity_offset(removed), 0, 0});
     particles.image[i] = particles.image[i] + removed;
   }
 }

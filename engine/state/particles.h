@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/state/sheared_box.h"
-#include "engine/state/vector3.h"
+#include "engine/state/vector_field.h"
 
 namespace peclet::engine {
 
@@ -15,6 +15,7 @@ namespace peclet::engine {
 struct ParticleState {
   std::vector<double> radius, mass, inertia;  // inertia 2/5 m a^2
   std::vector<std::uint16_t> size_class;      // index into the table of distinct radii
+  std::vector<std::uint32_t> id;              // a number for life; particles may change places in memory
   VectorField position, velocity, angular_velocity;
   std::vector<LatticeShift> image;
 

@@ -64,6 +64,11 @@ class ShearedBox {
     return {(point.x - tilt_ * fy) / lengths_.x, fy, point.z / lengths_.z};
   }
 
+  Vector3 point_at(const Vector3& fractional) const {
+    return {fractional.x * lengths_.x + fractional.y * tilt_, fractional.y * lengths_.y,
+            fractional.z * lengths_.z};
+  }
+
   // Distances between opposite faces of the cell.
   Vector3 widths() const;
 

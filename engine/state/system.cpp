@@ -1,10 +1,12 @@
 #include "engine/state/system.h"
 
+#include "engine/state/particle_order.h"
+
 namespace peclet::engine {
 
-void rebuild_neighbours(System& system) {
+void rebuild_neighbours(System& system, int threads) {
   ParticleState& particles = system.particles;
-  std::vector<HeldContact> held = held_contacts(system.list, particles.image, system.springs);
+  std::vector<HeldContact> held = held_contacts(system.list, particles, system.springs);
   if (const std::int32_t flips = system.box.due_flips(); flips != 0) {
     system.box.flip(flips);
     for (LatticeShift& image : particles.image) {
@@ -15,8 +17,9 @@ void rebuild_neighbours(System& system) {
     }
   }
   wrap_into_cell(particles, system.box);
-  system.list.build(particles, system.box);
-  system.springs = placed_contacts(system.list, particles.image, held);
+  arrange_along_curve(particles, system.box);
+  system.list.build(particles, system.box, threads);
+  system.springs = placed_contacts(system.list, particles, held, system.springs.kinds());
 }
 
 void save(const System& system, ArchiveWriter& archive) {
@@ -24,6 +27,7 @@ void save(const System& system, ArchiveWriter& archive) {
   archive.put(system.step);
   archive.put(system.box.strain());
   archive.put(system.box.flips());
+  archive.put(particles.id);
   for (const VectorField* field : {&particles.position, &particles.velocity, &particles.angular_velocity}) {
     archive.put(*field);
   }
@@ -31,7 +35,9 @@ void save(const System& system, ArchiveWriter& archive) {
   archive.put(system.list.reference());
   archive.put(system.list.strain_at_build());
   archive.put(system.list.builds());
-  archive.put(system.springs);
+  for (std::size_t c = 0; c < system.springs.components(); ++c) {
+    archive.put(system.springs.values(c));
+  }
 }
 
 void load(System& system, ArchiveReader& archive) {
@@ -40,6 +46,7 @@ void load(System& system, ArchiveReader& archive) {
   system.step = archive.get<std::uint64_t>();
   const auto strain = archive.get<double>();
   const auto flips = archive.get<std::int32_t>();
+  arrange_by_id(particles, archive.get_vector<std::uint32_t>(count));
   for (VectorField* field : {&particles.position, &particles.velocity, &particles.angular_velocity}) {
     *field = archive.get_field(count);
   }
@@ -52,7 +59,10 @@ void load(System& system, ArchiveReader& archive) {
   system.list.rebuild_from(std::move(reference), particles, system.box);
   system.list.set_builds(builds);
   system.box.place(strain, flips);
-  system.springs = archive.get_vector<ContactSprings>(system.list.pairs().size());
+  system.springs = SpringField(system.springs.kinds(), system.list.pairs().size());
+  for (std::size_t c = 0; c < system.springs.components(); ++c) {
+    system.springs.set_values(c, archive.get_vector<double>(system.list.pairs().size()));
+  }
 }
 
 }  // namespace peclet::engine

@@ -10,13 +10,13 @@ struct System {
   ParticleState particles;
   ShearedBox box;
   NeighbourList list;
-  std::vector<ContactSprings> springs;  // of each pair of the list
+  SpringField springs;  // of each pair of the list
   std::uint64_t step = 0;
 };
 
-// Brings the basis of the box back to a small tilt, the particles into the cell and the list up to date.
-// Springs and unwrapped places are kept.
-void rebuild_neighbours(System& system);
+// Brings the basis of the box back to a small tilt, the particles into the cell, neighbours close together in
+// memory and the list up to date. Springs and unwrapped places are kept.
+void rebuild_neighbours(System& system, int threads = 1);
 
 // Everything above that the scene does not fix, bit by bit; load() also restores the list in its order.
 void save(const System& system, ArchiveWriter& archive);

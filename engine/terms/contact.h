@@ -7,13 +7,17 @@ namespace peclet::engine {
 
 // F_i = -k_n delta n, delta = a_i + a_j - r > 0.
 // Li, Royer & Ness (2023) eq. 3, which prints the force on j; sign as in Monti et al. (2021) eq. 4a.
-inline Vector3 contact_normal_force(double normal_stiffness, const PairGeometry& pair) {
+template <class Real>
+PECLET_ALWAYS_INLINE Vector3Of<Real> contact_normal_force(double normal_stiffness,
+                                                          const PairGeometryOf<Real>& pair) {
   return (-normal_stiffness * pair.overlap()) * pair.normal;
 }
 
 // F_i = gamma_n n n.(U_j - U_i). Monti et al. (2021) eq. 4a.
-inline Vector3 contact_damping_force(double normal_damping, const PairGeometry& pair,
-                                     const PairMotion& motion) {
+template <class Real>
+PECLET_ALWAYS_INLINE Vector3Of<Real> contact_damping_force(double normal_damping,
+                                                           const PairGeometryOf<Real>& pair,
+                                                           const PairMotionOf<Real>& motion) {
   return (normal_damping * dot(motion.velocity, pair.normal)) * pair.normal;
 }
 

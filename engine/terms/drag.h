@@ -24,9 +24,8 @@ inline Vector3 drag_force(double zeta, const Vector3& streaming, const Vector3& 
   return zeta * (streaming - velocity);
 }
 
-// c sqrt(zeta) psi with c = sqrt(2 kT / dt), psi standard normal, likewise for the torque. Eqs. 20, 21.
-inline Vector3 drag_noise(double amplitude, double zeta, const Vector3& psi) {
-  return (amplitude * std::sqrt(zeta)) * psi;
-}
+// c sqrt(zeta), c = sqrt(2 kT / dt): times a standard normal vector it is the force, likewise the torque.
+// Eqs. 20, 21.
+inline double drag_noise_amplitude(double amplitude, double zeta) { return amplitude * std::sqrt(zeta); }
 
 }  // namespace peclet::engine

@@ -9,29 +9,40 @@
 
 namespace peclet::engine {
 
-struct ContactLevers {
-  double first, second;
+template <class Real>
+struct ContactLeversOf {
+  Real first, second;
 };
 
-inline ContactLevers contact_levers(double radius_first, double radius_second, const PairGeometry& pair) {
-  const double half_overlap = 0.5 * pair.overlap();
+template <class Real>
+PECLET_ALWAYS_INLINE ContactLeversOf<Real> contact_levers(double radius_first, double radius_second,
+                                                          const PairGeometryOf<Real>& pair) {
+  const Real half_overlap = 0.5 * pair.overlap();
   return {radius_first - half_overlap, radius_second - half_overlap};
 }
 
 // v_t = (1 - n n).(U_j - U_i) - (l_i Omega_i + l_j Omega_j) x n, of j's surface relative to i's.
 // Li, Royer & Ness (2023) eq. 4; Monti et al. (2021) eq. 4b.
-inline Vector3 slip_velocity(const ContactLevers& lever, const PairGeometry& pair, const PairMotion& motion) {
-  const Vector3 spin = lever.first * motion.spin_first + lever.second * motion.spin_second;
+template <class Real>
+PECLET_ALWAYS_INLINE Vector3Of<Real> slip_velocity(const ContactLeversOf<Real>& lever,
+                                                   const PairGeometryOf<Real>& pair,
+                                                   const PairMotionOf<Real>& motion) {
+  const Vector3Of<Real> spin = lever.first * motion.spin_first + lever.second * motion.spin_second;
   return across(motion.velocity, pair.normal) - cross(spin, pair.normal);
 }
 
 // F_i = k_t s, T_i = l_i n x F_i, T_j = l_j n x F_i. The sign of s is that of the displacement of j relative
 // to i. Monti et al. (2021) eqs. 4c-e.
-inline PairLoad friction_load(double tangential_stiffness, const Vector3& spring, const ContactLevers& lever,
-                              const PairGeometry& pair) {
-  const Vector3 force = tangential_stiffness * spring;
-  const Vector3 moment = cross(pair.normal, force);
+template <class Real>
+PECLET_ALWAYS_INLINE PairLoadOf<Real> friction_load(double tangential_stiffness,
+                                                    const Vector3Of<Real>& spring,
+                                                    const ContactLeversOf<Real>& lever,
+                                                    const PairGeometryOf<Real>& pair) {
+  const Vector3Of<Real> force = Real{tangential_stiffness} * spring;
+  const Vector3Of<Real> moment = cross(pair.normal, force);
   return {force, lever.first * moment, lever.second * moment};
 }
+
+using ContactLevers = ContactLeversOf<double>;
 
 }  // namespace peclet::engine

@@ -10,15 +10,18 @@ namespace peclet::engine {
 //   T_i = Y_B11 U x n - T.(Y_C11 Omega_i + Y_C12 Omega_j)
 //   T_j = Y_B21 U x n - T.(Y_C12 Omega_i + Y_C22 Omega_j)
 // Li, Royer & Ness (2023) eqs. 8, 13, 14. Laboratory velocities: the rate of strain is in U already.
-inline PairLoad lubrication_load(const PairResistance& R, const PairGeometry& pair,
-                                 const PairMotion& motion) {
-  const Vector3& n = pair.normal;
-  const double closing = dot(motion.velocity, n);
-  const Vector3 sliding = motion.velocity - closing * n;
-  const Vector3 pumped = R.pump_first * motion.spin_first + R.pump_second * motion.spin_second;
-  const Vector3 turned = cross(motion.velocity, n);
-  const Vector3 twisted_first = R.twist_first * motion.spin_first + R.twist_cross * motion.spin_second;
-  const Vector3 twisted_second = R.twist_cross * motion.spin_first + R.twist_second * motion.spin_second;
+template <class Real>
+PECLET_ALWAYS_INLINE PairLoadOf<Real> lubrication_load(const PairResistanceOf<Real>& R,
+                                                       const PairGeometryOf<Real>& pair,
+                                                       const PairMotionOf<Real>& motion) {
+  using Vector = Vector3Of<Real>;
+  const Vector& n = pair.normal;
+  const Real closing = dot(motion.velocity, n);
+  const Vector sliding = motion.velocity - closing * n;
+  const Vector pumped = R.pump_first * motion.spin_first + R.pump_second * motion.spin_second;
+  const Vector turned = cross(motion.velocity, n);
+  const Vector twisted_first = R.twist_first * motion.spin_first + R.twist_cross * motion.spin_second;
+  const Vector twisted_second = R.twist_cross * motion.spin_first + R.twist_second * motion.spin_second;
   return {(R.squeeze * closing) * n + R.shear * sliding + cross(pumped, n),
           R.pump_first * turned - across(twisted_first, n),
           R.pump_second * turned - across(twisted_second, n)};

@@ -15,7 +15,6 @@
 // the outer gap there is no lubrication, and no offset makes it vanish smoothly.
 #pragma once
 
-#include <algorithm>
 #include <numbers>
 
 #include "engine/terms/pair.h"
@@ -48,24 +47,40 @@ inline ResistanceConstants resistance_constants(double viscosity, double radius_
   };
 }
 
-struct PairResistance {
-  double squeeze;
-  double shear;
-  double pump_first, pump_second;
-  double twist_first, twist_cross, twist_second;
+// How far the modes of a pair are excited at its distance: what pair_resistance() and its roots share.
+template <class Real>
+struct ResistanceModesOf {
+  Real inverse;    // 1/xi
+  Real logarithm;  // L
+  Real lever;      // q
 };
 
-// At the centre distance of `pair`; the caller has made sure that it lies within the outer gap.
-inline PairResistance pair_resistance(const ResistanceConstants& k, double inner_gap,
-                                      const PairGeometry& pair) {
-  const double gap = std::max(2 * pair.surface_distance() / pair.sum_of_radii, inner_gap);
-  const double inverse = 1 / gap;
-  const double logarithm = std::log(inverse);
-  const double lever = pair.distance / pair.sum_of_radii;
-  const double pump = lever * logarithm, twist = lever * pump;
+// Within the outer gap, and zero beyond, where there is no lubrication.
+template <class Real>
+PECLET_ALWAYS_INLINE ResistanceModesOf<Real> resistance_modes(double inner_gap, double range,
+                                                              const PairGeometryOf<Real>& pair) {
+  const Real gap = larger((2 / pair.sum_of_radii) * pair.surface_distance(), Real{inner_gap});
+  const Real inverse = 1.0 / gap;
+  const auto lubricated = pair.distance <= range;
+  return {select(lubricated, inverse, Real{0.0}), select(lubricated, logarithm(inverse), Real{0.0}),
+          (1 / pair.sum_of_radii) * pair.distance};
+}
+
+template <class Real>
+struct PairResistanceOf {
+  Real squeeze;
+  Real shear;
+  Real pump_first, pump_second;
+  Real twist_first, twist_cross, twist_second;
+};
+
+template <class Real>
+PECLET_ALWAYS_INLINE PairResistanceOf<Real> pair_resistance(const ResistanceConstants& k,
+                                                            const ResistanceModesOf<Real>& mode) {
+  const Real pump = mode.lever * mode.logarithm, twist = mode.lever * pump;
   return {
-      .squeeze = k.squeeze_inverse * inverse + k.squeeze_logarithm * logarithm,
-      .shear = k.shear * logarithm,
+      .squeeze = k.squeeze_inverse * mode.inverse + k.squeeze_logarithm * mode.logarithm,
+      .shear = k.shear * mode.logarithm,
       .pump_first = k.pump_first * pump,
       .pump_second = k.pump_second * pump,
       .twist_first = k.twist_first * twist,
@@ -73,5 +88,55 @@ inline PairResistance pair_resistance(const ResistanceConstants& k, double inner
       .twist_second = k.twist_second * twist,
   };
 }
+
+// Of a pair of which the caller knows that it lies within the outer gap.
+inline PairResistanceOf<double> pair_resistance(const ResistanceConstants& k, double inner_gap,
+                                                const PairGeometry& pair) {
+  return pair_resistance(k, resistance_modes(inner_gap, pair.distance, pair));
+}
+
+// A square root of the resistance, what the noise of a pair is made of:
+//   sqrt(X_A), sqrt(Y_A), Y_B11 / sqrt(Y_A), Y_B21 / sqrt(Y_A), sqrt(Y_C11 - Y_B11^2 / Y_A) and
+//   sqrt(Y_C22 - Y_B21^2 / Y_A).
+// All but the first are sqrt(L) times powers of q and constants, so two roots a pair suffice.
+template <class Real>
+struct ResistanceRootsOf {
+  Real squeeze;
+  Real shear;
+  Real pump_first, pump_second;
+  Real spin_first, spin_second;
+};
+
+// The constants of the roots. The last two are real for every size ratio: their square is
+// 6 pi eta a_i^3 beta^3 / ((1 + beta)(2 + beta + 2 beta^2)).
+struct RootConstants {
+  double shear;
+  double pump_first, pump_second;
+  double spin_first, spin_second;
+};
+
+inline RootConstants root_constants(const ResistanceConstants& k) {
+  return {.shear = std::sqrt(k.shear),
+          .pump_first = k.pump_first / std::sqrt(k.shear),
+          .pump_second = k.pump_second / std::sqrt(k.shear),
+          .spin_first = std::sqrt(k.twist_first - k.pump_first * k.pump_first / k.shear),
+          .spin_second = std::sqrt(k.twist_second - k.pump_second * k.pump_second / k.shear)};
+}
+
+template <class Real>
+PECLET_ALWAYS_INLINE ResistanceRootsOf<Real> resistance_roots(const RootConstants& k, const Real& squeeze,
+                                                              const ResistanceModesOf<Real>& mode) {
+  const Real root = square_root(mode.logarithm), turning = mode.lever * root;
+  return {.squeeze = square_root(squeeze),
+          .shear = k.shear * root,
+          .pump_first = k.pump_first * turning,
+          .pump_second = k.pump_second * turning,
+          .spin_first = k.spin_first * turning,
+          .spin_second = k.spin_second * turning};
+}
+
+using ResistanceModes = ResistanceModesOf<double>;
+using PairResistance = PairResistanceOf<double>;
+using ResistanceRoots = ResistanceRootsOf<double>;
 
 }  // namespace peclet::engine

@@ -11,14 +11,17 @@ namespace peclet::engine {
 //   3. shortened to `longest` if it exceeds that: the stored spring itself is cut, so that it never winds up
 //      (Monti et al. 2021 eq. 5).
 // `stretch` must be tangential. A spring along n vanishes.
-inline Vector3 advanced_spring(const Vector3& spring, const Vector3& normal, const Vector3& stretch,
-                               double longest) {
-  Vector3 turned = across(spring, normal);
-  const double before = norm(spring), after = norm(turned);
-  turned = (after > 1e-14 * before ? before / after : 0.0) * turned;
+template <class Real>
+PECLET_ALWAYS_INLINE Vector3Of<Real> advanced_spring(const Vector3Of<Real>& spring,
+                                                     const Vector3Of<Real>& normal,
+                                                     const Vector3Of<Real>& stretch, const Real& longest) {
+  Vector3Of<Real> turned = across(spring, normal);
+  const Real before = norm(spring), after = norm(turned);
+  // The division by zero of a vanishing spring is not selected.
+  turned = select(after > 1e-14 * before, before / after, Real{0.0}) * turned;
   turned += stretch;
-  const double length = norm(turned);
-  return length > longest ? (longest / length) * turned : turned;
+  const Real length = norm(turned);
+  return select(length > longest, longest / length, Real{1.0}) * turned;
 }
 
 }  // namespace peclet::engine

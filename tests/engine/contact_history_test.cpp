@@ -27,7 +27,7 @@ std::vector<double> loads_of(System system) {
   std::vector<double> all;
   for (const VectorField* field : {&force, &torque}) {
     for (std::size_t i = 0; i < count; ++i) {
-      all.insert(all.end(), {field->x[i], field->y[i], field->z[i]});
+      all.insert(all.end(), {(*field)[i].x, (*field)[i].y, (*field)[i].z});
     }
   }
   return all;
@@ -49,7 +49,7 @@ void expect_same_loads(const System& before, const System& after) {
 // The springs of all contacts by their particles: no two of them meet twice here.
 std::map<std::pair<std::uint32_t, std::uint32_t>, ContactSprings> springs_by_particles(const System& system) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, ContactSprings> springs;
-  for (const HeldContact& held : held_contacts(system.list, system.particles.image, system.springs)) {
+  for (const HeldContact& held : held_contacts(system.list, system.particles, system.springs)) {
     EXPECT_TRUE(springs.emplace(std::pair(held.first, held.second), held.springs).second);
   }
   return springs;
@@ -80,11 +80,10 @@ TEST(ContactHistory, SurvivesFlipsInEitherDirection) {
     System before = dense_suspension(physics, 200, 2);
     before.box.flip(flips);  // another basis of the same lattice, too steep
     before.list.build(before.particles, before.box);
-    before.springs.assign(before.list.pairs().size(), {});
     const System original = dense_suspension(physics, 200, 2);
-    std::vector<HeldContact> held = held_contacts(original.list, original.particles.image, original.springs);
+    std::vector<HeldContact> held = held_contacts(original.list, original.particles, original.springs);
     for (HeldContact& contact : held) contact.image = ShearedBox::rebased(contact.image, flips);
-    before.springs = placed_contacts(before.list, before.particles.image, held);
+    before.springs = placed_contacts(before.list, before.particles, held, original.springs.kinds());
     System after = before;
     rebuild_neighbours(after);
     EXPECT_EQ(after.box.flips(), 0);
@@ -102,7 +101,7 @@ TEST(ContactHistory, SurvivesManyPassagesThroughTheBoundaries) {
   for (int step = 0; step < 12; ++step) {
     for (std::size_t i = 0; i < 200; ++i) {
       system.particles.position.set(i, system.particles.position[i] + way);
-      system.particles.velocity.x[i] += physics.shear_rate * way.y;
+      system.particles.velocity.add(i, {physics.shear_rate * way.y, 0, 0});
     }
     rebuild_neighbours(system);
     expect_same_springs(start, system);
@@ -114,7 +113,7 @@ TEST(ContactHistory, SurvivesManyPassagesThroughTheBoundaries) {
 // takes it.
 TEST(ContactHistory, UnwrappedPlacesFollowTheFlowThroughFlips) {
   System system = dense_suspension(physics, 50, 3);
-  system.springs.assign(system.list.pairs().size(), {});
+  system.springs = SpringField(system.springs.kinds(), system.list.pairs().size());
   rebuild_neighbours(system);
   const auto unwrapped = [&](std::size_t i) {
     return system.particles.position[i] + system.box.displacement(system.particles.image[i]);
@@ -126,7 +125,7 @@ TEST(ContactHistory, UnwrappedPlacesFollowTheFlowThroughFlips) {
   }
   for (int step = 1; step <= 12; ++step) {
     for (std::size_t i = 0; i < 50; ++i) {
-      system.particles.position.x[i] += 0.2 * system.particles.position.y[i];
+      system.particles.position.add(i, {0.2 * system.particles.position[i].y, 0, 0});
     }
     system.box.set_strain(0.2 * step);
     rebuild_neighbours(system);
@@ -139,17 +138,18 @@ TEST(ContactHistory, UnwrappedPlacesFollowTheFlowThroughFlips) {
 
 TEST(ContactHistory, ForgetsWhatIsFarApartByNow) {
   System system = dense_suspension(physics, 60, 4);
-  std::vector<HeldContact> held = held_contacts(system.list, system.particles.image, system.springs);
+  std::vector<HeldContact> held = held_contacts(system.list, system.particles, system.springs);
   const std::size_t kept = held.size();
   held.push_back({0, 1, {9, 9, 9}, {{1, 0, 0}, {}}});
-  system.springs = placed_contacts(system.list, system.particles.image, held);
-  EXPECT_EQ(held_contacts(system.list, system.particles.image, system.springs).size(), kept);
+  sort_contacts(held);
+  system.springs = placed_contacts(system.list, system.particles, held, system.springs.kinds());
+  EXPECT_EQ(held_contacts(system.list, system.particles, system.springs).size(), kept);
 }
 
 TEST(ContactHistory, SpringsOfZeroAreNotHeld) {
   System system = dense_suspension(physics, 60, 4);
-  system.springs.assign(system.list.pairs().size(), {});
-  EXPECT_TRUE(held_contacts(system.list, system.particles.image, system.springs).empty());
+  system.springs = SpringField(system.springs.kinds(), system.list.pairs().size());
+  EXPECT_TRUE(held_contacts(system.list, system.particles, system.springs).empty());
 }
 
 }  // namespace

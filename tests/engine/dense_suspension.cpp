@@ -1,6 +1,7 @@
 #include "tests/engine/dense_suspension.h"
 
 #include "engine/kernels/pair_access.h"
+#include "engine/kernels/pair_pass.h"
 #include "engine/state/packing.h"
 #include "engine/terms/drag.h"
 #include "tests/engine/draws.h"
@@ -20,14 +21,14 @@ void scatter(System& system, Draws& draws) {
     if (draws.whole(0, 2) == 0) {
       const LatticeShift shift = {draws.whole(-2, 2), draws.whole(-2, 2), draws.whole(-2, 2)};
       particles.position.set(i, place + system.box.displacement(shift));
-      particles.velocity.x[i] += system.box.velocity_offset(shift);
+      particles.velocity.add(i, {system.box.velocity_offset(shift), 0, 0});
     }
   }
 }
 
 void stretch_springs(System& system, const Physics& physics, Draws& draws) {
   const std::vector<ImageFrame> frames = image_frames(system.list, system.box);
-  system.springs.assign(system.list.pairs().size(), {});
+  system.springs = SpringField(spring_kinds(required_terms(physics)), system.list.pairs().size());
   for (std::size_t p = 0; p < system.springs.size(); ++p) {
     const Pair& pair = system.list.pairs()[p];
     const Vector3 r = separation(system.particles, pair, frames[pair.image]);
@@ -35,10 +36,12 @@ void stretch_springs(System& system, const Physics& physics, Draws& draws) {
         system.particles.radius[pair.first] + system.particles.radius[pair.second] - norm(r);
     if (overlap > 0 && physics.contact && physics.contact->friction > 0) {
       const Vector3 normal = (1 / norm(r)) * r;
-      system.springs[p].tangential = across(draws.vector(2 * overlap), normal);
+      ContactSprings springs;
+      springs.tangential = across(draws.vector(2 * overlap), normal);
       if (physics.contact->rolling_stiffness > 0) {
-        system.springs[p].rolling = across(draws.vector(5 * overlap), normal);
+        springs.rolling = across(draws.vector(5 * overlap), normal);
       }
+      system.springs.set(p, springs);
     }
   }
 }
@@ -80,7 +83,7 @@ System dense_suspension(const Physics& physics, std::size_t count, std::uint64_t
   place_randomly(system.particles, system.box, seed);
   scatter(system, draws);
   const std::vector<double> sizes = distinct_radii(radius);
-  system.list = NeighbourList(range_table(make_pair_kinds(physics, sizes), sizes.size()), 0.1);
+  system.list = NeighbourList(range_table(make_pair_kinds(physics, sizes), sizes.size()), 0.05);
   system.list.build(system.particles, system.box);
   stretch_springs(system, physics, draws);
   return system;
@@ -91,7 +94,9 @@ Configuration configuration_of(const System& system, const Physics& physics) {
   configuration.physics = physics;
   configuration.particles = system.particles;
   configuration.box = system.box;
-  const std::vector<LatticeShift> unwrapped(system.particles.count());
+  ParticleState unwrapped = system.particles;
+  unwrapped.image.assign(unwrapped.count(), {});
+  configuration.particles = unwrapped;
   configuration.springs = held_contacts(system.list, unwrapped, system.springs);
   return configuration;
 }

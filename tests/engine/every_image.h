@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/state/sheared_box.h"
+#include "engine/state/vector_field.h"
 
 namespace peclet::engine {
 

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "engine/kernels/pair_terms.h"
+#include "engine/kernels/pair_pass.h"
 #include "engine/terms/rolling.h"
 #include "tests/engine/two_spheres.h"
 
@@ -119,9 +119,9 @@ class ContactOfTwo : public testing::Test {
  protected:
   static constexpr Terms terms = {.contact = true, .friction = true, .rolling = true};
 
-  TermLoads after_step(double gap, const PairMotion& motion) {
-    const auto no_noise = [] { return NormalPair{}; };
-    return pair_terms<terms>(pair_parameters(physics_, 1e-3), kind_, pair_at(1, 1, gap, n), motion, &springs_,
+  TermLoadsOf<double> after_step(double gap, const PairMotion& motion) {
+    const auto no_noise = [] { return PairNormalsOf<double>{}; };
+    return pair_terms<terms>(pair_parameters(physics_, 1e-3), kind_, pair_at(1, 1, gap, n), motion, springs_,
                              no_noise);
   }
 
@@ -136,20 +136,20 @@ class ContactOfTwo : public testing::Test {
     return physics;
   }();
   PairKind kind_ = make_pair_kinds(physics_, {1.0}).front();
-  ContactSprings springs_;
+  PairSpringsOf<double> springs_;
 };
 
 TEST_F(ContactOfTwo, SlidesAtTheCoulombForce) {
   for (int step = 0; step < 100; ++step) {
-    const TermLoads loads = after_step(-0.01, {{1, 0, 0}, {}, {}});
+    const TermLoadsOf<double> loads = after_step(-0.01, {{1, 0, 0}, {}, {}});
     EXPECT_LE(norm(loads.friction.force), 0.5 * norm(loads.contact_normal) * (1 + 1e-14));
   }
-  const TermLoads loads = after_step(-0.01, {{1, 0, 0}, {}, {}});
+  const TermLoadsOf<double> loads = after_step(-0.01, {{1, 0, 0}, {}, {}});
   EXPECT_NEAR(norm(loads.friction.force), 0.5 * norm(loads.contact_normal), 1e-12);
 }
 
 TEST_F(ContactOfTwo, RollsAtTheLargestCouple) {
-  TermLoads loads;
+  TermLoadsOf<double> loads;
   for (int step = 0; step < 1000; ++step) {
     loads = after_step(-0.01, {{}, {3, 0, 0}, {-3, 0, 0}});
   }
@@ -163,7 +163,7 @@ TEST_F(ContactOfTwo, ForgetsWhenItOpens) {
   after_step(0, {{1, 0, 0}, {}, {}});
   EXPECT_EQ(norm(springs_.tangential), 0);
   EXPECT_EQ(norm(springs_.rolling), 0);
-  const TermLoads again = after_step(-0.01, {{}, {}, {}});
+  const TermLoadsOf<double> again = after_step(-0.01, {{}, {}, {}});
   EXPECT_EQ(norm(again.friction.force), 0);
 }
 

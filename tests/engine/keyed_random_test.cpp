@@ -5,9 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstring>
 #include <functional>
+#include <numbers>
 
-#include "engine/random/box_muller.h"
+#include "engine/kernels/instruction_set.h"
+#include "engine/random/fill_normals.h"
 
 namespace peclet::engine {
 namespace {
@@ -147,29 +150,69 @@ TEST(KeyedRandom, UniformsFillTheUnitCubeEvenly) {
   EXPECT_NEAR(square / all, 1.0 / 12, allowed * std::sqrt(1 / (180 * all)));
 }
 
-// No sampling: the two factors of the variance, E r^2 = 2 and E cos^2 = 1/2, over evenly spaced uniforms. The
-// midpoint rule itself is off by ln 2 times the spacing for E r^2, 1.7e-7.
+// No sampling: the two factors of the variance, E r^2 = 2 and E cos^2 = 1/2, over all uniforms there are. The
+// midpoint rule itself is off by ln 2 times their spacing for E r^2, 3.3e-7.
 TEST(BoxMuller, VarianceIsExactToAMillionth) {
-  constexpr std::uint32_t bits = 22, points = 1u << bits, spacing = 1u << (32 - bits);
-  double radius_squared = 0, cosine_squared = 0, sine_squared = 0, mean = 0;
+  constexpr std::uint32_t points = 1U << 21;
+  double radius_squared = 0, cosine_squared = 0, sine_squared = 0, product = 0, mean = 0;
   for (std::uint32_t k = 0; k < points; ++k) {
-    const TwoNormals along = box_muller(k * spacing + spacing / 2, 0);
-    radius_squared += along.a * along.a;
-    const TwoNormals around = box_muller(1u << 31, k * spacing + spacing / 2);
-    cosine_squared += around.a * around.a;
-    sine_squared += around.b * around.b;
-    mean += around.a + around.b;
+    radius_squared += -2.0 * static_cast<double>(logarithm_of_uniform(k));
+    float cosine = 0, sine = 0;
+    circle(k, cosine, sine);
+    cosine_squared += static_cast<double>(cosine) * static_cast<double>(cosine);
+    sine_squared += static_cast<double>(sine) * static_cast<double>(sine);
+    product += static_cast<double>(cosine) * static_cast<double>(sine);
+    mean += static_cast<double>(cosine) + static_cast<double>(sine);
   }
-  const double length_squared = 2 * std::log(2.0);  // at u = 1/2
   EXPECT_NEAR(radius_squared / points, 2, 1e-6);
-  EXPECT_NEAR(cosine_squared / points / length_squared, 0.5, 5e-7);
-  EXPECT_NEAR(sine_squared / points / length_squared, 0.5, 5e-7);
+  EXPECT_NEAR(cosine_squared / points, 0.5, 5e-7);
+  EXPECT_NEAR(sine_squared / points, 0.5, 5e-7);
+  EXPECT_NEAR(product / points, 0, 1e-6);
   EXPECT_NEAR(mean / points, 0, 1e-6);
 }
 
+// Against the standard library in double precision, for all uniforms there are.
+TEST(BoxMuller, LogarithmAndCircleAreThoseOfSinglePrecision) {
+  for (std::uint32_t k = 0; k < 1U << 21; ++k) {
+    const double u = (k + 0.5) / (1U << 21), angle = 2 * std::numbers::pi * k / (1U << 21);
+    ASSERT_NEAR(static_cast<double>(logarithm_of_uniform(k)) / std::log(u), 1, 2e-7) << k;
+    float cosine = 0, sine = 0;
+    circle(k, cosine, sine);
+    ASSERT_NEAR(static_cast<double>(cosine), std::cos(angle), 1.5e-7) << k;
+    ASSERT_NEAR(static_cast<double>(sine), std::sin(angle), 1.5e-7) << k;
+  }
+}
+
 TEST(BoxMuller, IsFiniteAtBothEnds) {
-  EXPECT_NEAR(box_muller(0, 0).a, std::sqrt(2 * 33 * std::log(2.0)), 1e-5);  // u = 2^-33
-  EXPECT_EQ(box_muller(0xffffffff, 0).a, 0);                                 // u rounds to 1
+  EXPECT_NEAR(static_cast<double>(logarithm_of_uniform(0)), -22 * std::log(2.0), 1e-5);
+  EXPECT_LT(logarithm_of_uniform((1U << 21) - 1), 0);
+}
+
+// Known answers of Threefry-2x64-20 for key and counter of zero and of ones, as its authors publish them,
+// reach the normals through fields of 21 bits.
+TEST(NormalBlock, IsMadeOfTheWordsOfThreefry) {
+  std::uint64_t identity[identities_per_block] = {}, low[identities_per_block], high[identities_per_block];
+  draw_words({}, identity, identity, low, high);
+  EXPECT_EQ(low[0], 0xc2b6e3a8c2c69865U);
+  EXPECT_EQ(high[0], 0x6f81ed42f350084dU);
+}
+
+// Every instruction set that this processor has gives the same bits.
+TEST(NormalBlock, HasTheSameBitsOnEveryInstructionSet) {
+  for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512}) {
+    if (!is_available(set)) continue;
+    for (std::uint64_t step = 0; step < 20000; ++step) {
+      std::uint64_t identity[identities_per_block], image[identities_per_block];
+      for (std::uint64_t k = 0; k < identities_per_block; ++k) {
+        identity[k] = step * 8 + k;
+        image[k] = k % 3;
+      }
+      NormalBlock one, other;
+      baseline::fill_normals({7, 3, step}, identity, image, one);
+      fill_normals(set)({7, 3, step}, identity, image, other);
+      ASSERT_EQ(std::memcmp(&one, &other, sizeof one), 0) << name_of(set) << ' ' << step;
+    }
+  }
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "engine/kernels/pair_terms.h"
+#include "engine/kernels/pair_pass.h"
 #include "tests/engine/two_spheres.h"
 
 namespace peclet::engine {
@@ -119,10 +119,12 @@ TEST(Lubrication, EndsWithTheKnownJumpsAtTheOuterGap) {
     const PairKind kind = make_pair_kinds(physics, {1.0}).front();
     const auto force_at = [&](double gap, const Vector3& velocity) {
       const PairGeometry pair = pair_at(1, 1, gap, {1, 0, 0});
-      const auto no_noise = [] { return NormalPair{}; };
+      const auto no_noise = [] { return PairNormalsOf<double>{}; };
+      const PairMotion motion = {velocity, {}, {}};
+      PairSpringsOf<double> springs;
       return (1 / (6 * std::numbers::pi * viscosity)) *
-             pair_terms<Terms{.lubrication = true}>(pair_parameters(physics, 0), kind, pair,
-                                                    {velocity, {}, {}}, nullptr, no_noise)
+             pair_terms<Terms{.lubrication = true}>(pair_parameters(physics, 0), kind, pair, motion, springs,
+                                                    no_noise)
                  .lubrication.force;
     };
     const double inside = each.outer_gap * (1 - 1e-9), outside = each.outer_gap * (1 + 1e-9);

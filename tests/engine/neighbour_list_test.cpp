@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <set>
 #include <stdexcept>
+#include <tuple>
 
 #include "tests/engine/draws.h"
 #include "tests/engine/every_image.h"
@@ -42,10 +44,9 @@ ParticleState scattered(std::size_t count, const std::vector<double>& sizes, con
   return particles;
 }
 
-std::vector<SeenPair> near(const ParticleState& particles, const ShearedBox& box, double factor,
-                           double skin) {
+std::vector<SeenPair> near(const ParticleState& particles, const ShearedBox& box, double factor) {
   return every_image(particles.position, box.lengths(), box.tilt(), [&](std::uint32_t i, std::uint32_t j) {
-    return factor * (particles.radius[i] + particles.radius[j]) + skin;
+    return factor * (particles.radius[i] + particles.radius[j]);
   });
 }
 
@@ -54,6 +55,9 @@ std::vector<SeenPair> listed(const NeighbourList& list) {
   for (const Pair& pair : list.pairs()) {
     pairs.push_back({pair.first, pair.second, list.images()[pair.image], {}});
   }
+  std::sort(pairs.begin(), pairs.end(), [](const SeenPair& a, const SeenPair& b) {
+    return std::tie(a.first, a.second, a.image) < std::tie(b.first, b.second, b.image);
+  });
   return pairs;
 }
 
@@ -76,10 +80,10 @@ TEST(NeighbourList, HoldsEveryPairInEveryImageAndNoOther) {
     for (const double tilt : {-0.5, -0.31, 0.0, 0.17, 0.4999, 0.5}) {
       const ShearedBox box(each.edges, 1, tilt * each.edges.x);
       const ParticleState particles = scattered(each.count, each.sizes, box, draws);
-      for (const double skin : {0.0, 0.3 * each.sizes.front()}) {
+      for (const double skin : {0.0, 0.15}) {
         NeighbourList list(ranges_of(particles.radius), skin);
         list.build(particles, box);
-        EXPECT_EQ(listed(list), near(particles, box, outer, skin))
+        EXPECT_EQ(listed(list), near(particles, box, outer * (1 + skin)))
             << each.count << " spheres, tilt " << tilt << ", skin " << skin;
         pairs += list.pairs().size();
       }
@@ -113,21 +117,81 @@ TEST(NeighbourList, TwoSpheresMayMeetUnderSeveralImages) {
   EXPECT_EQ(listed(list), expected);
 }
 
-TEST(NeighbourList, IncidenceNamesEveryPairOfAParticleOnceInTheOrderOfTheList) {
+// What the loop over pairs relies on.
+void expect_arranged(const NeighbourList& list) {
+  std::uint32_t next = 0, next_run = 0, next_particle = 0, crossings = 0;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> outgoing, incoming;
+  for (const ParticleBlock& block : list.blocks()) {
+    EXPECT_EQ(block.begin, next_particle);
+    EXPECT_EQ(block.runs_begin, next_run);
+    const auto at_home = [&](std::uint32_t i) { return i >= block.begin && i < block.end; };
+    for (std::uint32_t r = block.runs_begin; r < block.runs_end; ++r) {
+      const PairRun& run = list.runs()[r];
+      EXPECT_EQ(run.begin, next);
+      const bool crosses = run.crossing != within_block;
+      EXPECT_TRUE(!crosses || run.crossing == crossings);
+      bool imaged = false;
+      for (std::uint32_t p = run.begin; p < run.end; ++p) {
+        const Pair& pair = list.pairs()[p];
+        EXPECT_EQ(pair.kind, run.kind);
+        EXPECT_TRUE(at_home(pair.first));
+        EXPECT_EQ(at_home(pair.second), !crosses);
+        imaged = imaged || pair.image != 0;
+        if (crosses) outgoing.emplace(pair.second, crossings++);
+      }
+      EXPECT_EQ(imaged, run.imaged);
+      next = run.end;
+    }
+    for (std::uint32_t k = block.incoming_begin; k < block.incoming_end; ++k) {
+      EXPECT_TRUE(at_home(list.incoming()[k].particle));
+      EXPECT_TRUE(incoming.emplace(list.incoming()[k].particle, list.incoming()[k].crossing).second);
+    }
+    next_run = block.runs_end;
+    next_particle = block.end;
+  }
+  EXPECT_EQ(next, list.pairs().size());
+  EXPECT_EQ(next_run, list.runs().size());
+  EXPECT_EQ(crossings, list.crossings());
+  EXPECT_EQ(incoming, outgoing);
+  EXPECT_EQ(list.images().front(), LatticeShift{});
+}
+
+TEST(NeighbourList, IsArrangedInBlocksAndRunsOfOneKind) {
   Draws draws(13);
   const ShearedBox box({7, 7, 7}, 0);
   const ParticleState particles = scattered(50, {1, 1.4}, box, draws);
-  NeighbourList list(ranges_of(particles.radius), 0.1);
+  NeighbourList list(ranges_of(particles.radius), 0.05);
   list.build(particles, box);
-  for (std::uint32_t i = 0; i < 50; ++i) {
-    std::vector<std::uint32_t> expected;
-    for (std::uint32_t p = 0; p < list.pairs().size(); ++p) {
-      if (list.pairs()[p].first == i) expected.push_back(2 * p);
-      if (list.pairs()[p].second == i) expected.push_back(2 * p + 1);
+  EXPECT_EQ(list.blocks().size(), 1u);
+  expect_arranged(list);
+}
+
+// Particles in any order: most pairs cross from one block into another, of which some are found from the
+// wrong end.
+TEST(NeighbourList, HoldsEveryPairOfSeveralBlocksOnAnyNumberOfThreads) {
+  Draws draws(16);
+  const ShearedBox box({22, 21, 23}, 1, 4);
+  ParticleState particles = scattered(2 * particles_per_block + 100, {0.5, 0.7}, box, draws);
+  std::reverse(particles.id.begin(), particles.id.begin() + 1000);
+  NeighbourList one(ranges_of(particles.radius), 0.05), two = one;
+  one.build(particles, box);
+  EXPECT_EQ(one.blocks().size(), 3u);
+  EXPECT_GT(one.crossings(), 1000u);
+  expect_arranged(one);
+  std::vector<SeenPair> expected = near(particles, box, outer * 1.05);
+  for (SeenPair& pair : expected) {
+    if (particles.id[pair.first] > particles.id[pair.second]) {
+      std::swap(pair.first, pair.second);
+      pair.image = LatticeShift{} - pair.image;
     }
-    const auto incident = list.incident(i);
-    EXPECT_EQ(std::vector<std::uint32_t>(incident.begin(), incident.end()), expected);
   }
+  std::sort(expected.begin(), expected.end(), [](const SeenPair& a, const SeenPair& b) {
+    return std::tie(a.first, a.second, a.image) < std::tie(b.first, b.second, b.image);
+  });
+  EXPECT_EQ(listed(one), expected);
+  two.build(particles, box, 2);
+  ASSERT_EQ(one.pairs().size(), two.pairs().size());
+  EXPECT_EQ(std::memcmp(one.pairs().data(), two.pairs().data(), one.pairs().size() * sizeof(Pair)), 0);
 }
 
 TEST(NeighbourList, RefusesAParticleThatInteractsWithItsOwnImage) {
@@ -150,7 +214,7 @@ TEST(NeighbourList, MissesNoInteractingPairForAsLongAsItHolds) {
   Draws draws(14);
   ShearedBox box({12, 11, 10}, 1, -5);
   ParticleState particles = scattered(150, {1, 1.4}, box, draws);
-  NeighbourList list(ranges_of(particles.radius), 0.3);
+  NeighbourList list(ranges_of(particles.radius), 0.15);
   list.build(particles, box);
   int checks = 0;
   for (int step = 0; step < 400; ++step) {
@@ -166,7 +230,7 @@ TEST(NeighbourList, MissesNoInteractingPairForAsLongAsItHolds) {
       for (const SeenPair& pair : held) all.emplace(pair.first, pair.second, pair.image);
       return all;
     }();
-    for (const SeenPair& pair : near(particles, box, outer, 0)) {
+    for (const SeenPair& pair : near(particles, box, outer)) {
       ASSERT_TRUE(names.count({pair.first, pair.second, pair.image})) << "step " << step;
     }
   }
@@ -175,10 +239,11 @@ TEST(NeighbourList, MissesNoInteractingPairForAsLongAsItHolds) {
 }
 
 // Two of the largest spheres, not listed by a hair's breadth, approach as fast as the criterion supposes: it
-// gives way when they come into range, not before. Checked without strain, where each moves by half the skin,
-// and at strains for which the separation lies along the direction that the flow compresses most.
+// gives way when they come into range, not before. Checked without strain, where each moves by half the skin
+// times the range, and at strains for which the separation lies along the direction that the flow compresses
+// most.
 TEST(NeighbourList, IsRebuiltOnlyWhenAPairCouldBeMissing) {
-  constexpr double skin = 0.3, range = 2 * outer;
+  constexpr double skin = 0.15, range = 2 * outer;
   for (const double strain : {0.0, 0.02, -0.05, 0.1}) {
     ShearedBox box({20, 20, 20}, 1);
     ParticleState particles = make_particles({1, 1}, 1);
@@ -186,13 +251,13 @@ TEST(NeighbourList, IsRebuiltOnlyWhenAPairCouldBeMissing) {
     const double s = std::sqrt(1 + 0.25 * strain * strain) - 0.5 * std::abs(strain);
     const Vector3 along = strain == 0 ? Vector3{0.6, 0, 0.8} : Vector3{strain, s * s - 1, 0};
     const Vector3 compressed = (1 / norm(along)) * along;
-    particles.position.set(1, (range + skin + 1e-9) * compressed);
+    particles.position.set(1, (range * (1 + skin) + 1e-9) * compressed);
     NeighbourList list(ranges_of(particles.radius), skin);
     list.build(particles, box);
     ASSERT_TRUE(list.pairs().empty());
     box.set_strain(strain);
-    const Vector3 carried = particles.position[1] + Vector3{strain * particles.position.y[1], 0, 0};
-    ASSERT_NEAR(norm(carried), s * (range + skin), 1e-8) << strain;
+    const Vector3 carried = particles.position[1] + Vector3{strain * particles.position[1].y, 0, 0};
+    ASSERT_NEAR(norm(carried), s * range * (1 + skin), 1e-8) << strain;
     const Vector3 direction = (1 / norm(carried)) * carried;
     const double distance = 0.5 * (norm(carried) - range);  // of each, until they come into range
     const auto approach = [&](double each) {
@@ -205,18 +270,18 @@ TEST(NeighbourList, IsRebuiltOnlyWhenAPairCouldBeMissing) {
   }
 }
 
-// As strain grows, even a particle at rest in the flow uses up the skin: s (range + skin) = range.
+// As strain grows, even a particle at rest in the flow uses up the skin: s (1 + skin) = 1.
 TEST(NeighbourList, StrainAloneUsesUpTheSkin) {
   ShearedBox box({20, 20, 20}, 1);
   ParticleState particles = make_particles({1, 1}, 1);
   particles.position.set(1, {0, 10, 0});
-  NeighbourList list(ranges_of(particles.radius), 0.3);
+  NeighbourList list(ranges_of(particles.radius), 0.15);
   list.build(particles, box);
-  const double stretch = 2 * outer / (2 * outer + 0.3);
+  const double stretch = 1 / 1.15;
   const double largest = 1 / stretch - stretch;  // s(g) = stretch
   const auto carried_to = [&](double strain) {
     box.set_strain(strain);
-    particles.position.x[1] = strain * 10;
+    particles.position.set(1, {strain * 10, 10, 0});
     return list.holds(particles, box);
   };
   EXPECT_TRUE(carried_to(0.999 * largest));
@@ -227,11 +292,11 @@ TEST(NeighbourList, IsTheSameAgainFromItsReference) {
   Draws draws(15);
   ShearedBox box({9, 8, 10}, 1, 3);
   ParticleState particles = scattered(80, {1, 1.4}, box, draws);
-  NeighbourList list(ranges_of(particles.radius), 0.3);
+  NeighbourList list(ranges_of(particles.radius), 0.15);
   list.build(particles, box);
   const ShearedBox box_then = box;
   move(particles, box, 0.01, 0.02, draws);
-  NeighbourList again(ranges_of(particles.radius), 0.3);
+  NeighbourList again(ranges_of(particles.radius), 0.15);
   again.rebuild_from(list.reference(), particles, box_then);
   ASSERT_EQ(again.pairs().size(), list.pairs().size());
   for (std::size_t p = 0; p < list.pairs().size(); ++p) {

@@ -72,9 +72,7 @@ TEST(Packing, VolumeFractionIsThatOfTheSpheres) {
 TEST(Packing, IsAFunctionOfTheSeed) {
   const Packing first = packed(equal_volumes(200), 0.5, 7), again = packed(equal_volumes(200), 0.5, 7),
                 other = packed(equal_volumes(200), 0.5, 8);
-  EXPECT_EQ(first.particles.position.x, again.particles.position.x);
-  EXPECT_EQ(first.particles.position.y, again.particles.position.y);
-  EXPECT_EQ(first.particles.position.z, again.particles.position.z);
+  EXPECT_EQ(first.particles.position, again.particles.position);
   for (std::size_t i = 0; i < 200; ++i) {
     EXPECT_GT(norm(first.particles.position[i] - other.particles.position[i]), 0);
   }
@@ -82,9 +80,7 @@ TEST(Packing, IsAFunctionOfTheSeed) {
 
 TEST(Packing, SpheresAreAtRest) {
   const Packing packing = packed(equal_volumes(50), 0.5, 1);
-  EXPECT_EQ(packing.particles.velocity.x, std::vector<double>(50));
-  EXPECT_EQ(packing.particles.velocity.y, std::vector<double>(50));
-  EXPECT_EQ(packing.particles.velocity.z, std::vector<double>(50));
+  EXPECT_EQ(packing.particles.velocity, VectorField(50));
 }
 
 // Equal volumes of 1 and 1.4 jam at random between 0.64 and 0.66.
@@ -126,9 +122,9 @@ TEST(Packing, DoesNotDependOnTheUnitOfLength) {
   const Scaled large = packed_in_units(1, 0.5), small = packed_in_units(unit, 0.5);
   ASSERT_EQ(large.position.size(), 8u);
   for (std::size_t i = 0; i < 8; ++i) {
-    EXPECT_EQ(unit * large.position.x[i], small.position.x[i]);
-    EXPECT_EQ(unit * large.position.y[i], small.position.y[i]);
-    EXPECT_EQ(unit * large.position.z[i], small.position.z[i]);
+    EXPECT_EQ(unit * large.position[i].x, small.position[i].x);
+    EXPECT_EQ(unit * large.position[i].y, small.position[i].y);
+    EXPECT_EQ(unit * large.position[i].z, small.position[i].z);
   }
   EXPECT_GT(packed_in_units(1, 0.72).reached, 0.5);
   EXPECT_EQ(packed_in_units(1, 0.72).reached, packed_in_units(unit, 0.72).reached);

@@ -10,17 +10,18 @@ namespace {
 
 constexpr double viscosity = 0.1;
 
-using NoiseLoad = PairLoad (*)(double, const PairResistance&, const PairGeometry&, const Vector3&,
+using NoiseLoad = PairLoad (*)(double, const ResistanceRoots&, const PairGeometry&, const Vector3&,
                                const Vector3&);
 
 // Covariance of (F_i, F_j, T_i, T_j) for theta and chi with independent components of variance one.
-Matrix<12> covariance(NoiseLoad noise, double amplitude, const PairResistance& R, const PairGeometry& pair) {
+Matrix<12> covariance(NoiseLoad noise, double amplitude, const ResistanceRoots& root,
+                      const PairGeometry& pair) {
   Matrix<12> sum{};
   for (std::size_t k = 0; k < 6; ++k) {
     Vector3 theta, chi;
     Vector3& part = k < 3 ? theta : chi;
     (k % 3 == 0 ? part.x : k % 3 == 1 ? part.y : part.z) = 1;
-    const std::array<double, 12> column = components(noise(amplitude, R, pair, theta, chi));
+    const std::array<double, 12> column = components(noise(amplitude, root, pair, theta, chi));
     for (std::size_t i = 0; i < 12; ++i) {
       for (std::size_t j = 0; j < 12; ++j) sum[i][j] += column[i] * column[j];
     }
@@ -37,10 +38,10 @@ double largest_difference(const Matrix<12>& a, const Matrix<12>& b) {
 }
 
 // As eq. 24 is printed: a plus before the second torque's root.
-PairLoad wrong_sign(double amplitude, const PairResistance& R, const PairGeometry& pair, const Vector3& theta,
-                    const Vector3& chi) {
-  PairLoad load = pair_noise_load(amplitude, R, pair, theta, chi);
-  const PairLoad without_chi = pair_noise_load(amplitude, R, pair, theta, {});
+PairLoad wrong_sign(double amplitude, const ResistanceRoots& root, const PairGeometry& pair,
+                    const Vector3& theta, const Vector3& chi) {
+  PairLoad load = pair_noise_load(amplitude, root, pair, theta, chi);
+  const PairLoad without_chi = pair_noise_load(amplitude, root, pair, theta, {});
   load.torque_second = without_chi.torque_second - (load.torque_second - without_chi.torque_second);
   return load;
 }
@@ -52,7 +53,8 @@ TEST(PairNoise, CovarianceIsTheResistanceForUnequalSizes) {
       const PairGeometry pair = pair_at(1.3, 1.3 * ratio, gap, draws.direction());
       const PairResistance R = resistance_of(viscosity, 1.3, 1.3 * ratio, pair);
       const Matrix<12> expected = grand_resistance(R, pair);
-      EXPECT_LT(largest_difference(covariance(pair_noise_load, 1, R, pair), expected),
+      const ResistanceRoots root = roots_of(viscosity, 1.3, 1.3 * ratio, pair);
+      EXPECT_LT(largest_difference(covariance(pair_noise_load, 1, root, pair), expected),
                 1e-13 * largest_entry(expected))
           << ratio << ' ' << gap;
     }
@@ -68,18 +70,20 @@ TEST(PairNoise, TheWrongSignInTheSecondTorqueIsFarFromTheResistance) {
     for (const double gap : {1e-3, 0.05, 0.5}) {
       const PairGeometry pair = pair_at(1, each.ratio, gap, {1, 0, 0});
       const PairResistance R = resistance_of(viscosity, 1, each.ratio, pair);
+      const ResistanceRoots root = roots_of(viscosity, 1, each.ratio, pair);
       const std::size_t first = 7, second = 10;  // y components of both torques
-      EXPECT_NEAR(covariance(pair_noise_load, 1, R, pair)[first][second] / R.twist_cross, 1, 1e-12);
-      EXPECT_NEAR(covariance(wrong_sign, 1, R, pair)[first][second] / R.twist_cross, each.too_large_by, 0.06);
+      EXPECT_NEAR(covariance(pair_noise_load, 1, root, pair)[first][second] / R.twist_cross, 1, 1e-12);
+      EXPECT_NEAR(covariance(wrong_sign, 1, root, pair)[first][second] / R.twist_cross, each.too_large_by,
+                  0.06);
     }
   }
 }
 
 TEST(PairNoise, GrowsWithTheAmplitude) {
   const PairGeometry pair = pair_at(1, 1.4, 0.01, {0, 0, 1});
-  const PairResistance R = resistance_of(viscosity, 1, 1.4, pair);
-  const PairLoad one = pair_noise_load(1, R, pair, {1, 2, 3}, {4, 5, 6});
-  const PairLoad three = pair_noise_load(3, R, pair, {1, 2, 3}, {4, 5, 6});
+  const ResistanceRoots root = roots_of(viscosity, 1, 1.4, pair);
+  const PairLoad one = pair_noise_load(1, root, pair, {1, 2, 3}, {4, 5, 6});
+  const PairLoad three = pair_noise_load(3, root, pair, {1, 2, 3}, {4, 5, 6});
   EXPECT_NEAR(norm(three.force - 3 * one.force), 0, 1e-13 * norm(three.force));
   EXPECT_NEAR(norm(three.torque_second - 3 * one.torque_second), 0, 1e-13 * norm(three.torque_second));
 }
@@ -90,7 +94,7 @@ TEST(PairNoise, TorquesOfThePairBalance) {
     for (const double gap : gaps) {
       const PairGeometry pair = pair_at(1, ratio, gap, draws.direction());
       const PairLoad load =
-          pair_noise_load(2, resistance_of(viscosity, 1, ratio, pair), pair, draws.vector(), draws.vector());
+          pair_noise_load(2, roots_of(viscosity, 1, ratio, pair), pair, draws.vector(), draws.vector());
       const Vector3 net = load.torque_first + load.torque_second - cross(pair.separation, load.force);
       EXPECT_LT(norm(net), 1e-12 * (norm(load.torque_first) + norm(load.torque_second) + norm(load.force)));
     }

@@ -43,7 +43,7 @@ class ResumedRun : public testing::Test {
   }
 
   static std::size_t stretched_springs(const System& system) {
-    return held_contacts(system.list, system.particles.image, system.springs).size();
+    return held_contacts(system.list, system.particles, system.springs).size();
   }
 
   Scene scene_ = read_scene(small_scene(), "scene.json");

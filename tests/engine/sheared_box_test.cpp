@@ -156,8 +156,8 @@ TEST(Wrapping, KeepsTheVelocityRelativeToTheStreamingFlow) {
   Suspension after = before;
   wrap_into_cell(after.particles, after.box);
   for (std::size_t i = 0; i < 30; ++i) {
-    EXPECT_NEAR(after.particles.velocity.x[i] - rate * after.particles.position.y[i],
-                before.particles.velocity.x[i] - rate * before.particles.position.y[i], 1e-12 * 40);
+    EXPECT_NEAR(after.particles.velocity[i].x - rate * after.particles.position[i].y,
+                before.particles.velocity[i].x - rate * before.particles.position[i].y, 1e-12 * 40);
   }
 }
 

@@ -21,6 +21,12 @@ inline PairResistance resistance_of(double viscosity, double first, double secon
   return pair_resistance(resistance_constants(viscosity, first, second), inner_gap, pair);
 }
 
+inline ResistanceRoots roots_of(double viscosity, double first, double second, const PairGeometry& pair) {
+  const ResistanceConstants constants = resistance_constants(viscosity, first, second);
+  const ResistanceModes modes = resistance_modes(inner_gap, pair.distance, pair);
+  return resistance_roots(root_constants(constants), pair_resistance(constants, modes).squeeze, modes);
+}
+
 inline PairMotion random_motion(Draws& draws) { return {draws.vector(), draws.vector(), draws.vector()}; }
 
 // -power of a load: F_i.U_i + F_j.U_j + T_i.Omega_i + T_j.Omega_j with F_j = -F_i.

@@ -45,9 +45,9 @@ Release error_of_release(int steps) {
   integrator.start(system);
   for (int step = 0; step < steps; ++step) integrator.advance(system);
   const ParticleState& p = system.particles;
-  const double overlap = 2.4 - (p.position.x[1] - p.position.x[0]);
+  const double overlap = 2.4 - (p.position[1].x - p.position[0].x);
   return {std::abs(overlap - 0.01 * std::cos(0.7)),
-          std::abs(p.velocity.x[1] - p.velocity.x[0] - 0.01 * w * std::sin(0.7))};
+          std::abs(p.velocity[1].x - p.velocity[0].x - 0.01 * w * std::sin(0.7))};
 }
 
 TEST(VelocityVerlet, IsOfSecondOrderForAContact) {
@@ -78,10 +78,10 @@ TEST(VelocityVerlet, SpheresRelaxToTheStreamingFlow) {
   integrator.start(system);
   for (int step = 0; step < steps; ++step) integrator.advance(system);
   const ParticleState& p = system.particles;
-  EXPECT_NEAR(p.velocity.z[0], 3 * std::exp(-1.0), 1e-3);
-  EXPECT_NEAR(p.velocity.x[0] - 0.7 * p.position.y[0], 0, 1e-12);
-  EXPECT_NEAR(p.angular_velocity.x[0], 2 * std::exp(-spin_rate / rate), 1e-3);
-  EXPECT_NEAR(p.angular_velocity.z[0], -0.35, 1e-12);
+  EXPECT_NEAR(p.velocity[0].z, 3 * std::exp(-1.0), 1e-3);
+  EXPECT_NEAR(p.velocity[0].x - 0.7 * p.position[0].y, 0, 1e-12);
+  EXPECT_NEAR(p.angular_velocity[0].x, 2 * std::exp(-spin_rate / rate), 1e-3);
+  EXPECT_NEAR(p.angular_velocity[0].z, -0.35, 1e-12);
 }
 
 // Two equal spheres in a box that is a little shorter than four radii touch each other on both sides: a
@@ -101,7 +101,7 @@ double amplitude_after(double stiffness, double viscosity, double timestep) {
   for (int step = 0; step < 2000; ++step) {
     integrator.advance(system);
     const ParticleState& p = system.particles;
-    const double way = p.position.x[1] - p.position.x[0];
+    const double way = p.position[1].x - p.position[0].x;
     amplitude = std::abs(way - 3.9 * std::round(way / 3.9 - 0.5) - 1.95);
     if (amplitude > 1e-3) break;
   }
@@ -145,10 +145,10 @@ TEST(VelocityVerlet, AContactThatIsTornOpenInOneStepIsForgotten) {
   system.particles.angular_velocity.set(0, {0, 0, 1});  // slip: a spring
   VelocityVerlet integrator = integrator_of(physics, system, 1e-3);
   integrator.start(system);
-  ASSERT_EQ(held_contacts(system.list, system.particles.image, system.springs).size(), 1u);
+  ASSERT_EQ(held_contacts(system.list, system.particles, system.springs).size(), 1u);
   system.particles.velocity.set(1, {300, 0, 0});
   EXPECT_GT(integrator.advance(system).largest_displacement, 0.25);
-  EXPECT_TRUE(held_contacts(system.list, system.particles.image, system.springs).empty());
+  EXPECT_TRUE(held_contacts(system.list, system.particles, system.springs).empty());
 }
 
 class FlowingSuspension : public testing::Test {
@@ -156,7 +156,7 @@ class FlowingSuspension : public testing::Test {
   FlowingSuspension() {
     for (std::size_t i = 0; i < 100; ++i) {
       ParticleState& particles = system_.particles;
-      particles.velocity.set(i, streaming_velocity(physics_.shear_rate, particles.position.y[i]));
+      particles.velocity.set(i, streaming_velocity(physics_.shear_rate, particles.position[i].y));
     }
     integrator_.start(system_);
   }

@@ -45,7 +45,7 @@ Laboratory sheared_suspension(double timestep) {
   ParticleState& all = laboratory.particles();
   place_randomly(all, experiment.box, /*seed=*/9);
   for (std::size_t i = 0; i < all.count(); ++i) {
-    all.velocity.set(i, {rate * all.position.y[i], 0, 0});
+    all.velocity.set(i, {rate * all.position[i].y, 0, 0});
     all.angular_velocity.set(i, {0, 0, -0.5 * rate});
   }
   laboratory.start();
@@ -121,7 +121,7 @@ struct SpherePower {
 SpherePower power_of_spheres(const ParticleState& all) {
   SpherePower power;
   for (std::size_t i = 0; i < all.count(); ++i) {
-    const Vector3 c = all.velocity[i] - Vector3{rate * all.position.y[i], 0, 0};
+    const Vector3 c = all.velocity[i] - Vector3{rate * all.position[i].y, 0, 0};
     const Vector3 w = all.angular_velocity[i] + Vector3{0, 0, 0.5 * rate};
     const double a = all.radius[i];
     power.drag += a * dot(c, c) + 4.0 / 3 * a * a * a * dot(w, w);  // 6 pi eta = 1
@@ -154,7 +154,7 @@ TEST(EnergyBalance, HoldsAtEveryInstantOfASheardSuspension) {
     const PairSums sums = field.evaluate(system, force, torque);
     double taken_up = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      const Vector3 c = system.particles.velocity[i] - Vector3{rate * system.particles.position.y[i], 0, 0};
+      const Vector3 c = system.particles.velocity[i] - Vector3{rate * system.particles.position[i].y, 0, 0};
       const Vector3 w = system.particles.angular_velocity[i] + Vector3{0, 0, 0.5 * rate};
       taken_up += dot(force[i], c) + dot(torque[i], w);
     }

@@ -44,13 +44,13 @@ Laboratory sheared_suspension(double tilt) {
 // another velocity.
 void place(Laboratory& laboratory, const Vector3& offset) {
   ParticleState& all = laboratory.particles();
-  place_randomly(all, ShearedBox({edge, edge, edge}, 0, 0.4 * edge), /*seed=*/6);
+  place_randomly(all, ShearedBox({edge, edge, edge}, 0, 0.4 * edge), /*seed=*/4);
   std::mt19937_64 generator(31);
   std::uniform_real_distribution<double> disturbance(-0.05, 0.05);
   for (std::size_t i = 0; i < all.count(); ++i) {
     const double u = disturbance(generator), v = disturbance(generator), w = disturbance(generator);
     all.position.set(i, all.position[i] + offset);
-    all.velocity.set(i, {rate * all.position.y[i] + u, v, w});
+    all.velocity.set(i, {rate * all.position[i].y + u, v, w});
     all.angular_velocity.set(i, {v, w, u - 0.5 * rate});
   }
   laboratory.start();

@@ -9,7 +9,7 @@ System empty_system(const Experiment& experiment) {
   system.box = experiment.box;
   const std::vector<double> sizes = distinct_radii(experiment.radius);
   const RangeTable ranges = range_table(make_pair_kinds(experiment.physics, sizes), sizes.size());
-  system.list = NeighbourList(ranges, experiment.skin);
+  system.list = NeighbourList(ranges, experiment.skin / ranges.smallest());
   return system;
 }
 

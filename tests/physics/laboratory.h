@@ -38,6 +38,7 @@ class Laboratory {
   StepReport step() { return integrator_.advance(system_); }
 
   System& system() { return system_; }
+  const System& system() const { return system_; }
   ParticleState& particles() { return system_.particles; }
   const Physics& physics() const { return physics_; }
   double timestep() const { return integrator_.timestep(); }

@@ -33,19 +33,21 @@ Laboratory single_spheres(std::size_t count, double thermal_energy, double times
   return laboratory;
 }
 
+// By id: spheres change their places in memory.
 std::vector<Vector3> unwrapped_places(const Laboratory& laboratory, std::size_t count) {
-  std::vector<Vector3> places;
+  std::vector<Vector3> places(count);
   for (std::size_t i = 0; i < count; ++i) {
-    places.push_back(laboratory.unwrapped(i));
+    places[laboratory.system().particles.id[i]] = laboratory.unwrapped(i);
   }
   return places;
 }
 
 // Mean of the squared displacement along one axis.
 double mean_square(const Laboratory& laboratory, const std::vector<Vector3>& origin) {
+  const std::vector<Vector3> now = unwrapped_places(laboratory, origin.size());
   double sum = 0;
   for (std::size_t i = 0; i < origin.size(); ++i) {
-    const Vector3 way = laboratory.unwrapped(i) - origin[i];
+    const Vector3 way = now[i] - origin[i];
     sum += dot(way, way);
   }
   return sum / (3 * static_cast<double>(origin.size()));

@@ -44,10 +44,13 @@ class NoisyPair {
 
   Components noise(std::uint64_t step) {
     VectorField force(2), torque(2);
-    const PairPassInput input = {
-        system_.particles, system_.list, system_.box,  kinds_, pair_parameters(physics_, timestep),
-        random_,           step,         /*threads=*/1};
-    pair_pass(required_terms(physics_))(input, work_, system_.springs, force, torque);
+    const PairPassInput input = {.particles = system_.particles,
+                                 .list = system_.list,
+                                 .box = system_.box,
+                                 .kinds = kinds_,
+                                 .parameters = pair_parameters(physics_, timestep),
+                                 .noise = random_.key(step)};
+    pass_.evaluate(input, system_.springs, force, torque);
     Components c;
     for (const VectorField* field : {&force, &torque}) {
       for (const std::size_t particle : {0U, 1U}) {
@@ -103,7 +106,7 @@ class NoisyPair {
   Physics physics_;
   System system_;
   std::vector<PairKind> kinds_;
-  PairPassWork work_;
+  PairPass pass_{{.lubrication = true, .noise = true}, chosen_instruction_set()};
 };
 
 // Overlapping, below the inner gap, at it, and up to the outer one.

@@ -1,0 +1,40 @@
+// Standard normal numbers for eight particles or pairs at once: the one source of every noise.
+//
+// Of each identity six independent normals, a pure function of (key, step, identity, image): Threefry-2x64-20
+// (Salmon et al. 2011) gives 128 bits, three Box-Muller transforms of 21-bit uniforms in single precision
+// turn them into normals. Every operation is exact or rounded on its own (products are never fused with
+// sums), so the bits are the same on every instruction set.
+#pragma once
+
+#include <cstdint>
+
+namespace peclet::engine {
+
+constexpr int identities_per_block = 8;
+
+struct NoiseKey {
+  std::uint64_t seed = 0, purpose = 0, step = 0;
+};
+
+struct NormalBlock {
+  alignas(64) float value[6][identities_per_block];
+};
+
+// Fills a block for eight identities. `image` may be null: all zero.
+using FillNormals = void (*)(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
+                             NormalBlock& block);
+
+namespace baseline {
+void fill_normals(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
+                  NormalBlock& block);
+}
+namespace avx2 {
+void fill_normals(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
+                  NormalBlock& block);
+}
+namespace avx512 {
+void fill_normals(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
+                  NormalBlock& block);
+}
+
+}  // namespace peclet::engine

@@ -1,0 +1,218 @@
+#include "engine/state/list_builder.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "engine/state/for_each_range.h"
+
+namespace peclet::engine {
+
+ListBuilder::ListBuilder(NeighbourList& list, const ParticleState& particles, const ShearedBox& box,
+                         int threads)
+    : list_(list),
+      particles_(particles),
+      box_(box),
+      threads_(threads),
+      places_(lattice_places(list.reference_, box)) {
+  const RangeTable& ranges = list_.ranges_;
+  std::vector<std::vector<std::uint32_t>> members(ranges.classes());
+  for (std::uint32_t i = 0; i < particles_.count(); ++i) {
+    members[particles_.size_class[i]].push_back(i);
+  }
+  for (std::size_t c = 0; c < ranges.classes(); ++c) {
+    double range = 0;
+    for (std::size_t smaller = 0; smaller <= c; ++smaller) {
+      range = std::max(range, ranges.at(smaller, c));
+    }
+    grids_.emplace_back();
+    if (!members[c].empty()) {
+      grids_.back().emplace(places_, members[c], box_, (1 + list_.skin_) * range);
+    }
+  }
+}
+
+void ListBuilder::run() {
+  const std::size_t count = particles_.count(), blocks = count_of_blocks_of(count);
+  list_.blocks_.clear();
+  for (std::size_t b = 0; b < blocks; ++b) {
+    list_.blocks_.push_back({static_cast<std::uint32_t>(count * b / blocks),
+                             static_cast<std::uint32_t>(count * (b + 1) / blocks), 0, 0, 0, 0});
+  }
+  found_.resize(blocks);
+  runs_.resize(blocks);
+  for_each_range(blocks, threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      search(b);
+    }
+  });
+  if (meets_itself_) {
+    throw std::invalid_argument("the box is so small that a particle interacts with its own image");
+  }
+  deliver_strays();
+  number_images();
+
+  list_.runs_.clear();
+  std::uint32_t pairs = 0;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    list_.blocks_[b].runs_begin = pairs;  // until arrange() has made the runs
+    pairs += static_cast<std::uint32_t>(found_[b].size());
+  }
+  list_.pairs_.resize(pairs);
+  for_each_range(blocks, threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      arrange(b);
+    }
+  });
+  collect_incoming();
+}
+
+void ListBuilder::search(std::size_t block) {
+  const ParticleBlock& home = list_.blocks_[block];
+  std::vector<Found>& found = found_[block];
+  for (std::uint32_t i = home.begin; i < home.end; ++i) {
+    search_near(i, found);
+  }
+}
+
+void ListBuilder::search_near(std::uint32_t i, std::vector<Found>& found) {
+  const RangeTable& ranges = list_.ranges_;
+  const std::size_t own = particles_.size_class[i];
+  for (std::size_t other = own; other < ranges.classes(); ++other) {
+    if (!grids_[other]) {
+      continue;
+    }
+    const double range = ranges.at(own, other), listed = (1 + list_.skin_) * range;
+    grids_[other]->visit_near(places_.fractional[i],
+                              [&](std::uint32_t j, LatticeShift wrap, const Vector3& separation) {
+                                const double squared = dot(separation, separation);
+                                if (!(squared < listed * listed) || (other == own && j < i)) {
+                                  return;
+                                }
+                                if (j == i) {
+                                  if (wrap != LatticeShift{} && squared < range * range) {
+                                    meets_itself_ = true;
+                                  }
+                                  return;
+                                }
+                                found.push_back(make(i, j, wrap + places_.offset[i] - places_.offset[j]));
+                              });
+  }
+}
+
+ListBuilder::Found ListBuilder::make(std::uint32_t i, std::uint32_t j, LatticeShift image) const {
+  if (particles_.id[i] > particles_.id[j]) {
+    std::swap(i, j);
+    image = LatticeShift{} - image;
+  }
+  const std::size_t kind = particles_.size_class[i] * list_.ranges_.classes() + particles_.size_class[j];
+  const std::uint32_t block = block_of(i);
+  return {i, j, block, image, static_cast<std::uint16_t>(kind), block != block_of(j)};
+}
+
+std::uint32_t ListBuilder::block_of(std::uint32_t particle) const {
+  const std::size_t blocks = list_.blocks_.size();
+  if (blocks == 1) {
+    return 0;
+  }
+  // Blocks begin at count b / blocks rounded down; the estimate is right or one too small.
+  std::size_t block = particle * blocks / particles_.count();
+  while (particle >= list_.blocks_[block].end) {
+    ++block;
+  }
+  return static_cast<std::uint32_t>(block);
+}
+
+// Pairs that were found from their second particle, in another block, go where their first one lives.
+void ListBuilder::deliver_strays() {
+  if (found_.size() == 1) {
+    return;
+  }
+  std::vector<Found> strays;
+  for (std::size_t b = 0; b < found_.size(); ++b) {
+    const auto home = [b](const Found& pair) { return pair.block == b; };
+    const auto away = std::stable_partition(found_[b].begin(), found_[b].end(), home);
+    strays.insert(strays.end(), away, found_[b].end());
+    found_[b].erase(away, found_[b].end());
+  }
+  for (const Found& pair : strays) {
+    found_[pair.block].push_back(pair);
+  }
+}
+
+void ListBuilder::number_images() {
+  list_.images_.assign(1, LatticeShift{});
+  for (const std::vector<Found>& found : found_) {
+    for (const Found& pair : found) {
+      if (pair.image != list_.images_.back() &&
+          std::find(list_.images_.begin(), list_.images_.end(), pair.image) == list_.images_.end()) {
+        list_.images_.push_back(pair.image);
+      }
+    }
+  }
+}
+
+std::uint16_t ListBuilder::image_number(LatticeShift image) const {
+  return static_cast<std::uint16_t>(std::find(list_.images_.begin(), list_.images_.end(), image) -
+                                    list_.images_.begin());
+}
+
+// A counting sort: pairs of one run keep the order in which they were found.
+void ListBuilder::arrange(std::size_t block) {
+  const std::vector<Found>& found = found_[block];
+  const std::size_t buckets = 4 * list_.ranges_.classes() * list_.ranges_.classes();
+  std::vector<std::uint32_t> next(buckets + 1);
+  for (const Found& pair : found) {
+    ++next[bucket(pair) + 1];
+  }
+  next[0] = list_.blocks_[block].runs_begin;
+  for (std::size_t k = 0; k < buckets; ++k) {
+    next[k + 1] += next[k];
+    if (next[k + 1] > next[k]) {
+      const bool crossing = k >= buckets / 2;
+      runs_[block].push_back({next[k], next[k + 1], crossing ? 0 : within_block,
+                              static_cast<std::uint16_t>(k % (buckets / 2) / 2), k % 2 == 1});
+    }
+  }
+  for (const Found& pair : found) {
+    list_.pairs_[next[bucket(pair)]++] = {pair.first, pair.second, image_number(pair.image), pair.kind};
+  }
+}
+
+void ListBuilder::collect_incoming() {
+  std::uint32_t crossings = 0;
+  for (std::size_t b = 0; b < runs_.size(); ++b) {
+    list_.blocks_[b].runs_begin = static_cast<std::uint32_t>(list_.runs_.size());
+    for (PairRun& run : runs_[b]) {
+      if (run.crossing != within_block) {
+        run.crossing = crossings;
+        crossings += run.end - run.begin;
+      }
+      list_.runs_.push_back(run);
+    }
+    list_.blocks_[b].runs_end = static_cast<std::uint32_t>(list_.runs_.size());
+  }
+  list_.incoming_.clear();
+  if (crossings == 0) {
+    return;
+  }
+  std::vector<std::uint32_t> next(list_.blocks_.size() + 1);
+  const auto for_each_crossing = [&](auto&& use) {
+    for (const PairRun& run : list_.runs_) {
+      for (std::uint32_t p = run.begin; run.crossing != within_block && p < run.end; ++p) {
+        use(list_.pairs_[p].second, run.crossing + (p - run.begin));
+      }
+    }
+  };
+  for_each_crossing([&](std::uint32_t second, std::uint32_t) { ++next[block_of(second) + 1]; });
+  for (std::size_t b = 0; b < list_.blocks_.size(); ++b) {
+    next[b + 1] += next[b];
+    list_.blocks_[b].incoming_begin = next[b];
+    list_.blocks_[b].incoming_end = next[b + 1];
+  }
+  list_.incoming_.resize(crossings);
+  for_each_crossing([&](std::uint32_t second, std::uint32_t crossing) {
+    list_.incoming_[next[block_of(second)]++] = {second, crossing};
+  });
+}
+
+}  // namespace peclet::engine

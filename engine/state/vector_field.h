@@ -1,0 +1,47 @@
+// One vector per particle.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "engine/state/row.h"
+#include "engine/state/vector3.h"
+
+namespace peclet::engine {
+
+// Rows of four doubles: a vector is one aligned load, and the three vectors that a pair needs of a particle
+// lie in as many cache lines.
+class VectorField {
+ public:
+  VectorField() = default;
+  explicit VectorField(std::size_t count) : rows_(count) {}
+
+  std::size_t size() const { return rows_.size(); }
+  Vector3 operator[](std::size_t i) const { return {rows_[i].v[0], rows_[i].v[1], rows_[i].v[2]}; }
+  void set(std::size_t i, const Vector3& v) { rows_[i].v = Row{v.x, v.y, v.z, 0}; }
+  void add(std::size_t i, const Vector3& v) { rows_[i].v += Row{v.x, v.y, v.z, 0}; }
+
+  Row& row(std::size_t i) { return rows_[i].v; }
+  const Row& row(std::size_t i) const { return rows_[i].v; }
+  // Rows one after the other.
+  double* data() { return reinterpret_cast<double*>(rows_.data()); }
+  const double* data() const { return reinterpret_cast<const double*>(rows_.data()); }
+
+  friend bool operator==(const VectorField& a, const VectorField& b) {
+    bool equal = a.size() == b.size();
+    for (std::size_t i = 0; equal && i < a.size(); ++i) {
+      const Row &p = a.row(i), &q = b.row(i);
+      equal = p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+    }
+    return equal;
+  }
+
+ private:
+  // Where the processor has no such registers, the compiler would align a bare row less.
+  struct alignas(32) AlignedRow {
+    Row v{};
+  };
+  std::vector<AlignedRow> rows_;
+};
+
+}  // namespace peclet::engine
