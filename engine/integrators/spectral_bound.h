@@ -10,8 +10,9 @@ struct SpectralBound {
   double value = 0, residual = 0;
   int iterations = 0;
 
-  // Not below the largest eigenvalue unless the iterations have mistaken another one for it: the start vector
-  // is random, and modes of a packing are localised. tests/engine/spectral_bound_test.cpp says how often.
+  // Not below the largest eigenvalue, unless the iterations have taken another one for it: modes of a packing
+  // sit on few spheres, and may not have been met yet. Then it is too low by some thousandths
+  // (tests/engine/spectral_bound_test.cpp).
   double upper() const { return value + residual; }
 };
 
