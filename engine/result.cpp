@@ -1,7 +1,8 @@
 #include "engine/result.h"
 
 #include <array>
-#include <functional>
+#include <cmath>
+#include <optional>
 
 #include "contract/provenance.h"
 #include "contract/sha256.h"
@@ -107,6 +108,27 @@ Json transposed(const std::vector<Json>& rows) {
   return columns;
 }
 
+// Energy made by the step over the work of the flow on pairs, in the production window. Without flow there is
+// no work; noise does work by itself, so that the balance says nothing about the step.
+std::optional<double> energy_imbalance(const Scene& scene, const Simulation& simulation) {
+  const BlockSums window = whole_window(simulation.production());
+  const StepErrors& errors = simulation.step_errors();
+  double work_per_step = 0;
+  for (const SymmetricTensor& stress : window.stress) {
+    work_per_step += simulation.schedule().timestep * scene.physics.shear_rate * stress.xy /
+                     static_cast<double>(window.steps);
+  }
+  if (scene.physics.thermal_energy > 0 || errors.samples == 0 || !(work_per_step > 0)) {
+    return std::nullopt;
+  }
+  return errors.spurious_energy / static_cast<double>(errors.samples) / work_per_step;
+}
+
+Json gate_json(const StepErrors& errors, const std::optional<double>& imbalance) {
+  return {{"largest_stability_share", errors.largest_stability_share},
+          {"energy_imbalance", imbalance ? Json(*imbalance) : Json()}};
+}
+
 Json ending_json(const Ending& ending, const std::string& saved_state) {
   return {{"cause", name_of(ending.cause)},
           {"step", ending.step},
@@ -157,7 +179,15 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
         {"overlap", "spheres overlapped by " + Json(overlap).dump() +
                         " of a radius, more than 0.01: the contacts are too soft for this stress"});
   }
+  const std::optional<double> imbalance = energy_imbalance(scene, simulation);
+  if (imbalance && std::abs(*imbalance) > scene.guard.energy_imbalance) {
+    warnings.push_back({"timestep", "the step makes " + Json(*imbalance).dump() +
+                                        " times the energy that the flow puts in, more than " +
+                                        Json(scene.guard.energy_imbalance).dump() +
+                                        ": the stress may depend on the step, choose a smaller one"});
+  }
   result["warnings"] = warnings_json(warnings);
+  result["gate"] = gate_json(simulation.step_errors(), imbalance);
   result["ending"] = ending_json(ending, saved_state);
   result["largest_overlap"] = simulation.largest_overlap();
   ArchiveWriter state;
@@ -183,6 +213,7 @@ Json make_unpacked_result(const ResultHeader& header, const Scene& scene, const 
                           const std::string& message, const Spent& spent) {
   Json result = common_part(header, scene, schedule, 0, spent);
   result["warnings"] = warnings_json(scene_warnings(scene));
+  result["gate"] = nullptr;
   result["ending"] = ending_json({Ending::Cause::packing, 0, message}, "");
   result["largest_overlap"] = nullptr;
   result["final_state_sha256"] = nullptr;

@@ -48,14 +48,15 @@ struct Duration {
   double time = std::numeric_limits<double>::infinity();
 };
 
-// Limits that end a realisation with a named cause.
+// Limits that end a realisation with a named cause, and one beyond which its result is flagged.
 struct Guard {
   double largest_overlap = 0.05;       // of the smaller radius of the pair
   double largest_displacement = 0.05;  // per step, of the smallest radius of all
+  double energy_imbalance = 0.3;       // of the flow's work; beyond it only a warning
 };
 
 struct Warning {
-  std::string code;  // "inertia-shear", "inertia-thermal", "overlap"
+  std::string code;  // "inertia-shear", "inertia-thermal", "overlap", "timestep"
   std::string message;
 };
 

@@ -186,12 +186,17 @@ Keys run_keys() {
        .default_value = Json::array({"stress"}),
        .minimum_items = 1},
       choice("/observables/*", "stress: the tensor, split by term.", {"stress"}),
-      with_default(block("/guard", "Limits that end a realisation as failed."), Json::object()),
+      with_default(block("/guard", "Limits that end a realisation as failed, or flag its result."),
+                   Json::object()),
       with_default(positive("/guard/largest_overlap", "", "Overlap over the smaller radius of the pair."),
                    0.05),
       with_default(positive("/guard/largest_displacement", "",
                             "Displacement in one step, relative to the flow, over the smallest radius."),
                    0.05),
+      with_default(positive("/guard/energy_imbalance", "",
+                            "Energy that the finite step makes over the work of the flow; beyond it the "
+                            "result has the warning timestep."),
+                   0.3),
   });
   return keys;
 }

@@ -18,6 +18,8 @@ namespace {
 // Between samples of what is not accumulated at every step: seldom enough to cost less than a hundredth of a
 // run.
 constexpr std::uint64_t sampling_interval = 50;
+constexpr std::uint64_t energy_sampling_interval = 500;
+constexpr std::uint64_t stability_check_interval = 5000;
 
 // Pairs are listed that much beyond their range, as a fraction of it. A small skin keeps the list close to
 // the pairs that act.
@@ -77,6 +79,8 @@ const char* name_of(Ending::Cause cause) {
       return "non-finite";
     case Ending::Cause::packing:
       return "packing";
+    case Ending::Cause::timestep:
+      return "timestep";
   }
   return "";
 }
@@ -136,6 +140,11 @@ void Simulation::start() {
 std::optional<Ending> Simulation::advance(std::uint64_t steps) {
   const std::uint64_t last = std::min(system_.step + steps, schedule_.total());
   while (system_.step < last) {
+    if (system_.step % stability_check_interval == 0) {
+      if (std::optional<Ending> ending = check_step()) {
+        return ending;
+      }
+    }
     const StepReport report = integrator_->advance(system_);
     if (std::optional<Ending> ending = verdict(report)) {
       return ending;
@@ -148,6 +157,20 @@ std::optional<Ending> Simulation::advance(std::uint64_t steps) {
     return Ending{Ending::Cause::completed, system_.step, "the production window is complete"};
   }
   return std::nullopt;
+}
+
+std::optional<Ending> Simulation::check_step() {
+  const double share = integrator_->stability_share(system_);
+  step_errors_.largest_stability_share = std::max(step_errors_.largest_stability_share, share);
+  if (share < 1) {
+    return std::nullopt;
+  }
+  // 2 l dt + w^2 dt^2 shrinks at least in proportion to dt.
+  const double step = integrator_->timestep();
+  return Ending{
+      Ending::Cause::timestep, system_.step,
+      fmt::format("the step {:.4g} is too large for the packing at strain {:.4g}, which allows {:.4g}", step,
+                  system_.box.strain(), step / share)};
 }
 
 std::optional<Ending> Simulation::verdict(const StepReport& report) const {
@@ -175,9 +198,13 @@ void Simulation::observe(const StepReport& report) {
   const std::uint64_t index = system_.step - schedule_.equilibration - 1;
   production_.add_step(index, report.sums);
   largest_overlap_ = std::max(largest_overlap_, report.sums.largest_overlap);
-  // A short window is sampled at every step so that each block has its samples.
-  const std::uint64_t interval = std::min(sampling_interval, schedule_.production / count_of_blocks);
-  if (index % interval == 0) {
+  // A short window is sampled more often so that each block has its samples.
+  const std::uint64_t longest_interval = schedule_.production / count_of_blocks;
+  if (index % std::min(energy_sampling_interval, longest_interval) == 0) {
+    step_errors_.spurious_energy += integrator_->spurious_energy(system_);
+    ++step_errors_.samples;
+  }
+  if (index % std::min(sampling_interval, longest_interval) == 0) {
     production_.add_sample(index, structural_brownian_stress(system_, kinds_, scene_.physics.thermal_energy),
                            kinetic_temperatures(system_));
   }
@@ -187,6 +214,7 @@ void Simulation::save(ArchiveWriter& archive) const {
   engine::save(system_, archive);
   integrator_->save(archive);
   production_.save(archive);
+  archive.put(step_errors_);
   archive.put(largest_overlap_);
 }
 
@@ -194,6 +222,7 @@ void Simulation::load(ArchiveReader& archive) {
   engine::load(system_, archive);
   integrator_->load(system_, archive);
   production_.load(archive);
+  step_errors_ = archive.get<StepErrors>();
   largest_overlap_ = archive.get<double>();
 }
 

@@ -24,13 +24,21 @@ Schedule make_schedule(const Scene& scene, const std::string& file);
 
 // Why a realisation is over.
 struct Ending {
-  enum class Cause { completed, overlap, displacement, non_finite, packing };
+  enum class Cause { completed, overlap, displacement, non_finite, packing, timestep };
   Cause cause = Cause::completed;
   std::uint64_t step = 0;
   std::string message;
 };
 
-const char* name_of(Ending::Cause cause);  // "completed", "overlap", "displacement", "non-finite", "packing"
+// "completed", "overlap", "displacement", "non-finite", "packing", "timestep"
+const char* name_of(Ending::Cause cause);
+
+// What is known of the errors that the finite step makes.
+struct StepErrors {
+  double largest_stability_share = 0;  // of all checks
+  double spurious_energy = 0;          // summed over samples in the production window
+  std::uint64_t samples = 0;
+};
 
 class Simulation {
  public:
@@ -43,18 +51,21 @@ class Simulation {
   // forces. Throws PackingError.
   void start();
 
-  // Up to `steps` more steps; returns how the realisation ended once it has.
+  // Up to `steps` more steps; returns how the realisation ended once it has. It ends too where the packing
+  // has become too stiff for the step: checked before the first step and every few thousand.
   std::optional<Ending> advance(std::uint64_t steps);
 
   const System& system() const { return system_; }
   const Schedule& schedule() const { return schedule_; }
   const Production& production() const { return production_; }
+  const StepErrors& step_errors() const { return step_errors_; }
   double largest_overlap() const { return largest_overlap_; }  // over the smaller radius, in production
 
   void save(ArchiveWriter& archive) const;
   void load(ArchiveReader& archive);
 
  private:
+  std::optional<Ending> check_step();
   std::optional<Ending> verdict(const StepReport& report) const;
   void observe(const StepReport& report);
 
@@ -65,6 +76,7 @@ class Simulation {
   std::vector<PairKind> kinds_;
   std::unique_ptr<Integrator> integrator_;
   Production production_;
+  StepErrors step_errors_;
   double smallest_radius_;
   double largest_overlap_ = 0;
 };

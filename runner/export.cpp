@@ -14,8 +14,9 @@ namespace {
 // What of a result depends on scene, seed and engine alone. Blocks stay in the database.
 Json content(const Json& result) {
   Json kept = Json::object();
-  for (const char* const key : {"seed", "ending", "mean", "timestep", "steps", "strain", "time",
-                                "statistical_inefficiency", "largest_overlap", "final_state_sha256"}) {
+  for (const char* const key :
+       {"seed", "ending", "mean", "timestep", "steps", "strain", "time", "statistical_inefficiency",
+        "largest_overlap", "gate", "final_state_sha256"}) {
     if (result.contains(key)) kept[key] = result[key];
   }
   kept["ending"].erase("state");  // where this machine keeps it

@@ -14,8 +14,8 @@
 namespace peclet::runner {
 namespace {
 
-constexpr std::array<std::string_view, 5> causes{"completed", "overlap", "displacement", "non-finite",
-                                                 "packing"};
+constexpr std::array<std::string_view, 6> causes{"completed",  "overlap", "displacement",
+                                                 "non-finite", "packing", "timestep"};
 
 [[noreturn]] void refuse(const std::string& pointer, std::string_view allowed) {
   throw ResultError(fmt::format("{}: {}", pointer, allowed));

@@ -23,6 +23,14 @@ class Integrator {
   virtual void start(System& system) = 0;
   virtual StepReport advance(System& system) = 0;
 
+  // The part of the method's stable range that the step uses at the present configuration: from 1 on
+  // disturbances grow. 0 for a method that is stable at any step.
+  virtual double stability_share(const System& system) const = 0;
+
+  // The energy that the last step has made (or lost, below 0) because it is finite: dissipated and stored
+  // energy less the work of the flow. Means nothing with noise.
+  virtual double spurious_energy(const System& system) const = 0;
+
   // What the integrator keeps between steps besides the system.
   virtual void save(ArchiveWriter& archive) const = 0;
   virtual void load(const System& system, ArchiveReader& archive) = 0;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/integrators/spectral_bound.h"
+#include "engine/integrators/spurious_energy.h"
 #include "engine/state/for_each_range.h"
 
 namespace peclet::engine {
@@ -40,6 +42,17 @@ StepReport VelocityVerlet::advance(System& system) {
   const PairSums sums = field_.evaluate(system, force_, torque_);
   kick(system.particles);
   return {sums, speed * timestep_};
+}
+
+// A mode z of z^2 - (2 - l - k) z + (1 - l) = 0, with l and k the means of dt M^-1 R and dt^2 M^-1 K over its
+// shape, decays if and only if 2 l + k < 4.
+double VelocityVerlet::stability_share(const System& system) const {
+  const MatrixWeights quarters = {0.5 * timestep_, 0.25 * timestep_ * timestep_};
+  return largest_eigenvalue(PackingMatrix(system, field_.kinds(), field_.physics(), quarters)).upper();
+}
+
+double VelocityVerlet::spurious_energy(const System& system) const {
+  return engine::spurious_energy(system, field_.kinds(), field_.physics(), force_, torque_, timestep_);
 }
 
 void VelocityVerlet::kick(ParticleState& particles) const {

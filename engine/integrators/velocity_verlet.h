@@ -19,6 +19,8 @@ class VelocityVerlet final : public Integrator {
   double timestep() const override { return timestep_; }
   void start(System& system) override;
   StepReport advance(System& system) override;
+  double stability_share(const System& system) const override;
+  double spurious_energy(const System& system) const override;
   void save(ArchiveWriter& archive) const override;
   void load(const System& system, ArchiveReader& archive) override;
 

@@ -16,7 +16,7 @@ namespace {
 constexpr int width = identities_per_block;
 
 inline void draw_words(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
-                std::uint64_t (&low)[width], std::uint64_t (&high)[width]) {
+                       std::uint64_t (&low)[width], std::uint64_t (&high)[width]) {
   for (int k = 0; k < width; ++k) {
     const threefry2x64_ctr_t counter = {{key.step, identity[k]}};
     const threefry2x64_key_t threefry_key = {{key.seed, key.purpose << 60 ^ image[k]}};
@@ -69,7 +69,7 @@ inline void circle(std::uint32_t bits, float& cosine, float& sine) {
 }
 
 inline void box_muller(const std::uint32_t (&radius_bits)[width], const std::uint32_t (&angle_bits)[width],
-                float* first, float* second) {
+                       float* first, float* second) {
   for (int k = 0; k < width; ++k) {
     const float radius = __builtin_sqrtf(-2.0F * logarithm_of_uniform(radius_bits[k]));
     float cosine = 0, sine = 0;
@@ -94,7 +94,7 @@ inline void split_words(const std::uint64_t (&words)[width], std::uint32_t (&uni
 }
 
 inline void fill_block(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
-                NormalBlock& block) {
+                       NormalBlock& block) {
   static constexpr std::uint64_t no_image[width] = {};
   std::uint64_t low[width], high[width];
   draw_words(key, identity, image != nullptr ? image : no_image, low, high);

@@ -193,6 +193,7 @@ class Engine {
         {"blocks", {{"relative_viscosity", std::vector<double>(32, viscosity)}}},
         {"statistical_inefficiency", 1},
         {"largest_overlap", 0},
+        {"gate", nullptr},
         {"final_state_sha256", sha256(std::to_string(state.value))},
         {"engine", engine()}};
     if (const auto padding = static_cast<std::size_t>(setting("PECLET_FAKE_PADDING", 0)); padding > 0) {

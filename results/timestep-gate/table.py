@@ -1,0 +1,80 @@
+#!/usr/bin/python3
+"""table.py RUNS.jsonl ...
+
+Prints what each step does to the stress: means over windows of the relative difference from the reference step, with
+their standard errors, beside what the gate says of the windows.
+"""
+import collections
+import json
+import math
+import sys
+
+REFERENCE = 5e-5
+LARGEST_OF_SCENE = 3.138e-4  # of the scene's stiffest pair: larger steps are refused before anything runs
+TOLERANCE = 0.3  # guard.energy_imbalance
+SOFT = 0.01  # overlap beyond which a result has the warning "overlap"
+
+
+def window(row):
+    return row["volume_fraction"], row["friction"], row["seed"], row["window"]
+
+
+def viscosity(row):
+    return 1 + 2.5 * row["volume_fraction"] + row["lubrication"] + row["contact"]
+
+
+def lubrication(row):
+    return row["lubrication"]
+
+
+def difference(pairs, quantity):
+    values = [100 * (quantity(row) / quantity(reference) - 1) for row, reference in pairs]
+    mean = sum(values) / len(values)
+    if len(values) < 2:
+        return f"{mean:+.2f}"
+    error = math.sqrt(sum((v - mean) ** 2 for v in values) / (len(values) - 1) / len(values))
+    return f"{mean:+.2f} ± {error:.2f}"
+
+
+def verdicts(rows):
+    count = collections.Counter()
+    for row in rows:
+        if row["ending"] != "completed":
+            count[row["ending"]] += 1
+        elif row["stability_share"] >= 1:
+            count["timestep"] += 1
+        elif row["energy_imbalance"] > TOLERANCE:
+            count["flagged timestep"] += 1
+        elif row["largest_overlap"] > SOFT:
+            count["flagged overlap"] += 1
+        else:
+            count["passed"] += 1
+    return ", ".join(f"{number} {name}" for name, number in sorted(count.items()))
+
+
+def main():
+    rows = [json.loads(line) for name in sys.argv[1:] for line in open(name)]
+    references = {window(row): row for row in rows if row["timestep"] == REFERENCE}
+    points = collections.defaultdict(list)
+    for row in rows:
+        if row["window"] >= 0 and row["timestep"] != REFERENCE:
+            points[row["friction"], row["volume_fraction"], row["timestep"]].append(row)
+        elif row["window"] < 0:
+            print(f"μ = {row['friction']}, φ = {row['volume_fraction']}, seed {row['seed']}: equilibration ended, {row['ending']}")
+    print("| μ | φ | Δt / 10⁻⁴ | windows | η_r | η_r differs by, % | lubrication differs by, % | share | energy imbalance | gate, apart from the scene's bound |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
+    for (friction, phi, step), group in sorted(points.items()):
+        pairs = [(row, references[window(row)]) for row in group if row["ending"] == "completed"]
+        mark = "" if step < LARGEST_OF_SCENE else "*"
+        head = f"| {friction:g} | {phi:.2f} | {1e4 * step:g}{mark} | {len(group)} |"
+        if not pairs:
+            print(f"{head} | | | | | {verdicts(group)} |")
+            continue
+        eta = sum(viscosity(reference) for _, reference in pairs) / len(pairs)
+        imbalance = [row["energy_imbalance"] for row, _ in pairs]
+        print(f"{head} {eta:.2f} | {difference(pairs, viscosity)} | {difference(pairs, lubrication)} | "
+              f"{max(row['stability_share'] for row, _ in pairs):.3f} | {min(imbalance):.1e} … {max(imbalance):.1e} | {verdicts(group)} |")
+
+
+if __name__ == "__main__":
+    main()
