@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <functional>
+#include <iterator>
 #include <numbers>
 
 #include "engine/kernels/instruction_set.h"
@@ -195,6 +197,11 @@ TEST(NormalBlock, IsMadeOfTheWordsOfThreefry) {
   draw_words({}, identity, identity, low, high);
   EXPECT_EQ(low[0], 0xc2b6e3a8c2c69865U);
   EXPECT_EQ(high[0], 0x6f81ed42f350084dU);
+  constexpr std::uint64_t ones = ~std::uint64_t{0};
+  std::fill(std::begin(identity), std::end(identity), ones);
+  draw_words({.seed = ones, .purpose = 0, .step = ones}, identity, identity, low, high);
+  EXPECT_EQ(low[0], 0xe02cb7c4d95d277aU);
+  EXPECT_EQ(high[0], 0xd06633d0893b8b68U);
 }
 
 // Every instruction set that this processor has gives the same bits.

@@ -63,7 +63,7 @@ System packed(const Arguments& arguments) {
   System system;
   system.particles = make_particles(radius, density);
   system.box = ShearedBox({edge, edge, edge}, rate);
-  system.list = NeighbourList(range_table(make_pair_kinds(physics_of(arguments), sizes), sizes.size()), 0.08);
+  system.list = NeighbourList(range_table(make_pair_kinds(physics_of(arguments), sizes), sizes.size()), 0.03);
   place_randomly(system.particles, system.box, arguments.seed);
   for (std::size_t i = 0; i < radius.size(); ++i) {
     system.particles.velocity.set(i, {rate * system.particles.position[i].y, 0, 0});
