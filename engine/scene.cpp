@@ -126,7 +126,7 @@ Physics Reading::physics() const {
   physics.shear_rate = number_or("/flow/shear_rate", 0);
   if (has("/contact")) physics.contact = contact();
   if (has("/lubrication")) physics.lubrication = lubrication();
-  if (has("/repulsion")) {
+  if (has("/repulsion") && number("/repulsion/strength") > 0) {
     physics.repulsion = {number("/repulsion/strength"), number("/repulsion/relative_length"),
                          number("/repulsion/cutoff_lengths")};
   }

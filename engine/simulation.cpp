@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "contract/input_error.h"
 #include "engine/integrators/stability.h"
@@ -137,22 +138,35 @@ void Simulation::start() {
   integrator_->start(system_);
 }
 
+void Simulation::start(const System& placed) {
+  if (placed.particles.count() != system_.particles.count()) {
+    throw std::invalid_argument("the scene has another number of particles");
+  }
+  system_.particles = placed.particles;
+  system_.box = placed.box;
+  system_.step = placed.step;
+  integrator_->start(system_);
+}
+
 std::optional<Ending> Simulation::advance(std::uint64_t steps) {
   const std::uint64_t last = std::min(system_.step + steps, schedule_.total());
   while (system_.step < last) {
     if (system_.step % stability_check_interval == 0) {
+      integrator_->complete(system_);
       if (std::optional<Ending> ending = check_step()) {
         return ending;
       }
     }
-    const StepReport report = integrator_->advance(system_);
+    const StepReport report = integrator_->advance_open(system_);
     if (std::optional<Ending> ending = verdict(report)) {
+      integrator_->complete(system_);
       return ending;
     }
     if (system_.step > schedule_.equilibration) {
       observe(report);
     }
   }
+  integrator_->complete(system_);
   if (system_.step == schedule_.total()) {
     return Ending{Ending::Cause::completed, system_.step, "the production window is complete"};
   }
@@ -201,10 +215,12 @@ void Simulation::observe(const StepReport& report) {
   // A short window is sampled more often so that each block has its samples.
   const std::uint64_t longest_interval = schedule_.production / count_of_blocks;
   if (index % std::min(energy_sampling_interval, longest_interval) == 0) {
+    integrator_->complete(system_);
     step_errors_.spurious_energy += integrator_->spurious_energy(system_);
     ++step_errors_.samples;
   }
   if (index % std::min(sampling_interval, longest_interval) == 0) {
+    integrator_->complete(system_);
     production_.add_sample(index, structural_brownian_stress(system_, kinds_, scene_.physics.thermal_energy),
                            kinetic_temperatures(system_));
   }

@@ -51,6 +51,10 @@ class Simulation {
   // forces. Throws PackingError.
   void start();
 
+  // Goes on from another system of the same scene: its particles, box and step. Contacts begin without
+  // springs. Throws std::invalid_argument for another number of particles.
+  void start(const System& placed);
+
   // Up to `steps` more steps; returns how the realisation ended once it has. It ends too where the packing
   // has become too stiff for the step: checked before the first step and every few thousand.
   std::optional<Ending> advance(std::uint64_t steps);

@@ -21,7 +21,15 @@ class Integrator {
 
   virtual double timestep() const = 0;
   virtual void start(System& system) = 0;
-  virtual StepReport advance(System& system) = 0;
+  StepReport advance(System& system) {
+    const StepReport report = advance_open(system);
+    complete(system);
+    return report;
+  }
+  // The same, but velocities, forces and torques are those of the full step only after complete(). A method
+  // may leave a part of the work to the next step, which saves a walk through all particles.
+  virtual StepReport advance_open(System& system) = 0;
+  virtual void complete(System& system) = 0;  // nothing happens when the step is complete
 
   // The part of the method's stable range that the step uses at the present configuration: from 1 on
   // disturbances grow. 0 for a method that is stable at any step.

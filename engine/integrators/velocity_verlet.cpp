@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "engine/integrators/spectral_bound.h"
 #include "engine/integrators/spurious_energy.h"
@@ -12,10 +13,11 @@ namespace peclet::engine {
 
 VelocityVerlet::VelocityVerlet(ForceField field, const ParticleState& particles, double timestep)
     : field_(std::move(field)), timestep_(timestep), force_(particles.count()), torque_(particles.count()) {
-  kicks_.resize(distinct_radii(particles.radius).size());
+  kicks_.resize(2 * distinct_radii(particles.radius).size());
   for (std::size_t i = 0; i < particles.count(); ++i) {
-    kicks_[particles.size_class[i]] = {0.5 * timestep / particles.mass[i],
-                                       0.5 * timestep / particles.inertia[i]};
+    double* kick = &kicks_[2 * std::size_t{particles.size_class[i]}];
+    kick[0] = 0.5 * timestep / particles.mass[i];
+    kick[1] = 0.5 * timestep / particles.inertia[i];
   }
 }
 
@@ -27,11 +29,11 @@ void VelocityVerlet::start(System& system) {
   rebuild_neighbours(system, field_.threads());
   displacement_bound_ = 0;
   field_.evaluate(system, force_, torque_);
+  open_ = false;
 }
 
-StepReport VelocityVerlet::advance(System& system) {
-  kick(system.particles);
-  const double speed = drift(system.particles);
+StepReport VelocityVerlet::advance_open(System& system) {
+  const double speed = move(system);
   ++system.step;
   system.box.set_strain(system.box.shear_rate() * timestep_ * static_cast<double>(system.step));
   // Beyond all bounds there are no neighbours to be found; whoever asked for the step sees why.
@@ -39,8 +41,8 @@ StepReport VelocityVerlet::advance(System& system) {
     return {{}, speed * timestep_};
   }
   keep_list(system, speed);
-  const PairSums sums = field_.evaluate(system, force_, torque_);
-  kick(system.particles);
+  const PairSums sums = field_.evaluate_blocks(system, force_, torque_);
+  open_ = true;
   return {sums, speed * timestep_};
 }
 
@@ -55,39 +57,51 @@ double VelocityVerlet::spurious_energy(const System& system) const {
   return engine::spurious_energy(system, field_.kinds(), field_.physics(), force_, torque_, timestep_);
 }
 
-void VelocityVerlet::kick(ParticleState& particles) const {
-  for_each_range(particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Kick& of = kicks_[particles.size_class[i]];
-      particles.velocity.row(i) += of.translational * force_.row(i);
-      particles.angular_velocity.row(i) += of.rotational * torque_.row(i);
-    }
-  });
+OneBodyInput VelocityVerlet::kick_input(System& system) {
+  return one_body_input(system.particles, force_, torque_, kicks_.data(), field_.physics().shear_rate);
 }
 
-// Moves the particles; returns the largest speed relative to the streaming flow, NaN if one is not finite.
-double VelocityVerlet::drift(ParticleState& particles) const {
-  double largest_of_all = 0;
-  bool all_bounded = true;
-  for_each_range(particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
-    double largest = 0, sum = 0;
-    const double rate = field_.physics().shear_rate, dt = timestep_;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Row& u = particles.velocity.row(i);
-      Row& x = particles.position.row(i);
-      const double peculiar = u[0] - rate * x[1];
-      const double squared = peculiar * peculiar + u[1] * u[1] + u[2] * u[2];
-      largest = largest > squared ? largest : squared;
-      sum += squared;
-      x += dt * u;
-    }
-#pragma omp critical(drift)
-    {
-      largest_of_all = std::max(largest_of_all, largest);
-      all_bounded = all_bounded && std::isfinite(sum);  // max() would pass over a NaN
+void VelocityVerlet::complete(System& system) {
+  if (!open_) {
+    return;
+  }
+  const OneBodyInput input = kick_input(system);
+  const std::vector<ParticleBlock>& blocks = system.list.blocks();
+  for_each_range(blocks.size(), field_.threads(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      field_.add_incoming(system, blocks[b], force_, torque_);
+      field_.one_body().kick(input, blocks[b].begin, blocks[b].end);
     }
   });
-  return all_bounded ? std::sqrt(largest_of_all) : std::numeric_limits<double>::quiet_NaN();
+  open_ = false;
+}
+
+// The first kick, after the last step's second one where it is due, and the drift, in one walk through the
+// particles. Returns the largest speed relative to the streaming flow, NaN if one is not finite.
+double VelocityVerlet::move(System& system) {
+  const OneBodyInput input = kick_input(system);
+  const std::vector<ParticleBlock>& blocks = system.list.blocks();
+  double largest = 0;
+  bool all_bounded = true;
+  for_each_range(blocks.size(), field_.threads(), [&](std::size_t begin, std::size_t end) {
+    Speeds speeds;
+    for (std::size_t b = begin; b < end; ++b) {
+      if (open_) {
+        field_.add_incoming(system, blocks[b], force_, torque_);
+      }
+      const Speeds of_block =
+          field_.one_body().kick_and_drift(input, blocks[b].begin, blocks[b].end, open_, timestep_);
+      speeds.largest = std::max(speeds.largest, of_block.largest);
+      speeds.sum += of_block.sum;
+    }
+#pragma omp critical(move)
+    {
+      largest = std::max(largest, speeds.largest);
+      all_bounded = all_bounded && std::isfinite(speeds.sum);
+    }
+  });
+  open_ = false;
+  return all_bounded ? std::sqrt(largest) : std::numeric_limits<double>::quiet_NaN();
 }
 
 void VelocityVerlet::keep_list(System& system, double speed) {
@@ -105,6 +119,9 @@ void VelocityVerlet::keep_list(System& system, double speed) {
 }
 
 void VelocityVerlet::save(ArchiveWriter& archive) const {
+  if (open_) {
+    throw std::logic_error("a step must be complete to be saved");
+  }
   archive.put(force_);
   archive.put(torque_);
   archive.put(displacement_bound_);
@@ -114,6 +131,7 @@ void VelocityVerlet::load(const System& system, ArchiveReader& archive) {
   force_ = archive.get_field(system.particles.count());
   torque_ = archive.get_field(system.particles.count());
   displacement_bound_ = archive.get<double>();
+  open_ = false;
 }
 
 }  // namespace peclet::engine

@@ -18,25 +18,23 @@ class VelocityVerlet final : public Integrator {
 
   double timestep() const override { return timestep_; }
   void start(System& system) override;
-  StepReport advance(System& system) override;
+  StepReport advance_open(System& system) override;
+  void complete(System& system) override;
   double stability_share(const System& system) const override;
   double spurious_energy(const System& system) const override;
   void save(ArchiveWriter& archive) const override;
   void load(const System& system, ArchiveReader& archive) override;
 
  private:
-  void kick(ParticleState& particles) const;
-  double drift(ParticleState& particles) const;
+  double move(System& system);
+  OneBodyInput kick_input(System& system);
   void keep_list(System& system, double speed);
 
   ForceField field_;
   double timestep_;
-  // Half a step over the mass and the moment of inertia of each size class.
-  struct Kick {
-    double translational, rotational;
-  };
-  std::vector<Kick> kicks_;
+  std::vector<double> kicks_;  // half a step over mass and moment of inertia of each size class, two by two
   VectorField force_, torque_;
+  bool open_ = false;  // the second kick of the last step is due, and so are its incoming forces
   // An upper bound of the displacements since the list was built, raised by every step's largest one and
   // replaced by the true value only when it reaches what the list allows.
   double displacement_bound_ = 0;

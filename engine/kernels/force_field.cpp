@@ -1,9 +1,20 @@
 #include "engine/kernels/force_field.h"
 
-#include "engine/state/for_each_range.h"
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {
+
+OneBodyInput one_body_input(ParticleState& particles, VectorField& force, VectorField& torque,
+                            const double* factors, double shear_rate) {
+  return {.position = particles.position.data(),
+          .velocity = particles.velocity.data(),
+          .spin = particles.angular_velocity.data(),
+          .force = force.data(),
+          .torque = torque.data(),
+          .size_class = particles.size_class.data(),
+          .factors = factors,
+          .shear_rate = shear_rate};
+}
 
 ForceField::ForceField(const Physics& physics, const ParticleState& particles, double timestep,
                        std::uint64_t seed, int threads, InstructionSet set)
@@ -15,16 +26,27 @@ ForceField::ForceField(const Physics& physics, const ParticleState& particles, d
       pair_noise_(seed, Purpose::pair_noise),
       one_body_noise_(seed, Purpose::one_body_noise),
       fill_normals_(engine::fill_normals(set)),
+      one_body_(one_body_kernels(set)),
       threads_(threads) {
   for (const double radius : distinct_radii(particles.radius)) {
     const double zeta = translational_drag(physics.viscosity, radius);
     const double zeta_r = rotational_drag(physics.viscosity, radius);
-    drag_.push_back({zeta, zeta_r, drag_noise_amplitude(parameters_.noise_amplitude, zeta),
-                     drag_noise_amplitude(parameters_.noise_amplitude, zeta_r)});
+    for (const double coefficient : {zeta, zeta_r}) {
+      drag_.push_back(coefficient);
+      drag_noise_.push_back(drag_noise_amplitude(parameters_.noise_amplitude, coefficient));
+    }
   }
 }
 
 PairSums ForceField::evaluate(System& system, VectorField& force, VectorField& torque) {
+  const PairSums sums = evaluate_blocks(system, force, torque);
+  for (const ParticleBlock& block : system.list.blocks()) {
+    add_incoming(system, block, force, torque);
+  }
+  return sums;
+}
+
+PairSums ForceField::evaluate_blocks(System& system, VectorField& force, VectorField& torque) {
   const PairPassInput input = {
       .particles = system.particles,
       .list = system.list,
@@ -34,27 +56,14 @@ PairSums ForceField::evaluate(System& system, VectorField& force, VectorField& t
       .noise = pair_noise_.key(system.step),
       .threads = threads_,
   };
-  const PairSums sums = pair_pass_.evaluate(input, system.springs, force, torque);
-  for_each_range(system.particles.count(), threads_, [&](std::size_t begin, std::size_t end) {
-    add_drag(system.particles, begin, end, force, torque);
+  const OneBodyInput one_body =
+      one_body_input(system.particles, force, torque, drag_.data(), physics_.shear_rate);
+  return pair_pass_.add_pairs(input, system.springs, force, torque, [&](std::size_t begin, std::size_t end) {
+    one_body_.set_drag(one_body, begin, end);
     if (physics_.thermal_energy > 0) {
       add_drag_noise(system, begin, end, force, torque);
     }
   });
-  return sums;
-}
-
-void ForceField::add_drag(const ParticleState& particles, std::size_t begin, std::size_t end,
-                          VectorField& force, VectorField& torque) const {
-  const double rate = physics_.shear_rate;
-  const Vector3 w = streaming_spin(rate);
-  const Row spin = {w.x, w.y, w.z, 0};
-  for (std::size_t i = begin; i < end; ++i) {
-    const DragOfClass& drag = drag_[particles.size_class[i]];
-    const Row streaming = {rate * particles.position.row(i)[1], 0, 0, 0};
-    force.row(i) += drag.translational * (streaming - particles.velocity.row(i));
-    torque.row(i) += drag.rotational * (spin - particles.angular_velocity.row(i));
-  }
 }
 
 void ForceField::add_drag_noise(const System& system, std::size_t begin, std::size_t end, VectorField& force,
@@ -70,9 +79,9 @@ void ForceField::add_drag_noise(const System& system, std::size_t begin, std::si
     fill_normals_(key, identity, nullptr, normals);
     for (std::size_t k = 0; k < count; ++k) {
       const auto normal = [&](int c) { return static_cast<double>(normals.value[c][k]); };
-      const DragOfClass& drag = drag_[system.particles.size_class[first + k]];
-      force.add(first + k, drag.force_noise * Vector3{normal(0), normal(1), normal(2)});
-      torque.add(first + k, drag.torque_noise * Vector3{normal(3), normal(4), normal(5)});
+      const double* amplitude = &drag_noise_[2 * std::size_t{system.particles.size_class[first + k]}];
+      force.add(first + k, amplitude[0] * Vector3{normal(0), normal(1), normal(2)});
+      torque.add(first + k, amplitude[1] * Vector3{normal(3), normal(4), normal(5)});
     }
   }
 }

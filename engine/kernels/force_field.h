@@ -6,6 +6,9 @@
 
 namespace peclet::engine {
 
+OneBodyInput one_body_input(ParticleState& particles, VectorField& force, VectorField& torque,
+                            const double* factors, double shear_rate);
+
 class ForceField {
  public:
   // `timestep` enters the amplitude of the noise, sqrt(2 kT / dt), and the advance of contact springs.
@@ -16,14 +19,21 @@ class ForceField {
   // system.step; contact springs advance by one step of the present motion.
   PairSums evaluate(System& system, VectorField& force, VectorField& torque);
 
+  // The same in two parts, the second one block by block: pairs that cross from one block of particles into
+  // another act on their second particle only after add_incoming().
+  PairSums evaluate_blocks(System& system, VectorField& force, VectorField& torque);
+  void add_incoming(const System& system, const ParticleBlock& block, VectorField& force,
+                    VectorField& torque) const {
+    pair_pass_.add_incoming(system.list, block, force, torque);
+  }
+
   const Terms& terms() const { return terms_; }
   const std::vector<PairKind>& kinds() const { return kinds_; }
   const Physics& physics() const { return physics_; }
   int threads() const { return threads_; }
+  const OneBodyKernels& one_body() const { return one_body_; }
 
  private:
-  void add_drag(const ParticleState& particles, std::size_t begin, std::size_t end, VectorField& force,
-                VectorField& torque) const;
   void add_drag_noise(const System& system, std::size_t begin, std::size_t end, VectorField& force,
                       VectorField& torque) const;
 
@@ -34,11 +44,9 @@ class ForceField {
   PairParameters parameters_;
   KeyedRandom pair_noise_, one_body_noise_;
   FillNormals fill_normals_;
-  // Of each size class: coefficients of drag, and the amplitudes of its noise.
-  struct DragOfClass {
-    double translational, rotational, force_noise, torque_noise;
-  };
-  std::vector<DragOfClass> drag_;
+  OneBodyKernels one_body_;
+  // Coefficients of the drag of each size class, two by two, and the amplitudes of its noise.
+  std::vector<double> drag_, drag_noise_;
   int threads_;
 };
 

@@ -29,13 +29,15 @@ const char* name_of(InstructionSet set) {
 
 bool is_available(InstructionSet set) {
 #ifdef __x86_64__
+  // What engine/CMakeLists.txt allows the compiler to use.
+  const bool has_fma = __builtin_cpu_supports("fma") != 0;
   switch (set) {
     case InstructionSet::baseline:
       return true;
     case InstructionSet::avx2:
-      return __builtin_cpu_supports("avx2") != 0;
+      return has_fma && __builtin_cpu_supports("avx2") != 0;
     case InstructionSet::avx512:
-      return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
+      return has_fma && __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
              __builtin_cpu_supports("avx512vl") != 0;
   }
 #endif
@@ -89,6 +91,15 @@ FillNormals fill_normals(InstructionSet set) {
   }
 #endif
   return &baseline::fill_normals;
+}
+
+const OneBodyKernels& one_body_kernels([[maybe_unused]] InstructionSet set) {
+#ifdef __x86_64__
+  if (set != InstructionSet::baseline) {
+    return avx2_one_body_kernels;
+  }
+#endif
+  return baseline_one_body_kernels;
 }
 
 }  // namespace peclet::engine

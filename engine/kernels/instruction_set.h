@@ -1,6 +1,7 @@
 // Which of the compiled kernels runs.
 #pragma once
 
+#include "engine/kernels/one_body_kernels.h"
 #include "engine/kernels/pair_kernels.h"
 
 namespace peclet::engine {
@@ -19,5 +20,6 @@ InstructionSet chosen_instruction_set();
 
 PairKernel pair_kernel(InstructionSet set, const Terms& terms);  // `terms` must be valid
 FillNormals fill_normals(InstructionSet set);
+const OneBodyKernels& one_body_kernels(InstructionSet set);
 
 }  // namespace peclet::engine

@@ -46,8 +46,8 @@ class PairGroup {
   }
 
   PECLET_ALWAYS_INLINE void add(const PairKernelOutput& out, LaneSumsOf<Real>& sums) {
-    using Vector = Vector3Of<Real>;
-    Vector r = gather_rows(in_.position, second_, Real{}) - gather_rows(in_.position, first_, Real{});
+    Vector3Of<Real> r =
+        gather_rows(in_.position, second_, Real{}) - gather_rows(in_.position, first_, Real{});
     Real image_velocity{};
     if (run_.imaged) {
       r += gather_rows(in_.images, image_, Real{});
@@ -198,7 +198,7 @@ class PairGroup {
     std::uint64_t identity[identities_per_block] = {}, image[identities_per_block] = {};
     for (std::uint32_t p = eight_.begin; p < eight_.end; ++p) {
       const Pair& pair = in_.pairs[p];
-      identity[p - eight_.begin] = std::uint64_t{in_.id[pair.second]} << 32 | in_.id[pair.first];
+      identity[p - eight_.begin] = pair_identity(in_.id[pair.first], in_.id[pair.second]);
       image[p - eight_.begin] = in_.image_keys[pair.image];
     }
     in_.fill_normals(in_.noise, identity, run_.imaged ? image : nullptr, eight_.normals);
@@ -244,6 +244,23 @@ class PairGroup {
   std::uint32_t first_[width_of<Real>], second_[width_of<Real>], image_[width_of<Real>];
 };
 
+// The second particles of crossing pairs lie in other blocks, which are seldom in a cache: their rows are
+// asked for some pairs ahead.
+inline constexpr std::uint32_t pairs_ahead = 16;
+PECLET_ALWAYS_INLINE void ask_for_rows(const PairKernelInput& in, const PairRun& run, std::uint32_t begin,
+                                       std::uint32_t end) {
+  if (run.crossing == within_block) {
+    return;
+  }
+  end = end + pairs_ahead < run.end ? end + pairs_ahead : run.end;
+  for (std::uint32_t p = begin + pairs_ahead; p < end; ++p) {
+    const std::size_t row = 4 * std::size_t{in.pairs[p].second};
+    __builtin_prefetch(in.position + row);
+    __builtin_prefetch(in.velocity + row);
+    __builtin_prefetch(in.spin + row);
+  }
+}
+
 template <class Real, Terms terms>
 void run_pair_kernel(const PairKernelInput& in, const PairRun* runs, std::size_t count,
                      const PairKernelOutput& out) {
@@ -254,6 +271,7 @@ void run_pair_kernel(const PairKernelInput& in, const PairRun* runs, std::size_t
       const std::uint32_t left = run->end - eight.begin;
       eight.end = left < identities_per_block ? run->end : eight.begin + identities_per_block;
       eight.drawn = false;
+      ask_for_rows(in, *run, eight.begin, eight.end);
       for (std::uint32_t begin = eight.begin; begin < eight.end; begin += width_of<Real>) {
         const auto rest = static_cast<int>(eight.end - begin);
         PairGroup<Real, terms>(in, *run, eight, begin, rest < width_of<Real> ? rest : width_of<Real>)

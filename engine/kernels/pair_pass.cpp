@@ -21,15 +21,6 @@ PairSums total_of(const std::vector<PairSums>& blocks) {
   return total;
 }
 
-void add_incoming(const NeighbourList& list, const ParticleBlock& block, const VectorField& crossing,
-                  VectorField& force, VectorField& torque) {
-  for (std::uint32_t k = block.incoming_begin; k < block.incoming_end; ++k) {
-    const IncomingPair& pair = list.incoming()[k];
-    force.add(pair.particle, crossing[2 * std::size_t{pair.crossing}]);
-    torque.add(pair.particle, crossing[2 * std::size_t{pair.crossing} + 1]);
-  }
-}
-
 }  // namespace
 
 PairParameters pair_parameters(const Physics& physics, double timestep) {
@@ -76,8 +67,8 @@ PairKernelInput PairPass::kernel_input(const PairPassInput& input, SpringField& 
   return kernel;
 }
 
-PairSums PairPass::evaluate(const PairPassInput& input, SpringField& springs, VectorField& force,
-                            VectorField& torque) {
+PairSums PairPass::add_pairs(const PairPassInput& input, SpringField& springs, VectorField& force,
+                             VectorField& torque, const SetRows& set_rows) {
   const NeighbourList& list = input.list;
   const bool has_springs = springs.kinds() >= spring_kinds_ && springs.size() == list.pairs().size();
   if (spring_kinds_ != SpringKinds::none && !has_springs) {
@@ -92,22 +83,38 @@ PairSums PairPass::evaluate(const PairPassInput& input, SpringField& springs, Ve
   for_each_range(blocks.size(), input.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       const ParticleBlock& block = blocks[b];
-      const std::size_t offset = 4 * std::size_t{block.begin},
-                        length = 4 * std::size_t{block.end - block.begin};
-      std::fill_n(force.data() + offset, length, 0.0);
-      std::fill_n(torque.data() + offset, length, 0.0);
+      set_rows(block.begin, block.end);
+      const std::size_t offset = 4 * std::size_t{block.begin};
       kernel_(kernel, list.runs().data() + block.runs_begin, block.runs_end - block.runs_begin,
               {block.begin, force.data() + offset, torque.data() + offset, crossing_.data(), &sums_[b]});
     }
   });
-  if (list.crossings() > 0) {
-    for_each_range(blocks.size(), input.threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t b = begin; b < end; ++b) {
-        add_incoming(list, blocks[b], crossing_, force, torque);
-      }
-    });
-  }
   return total_of(sums_);
+}
+
+void PairPass::add_incoming(const NeighbourList& list, const ParticleBlock& block, VectorField& force,
+                            VectorField& torque) const {
+  for (std::uint32_t k = block.incoming_begin; k < block.incoming_end; ++k) {
+    // These rows follow no order that the processor could guess.
+    const std::size_t ahead = std::min<std::size_t>(k + 16, list.incoming().size() - 1);
+    __builtin_prefetch(crossing_.data() + 8 * std::size_t{list.incoming()[ahead].crossing});
+    const IncomingPair& pair = list.incoming()[k];
+    force.row(pair.particle) += crossing_.row(2 * std::size_t{pair.crossing});
+    torque.row(pair.particle) += crossing_.row(2 * std::size_t{pair.crossing} + 1);
+  }
+}
+
+PairSums PairPass::evaluate(const PairPassInput& input, SpringField& springs, VectorField& force,
+                            VectorField& torque) {
+  const auto clear = [&](std::size_t begin, std::size_t end) {
+    std::fill_n(force.data() + 4 * begin, 4 * (end - begin), 0.0);
+    std::fill_n(torque.data() + 4 * begin, 4 * (end - begin), 0.0);
+  };
+  const PairSums sums = add_pairs(input, springs, force, torque, clear);
+  for (const ParticleBlock& block : input.list.blocks()) {
+    add_incoming(input.list, block, force, torque);
+  }
+  return sums;
 }
 
 }  // namespace peclet::engine

@@ -6,6 +6,7 @@
 // same bits for any number of threads.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "engine/kernels/instruction_set.h"
@@ -35,14 +36,26 @@ class PairPass {
  public:
   // Throws std::invalid_argument for terms that are not valid and for a set that is not available.
   PairPass(const Terms& terms, InstructionSet set)
-      : kernel_(pair_kernel(set, terms)),
-        fill_normals_(engine::fill_normals(set)),
-        spring_kinds_(spring_kinds(terms)) {}
+      : PairPass(terms, pair_kernel(set, terms), engine::fill_normals(set)) {}
+  PairPass(const Terms& terms, PairKernel kernel, FillNormals fill_normals)
+      : kernel_(kernel), fill_normals_(fill_normals), spring_kinds_(spring_kinds(terms)) {}
 
-  // Sets force and torque to the sums over pairs (they are overwritten) and returns the sums of the stress.
+  // Sets rows [begin, end) of force and torque to what does not come from pairs.
+  using SetRows = std::function<void(std::size_t begin, std::size_t end)>;
+
+  // Has the rows of each block set, adds the loads of its pairs while they are in the cache, and returns the
+  // sums of the stress. What crosses into other blocks is left for add_incoming().
   // `springs` are those of each pair of the list; they advance with the motion. Without friction they are not
   // touched. Throws std::invalid_argument when the springs are not those of the list, or not of the kinds
   // that the terms stretch.
+  PairSums add_pairs(const PairPassInput& input, SpringField& springs, VectorField& force,
+                     VectorField& torque, const SetRows& set_rows);
+
+  // Adds to the rows of a block what the last add_pairs() left for it.
+  void add_incoming(const NeighbourList& list, const ParticleBlock& block, VectorField& force,
+                    VectorField& torque) const;
+
+  // Sets force and torque to the sums over pairs.
   PairSums evaluate(const PairPassInput& input, SpringField& springs, VectorField& force,
                     VectorField& torque);
 

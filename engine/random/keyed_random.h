@@ -19,10 +19,6 @@ struct NormalPair {
   Vector3 first, second;
 };
 
-// What keys the noise of a pair besides its step. `first` < `second` fixes the sign of the pair's forces.
-inline std::uint64_t pair_identity(std::uint32_t first, std::uint32_t second) {
-  return std::uint64_t{second} << 32 | first;
-}
 // Shifts between neighbours are a few lattice vectors; 20 bits hold each.
 inline std::uint64_t image_identity(LatticeShift image) {
   constexpr std::uint64_t mask = (1U << 20) - 1;

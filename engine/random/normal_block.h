@@ -16,6 +16,11 @@ struct NoiseKey {
   std::uint64_t seed = 0, purpose = 0, step = 0;
 };
 
+// What keys the noise of a pair besides its step. `first` < `second` fixes the sign of the pair's forces.
+[[gnu::always_inline]] inline std::uint64_t pair_identity(std::uint32_t first, std::uint32_t second) {
+  return std::uint64_t{second} << 32 | first;
+}
+
 struct NormalBlock {
   alignas(64) float value[6][identities_per_block];
 };

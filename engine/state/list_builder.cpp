@@ -32,7 +32,7 @@ ListBuilder::ListBuilder(NeighbourList& list, const ParticleState& particles, co
 }
 
 void ListBuilder::run() {
-  const std::size_t count = particles_.count(), blocks = count_of_blocks_of(count);
+  const std::size_t count = particles_.count(), blocks = count_of_particle_blocks(count);
   list_.blocks_.clear();
   for (std::size_t b = 0; b < blocks; ++b) {
     list_.blocks_.push_back({static_cast<std::uint32_t>(count * b / blocks),

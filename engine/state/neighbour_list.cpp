@@ -1,5 +1,7 @@
 #include "engine/state/neighbour_list.h"
 
+#include <bit>
+
 #include "engine/state/list_builder.h"
 
 namespace peclet::engine {
@@ -12,8 +14,8 @@ double smallest_stretch(double strain) {
 
 }  // namespace
 
-std::size_t count_of_blocks_of(std::size_t particles) {
-  return std::max<std::size_t>(1, (particles + particles_per_block - 1) / particles_per_block);
+std::size_t count_of_particle_blocks(std::size_t particles) {
+  return std::bit_ceil((particles + most_particles_per_block - 1) / most_particles_per_block);
 }
 
 void NeighbourList::build(const ParticleState& particles, const ShearedBox& box, int threads) {

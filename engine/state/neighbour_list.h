@@ -36,8 +36,8 @@ struct ParticleBlock {
   std::uint32_t incoming_begin, incoming_end;
 };
 
-// Blocks of this many particles or a few less: their state and forces stay in the second-level cache.
-constexpr std::size_t particles_per_block = 2048;
+// State and forces of a block stay in the second-level cache.
+constexpr std::size_t most_particles_per_block = 4096;
 
 class NeighbourList {
  public:
@@ -89,7 +89,8 @@ class NeighbourList {
   std::uint64_t builds_ = 0;
 };
 
-// Blocks that `particles` fall into.
-std::size_t count_of_blocks_of(std::size_t particles);
+// Blocks of equal size that `particles` fall into: a power of two, so that blocks of particles along the
+// space-filling curve are nearly boxes, with the fewest pairs across their faces.
+std::size_t count_of_particle_blocks(std::size_t particles);
 
 }  // namespace peclet::engine

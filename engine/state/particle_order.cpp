@@ -59,7 +59,7 @@ void permute(ParticleState& particles, const std::vector<std::uint32_t>& order) 
 }  // namespace
 
 void arrange_along_curve(ParticleState& particles, const ShearedBox& box) {
-  if (count_of_blocks_of(particles.count()) == 1) {
+  if (count_of_particle_blocks(particles.count()) == 1) {
     return;
   }
   std::vector<std::uint32_t> code, order(particles.count());

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <iostream>
 #include <numbers>
 #include <set>
 
@@ -202,6 +203,55 @@ TEST_F(FlowingSuspension, TheListIsNotRebuiltTooSoon) {
     EXPECT_FALSE(before.list.holds(unwrapped, system_.box)) << step;
   }
   EXPECT_GT(rebuilds, 10);
+}
+
+// A dense system of many blocks after some steps; `look` says before which of them the velocities are read.
+template <class Look>
+System after_steps(InstructionSet set, int threads, Look&& look) {
+  const Physics physics =
+      physics_with({.lubrication = true, .noise = true, .contact = true, .friction = true});
+  System system = dense_suspension(physics, 4500, 12);
+  constexpr double dt = 1e-6;
+  VelocityVerlet integrator(ForceField(physics, system.particles, dt, 7, threads, set), system.particles, dt);
+  integrator.start(system);
+  EXPECT_EQ(system.list.blocks().size(), 2u);
+  for (int step = 0; step < 12; ++step) {
+    if (look(step)) integrator.complete(system);
+    integrator.advance_open(system);
+  }
+  integrator.complete(system);
+  return system;
+}
+
+TEST(VelocityVerlet, StepsThatAreLeftOpenHaveTheSameBits) {
+  const InstructionSet set = chosen_instruction_set();
+  const System looked_at = after_steps(set, 1, [](int) { return true; });
+  for (const int threads : {1, 2}) {
+    const System open = after_steps(set, threads, [](int step) { return step == 5; });
+    EXPECT_EQ(looked_at.particles.position, open.particles.position);
+    EXPECT_EQ(looked_at.particles.velocity, open.particles.velocity);
+    EXPECT_EQ(looked_at.particles.angular_velocity, open.particles.angular_velocity);
+  }
+}
+
+// The loops over particles of each instruction set beside those of the baseline.
+TEST(VelocityVerlet, MovesParticlesAlikeOnEveryInstructionSet) {
+  const auto never = [](int) { return false; };
+  const System expected = after_steps(InstructionSet::baseline, 1, never);
+  for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512}) {
+    if (!is_available(set)) {
+      std::cout << "this processor has no " << name_of(set) << '\n';
+      continue;
+    }
+    const System found = after_steps(set, 1, never);
+    double speed = 0, worst = 0;
+    for (std::size_t i = 0; i < expected.particles.count(); ++i) {
+      EXPECT_LT(norm(expected.particles.position[i] - found.particles.position[i]), 1e-12);
+      speed = std::max(speed, norm(expected.particles.velocity[i]));
+      worst = std::max(worst, norm(expected.particles.velocity[i] - found.particles.velocity[i]));
+    }
+    EXPECT_LT(worst, 1e-10 * speed) << name_of(set);
+  }
 }
 
 }  // namespace

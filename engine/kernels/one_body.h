@@ -1,0 +1,67 @@
+// The bodies of the loops over particles, compiled once for each width of register. A row is a vector, so one
+// particle after the other is as fast as several.
+//
+// Everything is static: nothing that is compiled for one processor may be linked into a program that runs on
+// another.
+#pragma once
+
+#include "engine/kernels/one_body_kernels.h"
+#include "engine/state/row.h"
+
+namespace peclet::engine {
+namespace {
+
+inline Row& row(double* rows, std::size_t i) { return reinterpret_cast<Row*>(rows)[i]; }
+
+void kick(const OneBodyInput& in, std::size_t begin, std::size_t end) {
+  for (std::size_t i = begin; i < end; ++i) {
+    const double* factor = in.factors + 2 * std::size_t{in.size_class[i]};
+    row(in.velocity, i) += factor[0] * row(in.force, i);
+    row(in.spin, i) += factor[1] * row(in.torque, i);
+  }
+}
+
+template <bool twice>
+Speeds kick_and_drift(const OneBodyInput& in, std::size_t begin, std::size_t end, double timestep) {
+  Speeds speeds;
+  Row sum{};
+  for (std::size_t i = begin; i < end; ++i) {
+    const double* factor = in.factors + 2 * std::size_t{in.size_class[i]};
+    const Row change = factor[0] * row(in.force, i), turn = factor[1] * row(in.torque, i);
+    Row u = row(in.velocity, i) + change, w = row(in.spin, i) + turn;
+    if constexpr (twice) {
+      u += change;
+      w += turn;
+    }
+    const Row x = row(in.position, i);
+    const Row peculiar = u - Row{in.shear_rate * x[1], 0, 0, 0};
+    const Row squares = peculiar * peculiar;
+    const double squared = squares[0] + squares[1] + squares[2];
+    speeds.largest = speeds.largest > squared ? speeds.largest : squared;
+    sum += squares;
+    row(in.velocity, i) = u;
+    row(in.spin, i) = w;
+    row(in.position, i) = x + timestep * u;
+  }
+  speeds.sum = sum[0] + sum[1] + sum[2];
+  return speeds;
+}
+
+Speeds kick_and_drift(const OneBodyInput& in, std::size_t begin, std::size_t end, bool twice,
+                      double timestep) {
+  return twice ? kick_and_drift<true>(in, begin, end, timestep)
+               : kick_and_drift<false>(in, begin, end, timestep);
+}
+
+void set_drag(const OneBodyInput& in, std::size_t begin, std::size_t end) {
+  const Row spin = {0, 0, -0.5 * in.shear_rate, 0};
+  for (std::size_t i = begin; i < end; ++i) {
+    const double* factor = in.factors + 2 * std::size_t{in.size_class[i]};
+    const Row streaming = {in.shear_rate * row(in.position, i)[1], 0, 0, 0};
+    row(in.force, i) = factor[0] * (streaming - row(in.velocity, i));
+    row(in.torque, i) = factor[1] * (spin - row(in.spin, i));
+  }
+}
+
+}  // namespace
+}  // namespace peclet::engine

@@ -1,0 +1,7 @@
+#include "engine/kernels/one_body.h"
+
+namespace peclet::engine {
+
+constinit const OneBodyKernels baseline_one_body_kernels = {&kick, &kick_and_drift, &set_drag};
+
+}  // namespace peclet::engine

@@ -1,0 +1,40 @@
+// The compiled loops over particles: what they take, and one table of them for each instruction set.
+//
+// Plain data, because this is shared with files that are compiled for one processor only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace peclet::engine {
+
+// Rows are those of a VectorField. Of each size class `factors` has two numbers, for translation and
+// rotation.
+struct OneBodyInput {
+  double *position, *velocity, *spin;
+  double *force, *torque;
+  const std::uint16_t* size_class;
+  const double* factors;
+  double shear_rate;
+};
+
+// Squared speeds relative to the streaming flow.
+struct Speeds {
+  double largest = 0;
+  double sum = 0;  // not finite if one is not; a maximum would pass over it
+};
+
+struct OneBodyKernels {
+  // velocity += factor force and likewise for spins, of particles [begin, end).
+  void (*kick)(const OneBodyInput& in, std::size_t begin, std::size_t end);
+  // The same once or twice, and then position += timestep velocity.
+  Speeds (*kick_and_drift)(const OneBodyInput& in, std::size_t begin, std::size_t end, bool twice,
+                           double timestep);
+  // force = factor (streaming velocity - velocity) and likewise for torques.
+  void (*set_drag)(const OneBodyInput& in, std::size_t begin, std::size_t end);
+};
+
+extern const OneBodyKernels baseline_one_body_kernels;
+extern const OneBodyKernels avx2_one_body_kernels;
+
+}  // namespace peclet::engine

@@ -1,0 +1,77 @@
+#include "tests/engine/pair_evaluation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace peclet::engine {
+
+std::vector<Terms> every_recipe() {
+  std::vector<Terms> recipes;
+  for (unsigned code = 0; code < count_of_codes; ++code) {
+    if (decoded_terms(code).valid()) {
+      recipes.push_back(decoded_terms(code));
+    }
+  }
+  return recipes;
+}
+
+std::string text(const Terms& terms) {
+  std::string all;
+  const auto add = [&all](const char* name, bool present) { all += present ? std::string(name) + ' ' : ""; };
+  add("lubrication", terms.lubrication);
+  add("noise", terms.noise);
+  add("contact", terms.contact);
+  add("damping", terms.damping);
+  add("friction", terms.friction);
+  add("rolling", terms.rolling);
+  add("repulsion", terms.repulsion);
+  return all;
+}
+
+Evaluation evaluated(const Physics& physics, System system, int threads, InstructionSet set) {
+  const std::size_t count = system.particles.count();
+  Evaluation result{VectorField(count), VectorField(count), {}, {}};
+  result.sums = ForceField(physics, system.particles, timestep, seed, threads, set)
+                    .evaluate(system, result.force, result.torque);
+  result.springs = system.springs;
+  return result;
+}
+
+std::vector<double> components(const VectorField& field) {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    all.insert(all.end(), {field[i].x, field[i].y, field[i].z});
+  }
+  return all;
+}
+
+std::vector<double> components(const PairSums& sums) {
+  std::vector<double> all;
+  for (const SymmetricTensor& s : sums.stress) {
+    all.insert(all.end(), {s.xx, s.yy, s.zz, s.xy, s.xz, s.yz});
+  }
+  return all;
+}
+
+std::vector<double> components(const SpringField& springs) {
+  std::vector<double> all;
+  for (std::size_t c = 0; c < springs.components(); ++c) {
+    all.insert(all.end(), springs.values(c).begin(), springs.values(c).end());
+  }
+  return all;
+}
+
+void expect_near(const std::vector<double>& expected, const std::vector<double>& found,
+                 const std::string& what) {
+  ASSERT_EQ(expected.size(), found.size()) << what;
+  double scale = 0, worst = 0;
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    scale = std::max(scale, std::abs(expected[k]));
+    worst = std::max(worst, std::abs(expected[k] - found[k]));
+  }
+  EXPECT_LE(worst, tolerance * scale) << what;
+}
+
+}  // namespace peclet::engine

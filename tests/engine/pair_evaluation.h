@@ -1,0 +1,41 @@
+// One evaluation of the hot loop, and how two of them are compared.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/kernels/force_field.h"
+#include "engine/kernels/recipes.h"
+#include "engine/state/system.h"
+
+namespace peclet::engine {
+
+constexpr double timestep = 1e-4;
+constexpr std::uint64_t seed = 5;
+constexpr double tolerance = 1e-12;  // of the largest component: only the order of the sums differs
+
+// Every combination of terms that is compiled.
+std::vector<Terms> every_recipe();
+
+// Their names, each followed by a space.
+std::string text(const Terms& terms);
+
+struct Evaluation {
+  VectorField force, torque;
+  PairSums sums;
+  SpringField springs;
+};
+
+// Of a copy of `system`, whose springs advance by one step.
+Evaluation evaluated(const Physics& physics, System system, int threads = 1,
+                     InstructionSet set = chosen_instruction_set());
+
+std::vector<double> components(const VectorField& field);
+std::vector<double> components(const PairSums& sums);  // of the stress of every term
+std::vector<double> components(const SpringField& springs);
+
+// Within `tolerance` of the largest expected component.
+void expect_near(const std::vector<double>& expected, const std::vector<double>& found,
+                 const std::string& what);
+
+}  // namespace peclet::engine

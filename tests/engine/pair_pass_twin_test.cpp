@@ -1,0 +1,207 @@
+// The hot loop against itself: other instruction sets, threads, orders of the particles; and against a plain
+// loop.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <iostream>
+#include <map>
+#include <tuple>
+
+#include "engine/terms/drag.h"
+#include "tests/engine/bits.h"
+#include "tests/engine/dense_suspension.h"
+#include "tests/engine/every_image.h"
+#include "tests/engine/pair_evaluation.h"
+
+namespace peclet::engine {
+namespace {
+
+TEST(PairPass, HasTheSameBitsOnAnyNumberOfThreads) {
+  const Physics physics = physics_with({.lubrication = true,
+                                        .noise = true,
+                                        .contact = true,
+                                        .damping = true,
+                                        .friction = true,
+                                        .rolling = true,
+                                        .repulsion = true});
+  System system = dense_suspension(physics, 8500, 8);
+  rebuild_neighbours(system);
+  EXPECT_EQ(system.list.blocks().size(), 4u);
+  const Evaluation one = evaluated(physics, system, 1);
+  for (const int threads : {2, 3}) {
+    const Evaluation many = evaluated(physics, system, threads);
+    EXPECT_EQ(components(one.force), components(many.force)) << threads;
+    EXPECT_EQ(components(one.torque), components(many.torque)) << threads;
+    EXPECT_EQ(bits_of(std::to_array(one.sums.stress)), bits_of(std::to_array(many.sums.stress))) << threads;
+    EXPECT_EQ(one.sums.contacts, many.sums.contacts);
+    EXPECT_EQ(one.sums.largest_overlap, many.sums.largest_overlap);
+    ASSERT_EQ(one.springs.size(), many.springs.size());
+    for (std::size_t p = 0; p < one.springs.size(); ++p) {
+      EXPECT_EQ(bits_of(one.springs[p]), bits_of(many.springs[p])) << threads;
+    }
+  }
+}
+
+void expect_equal(const Evaluation& a, const Evaluation& b, const std::string& what) {
+  expect_near(components(a.force), components(b.force), what + " force");
+  expect_near(components(a.torque), components(b.torque), what + " torque");
+  expect_near(components(a.sums), components(b.sums), what + " stress");
+  expect_near(components(a.springs), components(b.springs), what + " springs");
+  EXPECT_EQ(a.sums.contacts, b.sums.contacts) << what;
+  EXPECT_NEAR(a.sums.largest_overlap, b.sums.largest_overlap, 1e-15) << what;
+}
+
+TEST(PairPass, EqualsItsSingleTwinOnEveryInstructionSetForEveryRecipe) {
+  for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512}) {
+    if (!is_available(set)) {
+      std::cout << "this processor has no " << name_of(set) << '\n';
+      continue;
+    }
+    for (const Terms& terms : every_recipe()) {
+      const Physics physics = physics_with(terms);
+      for (const std::size_t count : {2UL, 17UL, 200UL}) {
+        const System system = dense_suspension(physics, count == 2 ? 8 : count, count);
+        expect_equal(evaluated(physics, system, 1, InstructionSet::baseline),
+                     evaluated(physics, system, 1, set), text(terms) + name_of(set));
+      }
+    }
+  }
+}
+
+// All terms at once over every pair in every image, one by one, with no list and no kernel.
+TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
+  constexpr Terms terms = {.lubrication = true,
+                           .noise = true,
+                           .contact = true,
+                           .damping = true,
+                           .friction = true,
+                           .rolling = true,
+                           .repulsion = true};
+  const Physics physics = physics_with(terms);
+  System system = dense_suspension(physics, 150, 10);
+  system.step = 3;
+  const ParticleState& all = system.particles;
+  const std::vector<PairKind> kinds = make_pair_kinds(physics, {1, 1.4});
+  const KeyedRandom random(seed, Purpose::pair_noise), single(seed, Purpose::one_body_noise);
+  std::map<std::tuple<std::uint32_t, std::uint32_t, LatticeShift>, ContactSprings> held;
+  for (std::size_t p = 0; p < system.springs.size(); ++p) {
+    const Pair& pair = system.list.pairs()[p];
+    held[{pair.first, pair.second, system.list.images()[pair.image]}] = system.springs[p];
+  }
+  const PairParameters parameters = pair_parameters(physics, timestep);
+  VectorField force(150), torque(150);
+  const auto range = [&](std::uint32_t i, std::uint32_t j) {
+    return kinds[2U * all.size_class[i] + all.size_class[j]].range;
+  };
+  for (const SeenPair& seen : every_image(all.position, system.box.lengths(), system.box.tilt(), range)) {
+    const auto [i, j] = std::pair(seen.first, seen.second);
+    const PairKind& kind = kinds[2U * all.size_class[i] + all.size_class[j]];
+    const ContactSprings before = held[{i, j, seen.image}];
+    PairSpringsOf<double> springs = {before.tangential, before.rolling};
+    Vector3 velocity = all.velocity[j] - all.velocity[i];
+    velocity.x += system.box.velocity_offset(seen.image);
+    const PairMotion motion = {velocity, all.angular_velocity[i], all.angular_velocity[j]};
+    const TermLoadsOf<double> t =
+        pair_terms<terms>(parameters, kind, geometry(seen.separation, kind), motion, springs, [&] {
+          const NormalPair normals = random.normals(system.step, i, j, seen.image);
+          return PairNormalsOf<double>{normals.first, normals.second};
+        });
+    held[{i, j, seen.image}] = {springs.tangential, springs.rolling};
+    PairLoad sum = t.lubrication;
+    sum += t.noise;
+    sum += t.friction;
+    sum += t.rolling;
+    sum.force += t.contact_normal + t.contact_damping + t.repulsion;
+    force.add(i, sum.force);
+    force.add(j, -sum.force);
+    torque.add(i, sum.torque_first);
+    torque.add(j, sum.torque_second);
+  }
+  for (std::uint32_t i = 0; i < 150; ++i) {
+    const double zeta = translational_drag(physics.viscosity, all.radius[i]);
+    const double zeta_r = rotational_drag(physics.viscosity, all.radius[i]);
+    const NormalPair normals = single.normals(system.step, i);
+    const double c = parameters.noise_amplitude;
+    force.add(i,
+              drag_force(zeta, streaming_velocity(physics.shear_rate, all.position[i].y), all.velocity[i]) +
+                  drag_noise_amplitude(c, zeta) * normals.first);
+    torque.add(i, drag_force(zeta_r, streaming_spin(physics.shear_rate), all.angular_velocity[i]) +
+                      drag_noise_amplitude(c, zeta_r) * normals.second);
+  }
+  const Evaluation found = evaluated(physics, system, 1);
+  expect_near(components(force), components(found.force), "force");
+  expect_near(components(torque), components(found.torque), "torque");
+  SpringField advanced = system.springs;
+  for (std::size_t p = 0; p < advanced.size(); ++p) {
+    const Pair& pair = system.list.pairs()[p];
+    advanced.set(p, held[{pair.first, pair.second, system.list.images()[pair.image]}]);
+  }
+  expect_near(components(advanced), components(found.springs), "springs");
+}
+
+// Many blocks, of which most pairs cross the boundaries, and one: another order of particles in memory.
+TEST(PairPass, DependsOnNoOrderOfTheParticlesInMemory) {
+  const Physics physics =
+      physics_with({.lubrication = true, .noise = true, .contact = true, .friction = true});
+  System shuffled = dense_suspension(physics, 5000, 11), arranged = shuffled;
+  rebuild_neighbours(shuffled);  // along the curve
+  rebuild_neighbours(arranged);
+  // Back in the order of their ids, each block is all over the box.
+  const std::vector<HeldContact> held = held_contacts(shuffled.list, shuffled.particles, shuffled.springs);
+  std::vector<std::uint32_t> place(5000);
+  for (std::uint32_t k = 0; k < 5000; ++k) place[arranged.particles.id[k]] = k;
+  ParticleState in_order = make_particles(shuffled.particles.radius, 0.1);
+  for (std::uint32_t i = 0; i < 5000; ++i) {
+    const std::uint32_t k = place[i];
+    in_order.radius[i] = arranged.particles.radius[k];
+    in_order.mass[i] = arranged.particles.mass[k];
+    in_order.inertia[i] = arranged.particles.inertia[k];
+    in_order.size_class[i] = arranged.particles.size_class[k];
+    in_order.position.set(i, arranged.particles.position[k]);
+    in_order.velocity.set(i, arranged.particles.velocity[k]);
+    in_order.angular_velocity.set(i, arranged.particles.angular_velocity[k]);
+    in_order.image[i] = arranged.particles.image[k];
+  }
+  shuffled.particles = in_order;
+  shuffled.list.build(shuffled.particles, shuffled.box);
+  shuffled.springs = placed_contacts(shuffled.list, shuffled.particles, held, SpringKinds::tangential);
+  EXPECT_GT(shuffled.list.crossings(), 2 * arranged.list.crossings());
+  const Evaluation a = evaluated(physics, arranged, 1), b = evaluated(physics, shuffled, 2);
+  VectorField force(5000), torque(5000);
+  for (std::uint32_t i = 0; i < 5000; ++i) {
+    force.set(i, a.force[place[i]]);
+    torque.set(i, a.torque[place[i]]);
+  }
+  expect_near(components(force), components(b.force), "force");
+  expect_near(components(torque), components(b.torque), "torque");
+  expect_near(components(a.sums), components(b.sums), "stress");
+  EXPECT_EQ(a.sums.contacts, b.sums.contacts);
+}
+
+// Without noise, which knows particles by their number.
+TEST(PairPass, NumberingTheParticlesOtherwiseOnlyRenamesTheForces) {
+  const Physics physics =
+      physics_with({.lubrication = true, .contact = true, .damping = true, .repulsion = true});
+  const System system = dense_suspension(physics, 150, 9);
+  System reversed = system;
+  const std::size_t count = system.particles.count();
+  std::vector<double> radius(system.particles.radius.rbegin(), system.particles.radius.rend());
+  reversed.particles = make_particles(radius, 0.1);
+  for (std::size_t i = 0; i < count; ++i) {
+    reversed.particles.position.set(i, system.particles.position[count - 1 - i]);
+    reversed.particles.velocity.set(i, system.particles.velocity[count - 1 - i]);
+    reversed.particles.angular_velocity.set(i, system.particles.angular_velocity[count - 1 - i]);
+  }
+  reversed.list.build(reversed.particles, reversed.box);
+  const Evaluation there = evaluated(physics, system, 1), back = evaluated(physics, reversed, 1);
+  VectorField force(count), torque(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    force.set(i, back.force[count - 1 - i]);
+    torque.set(i, back.torque[count - 1 - i]);
+  }
+  expect_near(components(there.force), components(force), "force");
+  expect_near(components(there.torque), components(torque), "torque");
+}
+
+}  // namespace
+}  // namespace peclet::engine
