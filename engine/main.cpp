@@ -9,7 +9,7 @@
 #include "contract/frames.h"
 #include "contract/input_error.h"
 #include "contract/provenance.h"
-#include "engine/benchmark.h"
+#include "engine/benchmark/benchmark.h"
 #include "engine/configuration.h"
 #include "engine/job.h"
 #include "engine/serve.h"

@@ -1,0 +1,275 @@
+#include "engine/benchmark/benchmark.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "contract/provenance.h"
+#include "engine/benchmark/catalogue.h"
+#include "engine/benchmark/machine.h"
+#include "engine/benchmark/operations.h"
+#include "engine/benchmark/tiling.h"
+#include "engine/simulation.h"
+
+namespace peclet::engine {
+namespace {
+
+constexpr int rounds = 41;
+// What a contestant computes at a time: long beside the clock, short beside what else the machine does.
+constexpr std::size_t particle_steps_per_round = 100000;
+// The packing's contacts must have given way to those of the flow.
+constexpr double warm_up_strain = 0.2;
+
+struct Spread {
+  double smallest = 0, median = 0, largest = 0;
+};
+
+Spread spread_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return {values.front(), values[values.size() / 2], values.back()};
+}
+
+// Processor time of this thread, or the time on the wall where others work with it.
+double seconds(bool wall) {
+  timespec now{};
+  clock_gettime(wall ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// A system after the warm-up, and how long its lists held in the second half of it.
+struct Warm {
+  System system;
+  double steps_per_rebuild;
+};
+
+const Warm& warmed_up(const Contestant& contestant) {
+  static std::map<std::string, Warm> known;
+  const Scene& scene = contestant.scene;
+  const std::string key = scene.document.dump();
+  if (!known.contains(key)) {
+    Simulation simulation(scene, make_schedule(scene, contestant.name), 0, 1, contestant.name);
+    const auto half = static_cast<std::uint64_t>(0.5 * warm_up_strain / scene.physics.shear_rate /
+                                                 simulation.schedule().timestep);
+    simulation.start();
+    simulation.advance(half);
+    const std::uint64_t builds = simulation.system().list.builds();
+    simulation.advance(half);
+    const auto rebuilds = static_cast<double>(simulation.system().list.builds() - builds);
+    known[key] = {simulation.system(), static_cast<double>(half) / std::max(1.0, rebuilds)};
+  }
+  return known.at(key);
+}
+
+double near_pairs_of(const System& system, const std::vector<PairKind>& kinds) {
+  const std::vector<ImageFrame> frames = image_frames(system.list, system.box);
+  std::size_t near = 0;
+  for (const Pair& pair : system.list.pairs()) {
+    near += norm(separation(system.particles, pair, frames[pair.image])) <= kinds[pair.kind].range ? 1 : 0;
+  }
+  return static_cast<double>(near);
+}
+
+class Runner {
+ public:
+  Runner(const Contestant& contestant, bool wall) : contestant_(contestant), wall_(wall) {
+    const Warm& warm = warmed_up(contestant);
+    Scene scene = contestant.scene;
+    const auto copies = static_cast<std::size_t>(contestant.tiles * contestant.tiles * contestant.tiles);
+    scene.particles.count *= copies;
+    simulation_ = std::make_unique<Simulation>(scene, make_schedule(scene, contestant.name), 0,
+                                               contestant.threads, contestant.name);
+    simulation_->start(contestant.tiles == 1 ? warm.system : tiled(warm.system, contestant.tiles));
+    steps_per_rebuild_ = warm.steps_per_rebuild;
+  }
+
+  // Nanoseconds per particle of one step, or nothing where the list was rebuilt meanwhile.
+  std::optional<double> measure() {
+    const std::uint64_t steps = std::max<std::uint64_t>(10, particle_steps_per_round / count());
+    const std::uint64_t builds = simulation_->system().list.builds();
+    const double start = seconds(wall_);
+    simulation_->advance(steps);
+    const double taken = seconds(wall_) - start;
+    if (simulation_->system().list.builds() != builds) {
+      return std::nullopt;
+    }
+    return 1e9 * taken / static_cast<double>(steps * count());
+  }
+
+  // Nanoseconds per particle of one rebuild.
+  double measure_rebuild() const {
+    std::vector<double> times;
+    for (int r = 0; r < 5; ++r) {
+      System copy = simulation_->system();
+      const double start = seconds(wall_);
+      rebuild_neighbours(copy, contestant_.threads);
+      times.push_back(1e9 * (seconds(wall_) - start) / static_cast<double>(count()));
+    }
+    return spread_of(times).median;
+  }
+
+  const Contestant& contestant() const { return contestant_; }
+  std::size_t count() const { return simulation_->system().particles.count(); }
+  double steps_per_rebuild() const { return steps_per_rebuild_; }
+  const System& system() const { return simulation_->system(); }
+  double timestep() const { return simulation_->schedule().timestep; }
+
+ private:
+  Contestant contestant_;
+  bool wall_;
+  std::unique_ptr<Simulation> simulation_;
+  double steps_per_rebuild_;
+};
+
+struct Measured {
+  Spread nanoseconds;  // per particle and step, rebuilds spread over the steps that their lists serve
+  Spread ratio;        // to the first contestant of the same round
+  double near, listed, crossing;  // pairs per particle
+  double rebuild;                 // nanoseconds per particle
+};
+
+std::vector<Measured> measure(std::vector<Runner>& runners) {
+  std::vector<Measured> results;
+  std::vector<double> rebuild_share;
+  for (const Runner& runner : runners) {
+    const System& system = runner.system();
+    const auto count = static_cast<double>(runner.count());
+    const std::vector<PairKind> kinds =
+        make_pair_kinds(runner.contestant().scene.physics, distinct_radii(system.particles.radius));
+    Measured result{};
+    result.near = near_pairs_of(system, kinds) / count;
+    result.listed = static_cast<double>(system.list.pairs().size()) / count;
+    result.crossing = static_cast<double>(system.list.crossings()) / count;
+    result.rebuild = runner.measure_rebuild();
+    rebuild_share.push_back(result.rebuild / runner.steps_per_rebuild());
+    results.push_back(result);
+  }
+  std::vector<std::vector<double>> times(runners.size()), ratios(runners.size());
+  for (int r = 0; r < rounds; ++r) {
+    std::optional<double> first;
+    for (std::size_t k = 0; k < runners.size(); ++k) {
+      std::optional<double> time = runners[k].measure();
+      if (time) {
+        *time += rebuild_share[k];
+        times[k].push_back(*time);
+      }
+      first = k == 0 ? time : first;
+      if (time && first) {
+        ratios[k].push_back(*time / *first);
+      }
+    }
+  }
+  for (std::size_t k = 0; k < runners.size(); ++k) {
+    results[k].nanoseconds = spread_of(times[k]);
+    results[k].ratio = spread_of(ratios[k]);
+  }
+  return results;
+}
+
+std::string text(const Spread& spread, int digits) {
+  return fmt::format("{:>8.{}f} {:>8.{}f} .. {:<8.{}f}", spread.median, digits, spread.smallest, digits,
+                     spread.largest, digits);
+}
+
+void print_times(const std::vector<Runner>& runners, const std::vector<Measured>& results) {
+  fmt::print("{:<17} {:>7}  {:^28}  {:^28}  {:>5} {:>6} {:>6}  {:>6} {:>7}  {}\n", "", "",
+             "ns per particle and step", "over the first, same round", "near", "listed", "cross", "steps/",
+             "rebuild", "");
+  fmt::print("{:<17} {:>7}  {:>8} {:<19}  {:>8} {:<19}  {:>5} {:>6} {:>6}  {:>6} {:>7}  {}\n", "case", "N",
+             "median", "smallest .. largest", "median", "smallest .. largest", "per N", "per N", "per N",
+             "build", "ns", "what it is");
+  for (std::size_t k = 0; k < runners.size(); ++k) {
+    const Measured& m = results[k];
+    fmt::print("{:<17} {:>7}  {:<28}  {:<28}  {:>5.2f} {:>6.2f} {:>6.2f}  {:>6.0f} {:>7.0f}  {}\n",
+               runners[k].contestant().name, runners[k].count(), text(m.nanoseconds, 1), text(m.ratio, 3),
+               m.near, m.listed, m.crossing, runners[k].steps_per_rebuild(), m.rebuild,
+               runners[k].contestant().meaning);
+  }
+}
+
+// What the machine's measured limits allow, per particle and step.
+struct Roof {
+  double arithmetic, memory;  // ns
+};
+
+// A logarithm or exponential is a quotient and a polynomial of some ten products and sums.
+constexpr double polynomial = 20;
+
+Roof roof_of(const Operations& done, double bytes, const Machine& machine, double count) {
+  const auto number = [](std::uint64_t n) { return static_cast<double>(n); };
+  const double functions = number(done.logarithms + done.exponentials);
+  const double plain = number(done.sums + done.products) + polynomial * functions;
+  const double slow =
+      (number(done.quotients) + functions) / machine.quotients + number(done.roots) / machine.roots;
+  return {1e9 * std::max(plain / machine.products_and_sums, slow) / count, 1e9 * bytes / machine.bytes};
+}
+
+void print_roofline(const std::vector<Runner>& runners, const std::vector<Measured>& results,
+                    const Machine& machine) {
+  fmt::print("\n{:<17} {:^33}  {:>9} {:>7}  {:^24} {:>7} {:>8}\n", "", "per near pair", "1e6 near", "Gflop",
+             "ns that the machine needs", "bytes", "");
+  fmt::print("{:<17} {:>5} {:>8} {:>4} {:>5} {:>4}   {:>9} {:>7}  {:>12} {:>12} {:>7}\n", "case", "flops",
+             "quotients", "roots", "logs", "ns", "pairs / s", "per s", "arithmetic", "memory", "per N");
+  for (std::size_t k = 0; k < runners.size(); ++k) {
+    const Runner& runner = runners[k];
+    const Physics& physics = runner.contestant().scene.physics;
+    const std::optional<Operations> done = count_operations(physics, runner.system(), runner.timestep());
+    if (!done) {
+      continue;
+    }
+    const auto count = static_cast<double>(runner.count());
+    const double pairs = results[k].near * count;
+    const double bytes = bytes_per_particle(physics, runner.system());
+    const Roof roof = roof_of(*done, bytes, machine, count);
+    const double each = results[k].nanoseconds.median / results[k].near;
+    const auto per_pair = [&](std::uint64_t n) { return static_cast<double>(n) / pairs; };
+    const double flops = per_pair(done->sums + done->products);
+    fmt::print(
+        "{:<17} {:>5.0f} {:>9.2f} {:>5.2f} {:>5.2f} {:>5.1f}  {:>9.1f} {:>7.2f}  {:>12.1f} {:>12.1f} "
+        "{:>7.0f}\n",
+        runner.contestant().name, flops, per_pair(done->quotients), per_pair(done->roots),
+        per_pair(done->logarithms), each, 1e3 / each, flops / each, roof.arithmetic, roof.memory, bytes);
+  }
+}
+
+void run(const Group& group, const Machine& machine) {
+  const bool wall = std::any_of(group.contestants.begin(), group.contestants.end(),
+                                [](const Contestant& each) { return each.threads > 1; });
+  std::vector<Runner> runners;
+  for (const Contestant& contestant : group.contestants) {
+    runners.emplace_back(contestant, wall);
+  }
+  const std::vector<Measured> results = measure(runners);
+  fmt::print("\n{}: {}{}\n\n", group.name, group.question, wall ? " (time on the wall)" : "");
+  print_times(runners, results);
+  print_roofline(runners, results, machine);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int run_benchmarks(const std::vector<std::string>& names) {
+  const std::vector<Group> groups = chosen_groups(names);
+  const InstructionSet set = chosen_instruction_set();
+  const Machine machine = measure_machine(set);
+  const Json& build = provenance();
+  fmt::print("peclet-engine {}  commit {}{}  {}  {}\n", version(), build.at("git_commit").get<std::string>(),
+             build.at("git_dirty").get<bool>() ? " with changes" : "", build.at("cpu").get<std::string>(),
+             name_of(set));
+  fmt::print(
+      "one thread of this machine: {:.1f} Gflop/s, {:.2f} quotients, {:.2f} roots per ns, {:.1f} GB/s\n",
+      1e-9 * machine.products_and_sums, 1e-9 * machine.quotients, 1e-9 * machine.roots, 1e-9 * machine.bytes);
+  fmt::print("{} rounds of {} particle steps, after a strain of {}\n", rounds, particle_steps_per_round,
+             warm_up_strain);
+  std::fflush(stdout);
+  for (const Group& group : groups) {
+    run(group, machine);
+  }
+  return 0;
+}
+
+}  // namespace peclet::engine

@@ -1,0 +1,7 @@
+#include "engine/benchmark/peak_loops.h"
+
+namespace peclet::engine {
+
+constinit const PeakLoops baseline_peak_loops = peak_loops_of<double>();
+
+}  // namespace peclet::engine

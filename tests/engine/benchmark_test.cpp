@@ -1,0 +1,108 @@
+#include <gtest/gtest.h>
+
+#include "contract/input_error.h"
+#include "engine/benchmark/catalogue.h"
+#include "engine/benchmark/operations.h"
+#include "engine/benchmark/tiling.h"
+#include "tests/engine/dense_suspension.h"
+#include "tests/engine/every_image.h"
+#include "tests/engine/pair_evaluation.h"
+
+namespace peclet::engine {
+namespace {
+
+// A periodic system does not know how many of its cells are called one: forces and the stress are the same.
+TEST(Tiling, LeavesEveryParticleTheForcesThatItHas) {
+  const Physics physics = physics_with({.lubrication = true, .contact = true, .damping = true});
+  System small = dense_suspension(physics, 150, 3);
+  small.box = ShearedBox(small.box.lengths(), physics.shear_rate);
+  small.box.place(1.3, 1);
+  rebuild_neighbours(small);
+  const NeighbourList unbuilt = small.list;
+  System large = tiled(small, 3);
+  large.list = unbuilt;
+  large.list.build(large.particles, large.box);
+  ASSERT_EQ(large.particles.count(), 27 * 150u);
+  const Evaluation of_small = evaluated(physics, small), of_large = evaluated(physics, large);
+  VectorField force(large.particles.count()), torque(large.particles.count());
+  for (std::size_t i = 0; i < large.particles.count(); ++i) {
+    force.set(i, of_small.force[i % 150]);
+    torque.set(i, of_small.torque[i % 150]);
+    EXPECT_EQ(large.particles.id[i], i);
+  }
+  const auto expect_close = [](const VectorField& expected, const VectorField& found) {
+    double scale = 0, worst = 0;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      scale = std::max(scale, norm(expected[i]));
+      worst = std::max(worst, norm(expected[i] - found[i]));
+    }
+    EXPECT_LT(worst, 1e-9 * scale);  // places three cells away have less digits behind the point
+  };
+  expect_close(force, of_large.force);
+  expect_close(torque, of_large.torque);
+  EXPECT_EQ(27 * of_small.sums.contacts, of_large.sums.contacts);
+}
+
+// By the formulas: of each near pair the distance and ln(1/xi); at least one quotient each for the normal and
+// for 1/xi; with noise two more roots of the squeeze mode and of the logarithm.
+TEST(Operations, OfEachNearPairAreOneLogarithmAndTheRootsOfItsFormulas) {
+  for (const bool noise : {false, true}) {
+    const Physics physics = physics_with({.lubrication = true, .noise = noise, .contact = true});
+    const System system = dense_suspension(physics, 200, 5);
+    const std::vector<double>& radius = system.particles.radius;
+    const double outer = 1 + 0.5 * physics.lubrication->outer_gap;
+    const std::size_t near =
+        every_image(system.particles.position, system.box.lengths(), system.box.tilt(),
+                    [&](std::uint32_t i, std::uint32_t j) { return outer * (radius[i] + radius[j]); })
+            .size();
+    const std::optional<Operations> done = count_operations(physics, system, timestep);
+    ASSERT_TRUE(done);
+    EXPECT_EQ(done->logarithms, near);
+    EXPECT_EQ(done->roots, (noise ? 3 : 1) * near);
+    EXPECT_EQ(done->exponentials, 0u);
+    EXPECT_GE(done->quotients, 2 * near);
+  }
+}
+
+TEST(Operations, AreNotMadeUpForTermsThatAreNotCounted) {
+  const Physics physics = physics_with({.repulsion = true});
+  EXPECT_FALSE(count_operations(physics, dense_suspension(physics, 50, 5), timestep));
+}
+
+TEST(Catalogue, GivesGroupsWholeAndContestantsAlone) {
+  const std::vector<Group> whole = chosen_groups({"reference"}), one = chosen_groups({"friction"});
+  ASSERT_EQ(whole.size(), 1u);
+  EXPECT_EQ(whole[0].contestants.size(), 3u);
+  ASSERT_EQ(one.size(), 1u);
+  ASSERT_EQ(one[0].contestants.size(), 1u);
+  EXPECT_EQ(one[0].contestants[0].scene.physics.contact->friction, 0.5);
+  EXPECT_GT(chosen_groups({}).size(), 8u);
+}
+
+TEST(Catalogue, SaysWhatItHasWhenAskedForSomethingElse) {
+  try {
+    chosen_groups({"frictionless", "fast"});
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("fast"), std::string::npos);
+    EXPECT_NE(message.find("frictionless, friction, brownian"), std::string::npos) << message;
+  }
+}
+
+// What is there with a strength of zero is computed by the same kernel as what is not there.
+TEST(Catalogue, ATermOfNoStrengthIsATermThatIsAbsent) {
+  std::size_t groups = 0;
+  for (const Group& group : chosen_groups({})) {
+    if (!group.name.starts_with("term-")) continue;
+    ++groups;
+    const auto terms = [&](std::size_t k) { return required_terms(group.contestants[k].scene.physics); };
+    ASSERT_EQ(group.contestants.size(), 3u);
+    EXPECT_EQ(terms(0), terms(1)) << group.name;
+    EXPECT_NE(terms(0), terms(2)) << group.name;
+  }
+  EXPECT_EQ(groups, 5u);
+}
+
+}  // namespace
+}  // namespace peclet::engine
