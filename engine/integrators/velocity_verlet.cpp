@@ -12,7 +12,10 @@
 namespace peclet::engine {
 
 VelocityVerlet::VelocityVerlet(ForceField field, const ParticleState& particles, double timestep)
-    : field_(std::move(field)), timestep_(timestep), force_(particles.count()), torque_(particles.count()) {
+    : field_(std::move(field)),
+      timestep_(timestep),
+      force_(particles.count(), field_.threads()),
+      torque_(particles.count(), field_.threads()) {
   kicks_.resize(2 * distinct_radii(particles.radius).size());
   for (std::size_t i = 0; i < particles.count(); ++i) {
     double* kick = &kicks_[2 * std::size_t{particles.size_class[i]}];

@@ -36,29 +36,31 @@ void permute(std::vector<Value>& values, const std::vector<std::uint32_t>& order
   values = std::move(arranged);
 }
 
-void permute(VectorField& field, const std::vector<std::uint32_t>& order) {
-  VectorField arranged(field.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    arranged.set(i, field[order[i]]);
-  }
+void permute(VectorField& field, const std::vector<std::uint32_t>& order, int threads) {
+  VectorField arranged(field.size(), threads);
+  for_each_range(order.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      arranged.row(i) = field.row(order[i]);
+    }
+  });
   field = std::move(arranged);
 }
 
-void permute(ParticleState& particles, const std::vector<std::uint32_t>& order) {
+void permute(ParticleState& particles, const std::vector<std::uint32_t>& order, int threads) {
   permute(particles.radius, order);
   permute(particles.mass, order);
   permute(particles.inertia, order);
   permute(particles.size_class, order);
   permute(particles.id, order);
-  permute(particles.position, order);
-  permute(particles.velocity, order);
-  permute(particles.angular_velocity, order);
+  permute(particles.position, order, threads);
+  permute(particles.velocity, order, threads);
+  permute(particles.angular_velocity, order, threads);
   permute(particles.image, order);
 }
 
 }  // namespace
 
-void arrange_along_curve(ParticleState& particles, const ShearedBox& box) {
+void arrange_along_curve(ParticleState& particles, const ShearedBox& box, int threads) {
   if (count_of_particle_blocks(particles.count()) == 1) {
     return;
   }
@@ -70,7 +72,7 @@ void arrange_along_curve(ParticleState& particles, const ShearedBox& box) {
   std::iota(order.begin(), order.end(), 0U);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return code[a] < code[b]; });
-  permute(particles, order);
+  permute(particles, order, threads);
 }
 
 void arrange_by_id(ParticleState& particles, const std::vector<std::uint32_t>& id) {
@@ -81,7 +83,7 @@ void arrange_by_id(ParticleState& particles, const std::vector<std::uint32_t>& i
     }
     seen[i] = true;
   }
-  permute(particles, id);
+  permute(particles, id, 1);
 }
 
 }  // namespace peclet::engine

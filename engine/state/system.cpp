@@ -17,7 +17,7 @@ void rebuild_neighbours(System& system, int threads) {
     }
   }
   wrap_into_cell(particles, system.box);
-  arrange_along_curve(particles, system.box);
+  arrange_along_curve(particles, system.box, threads);
   system.list.build(particles, system.box, threads);
   system.springs = placed_contacts(system.list, particles, held, system.springs.kinds());
 }

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
+#include <utility>
 #include <vector>
 
+#include "engine/state/for_each_range.h"
 #include "engine/state/row.h"
 #include "engine/state/vector3.h"
 
@@ -14,7 +17,15 @@ namespace peclet::engine {
 class VectorField {
  public:
   VectorField() = default;
-  explicit VectorField(std::size_t count) : rows_(count) {}
+  // Zero. A page of memory lies near the processor that writes to it first: `threads` share the rows as every
+  // loop over blocks does.
+  explicit VectorField(std::size_t count, int threads = 1) : rows_(count) {
+    for_each_range(count, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        rows_[i].v = Row{};
+      }
+    });
+  }
 
   std::size_t size() const { return rows_.size(); }
   Vector3 operator[](std::size_t i) const { return {rows_[i].v[0], rows_[i].v[1], rows_[i].v[2]}; }
@@ -39,9 +50,22 @@ class VectorField {
  private:
   // Where the processor has no such registers, the compiler would align a bare row less.
   struct alignas(32) AlignedRow {
-    Row v{};
+    Row v;
   };
-  std::vector<AlignedRow> rows_;
+  // Leaves new rows as they are.
+  struct Allocator : std::allocator<AlignedRow> {
+    template <class>
+    struct rebind {
+      using other = Allocator;
+    };
+    template <class... Arguments>
+    void construct(AlignedRow* row, Arguments&&... arguments) {
+      if constexpr (sizeof...(Arguments) > 0) {
+        std::construct_at(row, std::forward<Arguments>(arguments)...);
+      }
+    }
+  };
+  std::vector<AlignedRow, Allocator> rows_;
 };
 
 }  // namespace peclet::engine
