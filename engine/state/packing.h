@@ -28,7 +28,7 @@ double cube_edge(const std::vector<double>& radius, double volume_fraction);
 // Gives the spheres random places (keyed by seed) in the box at rest, then minimises the energy sum 1/2
 // (sigma_ij - r)^2 of overlaps with FIRE (Bitzek et al. 2006), sigma_ij a thousandth above a_i + a_j, until
 // no two spheres overlap: surfaces are then apart by at least 2e-4 of a_i + a_j. Reaches a volume fraction of
-// 0.63 for 1:1.4 in equal volumes (0.64 from one seed in five). Velocities are left at zero. Throws
+// 0.63 for 1:1.4 in equal volumes (0.64 from two seeds in five). Velocities are left at zero. Throws
 // PackingError when the overlaps cannot be removed, std::invalid_argument when a sphere overlaps its own
 // image.
 void place_randomly(ParticleState& particles, const ShearedBox& box, std::uint64_t seed);

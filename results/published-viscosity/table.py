@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""peclet export campaign.json | table.py
+"""peclet export campaign.json | table.py, and the same with outer-gap.json
 
 Prints the relative viscosities of the campaign beside the fits of Mari et al. as quoted by Monti et al. (2021):
 1.4 (1 - phi/0.66)^-1.6 without friction and 0.71 (1 - phi/0.575)^-2.3 with friction coefficient 1.
@@ -16,11 +16,14 @@ def fit(phi, friction):
 
 def main():
     export = json.load(sys.stdin)
-    print("| φ | μ | seeds | η_r | of the pairs | N₁/ηγ̇ | N₂/ηγ̇ | Mari fit | η_r / fit |")
-    print("|---|---|---|---|---|---|---|---|---|")
+    print("| φ | μ | outer gap | seeds | η_r | of the pairs | N₁/ηγ̇ | N₂/ηγ̇ | Mari fit | η_r / fit |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
     for point in export["points"]:
         means = [r["mean"] for r in point["realisations"] + point["surplus"] if r.get("mean")]
-        phi, friction = point["settings"]["/volume_fraction"], point["settings"]["/contact/friction"]
+        scene = export["document"]["scene"]
+        settings = {**scene["contact"], **scene["lubrication"]}
+        settings |= {path.split("/")[-1]: value for path, value in point["settings"].items()}
+        phi, friction = settings["volume_fraction"], settings["friction"]
 
         def estimate(name):
             values = [mean[name] for mean in means]
@@ -34,7 +37,7 @@ def main():
 
         mean, error = estimate("relative_viscosity")
         reference = fit(phi, friction)
-        print(f"| {phi:.2f} | {friction} | {len(means)} | {text('relative_viscosity')} | {text('relative_viscosity_pair')} | "
+        print(f"| {phi:.2f} | {friction} | {settings['outer_gap']} | {len(means)} | {text('relative_viscosity')} | {text('relative_viscosity_pair')} | "
               f"{text('first_normal_difference')} | {text('second_normal_difference')} | {reference:.2f} | "
               f"{mean / reference:.3f} ± {error / reference:.3f} |")
 
