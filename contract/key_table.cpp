@@ -116,6 +116,7 @@ class Validation {
 
   [[noreturn]] void refuse_unknown(const std::vector<const Key*>& keys, const std::string& pointer) const {
     std::vector<std::string_view> names;
+    names.reserve(keys.size());
     for (const Key* key : keys) names.push_back(name_of(*key));
     throw InputError(file_, pointer, "unknown key", fmt::format("allowed keys: {}", fmt::join(names, ", ")));
   }

@@ -136,8 +136,7 @@ class Job {
     if (ending.cause == Ending::Cause::completed || job_.failures.empty()) {
       return "";
     }
-    const std::string name =
-        job_.header.point.substr(0, 12) + "-" + std::to_string(job_.header.seed) + ".state";
+    std::string name = job_.header.point.substr(0, 12) + "-" + std::to_string(job_.header.seed) + ".state";
     write_checkpoint(job_.failures / name, identity_, meter_.spent(), *simulation_);
     return name;
   }

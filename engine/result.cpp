@@ -124,10 +124,16 @@ std::optional<double> energy_imbalance(const Scene& scene, const Simulation& sim
   return errors.spurious_energy / static_cast<double>(errors.samples) / work_per_step;
 }
 
-Json gate_json(const StepErrors& errors, const std::optional<double>& imbalance) {
-  return {{"largest_stability_share", errors.largest_stability_share},
-          {"energy_imbalance", imbalance ? Json(*imbalance) : Json()}};
+// How much more stress the samples have with whole steps than with half ones, relative to the latter.
+std::optional<double> half_step_difference(const StepErrors& errors) {
+  const auto [whole, halved] = errors.half_steps;
+  if (!(halved > 0)) {
+    return std::nullopt;
+  }
+  return whole / halved - 1;
 }
+
+Json or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
 
 Json ending_json(const Ending& ending, const std::string& saved_state) {
   return {{"cause", name_of(ending.cause)},
@@ -186,8 +192,16 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
                                         Json(scene.guard.energy_imbalance).dump() +
                                         ": the stress may depend on the step, choose a smaller one"});
   }
+  const std::optional<double> difference = half_step_difference(simulation.step_errors());
+  if (difference && std::abs(*difference) > scene.guard.half_step_difference) {
+    warnings.push_back({"timestep", "half steps change the stress by " + Json(-*difference).dump() +
+                                        " of it, more than " + Json(scene.guard.half_step_difference).dump() +
+                                        ": choose a smaller step"});
+  }
   result["warnings"] = warnings_json(warnings);
-  result["gate"] = gate_json(simulation.step_errors(), imbalance);
+  result["gate"] = {{"largest_stability_share", simulation.step_errors().largest_stability_share},
+                    {"energy_imbalance", or_null(imbalance)},
+                    {"half_step_difference", or_null(difference)}};
   result["ending"] = ending_json(ending, saved_state);
   result["largest_overlap"] = simulation.largest_overlap();
   ArchiveWriter state;

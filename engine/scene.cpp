@@ -207,7 +207,8 @@ Scene read_scene(const Json& document, const std::string& file) {
   scene.production = reading.duration("/duration/production", scene.physics);
   scene.guard = {filled["guard"]["largest_overlap"].get<double>(),
                  filled["guard"]["largest_displacement"].get<double>(),
-                 filled["guard"]["energy_imbalance"].get<double>()};
+                 filled["guard"]["energy_imbalance"].get<double>(),
+                 filled["guard"]["half_step_difference"].get<double>()};
   return scene;
 }
 

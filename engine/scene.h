@@ -52,7 +52,9 @@ struct Duration {
 struct Guard {
   double largest_overlap = 0.05;       // of the smaller radius of the pair
   double largest_displacement = 0.05;  // per step, of the smallest radius of all
-  double energy_imbalance = 0.3;       // of the flow's work; beyond it only a warning
+  // Beyond these there is only a warning.
+  double energy_imbalance = 0.3;       // of the flow's work
+  double half_step_difference = 0.03;  // of the stress
 };
 
 struct Warning {

@@ -197,6 +197,10 @@ Keys run_keys() {
                             "Energy that the finite step makes over the work of the flow; beyond it the "
                             "result has the warning timestep."),
                    0.3),
+      with_default(positive("/guard/half_step_difference", "",
+                            "Relative difference of the stress between steps and half steps, on samples; "
+                            "beyond it the result has the warning timestep."),
+                   0.03),
   });
   return keys;
 }

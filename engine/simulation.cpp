@@ -21,6 +21,9 @@ namespace {
 constexpr std::uint64_t sampling_interval = 50;
 constexpr std::uint64_t energy_sampling_interval = 500;
 constexpr std::uint64_t stability_check_interval = 5000;
+// Steps and half steps are compared over a few hundred of the fastest modes' times, a few times in a run.
+constexpr int compared_steps = 40;
+constexpr std::uint64_t comparisons = 8, least_steps_between_comparisons = 10000;
 
 // Pairs are listed that much beyond their range, as a fraction of it. A small skin keeps the list close to
 // the pairs that act.
@@ -218,6 +221,14 @@ void Simulation::observe(const StepReport& report) {
     integrator_->complete(system_);
     step_errors_.spurious_energy += integrator_->spurious_energy(system_);
     ++step_errors_.samples;
+  }
+  const std::uint64_t between = std::max(schedule_.production / comparisons, least_steps_between_comparisons);
+  const bool smooth = scene_.physics.thermal_energy == 0 && scene_.physics.shear_rate > 0;
+  if (smooth && index % between == 0) {
+    integrator_->complete(system_);
+    const Integrator::HalfSteps sample = integrator_->compare_half_steps(system_, compared_steps);
+    step_errors_.half_steps.whole += sample.whole;
+    step_errors_.half_steps.halved += sample.halved;
   }
   if (index % std::min(sampling_interval, longest_interval) == 0) {
     integrator_->complete(system_);

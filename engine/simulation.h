@@ -38,6 +38,7 @@ struct StepErrors {
   double largest_stability_share = 0;  // of all checks
   double spurious_energy = 0;          // summed over samples in the production window
   std::uint64_t samples = 0;
+  Integrator::HalfSteps half_steps;  // summed over samples in the production window, without noise
 };
 
 class Simulation {

@@ -79,8 +79,8 @@ class Runner {
   Runner(const Contestant& contestant, bool wall) : contestant_(contestant), wall_(wall) {
     const Warm& warm = warmed_up(contestant);
     Scene scene = contestant.scene;
-    const auto copies = static_cast<std::size_t>(contestant.tiles * contestant.tiles * contestant.tiles);
-    scene.particles.count *= copies;
+    const auto tiles = static_cast<std::size_t>(contestant.tiles);
+    scene.particles.count *= tiles * tiles * tiles;
     simulation_ = std::make_unique<Simulation>(scene, make_schedule(scene, contestant.name), 0,
                                                contestant.threads, contestant.name);
     simulation_->start(contestant.tiles == 1 ? warm.system : tiled(warm.system, contestant.tiles));

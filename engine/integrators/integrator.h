@@ -39,6 +39,14 @@ class Integrator {
   // energy less the work of the flow. Means nothing with noise.
   virtual double spurious_energy(const System& system) const = 0;
 
+  // The stress sigma_xy of pairs, times the volume, summed over the next `steps` steps of a copy of the
+  // (complete) system; and the same with twice as many steps of half the size, of which every second one
+  // counts. Means nothing with noise, which another step draws anew.
+  struct HalfSteps {
+    double whole = 0, halved = 0;
+  };
+  virtual HalfSteps compare_half_steps(const System& system, int steps) const = 0;
+
   // What the integrator keeps between steps besides the system.
   virtual void save(ArchiveWriter& archive) const = 0;
   virtual void load(const System& system, ArchiveReader& archive) = 0;

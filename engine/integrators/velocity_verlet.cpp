@@ -60,6 +60,27 @@ double VelocityVerlet::spurious_energy(const System& system) const {
   return engine::spurious_energy(system, field_.kinds(), field_.physics(), force_, torque_, timestep_);
 }
 
+Integrator::HalfSteps VelocityVerlet::compare_half_steps(const System& system, int steps) const {
+  // `every` steps of timestep / every for one that counts.
+  const auto stress = [&](int every) {
+    System copy = system;
+    const double timestep = timestep_ / every;
+    VelocityVerlet integrator(ForceField(field_.physics(), copy.particles, timestep, 0, field_.threads()),
+                              copy.particles, timestep);
+    copy.step *= static_cast<std::uint64_t>(every);  // the strain follows from it
+    integrator.start(copy);
+    double sum = 0;
+    for (int step = 1; step <= every * steps; ++step) {
+      const PairSums sums = integrator.advance_open(copy).sums;
+      for (const SymmetricTensor& s : sums.stress) {
+        sum += step % every == 0 ? s.xy : 0;
+      }
+    }
+    return sum;
+  };
+  return {stress(1), stress(2)};
+}
+
 OneBodyInput VelocityVerlet::kick_input(System& system) {
   return one_body_input(system.particles, force_, torque_, kicks_.data(), field_.physics().shear_rate);
 }

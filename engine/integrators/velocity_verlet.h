@@ -22,6 +22,7 @@ class VelocityVerlet final : public Integrator {
   void complete(System& system) override;
   double stability_share(const System& system) const override;
   double spurious_energy(const System& system) const override;
+  HalfSteps compare_half_steps(const System& system, int steps) const override;
   void save(ArchiveWriter& archive) const override;
   void load(const System& system, ArchiveReader& archive) override;
 

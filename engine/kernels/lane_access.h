@@ -33,10 +33,11 @@ PECLET_ALWAYS_INLINE Vector3Of<Lanes<Set>> gather_rows(const double* rows, const
   Vector3Of<Lanes<Set>> result;
 #pragma GCC unroll 4
   for (int q = 0; q < Lanes<Set>::width / 4; ++q) {
-    const __m256d a = _mm256_load_pd(rows + 4 * std::size_t{index[4 * q]});
-    const __m256d b = _mm256_load_pd(rows + 4 * std::size_t{index[4 * q + 1]});
-    const __m256d c = _mm256_load_pd(rows + 4 * std::size_t{index[4 * q + 2]});
-    const __m256d d = _mm256_load_pd(rows + 4 * std::size_t{index[4 * q + 3]});
+    const std::uint32_t* four = index + std::ptrdiff_t{4} * q;
+    const __m256d a = _mm256_load_pd(rows + 4 * std::size_t{four[0]});
+    const __m256d b = _mm256_load_pd(rows + 4 * std::size_t{four[1]});
+    const __m256d c = _mm256_load_pd(rows + 4 * std::size_t{four[2]});
+    const __m256d d = _mm256_load_pd(rows + 4 * std::size_t{four[3]});
     const __m256d ab = _mm256_unpacklo_pd(a, b), cd = _mm256_unpacklo_pd(c, d);
     set_four_lanes(result.x, q, _mm256_permute2f128_pd(ab, cd, 0x20));
     set_four_lanes(result.y, q,

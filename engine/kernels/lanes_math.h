@@ -3,11 +3,13 @@
 
 #include "engine/kernels/lanes.h"
 
+// Names of the vector ABI. NOLINTBEGIN(bugprone-reserved-identifier)
 #ifdef __AVX512F__
 extern "C" __m512d _ZGVeN8v_exp(__m512d);
 #else
 extern "C" __m256d _ZGVdN4v_exp(__m256d);
 #endif
+// NOLINTEND(bugprone-reserved-identifier)
 
 namespace peclet::engine {
 

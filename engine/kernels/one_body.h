@@ -11,6 +11,7 @@
 namespace peclet::engine {
 namespace {
 
+// NOLINTNEXTLINE(readability-non-const-parameter): who receives the row writes to it
 inline Row& row(double* rows, std::size_t i) { return reinterpret_cast<Row*>(rows)[i]; }
 
 void kick(const OneBodyInput& in, std::size_t begin, std::size_t end) {

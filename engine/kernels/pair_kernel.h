@@ -163,6 +163,7 @@ class PairGroup {
     }
   }
 
+  // NOLINTNEXTLINE(readability-non-const-parameter): who receives the row writes to it
   PECLET_ALWAYS_INLINE static Row& row(double* rows, std::size_t number) {
     return *reinterpret_cast<Row*>(rows + 4 * number);
   }

@@ -101,7 +101,7 @@ inline void fill_block(const NoiseKey& key, const std::uint64_t* identity, const
   std::uint32_t radius_bits[3][width], angle_bits[3][width];
   split_words(low, radius_bits);
   split_words(high, angle_bits);
-  for (int j = 0; j < 3; ++j) {
+  for (std::size_t j = 0; j < 3; ++j) {
     box_muller(radius_bits[j], angle_bits[j], block.value[2 * j], block.value[2 * j + 1]);
   }
 }

@@ -159,7 +159,7 @@ std::uint16_t ListBuilder::image_number(LatticeShift image) const {
 // A counting sort: pairs of one run keep the order in which they were found.
 void ListBuilder::arrange(std::size_t block) {
   const std::vector<Found>& found = found_[block];
-  const std::size_t buckets = 4 * list_.ranges_.classes() * list_.ranges_.classes();
+  const std::size_t half = 2 * list_.ranges_.classes() * list_.ranges_.classes(), buckets = 2 * half;
   std::vector<std::uint32_t> next(buckets + 1);
   for (const Found& pair : found) {
     ++next[bucket(pair) + 1];
@@ -168,9 +168,9 @@ void ListBuilder::arrange(std::size_t block) {
   for (std::size_t k = 0; k < buckets; ++k) {
     next[k + 1] += next[k];
     if (next[k + 1] > next[k]) {
-      const bool crossing = k >= buckets / 2;
-      runs_[block].push_back({next[k], next[k + 1], crossing ? 0 : within_block,
-                              static_cast<std::uint16_t>(k % (buckets / 2) / 2), k % 2 == 1});
+      const bool crossing = k >= half;
+      const auto kind = static_cast<std::uint16_t>((crossing ? k - half : k) / 2);
+      runs_[block].push_back({next[k], next[k + 1], crossing ? 0 : within_block, kind, k % 2 == 1});
     }
   }
   for (const Found& pair : found) {

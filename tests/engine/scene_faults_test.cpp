@@ -96,6 +96,8 @@ const Fault faults[] = {
     {R"({"observables": ["stress", "colour"]})", "/observables/1", "\"colour\"", "must be one of: stress"},
     {R"({"guard": {"largest_overlap": 0}})", "/guard/largest_overlap", "0", "must be a number > 0"},
     {R"({"guard": {"energy_imbalance": 0}})", "/guard/energy_imbalance", "0", "must be a number > 0"},
+    {R"({"guard": {"half_step_difference": -1}})", "/guard/half_step_difference", "-1",
+     "must be a number > 0"},
     {R"({"observable": ["stress"]})", "/observable", "unknown key",
      "allowed keys: particles, volume_fraction"},
 };

@@ -39,6 +39,7 @@ TEST(Scene, WhatIsAbsentIsNotComputed) {
   EXPECT_EQ(scene.guard.largest_overlap, 0.05);
   EXPECT_EQ(scene.guard.largest_displacement, 0.05);
   EXPECT_EQ(scene.guard.energy_imbalance, 0.3);
+  EXPECT_EQ(scene.guard.half_step_difference, 0.03);
 }
 
 TEST(Scene, DefaultsThatFollowFromOtherKeys) {
@@ -59,7 +60,8 @@ TEST(Scene, GivenValuesAreKept) {
     "lubrication": {"form": "kim-karrila", "inner_gap": 1e-4, "outer_gap": 0.2},
     "repulsion": {"form": "exponential", "strength": 1.7, "relative_length": 0.02, "cutoff_lengths": 10},
     "integrator": {"timestep": 1e-4},
-    "guard": {"largest_overlap": 0.1, "largest_displacement": 0.02, "energy_imbalance": 0.01}})"));
+    "guard": {"largest_overlap": 0.1, "largest_displacement": 0.02, "energy_imbalance": 0.01,
+              "half_step_difference": 0.002}})"));
   EXPECT_EQ(scene.particles.reference_radius, 1.5);
   EXPECT_EQ(scene.physics.viscosity, 0.1);
   EXPECT_EQ(scene.physics.thermal_energy, 0.017);
@@ -77,6 +79,7 @@ TEST(Scene, GivenValuesAreKept) {
   EXPECT_EQ(scene.guard.largest_overlap, 0.1);
   EXPECT_EQ(scene.guard.largest_displacement, 0.02);
   EXPECT_EQ(scene.guard.energy_imbalance, 0.01);
+  EXPECT_EQ(scene.guard.half_step_difference, 0.002);
 }
 
 TEST(Scene, SharesAreDividedByTheirSum) {

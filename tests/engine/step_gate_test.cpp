@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/integrators/stability.h"
+#include "engine/integrators/velocity_verlet.h"
 #include "engine/job.h"
 #include "tests/engine/small_scene.h"
 
@@ -126,13 +127,51 @@ TEST(StepGate, FlagsAResultWhoseStepMakesTooMuchEnergy) {
   EXPECT_TRUE(flagged.at("mean").is_object());
 }
 
+// The comparison runs beside the system and sees what the system goes through next; what was to happen
+// anyway is not changed by looking. Beyond the stable steps whole steps drift away from half ones.
+TEST(StepGate, StepsAreComparedWithHalfStepsOfTheSameMotion) {
+  constexpr int steps = 200;
+  const Scene scene = published_scene(0.55);
+  Simulation simulation = started(scene, {1e-4, 40000, 40000});
+  simulation.advance(20000);
+  const auto compared = [&](int factor) {
+    const double timestep = factor * 1e-4;
+    System system = simulation.system();
+    system.step /= static_cast<std::uint64_t>(factor);  // the same strain
+    const System before = system;
+    VelocityVerlet integrator(ForceField(scene.physics, system.particles, timestep, 1, 1), system.particles,
+                              timestep);
+    integrator.start(system);
+    const Integrator::HalfSteps half_steps = integrator.compare_half_steps(before, steps);
+    double sum = 0;
+    for (int step = 0; step < steps; ++step) {
+      for (const SymmetricTensor& stress : integrator.advance(system).sums.stress) sum += stress.xy;
+    }
+    EXPECT_EQ(half_steps.whole, sum);
+    return half_steps.whole / half_steps.halved - 1;
+  };
+  const double stable = compared(1), unstable = compared(5);
+  EXPECT_LT(std::abs(stable), 1e-3);
+  EXPECT_GT(std::abs(unstable), 0.03);
+}
+
+TEST(StepGate, FlagsAResultThatHalfStepsWouldChange) {
+  const Json fine = result_of(without_noise(Json::object()));
+  EXPECT_LT(std::abs(fine.at("gate").at("half_step_difference").get<double>()), 0.03);
+  const Json flagged = result_of(without_noise({{"guard", {{"half_step_difference", 1e-12}}}}));
+  EXPECT_TRUE(has_warning(flagged, "timestep"));
+  EXPECT_EQ(flagged.at("mean"), fine.at("mean"));
+}
+
 TEST(StepGate, NoiseAndRestHaveNoBalance) {
   const Json noisy = result_of(Json::object()).at("gate");
   EXPECT_TRUE(noisy.at("energy_imbalance").is_null());
+  EXPECT_TRUE(noisy.at("half_step_difference").is_null());
   EXPECT_GT(noisy.at("largest_stability_share"), 0);
   EXPECT_LT(noisy.at("largest_stability_share"), 1);
   const Json resting = result_of(without_noise({{"flow", {{"shear_rate", 0}}}})).at("gate");
   EXPECT_TRUE(resting.at("energy_imbalance").is_null());
+  EXPECT_TRUE(resting.at("half_step_difference").is_null());
 }
 
 TEST(StepGate, OfSpheresThatWereNotPackedThereIsNothingToSay) {
