@@ -25,8 +25,8 @@ constexpr std::uint64_t stability_check_interval = 5000;
 constexpr int compared_steps = 40;
 constexpr std::uint64_t comparisons = 8, least_steps_between_comparisons = 10000;
 
-// Pairs are listed that much beyond their range, as a fraction of it. A small skin keeps the list close to
-// the pairs that act.
+// Pairs are listed that much beyond their range, as a fraction of the smallest one. A small skin keeps the
+// list close to the pairs that act.
 constexpr double skin = 0.03;
 
 // Thousands of years of computing; step counters hold far more.

@@ -26,7 +26,7 @@ ListBuilder::ListBuilder(NeighbourList& list, const ParticleState& particles, co
     }
     grids_.emplace_back();
     if (!members[c].empty()) {
-      grids_.back().emplace(places_, members[c], box_, (1 + list_.skin_) * range);
+      grids_.back().emplace(places_, members[c], box_, list_.reach(range));
     }
   }
 }
@@ -81,7 +81,7 @@ void ListBuilder::search_near(std::uint32_t i, std::vector<Found>& found) {
     if (!grids_[other]) {
       continue;
     }
-    const double range = ranges.at(own, other), listed = (1 + list_.skin_) * range;
+    const double range = ranges.at(own, other), listed = list_.reach(range);
     grids_[other]->visit_near(places_.fractional[i],
                               [&](std::uint32_t j, LatticeShift wrap, const Vector3& separation) {
                                 const double squared = dot(separation, separation);

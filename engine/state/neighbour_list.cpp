@@ -1,5 +1,6 @@
 #include "engine/state/neighbour_list.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "engine/state/list_builder.h"
@@ -30,9 +31,17 @@ void NeighbourList::rebuild_from(VectorField reference, const ParticleState& par
   ListBuilder(*this, particles, box, threads).run();
 }
 
+double NeighbourList::reach(double range) const {
+  constexpr double share_of_strain = 0.1;
+  const double smallest = ranges_.smallest();
+  return range + skin_ * (smallest + share_of_strain * (range - smallest));
+}
+
 double NeighbourList::allowed_displacement(const ShearedBox& box) const {
   const double stretch = smallest_stretch(box.strain() - strain_at_build_);
-  return 0.5 * ranges_.smallest() * (stretch * (1 + skin_) - 1);
+  // Linear in the range: the smallest or the largest one decides.
+  const auto left = [&](double range) { return 0.5 * (stretch * reach(range) - range); };
+  return std::min(left(ranges_.smallest()), left(ranges_.largest()));
 }
 
 double NeighbourList::largest_displacement(const ParticleState& particles, const ShearedBox& box) const {

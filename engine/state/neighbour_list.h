@@ -1,11 +1,13 @@
 // Which pairs may interact before the next rebuild: (i, j, image) triples, arranged for the loop over pairs.
 //
-// A pair is listed when its distance at the time of the build is below (1 + skin) range(i, j). With d_i the
-// displacement of particle i relative to the affine deformation since then, a pair that was left out is at
-// least
-//   s (1 + skin) range - |d_i| - |d_j|
+// A pair is listed when its distance at the time of the build is below
+//   reach = range(i, j) + skin (smallest range + (range(i, j) - smallest range) / 10).
+// Large pairs need no more room for displacements than small ones; the tenth is room for strain, which moves
+// them in proportion to their distance. With d_i the displacement of particle i relative to the affine
+// deformation since then, a pair that was left out is at least
+//   s reach - |d_i| - |d_j|
 // apart, s the smallest singular value of the deformation gradient of the strain since the build. The list
-// holds as long as that stays above `range` for the two largest displacements and the smallest range; it is
+// holds as long as that stays above `range` for the two largest displacements and every range; it is
 // rebuilt exactly when this can no longer be guaranteed. The same two particles may be listed under several
 // images (small boxes), never with themselves.
 //
@@ -51,6 +53,9 @@ class NeighbourList {
   // Rebuilds the list of an earlier moment: the reference positions and the box as they were at the build.
   void rebuild_from(VectorField reference, const ParticleState& particles, const ShearedBox& box_then,
                     int threads = 1);
+
+  // The distance below which pairs of this range are listed.
+  double reach(double range) const;
 
   // Whether the list still holds every interacting pair.
   bool holds(const ParticleState& particles, const ShearedBox& box) const;
