@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 
 #include "contract/provenance.h"
 #include "engine/benchmark/catalogue.h"
@@ -30,6 +31,9 @@ struct Spread {
 };
 
 Spread spread_of(std::vector<double> values) {
+  if (values.empty()) {
+    throw std::runtime_error("a list of neighbours was rebuilt in every round: nothing is known of one step");
+  }
   std::sort(values.begin(), values.end());
   return {values.front(), values[values.size() / 2], values.back()};
 }
@@ -39,6 +43,12 @@ double seconds(bool wall) {
   timespec now{};
   clock_gettime(wall ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+void advance(Simulation& simulation, std::uint64_t steps) {
+  if (const std::optional<Ending> ending = simulation.advance(steps)) {
+    throw std::runtime_error("a case broke off: " + ending->message);
+  }
 }
 
 // A system after the warm-up, and how long its lists held in the second half of it.
@@ -56,9 +66,9 @@ const Warm& warmed_up(const Contestant& contestant) {
     const auto half = static_cast<std::uint64_t>(0.5 * warm_up_strain / scene.physics.shear_rate /
                                                  simulation.schedule().timestep);
     simulation.start();
-    simulation.advance(half);
+    advance(simulation, half);
     const std::uint64_t builds = simulation.system().list.builds();
-    simulation.advance(half);
+    advance(simulation, half);
     const auto rebuilds = static_cast<double>(simulation.system().list.builds() - builds);
     known[key] = {simulation.system(), static_cast<double>(half) / std::max(1.0, rebuilds)};
   }
@@ -92,7 +102,7 @@ class Runner {
     const std::uint64_t steps = std::max<std::uint64_t>(10, particle_steps_per_round / count());
     const std::uint64_t builds = simulation_->system().list.builds();
     const double start = seconds(wall_);
-    simulation_->advance(steps);
+    advance(*simulation_, steps);
     const double taken = seconds(wall_) - start;
     if (simulation_->system().list.builds() != builds) {
       return std::nullopt;

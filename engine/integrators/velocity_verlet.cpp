@@ -68,7 +68,9 @@ Integrator::HalfSteps VelocityVerlet::compare_half_steps(const System& system, i
     VelocityVerlet integrator(ForceField(field_.physics(), copy.particles, timestep, 0, field_.threads()),
                               copy.particles, timestep);
     copy.step *= static_cast<std::uint64_t>(every);  // the strain follows from it
-    integrator.start(copy);
+    integrator.force_ = force_;
+    integrator.torque_ = torque_;
+    integrator.displacement_bound_ = displacement_bound_;
     double sum = 0;
     for (int step = 1; step <= every * steps; ++step) {
       const PairSums sums = integrator.advance_open(copy).sums;

@@ -61,6 +61,7 @@ class PairGroup {
     const auto near = listed & (squared <= Real{kind_.range * kind_.range});
     if (!any(near)) {
       forget_springs();
+      leave_nothing(out);
       return;
     }
     // Lanes that are not near compute with a distance at which every term is zero.
@@ -160,6 +161,18 @@ class PairGroup {
         row(out.crossing, 2 * c) = -force.row[k];
         row(out.crossing, 2 * c + 1) = torque_second.row[k];
       }
+    }
+  }
+
+  // The rows of crossing pairs are written at every evaluation: nobody clears them.
+  PECLET_ALWAYS_INLINE void leave_nothing(const PairKernelOutput& out) const {
+    if (run_.crossing == within_block) {
+      return;
+    }
+    for (int k = 0; k < count_; ++k) {
+      const std::size_t c = run_.crossing + (begin_ - run_.begin) + static_cast<std::uint32_t>(k);
+      row(out.crossing, 2 * c) = Row{};
+      row(out.crossing, 2 * c + 1) = Row{};
     }
   }
 

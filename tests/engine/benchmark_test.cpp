@@ -30,16 +30,9 @@ TEST(Tiling, LeavesEveryParticleTheForcesThatItHas) {
     torque.set(i, of_small.torque[i % 150]);
     EXPECT_EQ(large.particles.id[i], i);
   }
-  const auto expect_close = [](const VectorField& expected, const VectorField& found) {
-    double scale = 0, worst = 0;
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-      scale = std::max(scale, norm(expected[i]));
-      worst = std::max(worst, norm(expected[i] - found[i]));
-    }
-    EXPECT_LT(worst, 1e-9 * scale);  // places three cells away have less digits behind the point
-  };
-  expect_close(force, of_large.force);
-  expect_close(torque, of_large.torque);
+  constexpr double fewer_digits = 1e-9;  // places three cells away have less of them behind the point
+  expect_near(components(force), components(of_large.force), "force", fewer_digits);
+  expect_near(components(torque), components(of_large.torque), "torque", fewer_digits);
   EXPECT_EQ(27 * of_small.sums.contacts, of_large.sums.contacts);
 }
 

@@ -34,8 +34,8 @@ std::vector<double> components(const VectorField& field);
 std::vector<double> components(const PairSums& sums);  // of the stress of every term
 std::vector<double> components(const SpringField& springs);
 
-// Within `tolerance` of the largest expected component.
+// Within `bound` of the largest expected component.
 void expect_near(const std::vector<double>& expected, const std::vector<double>& found,
-                 const std::string& what);
+                 const std::string& what, double bound = tolerance);
 
 }  // namespace peclet::engine

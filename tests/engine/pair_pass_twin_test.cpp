@@ -94,7 +94,7 @@ TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
     return kinds[2U * all.size_class[i] + all.size_class[j]].range;
   };
   for (const SeenPair& seen : every_image(all.position, system.box.lengths(), system.box.tilt(), range)) {
-    const auto [i, j] = std::pair(seen.first, seen.second);
+    const std::uint32_t i = seen.first, j = seen.second;
     const PairKind& kind = kinds[2U * all.size_class[i] + all.size_class[j]];
     const ContactSprings before = held[{i, j, seen.image}];
     PairSpringsOf<double> springs = {before.tangential, before.rolling};
@@ -176,6 +176,34 @@ TEST(PairPass, DependsOnNoOrderOfTheParticlesInMemory) {
   expect_near(components(torque), components(b.torque), "torque");
   expect_near(components(a.sums), components(b.sums), "stress");
   EXPECT_EQ(a.sums.contacts, b.sums.contacts);
+}
+
+// What crosses between blocks waits in memory that is used again: pairs that have parted leave nothing there.
+TEST(PairPass, RemembersNoForceOfPairsThatHaveParted) {
+  const Physics physics =
+      physics_with({.lubrication = true, .contact = true, .friction = true, .repulsion = true});
+  System system = dense_suspension(physics, 8500, 14);
+  rebuild_neighbours(system);
+  ASSERT_GT(system.list.crossings(), 1000u);
+  for (const InstructionSet set : {InstructionSet::baseline, chosen_instruction_set()}) {
+    ForceField used(physics, system.particles, timestep, seed, 1, set);
+    System before = system;
+    VectorField force(8500), torque(8500);
+    used.evaluate(before, force, torque);
+    // Drawn out along x, some pairs leave their range and some do not; twice as long, all do.
+    for (const double factor : {1.02, 2.0}) {
+      System drawn = system;
+      for (std::size_t i = 0; i < 8500; ++i) {
+        const Vector3 x = drawn.particles.position[i];
+        drawn.particles.position.set(
+            i, {factor * x.x, factor == 2 ? 2 * x.y : x.y, factor == 2 ? 2 * x.z : x.z});
+      }
+      const Evaluation fresh = evaluated(physics, drawn, 1, set);
+      used.evaluate(drawn, force, torque);
+      EXPECT_EQ(components(fresh.force), components(force)) << factor;
+      EXPECT_EQ(components(fresh.torque), components(torque)) << factor;
+    }
+  }
 }
 
 // Without noise, which knows particles by their number.

@@ -111,6 +111,32 @@ TEST_F(ResumedRun, HasTheSameBitsOnAnyNumberOfThreads) {
   EXPECT_TRUE(bytes_of(*three) == bytes_of(*one));
 }
 
+// Pairs across blocks of memory come and go, and lists are rebuilt, before and after the cut.
+TEST(ResumedLargeRun, EndsAsTheUncutOne) {
+  const Scene scene = read_scene(small_scene({{"particles", {{"count", 5000}}}}), "scene.json");
+  const auto made = [&](int threads) {
+    return Simulation(scene, make_schedule(scene, "scene.json"), seed, threads, "scene.json");
+  };
+  const auto bytes_of = [](const Simulation& simulation) {
+    ArchiveWriter archive;
+    simulation.save(archive);
+    return archive.bytes();
+  };
+  Simulation uncut = made(1);
+  uncut.start();
+  uncut.advance(97);
+  EXPECT_GT(uncut.system().list.crossings(), 500u);
+  const std::string checkpoint = bytes_of(uncut);
+  const std::uint64_t builds = uncut.system().list.builds();
+  uncut.advance(60);
+  EXPECT_GT(uncut.system().list.builds(), builds);
+  Simulation resumed = made(2);
+  ArchiveReader reader(checkpoint);
+  resumed.load(reader);
+  resumed.advance(60);
+  EXPECT_TRUE(bytes_of(resumed) == bytes_of(uncut));
+}
+
 TEST_F(ResumedRun, DoesNotDependOnHowManyStepsAreAskedForAtOnce) {
   const auto run = started();
   while (!run->advance(7)) {
