@@ -122,8 +122,10 @@ double VelocityVerlet::move(System& system) {
     }
 #pragma omp critical(move)
     {
+      acquire_work();
       largest = std::max(largest, speeds.largest);
       all_bounded = all_bounded && std::isfinite(speeds.sum);
+      release_work();
     }
   });
   open_ = false;
