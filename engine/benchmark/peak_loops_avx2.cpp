@@ -3,12 +3,6 @@
 
 namespace peclet::engine {
 
-namespace {
-struct Avx2 {
-  static constexpr int width = 4;
-};
-}  // namespace
-
-constinit const PeakLoops avx2_peak_loops = peak_loops_of<Lanes<Avx2>>();
+constinit const PeakLoops avx2_peak_loops = peak_loops_of<Lanes<CompiledSet>>();
 
 }  // namespace peclet::engine

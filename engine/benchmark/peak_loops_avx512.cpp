@@ -3,12 +3,6 @@
 
 namespace peclet::engine {
 
-namespace {
-struct Avx512 {
-  static constexpr int width = 8;
-};
-}  // namespace
-
-constinit const PeakLoops avx512_peak_loops = peak_loops_of<Lanes<Avx512>>();
+constinit const PeakLoops avx512_peak_loops = peak_loops_of<Lanes<CompiledSet>>();
 
 }  // namespace peclet::engine

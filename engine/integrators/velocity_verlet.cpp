@@ -16,11 +16,10 @@ VelocityVerlet::VelocityVerlet(ForceField field, const ParticleState& particles,
       timestep_(timestep),
       force_(particles.count(), field_.threads()),
       torque_(particles.count(), field_.threads()) {
-  kicks_.resize(2 * distinct_radii(particles.radius).size());
+  kicks_.resize(distinct_radii(particles.radius).size());
   for (std::size_t i = 0; i < particles.count(); ++i) {
-    double* kick = &kicks_[2 * std::size_t{particles.size_class[i]}];
-    kick[0] = 0.5 * timestep / particles.mass[i];
-    kick[1] = 0.5 * timestep / particles.inertia[i];
+    kicks_[particles.size_class[i]] = {0.5 * timestep / particles.mass[i],
+                                       0.5 * timestep / particles.inertia[i]};
   }
 }
 
@@ -84,7 +83,7 @@ Integrator::HalfSteps VelocityVerlet::compare_half_steps(const System& system, i
 }
 
 OneBodyInput VelocityVerlet::kick_input(System& system) {
-  return one_body_input(system.particles, force_, torque_, kicks_.data(), field_.physics().shear_rate);
+  return one_body_input(system.particles, force_, torque_, kicks_, field_.physics().shear_rate);
 }
 
 void VelocityVerlet::complete(System& system) {

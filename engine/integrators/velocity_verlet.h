@@ -33,7 +33,7 @@ class VelocityVerlet final : public Integrator {
 
   ForceField field_;
   double timestep_;
-  std::vector<double> kicks_;  // half a step over mass and moment of inertia of each size class, two by two
+  std::vector<OneBodyFactors> kicks_;  // half a step over mass and moment of inertia of each size class
   VectorField force_, torque_;
   bool open_ = false;  // the second kick of the last step is due, and so are its incoming forces
   // An upper bound of the displacements since the list was built, raised by every step's largest one and

@@ -5,15 +5,16 @@
 namespace peclet::engine {
 
 OneBodyInput one_body_input(ParticleState& particles, VectorField& force, VectorField& torque,
-                            const double* factors, double shear_rate) {
+                            const std::vector<OneBodyFactors>& factors, double shear_rate) {
   return {.position = particles.position.data(),
           .velocity = particles.velocity.data(),
           .spin = particles.angular_velocity.data(),
           .force = force.data(),
           .torque = torque.data(),
           .size_class = particles.size_class.data(),
-          .factors = factors,
-          .shear_rate = shear_rate};
+          .factors = factors.data(),
+          .shear_rate = shear_rate,
+          .streaming_spin = streaming_spin(shear_rate).z};
 }
 
 ForceField::ForceField(const Physics& physics, const ParticleState& particles, double timestep,
@@ -31,10 +32,9 @@ ForceField::ForceField(const Physics& physics, const ParticleState& particles, d
   for (const double radius : distinct_radii(particles.radius)) {
     const double zeta = translational_drag(physics.viscosity, radius);
     const double zeta_r = rotational_drag(physics.viscosity, radius);
-    for (const double coefficient : {zeta, zeta_r}) {
-      drag_.push_back(coefficient);
-      drag_noise_.push_back(drag_noise_amplitude(parameters_.noise_amplitude, coefficient));
-    }
+    drag_.push_back({zeta, zeta_r});
+    drag_noise_.push_back({drag_noise_amplitude(parameters_.noise_amplitude, zeta),
+                           drag_noise_amplitude(parameters_.noise_amplitude, zeta_r)});
   }
 }
 
@@ -56,8 +56,7 @@ PairSums ForceField::evaluate_blocks(System& system, VectorField& force, VectorF
       .noise = pair_noise_.key(system.step),
       .threads = threads_,
   };
-  const OneBodyInput one_body =
-      one_body_input(system.particles, force, torque, drag_.data(), physics_.shear_rate);
+  const OneBodyInput one_body = one_body_input(system.particles, force, torque, drag_, physics_.shear_rate);
   return pair_pass_.add_pairs(input, system.springs, force, torque, [&](std::size_t begin, std::size_t end) {
     one_body_.set_drag(one_body, begin, end);
     if (physics_.thermal_energy > 0) {
@@ -79,9 +78,9 @@ void ForceField::add_drag_noise(const System& system, std::size_t begin, std::si
     fill_normals_(key, identity, nullptr, normals);
     for (std::size_t k = 0; k < count; ++k) {
       const auto normal = [&](int c) { return static_cast<double>(normals.value[c][k]); };
-      const double* amplitude = &drag_noise_[2 * std::size_t{system.particles.size_class[first + k]}];
-      force.add(first + k, amplitude[0] * Vector3{normal(0), normal(1), normal(2)});
-      torque.add(first + k, amplitude[1] * Vector3{normal(3), normal(4), normal(5)});
+      const OneBodyFactors& amplitude = drag_noise_[system.particles.size_class[first + k]];
+      force.add(first + k, amplitude.translational * Vector3{normal(0), normal(1), normal(2)});
+      torque.add(first + k, amplitude.rotational * Vector3{normal(3), normal(4), normal(5)});
     }
   }
 }

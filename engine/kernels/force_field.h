@@ -6,8 +6,9 @@
 
 namespace peclet::engine {
 
+// What the loops over particles take: the rows of all of them, and the flow.
 OneBodyInput one_body_input(ParticleState& particles, VectorField& force, VectorField& torque,
-                            const double* factors, double shear_rate);
+                            const std::vector<OneBodyFactors>& factors, double shear_rate);
 
 class ForceField {
  public:
@@ -45,8 +46,7 @@ class ForceField {
   KeyedRandom pair_noise_, one_body_noise_;
   FillNormals fill_normals_;
   OneBodyKernels one_body_;
-  // Coefficients of the drag of each size class, two by two, and the amplitudes of its noise.
-  std::vector<double> drag_, drag_noise_;
+  std::vector<OneBodyFactors> drag_, drag_noise_;  // coefficients of each size class, amplitudes of the noise
   int threads_;
 };
 

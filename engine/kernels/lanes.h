@@ -13,6 +13,17 @@
 
 namespace peclet::engine {
 
+namespace {
+// The set that this file is compiled for. Its name is this file's alone, and so is all code made of it.
+struct CompiledSet {
+#ifdef __AVX512F__
+  static constexpr int width = 8;
+#else
+  static constexpr int width = 4;
+#endif
+};
+}  // namespace
+
 template <class Set>
 class Mask;
 

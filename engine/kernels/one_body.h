@@ -16,9 +16,9 @@ inline Row& row(double* rows, std::size_t i) { return reinterpret_cast<Row*>(row
 
 void kick(const OneBodyInput& in, std::size_t begin, std::size_t end) {
   for (std::size_t i = begin; i < end; ++i) {
-    const double* factor = in.factors + 2 * std::size_t{in.size_class[i]};
-    row(in.velocity, i) += factor[0] * row(in.force, i);
-    row(in.spin, i) += factor[1] * row(in.torque, i);
+    const OneBodyFactors& factor = in.factors[in.size_class[i]];
+    row(in.velocity, i) += factor.translational * row(in.force, i);
+    row(in.spin, i) += factor.rotational * row(in.torque, i);
   }
 }
 
@@ -27,8 +27,8 @@ Speeds kick_and_drift(const OneBodyInput& in, std::size_t begin, std::size_t end
   Speeds speeds;
   Row sum{};
   for (std::size_t i = begin; i < end; ++i) {
-    const double* factor = in.factors + 2 * std::size_t{in.size_class[i]};
-    const Row change = factor[0] * row(in.force, i), turn = factor[1] * row(in.torque, i);
+    const OneBodyFactors& factor = in.factors[in.size_class[i]];
+    const Row change = factor.translational * row(in.force, i), turn = factor.rotational * row(in.torque, i);
     Row u = row(in.velocity, i) + change, w = row(in.spin, i) + turn;
     if constexpr (twice) {
       u += change;
@@ -55,12 +55,12 @@ Speeds kick_and_drift(const OneBodyInput& in, std::size_t begin, std::size_t end
 }
 
 void set_drag(const OneBodyInput& in, std::size_t begin, std::size_t end) {
-  const Row spin = {0, 0, -0.5 * in.shear_rate, 0};
+  const Row spin = {0, 0, in.streaming_spin, 0};
   for (std::size_t i = begin; i < end; ++i) {
-    const double* factor = in.factors + 2 * std::size_t{in.size_class[i]};
+    const OneBodyFactors& factor = in.factors[in.size_class[i]];
     const Row streaming = {in.shear_rate * row(in.position, i)[1], 0, 0, 0};
-    row(in.force, i) = factor[0] * (streaming - row(in.velocity, i));
-    row(in.torque, i) = factor[1] * (spin - row(in.spin, i));
+    row(in.force, i) = factor.translational * (streaming - row(in.velocity, i));
+    row(in.torque, i) = factor.rotational * (spin - row(in.spin, i));
   }
 }
 

@@ -8,14 +8,17 @@
 
 namespace peclet::engine {
 
-// Rows are those of a VectorField. Of each size class `factors` has two numbers, for translation and
-// rotation.
+struct OneBodyFactors {
+  double translational, rotational;
+};
+
+// Rows are those of a VectorField; factors are those of each size class.
 struct OneBodyInput {
   double *position, *velocity, *spin;
   double *force, *torque;
   const std::uint16_t* size_class;
-  const double* factors;
-  double shear_rate;
+  const OneBodyFactors* factors;
+  double shear_rate, streaming_spin;  // of the flow; the spin along z
 };
 
 // Squared speeds relative to the streaming flow.

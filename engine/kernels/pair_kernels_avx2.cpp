@@ -4,12 +4,6 @@
 
 namespace peclet::engine {
 
-namespace {
-struct Avx2 {
-  static constexpr int width = 4;
-};
-}  // namespace
-
-constinit const PairKernelTable avx2_pair_kernels = pair_kernels_of<Lanes<Avx2>>();
+constinit const PairKernelTable avx2_pair_kernels = pair_kernels_of<Lanes<CompiledSet>>();
 
 }  // namespace peclet::engine

@@ -4,12 +4,6 @@
 
 namespace peclet::engine {
 
-namespace {
-struct Avx512 {
-  static constexpr int width = 8;
-};
-}  // namespace
-
-constinit const PairKernelTable avx512_pair_kernels = pair_kernels_of<Lanes<Avx512>>();
+constinit const PairKernelTable avx512_pair_kernels = pair_kernels_of<Lanes<CompiledSet>>();
 
 }  // namespace peclet::engine

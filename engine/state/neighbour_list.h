@@ -11,7 +11,7 @@
 // rebuilt exactly when this can no longer be guaranteed. The same two particles may be listed under several
 // images (small boxes), never with themselves.
 //
-// Particles next to each other in memory form blocks of a fixed size. The pairs of a block (those whose first
+// Particles next to each other in memory form blocks of equal size. The pairs of a block (those whose first
 // particle lies in it) are consecutive, and among them those of equal kind: a run. A pair that crosses into
 // another block is in a run of its own kind of crossing pairs; they are numbered, and `incoming` says which
 // of them end in a block. The list is a function of the positions at the build alone.
