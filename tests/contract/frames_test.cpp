@@ -58,7 +58,7 @@ TEST(Frames, WhatIsNoFrameIsRefused) {
   };
   const std::string faults[] = {"Segmentation fault\n",
                                 "H",
-                                "PCF2\0\0\0\0",
+                                std::string("PCF2\0\0\0\0", 8),
                                 std::string("PCF1\x01\0\0\x04", 8),  // one byte more than 64 MiB
                                 framed("{\"type\":"),
                                 framed("[1]"),

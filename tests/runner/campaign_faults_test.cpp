@@ -78,7 +78,7 @@ const Fault faults[] = {
 };
 
 std::filesystem::path write(const TemporaryFolder& folder, const std::string& text) {
-  const std::filesystem::path path = folder.path() / "campaign.json";
+  std::filesystem::path path = folder.path() / "campaign.json";
   std::ofstream(path) << text;
   return path;
 }

@@ -14,7 +14,7 @@ namespace {
 
 const double viscosities[] = {9.9, 10, 10.1, 10};
 
-void fill(StoredCampaign& campaign, int point, std::vector<int> order) {
+void fill(StoredCampaign& campaign, int point, const std::vector<int>& order) {
   for (const int seed : order) campaign.complete(point, seed, viscosities[seed]);
 }
 
