@@ -18,7 +18,7 @@ OneBodyInput one_body_input(ParticleState& particles, VectorField& force, Vector
 }
 
 ForceField::ForceField(const Physics& physics, const ParticleState& particles, double timestep,
-                       std::uint64_t seed, int threads, InstructionSet set)
+                       std::uint64_t seed, int threads, InstructionSet set, double approach_time)
     : physics_(physics),
       terms_(required_terms(physics)),
       kinds_(make_pair_kinds(physics, distinct_radii(particles.radius))),
@@ -28,7 +28,9 @@ ForceField::ForceField(const Physics& physics, const ParticleState& particles, d
       one_body_noise_(seed, Purpose::one_body_noise),
       fill_normals_(engine::fill_normals(set)),
       one_body_(one_body_kernels(set)),
+      link_(link_kernels(set)),
       threads_(threads) {
+  parameters_.approach_time = approach_time;
   for (const double radius : distinct_radii(particles.radius)) {
     const double zeta = translational_drag(physics.viscosity, radius);
     const double zeta_r = rotational_drag(physics.viscosity, radius);
@@ -46,8 +48,8 @@ PairSums ForceField::evaluate(System& system, VectorField& force, VectorField& t
   return sums;
 }
 
-PairSums ForceField::evaluate_blocks(System& system, VectorField& force, VectorField& torque) {
-  const PairPassInput input = {
+PairPassInput ForceField::pair_input(const System& system) const {
+  return {
       .particles = system.particles,
       .list = system.list,
       .box = system.box,
@@ -56,6 +58,19 @@ PairSums ForceField::evaluate_blocks(System& system, VectorField& force, VectorF
       .noise = pair_noise_.key(system.step),
       .threads = threads_,
   };
+}
+
+std::size_t ForceField::assemble_links(System& system, const LinkWeights& weights,
+                                       std::vector<LinkGroup>& groups) {
+  const std::size_t pairs = system.list.pairs().size();
+  groups.resize(std::max(groups.size(), pairs / links_per_group + 1));
+  const std::vector<PairRun>& runs = system.list.runs();
+  return link_.assemble(pair_pass_.kernel_input(pair_input(system), system.springs), runs.data(), runs.size(),
+                        terms_, weights, groups.data());
+}
+
+PairSums ForceField::evaluate_blocks(System& system, VectorField& force, VectorField& torque) {
+  const PairPassInput input = pair_input(system);
   const OneBodyInput one_body = one_body_input(system.particles, force, torque, drag_, physics_.shear_rate);
   return pair_pass_.add_pairs(input, system.springs, force, torque, [&](std::size_t begin, std::size_t end) {
     one_body_.set_drag(one_body, begin, end);

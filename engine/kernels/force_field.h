@@ -12,9 +12,10 @@ OneBodyInput one_body_input(ParticleState& particles, VectorField& force, Vector
 
 class ForceField {
  public:
-  // `timestep` enters the amplitude of the noise, sqrt(2 kT / dt), and the advance of contact springs.
+  // `timestep` enters the amplitude of the noise, sqrt(2 kT / dt), and the advance of contact springs;
+  // `approach_time` see PairParameters.
   ForceField(const Physics& physics, const ParticleState& particles, double timestep, std::uint64_t seed,
-             int threads, InstructionSet set = chosen_instruction_set());
+             int threads, InstructionSet set = chosen_instruction_set(), double approach_time = 0);
 
   // Overwrites force and torque with those at the system's positions and velocities, with the noise of
   // system.step; contact springs advance by one step of the present motion.
@@ -28,13 +29,19 @@ class ForceField {
     pair_pass_.add_incoming(system.list, block, force, torque);
   }
 
+  // The links of all pairs within their range. `groups` is made as long as it has to be and keeps its
+  // storage; returns how many are in use.
+  std::size_t assemble_links(System& system, const LinkWeights& weights, std::vector<LinkGroup>& groups);
+
   const Terms& terms() const { return terms_; }
   const std::vector<PairKind>& kinds() const { return kinds_; }
   const Physics& physics() const { return physics_; }
   int threads() const { return threads_; }
   const OneBodyKernels& one_body() const { return one_body_; }
+  const LinkKernels& link() const { return link_; }
 
  private:
+  PairPassInput pair_input(const System& system) const;
   void add_drag_noise(const System& system, std::size_t begin, std::size_t end, VectorField& force,
                       VectorField& torque) const;
 
@@ -46,6 +53,7 @@ class ForceField {
   KeyedRandom pair_noise_, one_body_noise_;
   FillNormals fill_normals_;
   OneBodyKernels one_body_;
+  LinkKernels link_;
   std::vector<OneBodyFactors> drag_, drag_noise_;  // coefficients of each size class, amplitudes of the noise
   int threads_;
 };

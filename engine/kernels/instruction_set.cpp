@@ -93,6 +93,15 @@ FillNormals fill_normals(InstructionSet set) {
   return &baseline::fill_normals;
 }
 
+const LinkKernels& link_kernels([[maybe_unused]] InstructionSet set) {
+#ifdef __x86_64__
+  if (set != InstructionSet::baseline) {
+    return set == InstructionSet::avx2 ? avx2_link_kernels : avx512_link_kernels;
+  }
+#endif
+  return baseline_link_kernels;
+}
+
 const OneBodyKernels& one_body_kernels([[maybe_unused]] InstructionSet set) {
 #ifdef __x86_64__
   if (set != InstructionSet::baseline) {

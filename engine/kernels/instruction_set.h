@@ -1,6 +1,7 @@
 // Which of the compiled kernels runs.
 #pragma once
 
+#include "engine/kernels/link_kernels.h"
 #include "engine/kernels/one_body_kernels.h"
 #include "engine/kernels/pair_kernels.h"
 
@@ -21,5 +22,6 @@ InstructionSet chosen_instruction_set();
 PairKernel pair_kernel(InstructionSet set, const Terms& terms);  // `terms` must be valid
 FillNormals fill_normals(InstructionSet set);
 const OneBodyKernels& one_body_kernels(InstructionSet set);
+const LinkKernels& link_kernels(InstructionSet set);
 
 }  // namespace peclet::engine

@@ -88,6 +88,11 @@ PECLET_ALWAYS_INLINE Mask<Set> listed_lanes(int count, const Lanes<Set>& /*numbe
 }
 
 template <class Set>
+PECLET_ALWAYS_INLINE double lane(const Lanes<Set>& x, int lane) {
+  return x.v[lane];
+}
+
+template <class Set>
 PECLET_ALWAYS_INLINE void set_lane(Lanes<Set>& x, int lane, double value) {
   x.v[lane] = value;
 }

@@ -124,13 +124,12 @@ class PairGroup {
       add(StressTerm::repulsion, loads.repulsion);
     }
     if constexpr (terms.contact) {
-      const Real overlap = shape.overlap();
-      const unsigned touching = bits(overlap > Real{});
+      const unsigned touching = bits(loads.overlap > Real{});
       if (touching == 0) {
         return;
       }
       sums.contacts += static_cast<std::uint64_t>(__builtin_popcount(touching));
-      sums.largest_overlap = larger(sums.largest_overlap, (1 / kind_.smaller_radius) * overlap);
+      sums.largest_overlap = larger(sums.largest_overlap, (1 / kind_.smaller_radius) * loads.overlap);
       add(StressTerm::contact_normal, loads.contact_normal);
       if constexpr (terms.damping) {
         add(StressTerm::contact_damping, loads.contact_damping);

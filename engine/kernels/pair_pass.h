@@ -55,13 +55,14 @@ class PairPass {
   void add_incoming(const NeighbourList& list, const ParticleBlock& block, VectorField& force,
                     VectorField& torque) const;
 
+  // What the loops over pairs take; valid until the next call, and while the system stands.
+  PairKernelInput kernel_input(const PairPassInput& input, SpringField& springs);
+
   // Sets force and torque to the sums over pairs.
   PairSums evaluate(const PairPassInput& input, SpringField& springs, VectorField& force,
                     VectorField& torque);
 
  private:
-  PairKernelInput kernel_input(const PairPassInput& input, SpringField& springs);
-
   PairKernel kernel_;
   FillNormals fill_normals_;
   SpringKinds spring_kinds_;

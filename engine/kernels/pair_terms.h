@@ -20,6 +20,9 @@ struct PairParameters {
   LubricationParameters lubrication;
   double repulsion_strength = 0;
   double spring_timestep = 0;  // by which the springs advance; 0: the springs are taken as they are
+  // Forces that depend on the distance are those at the distance that the present motion leads to in this
+  // time; their direction stays.
+  double approach_time = 0;
   double noise_amplitude = 0;  // sqrt(2 kT / dt)
 };
 
@@ -38,6 +41,7 @@ template <class Real>
 struct TermLoadsOf {
   PairLoadOf<Real> lubrication, noise, friction, rolling;
   Vector3Of<Real> contact_normal, contact_damping, repulsion;
+  Real overlap{};  // that contact forces belong to
 };
 
 template <Terms terms, class Real>
@@ -77,6 +81,10 @@ PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& paramete
                                                   const PairMotionOf<Real>& motion,
                                                   PairSpringsOf<Real>& springs, Normals&& normals) {
   TermLoadsOf<Real> loads;
+  PairGeometryOf<Real> ahead = pair;
+  if constexpr (terms.contact || terms.repulsion) {
+    ahead.distance += parameters.approach_time * dot(motion.velocity, pair.normal);
+  }
   if constexpr (terms.lubrication) {
     if (any(pair.distance <= kind.lubrication_range)) {
       const ResistanceModesOf<Real> modes =
@@ -92,12 +100,13 @@ PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& paramete
     }
   }
   if constexpr (terms.repulsion) {
-    loads.repulsion = where(pair.distance < kind.repulsion_range,
-                            repulsion_force(parameters.repulsion_strength, kind.repulsion_length, pair));
+    loads.repulsion = where(ahead.distance < kind.repulsion_range,
+                            repulsion_force(parameters.repulsion_strength, kind.repulsion_length, ahead));
   }
   if constexpr (terms.contact) {
-    if (any(pair.overlap() > 0.0)) {
-      add_contact_terms<terms>(parameters, kind, pair, motion, springs, loads);
+    loads.overlap = ahead.overlap();
+    if (any(ahead.overlap() > 0.0)) {
+      add_contact_terms<terms>(parameters, kind, ahead, motion, springs, loads);
     } else if constexpr (terms.friction) {
       springs = {};
     }

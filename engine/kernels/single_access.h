@@ -25,6 +25,7 @@ inline unsigned bits(bool condition) { return condition ? 1U : 0U; }
 inline double sum_of_lanes(double x) { return x; }
 inline double largest_lane(double x) { return x; }
 inline bool listed_lanes(int /*count*/, double /*number*/) { return true; }
+inline double lane(double x, int /*lane*/) { return x; }
 inline void set_lane(double& x, int /*lane*/, double value) { x = value; }
 inline double load_lanes(const double* values, int /*count*/, double /*number*/) { return *values; }
 inline void store_lanes(double* values, int /*count*/, double x) { *values = x; }

@@ -1,0 +1,17 @@
+#include "engine/kernels/lane_access.h"
+#include "engine/kernels/lanes_math.h"
+#include "engine/kernels/link_assembly.h"
+#include "engine/kernels/link_solver.h"
+
+namespace peclet::engine {
+
+constinit const LinkKernels avx2_link_kernels = {&assemble_links<Lanes<CompiledSet>>,
+                                                 &invert_blocks,
+                                                 &multiply,
+                                                 &set_residual,
+                                                 &squared_motion,
+                                                 &add_motion,
+                                                 &squared_norm,
+                                                 &solve};
+
+}  // namespace peclet::engine

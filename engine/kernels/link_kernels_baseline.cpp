@@ -1,0 +1,10 @@
+#include "engine/kernels/link_assembly.h"
+#include "engine/kernels/link_solver.h"
+
+namespace peclet::engine {
+
+constinit const LinkKernels baseline_link_kernels = {&assemble_links<double>, &invert_blocks,  &multiply,
+                                                     &set_residual,           &squared_motion, &add_motion,
+                                                     &squared_norm,           &solve};
+
+}  // namespace peclet::engine
