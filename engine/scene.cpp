@@ -201,6 +201,13 @@ Scene read_scene(const Json& document, const std::string& file) {
   scene.physics = reading.physics();
   reading.set_flow(scene.particles, scene.physics);
 
+  const Json& integrator = filled["integrator"];
+  if (integrator["method"] == "implicit") scene.method = Method::implicit_steps;
+  scene.solver_tolerance = integrator.value("tolerance", scene.solver_tolerance);
+  if (integrator.contains("tolerance") && scene.method != Method::implicit_steps) {
+    throw InputError(file, "/integrator/tolerance", shortened(integrator["tolerance"]),
+                     "must be left out unless /integrator/method is \"implicit\"");
+  }
   const Json& timestep = filled["integrator"]["timestep"];
   if (timestep.is_number()) scene.timestep = timestep.get<double>();
   scene.equilibration = reading.duration("/duration/equilibration", scene.physics);

@@ -58,7 +58,7 @@ struct Guard {
 };
 
 struct Warning {
-  std::string code;  // "inertia-shear", "inertia-thermal", "overlap", "timestep"
+  std::string code;  // "inertia-shear", "inertia-thermal", "overlap", "timestep", "solver"
   std::string message;
 };
 
@@ -71,11 +71,16 @@ struct DerivedGroups {
   std::optional<double> contact_time, inertial_time, brownian_time, shear_time;
 };
 
+// How the equations of motion are solved.
+enum class Method { explicit_steps, implicit_steps };
+
 struct Scene {
   Particles particles;
   double volume_fraction = 0;
   Physics physics;
+  Method method = Method::explicit_steps;
   std::optional<double> timestep;  // absent: "auto"
+  double solver_tolerance = 1e-3;  // of implicit steps
   Duration equilibration, production;
   Guard guard;
   Json document;  // as given, defaults filled

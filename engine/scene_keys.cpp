@@ -165,13 +165,24 @@ Keys duration_keys(const std::string& pointer, const std::string& meaning, bool 
 Keys run_keys() {
   Keys keys = {
       with_default(block("/integrator", "How the equations of motion are solved."), Json::object()),
-      with_default(choice("/integrator/method", "explicit: velocity Verlet.", {"explicit"}), "explicit"),
+      with_default(choice("/integrator/method",
+                          "explicit: velocity Verlet; implicit: steps that solve for the velocities.",
+                          {"explicit", "implicit"}),
+                   "explicit"),
       {.pointer = "/integrator/timestep",
        .kind = KeyKind::number_or_auto,
-       .meaning = "Time step; auto: half of the largest stable one.",
+       .meaning = "Time step; auto: half of the largest stable explicit one, or the implicit one whose error "
+                  "has been measured.",
        .unit = "time",
        .default_value = "auto",
        .minimum = 0,
+       .above_minimum = true},
+      {.pointer = "/integrator/tolerance",
+       .kind = KeyKind::number,
+       .meaning = "Residual of the equations of an implicit step, relative to the motion, in the energy "
+                  "norm; 0.001 unless given.",
+       .minimum = 0,
+       .maximum = 1e-3,
        .above_minimum = true},
       block("/duration", "How long a realisation runs.", required),
   };

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "contract/input_error.h"
+#include "engine/integrators/implicit.h"
 #include "engine/integrators/stability.h"
 #include "engine/integrators/velocity_verlet.h"
 #include "engine/random/keyed_random.h"
@@ -16,18 +17,12 @@
 namespace peclet::engine {
 namespace {
 
-// Between samples of what is not accumulated at every step: seldom enough to cost less than a hundredth of a
-// run.
-constexpr std::uint64_t sampling_interval = 50;
-constexpr std::uint64_t energy_sampling_interval = 500;
-constexpr std::uint64_t stability_check_interval = 5000;
-// Steps and half steps are compared over some twenty times of the fastest modes, a few times in a run.
-constexpr int compared_steps = 20;
-constexpr std::uint64_t comparisons = 8, least_steps_between_comparisons = 10000;
+// Steps and half steps are compared a few times in a run.
+constexpr std::uint64_t comparisons = 8;
 
 // Pairs are listed that much beyond their range, as a fraction of the smallest one. A small skin keeps the
-// list close to the pairs that act.
-constexpr double skin = 0.03;
+// list close to the pairs that act; large steps would use it up at once.
+constexpr double skin_of_explicit_steps = 0.03, skin_of_implicit_steps = 0.1;
 
 // Thousands of years of computing; step counters hold far more.
 constexpr double most_steps = 1e15;
@@ -128,11 +123,18 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
   smallest_radius_ = sizes.front();
   system_.particles = make_particles(radius, scene.particles.density);
   system_.box = ShearedBox({edge, edge, edge}, physics.shear_rate);
+  const double skin =
+      scene.method == Method::implicit_steps ? skin_of_implicit_steps : skin_of_explicit_steps;
   system_.list = NeighbourList(range_table(kinds_, sizes.size()), skin);
   system_.springs = SpringField(spring_kinds(required_terms(physics)), 0);
-  integrator_ = std::make_unique<VelocityVerlet>(
-      ForceField(physics, system_.particles, schedule.timestep, seed, threads), system_.particles,
-      schedule.timestep);
+  if (scene.method == Method::implicit_steps) {
+    integrator_ = std::make_unique<Implicit>(physics, system_.particles, schedule.timestep,
+                                             scene.solver_tolerance, seed, threads);
+  } else {
+    integrator_ = std::make_unique<VelocityVerlet>(
+        ForceField(physics, system_.particles, schedule.timestep, seed, threads), system_.particles,
+        schedule.timestep);
+  }
 }
 
 void Simulation::start() {
@@ -153,9 +155,10 @@ void Simulation::start(const System& placed) {
 }
 
 std::optional<Ending> Simulation::advance(std::uint64_t steps) {
+  const Integrator::Intervals intervals = integrator_->intervals();
   const std::uint64_t last = std::min(system_.step + steps, schedule_.total());
   while (system_.step < last) {
-    if (system_.step % stability_check_interval == 0) {
+    if (system_.step % intervals.stability == 0) {
       integrator_->complete(system_);
       if (std::optional<Ending> ending = check_step()) {
         return ending;
@@ -214,24 +217,31 @@ std::optional<Ending> Simulation::verdict(const StepReport& report) const {
 
 void Simulation::observe(const StepReport& report) {
   const std::uint64_t index = system_.step - schedule_.equilibration - 1;
+  const Integrator::Intervals intervals = integrator_->intervals();
   production_.add_step(index, report.sums);
   largest_overlap_ = std::max(largest_overlap_, report.sums.largest_overlap);
+  step_errors_.solver_iterations += static_cast<std::uint64_t>(report.solver_iterations);
+  step_errors_.sum_of_solver_residuals += report.solver_residual;
+  step_errors_.largest_solver_residual =
+      std::max(step_errors_.largest_solver_residual, report.solver_residual);
   // A short window is sampled more often so that each block has its samples.
   const std::uint64_t longest_interval = schedule_.production / count_of_blocks;
-  if (index % std::min(energy_sampling_interval, longest_interval) == 0) {
+  if (index % std::min(intervals.energy, longest_interval) == 0) {
     integrator_->complete(system_);
-    step_errors_.spurious_energy += integrator_->spurious_energy(system_);
-    ++step_errors_.samples;
+    if (const std::optional<double> energy = integrator_->spurious_energy(system_)) {
+      step_errors_.spurious_energy += *energy;
+      ++step_errors_.samples;
+    }
   }
-  const std::uint64_t between = std::max(schedule_.production / comparisons, least_steps_between_comparisons);
+  const std::uint64_t between = std::max(schedule_.production / comparisons, intervals.comparison);
   const bool smooth = scene_.physics.thermal_energy == 0 && scene_.physics.shear_rate > 0;
   if (smooth && (index + 1) % between == 0) {
     integrator_->complete(system_);
-    const Integrator::HalfSteps sample = integrator_->compare_half_steps(system_, compared_steps);
+    const Integrator::HalfSteps sample = integrator_->compare_half_steps(system_, intervals.compared_steps);
     step_errors_.half_steps.whole += sample.whole;
     step_errors_.half_steps.halved += sample.halved;
   }
-  if (index % std::min(sampling_interval, longest_interval) == 0) {
+  if (index % std::min(intervals.sampling, longest_interval) == 0) {
     integrator_->complete(system_);
     production_.add_sample(index, structural_brownian_stress(system_, kinds_, scene_.physics.thermal_energy),
                            kinetic_temperatures(system_));

@@ -39,6 +39,9 @@ struct StepErrors {
   double spurious_energy = 0;          // summed over samples in the production window
   std::uint64_t samples = 0;
   Integrator::HalfSteps half_steps;  // summed over samples in the production window, without noise
+  // Of all steps of the production window.
+  std::uint64_t solver_iterations = 0;
+  double sum_of_solver_residuals = 0, largest_solver_residual = 0;
 };
 
 class Simulation {

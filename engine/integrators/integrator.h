@@ -1,6 +1,8 @@
 // One step in time, whatever the method.
 #pragma once
 
+#include <optional>
+
 #include "engine/kernels/pair_pass.h"
 #include "engine/state/system.h"
 
@@ -11,6 +13,8 @@ struct StepReport {
   PairSums sums;  // at the configuration whose forces move the particles
   double largest_displacement =
       0;  // of a particle relative to the streaming flow, in this step; NaN if one is not finite
+  int solver_iterations = 0;   // of a method that solves for the velocities
+  double solver_residual = 0;  // what its equations are left with, relative to the motion
 };
 
 // Owns the forces between steps; the system belongs to the caller. After start() or load(), each advance()
@@ -20,6 +24,14 @@ class Integrator {
   virtual ~Integrator() = default;
 
   virtual double timestep() const = 0;
+
+  // Steps between looks at what is not accumulated at every step: seldom enough to cost little of a run.
+  struct Intervals {
+    std::uint64_t sampling, energy, stability, comparison;
+    int compared_steps;  // in one comparison with half steps
+  };
+  virtual Intervals intervals() const = 0;
+
   virtual void start(System& system) = 0;
   StepReport advance(System& system) {
     const StepReport report = advance_open(system);
@@ -36,8 +48,8 @@ class Integrator {
   virtual double stability_share(const System& system) const = 0;
 
   // The energy that the last step has made (or lost, below 0) because it is finite: dissipated and stored
-  // energy less the work of the flow. Means nothing with noise.
-  virtual double spurious_energy(const System& system) const = 0;
+  // energy less the work of the flow. Means nothing with noise; nothing of a method that does not count it.
+  virtual std::optional<double> spurious_energy(const System& system) const = 0;
 
   // The stress sigma_xy of pairs, times the volume, summed over the next `steps` steps of a copy of the
   // (complete) system; and the same with twice as many steps of half the size, of which every second one

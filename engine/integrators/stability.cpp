@@ -101,11 +101,54 @@ PairRates stiffest_pair(const Scene& scene) {
 
 double largest_timestep(const Scene& scene) { return stable_step(stiffest_pair(scene)); }
 
-double automatic_timestep(const Scene& scene) { return 0.5 * largest_timestep(scene); }
+double automatic_implicit_timestep(const Scene& scene) {
+  constexpr double strain = 0.005, brownian_times = 0.0017;
+  constexpr double contact_times_with_friction = 2, contact_times = 5;
+  const Physics& physics = scene.physics;
+  double step = std::numeric_limits<double>::infinity();
+  double smallest = scene.particles.species.front().radius, largest = smallest;
+  for (const Species& species : scene.particles.species) {
+    smallest = std::min(smallest, species.radius);
+    largest = std::max(largest, species.radius);
+  }
+  if (physics.shear_rate > 0) {
+    const double stokes =
+        scene.particles.density * largest * largest * physics.shear_rate / physics.viscosity;
+    step = strain / ((1 + 2 * stokes) * physics.shear_rate);
+  }
+  if (physics.thermal_energy > 0) {
+    step =
+        std::min(step, brownian_times * physics.viscosity * std::pow(smallest, 3) / physics.thermal_energy);
+  }
+  if (const PairRates rates = stiffest_pair(scene); rates.frequency_squared > 0) {
+    const bool friction = physics.contact && physics.contact->friction > 0;
+    step = std::min(step, (friction ? contact_times_with_friction : contact_times) * rates.damping /
+                              rates.frequency_squared);
+  }
+  return step;
+}
+
+double automatic_timestep(const Scene& scene) {
+  return scene.method == Method::implicit_steps ? automatic_implicit_timestep(scene)
+                                                : 0.5 * largest_timestep(scene);
+}
 
 double resolved_timestep(const Scene& scene, const std::string& file) {
+  const double automatic = automatic_timestep(scene);
   if (!scene.timestep) {
-    return automatic_timestep(scene);
+    if (!std::isfinite(automatic)) {
+      throw InputError(file, "/integrator/timestep", "\"auto\"",
+                       "must be a number in a scene without flow, temperature, contact and repulsion");
+    }
+    return automatic;
+  }
+  if (scene.method == Method::implicit_steps) {
+    if (*scene.timestep > largest_over_automatic * automatic) {
+      throw InputError(file, "/integrator/timestep", fmt::format("{}", *scene.timestep),
+                       fmt::format("must be at most {:.4g}, {} times \"auto\" in this scene",
+                                   largest_over_automatic * automatic, largest_over_automatic));
+    }
+    return *scene.timestep;
   }
   const double largest = largest_timestep(scene);
   if (*scene.timestep > largest) {

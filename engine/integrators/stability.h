@@ -1,4 +1,5 @@
-// The largest step of the explicit integrator that a scene allows.
+// The steps that a scene allows: of explicit ones the largest that is stable, of implicit ones those whose
+// error has been looked at.
 #pragma once
 
 #include "engine/scene.h"
@@ -19,14 +20,28 @@ PairRates stiffest_pair(const Scene& scene);
 // fraction 0.45); contacts stay below the same factor.
 constexpr double packing_factor = 2.8;
 
-// Largest stable step: root of w^2 dt^2 + 2 l dt = 4 with l and w^2 those of the stiffest pair times
+// Largest stable explicit step: root of w^2 dt^2 + 2 l dt = 4 with l and w^2 those of the stiffest pair times
 // packing_factor.
 double largest_timestep(const Scene& scene);
 
-// What "auto" means: half of that.
+// Of implicit steps. The least of
+//   0.005 / (rate (1 + 2 St)), St = rho a^2 rate / eta with the largest radius: pairs that the flow presses
+//   together pass through the gaps of lubrication in many steps, and inertia is of first order only;
+//   0.0017 eta a^3 / kT, a the smallest radius: so does a displacement by the noise;
+//   2 or, without friction, 5 times the time X_A / k in which lubrication at the inner gap holds up the
+//   stiffest contact or repulsion.
+// Without flow and temperature the last alone; infinite where nothing sets a time.
+double automatic_implicit_timestep(const Scene& scene);
+
+// A given implicit step may be that many times the automatic one. Errors of larger steps have a flag of their
+// own: half steps without noise, and with it the step itself, beyond the automatic one.
+constexpr double largest_over_automatic = 4;
+
+// What "auto" means: half of the largest step, or the automatic implicit one.
 double automatic_timestep(const Scene& scene);
 
-// The scene's own step or the automatic one. Throws InputError when the given one is beyond the largest.
+// The scene's own step or the automatic one. Throws InputError when the given one is too large, or none sets
+// an automatic one.
 double resolved_timestep(const Scene& scene, const std::string& file);
 
 }  // namespace peclet::engine

@@ -23,6 +23,11 @@ VelocityVerlet::VelocityVerlet(ForceField field, const ParticleState& particles,
   }
 }
 
+// Steps and half steps are compared over some twenty times of the fastest modes.
+Integrator::Intervals VelocityVerlet::intervals() const {
+  return {.sampling = 50, .energy = 500, .stability = 5000, .comparison = 10000, .compared_steps = 20};
+}
+
 void VelocityVerlet::start(System& system) {
   const SpringKinds kinds = spring_kinds(field_.terms());
   if (system.springs.kinds() != kinds) {
@@ -55,7 +60,7 @@ double VelocityVerlet::stability_share(const System& system) const {
   return largest_eigenvalue(PackingMatrix(system, field_.kinds(), field_.physics(), quarters)).upper();
 }
 
-double VelocityVerlet::spurious_energy(const System& system) const {
+std::optional<double> VelocityVerlet::spurious_energy(const System& system) const {
   return engine::spurious_energy(system, field_.kinds(), field_.physics(), force_, torque_, timestep_);
 }
 

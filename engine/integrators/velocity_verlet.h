@@ -17,11 +17,12 @@ class VelocityVerlet final : public Integrator {
   VelocityVerlet(ForceField field, const ParticleState& particles, double timestep);
 
   double timestep() const override { return timestep_; }
+  Intervals intervals() const override;
   void start(System& system) override;
   StepReport advance_open(System& system) override;
   void complete(System& system) override;
   double stability_share(const System& system) const override;
-  double spurious_energy(const System& system) const override;
+  std::optional<double> spurious_energy(const System& system) const override;
   HalfSteps compare_half_steps(const System& system, int steps) const override;
   void save(ArchiveWriter& archive) const override;
   void load(const System& system, ArchiveReader& archive) override;

@@ -1,6 +1,7 @@
 // A run that was cut and resumed ends in the same bits as one that was not.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <memory>
 
 #include "engine/checkpoint.h"
@@ -14,7 +15,23 @@ namespace {
 constexpr std::uint64_t seed = 3;
 constexpr std::uint64_t total_steps = 420;
 
-class ResumedRun : public testing::Test {
+// What is special about each way to step.
+struct Way {
+  const char* name;
+  Json patch;
+};
+const Way ways[] = {
+    {"explicit", Json::object()},
+    // With less inertia, which large steps follow in a part of the range only.
+    {"implicit", {{"integrator", {{"method", "implicit"}}}, {"particles", {{"density", 0.01}}}}},
+    {"implicit_without_noise",
+     {{"integrator", {{"method", "implicit"}}},
+      {"particles", {{"density", 0.01}}},
+      {"fluid", {{"thermal_energy", nullptr}}}}},
+};
+const auto name_of_way = [](const auto& way) { return std::string(way.param.name); };
+
+class ResumedRun : public testing::TestWithParam<Way> {
  protected:
   std::unique_ptr<Simulation> simulation(int threads = 1) const {
     return std::make_unique<Simulation>(scene_, make_schedule(scene_, "scene.json"), seed, threads,
@@ -34,23 +51,25 @@ class ResumedRun : public testing::Test {
 
   // What the uncut run ends in.
   const std::string& uncut() const {
-    static const std::string bytes = [this] {
+    static std::map<std::string, std::string> bytes;
+    std::string& of_method = bytes[GetParam().name];
+    if (of_method.empty()) {
       const auto whole = started();
       EXPECT_TRUE(whole->advance(total_steps).has_value());
-      return bytes_of(*whole);
-    }();
-    return bytes;
+      of_method = bytes_of(*whole);
+    }
+    return of_method;
   }
 
   static std::size_t stretched_springs(const System& system) {
     return held_contacts(system.list, system.particles, system.springs).size();
   }
 
-  Scene scene_ = read_scene(small_scene(), "scene.json");
+  Scene scene_ = read_scene(small_scene(GetParam().patch), "scene.json");
 };
 
 // The claims below say little unless this holds.
-TEST_F(ResumedRun, PassesThroughContactsRebuildsAndFlips) {
+TEST_P(ResumedRun, PassesThroughContactsRebuildsAndFlips) {
   const auto run = started();
   std::size_t steps_with_springs = 0;
   while (!run->advance(1)) steps_with_springs += stretched_springs(run->system()) > 0 ? 1 : 0;
@@ -60,7 +79,7 @@ TEST_F(ResumedRun, PassesThroughContactsRebuildsAndFlips) {
   EXPECT_EQ(run->system().box.flips(), 2);
 }
 
-TEST_F(ResumedRun, EndsAsTheUncutOneWhereverItWasCut) {
+TEST_P(ResumedRun, EndsAsTheUncutOneWhereverItWasCut) {
   for (const std::uint64_t cut : {0, 1, 57, 100, 101, 200, 333, 419}) {
     const auto before = started();
     before->advance(cut);
@@ -78,7 +97,7 @@ TEST_F(ResumedRun, EndsAsTheUncutOneWhereverItWasCut) {
   }
 }
 
-TEST_F(ResumedRun, EndsAsTheUncutOneAfterThreeCheckpointsOnDisk) {
+TEST_P(ResumedRun, EndsAsTheUncutOneAfterThreeCheckpointsOnDisk) {
   const TemporaryFolder folder;
   const CheckpointIdentity identity = {"scene", seed, "binary"};
   auto run = started();
@@ -95,7 +114,7 @@ TEST_F(ResumedRun, EndsAsTheUncutOneAfterThreeCheckpointsOnDisk) {
   EXPECT_TRUE(bytes_of(*run) == uncut());
 }
 
-TEST_F(ResumedRun, HasTheSameBitsOnAnyNumberOfThreads) {
+TEST_P(ResumedRun, HasTheSameBitsOnAnyNumberOfThreads) {
   const auto one = started(1), two = started(2);
   one->advance(150);
   two->advance(150);
@@ -111,9 +130,15 @@ TEST_F(ResumedRun, HasTheSameBitsOnAnyNumberOfThreads) {
   EXPECT_TRUE(bytes_of(*three) == bytes_of(*one));
 }
 
+INSTANTIATE_TEST_SUITE_P(EveryWay, ResumedRun, testing::ValuesIn(ways), name_of_way);
+
 // Pairs across blocks of memory come and go, and lists are rebuilt, before and after the cut.
-TEST(ResumedLargeRun, EndsAsTheUncutOne) {
-  const Scene scene = read_scene(small_scene({{"particles", {{"count", 5000}}}}), "scene.json");
+class ResumedLargeRun : public testing::TestWithParam<Way> {};
+INSTANTIATE_TEST_SUITE_P(EveryWay, ResumedLargeRun, testing::ValuesIn(ways), name_of_way);
+TEST_P(ResumedLargeRun, EndsAsTheUncutOne) {
+  Json document = small_scene(GetParam().patch);
+  document["particles"]["count"] = 5000;
+  const Scene scene = read_scene(document, "scene.json");
   const auto made = [&](int threads) {
     return Simulation(scene, make_schedule(scene, "scene.json"), seed, threads, "scene.json");
   };
@@ -137,14 +162,14 @@ TEST(ResumedLargeRun, EndsAsTheUncutOne) {
   EXPECT_TRUE(bytes_of(resumed) == bytes_of(uncut));
 }
 
-TEST_F(ResumedRun, DoesNotDependOnHowManyStepsAreAskedForAtOnce) {
+TEST_P(ResumedRun, DoesNotDependOnHowManyStepsAreAskedForAtOnce) {
   const auto run = started();
   while (!run->advance(7)) {
   }
   EXPECT_TRUE(bytes_of(*run) == uncut());
 }
 
-TEST_F(ResumedRun, OtherSeedsEndElsewhere) {
+TEST_P(ResumedRun, OtherSeedsEndElsewhere) {
   Simulation other(scene_, make_schedule(scene_, "scene.json"), seed + 1, 1, "scene.json");
   other.start();
   other.advance(total_steps);

@@ -13,14 +13,22 @@ System empty_system(const Experiment& experiment) {
   return system;
 }
 
+std::unique_ptr<Integrator> make_integrator(const Experiment& experiment, const ParticleState& particles) {
+  if (experiment.solver_tolerance) {
+    return std::make_unique<Implicit>(experiment.physics, particles, experiment.timestep,
+                                      *experiment.solver_tolerance, experiment.seed, /*threads=*/1);
+  }
+  return std::make_unique<VelocityVerlet>(
+      ForceField(experiment.physics, particles, experiment.timestep, experiment.seed, /*threads=*/1),
+      particles, experiment.timestep);
+}
+
 }  // namespace
 
 Laboratory::Laboratory(const Experiment& experiment)
     : physics_(experiment.physics),
       system_(empty_system(experiment)),
-      integrator_(ForceField(experiment.physics, system_.particles, experiment.timestep, experiment.seed,
-                             /*threads=*/1),
-                  system_.particles, experiment.timestep) {}
+      integrator_(make_integrator(experiment, system_.particles)) {}
 
 void Laboratory::thermalise(std::mt19937_64& generator) {
   std::normal_distribution<double> normal;

@@ -1,9 +1,11 @@
 // A suspension put together by hand: any spheres at any places, stepped by the engine's own integrator.
 #pragma once
 
+#include <memory>
 #include <numbers>
 #include <random>
 
+#include "engine/integrators/implicit.h"
 #include "engine/integrators/velocity_verlet.h"
 
 namespace peclet::engine {
@@ -23,7 +25,8 @@ struct Experiment {
   ShearedBox box;
   double timestep = 0;
   std::uint64_t seed = 1;
-  double skin = 0.1;  // of the neighbour list, a length
+  double skin = 0.1;                            // of the neighbour list, a length
+  std::optional<double> solver_tolerance = {};  // of implicit steps; none: explicit ones
 };
 
 class Laboratory {
@@ -34,14 +37,14 @@ class Laboratory {
   // Adds velocities and spins of equilibrium, from a generator that is not the engine's.
   void thermalise(std::mt19937_64& generator);
 
-  void start() { integrator_.start(system_); }
-  StepReport step() { return integrator_.advance(system_); }
+  void start() { integrator_->start(system_); }
+  StepReport step() { return integrator_->advance(system_); }
 
   System& system() { return system_; }
   const System& system() const { return system_; }
   ParticleState& particles() { return system_.particles; }
   const Physics& physics() const { return physics_; }
-  double timestep() const { return integrator_.timestep(); }
+  double timestep() const { return integrator_->timestep(); }
 
   // The place of a particle as if there were no periodic cell.
   Vector3 unwrapped(std::size_t i) const {
@@ -51,7 +54,7 @@ class Laboratory {
  private:
   Physics physics_;
   System system_;
-  VelocityVerlet integrator_;
+  std::unique_ptr<Integrator> integrator_;
 };
 
 }  // namespace peclet::engine

@@ -60,6 +60,7 @@ Laboratory make_pair(const PairDensityRun& run, std::uint64_t seed) {
   experiment.timestep = run.timestep;
   experiment.seed = seed;
   experiment.skin = 0.5;
+  experiment.solver_tolerance = run.solver_tolerance;
   Laboratory laboratory(experiment);
   std::mt19937_64 generator(seed);
   std::uniform_real_distribution<double> anywhere(0, cell_edge);

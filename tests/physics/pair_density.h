@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace peclet::engine {
@@ -22,6 +23,7 @@ struct PairDensityRun {
   std::uint64_t steps;         // of each realisation
   std::uint64_t realisations;  // independent: the errors come from their scatter
   std::uint64_t first_seed = 1;
+  std::optional<double> solver_tolerance = {};  // of implicit steps; none: explicit ones
 };
 
 constexpr double pair_density_outer_gap = 0.05;

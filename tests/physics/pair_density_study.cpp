@@ -24,6 +24,9 @@ constexpr Case catalogue[] = {
     {"small-step", {0.5, 1e5, 1e-3, 4e-5, 4'000'000, 40}},
     {"automatic-step", {0.05, 1e5, 1e-3, 7.09e-4, 2'000'000, 40}},
     {"table", {2.0e-3, 5.9e5, 1e-3, 7.09e-4, 10'000'000, 40}},
+    {"implicit-half", {2.0e-3, 5.9e5, 1e-3, 0.0225, 400'000, 40, 1, 1e-3}},
+    {"implicit", {2.0e-3, 5.9e5, 1e-3, 0.045, 400'000, 40, 1, 1e-3}},
+    {"implicit-double", {2.0e-3, 5.9e5, 1e-3, 0.09, 200'000, 40, 1, 1e-3}},
 };
 
 void print(const PairDensityRun& run) {
@@ -34,6 +37,7 @@ void print(const PairDensityRun& run) {
   fmt::print("{:>19} {:>10} {:>19} {:>19}\n", "r - 2a", "share", "over exp(-U/kT)", "over that with step");
   for (std::size_t bin = 0; bin < plain.size(); ++bin) {
     std::vector<double> column;
+    column.reserve(shares.size());
     for (const auto& row : shares) {
       column.push_back(row[bin]);
     }

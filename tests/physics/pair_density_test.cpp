@@ -72,5 +72,22 @@ TEST(PairDensity, IsLoweredByTheHalfStepBiasAtLargeSteps) {
   EXPECT_LT(probability(StepBias::none), smallest_probability);
 }
 
+// Implicit steps as large as "auto" makes them in the scene of Table 4.1 of Li's thesis at low Peclet
+// numbers. Contacts and what lies within the inner gap keep their share to 5 %; beyond it, where the
+// resistance of a pair changes its form, the share is larger by some 10 % (README.md).
+TEST(PairDensity, IsKeptInContactByImplicitSteps) {
+  PairDensityRun run = {.thermal_energy = 2.0e-3,
+                        .stiffness_over_thermal_energy = 5.9e5,
+                        .inner_gap = 1e-3,
+                        .timestep = 0.045,
+                        .steps = 400'000,
+                        .realisations = 40,
+                        .solver_tolerance = 1e-3};
+  const auto shares = sampled_shares(run);
+  const Estimate touching = ratio(shares, expected_shares(run, StepBias::none), 0, 3);
+  EXPECT_LT(touching.error, 0.05);
+  EXPECT_NEAR(touching.mean, 1, 0.05 + 4 * touching.error) << touching.mean << " +- " << touching.error;
+}
+
 }  // namespace
 }  // namespace peclet::engine

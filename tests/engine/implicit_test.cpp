@@ -1,0 +1,200 @@
+#include "engine/integrators/implicit.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numbers>
+
+#include "contract/input_error.h"
+#include "engine/integrators/stability.h"
+#include "engine/simulation.h"
+#include "tests/engine/dense_suspension.h"
+#include "tests/engine/small_scene.h"
+
+namespace peclet::engine {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double tight = 1e-5;
+
+System system_of(const Physics& physics, const std::vector<double>& radius, double density, double edge) {
+  System system;
+  system.particles = make_particles(radius, density);
+  system.box = ShearedBox({edge, edge, edge}, physics.shear_rate);
+  const std::vector<double> sizes = distinct_radii(radius);
+  system.list = NeighbourList(range_table(make_pair_kinds(physics, sizes), sizes.size()), 0.1);
+  return system;
+}
+
+// m (V - V_n) = dt zeta (U - V): velocities approach the streaming flow's by a factor 1 / (1 + dt zeta / m) a
+// step, whatever the step.
+TEST(Implicit, SpheresRelaxToTheStreamingFlow) {
+  Physics physics;
+  physics.viscosity = 0.1;
+  physics.shear_rate = 0.01;
+  for (const double decay : {0.01, 1.0, 10.0}) {
+    System system = system_of(physics, {1.4}, 0.1, 20);
+    system.particles.position.set(0, {5, 12, 5});
+    system.particles.velocity.set(0, {0.12, 0, 0.01});
+    system.particles.angular_velocity.set(0, {0.01, 0, -0.005});
+    const double m = 0.1 * 4 * pi / 3 * std::pow(1.4, 3), rate = 6 * pi * 0.1 * 1.4 / m;
+    const double spin_rate = 8 * pi * 0.1 * std::pow(1.4, 3) / (0.4 * m * 1.4 * 1.4);
+    const double step = decay / rate;
+    const double first = system.particles.velocity[0].z;
+    Implicit integrator(physics, system.particles, step, tight, 1, 1);
+    integrator.start(system);
+    constexpr int steps = 3;
+    for (int k = 0; k < steps; ++k) integrator.advance(system);
+    const ParticleState& p = system.particles;
+    // Each step may leave a residual of `tight`.
+    EXPECT_NEAR(p.velocity[0].z / first * std::pow(1 + decay, steps), 1, 10 * tight) << decay;
+    EXPECT_NEAR(p.velocity[0].x, 0.12, 1e-6) << decay;
+    EXPECT_NEAR(p.angular_velocity[0].x / 0.01 * std::pow(1 + spin_rate * step, steps), 1, 10 * tight)
+        << decay;
+    EXPECT_NEAR(p.angular_velocity[0].z, -0.005, 1e-7) << decay;
+  }
+}
+
+// Two spheres pass each other in shear flow, within the range of lubrication all the time and without much
+// inertia. Where they end depends on the square of the step.
+Vector3 end_of_encounter(int steps) {
+  Physics physics;
+  physics.viscosity = 0.1;
+  physics.shear_rate = 1;
+  physics.lubrication = LubricationParameters{1e-3, 0.9};
+  System system = system_of(physics, {1, 1.4}, 1e-6, 30);
+  system.particles.position.set(0, {10, 3, 15});
+  system.particles.position.set(1, {8.2, 4.7, 15.4});
+  for (const std::size_t i : {0, 1}) {
+    system.particles.velocity.set(i, {system.particles.position[i].y, 0, 0});
+    system.particles.angular_velocity.set(i, {0, 0, -0.5});
+  }
+  Implicit integrator(physics, system.particles, 1.2 / steps, 1e-6, 1, 1);
+  integrator.start(system);
+  for (int k = 0; k < steps; ++k) integrator.advance(system);
+  const ParticleState& p = system.particles;
+  const std::size_t first = p.id[0] == 0 ? 0 : 1;
+  return p.position[1 - first] - p.position[first];
+}
+
+TEST(Implicit, IsOfSecondOrderForAnEncounter) {
+  const Vector3 exact = end_of_encounter(960);
+  ASSERT_LT(norm(exact), 2.4 * 1.45);  // still within the range
+  double coarse = norm(end_of_encounter(30) - exact);
+  for (const int steps : {60, 120}) {
+    const double fine = norm(end_of_encounter(steps) - exact);
+    EXPECT_NEAR(std::log2(coarse / fine), 2, 0.25) << steps;
+    coarse = fine;
+  }
+}
+
+// A sheared packing with friction, from the same places: the stress that explicit steps of a five hundredth
+// give.
+class AgainstExplicit : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Frictions, AgainstExplicit, testing::Values(0.0, 0.5));
+TEST_P(AgainstExplicit, TheStressIsTheSame) {
+  Json document = small_scene({{"particles", {{"count", 200}}}, {"integrator", {{"timestep", "auto"}}}});
+  document["fluid"].erase("thermal_energy");
+  document.erase("repulsion");
+  document["flow"]["shear_rate"] = 0.045;
+  document["lubrication"]["inner_gap"] = 1e-3;
+  document["contact"] = {{"normal_stiffness", 1e4}};
+  if (GetParam() > 0) document["contact"]["friction"] = GetParam();
+  document["duration"] = {{"equilibration", {{"strain", 0.05}}}, {"production", {{"strain", 0.2}}}};
+  const auto stress = [&](const char* method) {
+    document["integrator"]["method"] = method;
+    const Scene scene = read_scene(document, "scene.json");
+    const Schedule schedule = make_schedule(scene, "scene.json");
+    Simulation simulation(scene, schedule, 4, 1, "scene.json");
+    simulation.start();
+    EXPECT_EQ(simulation.advance(schedule.total())->cause, Ending::Cause::completed);
+    double sum = 0, steps = 0;
+    for (const BlockSums& block : simulation.production().blocks()) {
+      for (const SymmetricTensor& term : block.stress) sum += term.xy;
+      steps += static_cast<double>(block.steps);
+    }
+    return sum / steps;
+  };
+  EXPECT_NEAR(stress("implicit") / stress("explicit"), 1, 0.01);
+}
+
+TEST(Implicit, SaysWhatItsEquationsAreLeftWith) {
+  const Physics physics = physics_with({.lubrication = true, .contact = true});
+  System system = dense_suspension(physics, 203, 7);
+  Implicit integrator(physics, system.particles, 1e-3, tight, 1, 1);
+  integrator.start(system);
+  const StepReport report = integrator.advance(system);
+  EXPECT_GT(report.solver_iterations, 0);
+  EXPECT_GT(report.solver_residual, 0);
+  EXPECT_LT(report.solver_residual, 1e-2);
+}
+
+// Spheres that fly beyond any list are reported, not looked for.
+TEST(Implicit, ReportsALeapOverTheNeighbours) {
+  Physics physics;
+  physics.viscosity = 1e-9;
+  physics.contact = ContactParameters{.normal_stiffness = 1e4};
+  System system = system_of(physics, {1, 1}, 0.1, 20);
+  system.particles.position.set(0, {5, 5, 5});
+  system.particles.position.set(1, {12, 5, 5});
+  system.particles.velocity.set(1, {50, 0, 0});
+  Implicit integrator(physics, system.particles, 0.1, tight, 1, 1);
+  integrator.start(system);
+  EXPECT_GE(integrator.advance(system).largest_displacement, 2);
+
+  system.particles.velocity.set(1, {std::numeric_limits<double>::quiet_NaN(), 0, 0});
+  EXPECT_FALSE(std::isfinite(integrator.advance(system).largest_displacement));
+}
+
+Scene scene_with(const Json& patch) {
+  Json document = small_scene({{"integrator", {{"method", "implicit"}, {"timestep", "auto"}}}});
+  document.merge_patch(patch);
+  return read_scene(document, "scene.json");
+}
+
+// 0.005 / rate (1 + 2 St); 0.0017 eta a^3 / kT; and the contact, whose rates are those of the explicit step's
+// bound.
+TEST(ImplicitTimestep, IsTheLeastOfThreeTimes) {
+  const Json soft = {{"contact", {{"normal_stiffness", 1e-3}, {"friction", 0.5}}}, {"repulsion", nullptr}};
+  const double stokes = 0.1 * 1.4 * 1.4 * 2 / 0.1;
+  EXPECT_NEAR(automatic_timestep(scene_with(soft)), 0.005 / 2 / (1 + 2 * stokes), 1e-12);
+  Json warm = soft;
+  warm["fluid"] = {{"thermal_energy", 5}};
+  EXPECT_NEAR(automatic_timestep(scene_with(warm)), 0.0017 * 0.1 / 5, 1e-12);
+  Json stiff = soft;
+  stiff["contact"] = {{"normal_stiffness", 1e9},
+                      {"friction", nullptr},
+                      {"rolling_stiffness", nullptr},
+                      {"rolling_friction", nullptr}};
+  const PairRates rates = stiffest_pair(scene_with(stiff));
+  EXPECT_NEAR(automatic_timestep(scene_with(stiff)), 5 * rates.damping / rates.frequency_squared, 1e-15);
+  stiff["contact"] = {{"normal_stiffness", 1e9},
+                      {"friction", 0.5},
+                      {"rolling_stiffness", nullptr},
+                      {"rolling_friction", nullptr}};
+  const PairRates with_friction = stiffest_pair(scene_with(stiff));
+  EXPECT_NEAR(automatic_timestep(scene_with(stiff)),
+              2 * with_friction.damping / with_friction.frequency_squared, 1e-15);
+}
+
+TEST(ImplicitTimestep, IsRefusedBeyondFourTimesTheAutomaticOne) {
+  const double automatic = automatic_timestep(scene_with(Json::object()));
+  const auto resolved = [&](double factor) {
+    return resolved_timestep(scene_with({{"integrator", {{"timestep", factor * automatic}}}}), "scene.json");
+  };
+  EXPECT_EQ(resolved(3.99), 3.99 * automatic);
+  EXPECT_THROW(resolved(4.01), InputError);
+}
+
+TEST(ImplicitTimestep, MustBeGivenWhereNothingSetsATime) {
+  Json document = small_scene({{"integrator", {{"method", "implicit"}, {"timestep", "auto"}}},
+                               {"flow", {{"shear_rate", 0}}},
+                               {"fluid", {{"thermal_energy", 0}}}});
+  document.erase("contact");
+  document.erase("repulsion");
+  EXPECT_THROW(resolved_timestep(read_scene(document, "scene.json"), "scene.json"), InputError);
+}
+
+}  // namespace
+}  // namespace peclet::engine
