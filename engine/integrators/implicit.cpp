@@ -41,8 +41,9 @@ Implicit::Implicit(const Physics& physics, const ParticleState& particles, doubl
       spin_change_(particles.count(), threads) {
   if (physics.thermal_energy > 0) {
     const double ahead = 0.5 * timestep;
-    noisy_.emplace(ForceField(physics, particles, timestep, seed, threads, set, ahead),
-                   ForceField(without_noise(physics), particles, timestep, seed, threads, set, ahead));
+    noisy_ = NoisyFields{
+        .with = ForceField(physics, particles, timestep, seed, threads, set, ahead),
+        .without = ForceField(without_noise(physics), particles, timestep, seed, threads, set, ahead)};
     noise_force_ = VectorField(particles.count(), threads);
     noise_torque_ = VectorField(particles.count(), threads);
   }

@@ -9,6 +9,8 @@
 
 #ifdef __AVX2__
 #include <immintrin.h>
+
+#include <cstddef>
 #endif
 
 namespace peclet::engine {
@@ -47,8 +49,8 @@ PECLET_ALWAYS_INLINE FloatVector across(const FloatVector& a, const FloatVector&
 PECLET_ALWAYS_INLINE FloatMotions gather_motions(const MotionRow* rows, const std::uint32_t* index) {
   __m256 part[2][3];
   for (int q = 0; q < 2; ++q) {
-    const __m256 a = rows[index[4 * q]].v, b = rows[index[4 * q + 1]].v;
-    const __m256 c = rows[index[4 * q + 2]].v, d = rows[index[4 * q + 3]].v;
+    const std::uint32_t* const four = index + std::ptrdiff_t{4} * q;
+    const __m256 a = rows[four[0]].v, b = rows[four[1]].v, c = rows[four[2]].v, d = rows[four[3]].v;
     const __m256 ab = _mm256_unpacklo_ps(a, b), cd = _mm256_unpacklo_ps(c, d);
     part[q][0] = _mm256_shuffle_ps(ab, cd, 0x44);
     part[q][1] = _mm256_shuffle_ps(ab, cd, 0xee);
@@ -71,10 +73,11 @@ PECLET_ALWAYS_INLINE void add_motions(MotionRow* rows, const std::uint32_t* inde
                  z = half(add.velocity.z, add.spin.z);
     const __m256 xy = _mm256_unpacklo_ps(x, y), z0 = _mm256_unpacklo_ps(z, zero);
     const __m256 xy_high = _mm256_unpackhi_ps(x, y), z0_high = _mm256_unpackhi_ps(z, zero);
-    rows[index[4 * q]].v += _mm256_shuffle_ps(xy, z0, 0x44);
-    rows[index[4 * q + 1]].v += _mm256_shuffle_ps(xy, z0, 0xee);
-    rows[index[4 * q + 2]].v += _mm256_shuffle_ps(xy_high, z0_high, 0x44);
-    rows[index[4 * q + 3]].v += _mm256_shuffle_ps(xy_high, z0_high, 0xee);
+    const std::uint32_t* const four = index + std::ptrdiff_t{4} * q;
+    rows[four[0]].v += _mm256_shuffle_ps(xy, z0, 0x44);
+    rows[four[1]].v += _mm256_shuffle_ps(xy, z0, 0xee);
+    rows[four[2]].v += _mm256_shuffle_ps(xy_high, z0_high, 0x44);
+    rows[four[3]].v += _mm256_shuffle_ps(xy_high, z0_high, 0xee);
   }
 }
 #else
@@ -355,7 +358,7 @@ void invert_blocks(const LinkSystem& system, MotionRow* scratch, MotionRow* inve
     block_of_links(n, group->squeeze, group->shear, group->pump_first, group->twist_first, 1.0F, first);
     block_of_links(n, group->squeeze, group->shear, group->pump_second, group->twist_second, -1.0F, second);
     for (int k = 0; k < links_per_group; ++k) {
-      const std::uint32_t i = group->first[k], j = group->second[k];
+      const std::size_t i = group->first[k], j = group->second[k];
       for (int e = 0; e < entries; ++e) {
         scratch[entries * (i / 8) + static_cast<std::size_t>(e)].v[i % 8] += first[e][k];
         scratch[entries * (j / 8) + static_cast<std::size_t>(e)].v[j % 8] += second[e][k];

@@ -180,8 +180,9 @@ TEST_P(LinkKernelsOf, TakeTheChangeOfTheSqueezingResistanceIntoAccount) {
     double gap, closing;
     bool clipped;
   };
-  for (const auto& [gap, velocity, clipped] : {Case{0.01, -0.1, false}, Case{0.01, 0.1, false},
-                                               Case{0.5 * inner, -0.1, false}, Case{0.01, 3, true}}) {
+  for (const Case& one : {Case{0.01, -0.1, false}, Case{0.01, 0.1, false}, Case{0.5 * inner, -0.1, false},
+                          Case{0.01, 3, true}}) {
+    const double gap = one.gap, velocity = one.closing;
     System system;
     system.particles = make_particles({1, 1}, 0.1);
     system.box = ShearedBox({20, 20, 20}, 0);
@@ -201,7 +202,7 @@ TEST_P(LinkKernelsOf, TakeTheChangeOfTheSqueezingResistanceIntoAccount) {
       return squeezing(gap + ahead * (v - velocity)) * v;  // the places are those half a step ahead already
     };
     double expected = (load(velocity + d) - load(velocity - d)) / (2 * d);
-    if (clipped) {
+    if (one.clipped) {
       ASSERT_LT(expected, 0.5 * squeezing(gap));
       expected = 0.5 * squeezing(gap);
     }
