@@ -71,8 +71,8 @@ struct SquaredMotion {
   double whole, inertial;
 };
 
-// Of invert_blocks(): the lower triangles of eight particles side by side.
-constexpr std::size_t rows_of_scratch(std::size_t particles) { return 21 * ((particles + 7) / 8); }
+// Of invert_blocks(): the lower triangle of each particle's block, 21 numbers.
+constexpr std::size_t rows_of_scratch(std::size_t particles) { return 3 * particles; }
 
 struct LinkKernels {
   // The links of all pairs within their range, at the motion that `input` holds; the last group is filled up
@@ -81,8 +81,7 @@ struct LinkKernels {
   std::size_t (*assemble)(const PairKernelInput& input, const PairRun* runs, std::size_t count,
                           const Terms& terms, const LinkWeights& weights, LinkGroup* groups);
 
-  // The inverse of each particle's own 6 x 6 block of A, six columns for each. Leaves the rows' two unused
-  // places as they are, which must be 0.
+  // The inverse of each particle's own 6 x 6 block of A, six columns for each.
   void (*invert_blocks)(const LinkSystem& system, MotionRow* scratch, MotionRow* inverse_blocks);
 
   // product = A vector.

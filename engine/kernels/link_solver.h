@@ -305,13 +305,13 @@ PECLET_ALWAYS_INLINE void block_of_links(const FloatVector& n, const Floats& squ
 }
 
 // Of eight matrices side by side: A = L D L^T, A^-1 = L^-T D^-1 L^-1.
-PECLET_ALWAYS_INLINE void invert(const MotionRow* a, Floats* inverse) {
+PECLET_ALWAYS_INLINE void invert(const Floats* a, Floats* inverse) {
   Floats lower[entries], inverse_lower[entries], per_pivot[6];
   for (int row = 0; row < 6; ++row) {
     Floats scaled[6];  // L_rk D_k
-    Floats pivot = a[entry(row, row)].v;
+    Floats pivot = a[entry(row, row)];
     for (int column = 0; column < row; ++column) {
-      Floats sum = a[entry(row, column)].v;
+      Floats sum = a[entry(row, column)];
       for (int k = 0; k < column; ++k) {
         sum -= scaled[k] * lower[entry(column, k)];
       }
@@ -341,40 +341,84 @@ PECLET_ALWAYS_INLINE void invert(const MotionRow* a, Floats* inverse) {
   }
 }
 
-void invert_blocks(const LinkSystem& system, MotionRow* scratch, MotionRow* inverse_blocks) {
-  const std::size_t eights = (system.particles + 7) / 8;
-  for (std::size_t e = 0; e < entries * eights; ++e) {
-    scratch[e].v = Floats{};
+// Eight rows of eight numbers become eight columns.
+PECLET_ALWAYS_INLINE void transpose(Floats* rows) {
+#ifdef __AVX2__
+  __m256 pairs[8], quads[8];
+  for (int k = 0; k < 8; k += 2) {
+    pairs[k] = _mm256_unpacklo_ps(rows[k], rows[k + 1]);
+    pairs[k + 1] = _mm256_unpackhi_ps(rows[k], rows[k + 1]);
   }
-  for (std::size_t i = 0; i < 8 * eights; ++i) {
+  for (int k = 0; k < 8; k += 4) {
+    quads[k] = _mm256_shuffle_ps(pairs[k], pairs[k + 2], 0x44);
+    quads[k + 1] = _mm256_shuffle_ps(pairs[k], pairs[k + 2], 0xee);
+    quads[k + 2] = _mm256_shuffle_ps(pairs[k + 1], pairs[k + 3], 0x44);
+    quads[k + 3] = _mm256_shuffle_ps(pairs[k + 1], pairs[k + 3], 0xee);
+  }
+  for (int k = 0; k < 4; ++k) {
+    rows[k] = _mm256_permute2f128_ps(quads[k], quads[k + 4], 0x20);
+    rows[k + 4] = _mm256_permute2f128_ps(quads[k], quads[k + 4], 0x31);
+  }
+#else
+  for (int a = 0; a < 8; ++a) {
+    for (int b = 0; b < a; ++b) {
+      const float kept = rows[a][b];
+      rows[a][b] = rows[b][a];
+      rows[b][a] = kept;
+    }
+  }
+#endif
+}
+
+// Adds what eight links give to the triangles of their particles, three rows for each.
+PECLET_ALWAYS_INLINE void add_blocks(MotionRow* triangles, const std::uint32_t* index, Floats* blocks) {
+  for (std::size_t part = 0; part < 3; ++part) {
+    transpose(blocks + 8 * part);
+    for (int k = 0; k < links_per_group; ++k) {
+      triangles[3 * std::size_t{index[k]} + part].v += blocks[8 * part + static_cast<std::size_t>(k)];
+    }
+  }
+}
+
+void invert_blocks(const LinkSystem& system, MotionRow* triangles, MotionRow* inverse_blocks) {
+  const std::size_t count = system.particles;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Floats& diagonal = system.diagonal[system.size_class[i]].v;
+    for (std::size_t part = 0; part < 3; ++part) {
+      triangles[3 * i + part].v = Floats{};
+    }
     for (int c = 0; c < 6; ++c) {
-      scratch[entries * (i / 8) + static_cast<std::size_t>(entry(c, c))].v[i % 8] =
-          i < system.particles ? system.diagonal[system.size_class[i]].v[place_of[c]] : 1.0F;
+      const int e = entry(c, c);
+      triangles[3 * i + static_cast<std::size_t>(e / 8)].v[e % 8] = diagonal[place_of[c]];
     }
   }
   for (const LinkGroup* group = system.groups; group < system.groups + system.count_of_groups; ++group) {
     const FloatVector n = {group->normal[0], group->normal[1], group->normal[2]};
-    Floats first[entries], second[entries];
+    Floats first[24]{}, second[24]{};
     block_of_links(n, group->squeeze, group->shear, group->pump_first, group->twist_first, 1.0F, first);
     block_of_links(n, group->squeeze, group->shear, group->pump_second, group->twist_second, -1.0F, second);
-    for (int k = 0; k < links_per_group; ++k) {
-      const std::size_t i = group->first[k], j = group->second[k];
-      for (int e = 0; e < entries; ++e) {
-        scratch[entries * (i / 8) + static_cast<std::size_t>(e)].v[i % 8] += first[e][k];
-        scratch[entries * (j / 8) + static_cast<std::size_t>(e)].v[j % 8] += second[e][k];
-      }
-    }
+    add_blocks(triangles, group->first, first);
+    add_blocks(triangles, group->second, second);
   }
-  for (std::size_t g = 0; g < eights; ++g) {
-    Floats inverse[entries];
-    invert(scratch + entries * g, inverse);
-    for (std::size_t i = 8 * g; i < 8 * g + 8 && i < system.particles; ++i) {
+  for (std::size_t begin = 0; begin < count; begin += 8) {
+    const std::size_t here = count - begin < 8 ? count - begin : 8;
+    Floats block[24], inverse[entries];
+    for (std::size_t part = 0; part < 3; ++part) {
+      for (std::size_t k = 0; k < 8; ++k) {
+        // Lanes without a particle repeat the first one.
+        block[8 * part + k] = triangles[3 * (begin + (k < here ? k : 0)) + part].v;
+      }
+      transpose(block + 8 * part);
+    }
+    invert(block, inverse);
+    for (int column = 0; column < 6; ++column) {
+      Floats rows[8]{};
       for (int row = 0; row < 6; ++row) {
-        for (int column = 0; column <= row; ++column) {
-          const float value = inverse[entry(row, column)][i % 8];
-          inverse_blocks[6 * i + static_cast<std::size_t>(row)].v[place_of[column]] = value;
-          inverse_blocks[6 * i + static_cast<std::size_t>(column)].v[place_of[row]] = value;
-        }
+        rows[place_of[row]] = inverse[row < column ? entry(column, row) : entry(row, column)];
+      }
+      transpose(rows);
+      for (std::size_t k = 0; k < here; ++k) {
+        inverse_blocks[6 * (begin + k) + static_cast<std::size_t>(column)].v = rows[k];
       }
     }
   }
