@@ -126,7 +126,6 @@ std::optional<StepReport> Implicit::find_velocities(System& system) {
     }
     if (iteration == 0) {
       assemble(system, field_);
-      invert_blocks(system);
     }
     report.sums = field_.evaluate(system, force_, torque_);
     const Residual residual = set_residual(system, false);
@@ -155,7 +154,6 @@ std::optional<StepReport> Implicit::find_noisy_velocities(System& system) {
     correct(system, tolerance_ * tolerance_ * (residual.squared_motion + residual.squared), report);
   };
   assemble(system, noisy_->without);
-  invert_blocks(system);
   noisy_->without.evaluate(system, noise_force_, noise_torque_);
   restore_springs(system);
   const PairSums drawn = noisy_->with.evaluate(system, force_, torque_);
@@ -246,9 +244,6 @@ void Implicit::assemble(System& system, ForceField& field) {
   const double half = 0.5 * timestep_;
   count_of_groups_ = field.assemble_links(
       system, {.timestep = timestep_, .normal_time = half, .resistance_time = noisy_ ? 0 : half}, groups_);
-}
-
-void Implicit::invert_blocks(const System& system) {
   link_.invert_blocks(links(system), scratch_.data(), inverse_blocks_.data());
 }
 

@@ -66,7 +66,6 @@ class Implicit final : public Integrator {
   double displacement(const System& system) const;
 
   void assemble(System& system, ForceField& field);
-  void invert_blocks(const System& system);
   Residual set_residual(const System& system, bool with_noise);
   void correct(System& system, double target, StepReport& report);
   LinkSystem links(const System& system) const;
