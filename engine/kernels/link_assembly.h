@@ -168,14 +168,14 @@ class LinkedPairs {
     return tangential_coupling(lever, sliding, rolling);
   }
 
+  PairGeometryOf<Real> shape_, ahead_;
+  PairMotionOf<Real> motion_;
+  std::uint32_t first_[width_of<Real>], second_[width_of<Real>], image_[width_of<Real>];
   const PairKernelInput& in_;
   const PairKind& kind_;
   std::uint32_t begin_;
   int count_;
   unsigned near_;
-  PairGeometryOf<Real> shape_, ahead_;
-  PairMotionOf<Real> motion_;
-  std::uint32_t first_[width_of<Real>], second_[width_of<Real>], image_[width_of<Real>];
 };
 
 template <class Real>
