@@ -8,33 +8,16 @@
 namespace peclet::engine {
 namespace {
 
-void add(PairResistance& sum, double weight, const PairResistance& part) {
-  sum.squeeze += weight * part.squeeze;
-  sum.shear += weight * part.shear;
-  sum.pump_first += weight * part.pump_first;
-  sum.pump_second += weight * part.pump_second;
-  sum.twist_first += weight * part.twist_first;
-  sum.twist_cross += weight * part.twist_cross;
-  sum.twist_second += weight * part.twist_second;
-}
-
-// k_t s for slips s = (1 - n n).(U_j - U_i) - (l_i Omega_i + l_j Omega_j) x n, and the couple
-// k_r a^2 (1 - n n).(Omega_i - Omega_j), sorted by what they multiply.
+// As if every contact stuck.
 PairResistance contact_stiffness(const ContactParameters& contact, const PairKind& kind,
                                  const PairGeometry& shape) {
   PairResistance stiffness{};
-  stiffness.squeeze = contact.normal_stiffness;
   if (contact.friction > 0) {
-    const ContactLevers lever = contact_levers(kind.radius_first, kind.radius_second, shape);
-    const double sliding = contact.tangential_stiffness;
-    const double rolling = contact.rolling_stiffness * kind.reduced_diameter * kind.reduced_diameter;
-    stiffness.shear = sliding;
-    stiffness.pump_first = -sliding * lever.first;
-    stiffness.pump_second = -sliding * lever.second;
-    stiffness.twist_first = sliding * lever.first * lever.first + rolling;
-    stiffness.twist_cross = sliding * lever.first * lever.second - rolling;
-    stiffness.twist_second = sliding * lever.second * lever.second + rolling;
+    stiffness = tangential_coupling(
+        contact_levers(kind.radius_first, kind.radius_second, shape), contact.tangential_stiffness,
+        contact.rolling_stiffness * kind.reduced_diameter * kind.reduced_diameter);
   }
+  stiffness.squeeze = contact.normal_stiffness;
   return stiffness;
 }
 
@@ -47,8 +30,8 @@ PairResistance coupling_of(const Physics& physics, const PairKind& kind, const P
                            const MatrixWeights& weights) {
   PairResistance coupling{};
   if (physics.lubrication && shape.distance <= kind.lubrication_range) {
-    add(coupling, weights.resistance,
-        pair_resistance(kind.resistance, physics.lubrication->inner_gap, shape));
+    add_scaled(coupling, weights.resistance,
+               pair_resistance(kind.resistance, physics.lubrication->inner_gap, shape));
   }
   if (physics.repulsion && shape.distance < kind.repulsion_range) {
     coupling.squeeze +=
@@ -56,7 +39,7 @@ PairResistance coupling_of(const Physics& physics, const PairKind& kind, const P
   }
   if (physics.contact && shape.overlap() > 0) {
     coupling.squeeze += weights.resistance * physics.contact->normal_damping;
-    add(coupling, weights.stiffness, contact_stiffness(*physics.contact, kind, shape));
+    add_scaled(coupling, weights.stiffness, contact_stiffness(*physics.contact, kind, shape));
   }
   return coupling;
 }

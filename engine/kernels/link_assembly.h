@@ -16,32 +16,6 @@ PECLET_ALWAYS_INLINE Real held_share(const Vector3Of<Real>& spring, const Vector
   return select(length > longest, longest / length, Real{1.0});
 }
 
-template <class Real>
-PECLET_ALWAYS_INLINE void add_scaled(PairResistanceOf<Real>& sum, const Real& weight,
-                                     const PairResistanceOf<Real>& part) {
-  sum.squeeze += weight * part.squeeze;
-  sum.shear += weight * part.shear;
-  sum.pump_first += weight * part.pump_first;
-  sum.pump_second += weight * part.pump_second;
-  sum.twist_first += weight * part.twist_first;
-  sum.twist_cross += weight * part.twist_cross;
-  sum.twist_second += weight * part.twist_second;
-}
-
-// Springs of a contact, as they couple velocities and spins: for slips T.(U_j - U_i) - (l_i Omega_i + l_j
-// Omega_j) x n and couples a^2 T.(Omega_i - Omega_j).
-template <class Real>
-PECLET_ALWAYS_INLINE PairResistanceOf<Real> tangential_coupling(const ContactLeversOf<Real>& lever,
-                                                                const Real& sliding, const Real& rolling) {
-  return {.squeeze = Real{0.0},
-          .shear = sliding,
-          .pump_first = -sliding * lever.first,
-          .pump_second = -sliding * lever.second,
-          .twist_first = sliding * lever.first * lever.first + rolling,
-          .twist_cross = sliding * lever.first * lever.second - rolling,
-          .twist_second = sliding * lever.second * lever.second + rolling};
-}
-
 // Pairs of one run, as many as a number holds.
 template <class Real>
 class LinkedPairs {

@@ -5,6 +5,7 @@
 // a_j do neither.)
 #pragma once
 
+#include "engine/terms/pair_resistance.h"
 #include "engine/terms/tangential_spring.h"
 
 namespace peclet::engine {
@@ -41,6 +42,20 @@ PECLET_ALWAYS_INLINE PairLoadOf<Real> friction_load(double tangential_stiffness,
   const Vector3Of<Real> force = Real{tangential_stiffness} * spring;
   const Vector3Of<Real> moment = cross(pair.normal, force);
   return {force, lever.first * moment, lever.second * moment};
+}
+
+// Springs of a contact, as they couple velocities and spins: for slips T.(U_j - U_i) - (l_i Omega_i + l_j
+// Omega_j) x n and couples a^2 T.(Omega_i - Omega_j).
+template <class Real>
+PECLET_ALWAYS_INLINE PairResistanceOf<Real> tangential_coupling(const ContactLeversOf<Real>& lever,
+                                                                const Real& sliding, const Real& rolling) {
+  return {.squeeze = Real{0.0},
+          .shear = sliding,
+          .pump_first = -sliding * lever.first,
+          .pump_second = -sliding * lever.second,
+          .twist_first = sliding * lever.first * lever.first + rolling,
+          .twist_cross = sliding * lever.first * lever.second - rolling,
+          .twist_second = sliding * lever.second * lever.second + rolling};
 }
 
 using ContactLevers = ContactLeversOf<double>;

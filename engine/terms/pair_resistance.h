@@ -89,6 +89,18 @@ PECLET_ALWAYS_INLINE PairResistanceOf<Real> pair_resistance(const ResistanceCons
   };
 }
 
+template <class Real>
+PECLET_ALWAYS_INLINE void add_scaled(PairResistanceOf<Real>& sum, const Real& weight,
+                                     const PairResistanceOf<Real>& part) {
+  sum.squeeze += weight * part.squeeze;
+  sum.shear += weight * part.shear;
+  sum.pump_first += weight * part.pump_first;
+  sum.pump_second += weight * part.pump_second;
+  sum.twist_first += weight * part.twist_first;
+  sum.twist_cross += weight * part.twist_cross;
+  sum.twist_second += weight * part.twist_second;
+}
+
 // Of a pair of which the caller knows that it lies within the outer gap.
 inline PairResistanceOf<double> pair_resistance(const ResistanceConstants& k, double inner_gap,
                                                 const PairGeometry& pair) {
