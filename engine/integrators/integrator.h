@@ -52,8 +52,8 @@ class Integrator {
   virtual std::optional<double> spurious_energy(const System& system) const = 0;
 
   // The stress sigma_xy of pairs, times the volume, summed over the next `steps` steps of a copy of the
-  // (complete) system; and the same with twice as many steps of half the size, of which every second one
-  // counts. Means nothing with noise, which another step draws anew.
+  // (complete) system; and over the same time with steps of half the size, of which two count as one. Means
+  // nothing with noise, which another step draws anew.
   struct HalfSteps {
     double whole = 0, halved = 0;
   };

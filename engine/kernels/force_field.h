@@ -38,7 +38,6 @@ class ForceField {
   const Physics& physics() const { return physics_; }
   int threads() const { return threads_; }
   const OneBodyKernels& one_body() const { return one_body_; }
-  const LinkKernels& link() const { return link_; }
 
  private:
   PairPassInput pair_input(const System& system) const;
