@@ -36,9 +36,7 @@ Implicit::Implicit(const Physics& physics, const ParticleState& particles, doubl
       direction_(particles.count()),
       product_(particles.count()),
       force_(particles.count(), threads),
-      torque_(particles.count(), threads),
-      velocity_change_(particles.count(), threads),
-      spin_change_(particles.count(), threads) {
+      torque_(particles.count(), threads) {
   if (physics.thermal_energy > 0) {
     const double ahead = 0.5 * timestep;
     noisy_ = NoisyFields{
@@ -46,6 +44,9 @@ Implicit::Implicit(const Physics& physics, const ParticleState& particles, doubl
         .without = ForceField(without_noise(physics), particles, timestep, seed, threads, set, ahead)};
     noise_force_ = VectorField(particles.count(), threads);
     noise_torque_ = VectorField(particles.count(), threads);
+  } else {
+    velocity_change_ = VectorField(particles.count(), threads);
+    spin_change_ = VectorField(particles.count(), threads);
   }
   const std::size_t classes = distinct_radii(particles.radius).size();
   inertia_.resize(classes);
@@ -92,7 +93,7 @@ StepReport Implicit::advance_open(System& system) {
     return report;
   }
   const ParticleState& particles = system.particles;
-  for (std::size_t i = 0; i < particles.count(); ++i) {
+  for (std::size_t i = 0; !noisy_ && i < particles.count(); ++i) {
     velocity_change_.row(particles.id[i]) = particles.velocity.row(i) - origin_.velocity.row(i);
     spin_change_.row(particles.id[i]) = particles.angular_velocity.row(i) - origin_.spin.row(i);
   }
@@ -142,16 +143,18 @@ std::optional<StepReport> Implicit::find_velocities(System& system) {
     if (iteration > 0) {
       assemble(system, field_);
     }
-    correct(system, std::max(0.25 * target, forcing * forcing * residual.squared), report);
+    if (!correct(system, std::max(0.25 * target, forcing * forcing * residual.squared), report)) {
+      report.sums.finite = false;
+      return report;
+    }
   }
 }
 
 std::optional<StepReport> Implicit::find_noisy_velocities(System& system) {
   StepReport report;
-  solved_ = true;
   const auto solve = [&](bool with_noise) {
     const Residual residual = set_residual(system, with_noise);
-    correct(system, tolerance_ * tolerance_ * (residual.squared_motion + residual.squared), report);
+    return correct(system, tolerance_ * tolerance_ * (residual.squared_motion + residual.squared), report);
   };
   assemble(system, noisy_->without);
   noisy_->without.evaluate(system, noise_force_, noise_torque_);
@@ -162,7 +165,7 @@ std::optional<StepReport> Implicit::find_noisy_velocities(System& system) {
     noise_force_.row(i) = force_.row(i) - noise_force_.row(i);
     noise_torque_.row(i) = torque_.row(i) - noise_torque_.row(i);
   }
-  solve(false);
+  const bool predicted = solve(false);
 
   if (!move_half_a_step(system)) {
     return std::nullopt;
@@ -170,13 +173,13 @@ std::optional<StepReport> Implicit::find_noisy_velocities(System& system) {
   assemble(system, field_);
   field_.evaluate(system, force_, torque_);
   restore_springs(system);
-  solve(true);
+  const bool solved = solve(true);
 
   if (!move_half_a_step(system)) {
     return std::nullopt;
   }
   report.sums = field_.evaluate(system, force_, torque_);
-  report.sums.finite = report.sums.finite && solved_;
+  report.sums.finite = report.sums.finite && predicted && solved;
   report.sums.of(StressTerm::brownian_lubrication) = drawn.of(StressTerm::brownian_lubrication);
   return report;
 }
@@ -272,16 +275,16 @@ Implicit::Residual Implicit::set_residual(const System& system, bool with_noise)
           .squared_motion = motion.whole > 0 ? changed * changed / motion.whole : 0};
 }
 
-// Adds to the velocities what takes the residual away.
-void Implicit::correct(System& system, double target, StepReport& report) {
+// Adds to the velocities what takes the residual away. Returns whether that is finite.
+bool Implicit::correct(System& system, double target, StepReport& report) {
   const SolverReport solved =
       link_.solve(links(system), {solution_.data(), residual_.data(), direction_.data(), product_.data()},
                   target, most_iterations);
   report.solver_iterations += solved.iterations;
   report.solver_residual = target > 0 ? tolerance_ * std::sqrt(solved.squared_residual / target) : 0;
-  solved_ = solved_ && std::isfinite(solved.squared_residual);
   link_.add_motion(system.particles.count(), solution_.data(), system.particles.velocity.data(),
                    system.particles.angular_velocity.data());
+  return std::isfinite(solved.squared_residual);
 }
 
 LinkSystem Implicit::links(const System& system) const {
@@ -313,14 +316,18 @@ Integrator::HalfSteps Implicit::compare_half_steps(const System& system, int ste
 }
 
 void Implicit::save(ArchiveWriter& archive) const {
-  archive.put(velocity_change_);
-  archive.put(spin_change_);
+  if (!noisy_) {
+    archive.put(velocity_change_);
+    archive.put(spin_change_);
+  }
   archive.put(displacement_bound_);
 }
 
 void Implicit::load(const System& system, ArchiveReader& archive) {
-  velocity_change_ = archive.get_field(system.particles.count());
-  spin_change_ = archive.get_field(system.particles.count());
+  if (!noisy_) {
+    velocity_change_ = archive.get_field(system.particles.count());
+    spin_change_ = archive.get_field(system.particles.count());
+  }
   displacement_bound_ = archive.get<double>();
 }
 

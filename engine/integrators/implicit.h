@@ -67,7 +67,7 @@ class Implicit final : public Integrator {
 
   void assemble(System& system, ForceField& field);
   Residual set_residual(const System& system, bool with_noise);
-  void correct(System& system, double target, StepReport& report);
+  [[nodiscard]] bool correct(System& system, double target, StepReport& report);
   LinkSystem links(const System& system) const;
 
   Physics physics_;
@@ -83,12 +83,11 @@ class Implicit final : public Integrator {
   std::vector<MotionRow> diagonal_;
   std::vector<LinkGroup> groups_;
   std::size_t count_of_groups_ = 0;
-  bool solved_ = true;  // no residual of this step was NaN or infinite
   std::vector<MotionRow> inverse_blocks_, scratch_, solution_, residual_, direction_, product_;
 
   Origin origin_;
   VectorField force_, torque_, noise_force_, noise_torque_;
-  VectorField velocity_change_, spin_change_;  // of the last step, for each id
+  VectorField velocity_change_, spin_change_;  // of the last step, for each id; without noise
   double displacement_bound_ = 0;              // of all particles since the list was built
 };
 

@@ -1,6 +1,7 @@
 #include "engine/kernels/lane_access.h"
 #include "engine/kernels/lanes_math.h"
 #include "engine/kernels/link_assembly.h"
+#include "engine/kernels/link_blocks.h"
 #include "engine/kernels/link_solver.h"
 
 namespace peclet::engine {

@@ -1,4 +1,5 @@
 #include "engine/kernels/link_assembly.h"
+#include "engine/kernels/link_blocks.h"
 #include "engine/kernels/link_solver.h"
 
 namespace peclet::engine {
