@@ -36,6 +36,12 @@ def interval(pairs):
     return draws[100], draws[3899]
 
 
+def correlation(a, b):
+    mean_a, mean_b = statistics.fmean(a), statistics.fmean(b)
+    return (sum((x - mean_a) * (y - mean_b) for x, y in zip(a, b)) /
+            math.sqrt(sum((x - mean_a) ** 2 for x in a) * sum((y - mean_b) ** 2 for y in b)))
+
+
 def mean_text(values):
     return f"{statistics.fmean(values):.3f} ± {statistics.stdev(values) / math.sqrt(len(values)):.3f}"
 
@@ -43,17 +49,20 @@ def mean_text(values):
 def main():
     export = json.load(sys.stdin)
     print("| Pe | realisations | η_r | η_r + B | B | standard deviation of η_r | variance of η_r + B over that of η_r | with β cross-fitted | β | "
-          "s of processor each |")
-    print("|---|---|---|---|---|---|---|---|---|---|")
+          "correlation of η_r + B with the structural stress | largest one with xx, yy, zz, xz or yz of B | s of processor each |")
+    print("|---|---|---|---|---|---|---|---|---|---|---|---|")
     for point in export["points"]:
         results = [r for r in point["realisations"] + point["surplus"] if r.get("mean")]
         pairs = [(r["mean"]["relative_viscosity"], r["mean"]["brownian_pairwise"][3]) for r in results]
         low, high = interval(pairs)
         fitted, beta = cross_fitted(pairs)
+        controlled = [eta + b for eta, b in pairs]
+        structural = correlation(controlled, [r["mean"]["brownian_structural"][3] for r in results])
+        others = max((correlation(controlled, [r["mean"]["brownian_pairwise"][k] for r in results]) for k in (0, 1, 2, 4, 5)), key=abs)
         cost = statistics.median(r["cost"]["cpu_seconds"] for r in results)
         print(f"| {point['settings']['/peclet']} | {len(pairs)} | {mean_text([p[0] for p in pairs])} | {mean_text([p[0] + p[1] for p in pairs])} | "
               f"{mean_text([p[1] for p in pairs])} | {statistics.stdev([p[0] for p in pairs]):.2f} | **{ratio(pairs):.3f}** ({low:.3f} .. {high:.3f}) | "
-              f"{fitted:.3f} | {beta:.2f} | {cost:.2g} |")
+              f"{fitted:.3f} | {beta:.2f} | {structural:.2f} | {others:.2f} | {cost:.2g} |")
 
 
 main()

@@ -1,7 +1,6 @@
 // The system of an implicit step is the derivative of the forces that the step is to bring into balance.
 #include <gtest/gtest.h>
 
-#include <iostream>
 #include <numbers>
 
 #include "engine/kernels/force_field.h"
@@ -130,21 +129,19 @@ constexpr Terms tried[] = {
     {.lubrication = true, .contact = true, .repulsion = true},
 };
 
-class LinkKernelsOf : public testing::TestWithParam<InstructionSet> {
- protected:
-  void SetUp() override {
-    if (!is_available(GetParam())) {
-      std::cout << name_of(GetParam()) << " is not available here\n";
-    }
+std::vector<InstructionSet> available_sets() {
+  std::vector<InstructionSet> sets;
+  for (const InstructionSet set : {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512}) {
+    if (is_available(set)) sets.push_back(set);
   }
-};
-INSTANTIATE_TEST_SUITE_P(EverySet, LinkKernelsOf,
-                         testing::Values(InstructionSet::baseline, InstructionSet::avx2,
-                                         InstructionSet::avx512),
+  return sets;
+}
+
+class LinkKernelsOf : public testing::TestWithParam<InstructionSet> {};
+INSTANTIATE_TEST_SUITE_P(EverySet, LinkKernelsOf, testing::ValuesIn(available_sets()),
                          [](const auto& set) { return std::string(name_of(set.param)); });
 
 TEST_P(LinkKernelsOf, MultiplyByTheDerivativeOfTheLoads) {
-  if (!is_available(GetParam())) return;
   for (const Terms& terms : tried) {
     const Physics physics = sticking(physics_with(terms));
     // Ahead of the present distance the levers of friction change as well, which the system leaves out.
@@ -168,7 +165,6 @@ TEST_P(LinkKernelsOf, MultiplyByTheDerivativeOfTheLoads) {
 
 // A pair along x: the load that the approach changes, X_A(r + t v) v, has the derivative X_A + t v dX_A/dr.
 TEST_P(LinkKernelsOf, TakeTheChangeOfTheSqueezingResistanceIntoAccount) {
-  if (!is_available(GetParam())) return;
   Physics physics = physics_with({.lubrication = true});
   physics.shear_rate = 0;
   const double inner = physics.lubrication->inner_gap;
@@ -211,7 +207,6 @@ TEST_P(LinkKernelsOf, TakeTheChangeOfTheSqueezingResistanceIntoAccount) {
 }
 
 TEST_P(LinkKernelsOf, InvertTheParticlesOwnBlocks) {
-  if (!is_available(GetParam())) return;
   const Physics physics = physics_with({.lubrication = true, .contact = true, .friction = true});
   const Links links(physics, dense_suspension(physics, 61, 7), GetParam());
   const std::size_t count = links.system().particles.count();
@@ -240,7 +235,6 @@ TEST_P(LinkKernelsOf, InvertTheParticlesOwnBlocks) {
 }
 
 TEST_P(LinkKernelsOf, SolveTheSystem) {
-  if (!is_available(GetParam())) return;
   const Physics physics = physics_with({.lubrication = true, .contact = true, .friction = true});
   const Links links(physics, dense_suspension(physics, 203, 7), GetParam());
   const std::size_t count = links.system().particles.count();
@@ -263,7 +257,6 @@ TEST_P(LinkKernelsOf, SolveTheSystem) {
 
 // Motions that leave all distances as they are cost nothing but what inertia and drag say.
 TEST_P(LinkKernelsOf, RigidTranslationFeelsNoLink) {
-  if (!is_available(GetParam())) return;
   const Physics physics = physics_with({.lubrication = true, .contact = true, .friction = true});
   const Links links(physics, dense_suspension(physics, 100, 7), GetParam());
   const std::size_t count = links.system().particles.count();

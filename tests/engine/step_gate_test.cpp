@@ -175,6 +175,32 @@ TEST(StepGate, FlagsAResultThatHalfStepsWouldChange) {
   EXPECT_EQ(flagged.at("mean"), fine.at("mean"));
 }
 
+// Beyond what is known of their error with noise, and where friction is too stiff for Newton's iterations.
+TEST(StepGate, FlagsImplicitSteps) {
+  const auto result = [](Json scene, const Json& patch) {
+    scene.merge_patch(
+        {{"integrator", {{"method", "implicit"}}},
+         {"duration", {{"equilibration", {{"strain", 0.1}}}, {"production", {{"strain", 0.5}}}}}});
+    scene.merge_patch(patch);
+    JobSpecification job;
+    job.header = {"point", 2};
+    job.scene = scene;
+    job.scene_name = "scene.json";
+    return run_job(job, {}).value();
+  };
+  const Json fine = result(published(0.5), Json::object());
+  EXPECT_FALSE(has_warning(fine, "timestep"));
+  EXPECT_FALSE(has_warning(fine, "solver"));
+  EXPECT_GT(fine.at("gate").at("solver").at("iterations_per_step"), 1);
+  EXPECT_TRUE(has_warning(result(published(0.5), {{"contact", {{"friction", 10}}}}), "solver"));
+
+  Json warm = published(0.5);
+  warm["fluid"]["thermal_energy"] = 0.01;
+  const double automatic = 0.0017 * 0.1 / 0.01;
+  EXPECT_FALSE(has_warning(result(warm, {{"integrator", {{"timestep", 0.99 * automatic}}}}), "timestep"));
+  EXPECT_TRUE(has_warning(result(warm, {{"integrator", {{"timestep", 1.01 * automatic}}}}), "timestep"));
+}
+
 TEST(StepGate, NoiseAndRestHaveNoBalance) {
   const Json noisy = result_of(Json::object()).at("gate");
   EXPECT_TRUE(noisy.at("energy_imbalance").is_null());

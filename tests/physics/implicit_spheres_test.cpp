@@ -7,7 +7,6 @@
 // passed with probability 6e-7, here in 9 comparisons, were the seeds drawn anew.
 #include <gtest/gtest.h>
 
-#include "engine/state/packing.h"
 #include "tests/physics/laboratory.h"
 
 namespace peclet::engine {
@@ -23,37 +22,21 @@ TEST_P(ImplicitSpheres, DiffuseAsTheNoiseSays) {
   constexpr std::size_t count = 4000;
   constexpr double thermal_energy = 0.01;
   const double x = GetParam();
-  Experiment experiment;
-  experiment.physics.viscosity = natural_viscosity;
-  experiment.physics.thermal_energy = thermal_energy;
-  experiment.radius.assign(count, 1.0);
-  const double edge = cube_edge(experiment.radius, 5e-4);
-  experiment.box = ShearedBox({edge, edge, edge}, 0);
-  experiment.timestep = x;  // m = zeta = 1
-  experiment.skin = 8;
-  experiment.solver_tolerance = 1e-3;
-  Laboratory laboratory(experiment);
-  place_randomly(laboratory.particles(), experiment.box, /*seed=*/4);
-  std::mt19937_64 generator(21);
-  laboratory.thermalise(generator);
-  laboratory.start();
-  const ParticleState& all = laboratory.particles();
-  const auto places = [&] {
-    std::vector<Vector3> result(count);
-    for (std::size_t i = 0; i < count; ++i) result[all.id[i]] = laboratory.unwrapped(i);
-    return result;
-  };
+  // m = zeta = 1
+  Laboratory laboratory =
+      single_spheres(count, thermal_energy, /*timestep=*/x, /*skin=*/8, /*solver_tolerance=*/1e-3);
+  const ParticleState& all = laboratory.system().particles;
   const auto steps = static_cast<int>(std::ceil(20 / x));
   for (int k = 0; k < steps; ++k) laboratory.step();
 
-  const std::vector<Vector3> origin = places();
+  const std::vector<Vector3> origin = unwrapped_places(laboratory);
   double velocities = 0, spins = 0;
   for (int k = 0; k < steps; ++k) laboratory.step();
   for (std::size_t i = 0; i < count; ++i) {
     velocities += dot(all.velocity[i], all.velocity[i]) / (3 * count);
     spins += all.inertia[i] * dot(all.angular_velocity[i], all.angular_velocity[i]) / (3 * count);
   }
-  const std::vector<Vector3> now = places();
+  const std::vector<Vector3> now = unwrapped_places(laboratory);
   double squares = 0;
   for (std::size_t i = 0; i < count; ++i) {
     squares += dot(now[i] - origin[i], now[i] - origin[i]) / (3 * count);

@@ -1,5 +1,7 @@
 #include "tests/physics/laboratory.h"
 
+#include "engine/state/packing.h"
+
 namespace peclet::engine {
 namespace {
 
@@ -42,6 +44,34 @@ void Laboratory::thermalise(std::mt19937_64& generator) {
     all.velocity.set(i, all.velocity[i] + vector(all.mass[i]));
     all.angular_velocity.set(i, all.angular_velocity[i] + vector(all.inertia[i]));
   }
+}
+
+Laboratory single_spheres(std::size_t count, double thermal_energy, double timestep, double skin,
+                          std::optional<double> solver_tolerance) {
+  Experiment experiment;
+  experiment.physics.viscosity = natural_viscosity;
+  experiment.physics.thermal_energy = thermal_energy;
+  experiment.radius.assign(count, 1.0);
+  const double edge = cube_edge(experiment.radius, 5e-4);
+  experiment.box = ShearedBox({edge, edge, edge}, 0);
+  experiment.timestep = timestep;
+  experiment.skin = skin;
+  experiment.solver_tolerance = solver_tolerance;
+  Laboratory laboratory(experiment);
+  place_randomly(laboratory.particles(), experiment.box, /*seed=*/4);
+  std::mt19937_64 generator(21);
+  laboratory.thermalise(generator);
+  laboratory.start();
+  return laboratory;
+}
+
+std::vector<Vector3> unwrapped_places(const Laboratory& laboratory) {
+  const ParticleState& particles = laboratory.system().particles;
+  std::vector<Vector3> places(particles.count());
+  for (std::size_t i = 0; i < particles.count(); ++i) {
+    places[particles.id[i]] = laboratory.unwrapped(i);
+  }
+  return places;
 }
 
 }  // namespace peclet::engine

@@ -57,4 +57,12 @@ class Laboratory {
   std::unique_ptr<Integrator> integrator_;
 };
 
+// Spheres of radius 1 at a volume fraction of 5e-4 that feel drag and its noise alone, started from thermal
+// velocities.
+Laboratory single_spheres(std::size_t count, double thermal_energy, double timestep, double skin,
+                          std::optional<double> solver_tolerance = {});
+
+// Of every particle, by id: spheres change their places in memory.
+std::vector<Vector3> unwrapped_places(const Laboratory& laboratory);
+
 }  // namespace peclet::engine

@@ -6,7 +6,6 @@
 // anew.
 #include <gtest/gtest.h>
 
-#include "engine/state/packing.h"
 #include "tests/physics/estimates.h"
 #include "tests/physics/laboratory.h"
 
@@ -15,36 +14,9 @@ namespace {
 
 constexpr double largest_deviation = 5;
 
-// Spheres of radius 1 at a volume fraction of 5e-4 that feel drag and its noise alone.
-Laboratory single_spheres(std::size_t count, double thermal_energy, double timestep, double skin) {
-  Experiment experiment;
-  experiment.physics.viscosity = natural_viscosity;
-  experiment.physics.thermal_energy = thermal_energy;
-  experiment.radius.assign(count, 1.0);
-  const double edge = cube_edge(experiment.radius, 5e-4);
-  experiment.box = ShearedBox({edge, edge, edge}, 0);
-  experiment.timestep = timestep;
-  experiment.skin = skin;
-  Laboratory laboratory(experiment);
-  place_randomly(laboratory.particles(), experiment.box, /*seed=*/4);
-  std::mt19937_64 generator(21);
-  laboratory.thermalise(generator);
-  laboratory.start();
-  return laboratory;
-}
-
-// By id: spheres change their places in memory.
-std::vector<Vector3> unwrapped_places(const Laboratory& laboratory, std::size_t count) {
-  std::vector<Vector3> places(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    places[laboratory.system().particles.id[i]] = laboratory.unwrapped(i);
-  }
-  return places;
-}
-
 // Mean of the squared displacement along one axis.
 double mean_square(const Laboratory& laboratory, const std::vector<Vector3>& origin) {
-  const std::vector<Vector3> now = unwrapped_places(laboratory, origin.size());
+  const std::vector<Vector3> now = unwrapped_places(laboratory);
   double sum = 0;
   for (std::size_t i = 0; i < origin.size(); ++i) {
     const Vector3 way = now[i] - origin[i];
@@ -61,7 +33,7 @@ double expected_mean_square(double thermal_energy, double time) {
 void expect_spreading(std::size_t count, double thermal_energy, double timestep, double skin,
                       const std::vector<double>& times) {
   Laboratory laboratory = single_spheres(count, thermal_energy, timestep, skin);
-  const std::vector<Vector3> origin = unwrapped_places(laboratory, count);
+  const std::vector<Vector3> origin = unwrapped_places(laboratory);
   const double relative_error = std::sqrt(2 / (3 * static_cast<double>(count)));
   std::uint64_t step = 0;
   for (const double time : times) {
@@ -109,7 +81,7 @@ TEST_P(LargeSteps, LeaveTheDiffusionCoefficientAlone) {
   const double expected =
       2 * thermal_energy * (window * x - (1 - x) * (1 - std::pow(1 - x, window)) / (1 - 0.5 * x));
   for (int k = 0; k < 40; ++k) {
-    const std::vector<Vector3> origin = unwrapped_places(laboratory, count);
+    const std::vector<Vector3> origin = unwrapped_places(laboratory);
     for (int step = 0; step < window; ++step) {
       laboratory.step();
     }

@@ -61,7 +61,10 @@ Json plain_result(const std::string& point, int seed, double viscosity, const st
           {"statistical_inefficiency", 1.5},
           {"largest_overlap", 0.001},
           {"gate",
-           {{"largest_stability_share", 0.4}, {"energy_imbalance", 2e-5}, {"half_step_difference", 1e-4}}},
+           {{"largest_stability_share", 0.4},
+            {"energy_imbalance", 2e-5},
+            {"half_step_difference", 1e-4},
+            {"solver", nullptr}}},
           {"cost", {{"cpu_seconds", 2.0}, {"wall_seconds", 4.0}}},
           {"final_state_sha256", sha256("state")},
           {"engine", plain_engine(identity)}};
