@@ -188,6 +188,19 @@ Duration Reading::duration(const std::string& pointer, const Physics& physics) c
   return duration;
 }
 
+// The method and what its defaults follow from it. Without lubrication explicit steps are bound by contacts
+// and drag alone, and cheaper.
+void fill_method(Json& document) {
+  Json& integrator = document["integrator"];
+  if (!integrator.contains("method")) {
+    integrator["method"] = document.contains("lubrication") ? "implicit" : "explicit";
+  }
+  Json& guard = document["guard"];
+  if (!guard.contains("largest_displacement")) {
+    guard["largest_displacement"] = integrator["method"] == "implicit" ? 0.3 : 0.05;
+  }
+}
+
 }  // namespace
 
 Scene read_scene(const Json& document, const std::string& file) {
@@ -195,6 +208,7 @@ Scene read_scene(const Json& document, const std::string& file) {
   scene.document = scene_keys().validate(document, file);
   const Json& filled = scene.document;
   const Reading reading(filled, file);
+  fill_method(scene.document);
 
   scene.particles = reading.particles();
   scene.volume_fraction = filled["volume_fraction"].get<double>();

@@ -165,14 +165,14 @@ Keys duration_keys(const std::string& pointer, const std::string& meaning, bool 
 Keys run_keys() {
   Keys keys = {
       with_default(block("/integrator", "How the equations of motion are solved."), Json::object()),
-      with_default(choice("/integrator/method",
-                          "explicit: velocity Verlet; implicit: steps that solve for the velocities.",
-                          {"explicit", "implicit"}),
-                   "explicit"),
+      choice("/integrator/method",
+             "explicit: velocity Verlet; implicit: steps that solve for the velocities. Unless given, "
+             "implicit with lubrication and explicit without.",
+             {"explicit", "implicit"}),
       {.pointer = "/integrator/timestep",
        .kind = KeyKind::number_or_auto,
        .meaning = "Time step; auto: half of the largest stable explicit one, or the implicit one whose error "
-                  "has been measured.",
+                  "has been measured, and at least 32 in the production window.",
        .unit = "time",
        .default_value = "auto",
        .minimum = 0,
@@ -201,9 +201,9 @@ Keys run_keys() {
                    Json::object()),
       with_default(positive("/guard/largest_overlap", "", "Overlap over the smaller radius of the pair."),
                    0.05),
-      with_default(positive("/guard/largest_displacement", "",
-                            "Displacement in one step, relative to the flow, over the smallest radius."),
-                   0.05),
+      positive("/guard/largest_displacement", "",
+               "Displacement in one step, relative to the flow, over the smallest radius; 0.05 with explicit "
+               "and 0.3 with implicit steps unless given."),
       with_default(positive("/guard/energy_imbalance", "",
                             "Energy that the finite step makes over the work of the flow; beyond it the "
                             "result has the warning timestep."),

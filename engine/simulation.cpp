@@ -27,9 +27,8 @@ constexpr double skin_of_explicit_steps = 0.03, skin_of_implicit_steps = 0.1;
 // Thousands of years of computing; step counters hold far more.
 constexpr double most_steps = 1e15;
 
-// Steps of the phase called `name`. Throws InputError when there are too many to count.
-std::uint64_t steps_of(const Duration& duration, const char* name, const Scene& scene, double timestep,
-                       const std::string& file) {
+// The time after which the first of the limits is reached.
+double time_of(const Duration& duration, const Scene& scene) {
   const Physics& physics = scene.physics;
   double time = duration.time;
   if (physics.shear_rate > 0) {
@@ -39,8 +38,14 @@ std::uint64_t steps_of(const Duration& duration, const char* name, const Scene& 
     const double a = scene.particles.reference_radius;
     time = std::min(time, duration.brownian_times * physics.viscosity * a * a * a / physics.thermal_energy);
   }
+  return time;
+}
+
+// Steps of the phase called `name`. Throws InputError when there are too many to count.
+std::uint64_t steps_of(const Duration& duration, const char* name, const Scene& scene, double timestep,
+                       const std::string& file) {
   // A duration that is a whole number of steps must not gain one by rounding.
-  const double steps = std::ceil(time / timestep * (1 - 1e-12));
+  const double steps = std::ceil(time_of(duration, scene) / timestep * (1 - 1e-12));
   if (!(steps <= most_steps)) {
     throw InputError(file, std::string("/duration/") + name, scene.document.at("duration").at(name).dump(),
                      fmt::format("must last at most {:g} steps of {:.4g}", most_steps, timestep));
@@ -87,6 +92,10 @@ const char* name_of(Ending::Cause cause) {
 Schedule make_schedule(const Scene& scene, const std::string& file) {
   Schedule schedule;
   schedule.timestep = resolved_timestep(scene, file);
+  if (!scene.timestep) {
+    // A short window is divided into as many steps as it needs.
+    schedule.timestep = std::min(schedule.timestep, time_of(scene.production, scene) / count_of_blocks);
+  }
   schedule.equilibration = steps_of(scene.equilibration, "equilibration", scene, schedule.timestep, file);
   schedule.production = steps_of(scene.production, "production", scene, schedule.timestep, file);
   if (schedule.production < count_of_blocks) {

@@ -23,6 +23,7 @@ Json reference_document(std::size_t count) {
     "flow": { "shear_rate": 0.045 },
     "contact": { "normal_stiffness": 1e4 },
     "lubrication": { "form": "kim-karrila", "inner_gap": 1e-3, "outer_gap": 0.05 },
+    "integrator": { "method": "explicit" },
     "duration": { "equilibration": { "strain": 1 }, "production": { "strain": 1000 } } })");
   scene["particles"]["count"] = count;
   return scene;

@@ -82,6 +82,17 @@ double stable_step(const PairRates& rates) {
   return 4 / (l + std::sqrt(l * l + 4 * w2));
 }
 
+// drag / stiffness of the repulsion where lubrication ends and the drag of single spheres alone holds it up.
+double repulsion_time_beyond_lubrication(const Physics& physics, double first, double second) {
+  const double sum = first + second;
+  const double length = physics.repulsion->relative_length * sum;
+  const double distance = 0.5 * physics.lubrication->outer_gap * sum;
+  const double drag_first = translational_drag(physics.viscosity, first);
+  const double drag_second = translational_drag(physics.viscosity, second);
+  const double stiffness = physics.repulsion->strength / (length * length) * std::exp(-distance / length);
+  return drag_first * drag_second / (drag_first + drag_second) / stiffness;
+}
+
 }  // namespace
 
 PairRates stiffest_pair(const Scene& scene) {
@@ -103,7 +114,7 @@ double largest_timestep(const Scene& scene) { return stable_step(stiffest_pair(s
 
 double automatic_implicit_timestep(const Scene& scene) {
   constexpr double strain = 0.005, brownian_times = 0.0017;
-  constexpr double contact_times_with_friction = 2, contact_times = 5;
+  constexpr double contact_times_with_friction = 2, contact_times = 5, repulsion_times = 20;
   const Physics& physics = scene.physics;
   double step = std::numeric_limits<double>::infinity();
   double smallest = scene.particles.species.front().radius, largest = smallest;
@@ -124,6 +135,14 @@ double automatic_implicit_timestep(const Scene& scene) {
     const bool friction = physics.contact && physics.contact->friction > 0;
     step = std::min(step, (friction ? contact_times_with_friction : contact_times) * rates.damping /
                               rates.frequency_squared);
+  }
+  if (physics.lubrication && physics.repulsion) {
+    for (const Species& first : scene.particles.species) {
+      for (const Species& second : scene.particles.species) {
+        step = std::min(
+            step, repulsion_times * repulsion_time_beyond_lubrication(physics, first.radius, second.radius));
+      }
+    }
   }
   return step;
 }

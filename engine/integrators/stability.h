@@ -29,8 +29,9 @@ double largest_timestep(const Scene& scene);
 //   together pass through the gaps of lubrication in many steps, and inertia is of first order only;
 //   0.0017 eta a^3 / kT, a the smallest radius: so does a displacement by the noise;
 //   2 or, without friction, 5 times the time X_A / k in which lubrication at the inner gap holds up the
-//   stiffest contact or repulsion.
-// Without flow and temperature the last alone; infinite where nothing sets a time.
+//   stiffest contact or repulsion;
+//   20 times drag / k of the repulsion at the outer gap, where only the drag of single spheres holds it up.
+// Without flow and temperature the last two alone; infinite where nothing sets a time.
 double automatic_implicit_timestep(const Scene& scene);
 
 // A given implicit step may be that many times the automatic one. Errors of larger steps have a flag of their

@@ -52,6 +52,7 @@ def engine_result(engine, case, strain, folder):
         "fluid": {"viscosity": VISCOSITY},
         "contact": {"normal_stiffness": 1e4},
         "lubrication": {"form": "kim-karrila", "inner_gap": 1e-3, "outer_gap": 0.05},
+        "integrator": {"method": "explicit"},
         "duration": {"equilibration": {"strain": strain / 2}, "production": {"strain": strain / 2}},
         **DRIVES[case],
     }

@@ -178,6 +178,16 @@ TEST(ImplicitTimestep, IsTheLeastOfThreeTimes) {
               2 * with_friction.damping / with_friction.frequency_squared, 1e-15);
 }
 
+// Springs of strength / kappa^2 exp(-h / kappa) with kappa = 1 at h = outer gap (a_i + a_j) / 2 = 0.1,
+// between two of the small spheres, whose drags 6 pi eta a are in series.
+TEST(ImplicitTimestep, IsBoundByARepulsionBeyondLubrication) {
+  const Scene scene = scene_with(Json::parse(R"({
+    "contact": {"friction": null, "rolling_stiffness": null, "rolling_friction": null},
+    "repulsion": {"strength": 1e5, "relative_length": 0.5}})"));
+  const double drag = 0.5 * 6 * std::numbers::pi * 0.1, stiffness = 1e5 * std::exp(-0.1);
+  EXPECT_NEAR(automatic_timestep(scene) / (20 * drag / stiffness), 1, 1e-12);
+}
+
 TEST(ImplicitTimestep, IsRefusedBeyondFourTimesTheAutomaticOne) {
   const double automatic = automatic_timestep(scene_with(Json::object()));
   const auto resolved = [&](double factor) {

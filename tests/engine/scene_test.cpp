@@ -42,6 +42,25 @@ TEST(Scene, WhatIsAbsentIsNotComputed) {
   EXPECT_EQ(scene.guard.half_step_difference, 0.03);
 }
 
+// Implicit steps where there is lubrication, and the room that they need.
+TEST(Scene, LubricationDecidesTheMethod) {
+  const Json lubrication = {{"form", "kim-karrila"}};
+  const Scene without = scene_with(Json::object());
+  EXPECT_EQ(without.method, Method::explicit_steps);
+  EXPECT_EQ(without.document["integrator"]["method"], "explicit");
+  const Scene with = scene_with({{"lubrication", lubrication}});
+  EXPECT_EQ(with.method, Method::implicit_steps);
+  EXPECT_EQ(with.document["integrator"]["method"], "implicit");
+  EXPECT_EQ(with.guard.largest_displacement, 0.3);
+  EXPECT_EQ(scene_with({{"integrator", {{"method", "implicit"}}}}).method, Method::implicit_steps);
+  const Scene given = scene_with({{"lubrication", lubrication},
+                                  {"integrator", {{"method", "explicit"}}},
+                                  {"guard", {{"largest_displacement", 0.1}}}});
+  EXPECT_EQ(given.method, Method::explicit_steps);
+  EXPECT_EQ(given.guard.largest_displacement, 0.1);
+  EXPECT_EQ(scene_with({{"integrator", {{"method", "explicit"}}}}).guard.largest_displacement, 0.05);
+}
+
 TEST(Scene, DefaultsThatFollowFromOtherKeys) {
   const Scene scene =
       scene_with({{"contact", {{"normal_stiffness", 7e3}, {"friction", 0.4}, {"rolling_stiffness", 10}}}});

@@ -19,7 +19,7 @@ inline Json small_scene() {
                 "rolling_stiffness": 700, "rolling_friction": 0.2},
     "lubrication": {"form": "kim-karrila", "inner_gap": 0.03, "outer_gap": 0.1},
     "repulsion": {"form": "exponential", "strength": 0.1, "relative_length": 0.01, "cutoff_lengths": 5},
-    "integrator": {"timestep": 0.002},
+    "integrator": {"method": "explicit", "timestep": 0.002},
     "guard": {"largest_overlap": 0.2, "largest_displacement": 0.2},
     "duration": {"equilibration": {"time": 0.2}, "production": {"time": 0.64}}})");
 }

@@ -26,6 +26,7 @@ Json published_scene() {
     "flow": {"shear_rate": 0.009},
     "contact": {"normal_stiffness": 1e4},
     "lubrication": {"form": "kim-karrila"},
+    "integrator": {"method": "explicit"},
     "duration": {"equilibration": {"strain": 2}, "production": {"strain": 5}}})");
 }
 

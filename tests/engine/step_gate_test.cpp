@@ -19,6 +19,7 @@ Json published(double volume_fraction) {
     "flow": {"shear_rate": 0.045},
     "contact": {"normal_stiffness": 1e4},
     "lubrication": {"form": "kim-karrila"},
+    "integrator": {"method": "explicit"},
     "duration": {"equilibration": {"strain": 0}, "production": {"strain": 1}}})");
   scene["volume_fraction"] = volume_fraction;
   return scene;
