@@ -15,7 +15,7 @@ bool is_closed(const std::vector<std::optional<Outcome>>& outcomes, int seeds) {
 
 // Not within it either: an interval that does not exist, and one around a mean of 0.
 bool is_within_tolerance(const Look& look, const Target& target) {
-  return look.half_width / std::abs(look.estimate.mean) <= target.relative_tolerance;
+  return relative_width(look) <= target.relative_tolerance;
 }
 
 Verdict judge(const Look& look, const Target& target, int minimum, int maximum) {
@@ -47,6 +47,10 @@ Look look_at(std::span<const std::optional<Outcome>> cohort, const Target& targe
 }
 
 }  // namespace
+
+double relative_width(const Look& look) {
+  return look.controlled_half_width / std::abs(look.controlled.mean);
+}
 
 std::vector<int> look_schedule(int minimum, int maximum) {
   std::vector<int> schedule;

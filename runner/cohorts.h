@@ -29,16 +29,21 @@ enum class Verdict {
   failed                  // fewer than two values at the maximum or every seed of the first cohort lost
 };
 
-// One look at a closed cohort.
+// One look at a closed cohort. The controlled estimate decides: of value + control, the control variate with
+// the coefficient -1 that was fixed before any value was seen, so that it is as unbiased as the plain one and
+// its interval as honest. Without a control variate both are the same.
 struct Look {
   int seeds = 0;  // n
   int lost = 0;
   Estimate estimate;      // of the observable
   double half_width = 0;  // Student-t
-  Estimate controlled;    // of value + control (the control variate with coefficient -1)
+  Estimate controlled;    // of value + control
   double controlled_half_width = 0;
   Verdict verdict = Verdict::more;
 };
+
+// Half-width over |mean| of the estimate that decides; NaN where there is no interval.
+double relative_width(const Look& look);
 
 // Numbers of seeds at which a point is looked at: minimum, then ceil(1.25 n) each, the last one is maximum.
 std::vector<int> look_schedule(int minimum, int maximum);

@@ -14,12 +14,14 @@ struct Aggregate {
 
 // Two passes over the values, so that their spread does not drown in a large mean.
 std::map<std::int64_t, Aggregate> read_aggregates(Connection& connection) {
-  Statement query(connection,
-                  "SELECT r.point_id, sum(state = 'queued'), sum(state = 'running'), sum(state = 'done'),"
-                  " sum(state = 'failed'), sum(state = 'quarantined'), total(cpu_seconds), count(value),"
-                  " mean, sum((value - mean) * (value - mean))"
-                  " FROM realisation r JOIN (SELECT point_id, avg(value) AS mean FROM realisation GROUP BY"
-                  " point_id) USING (point_id) GROUP BY r.point_id");
+  Statement query(
+      connection,
+      "SELECT r.point_id, sum(state = 'queued'), sum(state = 'running'), sum(state = 'done'),"
+      " sum(state = 'failed'), sum(state = 'quarantined'), total(cpu_seconds), count(controlled),"
+      " mean, sum((controlled - mean) * (controlled - mean))"
+      " FROM (SELECT *, value + coalesce(control, 0) AS controlled FROM realisation) r"
+      " JOIN (SELECT point_id, avg(value + coalesce(control, 0)) AS mean FROM realisation GROUP BY"
+      " point_id) USING (point_id) GROUP BY r.point_id");
   std::map<std::int64_t, Aggregate> aggregates;
   while (query.step()) {
     Aggregate& aggregate = aggregates[query.integer(0)];

@@ -12,7 +12,8 @@ namespace peclet::runner {
 struct PointSummary {
   PointRecord point;
   StateCounts counts;
-  Estimate so_far;  // over all seeds that have ended with a value, in whatever order they came
+  Estimate
+      so_far;  // of value + control, over all seeds that have ended with a value, in whatever order they came
   std::map<std::string, int> losses;  // seeds by cause
   std::vector<Look> looks;            // for the present target
   bool decided = false;

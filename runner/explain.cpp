@@ -39,8 +39,6 @@ std::vector<PointSummary> selected(std::vector<PointSummary> points, const std::
                   fmt::join(labels, ", "), more));
 }
 
-double relative_width(const Look& look) { return look.half_width / std::abs(look.estimate.mean); }
-
 std::string tolerance_text(const Target& target) {
   return fmt::format("{:g} %", 100 * target.relative_tolerance);
 }
@@ -109,15 +107,15 @@ std::string looks_table(const std::vector<Look>& looks, const Target& target) {
   if (looks.empty()) return "  no look yet\n";
   TextTable table;
   for (const char* const title :
-       {"seeds", "lost", "mean ± half-width", "relative", "tolerance", "controlled"}) {
+       {"seeds", "lost", "mean ± half-width", "relative", "tolerance", "uncontrolled"}) {
     table.add_column(title);
   }
   table.add_column("verdict", TextTable::Align::left);
   for (const Look& look : looks) {
     table.add_row({fmt::format("{}", look.seeds), fmt::format("{}", look.lost),
-                   with_error(look.estimate.mean, look.half_width), percent(relative_width(look)),
-                   tolerance_text(target), with_error(look.controlled.mean, look.controlled_half_width),
-                   to_string(look.verdict)});
+                   with_error(look.controlled.mean, look.controlled_half_width),
+                   percent(relative_width(look)), tolerance_text(target),
+                   with_error(look.estimate.mean, look.half_width), to_string(look.verdict)});
   }
   return table.text("  ");
 }

@@ -36,8 +36,7 @@ int expected_seeds(const std::vector<Look>& looks, const Target& target, int min
   const std::vector<int> schedule = look_schedule(minimum, maximum);
   if (looks.empty()) return schedule.front();
   const Look& last = looks.back();
-  const double tolerated = target.relative_tolerance * std::abs(last.estimate.mean);
-  const double ratio = last.half_width / tolerated;
+  const double ratio = relative_width(last) / target.relative_tolerance;
   const double wanted = std::isfinite(ratio) ? last.seeds * ratio * ratio * factor : maximum;
   const auto later = std::upper_bound(schedule.begin(), schedule.end(), last.seeds);
   const auto enough = std::find_if(later, schedule.end(), [&](int seeds) { return seeds >= wanted; });

@@ -13,11 +13,10 @@
 namespace peclet::runner {
 namespace {
 
-std::string relative_width(double half_width, double mean) { return percent(half_width / std::abs(mean)); }
-
-std::string interval(double mean, double half_width) {
-  if (!std::isfinite(half_width)) return "-";
-  return fmt::format("{} ({})", with_error(mean, half_width), relative_width(half_width, mean));
+std::string interval(const Look& look) {
+  if (!std::isfinite(look.controlled_half_width)) return "-";
+  return fmt::format("{} ({})", with_error(look.controlled.mean, look.controlled_half_width),
+                     percent(relative_width(look)));
 }
 
 // Without Brownian motion the control variate is zero, and its column would only repeat another.
@@ -36,8 +35,8 @@ std::vector<std::string> cells(const PointSummary& point, bool with_control) {
     if (with_control) cells.emplace_back("-");
   } else {
     const Look& look = point.looks.back();
-    cells.push_back(interval(look.estimate.mean, look.half_width));
-    if (with_control) cells.push_back(with_error(look.controlled.mean, look.controlled_half_width));
+    cells.push_back(interval(look));
+    if (with_control) cells.push_back(with_error(look.estimate.mean, look.half_width));
   }
   cells.push_back(verdict_text(point));
   return cells;
@@ -55,7 +54,7 @@ std::string legend(const CampaignStatus& status, bool with_control) {
       "so far: mean ± standard error of all seeds that have ended; look: mean ± half-width of the\n"
       "{:g} % interval at the last look{}\n",
       100 * status.campaign.target.target.confidence,
-      with_control ? "; controlled: the same with the control variate" : "");
+      with_control ? "; both with the control variate; uncontrolled: the look without it" : "");
 }
 
 // "3 capped, 2 open"
@@ -104,7 +103,7 @@ std::string status_table(const CampaignStatus& status) {
   TextTable table;
   points.add_to(table);
   for (const char* const title : {"seeds", "so far", "look"}) table.add_column(title);
-  if (with_control) table.add_column("controlled");
+  if (with_control) table.add_column("uncontrolled");
   table.add_column("verdict", TextTable::Align::left);
   for (std::size_t i = 0; i < labels.size(); ++i) {
     std::vector<std::string> row = points.cells(i);

@@ -122,6 +122,22 @@ TEST(Cohorts, TheControlVariateIsAddedSeedBySeed) {
   EXPECT_DOUBLE_EQ(look.estimate.standard_error, 0.25 / 3);
 }
 
+// Student's interval of ten values 10 +- s at 95 % is 2.262 s / 3: s = 1 gives 7.5 %, s = 0.1 0.75 %.
+TEST(Cohorts, TheControlledEstimateDecides) {
+  Outcomes narrow, wide;
+  for (int seed = 0; seed < 10; ++seed) {
+    const double sign = seed % 2 == 0 ? 1 : -1;
+    narrow.emplace_back(value(10 + sign, -0.9 * sign));
+    wide.emplace_back(value(10 + 0.1 * sign, 0.9 * sign));
+  }
+  const Look converged = replay_looks(narrow, five_percent, 10, 20).at(0);
+  EXPECT_EQ(converged.verdict, Verdict::converged);
+  EXPECT_NEAR(relative_width(converged), 0.00754, 1e-5);
+  const Look open = replay_looks(wide, five_percent, 10, 20).at(0);
+  EXPECT_EQ(open.verdict, Verdict::more);
+  EXPECT_NEAR(relative_width(open), 0.0754, 1e-4);
+}
+
 TEST(Cohorts, OutcomesBeyondTheDecidingLookChangeNothing) {
   const std::vector<Look> few = replay_looks(alternating(10, 10, 0.3), five_percent, 10, 100);
   Outcomes more = alternating(10, 10, 0.3);

@@ -12,8 +12,8 @@ const Target ten_percent{"relative_viscosity", 0.1, 0.95};
 Look look(int seeds, double mean, double half_width) {
   Look made;
   made.seeds = seeds;
-  made.estimate = {seeds, mean, half_width / 2};
-  made.half_width = half_width;
+  made.controlled = {seeds, mean, half_width / 2};
+  made.controlled_half_width = half_width;
   return made;
 }
 
