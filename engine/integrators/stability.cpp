@@ -113,9 +113,10 @@ PairRates stiffest_pair(const Scene& scene) {
 double largest_timestep(const Scene& scene) { return stable_step(stiffest_pair(scene)); }
 
 double automatic_implicit_timestep(const Scene& scene) {
-  constexpr double strain = 0.005, brownian_times = 0.0017;
-  constexpr double contact_times_with_friction = 2, contact_times = 5, repulsion_times = 20;
   const Physics& physics = scene.physics;
+  const bool friction = physics.contact && physics.contact->friction > 0;
+  const double strain = friction ? 0.0025 : 0.005, contact_times = friction ? 2 : 5;
+  constexpr double brownian_times = 0.0017, repulsion_times = 20;
   double step = std::numeric_limits<double>::infinity();
   double smallest = scene.particles.species.front().radius, largest = smallest;
   for (const Species& species : scene.particles.species) {
@@ -132,9 +133,7 @@ double automatic_implicit_timestep(const Scene& scene) {
         std::min(step, brownian_times * physics.viscosity * std::pow(smallest, 3) / physics.thermal_energy);
   }
   if (const PairRates rates = stiffest_pair(scene); rates.frequency_squared > 0) {
-    const bool friction = physics.contact && physics.contact->friction > 0;
-    step = std::min(step, (friction ? contact_times_with_friction : contact_times) * rates.damping /
-                              rates.frequency_squared);
+    step = std::min(step, contact_times * rates.damping / rates.frequency_squared);
   }
   if (physics.lubrication && physics.repulsion) {
     for (const Species& first : scene.particles.species) {

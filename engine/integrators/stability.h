@@ -25,8 +25,9 @@ constexpr double packing_factor = 2.8;
 double largest_timestep(const Scene& scene);
 
 // Of implicit steps. The least of
-//   0.005 / (rate (1 + 2 St)), St = rho a^2 rate / eta with the largest radius: pairs that the flow presses
-//   together pass through the gaps of lubrication in many steps, and inertia is of first order only;
+//   0.005 or, with friction, 0.0025 / (rate (1 + 2 St)), St = rho a^2 rate / eta with the largest radius:
+//   pairs that the flow presses together pass through the gaps of lubrication in many steps; sliding contacts
+//   and inertia are of first order only;
 //   0.0017 eta a^3 / kT, a the smallest radius: so does a displacement by the noise;
 //   2 or, without friction, 5 times the time X_A / k in which lubrication at the inner gap holds up the
 //   stiffest contact or repulsion;

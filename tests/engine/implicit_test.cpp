@@ -153,12 +153,18 @@ Scene scene_with(const Json& patch) {
   return read_scene(document, "scene.json");
 }
 
-// 0.005 / rate (1 + 2 St); 0.0017 eta a^3 / kT; and the contact, whose rates are those of the explicit step's
-// bound.
+// 0.005 / rate (1 + 2 St), or half of that with friction; 0.0017 eta a^3 / kT; and the contact, whose rates
+// are those of the explicit step's bound.
 TEST(ImplicitTimestep, IsTheLeastOfThreeTimes) {
   const Json soft = {{"contact", {{"normal_stiffness", 1e-3}, {"friction", 0.5}}}, {"repulsion", nullptr}};
   const double stokes = 0.1 * 1.4 * 1.4 * 2 / 0.1;
-  EXPECT_NEAR(automatic_timestep(scene_with(soft)), 0.005 / 2 / (1 + 2 * stokes), 1e-12);
+  EXPECT_NEAR(automatic_timestep(scene_with(soft)), 0.0025 / 2 / (1 + 2 * stokes), 1e-12);
+  Json smooth = soft;
+  smooth["contact"] = {{"normal_stiffness", 1e-3},
+                       {"rolling_stiffness", nullptr},
+                       {"friction", nullptr},
+                       {"rolling_friction", nullptr}};
+  EXPECT_NEAR(automatic_timestep(scene_with(smooth)), 0.005 / 2 / (1 + 2 * stokes), 1e-12);
   Json warm = soft;
   warm["fluid"] = {{"thermal_energy", 5}};
   EXPECT_NEAR(automatic_timestep(scene_with(warm)), 0.0017 * 0.1 / 5, 1e-12);
