@@ -7,6 +7,7 @@
 
 #include "contract/input_error.h"
 #include "engine/integrators/stability.h"
+#include "engine/integrators/velocity_verlet.h"
 #include "engine/simulation.h"
 #include "tests/engine/dense_suspension.h"
 #include "tests/engine/small_scene.h"
@@ -91,17 +92,23 @@ TEST(Implicit, IsOfSecondOrderForAnEncounter) {
 
 // A sheared packing with friction, from the same places: the stress that explicit steps of a five hundredth
 // give.
-class AgainstExplicit : public testing::TestWithParam<double> {};
+class AgainstExplicit : public testing::TestWithParam<double> {
+ protected:
+  static Json document() {
+    Json document = small_scene({{"particles", {{"count", 200}}}, {"integrator", {{"timestep", "auto"}}}});
+    document["fluid"].erase("thermal_energy");
+    document.erase("repulsion");
+    document["flow"]["shear_rate"] = 0.045;
+    document["lubrication"]["inner_gap"] = 1e-3;
+    document["contact"] = {{"normal_stiffness", 1e4}};
+    if (GetParam() > 0) document["contact"]["friction"] = GetParam();
+    document["duration"] = {{"equilibration", {{"strain", 0.05}}}, {"production", {{"strain", 0.2}}}};
+    return document;
+  }
+};
 INSTANTIATE_TEST_SUITE_P(Frictions, AgainstExplicit, testing::Values(0.0, 0.5));
 TEST_P(AgainstExplicit, TheStressIsTheSame) {
-  Json document = small_scene({{"particles", {{"count", 200}}}, {"integrator", {{"timestep", "auto"}}}});
-  document["fluid"].erase("thermal_energy");
-  document.erase("repulsion");
-  document["flow"]["shear_rate"] = 0.045;
-  document["lubrication"]["inner_gap"] = 1e-3;
-  document["contact"] = {{"normal_stiffness", 1e4}};
-  if (GetParam() > 0) document["contact"]["friction"] = GetParam();
-  document["duration"] = {{"equilibration", {{"strain", 0.05}}}, {"production", {{"strain", 0.2}}}};
+  Json document = this->document();
   const auto stress = [&](const char* method) {
     document["integrator"]["method"] = method;
     const Scene scene = read_scene(document, "scene.json");
@@ -117,6 +124,51 @@ TEST_P(AgainstExplicit, TheStressIsTheSame) {
     return sum / steps;
   };
   EXPECT_NEAR(stress("implicit") / stress("explicit"), 1, 0.01);
+}
+
+// Sum over terms of sigma_xy, the mean of all steps up to a strain of `strain`.
+double mean_stress(Integrator& integrator, System& system, double strain) {
+  const auto steps = std::lround(strain / (std::abs(system.box.shear_rate()) * integrator.timestep()));
+  double sum = 0;
+  for (long step = 0; step < steps; ++step) {
+    const StepReport report = integrator.advance(system);
+    EXPECT_LT(report.largest_displacement, 0.05);
+    for (const SymmetricTensor& term : report.sums.stress) sum += term.xy;
+  }
+  return sum / static_cast<double>(steps);
+}
+
+// The flow turns round at once: contacts that it had closed open, and the stress changes its sign and most of
+// its size.
+TEST_P(AgainstExplicit, TheStressAfterAReversalIsTheSame) {
+  const Scene scene = read_scene(document(), "scene.json");
+  Simulation simulation(scene, {automatic_timestep(scene), 0, 1000}, 4, 1, "scene.json");
+  simulation.start();
+  ASSERT_FALSE(simulation.advance(400));
+  System reversed = simulation.system();
+  const ShearedBox& box = reversed.box;
+  const double rate = scene.physics.shear_rate;
+  reversed.box = ShearedBox(box.lengths(), -rate, box.tilt());
+  reversed.step = 0;
+  ParticleState& particles = reversed.particles;
+  for (std::size_t i = 0; i < particles.count(); ++i) {
+    particles.velocity.add(i, {-2 * rate * particles.position[i].y, 0, 0});
+    particles.angular_velocity.add(i, {0, 0, rate});
+  }
+  Physics physics = scene.physics;
+  physics.shear_rate = -rate;
+  const auto stress = [&](auto& integrator, double strain) {
+    System system = reversed;
+    integrator.start(system);
+    return mean_stress(integrator, system, strain);
+  };
+  for (const double strain : {0.02, 0.1}) {
+    VelocityVerlet small(ForceField(physics, particles, 1.5e-4, 1, 1), particles, 1.5e-4);
+    Implicit large(physics, particles, automatic_timestep(scene), scene.solver_tolerance, 1, 1);
+    const double expected = stress(small, strain);
+    EXPECT_LT(expected, 0);
+    EXPECT_NEAR(stress(large, strain) / expected, 1, 0.01) << strain;
+  }
 }
 
 TEST(Implicit, SaysWhatItsEquationsAreLeftWith) {
