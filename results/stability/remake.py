@@ -1,0 +1,185 @@
+#!/usr/bin/python3
+"""remake.py BIN [FOLDER] [--quick] [--panel NAME]
+
+Runs the cells of the stability map with the programs in BIN, keeps their campaigns in FOLDER (a second call goes on with what is
+there), and writes table.csv and map.png beside this script; with --quick or --panel into FOLDER. Fails where a cell is biased and no
+realisation says so.
+"""
+import argparse
+import collections
+import csv
+import math
+import os
+import subprocess
+import sys
+import tempfile
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(HERE))
+from campaigns import Program, controlled_viscosity, estimate, merged  # noqa: E402
+
+BASE = {
+    "particles": {"count": 100, "density": 0.1,
+                  "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}]},
+    "volume_fraction": 0.5,
+    "fluid": {"viscosity": 0.1},
+    "flow": {"shear_rate": 0.045},
+    "contact": {"normal_stiffness": 1e4},
+    "lubrication": {"form": "kim-karrila", "inner_gap": 1e-3, "outer_gap": 0.05},
+    "duration": {"equilibration": {"strain": 0.5}, "production": {"strain": 0.75}},
+}
+# Steps of each column: explicit ones over the largest stable step of the scene, implicit ones over the automatic one.
+EXPLICIT, IMPLICIT = (0.5, 0.999, 2), (0.25, 1, 2, 3.99, 8)
+
+
+def stiffness(k):
+    return {"contact": {"normal_stiffness": k}}
+
+
+def friction(mu):
+    return {"contact": {"friction": mu}}
+
+
+def at_peclet(number):
+    return {"flow": None, "peclet": number, "limits": {"shear_rate": 0.045, "thermal_energy": 0.017},
+            "duration": {"equilibration": {"strain": 0.5, "brownian_times": 10}, "production": {"strain": 2, "brownian_times": 20}}}
+
+
+def large_spheres(ratio):
+    # three large spheres for ratio 7 and equal volumes for the others
+    small = 0.5 if ratio < 7 else 0.22
+    return {"particles": {"count": 300, "species": [{"radius": 1.0, "volume_share": small}, {"radius": ratio, "volume_share": 1 - small}]}}
+
+
+def repulsion(strength, length):
+    return {"repulsion": {"form": "exponential", "strength": strength, "relative_length": length, "cutoff_lengths": 5}}
+
+
+STARTUP = {"duration": {"equilibration": {"strain": 0}, "production": {"strain": 0.75}}}
+PANELS = {
+    "stiffness and volume fraction": [
+        (f"k {k:g}, phi {phi:g}", {**stiffness(k), "volume_fraction": phi}, 4)
+        for k in (1e3, 1e4, 1e5) for phi in (0.3, 0.5, 0.6, 0.63, 0.66)],
+    "friction": [
+        (f"mu {mu:g}, phi {phi:g}", {**friction(mu), "volume_fraction": phi}, 4)
+        for mu in (0.1, 0.5, 1, 10) for phi in (0.4, 0.5, 0.55, 0.6)],
+    "gaps": [
+        (f"gaps {inner:g} to {outer:g}", {"lubrication": {"inner_gap": inner, "outer_gap": outer}}, 3)
+        for inner, outer in ((1e-2, 0.05), (1e-4, 0.05), (1e-3, 0.2), (1e-3, 0.5))],
+    "sizes": [(f"radii 1 : {ratio:g}", large_spheres(ratio), 2) for ratio in (1, 2, 4, 7)],
+    "small boxes": [(f"N {count}", {"particles": {"count": count}}, 8) for count in (6, 8, 12, 20, 40)],
+    "start-up": [
+        ("mu 0", STARTUP, 8), ("mu 1", merged(STARTUP, friction(1)), 8), ("phi 0.62", merged(STARTUP, {"volume_fraction": 0.62}), 8),
+        ("A 1, kappa 0.01", merged(STARTUP, repulsion(1, 0.01)), 8), ("A 100, kappa 0.01", merged(STARTUP, repulsion(100, 0.01)), 8),
+        ("A 1, kappa 0.05", merged(STARTUP, repulsion(1, 0.05)), 8), ("A 100, kappa 0.05", merged(STARTUP, repulsion(100, 0.05)), 8)],
+    "inertia": [(f"St {stokes:g}", {"particles": {"density": 0.1 * stokes / 0.045}}, 4) for stokes in (0.001, 0.01, 0.1, 1, 10)],
+    "Peclet number": [
+        (f"Pe {pe:g}, phi {phi:g}", {**at_peclet(pe), "volume_fraction": phi}, 12) for phi in (0.3, 0.5) for pe in (0.1, 1, 10, 100, 1e4)],
+    "Peclet number and friction": [(f"Pe {pe:g}, mu 1", merged(at_peclet(pe), friction(1)), 12) for pe in (1, 100)],
+}
+QUICK = {"stiffness and volume fraction": 4, "start-up": 2}
+COLUMNS = ["panel", "case", "method", "step", "timestep", "verdict", "bias_percent", "bias_error_percent", "flags", "causes", "seeds"]
+CAUSES_OF_JAMS = {"overlap", "packing"}
+
+
+def integrators(program, scene):
+    """Every column: method, factor and integrator block, or None with what was answered where the step is refused."""
+    automatic = {}
+    for method, factor_of_auto in (("explicit", 0.5), ("implicit", 1)):
+        automatic[method] = program.derived(merged(scene, {"integrator": {"method": method}}))["timestep"] / factor_of_auto
+    for method, factors in (("explicit", EXPLICIT), ("implicit", IMPLICIT)):
+        for factor in factors:
+            block = {"method": method, "timestep": factor * automatic[method]}
+            refused = program.derived(merged(scene, {"integrator": block})).get("refused")
+            yield method, factor, block, refused
+
+
+def verdict_of(bias, error, values, causes):
+    """What a cell is. A bias counts from 3 % and three standard errors on."""
+    lost = sum(causes.values())
+    if lost > len(values):
+        cause = causes.most_common(1)[0][0]
+        return "jammed" if cause in CAUSES_OF_JAMS else "blown up"
+    if bias is None:
+        return "no reference"
+    return "biased" if abs(bias) > max(3, 3 * error) else "ok"
+
+
+def rows_of(name, case, program):
+    label, patch, seeds = case
+    scene = merged(BASE, patch)
+    columns = list(integrators(program, scene))
+    identifier = "".join(c if c.isalnum() or c in ".-" else "-" for c in f"{name} {label}")
+    points = program.run(identifier, scene, [{"/integrator": block} for _, _, block, refused in columns if not refused], seeds)
+    of_block = {(p["settings"]["/integrator"]["method"], p["settings"]["/integrator"]["timestep"]): p["realisations"] for p in points}
+    cells = []
+    for method, factor, block, refused in columns:
+        realisations = [] if refused else of_block[method, block["timestep"]]
+        cells.append({
+            "panel": name, "case": label, "method": method, "step": factor, "timestep": block["timestep"], "seeds": len(realisations),
+            "values": {r["seed"]: controlled_viscosity(r["mean"]) for r in realisations if r.get("mean")},
+            "causes": collections.Counter(r["ending"]["cause"] for r in realisations if not r.get("mean")),
+            "flags": collections.Counter(w["code"] for r in realisations for w in r.get("warnings", []) if w["code"] in ("timestep", "solver", "overlap")),
+            "refused": refused})
+    # Without noise trajectories of one seed stay together for a while; with noise another step draws another one.
+    noise = "peclet" in scene
+    reference = next(c for c in cells if (c["method"], c["step"]) == (("implicit", 0.25) if noise else ("explicit", 0.5)))["values"]
+    for cell in cells:
+        values, bias, error = cell["values"], None, math.inf
+        common = sorted(values.keys() & reference.keys())
+        if values and reference and not noise and common:
+            total = estimate([reference[s] for s in common])[0]
+            mean, error = estimate([values[s] - reference[s] for s in common])
+            bias, error = 100 * mean / total, 100 * error / total if len(common) > 1 else 0
+        elif values and reference and noise:
+            (a, da), (b, db) = estimate(list(values.values())), estimate(list(reference.values()))
+            bias, error = 100 * (a / b - 1), 100 * a / b * math.hypot(da / a, db / b)
+        verdict = "refused" if cell["refused"] else verdict_of(bias, error, values, cell["causes"])
+        row = {key: cell[key] for key in ("panel", "case", "method", "step", "timestep", "seeds")}
+        row["verdict"] = verdict
+        row["flags"] = " ".join(f"{code}:{count}" for code, count in sorted(cell["flags"].items()))
+        row["causes"] = " ".join(f"{cause}:{count}" for cause, count in sorted(cell["causes"].items()))
+        if bias is not None:
+            row["bias_percent"] = bias
+        if bias is not None and math.isfinite(error):
+            row["bias_error_percent"] = error
+        yield row
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("binaries")
+    parser.add_argument("folder", nargs="?", help="of the campaigns; a temporary one unless given")
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--panel", help="this one alone")
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as temporary:
+        remake(arguments, arguments.folder or temporary)
+
+
+def remake(arguments, folder):
+    program = Program(arguments.binaries, folder)
+    rows = []
+    for name, cases in PANELS.items():
+        if arguments.quick:
+            cases = cases[:QUICK.get(name, 0)]
+        if arguments.panel not in (None, name):
+            continue
+        for case in cases:
+            rows += rows_of(name, case, program)
+            print(f"{name}: {case[0]}", file=sys.stderr, flush=True)
+    target = folder if arguments.quick or arguments.panel else HERE
+    table = os.path.join(target, "table.csv")
+    with open(table, "w", newline="") as f:
+        writer = csv.DictWriter(f, COLUMNS)
+        writer.writeheader()
+        for row in rows:
+            writer.writerow({k: f"{v:.4g}" if isinstance(v, float) else v for k, v in row.items()})
+    silent = [r for r in rows if r["verdict"] == "biased" and not r["flags"]]
+    for row in silent:
+        print(f"wrong without a flag: {row['panel']}, {row['case']}, {row['method']} {row['step']:g}: {row['bias_percent']:.1f} %", file=sys.stderr)
+    #    subprocess.run([sys.executable, os.path.join(HERE, "map.py"), table, os.path.join(target, "map.png")], check=True)
+    sys.exit(1 if silent else 0)
+
+
+main()
