@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/scene.h"
+#include "engine/integrators/stability.h"
 
 namespace peclet::engine {
 
@@ -79,6 +79,18 @@ std::vector<Warning> scene_warnings(const Scene& scene) {
                        "{:.4g}, tau_B = {:.4g}), the bound is {}; particles coast between collisions, "
                        "a smaller density or temperature cures it",
                        ratio, *groups.inertial_time, *groups.brownian_time, largest_inertia_over_brownian)});
+    }
+  }
+  // Of smooth motion half steps tell the error.
+  const bool noise = scene.physics.thermal_energy > 0;
+  const bool friction = scene.physics.contact && scene.physics.contact->friction > 0;
+  if (scene.method == Method::implicit_steps && scene.timestep && (noise || friction)) {
+    if (const double excess = *scene.timestep / automatic_timestep(scene); excess > 1) {
+      warnings.push_back(
+          {"timestep",
+           fmt::format("the step is {:.3g} times the automatic one; with {} nothing else tells its "
+                       "error: see results/speed-accuracy and results/stability",
+                       excess, noise ? "noise" : "friction")});
     }
   }
   return warnings;

@@ -178,6 +178,7 @@ Json common_part(const ResultHeader& header, const Scene& scene, const Schedule&
   return {{"schema_version", 1},
           {"point", header.point},
           {"seed", header.seed},
+          {"method", scene.method == Method::implicit_steps ? "implicit" : "explicit"},
           {"timestep", dt},
           {"steps", {{"equilibration", before}, {"production", after}}},
           {"time", of_phases(dt)},
@@ -214,11 +215,6 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
     warnings.push_back({"timestep", "half steps change the stress by " + Json(-*difference).dump() +
                                         " of it, more than " + Json(scene.guard.half_step_difference).dump() +
                                         ": choose a smaller step"});
-  }
-  const double automatic = automatic_timestep(scene), step = simulation.schedule().timestep;
-  if (scene.method == Method::implicit_steps && scene.physics.thermal_energy > 0 && step > automatic) {
-    warnings.push_back({"timestep", "with noise the error of implicit steps is known up to " +
-                                        Json(automatic).dump() + ", and the step is " + Json(step).dump()});
   }
   const Json solver = solver_json(scene, simulation);
   if (!solver.is_null() && solver["mean_residual"] > largest_mean_residual) {

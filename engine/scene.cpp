@@ -188,9 +188,9 @@ Duration Reading::duration(const std::string& pointer, const Physics& physics) c
   return duration;
 }
 
-// The method and what its defaults follow from it. Without lubrication explicit steps are bound by contacts
-// and drag alone, and cheaper.
-void fill_method(Json& document) {
+// The method, and the default of the guard that follows from it. Without lubrication explicit steps are bound
+// by contacts and drag alone, and cheaper.
+void fill_method_and_guard(Json& document) {
   Json& integrator = document["integrator"];
   if (!integrator.contains("method")) {
     integrator["method"] = document.contains("lubrication") ? "implicit" : "explicit";
@@ -208,7 +208,7 @@ Scene read_scene(const Json& document, const std::string& file) {
   scene.document = scene_keys().validate(document, file);
   const Json& filled = scene.document;
   const Reading reading(filled, file);
-  fill_method(scene.document);
+  fill_method_and_guard(scene.document);
 
   scene.particles = reading.particles();
   scene.volume_fraction = filled["volume_fraction"].get<double>();

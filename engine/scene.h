@@ -97,7 +97,8 @@ Physics read_physics(const Json& document, const std::string& file, const std::s
 DerivedGroups derived_groups(const Scene& scene);
 Json to_json(const DerivedGroups& groups);
 
-// What the author should know before anything runs: inertia that is not small.
+// What the author should know before anything runs: inertia that is not small, a step beyond the automatic
+// one.
 std::vector<Warning> scene_warnings(const Scene& scene);
 
 }  // namespace peclet::engine

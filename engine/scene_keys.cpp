@@ -172,7 +172,7 @@ Keys run_keys() {
       {.pointer = "/integrator/timestep",
        .kind = KeyKind::number_or_auto,
        .meaning = "Time step; auto: half of the largest stable explicit one, or the implicit one whose error "
-                  "has been measured, and at least 32 in the production window.",
+                  "has been measured, and not more than a 32nd of the production window.",
        .unit = "time",
        .default_value = "auto",
        .minimum = 0,

@@ -1,4 +1,5 @@
 """What the drivers of studies share: campaigns made, run and read by the program, and estimates with errors."""
+import collections
 import json
 import math
 import os
@@ -26,6 +27,7 @@ class Program:
         self.peclet = os.path.join(binaries, "peclet")
         self.engine = os.path.join(os.path.abspath(binaries), "peclet-engine")
         self.folder = folder
+        self.commits = set()  # of the engines that the results are of
         os.makedirs(folder, exist_ok=True)
 
     def run(self, name, scene, settings, seeds):
@@ -41,11 +43,13 @@ class Program:
         path = os.path.join(self.folder, name + ".json")
         with open(path, "w") as f:
             json.dump(campaign, f, indent=1)
-        # Points that are not within the tolerance after all seeds, or lost some, are what the study is about: codes 3 and 4.
+        # Points that are not within the tolerance after all seeds, or lost some, are what studies are made of: code 3.
         done = subprocess.run([self.peclet, "run", path, "--quiet"], stdout=subprocess.DEVNULL)
-        if done.returncode not in (0, 3, 4):
+        if done.returncode not in (0, 3):
             sys.exit(f"{path}: peclet run ended with {done.returncode}")
-        return json.loads(subprocess.run([self.peclet, "export", path], check=True, capture_output=True).stdout)["points"]
+        export = json.loads(subprocess.run([self.peclet, "export", path], check=True, capture_output=True).stdout)
+        self.commits |= {engine["git_commit"][:7] + ("+" if engine["git_dirty"] else "") for engine in export["engines"].values()}
+        return export["points"]
 
     def derived(self, scene):
         """What `peclet validate` says of one scene: its time step, groups and warnings."""
@@ -68,7 +72,53 @@ def estimate(values):
     return mean, math.sqrt(sum((v - mean) ** 2 for v in values) / (len(values) - 1) / len(values))
 
 
+def student_quantile(degrees, probability):
+    """The t that Student's variate stays below with `probability` > 1/2, by integrating its density and halving."""
+    if degrees < 1:
+        return math.inf
+    norm = math.exp(math.lgamma((degrees + 1) / 2) - math.lgamma(degrees / 2)) / math.sqrt(degrees * math.pi)
+
+    def between_0_and(t):  # Simpson's rule in the angle: t = sqrt(degrees) tan a
+        top, steps = math.atan(t / math.sqrt(degrees)), 200
+        weights = [1, *[4, 2] * (steps // 2 - 1), 4, 1]
+        return sum(w * math.cos(top * k / steps) ** (degrees - 1) for k, w in enumerate(weights)) * top / steps / 3 * norm * math.sqrt(degrees)
+
+    low, high = 0.0, 1e4
+    for _ in range(100):
+        middle = (low + high) / 2
+        low, high = (middle, high) if between_0_and(middle) < probability - 0.5 else (low, middle)
+    return low
+
+
+def relative_difference(values, reference, paired):
+    """Of two objects of values by seed: the difference of their means over that of the reference, its standard error and degrees of
+    freedom; of the seeds of both where one packing decides most of the scatter, else of all."""
+    common = sorted(values.keys() & reference.keys())
+    if paired and common:
+        total = estimate([reference[s] for s in common])[0]
+        mean, error = estimate([values[s] - reference[s] for s in common])
+        return mean / total, error / abs(total), len(common) - 1
+    (a, da), (b, db) = estimate(list(values.values())), estimate(list(reference.values()))
+    return a / b - 1, abs(a / b) * math.hypot(da / a, db / b), min(len(values), len(reference)) - 1
+
+
 def controlled_viscosity(mean):
     """Relative viscosity plus the pairs' Brownian stress, whose mean is zero."""
     control = mean["control_variates"]["brownian_pairwise"]
     return mean["relative_viscosity"] + (control or 0)
+
+
+def values_by_seed(realisations):
+    return {r["seed"]: controlled_viscosity(r["mean"]) for r in realisations if r.get("mean")}
+
+
+FLAGS = ("timestep", "solver", "overlap")
+
+
+def flags(realisations):
+    """How many completed realisations warn of what."""
+    return collections.Counter(code for r in realisations if r.get("mean") for code in {w["code"] for w in r.get("warnings") or []} & set(FLAGS))
+
+
+def counts_text(counter):
+    return " ".join(f"{name}:{count}" for name, count in sorted(counter.items()))

@@ -14,14 +14,13 @@ struct Aggregate {
 
 // Two passes over the values, so that their spread does not drown in a large mean.
 std::map<std::int64_t, Aggregate> read_aggregates(Connection& connection) {
-  Statement query(
-      connection,
-      "SELECT r.point_id, sum(state = 'queued'), sum(state = 'running'), sum(state = 'done'),"
-      " sum(state = 'failed'), sum(state = 'quarantined'), total(cpu_seconds), count(controlled),"
-      " mean, sum((controlled - mean) * (controlled - mean))"
-      " FROM (SELECT *, value + coalesce(control, 0) AS controlled FROM realisation) r"
-      " JOIN (SELECT point_id, avg(value + coalesce(control, 0)) AS mean FROM realisation GROUP BY"
-      " point_id) USING (point_id) GROUP BY r.point_id");
+  Statement query(connection,
+                  "WITH controlled AS (SELECT *, value + coalesce(control, 0) AS estimated FROM realisation) "
+                  "SELECT r.point_id, sum(state = 'queued'), sum(state = 'running'), sum(state = 'done'),"
+                  " sum(state = 'failed'), sum(state = 'quarantined'), total(cpu_seconds), count(estimated),"
+                  " mean, sum((estimated - mean) * (estimated - mean))"
+                  " FROM controlled r JOIN (SELECT point_id, avg(estimated) AS mean FROM controlled GROUP BY"
+                  " point_id) USING (point_id) GROUP BY r.point_id");
   std::map<std::int64_t, Aggregate> aggregates;
   while (query.step()) {
     Aggregate& aggregate = aggregates[query.integer(0)];
@@ -44,6 +43,15 @@ std::map<std::int64_t, std::map<std::string, int>> read_losses(Connection& conne
   return losses;
 }
 
+std::map<std::int64_t, std::map<std::string, int>> read_flags(Connection& connection) {
+  Statement query(connection,
+                  "SELECT point_id, message, count(DISTINCT seed) FROM event WHERE kind = 'flag'"
+                  " GROUP BY point_id, message");
+  std::map<std::int64_t, std::map<std::string, int>> flags;
+  while (query.step()) flags[query.integer(0)][query.text(1)] = static_cast<int>(query.integer(2));
+  return flags;
+}
+
 int count_ended(Connection& connection, std::int64_t point, int end) {
   Statement query(connection,
                   "SELECT count(*) FROM realisation WHERE point_id = ? AND seed < ? AND state IN ('done',"
@@ -58,6 +66,7 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
   Connection& connection = database.connection();
   std::map<std::int64_t, Aggregate> aggregates = read_aggregates(connection);
   std::map<std::int64_t, std::map<std::string, int>> losses = read_losses(connection);
+  std::map<std::int64_t, std::map<std::string, int>> flags = read_flags(connection);
   const std::vector<int> schedule = look_schedule(target.minimum, target.maximum);
 
   std::vector<PointSummary> summaries;
@@ -67,6 +76,7 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
     summary.counts = aggregate.counts;
     summary.so_far = aggregate.so_far;
     summary.losses = std::move(losses[point.id]);
+    summary.flags = std::move(flags[point.id]);
     for (LookRecord& record : database.looks(point.id)) summary.looks.push_back(record.look);
     summary.decided = !summary.looks.empty() && summary.looks.back().verdict != Verdict::more;
     const int seen = summary.looks.empty() ? 0 : summary.looks.back().seeds;

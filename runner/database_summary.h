@@ -12,9 +12,10 @@ namespace peclet::runner {
 struct PointSummary {
   PointRecord point;
   StateCounts counts;
-  Estimate
-      so_far;  // of value + control, over all seeds that have ended with a value, in whatever order they came
+  // Of value + control, over all seeds that have ended with a value, in whatever order they came.
+  Estimate so_far;
   std::map<std::string, int> losses;  // seeds by cause
+  std::map<std::string, int> flags;   // completed seeds by what they say against themselves
   std::vector<Look> looks;            // for the present target
   bool decided = false;
   int wanted = 0;        // seeds of the next look; of a decided point those of the deciding one

@@ -15,8 +15,8 @@ namespace {
 Json content(const Json& result) {
   Json kept = Json::object();
   for (const char* const key :
-       {"seed", "ending", "mean", "timestep", "steps", "strain", "time", "statistical_inefficiency",
-        "largest_overlap", "gate", "final_state_sha256"}) {
+       {"seed", "ending", "mean", "method", "timestep", "steps", "strain", "time", "statistical_inefficiency",
+        "largest_overlap", "warnings", "gate", "final_state_sha256"}) {
     if (result.contains(key)) kept[key] = result[key];
   }
   kept["ending"].erase("state");  // where this machine keeps it
@@ -147,7 +147,8 @@ Json heading(Database& database, const CampaignRecord& campaign, bool canonical)
 bool agrees(const Look& stored, const Look& replayed) {
   return stored.seeds == replayed.seeds && stored.lost == replayed.lost &&
          stored.verdict == replayed.verdict && stored.estimate.count == replayed.estimate.count &&
-         (stored.estimate.count == 0 || stored.estimate.mean == replayed.estimate.mean);
+         (stored.estimate.count == 0 || (stored.estimate.mean == replayed.estimate.mean &&
+                                         stored.controlled.mean == replayed.controlled.mean));
 }
 
 }  // namespace

@@ -173,6 +173,7 @@ Stored Queue::store(const RealisationResult& result, const std::string& observab
   if (known.text(3) == "quarantined")
     event("late-result", point, result.seed, "a quarantined seed has a result");
   store_numbers(point, result, observable, engine(result.document.at("engine")));
+  for (const std::string& code : flags_of(result)) event("flag", point, result.seed, code);
   Statement(connection_, "UPDATE point SET engine_identity = ? WHERE point_id = ?")
       .bind(identity)
       .bind(point)
@@ -233,7 +234,8 @@ void Queue::store_looks(std::int64_t point, const std::vector<Look>& looks) {
       "SELECT ?1, target_id, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12 FROM campaign WHERE true "
       "ON CONFLICT DO UPDATE SET lost = ?3, count = ?4, mean = ?5, standard_error = ?6, half_width = ?7, "
       "controlled_mean = ?8, controlled_standard_error = ?9, controlled_half_width = ?10, verdict = ?11, "
-      "made_at = ?12 WHERE count != ?4 OR lost != ?3 OR mean IS NOT ?5 OR verdict != ?11");
+      "made_at = ?12 WHERE count != ?4 OR lost != ?3 OR mean IS NOT ?5 OR controlled_mean IS NOT ?8 OR "
+      "verdict != ?11");
   const std::string now = utc_now();
   for (const Look& look : looks) {
     insert.bind(point)

@@ -114,6 +114,16 @@ std::string engine_identity(const Json& engine) {
                      text_at(engine, "/binary_sha256"));
 }
 
+std::set<std::string> flags_of(const RealisationResult& result) {
+  std::set<std::string> codes;
+  if (!result.completed()) return codes;
+  for (const Json& warning : result.document.value("warnings", Json::array())) {
+    const std::string code = text_at(warning, "/code");
+    if (!code.starts_with("inertia-")) codes.insert(code);
+  }
+  return codes;
+}
+
 Observed observe(const Json& result, const std::string& observable) {
   Observed observed;
   const Json& mean = result.at("mean");

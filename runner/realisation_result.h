@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -36,6 +37,10 @@ struct Observed {
   std::optional<double> value;    // of the observable; none after a blow-up, or where it does not exist
   std::optional<double> control;  // variate of mean zero that belongs to it
 };
+
+// What a completed realisation says against itself: the codes of its warnings, those apart that its scene has
+// by itself ("inertia-..."), which `validate` shows.
+std::set<std::string> flags_of(const RealisationResult& result);
 
 // The pairwise Brownian stress is the control variate of the relative viscosities and of nothing else.
 Observed observe(const Json& result, const std::string& observable);

@@ -41,6 +41,7 @@ Json point_json(const PointSummary& point) {
             {"quarantined", counts.quarantined},
             {"surplus", point.surplus()}}},
           {"losses", point.losses},
+          {"flags", point.flags},
           {"so_far", estimate_json(point.so_far)},
           {"look", point.looks.empty() ? Json(nullptr) : look_json(point.looks.back())},
           {"cpu_seconds", counts.cpu_seconds},
@@ -72,6 +73,7 @@ std::string verdict_text(const PointSummary& point) {
   } else if (point.lost() > 0) {
     text += fmt::format(", {} lost", point.lost());
   }
+  for (const auto& [code, count] : point.flags) text += fmt::format(", {} flagged {}", count, code);
   return point.point.suspect ? text + ", suspect" : text;
 }
 

@@ -82,11 +82,15 @@ double stable_step(const PairRates& rates) {
   return 4 / (l + std::sqrt(l * l + 4 * w2));
 }
 
-// drag / stiffness of the repulsion where lubrication ends and the drag of single spheres alone holds it up.
+// drag / stiffness of the repulsion where lubrication ends and the drag of single spheres alone resists it;
+// infinite where it does not reach that far.
 double repulsion_time_beyond_lubrication(const Physics& physics, double first, double second) {
   const double sum = first + second;
   const double length = physics.repulsion->relative_length * sum;
   const double distance = 0.5 * physics.lubrication->outer_gap * sum;
+  if (!(distance < physics.repulsion->cutoff_lengths * length)) {
+    return std::numeric_limits<double>::infinity();
+  }
   const double drag_first = translational_drag(physics.viscosity, first);
   const double drag_second = translational_drag(physics.viscosity, second);
   const double stiffness = physics.repulsion->strength / (length * length) * std::exp(-distance / length);

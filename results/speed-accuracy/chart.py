@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """chart.py TABLE PICTURE [PANEL...]
 
-Draws the table of this study with gnuplot: a panel for each case (or for those that are named), bias of the relative viscosity over
-the processor time of a 2 % error bar. Bars are 95 %. lammps.csv beside this script, where there is one, has points of LAMMPS.
+Draws the table of this study with gnuplot: a panel for each case (or for those that are named), relative difference of the
+viscosity from the reference over the processor time to a standard error of 2 %. Bars are 95 %; an arrow stands for what is beyond the panel. lammps.csv beside this script, where there is one, has points of LAMMPS.
 """
 import csv
 import os
@@ -28,9 +28,10 @@ def quoted(text):
 
 
 def panel(name, rows):
-    data = [r for r in rows if r["bias_percent"] and float(r["seconds_to_2_percent"]) > 0]
+    data = [r for r in rows if r["viscosity"] and float(r["seconds_to_2_percent"]) > 0]
+    dropped = [f"{r['method']} {float(r['step']):.2g}" for r in rows if not r["viscosity"]]
     times = [float(r["seconds_to_2_percent"]) for r in data]
-    yield f"set title {quoted(name)} offset 0,-0.6"
+    yield f"set title {quoted(name + (' (no seed left: ' + ', '.join(dropped) + ')' if dropped else ''))} offset 0,-0.6"
     yield f"set xrange [{min(times) / 3:.3g}:{max(times) * 3:.3g}]"
     plots = []
     for style, (point, colour) in STYLES.items():
@@ -40,9 +41,12 @@ def panel(name, rows):
         block = f"$d{len(plots)}"
         yield f"{block} << EOD"
         for r in chosen:
-            bias = max(-RANGE * 0.97, min(RANGE * 0.97, float(r["bias_percent"])))
-            label = ("" if style == "LAMMPS" else f"{float(r['step']):.2g}") + ("!" if r["flags"] else "")
-            yield f"{r['seconds_to_2_percent']} {bias} {1.96 * float(r['bias_error_percent'])} {quoted(label)}"
+            bias = float(r["bias_percent"] or 0)
+            label = ("" if style == "LAMMPS" else f"{float(r['step']):.2g}") + ("!" if r["flags"] or r["lost"] not in ("", "0") else "")
+            if abs(bias) > RANGE:
+                label += f" {'↑' if bias > 0 else '↓'} {bias:.0f} %"
+            shown = max(-0.85 * RANGE, min(0.85 * RANGE, bias)) if abs(bias) > RANGE else bias
+            yield f"{r['seconds_to_2_percent']} {shown} {float(r['bias_half_width_percent'] or 0)} {quoted(label)}"
         yield "EOD"
         plots.append(f"{block} using 1:2:3 with yerrorbars pt {point} ps 1.1 lc rgb '{colour}'")
         plots.append(f"{block} using 1:2:4 with labels offset 0,1 font ',10' tc rgb '{colour}'")
@@ -56,7 +60,7 @@ def script(rows, picture):
     yield f"set output {quoted(picture)}"
     yield f"set multiplot layout {lines}, {COLUMNS} margins 0.05, 0.985, 0.05, 0.97 spacing 0.05, 0.075"
     yield "set logscale x; set format x '10^{%T}'; set grid lc rgb '#d8d8d8'; set key off"
-    yield f"set yrange [-{RANGE}:{RANGE}]; set ytics 2; set ylabel 'bias of η_r / %' offset 1.5; set xlabel 's of processor to a 2 % error bar' offset 0,0.6"
+    yield f"set yrange [-{RANGE}:{RANGE}]; set ytics 2; set ylabel 'η_r over the reference − 1 / %' offset 1.5; set xlabel 's of processor to a standard error of 2 %' offset 0,0.6"
     yield "set object 1 rectangle from graph 0, first -2 to graph 1, first 2 behind fc rgb '#eef4e8' fs solid noborder"
     for name in names:
         yield from panel(name, [r for r in rows if r["panel"] == name])
@@ -67,7 +71,7 @@ def script(rows, picture):
         y = 0.9 - 0.12 * k
         yield f"set label {10 + k} {quoted(style)} at 0.12, {y} left tc rgb '{colour}' point pt {point} ps 1.1 lc rgb '{colour}' offset 1.5, 0"
     yield ("set label 20 \"numbers: explicit step over the largest stable one,\\nimplicit step over the automatic one\\n"
-           "!: flagged; bars: 95 %; band: 2 %\" at 0.05, 0.32 left")
+           "!: flagged or seeds lost; bars: 95 %; band: 2 %\" at 0.05, 0.32 left")
     yield "plot -1 with lines lc rgb 'white'"
 
 

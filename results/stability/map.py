@@ -7,8 +7,9 @@ import csv
 import subprocess
 import sys
 
-COLOURS = {"ok": "#b8dcae", "biased": "#e88a30", "refused": "#d9d9d9", "blown up": "#c03028", "jammed": "#8fb4dc", "no reference": "#ffffff"}
-CELL = 84, 22  # pixels
+COLOURS = {"ok": "#b8dcae", "undecided": "#e9efb4", "biased": "#e88a30", "losses": "#dcb0d8", "blown up": "#d06058", "jammed": "#8fb4dc", "refused": "#d9d9d9",
+           "no reference": "#ffffff"}
+CELL = 92, 22  # pixels
 LABEL = 250
 
 
@@ -19,9 +20,12 @@ def quoted(text):
 def text_of(row):
     verdict = row["verdict"]
     flag = " !" if row["flags"] else ""
-    if verdict in ("ok", "biased"):
-        bias = float(row["bias_percent"])
-        return ("0" if abs(bias) < 0.05 else f"{bias:+.1f}" if abs(bias) < 9.95 else f"{bias:+.0f}") + " %" + flag
+    if verdict in ("ok", "biased", "undecided"):
+        bias, half_width = float(row["bias_percent"]), float(row["bias_half_width_percent"])
+        digits = 1 if abs(bias) < 9.95 and half_width < 9.95 else 0
+        return f"{bias:+.{digits}f}({half_width:.{digits}f})" + flag
+    if verdict == "losses":
+        return row["causes"].replace(":", " ") + flag
     if verdict in ("blown up", "jammed"):
         return row["causes"].split(":")[0] + flag
     return {"refused": "refused", "no reference": "?"}[verdict] + flag
@@ -70,8 +74,8 @@ def main():
         number += 1
         script.append(f"set object {number} rectangle from {x}, {y} to {x + 30}, {y + CELL[1] * 0.8} fc rgb '{colour}' fs solid border lc rgb '#888888'")
         label(x + 36, y + CELL[1] * 0.4, verdict)
-        x += 125
-    label(x, y + CELL[1] * 0.4, "!: flagged;  numbers: bias of the viscosity")
+        x += 105
+    label(x, y + CELL[1] * 0.4, "!: flagged;  numbers: difference of the viscosity from the reference and half of its 95 % interval, in percent")
     script.append("plot -1 with lines lc rgb 'white'")
     subprocess.run(["gnuplot"], input="\n".join(script) + "\n", text=True, check=True)
 

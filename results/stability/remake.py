@@ -3,12 +3,11 @@
 
 Runs the cells of the stability map with the programs in BIN, keeps their campaigns in FOLDER (a second call goes on with what is
 there), and writes table.csv and map.png beside this script; with --quick or --panel into FOLDER. Fails where a cell is biased and no
-realisation says so.
+realisation says so; chance makes one of a thousand cells so.
 """
 import argparse
 import collections
 import csv
-import math
 import os
 import subprocess
 import sys
@@ -16,7 +15,7 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from campaigns import Program, controlled_viscosity, estimate, merged  # noqa: E402
+from campaigns import Program, counts_text, flags, merged, relative_difference, student_quantile, values_by_seed  # noqa: E402
 
 BASE = {
     "particles": {"count": 100, "density": 0.1,
@@ -78,7 +77,7 @@ PANELS = {
     "Peclet number and friction": [(f"Pe {pe:g}, mu 1", merged(at_peclet(pe), friction(1)), 12) for pe in (1, 100)],
 }
 QUICK = {"stiffness and volume fraction": 4, "start-up": 2}
-COLUMNS = ["panel", "case", "method", "step", "timestep", "verdict", "bias_percent", "bias_error_percent", "flags", "causes", "seeds"]
+COLUMNS = ["panel", "case", "method", "step", "timestep", "verdict", "bias_percent", "bias_half_width_percent", "flags", "causes", "seeds", "commit"]
 CAUSES_OF_JAMS = {"overlap", "packing"}
 
 
@@ -94,15 +93,25 @@ def integrators(program, scene):
             yield method, factor, block, refused
 
 
-def verdict_of(bias, error, values, causes):
-    """What a cell is. A bias counts from 3 % and three standard errors on."""
-    lost = sum(causes.values())
-    if lost > len(values):
+# A bias counts from this on, where it is more than chance does in one of a thousand cells.
+LEAST_BIAS = 0.03
+RARE = 1 - 0.5e-3
+
+
+def verdict_of(difference, values, causes):
+    """What a cell is."""
+    if sum(causes.values()) > len(values):
         cause = causes.most_common(1)[0][0]
         return "jammed" if cause in CAUSES_OF_JAMS else "blown up"
-    if bias is None:
+    if causes:
+        return "losses"
+    if difference is None:
         return "no reference"
-    return "biased" if abs(bias) > max(3, 3 * error) else "ok"
+    bias, error, degrees = difference
+    doubt = error * student_quantile(degrees, RARE)
+    if abs(bias) > max(LEAST_BIAS, doubt):
+        return "biased"
+    return "ok" if doubt < 0.1 else "undecided"
 
 
 def rows_of(name, case, program):
@@ -117,32 +126,21 @@ def rows_of(name, case, program):
         realisations = [] if refused else of_block[method, block["timestep"]]
         cells.append({
             "panel": name, "case": label, "method": method, "step": factor, "timestep": block["timestep"], "seeds": len(realisations),
-            "values": {r["seed"]: controlled_viscosity(r["mean"]) for r in realisations if r.get("mean")},
+            "values": values_by_seed(realisations), "commit": " ".join(sorted(program.commits)),
             "causes": collections.Counter(r["ending"]["cause"] for r in realisations if not r.get("mean")),
-            "flags": collections.Counter(w["code"] for r in realisations for w in r.get("warnings", []) if w["code"] in ("timestep", "solver", "overlap")),
-            "refused": refused})
+            "flags": counts_text(flags(realisations)), "refused": refused})
     # Without noise trajectories of one seed stay together for a while; with noise another step draws another one.
     noise = "peclet" in scene
-    reference = next(c for c in cells if (c["method"], c["step"]) == (("implicit", 0.25) if noise else ("explicit", 0.5)))["values"]
+    reference = next(c for c in cells if (c["method"], c["step"]) == (("implicit", 0.25) if noise else ("explicit", 0.5)))
     for cell in cells:
-        values, bias, error = cell["values"], None, math.inf
-        common = sorted(values.keys() & reference.keys())
-        if values and reference and not noise and common:
-            total = estimate([reference[s] for s in common])[0]
-            mean, error = estimate([values[s] - reference[s] for s in common])
-            bias, error = 100 * mean / total, 100 * error / total if len(common) > 1 else 0
-        elif values and reference and noise:
-            (a, da), (b, db) = estimate(list(values.values())), estimate(list(reference.values()))
-            bias, error = 100 * (a / b - 1), 100 * a / b * math.hypot(da / a, db / b)
-        verdict = "refused" if cell["refused"] else verdict_of(bias, error, values, cell["causes"])
-        row = {key: cell[key] for key in ("panel", "case", "method", "step", "timestep", "seeds")}
-        row["verdict"] = verdict
-        row["flags"] = " ".join(f"{code}:{count}" for code, count in sorted(cell["flags"].items()))
-        row["causes"] = " ".join(f"{cause}:{count}" for cause, count in sorted(cell["causes"].items()))
-        if bias is not None:
-            row["bias_percent"] = bias
-        if bias is not None and math.isfinite(error):
-            row["bias_error_percent"] = error
+        row = {key: cell[key] for key in COLUMNS if key in cell}
+        difference = None
+        if cell["values"].keys() & reference["values"].keys():
+            difference = (0, 0, len(reference["values"]) - 1) if cell is reference else relative_difference(cell["values"], reference["values"], not noise)
+            row["bias_percent"] = 100 * difference[0]
+            row["bias_half_width_percent"] = 100 * difference[1] * student_quantile(difference[2], 0.975)
+        row["verdict"] = "refused" if cell["refused"] else verdict_of(difference, cell["values"], cell["causes"])
+        row["causes"] = counts_text(cell["causes"])
         yield row
 
 
@@ -151,7 +149,7 @@ def main():
     parser.add_argument("binaries")
     parser.add_argument("folder", nargs="?", help="of the campaigns; a temporary one unless given")
     parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--panel", help="this one alone")
+    parser.add_argument("--panel", choices=list(PANELS), help="this one alone")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
         remake(arguments, arguments.folder or temporary)
@@ -174,7 +172,7 @@ def remake(arguments, folder):
         writer = csv.DictWriter(f, COLUMNS)
         writer.writeheader()
         for row in rows:
-            writer.writerow({k: f"{v:.4g}" if isinstance(v, float) else v for k, v in row.items()})
+            writer.writerow({k: f"{row[k]:.4g}" if isinstance(row.get(k), float) else row.get(k) for k in COLUMNS})
     silent = [r for r in rows if r["verdict"] == "biased" and not r["flags"]]
     for row in silent:
         print(f"wrong without a flag: {row['panel']}, {row['case']}, {row['method']} {row['step']:g}: {row['bias_percent']:.1f} %", file=sys.stderr)

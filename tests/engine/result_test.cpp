@@ -113,6 +113,7 @@ TEST(Result, StatesWhatWasSimulated) {
   EXPECT_EQ(result.at("schema_version"), 1);
   EXPECT_EQ(result.at("point"), "point");
   EXPECT_EQ(result.at("seed"), seed);
+  EXPECT_EQ(result.at("method"), "explicit");
   EXPECT_EQ(result.at("timestep"), 0.002);
   EXPECT_EQ(result.at("steps"), (Json{{"equilibration", 100}, {"production", 320}}));
   EXPECT_NEAR(result.at("time").at("production"), 0.64, 1e-12);

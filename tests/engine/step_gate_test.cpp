@@ -193,7 +193,7 @@ TEST(StepGate, FlagsImplicitSteps) {
   EXPECT_FALSE(has_warning(fine, "timestep"));
   EXPECT_FALSE(has_warning(fine, "solver"));
   EXPECT_GT(fine.at("gate").at("solver").at("iterations_per_step"), 1);
-  EXPECT_TRUE(has_warning(result(published(0.5), {{"contact", {{"friction", 10}}}}), "solver"));
+  EXPECT_TRUE(has_warning(result(published(0.5), {{"contact", {{"friction", 40}}}}), "solver"));
 
   Json warm = published(0.5);
   warm["fluid"]["thermal_energy"] = 0.01;

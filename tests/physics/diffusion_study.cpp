@@ -7,8 +7,12 @@
 // See README.md for what it printed.
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
 
 #include "engine/simulation.h"
 #include "tests/physics/estimates.h"
@@ -66,7 +70,10 @@ double diffusion(const Scene& scene, std::uint64_t seed) {
   for (int sample = 0; sample <= (equilibration + window) * samples_per_brownian_time; ++sample) {
     const auto due = static_cast<std::uint64_t>(std::llround(sample * between / schedule.timestep));
     if (due > simulation.system().step) {
-      simulation.advance(due - simulation.system().step);
+      const auto ending = simulation.advance(due - simulation.system().step);
+      if (ending && ending->cause != Ending::Cause::completed) {
+        throw std::runtime_error(ending->message);
+      }
     }
     if (sample >= equilibration * samples_per_brownian_time) {
       sampled.push_back(places(simulation.system()));

@@ -182,6 +182,7 @@ class Engine {
         {"point", job.at("point")},
         {"seed", job.at("seed")},
         {"ending", {{"cause", "completed"}, {"step", state.step}, {"message", ""}, {"state", nullptr}}},
+        {"method", "explicit"},
         {"timestep", 0.001},
         {"steps", {{"equilibration", 0}, {"production", state.step}}},
         {"strain", {{"equilibration", 0}, {"production", 0.1 * state.step}}},

@@ -46,6 +46,7 @@ Json plain_result(const std::string& point, int seed, double viscosity, const st
           {"point", point},
           {"seed", seed},
           {"ending", {{"cause", "completed"}, {"step", 100}, {"message", ""}, {"state", nullptr}}},
+          {"method", "explicit"},
           {"timestep", 0.001},
           {"steps", {{"equilibration", 20}, {"production", 80}}},
           {"strain", {{"equilibration", 0.2}, {"production", 0.8}}},

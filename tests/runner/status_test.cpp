@@ -96,6 +96,20 @@ TEST(Status, ASuspectPointIsAnIntegrityFault) {
   EXPECT_EQ(standing(status), 6);
 }
 
+TEST(Status, SeedsThatWarnOfTheirResultsAreCountedWithTheVerdict) {
+  StoredCampaign campaign(2, 4, 20);
+  const auto warning = [](const char* code) { return Json{{"code", code}, {"message", "why"}}; };
+  for (int seed = 0; seed < 4; ++seed) {
+    campaign.complete(0, seed, 10 + 0.01 * seed,
+                      Json::array({warning("inertia-shear"), warning("timestep")}));
+    campaign.complete(1, seed, 10 + 0.01 * seed, Json::array({warning("inertia-shear")}));
+  }
+  const CampaignStatus status = read_status(campaign.database());
+  EXPECT_EQ(verdict_text(status.points[0]), "converged, 4 flagged timestep");
+  EXPECT_EQ(verdict_text(status.points[1]), "converged");
+  EXPECT_EQ(status_json(status)["points"][0]["flags"], (Json{{"timestep", 4}}));
+}
+
 TEST(Status, TheEstimateWithoutTheControlVariateStandsBesideTheOneThatDecides) {
   StoredCampaign campaign(1, 4, 20);
   four_values(campaign, 0, 0.1);

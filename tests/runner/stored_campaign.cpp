@@ -24,8 +24,10 @@ void StoredCampaign::look(int point) {
                                              campaign_.minimum_realisations, campaign_.maximum_realisations));
 }
 
-void StoredCampaign::complete(int point, int seed, double viscosity) {
-  store(point, plain_result(campaign_.points.at(static_cast<std::size_t>(point)).hash, seed, viscosity));
+void StoredCampaign::complete(int point, int seed, double viscosity, const Json& warnings) {
+  Json result = plain_result(campaign_.points.at(static_cast<std::size_t>(point)).hash, seed, viscosity);
+  result["warnings"] = warnings;
+  store(point, result);
 }
 
 void StoredCampaign::repeat(int point, int seed, double viscosity) {

@@ -15,7 +15,7 @@ class StoredCampaign {
   StoredCampaign(int points, int minimum, int maximum);
 
   // A result of plain_result(), with an attempt of its own, and the looks that it allows.
-  void complete(int point, int seed, double viscosity);
+  void complete(int point, int seed, double viscosity, const Json& warnings = Json::array());
   // One more result of a seed that has ended.
   void repeat(int point, int seed, double viscosity);
   void blow_up(int point, int seed);
