@@ -8,6 +8,7 @@
 
 #include "contract/input_error.h"
 #include "engine/integrators/implicit.h"
+#include "engine/integrators/relaxation.h"
 #include "engine/integrators/stability.h"
 #include "engine/integrators/velocity_verlet.h"
 #include "engine/random/keyed_random.h"
@@ -60,7 +61,7 @@ void set_initial_velocities(ParticleState& particles, const Physics& physics, st
     Vector3 velocity = streaming_velocity(physics.shear_rate, particles.position[i].y);
     Vector3 spin = streaming_spin(physics.shear_rate);
     if (physics.thermal_energy > 0) {
-      const NormalPair normals = random.normals(0, i);
+      const NormalPair normals = random.normals(0, particles.id[i]);
       velocity += std::sqrt(physics.thermal_energy / particles.mass[i]) * normals.first;
       spin += std::sqrt(physics.thermal_energy / particles.inertia[i]) * normals.second;
     }
@@ -108,7 +109,7 @@ Schedule make_schedule(const Scene& scene, const std::string& file) {
 
 Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64_t seed, int threads,
                        const std::string& file)
-    : scene_(scene), schedule_(schedule), seed_(seed), production_(schedule.production) {
+    : scene_(scene), schedule_(schedule), seed_(seed), threads_(threads), production_(schedule.production) {
   const Physics& physics = scene.physics;
   const std::vector<double> radius = species_radii(scene.particles);
   const std::vector<double> sizes = distinct_radii(radius);
@@ -148,6 +149,9 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
 
 void Simulation::start() {
   place_randomly(system_.particles, system_.box, seed_);
+  if (scene_.physics.repulsion && scene_.physics.repulsion->strength > 0) {
+    relax(system_, scene_, threads_);
+  }
   set_initial_velocities(system_.particles, scene_.physics, seed_);
   integrator_->start(system_);
 }

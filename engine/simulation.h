@@ -80,6 +80,7 @@ class Simulation {
   Scene scene_;
   Schedule schedule_;
   std::uint64_t seed_;
+  int threads_;
   System system_;
   std::vector<PairKind> kinds_;
   std::unique_ptr<Integrator> integrator_;
