@@ -56,11 +56,13 @@ def panel(name, rows):
 def script(rows, picture):
     names = list(dict.fromkeys(r["panel"] for r in rows))
     lines = -(-(len(names) + 1) // COLUMNS)
-    yield f"set terminal pngcairo size {COLUMNS * 380}, {lines * 300} font 'Sans,11'"
+    width, height = COLUMNS * 380, lines * 310
+    yield f"set terminal pngcairo size {width}, {height} font 'Sans,11'"
     yield f"set output {quoted(picture)}"
-    yield f"set multiplot layout {lines}, {COLUMNS} margins 0.05, 0.985, 0.05, 0.97 spacing 0.05, 0.075"
-    yield "set logscale x; set format x '10^{%T}'; set grid lc rgb '#d8d8d8'; set key off"
-    yield f"set yrange [-{RANGE}:{RANGE}]; set ytics 2; set ylabel 'η_r over the reference − 1 / %' offset 1.5; set xlabel 's of processor to a standard error of 2 %' offset 0,0.6"
+    yield (f"set multiplot layout {lines}, {COLUMNS} margins {70 / width}, {1 - 20 / width}, {60 / height}, {1 - 30 / height} "
+           f"spacing {75 / width}, {95 / height}")
+    yield "set logscale x; set format x '%g'; set grid lc rgb '#d8d8d8'; set key off"
+    yield f"set yrange [-{RANGE}:{RANGE}]; set ytics 2; set ylabel 'difference of η_r / %' offset 1.2; set xlabel 's of processor to a standard error of 2 %' offset 0,0.6"
     yield "set object 1 rectangle from graph 0, first -2 to graph 1, first 2 behind fc rgb '#eef4e8' fs solid noborder"
     for name in names:
         yield from panel(name, [r for r in rows if r["panel"] == name])
@@ -70,8 +72,8 @@ def script(rows, picture):
     for k, (style, (point, colour)) in enumerate(STYLES.items()):
         y = 0.9 - 0.12 * k
         yield f"set label {10 + k} {quoted(style)} at 0.12, {y} left tc rgb '{colour}' point pt {point} ps 1.1 lc rgb '{colour}' offset 1.5, 0"
-    yield ("set label 20 \"numbers: explicit step over the largest stable one,\\nimplicit step over the automatic one\\n"
-           "!: flagged or seeds lost; bars: 95 %; band: 2 %\" at 0.05, 0.32 left")
+    yield ("set label 20 \"numbers: explicit step over\\nthe largest stable one, implicit step\\nover the automatic one;\\n"
+           "!: flagged or seeds lost;\\nbars: 95 %; band: 2 %\" at 0.02, 0.36 left")
     yield "plot -1 with lines lc rgb 'white'"
 
 

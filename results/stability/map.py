@@ -22,12 +22,14 @@ def text_of(row):
     flag = " !" if row["flags"] else ""
     if verdict in ("ok", "biased", "undecided"):
         bias, half_width = float(row["bias_percent"]), float(row["bias_half_width_percent"])
+        if bias == half_width == 0:
+            return "reference" + flag
         digits = 1 if abs(bias) < 9.95 and half_width < 9.95 else 0
         return f"{bias:+.{digits}f}({half_width:.{digits}f})" + flag
     if verdict == "losses":
-        return row["causes"].replace(":", " ") + flag
+        return row["causes"].replace("displacement", "displ.").replace(":", " ") + flag
     if verdict in ("blown up", "jammed"):
-        return row["causes"].split(":")[0] + flag
+        return row["causes"].split(":")[0].replace("displacement", "displ.") + flag
     return {"refused": "refused", "no reference": "?"}[verdict] + flag
 
 
@@ -75,7 +77,7 @@ def main():
         script.append(f"set object {number} rectangle from {x}, {y} to {x + 30}, {y + CELL[1] * 0.8} fc rgb '{colour}' fs solid border lc rgb '#888888'")
         label(x + 36, y + CELL[1] * 0.4, verdict)
         x += 105
-    label(x, y + CELL[1] * 0.4, "!: flagged;  numbers: difference of the viscosity from the reference and half of its 95 % interval, in percent")
+    label(x + 15, y + CELL[1] * 0.4, "!: flagged;  numbers: difference of the viscosity from the reference and half of its 95 % interval, in percent")
     script.append("plot -1 with lines lc rgb 'white'")
     subprocess.run(["gnuplot"], input="\n".join(script) + "\n", text=True, check=True)
 

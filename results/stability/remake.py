@@ -51,7 +51,7 @@ def large_spheres(ratio):
 
 
 def repulsion(strength, length):
-    return {"repulsion": {"form": "exponential", "strength": strength, "relative_length": length, "cutoff_lengths": 5}}
+    return {"repulsion": {"form": "exponential", "strength": strength, "relative_length": length}}
 
 
 STARTUP = {"duration": {"equilibration": {"strain": 0}, "production": {"strain": 0.75}}}

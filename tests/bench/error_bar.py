@@ -3,8 +3,8 @@
 
 What an error bar costs: processor time per unit of strain and, with noise, the variance of the relative viscosity times the
 processor time, of ENGINE at its defaults and of the engine of an earlier commit (build_before.sh) with its explicit steps, in the
-same scenes and in turn. Variances are those of consecutive blocks of a production window of 40 Brownian times, averages of 1, 2, 4
-... of its 32 blocks; with ENGINE of the viscosity plus the pairs' Brownian stress (mean zero), before of the viscosity alone.
+same scenes and in turn. The costs are those of a whole run from a packing, a hundredth as long before. Variances are those of
+averages of 1, 2, 4 ... of the 32 blocks of a window of 40 Brownian times: the longer they are, the less the control variate takes away.
 """
 import argparse
 import json
@@ -64,37 +64,41 @@ def costs(engines, rounds, folder):
         print(f"{name:24} {spread[0]:>30} {spread[1]:>30} {spread[2]:>24}", flush=True)
 
 
-def blocks_of(result, controlled):
+def blocks_of(result):
+    """Of each block the viscosity without and with the control variate."""
     rows = result["blocks"]
-    control = rows["control_variates"]["brownian_pairwise"] if controlled else [0] * len(rows["relative_viscosity"])
-    return [eta + b for eta, b in zip(rows["relative_viscosity"], control)]
+    return [(eta, eta + b) for eta, b in zip(rows["relative_viscosity"], rows["control_variates"]["brownian_pairwise"])]
 
 
-def variance_of_blocks(series, together):
-    """Of averages of `together` consecutive blocks about the mean of all, its relative standard error, and their number."""
-    averages = [statistics.mean(row[i:i + together]) for row in series for i in range(0, len(row), together)]
-    return statistics.variance(averages), math.sqrt(2 / (len(averages) - 1)), len(averages)
+def variance_of_averages(series, together, which):
+    """Of averages of `together` consecutive blocks about the mean of all, and their number."""
+    averages = [statistics.mean(block[which] for block in row[i:i + together]) for row in series for i in range(0, len(row), together)]
+    return statistics.variance(averages), len(averages)
 
 
 def error_bars(engines, seeds, folder):
     print("\nVariance of the relative viscosity times processor time, N = 250; 10 Brownian times and then 40\n")
+    plain, controlled = 0, 1
     for name, drive, friction, _, _, _ in NOISY:
         scene = scene_of(drive, friction, {"brownian_times": 10}, {"brownian_times": 40}, count=250)
         series, cost = [], []
-        for engine, many, controlled in zip(engines, seeds, (True, False)):
+        for engine, many, which in zip(engines, seeds, (controlled, plain)):
             results = [run(engine, scene, seed, folder) for seed in range(1, many + 1)]
-            series.append([blocks_of(r, controlled) for r in results])
+            series.append([blocks_of(r) for r in results])
             cost.append(statistics.median(r["cost"]["cpu_seconds"] for r in results) / 50)
-            mean = [statistics.mean(row) for row in series[-1]]
+            mean = [statistics.mean(block[which] for block in row) for row in series[-1]]
             error = statistics.stdev(mean) / math.sqrt(many) if many > 1 else math.inf
-            print(f"{name}, {'now' if controlled else 'before'}: {many} seeds, viscosity {statistics.mean(mean):.3f} +- {error:.3f}, {cost[-1]:.3g} s per Brownian time", flush=True)
+            print(f"{name}, {'before' if which == plain else 'now'}: {many} seeds, viscosity {statistics.mean(mean):.3f} +- {error:.3f}, "
+                  f"{cost[-1]:.3g} s per Brownian time", flush=True)
+        print(f"  {'averages over':>15} {'variance now':>20} {'now, uncontrolled':>20} {'before':>20} {'processor time before over now, to the same error':>52}")
         for together in (1, 2, 4, 8, 16, 32):
-            (now, d_now, n_now), (before, d_before, n_before) = (variance_of_blocks(s, together) for s in series)
-            if min(n_now, n_before) < LEAST_BLOCKS:
-                continue
-            ratio = before * cost[1] / (now * cost[0])
-            print(f"  averages over {1.25 * together:5.2f} Brownian times: variance {now:.3g} ({n_now}) now, {before:.3g} ({n_before}) before; "
-                  f"{before / now:.2f} times the variance, {ratio:.0f} +- {ratio * math.hypot(d_now, d_before):.0f} times the processor time to the same error", flush=True)
+            (now, n), (same, _), (before, n_before) = (variance_of_averages(series[k], together, which)
+                                                       for k, which in ((0, controlled), (0, plain), (1, plain)))
+            few = n_before < LEAST_BLOCKS
+            # Where there are too few of the earlier engine: its viscosity scatters as the present one's without the control variate.
+            ratio = (same if few else before) / now * cost[1] / cost[0]
+            print(f"  {1.25 * together:>13.4g}tB {now:>14.3g} ({n:3}) {same:>14.3g} ({n:3}) {before:>14.3g} ({n_before:3}) "
+                  f"{ratio:>30.0f}{' by the uncontrolled one' if few else ''}", flush=True)
 
 
 def main():
