@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <filesystem>
+#include <iterator>
 #include <random>
 #include <thread>
 
@@ -29,7 +31,10 @@ TEST(Run, ConvergesAndCleansUp) {
   CampaignOnDisk campaign;
   EXPECT_EQ(campaign.run(), 0) << campaign.log();
   EXPECT_EQ(campaign.count("SELECT count(*) FROM estimates WHERE verdict = 'converged'"), 2);
-  EXPECT_TRUE(has_no_files(campaign.directory().checkpoints()));
+  // Seeds beyond the deciding look that were running then may have been stopped: theirs alone are kept.
+  EXPECT_LE(std::distance(std::filesystem::directory_iterator(campaign.directory().checkpoints()),
+                          std::filesystem::directory_iterator()),
+            campaign.count("SELECT count(*) FROM attempt WHERE outcome = 'drained'"));
   EXPECT_TRUE(spool_files(campaign.directory()).empty());
 }
 
