@@ -5,6 +5,7 @@ What an error bar costs: processor time per unit of strain and, with noise, the 
 processor time, of ENGINE at its defaults and of the engine of an earlier commit (build_before.sh) with its explicit steps, in the
 same scenes and in turn. The costs are those of a whole run from a packing, a hundredth as long before. Variances are those of
 averages of 1, 2, 4 ... of the 32 blocks of a window of 40 Brownian times: the longer they are, the less the control variate takes away.
+Their errors take averages for independent.
 """
 import argparse
 import json
@@ -94,11 +95,11 @@ def error_bars(engines, seeds, folder):
         for together in (1, 2, 4, 8, 16, 32):
             (now, n), (same, _), (before, n_before) = (variance_of_averages(series[k], together, which)
                                                        for k, which in ((0, controlled), (0, plain), (1, plain)))
-            few = n_before < LEAST_BLOCKS
-            # Where there are too few of the earlier engine: its viscosity scatters as the present one's without the control variate.
-            ratio = (same if few else before) / now * cost[1] / cost[0]
-            print(f"  {1.25 * together:>13.4g}tB {now:>14.3g} ({n:3}) {same:>14.3g} ({n:3}) {before:>14.3g} ({n_before:3}) "
-                  f"{ratio:>30.0f}{' by the uncontrolled one' if few else ''}", flush=True)
+            text = "too few before"
+            if n_before >= LEAST_BLOCKS:
+                ratio, error = before / now * cost[1] / cost[0], math.sqrt(2 / (n - 1) + 2 / (n_before - 1))
+                text = f"{ratio:.0f} +- {ratio * error:.0f}"
+            print(f"  {1.25 * together:>13.4g}tB {now:>14.3g} ({n:4}) {same:>13.3g} ({n:4}) {before:>13.3g} ({n_before:4}) {text:>52}", flush=True)
 
 
 def main():
