@@ -161,7 +161,8 @@ std::optional<Look> checked_look(Database& database, const PointRecord& point, c
   for (std::size_t i = 0; i < stored.size(); ++i) {
     if (i < replayed.size() && agrees(stored[i].look, replayed[i])) continue;
     throw IntegrityError(
-        fmt::format("{}: the stored look at {} seeds of {} is not what the stored results say",
+        fmt::format("{}: the stored look at {} seeds of {} is not what the stored results say; "
+                    "if an earlier version made it, `peclet run` looks again",
                     database.connection().path(), stored[i].look.seeds, point.label));
   }
   if (stored.empty()) return std::nullopt;
