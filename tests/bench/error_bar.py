@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""error_bar.py ENGINE --before ENGINE [--rounds N] [--seeds N] [--seeds-before N]
+"""error_bar.py ENGINE --before ENGINE [--rounds N] [--seeds N] [--seeds-before N] [--count N] [--window TIMES]
 
 What an error bar costs: processor time per unit of strain and, with noise, the variance of the relative viscosity times the
 processor time, of ENGINE at its defaults and of the engine of an earlier commit (build_before.sh) with its explicit steps, in the
 same scenes and in turn. The costs are those of a whole run from a packing, a hundredth as long before. Variances are those of
-averages of 1, 2, 4 ... of the 32 blocks of a window of 40 Brownian times: the longer they are, the less the control variate takes away.
-Their errors take averages for independent.
+averages of 1, 2, 4 ... of the 32 blocks of a window (of 40 Brownian times, after a quarter of that): the longer they are, the less the control variate
+takes away. Their errors take averages for independent.
 """
 import argparse
 import json
@@ -77,16 +77,16 @@ def variance_of_averages(series, together, which):
     return statistics.variance(averages), len(averages)
 
 
-def error_bars(engines, seeds, folder):
-    print("\nVariance of the relative viscosity times processor time, N = 250; 10 Brownian times and then 40\n")
+def error_bars(engines, seeds, count, window, cases, folder):
+    print(f"\nVariance of the relative viscosity times processor time, N = {count}; {window / 4:g} Brownian times and then {window:g}\n")
     plain, controlled = 0, 1
-    for name, drive, friction, _, _, _ in NOISY:
-        scene = scene_of(drive, friction, {"brownian_times": 10}, {"brownian_times": 40}, count=250)
+    for name, drive, friction, _, _, _ in cases:
+        scene = scene_of(drive, friction, {"brownian_times": window / 4}, {"brownian_times": window}, count=count)
         series, cost = [], []
         for engine, many, which in zip(engines, seeds, (controlled, plain)):
             results = [run(engine, scene, seed, folder) for seed in range(1, many + 1)]
             series.append([blocks_of(r) for r in results])
-            cost.append(statistics.median(r["cost"]["cpu_seconds"] for r in results) / 50)
+            cost.append(statistics.median(r["cost"]["cpu_seconds"] for r in results) / (1.25 * window))
             mean = [statistics.mean(block[which] for block in row) for row in series[-1]]
             error = statistics.stdev(mean) / math.sqrt(many) if many > 1 else math.inf
             print(f"{name}, {'before' if which == plain else 'now'}: {many} seeds, viscosity {statistics.mean(mean):.3f} +- {error:.3f}, "
@@ -99,7 +99,7 @@ def error_bars(engines, seeds, folder):
             if n_before >= LEAST_BLOCKS:
                 ratio, error = before / now * cost[1] / cost[0], math.sqrt(2 / (n - 1) + 2 / (n_before - 1))
                 text = f"{ratio:.0f} +- {ratio * error:.0f}"
-            print(f"  {1.25 * together:>13.4g}tB {now:>14.3g} ({n:4}) {same:>13.3g} ({n:4}) {before:>13.3g} ({n_before:4}) {text:>52}", flush=True)
+            print(f"  {window * together / 32:>13.4g}tB {now:>14.3g} ({n:4}) {same:>13.3g} ({n:4}) {before:>13.3g} ({n_before:4}) {text:>52}", flush=True)
 
 
 def main():
@@ -109,11 +109,16 @@ def main():
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--seeds", type=int, default=32)
     parser.add_argument("--seeds-before", type=int, default=4)
+    parser.add_argument("--count", type=int, default=250)
+    parser.add_argument("--window", type=float, default=40)
+    parser.add_argument("--case", choices=[case[0] for case in NOISY], help="the variance of this one alone")
     arguments = parser.parse_args()
     engines = (os.path.abspath(arguments.engine), os.path.abspath(arguments.before))
     with tempfile.TemporaryDirectory() as folder:
-        costs(engines, arguments.rounds, folder)
-        error_bars(engines, (arguments.seeds, arguments.seeds_before), folder)
+        if not arguments.case:
+            costs(engines, arguments.rounds, folder)
+        cases = [case for case in NOISY if arguments.case in (None, case[0])]
+        error_bars(engines, (arguments.seeds, arguments.seeds_before), arguments.count, arguments.window, cases, folder)
 
 
 main()

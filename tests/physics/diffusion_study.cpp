@@ -86,8 +86,8 @@ double diffusion(const Scene& scene, std::uint64_t seed) {
     }
     return sum / static_cast<double>(sampled.size() - lag);
   };
-  const double slope =
-      (mean_square(2 * samples_per_brownian_time) - mean_square(samples_per_brownian_time)) / brownian_time;
+  const std::size_t lag = samples_per_brownian_time;
+  const double slope = (mean_square(2 * lag) - mean_square(lag)) / brownian_time;
   return slope / (thermal_energy / (std::numbers::pi * viscosity));
 }
 
