@@ -20,6 +20,24 @@ def merged(base, patch):
     return result
 
 
+# The published system without noise and friction, at a Stokes number of 0.045.
+REFERENCE_SCENE = {
+    "particles": {"count": 1000, "density": 0.1,
+                  "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}]},
+    "volume_fraction": 0.5,
+    "fluid": {"viscosity": 0.1},
+    "flow": {"shear_rate": 0.045},
+    "contact": {"normal_stiffness": 1e4},
+    "lubrication": {"form": "kim-karrila", "inner_gap": 1e-3, "outer_gap": 0.05},
+    "duration": {"equilibration": {"strain": 1}, "production": {"strain": 2}},
+}
+
+
+def at_peclet(number):
+    """A patch: noise and flow at this Peclet number, as in the published table but five times as fast where kT allows it."""
+    return {"flow": None, "peclet": number, "limits": {"shear_rate": 0.045, "thermal_energy": 0.017}}
+
+
 class Program:
     """The two programs of a folder, and a folder that keeps the campaigns: a study goes on where it was."""
 

@@ -17,24 +17,8 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from campaigns import (Program, counts_text, estimate, flags, merged, relative_difference, student_quantile,  # noqa: E402
+from campaigns import (REFERENCE_SCENE, Program, at_peclet, counts_text, estimate, flags, merged, relative_difference, student_quantile,  # noqa: E402
                        values_by_seed)
-
-REFERENCE_SCENE = {
-    "particles": {"count": 1000, "density": 0.1,
-                  "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}]},
-    "volume_fraction": 0.5,
-    "fluid": {"viscosity": 0.1},
-    "flow": {"shear_rate": 0.045},
-    "contact": {"normal_stiffness": 1e4},
-    "lubrication": {"form": "kim-karrila", "inner_gap": 1e-3, "outer_gap": 0.05},
-    "duration": {"equilibration": {"strain": 1}, "production": {"strain": 2}},
-}
-
-
-def at_peclet(number):
-    return {"flow": None, "peclet": number, "limits": {"shear_rate": 0.045, "thermal_energy": 0.017}}
-
 
 BROWNIAN_WINDOW = {"duration": {"equilibration": {"brownian_times": 10}, "production": {"brownian_times": 40}}}
 

@@ -15,18 +15,10 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from campaigns import Program, counts_text, flags, merged, relative_difference, student_quantile, values_by_seed  # noqa: E402
+from campaigns import (REFERENCE_SCENE, Program, at_peclet, counts_text, flags, merged, relative_difference, student_quantile,  # noqa: E402
+                       values_by_seed)
 
-BASE = {
-    "particles": {"count": 100, "density": 0.1,
-                  "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}]},
-    "volume_fraction": 0.5,
-    "fluid": {"viscosity": 0.1},
-    "flow": {"shear_rate": 0.045},
-    "contact": {"normal_stiffness": 1e4},
-    "lubrication": {"form": "kim-karrila", "inner_gap": 1e-3, "outer_gap": 0.05},
-    "duration": {"equilibration": {"strain": 0.5}, "production": {"strain": 0.75}},
-}
+BASE = merged(REFERENCE_SCENE, {"particles": {"count": 100}, "duration": {"equilibration": {"strain": 0.5}, "production": {"strain": 0.75}}})
 # Steps of each column: explicit ones over the largest stable step of the scene, implicit ones over the automatic one.
 EXPLICIT, IMPLICIT = (0.5, 0.999, 2), (0.25, 1, 2, 3.99, 8)
 
@@ -39,9 +31,8 @@ def friction(mu):
     return {"contact": {"friction": mu}}
 
 
-def at_peclet(number):
-    return {"flow": None, "peclet": number, "limits": {"shear_rate": 0.045, "thermal_energy": 0.017},
-            "duration": {"equilibration": {"strain": 0.5, "brownian_times": 10}, "production": {"strain": 2, "brownian_times": 20}}}
+def brownian(number):
+    return {**at_peclet(number), "duration": {"equilibration": {"strain": 0.5, "brownian_times": 10}, "production": {"strain": 2, "brownian_times": 20}}}
 
 
 def large_spheres(ratio):
@@ -73,8 +64,8 @@ PANELS = {
         ("A 1, kappa 0.05", merged(STARTUP, repulsion(1, 0.05)), 8), ("A 100, kappa 0.05", merged(STARTUP, repulsion(100, 0.05)), 8)],
     "inertia": [(f"St {stokes:g}", {"particles": {"density": 0.1 * stokes / 0.045}}, 4) for stokes in (0.001, 0.01, 0.1, 1, 10)],
     "Peclet number": [
-        (f"Pe {pe:g}, phi {phi:g}", {**at_peclet(pe), "volume_fraction": phi}, 12) for phi in (0.3, 0.5) for pe in (0.1, 1, 10, 100, 1e4)],
-    "Peclet number and friction": [(f"Pe {pe:g}, mu 1", merged(at_peclet(pe), friction(1)), 12) for pe in (1, 100)],
+        (f"Pe {pe:g}, phi {phi:g}", {**brownian(pe), "volume_fraction": phi}, 12) for phi in (0.3, 0.5) for pe in (0.1, 1, 10, 100, 1e4)],
+    "Peclet number and friction": [(f"Pe {pe:g}, mu 1", merged(brownian(pe), friction(1)), 12) for pe in (1, 100)],
 }
 QUICK = {"stiffness and volume fraction": 4, "start-up": 2}
 COLUMNS = ["panel", "case", "method", "step", "timestep", "verdict", "bias_percent", "bias_half_width_percent", "flags", "causes", "seeds", "commit"]
