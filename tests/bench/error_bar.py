@@ -74,7 +74,7 @@ def blocks_of(result):
 def variance_of_averages(series, together, which):
     """Of averages of `together` consecutive blocks about the mean of all, and their number."""
     averages = [statistics.mean(block[which] for block in row[i:i + together]) for row in series for i in range(0, len(row), together)]
-    return statistics.variance(averages), len(averages)
+    return statistics.variance(averages) if len(averages) > 1 else math.nan, len(averages)
 
 
 def error_bars(engines, seeds, count, window, cases, folder):
