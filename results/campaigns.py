@@ -77,8 +77,10 @@ class Program:
                        "target": {"observable": "relative_viscosity", "relative_tolerance": 0.1},
                        "realisations": {"minimum": 2, "maximum": 2}, "engine": [self.engine, "serve"]}, f)
         done = subprocess.run([self.peclet, "validate", path, "--json"], capture_output=True, text=True)
-        if done.returncode != 0:
+        if done.returncode == 2:
             return {"refused": done.stderr.strip()}
+        if done.returncode != 0:
+            sys.exit(f"{path}: peclet validate ended with {done.returncode}: {done.stderr.strip()}")
         return json.loads(done.stdout)["points"][0]
 
 

@@ -34,22 +34,26 @@ std::map<std::int64_t, Aggregate> read_aggregates(Connection& connection) {
   return aggregates;
 }
 
-std::map<std::int64_t, std::map<std::string, int>> read_losses(Connection& connection) {
-  Statement query(connection,
-                  "SELECT point_id, cause, count(*) FROM realisation WHERE state IN ('failed', 'quarantined')"
-                  " GROUP BY point_id, cause");
-  std::map<std::int64_t, std::map<std::string, int>> losses;
-  while (query.step()) losses[query.integer(0)][query.text(1)] = static_cast<int>(query.integer(2));
-  return losses;
+using CountsByPoint = std::map<std::int64_t, std::map<std::string, int>>;
+
+// Of rows of point, name and count.
+CountsByPoint counts_by_point(Connection& connection, const char* sql) {
+  Statement query(connection, sql);
+  CountsByPoint counts;
+  while (query.step()) counts[query.integer(0)][query.text(1)] = static_cast<int>(query.integer(2));
+  return counts;
 }
 
-std::map<std::int64_t, std::map<std::string, int>> read_flags(Connection& connection) {
-  Statement query(connection,
-                  "SELECT point_id, message, count(DISTINCT seed) FROM event WHERE kind = 'flag'"
-                  " GROUP BY point_id, message");
-  std::map<std::int64_t, std::map<std::string, int>> flags;
-  while (query.step()) flags[query.integer(0)][query.text(1)] = static_cast<int>(query.integer(2));
-  return flags;
+CountsByPoint read_losses(Connection& connection) {
+  return counts_by_point(connection,
+                         "SELECT point_id, cause, count(*) FROM realisation WHERE state IN ('failed',"
+                         " 'quarantined') GROUP BY point_id, cause");
+}
+
+CountsByPoint read_flags(Connection& connection) {
+  return counts_by_point(connection,
+                         "SELECT point_id, message, count(DISTINCT seed) FROM event WHERE kind = 'flag'"
+                         " GROUP BY point_id, message");
 }
 
 int count_ended(Connection& connection, std::int64_t point, int end) {
@@ -65,8 +69,8 @@ int count_ended(Connection& connection, std::int64_t point, int end) {
 std::vector<PointSummary> summarise_points(Database& database, const TargetRecord& target) {
   Connection& connection = database.connection();
   std::map<std::int64_t, Aggregate> aggregates = read_aggregates(connection);
-  std::map<std::int64_t, std::map<std::string, int>> losses = read_losses(connection);
-  std::map<std::int64_t, std::map<std::string, int>> flags = read_flags(connection);
+  CountsByPoint losses = read_losses(connection);
+  CountsByPoint flags = read_flags(connection);
   const std::vector<int> schedule = look_schedule(target.minimum, target.maximum);
 
   std::vector<PointSummary> summaries;

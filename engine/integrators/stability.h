@@ -31,8 +31,8 @@ double largest_timestep(const Scene& scene);
 //   0.0017 eta a^3 / kT, a the smallest radius: so does a displacement by the noise;
 //   2 or, without friction, 5 times the time X_A / k in which lubrication at the inner gap holds up the
 //   stiffest contact or repulsion;
-//   20 times drag / k of the repulsion at the outer gap, where the drag of single spheres alone resists it: beyond that
-//   packings that start unbalanced throw their spheres apart.
+//   20 times drag / k of the repulsion at the outer gap, where the drag of single spheres alone resists it:
+//   beyond that packings that start unbalanced throw their spheres apart.
 // Without flow and temperature the last two alone; infinite where nothing sets a time.
 double automatic_implicit_timestep(const Scene& scene);
 

@@ -167,7 +167,7 @@ def remake(arguments, folder):
     silent = [r for r in rows if r["verdict"] == "biased" and not r["flags"]]
     for row in silent:
         print(f"wrong without a flag: {row['panel']}, {row['case']}, {row['method']} {row['step']:g}: {row['bias_percent']:.1f} %", file=sys.stderr)
-    #    subprocess.run([sys.executable, os.path.join(HERE, "map.py"), table, os.path.join(target, "map.png")], check=True)
+    subprocess.run([sys.executable, os.path.join(HERE, "map.py"), table, os.path.join(target, "map.png")], check=True)
     sys.exit(1 if silent else 0)
 
 
