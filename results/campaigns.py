@@ -1,10 +1,13 @@
 """What the drivers of studies share: campaigns made, run and read by the program, and estimates with errors."""
+import argparse
 import collections
+import csv
 import json
 import math
 import os
 import subprocess
 import sys
+import tempfile
 
 
 def merged(base, patch):
@@ -142,3 +145,23 @@ def flags(realisations):
 
 def counts_text(counter):
     return " ".join(f"{name}:{count}" for name, count in sorted(counter.items()))
+
+
+def drive(description, panels, remake):
+    """Reads the command line that every driver of a study has, and calls remake(arguments, folder)."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("binaries")
+    parser.add_argument("folder", nargs="?", help="of the campaigns; a temporary one unless given")
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--panel", choices=panels, help="this one alone, into the folder")
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as temporary:
+        remake(arguments, arguments.folder or temporary)
+
+
+def write_table(path, columns, rows, digits):
+    with open(path, "w", newline="") as f:
+        writer = csv.DictWriter(f, columns)
+        writer.writeheader()
+        for row in rows:
+            writer.writerow({k: f"{row[k]:.{digits}g}" if isinstance(row.get(k), float) else row.get(k) for k in columns})

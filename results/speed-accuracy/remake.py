@@ -6,19 +6,16 @@ summary and writes table.csv, chart.png and overview.png beside this script. --q
 FOLDER and fails where a default step loses a seed or, without a flag, changes the viscosity by more than 1 % and more than chance does
 in one run of ten thousand: without noise it compares the two methods and sees half a percent; with noise it sees little.
 """
-import argparse
-import csv
 import math
 import os
 import statistics
 import subprocess
 import sys
-import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from campaigns import (REFERENCE_SCENE, Program, at_peclet, counts_text, estimate, flags, merged, relative_difference, student_quantile,  # noqa: E402
-                       values_by_seed)
+from campaigns import (REFERENCE_SCENE, Program, at_peclet, counts_text, drive, estimate, flags, merged, relative_difference, student_quantile,  # noqa: E402
+                       values_by_seed, write_table)
 
 BROWNIAN_WINDOW = {"duration": {"equilibration": {"brownian_times": 10}, "production": {"brownian_times": 40}}}
 
@@ -114,14 +111,6 @@ def rows_of(panel, program, quick):
         yield row
 
 
-def write(rows, path):
-    with open(path, "w", newline="") as f:
-        writer = csv.DictWriter(f, COLUMNS)
-        writer.writeheader()
-        for row in rows:
-            writer.writerow({k: f"{row[k]:.5g}" if isinstance(row.get(k), float) else row.get(k) for k in COLUMNS})
-
-
 def print_summary(rows):
     """The automatic step of every panel beside half of the largest stable explicit one."""
     print("| case | η_r | automatic step against the reference, % | s per strain, implicit | explicit | times as much | s to a standard error of 2 % |")
@@ -136,17 +125,6 @@ def print_summary(rows):
               f"{before / cost:.3g} | {implicit['seconds_to_2_percent']:.2g} |")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("binaries")
-    parser.add_argument("folder", nargs="?", help="of the campaigns; a temporary one unless given")
-    parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--panel", choices=[panel[0] for panel in PANELS], help="this one alone, into the folder")
-    arguments = parser.parse_args()
-    with tempfile.TemporaryDirectory() as temporary:
-        remake(arguments, arguments.folder or temporary)
-
-
 def remake(arguments, folder):
     program = Program(arguments.binaries, folder)
     rows = []
@@ -158,7 +136,7 @@ def remake(arguments, folder):
     whole = not arguments.quick and not arguments.panel
     target = HERE if whole else folder
     table = os.path.join(target, "table.csv")
-    write(rows, table)
+    write_table(table, COLUMNS, rows, digits=5)
     print_summary(rows)
     draw = [sys.executable, os.path.join(HERE, "chart.py"), table]
     subprocess.run([*draw, os.path.join(target, "chart.png")], check=True)
@@ -170,4 +148,4 @@ def remake(arguments, folder):
                 sys.exit(f"{row['panel']}: the automatic step changes the viscosity by {row.get('bias_percent', math.nan):.1f} % and loses {row['lost']} seeds")
 
 
-main()
+drive(__doc__.splitlines()[0], [panel[0] for panel in PANELS], remake)

@@ -5,18 +5,15 @@ Runs the cells of the stability map with the programs in BIN, keeps their campai
 there), and writes table.csv and map.png beside this script; with --quick or --panel into FOLDER. Fails where a cell is biased and no
 realisation says so; chance makes one of a thousand cells so.
 """
-import argparse
 import collections
-import csv
 import os
 import subprocess
 import sys
-import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from campaigns import (REFERENCE_SCENE, Program, at_peclet, counts_text, flags, merged, relative_difference, student_quantile,  # noqa: E402
-                       values_by_seed)
+from campaigns import (REFERENCE_SCENE, Program, at_peclet, counts_text, drive, flags, merged, relative_difference, student_quantile,  # noqa: E402
+                       values_by_seed, write_table)
 
 BASE = merged(REFERENCE_SCENE, {"particles": {"count": 100}, "duration": {"equilibration": {"strain": 0.5}, "production": {"strain": 0.75}}})
 # Steps of each column: explicit ones over the largest stable step of the scene, implicit ones over the automatic one.
@@ -135,17 +132,6 @@ def rows_of(name, case, program):
         yield row
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("binaries")
-    parser.add_argument("folder", nargs="?", help="of the campaigns; a temporary one unless given")
-    parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--panel", choices=list(PANELS), help="this one alone")
-    arguments = parser.parse_args()
-    with tempfile.TemporaryDirectory() as temporary:
-        remake(arguments, arguments.folder or temporary)
-
-
 def remake(arguments, folder):
     program = Program(arguments.binaries, folder)
     rows = []
@@ -159,11 +145,7 @@ def remake(arguments, folder):
             print(f"{name}: {case[0]}", file=sys.stderr, flush=True)
     target = folder if arguments.quick or arguments.panel else HERE
     table = os.path.join(target, "table.csv")
-    with open(table, "w", newline="") as f:
-        writer = csv.DictWriter(f, COLUMNS)
-        writer.writeheader()
-        for row in rows:
-            writer.writerow({k: f"{row[k]:.4g}" if isinstance(row.get(k), float) else row.get(k) for k in COLUMNS})
+    write_table(table, COLUMNS, rows, digits=4)
     silent = [r for r in rows if r["verdict"] == "biased" and not r["flags"]]
     for row in silent:
         print(f"wrong without a flag: {row['panel']}, {row['case']}, {row['method']} {row['step']:g}: {row['bias_percent']:.1f} %", file=sys.stderr)
@@ -171,4 +153,4 @@ def remake(arguments, folder):
     sys.exit(1 if silent else 0)
 
 
-main()
+drive(__doc__.splitlines()[0], list(PANELS), remake)
