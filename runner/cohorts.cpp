@@ -1,7 +1,10 @@
 #include "runner/cohorts.h"
 
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
 #include <cmath>
+
+#include "runner/transient.h"
 
 namespace peclet::runner {
 namespace {
@@ -29,7 +32,7 @@ Verdict judge(const Look& look, const Target& target, int minimum, int maximum) 
   return look.estimate.count < 2 ? Verdict::failed : Verdict::capped;
 }
 
-Look look_at(std::span<const std::optional<Outcome>> cohort, const Target& target) {
+Look look_at(std::span<const std::optional<Outcome>> cohort, double confidence) {
   std::vector<double> values, controlled;
   for (const std::optional<Outcome>& outcome : cohort) {
     if (outcome->kind == Outcome::Kind::lost) continue;
@@ -40,9 +43,11 @@ Look look_at(std::span<const std::optional<Outcome>> cohort, const Target& targe
   look.seeds = static_cast<int>(cohort.size());
   look.lost = look.seeds - static_cast<int>(values.size());
   look.estimate = estimate(values);
-  look.half_width = student_half_width(look.estimate, target.confidence);
+  look.half_width = student_half_width(look.estimate, confidence);
   look.controlled = estimate(controlled);
-  look.controlled_half_width = student_half_width(look.controlled, target.confidence);
+  look.controlled_half_width = student_half_width(look.controlled, confidence);
+  look.skewness = skewness(controlled);
+  look.transient = has_transient(cohort);
   return look;
 }
 
@@ -50,6 +55,21 @@ Look look_at(std::span<const std::optional<Outcome>> cohort, const Target& targe
 
 double relative_width(const Look& look) {
   return look.controlled_half_width / std::abs(look.controlled.mean);
+}
+
+double adjusted_confidence(double confidence, int minimum, int maximum) {
+  return minimum == maximum ? confidence : 1 - (1 - confidence) * (1 - 1.4 / std::max(minimum, 2));
+}
+
+bool is_skewed(const Look& look, double confidence) {
+  const double n = look.controlled.count;
+  if (!std::isfinite(look.skewness)) return false;
+  const double chance = std::sqrt(6 * n * (n - 1) / ((n - 2) * (n + 1) * (n + 3)));  // of a normal population
+  const boost::math::normal standard;
+  const double z = boost::math::quantile(standard, (1 + confidence) / 2);
+  const double loss = 2 * boost::math::pdf(standard, z) * z * (std::pow(z, 4) + 2 * z * z - 3) *
+                      look.skewness * look.skewness / (18 * n);
+  return std::abs(look.skewness) > 2.5 * chance && loss > 0.01;
 }
 
 std::vector<int> look_schedule(int minimum, int maximum) {
@@ -62,10 +82,11 @@ std::vector<int> look_schedule(int minimum, int maximum) {
 
 std::vector<Look> replay_looks(const std::vector<std::optional<Outcome>>& outcomes, const Target& target,
                                int minimum, int maximum) {
+  const double confidence = adjusted_confidence(target.confidence, minimum, maximum);
   std::vector<Look> looks;
   for (const int seeds : look_schedule(minimum, maximum)) {
     if (!is_closed(outcomes, seeds)) break;
-    looks.push_back(look_at(std::span(outcomes).first(static_cast<std::size_t>(seeds)), target));
+    looks.push_back(look_at(std::span(outcomes).first(static_cast<std::size_t>(seeds)), confidence));
     looks.back().verdict = judge(looks.back(), target, minimum, maximum);
     if (looks.back().verdict != Verdict::more) break;
   }

@@ -28,11 +28,25 @@ Estimate estimate(std::span<const double> values) {
   return result;
 }
 
+double skewness(std::span<const double> values) {
+  const double mean = estimate(values).mean;
+  double squares = 0, cubes = 0;
+  for (const double value : values) {
+    squares += (value - mean) * (value - mean);
+    cubes += (value - mean) * (value - mean) * (value - mean);
+  }
+  if (values.size() < 3 || squares == 0) return std::numeric_limits<double>::quiet_NaN();
+  return cubes * std::sqrt(static_cast<double>(values.size())) / (squares * std::sqrt(squares));
+}
+
+double student_quantile(int degrees, double confidence) {
+  const boost::math::students_t distribution(degrees);
+  return boost::math::quantile(boost::math::complement(distribution, (1 - confidence) / 2));
+}
+
 double student_half_width(const Estimate& estimate, double confidence) {
   if (estimate.count < 2) return std::numeric_limits<double>::quiet_NaN();
-  const boost::math::students_t distribution(estimate.count - 1);
-  const double quantile = boost::math::quantile(boost::math::complement(distribution, (1 - confidence) / 2));
-  return quantile * estimate.standard_error;
+  return student_quantile(estimate.count - 1, confidence) * estimate.standard_error;
 }
 
 }  // namespace peclet::runner

@@ -14,6 +14,13 @@ struct Estimate {
 
 Estimate estimate(std::span<const double> values);
 
+// Third central moment over the 3/2 power of the second, both with n; NaN for fewer than three values or
+// equal ones.
+double skewness(std::span<const double> values);
+
+// Quantile of Student's t for a two-sided interval: t(degrees, (1 + confidence) / 2).
+double student_quantile(int degrees, double confidence);
+
 // Half-width t(n - 1, (1 + confidence) / 2) * standard error of Student's interval; NaN for fewer than two
 // values.
 double student_half_width(const Estimate& estimate, double confidence);
