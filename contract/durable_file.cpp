@@ -101,6 +101,14 @@ void write_durably(const std::filesystem::path& path, std::string_view bytes) {
   synchronise_folder(path);
 }
 
+void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to) {
+  const Descriptor descriptor(open_again_if_interrupted(from, O_RDONLY));
+  if (descriptor.number() < 0) fail("cannot open", from);
+  synchronise(descriptor.number(), from);
+  if (::rename(from.c_str(), to.c_str()) != 0) fail("cannot replace", to);
+  synchronise_folder(to);
+}
+
 std::string read_file(const std::filesystem::path& path) {
   const Descriptor descriptor(open_again_if_interrupted(path, O_RDONLY));
   if (descriptor.number() < 0) fail("cannot open", path);

@@ -1,8 +1,10 @@
-// The text of schema/campaign.sql.
+// The texts of schema/*.sql.
 #pragma once
 
 namespace peclet::runner {
 
-extern const char* const campaign_sql;
+extern const char* const campaign_sql;   // the tables, newest version
+extern const char* const views_sql;      // what people read
+extern const char* const version_2_sql;  // from version 1 of the tables
 
 }  // namespace peclet::runner

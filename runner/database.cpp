@@ -8,13 +8,14 @@
 
 #include "contract/input_error.h"
 #include "runner/campaign_sql.h"
+#include "runner/migration.h"
 
 namespace peclet::runner {
 namespace {
 
 // As in schema/campaign.sql.
 constexpr std::int64_t our_application = 1346587724;
-constexpr std::int64_t newest_version = 1;
+constexpr std::int64_t newest_version = 2;
 
 constexpr std::array<std::pair<SeedState, const char*>, 5> state_names{
     {{SeedState::queued, "queued"},
@@ -52,19 +53,21 @@ bool is_empty(Connection& connection) {
          connection.integer("SELECT count(*) FROM sqlite_schema") == 0;
 }
 
+std::int64_t version_of(Connection& connection) { return connection.integer("PRAGMA user_version"); }
+
 void check_kind(Connection& connection) {
   const std::int64_t application = connection.integer("PRAGMA application_id");
   if (application != our_application) {
     throw IntegrityError(connection.path() + ": is a database, but not one of a peclet campaign");
   }
-  const std::int64_t version = connection.integer("PRAGMA user_version");
+  const std::int64_t version = version_of(connection);
   if (version > newest_version) {
     throw IntegrityError(fmt::format(
         "{}: was written by a newer peclet (version {} of its tables; this program knows versions up to "
         "{}); use that peclet or a newer one",
         connection.path(), version, newest_version));
   }
-  if (version < newest_version) {
+  if (version < 1) {
     throw IntegrityError(
         fmt::format("{}: has tables of version {}, which never existed", connection.path(), version));
   }
@@ -73,6 +76,7 @@ void check_kind(Connection& connection) {
 void create_tables(Connection& connection) {
   Transaction creation(connection);
   connection.execute(campaign_sql);
+  connection.execute(views_sql);
   creation.commit();
 }
 
@@ -102,6 +106,8 @@ Database Database::open_owner(const std::filesystem::path& path) {
     create_tables(connection);
   } else if (const std::string verdict = connection.text("PRAGMA quick_check(1)"); verdict != "ok") {
     throw IntegrityError(fmt::format("{}: is damaged: {}", connection.path(), verdict));
+  } else if (version_of(connection) < newest_version) {
+    migrate(connection, version_of(connection));
   }
   return database;
 }
@@ -117,6 +123,11 @@ Database Database::open_reader(const std::filesystem::path& path) {
     throw InputError(path.string(), "", "", "the campaign is only just being set up; try again in a moment");
   }
   check_kind(database.connection());
+  if (version_of(database.connection()) < newest_version) {
+    throw InputError(
+        path.string(), "", "",
+        "was last written by an older peclet; `peclet run` brings it up to date, after a backup");
+  }
   return database;
 }
 

@@ -42,7 +42,8 @@ std::vector<LookRecord> read_looks(Connection& connection, std::int64_t point, c
       connection,
       "SELECT target_id, observable, relative_tolerance, confidence, minimum, maximum, seeds, lost, count,"
       " mean, standard_error, half_width, controlled_mean, controlled_standard_error,"
-      " controlled_half_width, verdict, made_at FROM look JOIN target USING (target_id) WHERE point_id = ? " +
+      " controlled_half_width, verdict, made_at, skewness, transient FROM look JOIN target USING (target_id) "
+      "WHERE point_id = ? " +
           which + " ORDER BY target_id, seeds");
   query.bind(point);
   std::vector<LookRecord> looks;
@@ -59,6 +60,8 @@ std::vector<LookRecord> read_looks(Connection& connection, std::int64_t point, c
     look.controlled_half_width = query.real(14);
     look.verdict = verdict(query.text(15));
     record.made_at = query.text(16);
+    look.skewness = query.real(17);
+    look.transient = query.integer(18) != 0;
     looks.push_back(std::move(record));
   }
   return looks;
@@ -158,16 +161,17 @@ std::vector<RealisationRecord> Database::realisations(std::int64_t point) {
 
 std::vector<std::optional<Outcome>> Database::outcomes(std::int64_t point) {
   Statement query(*connection_,
-                  "SELECT seed, state, value, control FROM realisation WHERE point_id = ? AND state IN "
-                  "('done', 'failed', 'quarantined') ORDER BY seed");
+                  "SELECT seed, state, value, control, first_quarter, first_half FROM realisation WHERE "
+                  "point_id = ? AND state IN ('done', 'failed', 'quarantined') ORDER BY seed");
   query.bind(point);
   std::vector<std::optional<Outcome>> outcomes;
   while (query.step()) {
     outcomes.resize(static_cast<std::size_t>(query.integer(0)) + 1);
     if (seed_state(query.text(1)) != SeedState::done) {
-      outcomes.back() = Outcome{Outcome::Kind::lost, 0, 0};
+      outcomes.back() = Outcome{};
     } else if (const std::optional<double> value = query.optional_real(2)) {
-      outcomes.back() = Outcome{Outcome::Kind::value, *value, query.optional_real(3).value_or(0)};
+      outcomes.back() = Outcome{Outcome::Kind::value, *value, query.optional_real(3).value_or(0),
+                                query.real(4), query.real(5)};
     } else {
       outcomes.pop_back();  // done, but without this observable: run_campaign() refuses to go on with it
     }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <utility>
 
 #include "contract/input_error.h"
@@ -18,6 +19,13 @@ std::string names_of_numbers(const Json& mean) {
     if (value.is_number()) names += (names.empty() ? "" : ", ") + name;
   }
   return names;
+}
+
+Outcome outcome_of(const Observed& observed) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (!observed.value) return {};
+  return {Outcome::Kind::value, *observed.value, observed.control.value_or(0),
+          observed.first_quarter.value_or(none), observed.first_half.value_or(none)};
 }
 
 }  // namespace
@@ -102,13 +110,10 @@ Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
     costs_[static_cast<std::size_t>(place->second)].add(
         result.document["cost"]["wall_seconds"].get<double>());
   }
-  const Outcome outcome = observed.value
-                              ? Outcome{Outcome::Kind::value, *observed.value, observed.control.value_or(0)}
-                              : Outcome{};
   if (!result.completed()) {
     listener_.note(fmt::format("{}: ended with {}", name({place->second, result.seed}), result.cause));
   }
-  book_outcome({place->second, result.seed}, outcome);
+  book_outcome({place->second, result.seed}, outcome_of(observed));
   return stored;
 }
 

@@ -190,8 +190,8 @@ void Queue::store_numbers(std::int64_t point, const RealisationResult& result, c
       connection_,
       "INSERT OR REPLACE INTO realisation (point_id, seed, state, cause, value, control, timestep, "
       "equilibration_steps, production_steps, production_strain, statistical_inefficiency, largest_overlap, "
-      "cpu_seconds, wall_seconds, final_state_sha256, content_sha256, engine_id) "
-      "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+      "cpu_seconds, wall_seconds, final_state_sha256, content_sha256, engine_id, first_quarter, first_half) "
+      "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       .bind(point)
       .bind(result.seed)
       .bind(to_string(result.completed() ? SeedState::done : SeedState::failed))
@@ -209,6 +209,8 @@ void Queue::store_numbers(std::int64_t point, const RealisationResult& result, c
       .bind(final_state.is_string() ? std::optional(final_state.get<std::string>()) : std::nullopt)
       .bind(result.content_sha256)
       .bind(engine)
+      .bind(observed.first_quarter)
+      .bind(observed.first_half)
       .run();
   Json without_engine = document;
   without_engine.erase("engine");
@@ -230,12 +232,17 @@ void Queue::store_looks(std::int64_t point, const std::vector<Look>& looks) {
   Statement insert(
       connection_,
       "INSERT INTO look (point_id, target_id, seeds, lost, count, mean, standard_error, half_width, "
-      "controlled_mean, controlled_standard_error, controlled_half_width, verdict, made_at) "
-      "SELECT ?1, target_id, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12 FROM campaign WHERE true "
-      "ON CONFLICT DO UPDATE SET lost = ?3, count = ?4, mean = ?5, standard_error = ?6, half_width = ?7, "
-      "controlled_mean = ?8, controlled_standard_error = ?9, controlled_half_width = ?10, verdict = ?11, "
-      "made_at = ?12 WHERE count != ?4 OR lost != ?3 OR mean IS NOT ?5 OR controlled_mean IS NOT ?8 OR "
-      "verdict != ?11");
+      "controlled_mean, controlled_standard_error, controlled_half_width, verdict, made_at, skewness, "
+      "transient) SELECT ?1, target_id, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14 FROM "
+      "campaign "
+      "WHERE true ON CONFLICT DO UPDATE SET lost = ?3, count = ?4, mean = ?5, standard_error = ?6, "
+      "half_width "
+      "= ?7, controlled_mean = ?8, controlled_standard_error = ?9, controlled_half_width = ?10, verdict = "
+      "?11, "
+      "made_at = ?12, skewness = ?13, transient = ?14 WHERE count != ?4 OR lost != ?3 OR mean IS NOT ?5 OR "
+      "half_width IS NOT ?7 OR controlled_mean IS NOT ?8 OR controlled_half_width IS NOT ?10 OR verdict != "
+      "?11 "
+      "OR skewness IS NOT ?13 OR transient != ?14");
   const std::string now = utc_now();
   for (const Look& look : looks) {
     insert.bind(point)
@@ -250,6 +257,8 @@ void Queue::store_looks(std::int64_t point, const std::vector<Look>& looks) {
         .bind(look.controlled_half_width)
         .bind(to_string(look.verdict))
         .bind(now)
+        .bind(look.skewness)
+        .bind(look.transient)
         .run();
   }
 }

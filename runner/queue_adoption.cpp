@@ -91,7 +91,8 @@ void Queue::observe_again(const Campaign& campaign) {
       "SELECT point_id, seed, document FROM result JOIN realisation USING (point_id, seed) WHERE state = "
       "'done'");
   Statement change(connection_,
-                   "UPDATE realisation SET value = ?, control = ? WHERE point_id = ? AND seed = ?");
+                   "UPDATE realisation SET value = ?, control = ?, first_quarter = ?, first_half = ? WHERE "
+                   "point_id = ? AND seed = ?");
   while (done.step()) {
     const Json document = Json::parse(done.text(2));
     const Observed observed = observe(document, campaign.target.observable);
@@ -99,7 +100,13 @@ void Queue::observe_again(const Campaign& campaign) {
       throw InputError(campaign.name, "/target/observable", campaign.target.observable,
                        "must be a number that the results have: " + numbers_in(document.at("mean")));
     }
-    change.bind(observed.value).bind(observed.control).bind(done.integer(0)).bind(done.integer(1)).run();
+    change.bind(observed.value)
+        .bind(observed.control)
+        .bind(observed.first_quarter)
+        .bind(observed.first_half)
+        .bind(done.integer(0))
+        .bind(done.integer(1))
+        .run();
   }
 }
 

@@ -17,6 +17,8 @@ namespace {
 constexpr std::array<std::string_view, 6> causes{"completed",  "overlap", "displacement",
                                                  "non-finite", "packing", "timestep"};
 
+constexpr const char* control_name = "brownian_pairwise";
+
 [[noreturn]] void refuse(const std::string& pointer, std::string_view allowed) {
   throw ResultError(fmt::format("{}: {}", pointer, allowed));
 }
@@ -88,6 +90,37 @@ std::optional<double> number_in(const Json& object, const std::string& key) {
   return found->get<double>();
 }
 
+// The mean of the first `parts` of 4 equal parts of a series of blocks; none where it is no such series.
+std::optional<double> mean_of_first(const Json& blocks, const std::string& key, int parts) {
+  const auto found = blocks.find(key);
+  if (found == blocks.end() || !found->is_array() || found->empty() || found->size() % 4 != 0) {
+    return std::nullopt;
+  }
+  const std::size_t count = found->size() * static_cast<std::size_t>(parts) / 4;
+  double sum = 0;
+  for (std::size_t block = 0; block < count; ++block) {
+    if (!(*found)[block].is_number()) return std::nullopt;
+    sum += (*found)[block].get<double>();
+  }
+  return sum / static_cast<double>(count);
+}
+
+std::optional<double> sum_of(std::optional<double> value, std::optional<double> control) {
+  if (!value || !control) return std::nullopt;
+  return *value + *control;
+}
+
+// value + control in the first `parts` of 4 parts of the window.
+std::optional<double> beginning(const Json& blocks, const std::string& observable, bool controlled,
+                                int parts) {
+  if (!blocks.is_object()) return std::nullopt;
+  const std::optional<double> value = mean_of_first(blocks, observable, parts);
+  if (!controlled) return value;
+  const auto controls = blocks.find("control_variates");
+  if (controls == blocks.end() || !controls->is_object()) return std::nullopt;
+  return sum_of(value, mean_of_first(*controls, control_name, parts));
+}
+
 }  // namespace
 
 RealisationResult parse_result(std::string_view text) {
@@ -131,8 +164,11 @@ Observed observe(const Json& result, const std::string& observable) {
   observed.value = number_in(mean, observable);
   const auto controls = mean.find("control_variates");
   if (observable.starts_with("relative_viscosity") && controls != mean.end()) {
-    observed.control = number_in(*controls, "brownian_pairwise");
+    observed.control = number_in(*controls, control_name);
   }
+  const Json& blocks = result.at("blocks");
+  observed.first_quarter = beginning(blocks, observable, observed.control.has_value(), 1);
+  observed.first_half = beginning(blocks, observable, observed.control.has_value(), 2);
   return observed;
 }
 

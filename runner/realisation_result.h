@@ -36,6 +36,8 @@ std::string engine_identity(const Json& engine);
 struct Observed {
   std::optional<double> value;    // of the observable; none after a blow-up, or where it does not exist
   std::optional<double> control;  // variate of mean zero that belongs to it
+  // value + control over the first quarter and the first half of the window; none without such blocks
+  std::optional<double> first_quarter{}, first_half{};
 };
 
 // What a completed realisation says against itself: the codes of its warnings, those apart that its scene has

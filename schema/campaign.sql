@@ -1,10 +1,11 @@
--- The database of one campaign, version 1. One process writes it (the one that holds campaign.lock);
--- everybody else opens it read-only. schema/README.md explains the tables and views to pandas users.
+-- The database of one campaign, version 2; its views are in views.sql. One process writes it (the one that holds
+-- campaign.lock); everybody else opens it read-only. schema/README.md explains the tables and views to pandas
+-- users. A version-N.sql makes version N of the one before it and leaves the same tables as this file.
 --
 -- Times ending in _at are wall-clock times in UTC, for people to look at: no decision is made from them.
 
 PRAGMA application_id = 1346587724;  -- "PCLL" as a big-endian integer
-PRAGMA user_version = 1;
+PRAGMA user_version = 2;
 
 -- What a verdict was reached for. Old targets stay, with the looks that were made for them.
 CREATE TABLE target (
@@ -42,7 +43,9 @@ CREATE TABLE point (
   label           TEXT    NOT NULL,
   place           INTEGER UNIQUE,           -- in the sweep; NULL when the sweep no longer contains the point
   engine_identity TEXT,                     -- of its first result; every other result must have the same
-  suspect         INTEGER NOT NULL DEFAULT 0 CHECK (suspect IN (0, 1))  -- a seed gave two different results
+  suspect         INTEGER NOT NULL DEFAULT 0 CHECK (suspect IN (0, 1)),  -- a seed gave two different results
+  priority        INTEGER NOT NULL DEFAULT 0,  -- points of a higher one are served first
+  cancelled       INTEGER NOT NULL DEFAULT 0 CHECK (cancelled IN (0, 1))  -- gets no more seeds
 ) STRICT;
 
 -- One seed at one point: its state and the numbers that are asked for most.
@@ -64,6 +67,8 @@ CREATE TABLE realisation (
   final_state_sha256       TEXT,
   content_sha256           TEXT,     -- of the canonical result without its cost: what repetitions must share
   engine_id                INTEGER REFERENCES engine,
+  first_quarter            REAL,     -- value + control over this part of the window; NULL without blocks
+  first_half               REAL,
   PRIMARY KEY (point_id, seed),
   CHECK ((state IN ('done', 'failed')) = (content_sha256 IS NOT NULL)),
   CHECK ((state IN ('done', 'failed', 'quarantined')) = (cause IS NOT NULL))
@@ -134,6 +139,8 @@ CREATE TABLE look (
   verdict                   TEXT    NOT NULL CHECK (verdict IN
                               ('more', 'converged', 'converged-with-losses', 'capped', 'failed')),
   made_at                   TEXT    NOT NULL,
+  skewness                  REAL,     -- of the values that decide
+  transient                 INTEGER NOT NULL DEFAULT 0 CHECK (transient IN (0, 1)),  -- the window is too early
   PRIMARY KEY (point_id, target_id, seeds)
 ) STRICT, WITHOUT ROWID;
 
@@ -147,36 +154,20 @@ CREATE TABLE event (
   message  TEXT    NOT NULL
 ) STRICT;
 
--- The views: what people read. They show the points that the sweep contains.
+-- What people have set with `peclet set`, over what the campaign file says. "tolerance", "minimum", "maximum".
+CREATE TABLE setting (
+  key    TEXT PRIMARY KEY,
+  value  REAL NOT NULL,
+  set_at TEXT NOT NULL
+) STRICT;
 
-CREATE VIEW points AS
-SELECT p.place, p.label, p.hash, p.settings, p.suspect,
-       (SELECT count(*) FROM realisation r WHERE r.point_id = p.point_id AND r.state = 'done')        AS done,
-       (SELECT count(*) FROM realisation r WHERE r.point_id = p.point_id AND r.state = 'failed')      AS failed,
-       (SELECT count(*) FROM realisation r WHERE r.point_id = p.point_id AND r.state = 'quarantined') AS quarantined,
-       (SELECT count(*) FROM realisation r WHERE r.point_id = p.point_id AND r.state = 'running')     AS running,
-       (SELECT sum(cpu_seconds) FROM realisation r WHERE r.point_id = p.point_id)                     AS cpu_seconds
-FROM point p WHERE p.place IS NOT NULL ORDER BY p.place;
-
-CREATE VIEW realisations AS
-SELECT p.place, p.label, p.hash, r.seed, r.state, r.cause, r.value, r.control, r.timestep, r.equilibration_steps,
-       r.production_steps, r.production_strain, r.statistical_inefficiency, r.largest_overlap, r.cpu_seconds,
-       r.wall_seconds, r.final_state_sha256, e.identity AS engine, d.document AS result
-FROM realisation r
-JOIN point p USING (point_id)
-LEFT JOIN engine e USING (engine_id)
-LEFT JOIN result d USING (point_id, seed)
-WHERE p.place IS NOT NULL ORDER BY p.place, r.seed;
-
--- The last look at each point for the campaign's present target.
-CREATE VIEW estimates AS
-SELECT p.place, p.label, p.hash, t.observable, t.relative_tolerance, t.confidence, l.seeds, l.lost, l.count, l.mean,
-       l.standard_error, l.half_width, l.controlled_mean, l.controlled_standard_error, l.controlled_half_width,
-       l.verdict
-FROM look l
-JOIN campaign c USING (target_id)
-JOIN target t USING (target_id)
-JOIN point p USING (point_id)
-WHERE p.place IS NOT NULL
-  AND l.seeds = (SELECT max(m.seeds) FROM look m WHERE m.point_id = l.point_id AND m.target_id = l.target_id)
-ORDER BY p.place;
+-- What was foretold for a point from its pilot seeds, to be held against what it took.
+CREATE TABLE prediction (
+  point_id    INTEGER NOT NULL REFERENCES point,
+  target_id   INTEGER NOT NULL REFERENCES target,
+  pilots      INTEGER NOT NULL,
+  seeds       REAL    NOT NULL,
+  cpu_seconds REAL    NOT NULL,
+  made_at     TEXT    NOT NULL,
+  PRIMARY KEY (point_id, target_id)
+) STRICT, WITHOUT ROWID;

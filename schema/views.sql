@@ -1,0 +1,34 @@
+-- The views: what people read. They show the points that the sweep contains. They are made anew whenever the
+-- tables change their version.
+
+CREATE VIEW points AS
+SELECT p.place, p.label, p.hash, p.settings, p.suspect, p.priority, p.cancelled,
+       (SELECT count(*) FROM realisation r WHERE r.point_id = p.point_id AND r.state = 'done')        AS done,
+       (SELECT count(*) FROM realisation r WHERE r.point_id = p.point_id AND r.state = 'failed')      AS failed,
+       (SELECT count(*) FROM realisation r WHERE r.point_id = p.point_id AND r.state = 'quarantined') AS quarantined,
+       (SELECT count(*) FROM realisation r WHERE r.point_id = p.point_id AND r.state = 'running')     AS running,
+       (SELECT sum(cpu_seconds) FROM realisation r WHERE r.point_id = p.point_id)                     AS cpu_seconds
+FROM point p WHERE p.place IS NOT NULL ORDER BY p.place;
+
+CREATE VIEW realisations AS
+SELECT p.place, p.label, p.hash, r.seed, r.state, r.cause, r.value, r.control, r.timestep, r.equilibration_steps,
+       r.production_steps, r.production_strain, r.statistical_inefficiency, r.largest_overlap, r.first_quarter,
+       r.first_half, r.cpu_seconds, r.wall_seconds, r.final_state_sha256, e.identity AS engine, d.document AS result
+FROM realisation r
+JOIN point p USING (point_id)
+LEFT JOIN engine e USING (engine_id)
+LEFT JOIN result d USING (point_id, seed)
+WHERE p.place IS NOT NULL ORDER BY p.place, r.seed;
+
+-- The last look at each point for the campaign's present target.
+CREATE VIEW estimates AS
+SELECT p.place, p.label, p.hash, t.observable, t.relative_tolerance, t.confidence, l.seeds, l.lost, l.count, l.mean,
+       l.standard_error, l.half_width, l.controlled_mean, l.controlled_standard_error, l.controlled_half_width,
+       l.skewness, l.transient, l.verdict
+FROM look l
+JOIN campaign c USING (target_id)
+JOIN target t USING (target_id)
+JOIN point p USING (point_id)
+WHERE p.place IS NOT NULL
+  AND l.seeds = (SELECT max(m.seeds) FROM look m WHERE m.point_id = l.point_id AND m.target_id = l.target_id)
+ORDER BY p.place;
