@@ -55,13 +55,11 @@ std::vector<Key> keys() {
        .kind = KeyKind::object,
        .meaning = "How many seeds a point may take.",
        .required = true},
-      // One value has no standard error. With two, Student's interval is 12.7 standard errors wide at 95 %
-      // and narrow by chance often enough to stop too early; hence the advice.
       {.pointer = "/realisations/minimum",
        .kind = KeyKind::integer,
        .meaning =
-           "Seeds before the first look. One has no standard error; 5 or more are advised, because the "
-           "standard error of fewer is itself too uncertain to stop by.",
+           "Seeds before the first look: 8 or more, because the spread of fewer is itself too uncertain to "
+           "stop by; 2 or more where it equals maximum, so that there is only one look.",
        .required = true,
        .minimum = 2,
        .maximum = most_realisations},

@@ -77,6 +77,7 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
   for (PointRecord& point : database.points()) {
     PointSummary summary;
     const Aggregate& aggregate = aggregates[point.id];
+    summary.confidence = target.target.confidence;
     summary.counts = aggregate.counts;
     summary.so_far = aggregate.so_far;
     summary.losses = std::move(losses[point.id]);

@@ -17,6 +17,7 @@ struct PointSummary {
   std::map<std::string, int> losses;  // seeds by cause
   std::map<std::string, int> flags;   // completed seeds by what they say against themselves
   std::vector<Look> looks;            // for the present target
+  double confidence = 0.95;           // of its intervals
   bool decided = false;
   int wanted = 0;        // seeds of the next look; of a decided point those of the deciding one
   int wanted_ended = 0;  // of these, how many have ended

@@ -9,6 +9,7 @@
 
 #include "contract/input_error.h"
 #include "runner/explain_attempts.h"
+#include "runner/explain_estimate.h"
 #include "runner/forecast.h"
 #include "runner/number_text.h"
 #include "runner/status.h"
@@ -86,6 +87,7 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
   const Look& look = point.looks.back();
   switch (look.verdict) {
     case Verdict::converged:
+      if (look.transient) return "a longer /scene/duration/equilibration: see transient above";
       return "nothing; a smaller /target/relative_tolerance reopens it";
     case Verdict::converged_with_losses:
       return fmt::format("see why seeds are lost: the mean leaves them out (states in {})",
@@ -130,6 +132,7 @@ std::string explain(Database& database, const CampaignDirectory& directory, cons
     text += fmt::format("{}  ({})\n", summary.point.label, summary.point.hash.substr(0, 12));
     text += fmt::format("  {}: {}\n", verdict_text(summary), reason(summary, target.target));
     text += looks_table(summary.looks, target.target);
+    text += estimate_text(database, summary, target);
     text += losses_text(database, summary.point.id);
     text += attempts_text(database, summary.point.id);
     text += fmt::format("  next: {}\n", next_step(summary, target, directory));

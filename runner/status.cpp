@@ -73,6 +73,8 @@ std::string verdict_text(const PointSummary& point) {
   } else if (point.lost() > 0) {
     text += fmt::format(", {} lost", point.lost());
   }
+  if (!point.looks.empty() && point.looks.back().transient) text += ", transient";
+  if (point.decided && is_skewed(point.looks.back(), point.confidence)) text += ", skewed";
   for (const auto& [code, count] : point.flags) text += fmt::format(", {} flagged {}", count, code);
   return point.point.suspect ? text + ", suspect" : text;
 }
@@ -84,6 +86,8 @@ Json look_json(const Look& look) {
   json["half_width"] = number(look.half_width);
   json["controlled"] = estimate_json(look.controlled);
   json["controlled"]["half_width"] = number(look.controlled_half_width);
+  json["skewness"] = number(look.skewness);
+  json["transient"] = look.transient;
   json["verdict"] = to_string(look.verdict);
   return json;
 }

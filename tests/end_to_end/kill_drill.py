@@ -31,7 +31,7 @@ CAMPAIGN = {
     },
     "sweep": [{"set": "/peclet", "values": [10, 1000]}],
     "target": {"observable": "relative_viscosity", "relative_tolerance": 0.15},
-    "realisations": {"minimum": 5, "maximum": 20},
+    "realisations": {"minimum": 8, "maximum": 20},
     "engine": ["peclet-engine", "serve"],
 }
 

@@ -31,7 +31,7 @@ CAMPAIGN = {
     "scene": SCENE,
     "sweep": [{"set": "/flow/shear_rate", "values": [0.05, 0.04]}],
     "target": {"observable": "relative_viscosity", "relative_tolerance": 0.5},
-    "realisations": {"minimum": 2, "maximum": 4},
+    "realisations": {"minimum": 4, "maximum": 4},
     "engine": ["peclet-engine", "serve"],
 }
 CONFIGURATION = {

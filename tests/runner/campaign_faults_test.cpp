@@ -68,6 +68,8 @@ const Fault faults[] = {
     {R"({"target": {"confidence": 95}})", "/target/confidence", "95", "> 0.5 and < 1"},
     {R"({"target": {"observable": 1}})", "/target/observable", "1", "must be a string"},
     {R"({"realisations": {"minimum": 1}})", "/realisations/minimum", "1", "integer >= 2 and <= 1000000"},
+    {R"({"realisations": {"minimum": 7}})", "/realisations/minimum", "7",
+     "must be an integer >= 8, or equal to maximum"},
     {R"({"realisations": {"minimum": 10.5}})", "/realisations/minimum", "10.5", "must be an integer"},
     {R"({"realisations": {"maximum": 9}})", "/realisations/maximum", "9", "integer >= minimum, 10"},
     {R"({"realisations": {"maximum": 2000000}})", "/realisations/maximum", "2000000", "<= 1000000"},

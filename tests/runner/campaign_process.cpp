@@ -44,7 +44,7 @@ CampaignOnDisk::CampaignOnDisk(int points) : directory_(folder_.path() / "test.p
       {"scene", {{"fluid", {{"viscosity", 1}}}, {"peclet", 1}}},
       {"sweep", {{{"set", "/peclet"}, {"values", Json::array()}}}},
       {"target", {{"observable", "relative_viscosity"}, {"relative_tolerance", 0.05}, {"confidence", 0.95}}},
-      {"realisations", {{"minimum", 5}, {"maximum", 60}}},
+      {"realisations", {{"minimum", 8}, {"maximum", 60}}},
       {"engine", {FAKE_ENGINE, "serve"}}};
   for (int point = 1; point <= points; ++point) document["sweep"][0]["values"].push_back(point);
   options.campaign = folder_.path() / "test.json";

@@ -28,7 +28,7 @@ class CommandLine : public testing::Test {
                 {"scene", {{"volume_fraction", 0.5}}},
                 {"sweep", {{{"set", "/peclet"}, {"values", {1, 10}}}}},
                 {"target", {{"relative_tolerance", 0.2}}},
-                {"realisations", {{"minimum", 5}, {"maximum", 40}}},
+                {"realisations", {{"minimum", 8}, {"maximum", 40}}},
                 {"engine", {FAKE_ENGINE}}};
   }
 
@@ -85,7 +85,7 @@ TEST_F(CommandLine, ValidateAndPlanWriteNothing) {
   write();
   const Answer valid = peclet("validate small.json");
   EXPECT_EQ(valid.code, 0) << valid.text;
-  EXPECT_TRUE(valid.text.starts_with("small: valid; 2 points, 5 to 40 seeds each")) << valid.text;
+  EXPECT_TRUE(valid.text.starts_with("small: valid; 2 points, 8 to 40 seeds each")) << valid.text;
   EXPECT_EQ(peclet("plan small.json").code, 0);
   EXPECT_EQ(Json::parse(peclet("validate small.json --json").text)["points"].size(), 2U);
   EXPECT_EQ(Json::parse(peclet("plan small.json --json").text)["points"].size(), 2U);

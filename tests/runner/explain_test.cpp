@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "contract/input_error.h"
+#include "runner/status.h"
 #include "tests/runner/stored_campaign.h"
 
 namespace peclet::runner {
@@ -32,6 +33,46 @@ TEST(Explain, ACappedPointIsToldHowManySeedsItWouldTake) {
   // Half-width 3.182 * 0.408 = 1.299 of 10 + 0.25; 4 * (0.1267 / 0.05)^2 = 25.7 seeds.
   EXPECT_TRUE(says(text, "all 4 seeds that are allowed give 13 %, not within the tolerance of 5 %")) << text;
   EXPECT_TRUE(says(text, "/realisations/maximum (about 26 seeds)")) << text;
+}
+
+TEST(Explain, AWindowThatBeginsTooEarlyIsATransient) {
+  StoredCampaign campaign(2, 8, 20);
+  for (int seed = 0; seed < 8; ++seed) {
+    const double scatter = seed % 2 == 0 ? 0.01 : -0.01;
+    campaign.complete_in_halves(0, seed, 10.2 + scatter, 10 - 2 * scatter);
+    campaign.complete_in_halves(1, seed, 10 + scatter, 10 - 2 * scatter);
+  }
+  const std::string drifting = explain(campaign.database(), campaign.directory(), "point=0");
+  EXPECT_TRUE(says(drifting, "converged, transient")) << drifting;
+  EXPECT_TRUE(says(drifting, "the first half by 0.1000 ± 0.0057"))
+      << drifting;  // 0.1 +- 1.5 * 0.01 / sqrt(7)
+  EXPECT_TRUE(says(drifting, "next: a longer /scene/duration/equilibration")) << drifting;
+  const std::string steady = explain(campaign.database(), campaign.directory(), "point=1");
+  EXPECT_FALSE(says(steady, "transient")) << steady;
+  EXPECT_TRUE(status_json(read_status(campaign.database()))["points"][0]["look"]["transient"]);
+}
+
+TEST(Explain, AnEstimateHasABootstrapIntervalAndAdviceOnItsWindow) {
+  StoredCampaign campaign(1, 16, 20);
+  for (int seed = 0; seed < 16; ++seed) {  // halves that know nothing of each other
+    campaign.complete_in_halves(0, seed, 10 + (seed % 2 == 0 ? 0.1 : -0.1), 10 + (seed % 4 < 2 ? 0.1 : -0.1));
+  }
+  const std::string text = explain(campaign.database(), campaign.directory(), "");
+  EXPECT_TRUE(says(text, "bootstrap-t ")) << text;
+  // plain_result() has 20 steps of equilibration and 80 of production: (20 + 40) / 100 * 2 and (20 + 160) /
+  // 100 / 2.
+  EXPECT_TRUE(says(text, "its halves correlate by 0.00")) << text;
+  EXPECT_TRUE(
+      says(text, "half the window takes 1.20 times the processor time, twice the window 0.90 to 0.90"))
+      << text;
+}
+
+TEST(Explain, AFewSeedsFarFromTheRestAreCalledSkewed) {
+  StoredCampaign campaign(1, 8, 8);
+  for (int seed = 0; seed < 8; ++seed) campaign.complete_in_halves(0, seed, 10, seed == 5 ? 11 : 10);
+  const std::string text = explain(campaign.database(), campaign.directory(), "");
+  EXPECT_TRUE(says(text, "converged, skewed")) << text;
+  EXPECT_TRUE(says(text, "trust the bootstrap interval more")) << text;
 }
 
 TEST(Explain, AnOpenPointSaysWhatItWaitsFor) {

@@ -58,7 +58,7 @@ TEST(Run, ATighterToleranceRunsNothingTwice) {
 
 TEST(Run, ReachingTheMaximumIsNotConvergence) {
   CampaignOnDisk campaign(1);
-  campaign.document["realisations"]["maximum"] = 6;
+  campaign.document["realisations"]["maximum"] = 9;
   EXPECT_EQ(campaign.run({{"PECLET_FAKE_DEVIATION", "9"}}), 3);
   EXPECT_EQ(campaign.count("SELECT count(*) FROM estimates WHERE verdict = 'capped'"), 1);
 }

@@ -1,5 +1,7 @@
 #include "tests/runner/stored_campaign.h"
 
+#include <algorithm>
+
 namespace peclet::runner {
 
 StoredCampaign::StoredCampaign(int points, int minimum, int maximum)
@@ -27,6 +29,16 @@ void StoredCampaign::look(int point) {
 void StoredCampaign::complete(int point, int seed, double viscosity, const Json& warnings) {
   Json result = plain_result(campaign_.points.at(static_cast<std::size_t>(point)).hash, seed, viscosity);
   result["warnings"] = warnings;
+  store(point, result);
+}
+
+void StoredCampaign::complete_in_halves(int point, int seed, double first, double second) {
+  Json result =
+      plain_result(campaign_.points.at(static_cast<std::size_t>(point)).hash, seed, (first + second) / 2);
+  result["mean"]["control_variates"]["brownian_pairwise"] = nullptr;
+  std::vector<double> blocks(32, first);
+  std::fill(blocks.begin() + 16, blocks.end(), second);
+  result["blocks"] = {{"relative_viscosity", blocks}};
   store(point, result);
 }
 

@@ -16,6 +16,8 @@ class StoredCampaign {
 
   // A result of plain_result(), with an attempt of its own, and the looks that it allows.
   void complete(int point, int seed, double viscosity, const Json& warnings = Json::array());
+  // The same with a window whose halves differ; its control variate is zero.
+  void complete_in_halves(int point, int seed, double first, double second);
   // One more result of a seed that has ended.
   void repeat(int point, int seed, double viscosity);
   void blow_up(int point, int seed);
