@@ -36,6 +36,8 @@ struct PointRecord {
   std::string label;
   std::string engine_identity;  // "" before the first result
   bool suspect = false;         // a seed gave two different results
+  int priority = 0;             // points of a higher one are served first
+  bool cancelled = false;       // gets no more seeds
 };
 
 // A seed with the columns that were taken from its result. Numbers that do not exist are absent.

@@ -8,7 +8,8 @@ namespace peclet::runner {
 namespace {
 
 constexpr const char* point_columns =
-    "SELECT point_id, place, hash, scene, settings, label, engine_identity, suspect FROM point ";
+    "SELECT point_id, place, hash, scene, settings, label, engine_identity, suspect, priority, "
+    "cancelled FROM point ";
 
 std::vector<PointRecord> read_points(Connection& connection, const std::string& which) {
   Statement query(connection, point_columns + which);
@@ -23,6 +24,8 @@ std::vector<PointRecord> read_points(Connection& connection, const std::string& 
     point.label = query.text(5);
     point.engine_identity = query.text(6);
     point.suspect = query.integer(7) != 0;
+    point.priority = static_cast<int>(query.integer(8));
+    point.cancelled = query.integer(9) != 0;
     points.push_back(std::move(point));
   }
   return points;

@@ -63,6 +63,10 @@ void Ledger::load() {
                      campaign_.maximum_realisations);
   Transaction booking(database_.connection());
   for (int place = 0; place < scheduler_->points(); ++place) {
+    const Cost& cost = costs_[static_cast<std::size_t>(place)];
+    if (cost.count > 0) scheduler_->set_cost(place, cost.sum / cost.count);
+    scheduler_->set_priority(place, point(place).priority);
+    scheduler_->set_cancelled(place, point(place).cancelled);
     queue_.store_looks(point(place).id, scheduler_->looks(place));
     if (!scheduler_->decided(place)) queue_.enqueue(point(place).id, scheduler_->wanted(place));
   }
@@ -107,8 +111,9 @@ Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
   if (result.completed() && !observed.value) lacking_ = names_of_numbers(result.document["mean"]);
   if (!scheduler_) return stored;  // load() finds it
   if (result.document["cost"]["wall_seconds"].is_number()) {
-    costs_[static_cast<std::size_t>(place->second)].add(
-        result.document["cost"]["wall_seconds"].get<double>());
+    Cost& cost = costs_[static_cast<std::size_t>(place->second)];
+    cost.add(result.document["cost"]["wall_seconds"].get<double>());
+    scheduler_->set_cost(place->second, cost.sum / cost.count);
   }
   if (!result.completed()) {
     listener_.note(fmt::format("{}: ended with {}", name({place->second, result.seed}), result.cause));

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <utility>
+
+#include "runner/forecast.h"
 
 namespace peclet::runner {
 namespace {
@@ -36,12 +39,13 @@ Scheduler::Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, 
 void Scheduler::look_at(Point& point) {
   while (point.closed < maximum_ && point.outcomes[static_cast<std::size_t>(point.closed)]) ++point.closed;
   point.looks = replay_looks(point.outcomes, target_, minimum_, maximum_);
+  point.expected = expected_seeds(point.looks, target_, minimum_, maximum_);
 }
 
 bool Scheduler::decided(int point) const { return decides(point_at(point).looks); }
 
 bool Scheduler::finished() const {
-  return std::all_of(points_.begin(), points_.end(), [](const Point& point) { return decides(point.looks); });
+  return std::none_of(points_.begin(), points_.end(), [this](const Point& point) { return is_open(point); });
 }
 
 int Scheduler::look_ahead(const Point& point, int steps) const {
@@ -59,20 +63,54 @@ int Scheduler::ended(int point) const {
   return static_cast<int>(std::count(phases.begin(), phases.begin() + wanted(point), Phase::ended));
 }
 
+bool Scheduler::is_open(const Point& point) const { return !point.cancelled && !decides(point.looks); }
+
 std::optional<SeedId> Scheduler::next() const {
-  if (const std::optional<SeedId> needed = furthest_behind(0)) return needed;
-  return furthest_behind(1);
+  if (const std::optional<SeedId> needed = most_urgent(0)) return needed;
+  return most_urgent(1);
 }
 
-std::optional<SeedId> Scheduler::furthest_behind(int steps) const {
+double Scheduler::mean_seconds() const {
+  double sum = 0;
+  int known = 0;
+  for (const Point& point : points_) {
+    sum += point.seconds.value_or(0);
+    known += point.seconds ? 1 : 0;
+  }
+  return known > 0 && sum > 0 ? sum / known : 1;
+}
+
+double Scheduler::rank(const Point& point, double seconds) const {
+  if (allocation_ == Allocation::longest_first) {
+    // A point may have begun more seeds than it was expected to need: it is not done for all that.
+    return std::max(1, point.expected - point.begun) * seconds;
+  }
+  constexpr double unknown = 1e6;  // before the first look nothing is known, and nothing tells more
+  const double width = point.looks.empty() ? unknown : relative_width(point.looks.back());
+  return (std::isfinite(width) ? width : 1) / (2 * std::max(1, point.begun) * seconds);
+}
+
+std::optional<int> Scheduler::waiting_seed(const Point& point, int steps) const {
+  const auto begin = point.phases.begin() + point.closed;
+  const auto end = std::max(begin, point.phases.begin() + look_ahead(point, steps));
+  const auto waiting = std::find(begin, end, Phase::waiting);
+  if (waiting == end) return std::nullopt;
+  return static_cast<int>(waiting - point.phases.begin());
+}
+
+std::optional<SeedId> Scheduler::most_urgent(int steps) const {
+  const double mean = mean_seconds();
   std::optional<SeedId> best;
+  std::pair<int, double> best_rank;
   for (int number = 0; number < points(); ++number) {
     const Point& point = point_at(number);
-    if (decides(point.looks) || (best && point.begun >= point_at(best->point).begun)) continue;
-    const auto begin = point.phases.begin() + point.closed;
-    const auto end = point.phases.begin() + look_ahead(point, steps);
-    const auto waiting = std::find(begin, std::max(begin, end), Phase::waiting);
-    if (waiting < end) best = SeedId{number, static_cast<int>(waiting - point.phases.begin())};
+    if (!is_open(point)) continue;
+    const std::pair<int, double> own{point.priority, rank(point, point.seconds.value_or(mean))};
+    if (best && own <= best_rank) continue;
+    if (const std::optional<int> seed = waiting_seed(point, steps)) {
+      best = SeedId{number, *seed};
+      best_rank = own;
+    }
   }
   return best;
 }

@@ -1,9 +1,12 @@
 // Which seed runs next, and when a point is decided. Pure: no clock, no process, no database.
 //
-// A point that is not decided needs the seeds of its next look. Among such points the one with the fewest
-// seeds begun goes first (then the order of the sweep, then the order of the seeds), so that all points come
-// forward together. When every needed seed is out, workers run ahead with the seeds of the look after that:
-// surplus, which costs nothing when the point goes on, and which does not count when it stops.
+// A point that is neither decided nor cancelled needs the seeds of its next look. Among such points those of
+// the highest priority go first, and among these the one that the allocation ranks first (then the order of
+// the sweep, then the order of the seeds). When every needed seed is out, workers run ahead with the seeds of
+// the look after that: surplus, which costs nothing when the point goes on, and which does not count when it
+// stops.
+//
+// Priorities, costs and the allocation decide when a seed runs; what it counts for they cannot touch.
 #pragma once
 
 #include <optional>
@@ -20,11 +23,29 @@ struct SeedId {
   friend bool operator==(const SeedId&, const SeedId&) = default;
 };
 
+enum class Allocation {
+  // The point with the largest cost still to come, seeds that it is expected to need times seconds of each: a
+  // campaign is through the sooner the earlier its longest point is begun. Before the first looks all points
+  // come forward together, in proportion to their costs.
+  longest_first,
+  // The point whose relative error w falls most for a second of processor time: w goes as 1 / sqrt(n), so
+  // w / (2 n cost). For a budget that will not see all points converged.
+  steepest_first
+};
+
 class Scheduler {
  public:
   // `outcomes[point][seed]` is what earlier runs left; seeds beyond the end have none.
   Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, Target target, int minimum,
             int maximum);
+
+  void set_allocation(Allocation allocation) { allocation_ = allocation; }
+  void set_priority(int point, int priority) { point_at(point).priority = priority; }
+  // A cancelled point gets no more seeds and holds nothing up. What it has stays.
+  void set_cancelled(int point, bool cancelled) { point_at(point).cancelled = cancelled; }
+  // Mean seconds of a realisation of the point, as far as it is known; until then it costs as much as the
+  // mean of the others.
+  void set_cost(int point, double seconds) { point_at(point).seconds = seconds; }
 
   // The next seed for an idle worker; nothing when every seed that could be wanted now is out or ended.
   std::optional<SeedId> next() const;
@@ -40,6 +61,8 @@ class Scheduler {
   // All looks that the outcomes allow. The last one decides unless its verdict is `more`.
   const std::vector<Look>& looks(int point) const { return point_at(point).looks; }
   bool decided(int point) const;
+  bool cancelled(int point) const { return point_at(point).cancelled; }
+  // Every point is decided or cancelled.
   bool finished() const;
 
   // Seeds that the next look needs; of a decided point those of the deciding look.
@@ -56,8 +79,12 @@ class Scheduler {
     std::vector<std::optional<Outcome>> outcomes;  // maximum long
     std::vector<Phase> phases;
     std::vector<Look> looks;
-    int begun = 0;   // out or ended
-    int closed = 0;  // the seeds 0 .. closed - 1 have ended
+    int begun = 0;     // out or ended
+    int closed = 0;    // the seeds 0 .. closed - 1 have ended
+    int expected = 0;  // seeds at which it may be expected to stop
+    int priority = 0;
+    bool cancelled = false;
+    std::optional<double> seconds;
   };
 
   const Point& point_at(int point) const { return points_[static_cast<std::size_t>(point)]; }
@@ -65,11 +92,17 @@ class Scheduler {
   void look_at(Point& point);
   // The look after the last one made, and the one after that.
   int look_ahead(const Point& point, int steps) const;
-  std::optional<SeedId> furthest_behind(int steps) const;
+  bool is_open(const Point& point) const;
+  double mean_seconds() const;
+  // How urgent the point is; the largest goes first.
+  double rank(const Point& point, double seconds) const;
+  std::optional<int> waiting_seed(const Point& point, int steps) const;
+  std::optional<SeedId> most_urgent(int steps) const;
 
   Target target_;
   int minimum_, maximum_;
   std::vector<int> schedule_;
+  Allocation allocation_ = Allocation::longest_first;
   std::vector<Point> points_;
 };
 

@@ -47,6 +47,87 @@ TEST(Scheduler, ThePointFurthestBehindGoesFirst) {
   EXPECT_EQ(take(scheduler), (SeedId{0, 3}));
 }
 
+TEST(Scheduler, ThePointWithMostCostToComeGoesFirst) {
+  Scheduler scheduler = fresh(3);  // each needs 4 seeds first
+  scheduler.set_cost(0, 1);
+  scheduler.set_cost(1, 3);  // 12 s, then 9, 6 and 3
+  scheduler.set_cost(2, 2);  // 8 s, then 6, 4 and 2
+  std::vector<int> taken;
+  for (int i = 0; i < 8; ++i) taken.push_back(take(scheduler).point);
+  EXPECT_EQ(taken, (std::vector<int>{1, 1, 2, 1, 2, 0, 2, 1}));
+}
+
+TEST(Scheduler, APointWithoutKnownCostIsTakenForAnAverageOne) {
+  Scheduler scheduler = fresh(3);
+  scheduler.set_cost(0, 1);
+  scheduler.set_cost(2, 4);
+  EXPECT_EQ(take(scheduler).point, 2);  // 16 s, then 12, 8; the second point 4 * 2.5 = 10 s
+  EXPECT_EQ(take(scheduler).point, 2);
+  EXPECT_EQ(take(scheduler).point, 1);
+}
+
+TEST(Scheduler, ThePointThatNeedsMoreSeedsGoesFirst) {
+  // Half-widths of some 50 % and of 6 %: the first needs the maximum, the second a few more seeds.
+  Outcomes known(2);
+  for (int seed = 0; seed < 4; ++seed) {
+    known[0].push_back(value(seed % 2 == 0 ? 9.7 : 10.3));
+    known[1].push_back(value(seed % 2 == 0 ? 7 : 13));
+  }
+  Scheduler scheduler(known, five_percent, 4, 40);
+  ASSERT_EQ(scheduler.looks(0).back().verdict, Verdict::more);
+  EXPECT_EQ(take(scheduler), (SeedId{1, 4}));
+  EXPECT_EQ(take(scheduler), (SeedId{0, 4})) << "seeds that are needed go before surplus ones";
+}
+
+TEST(Scheduler, UnderABudgetThePointWhoseErrorFallsFastestGoesFirst) {
+  // Relative widths of 6 and 60 % after 4 seeds: a seed of the second brings ten times as much, unless it
+  // costs twenty times as much.
+  Outcomes known(2);
+  for (int seed = 0; seed < 4; ++seed) {
+    known[0].push_back(value(seed % 2 == 0 ? 9.7 : 10.3));
+    known[1].push_back(value(seed % 2 == 0 ? 7 : 13));
+  }
+  for (const double seconds : {1.0, 20.0}) {
+    Scheduler scheduler(known, five_percent, 4, 40);
+    scheduler.set_allocation(Allocation::steepest_first);
+    scheduler.set_cost(0, 1);
+    scheduler.set_cost(1, seconds);
+    EXPECT_EQ(take(scheduler).point, seconds > 10 ? 0 : 1);
+  }
+}
+
+TEST(Scheduler, UnderABudgetPointsThatNobodyHasSeenGoFirst) {
+  Outcomes known(2);
+  for (int seed = 0; seed < 4; ++seed) known[0].push_back(value(seed % 2 == 0 ? 7 : 13));
+  Scheduler scheduler(known, five_percent, 4, 40);
+  scheduler.set_allocation(Allocation::steepest_first);
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(take(scheduler).point, 1);
+  EXPECT_EQ(take(scheduler).point, 0);
+}
+
+TEST(Scheduler, PriorityGoesBeforeCost) {
+  Scheduler scheduler = fresh(2);
+  scheduler.set_cost(0, 1);
+  scheduler.set_cost(1, 100);
+  scheduler.set_priority(0, 1);
+  for (int seed = 0; seed < 4; ++seed) EXPECT_EQ(take(scheduler), (SeedId{0, seed}));
+  EXPECT_EQ(take(scheduler), (SeedId{1, 0})) << "nobody waits for surplus seeds";
+}
+
+TEST(Scheduler, ACancelledPointGetsNoSeedsAndHoldsNothingUp) {
+  Scheduler scheduler = fresh(2);
+  for (int i = 0; i < 4; ++i) take(scheduler);
+  scheduler.set_cancelled(0, true);
+  EXPECT_EQ(take(scheduler).point, 1);
+  EXPECT_EQ(take(scheduler).point, 1);
+  for (int seed = 0; seed < 4; ++seed) scheduler.end({1, seed}, steady(seed));
+  EXPECT_TRUE(scheduler.finished());
+  scheduler.end({0, 0}, steady(0));  // what was out may still come in
+  scheduler.set_cancelled(0, false);
+  EXPECT_FALSE(scheduler.finished());
+  EXPECT_EQ(take(scheduler), (SeedId{0, 2}));
+}
+
 TEST(Scheduler, RunsAheadByOneLookWhenAllNeededSeedsAreOutAndNoFurther) {
   Scheduler scheduler = fresh(1);
   for (int seed = 0; seed < 5; ++seed) EXPECT_EQ(take(scheduler), (SeedId{0, seed}));
