@@ -88,7 +88,8 @@ class Conversation {
 
 SceneAnswer read_answer(const Json& message, const Json& identity) {
   SceneAnswer answer;
-  answer.timestep = message.at("timestep").get<double>();
+  if (const Json& timestep = message.at("timestep"); !timestep.is_null())
+    answer.timestep = timestep.get<double>();
   answer.steps = message.at("steps").get<double>();
   answer.particles = message.at("particles").get<std::int64_t>();
   answer.derived = message.at("derived");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,8 @@
 namespace peclet::runner {
 
 struct SceneAnswer {
-  double timestep = 0;
-  double steps = 0;  // estimate of the whole realisation
+  std::optional<double> timestep;  // none: the engine knows of none
+  double steps = 0;                // estimate of the whole realisation
   std::int64_t particles = 0;
   Json derived;
   std::vector<std::string> warnings;  // in words
@@ -21,8 +22,9 @@ struct SceneAnswer {
 };
 
 // Asks an engine process about every point; answers in the order of the points. Writes nothing.
-// Throws InputError at /scene... of `campaign_file`, naming the point, for a scene that the engine refuses;
-// std::runtime_error for an engine that cannot be started or does not answer within a minute.
+// Throws InputError at /scene... of `campaign_file`, naming the point, for a scene that the engine refuses,
+// and at /target/observable for one that the engine says it will not measure; std::runtime_error for an
+// engine that cannot be started or does not answer within a minute.
 std::vector<SceneAnswer> check_scenes(const Campaign& campaign, const std::filesystem::path& campaign_file,
                                       const EngineCommand& command);
 

@@ -61,7 +61,7 @@ std::string points_table(const Campaign& campaign, const std::vector<SceneAnswer
     std::vector<std::string> cells = points.cells(i);
     for (const Derived& column : columns) cells.push_back(cell(answer.derived, column.key));
     cells.push_back(fmt::format("{}", answer.particles));
-    cells.push_back(rough(answer.timestep));
+    cells.push_back(answer.timestep ? rough(*answer.timestep) : "-");
     cells.push_back(rough(answer.steps));
     table.add_row(cells);
   }
@@ -89,7 +89,7 @@ Json answers_json(const Campaign& campaign, const std::vector<SceneAnswer>& answ
                       {"hash", campaign.points[i].hash},
                       {"settings", campaign.points[i].settings},
                       {"particles", answers[i].particles},
-                      {"timestep", answers[i].timestep},
+                      {"timestep", answers[i].timestep ? Json(*answers[i].timestep) : Json(nullptr)},
                       {"steps", answers[i].steps},
                       {"derived", answers[i].derived},
                       {"warnings", answers[i].warnings}});

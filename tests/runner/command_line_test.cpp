@@ -121,6 +121,15 @@ TEST_F(CommandLine, AnEngineThatDoesNotSpeakTheFramesIsAnErrorNotAHang) {
   EXPECT_NE(answer.text.find("/bin/true"), std::string::npos) << answer.text;
 }
 
+TEST_F(CommandLine, AnEngineMayKnowOfNoTimestep) {
+  setenv("PECLET_FAKE_STEPLESS", "1", 1);
+  write();
+  const Answer valid = peclet("validate small.json"), json = peclet("validate small.json --json");
+  unsetenv("PECLET_FAKE_STEPLESS");
+  EXPECT_EQ(valid.code, 0) << valid.text;
+  EXPECT_TRUE(Json::parse(json.text)["points"][0]["timestep"].is_null()) << json.text;
+}
+
 TEST_F(CommandLine, ARunCanBeLookedAtByFileAndByFolder) {
   write();
   ASSERT_EQ(peclet("run small.json --workers 2 --quiet").code, 0);

@@ -9,6 +9,7 @@
 //   PECLET_FAKE_PADDING (0)                             numbers that make its result longer
 //   PECLET_FAKE_IDENTITY ("fake")                       what its binary is said to be
 //   PECLET_FAKE_DRIFT                                   set: results differ from those without it
+//   PECLET_FAKE_STEPLESS                                set: it says that it knows of no time step
 //   PECLET_FAKE_FAULTS, PECLET_FAKE_CRASH_PROBABILITY   see fake_faults.h
 #include <unistd.h>
 
@@ -73,9 +74,10 @@ class Engine {
                      {"allowed", "must be a number > 0"}});
       return;
     }
+    const bool stepless = std::getenv("PECLET_FAKE_STEPLESS") != nullptr;
     channel_.send({{"type", "validated"},
                    {"request", message.at("request")},
-                   {"timestep", 0.001},
+                   {"timestep", stepless ? Json(nullptr) : Json(0.001)},
                    {"steps", steps_},
                    {"particles", 1},
                    {"derived", Json::object()},

@@ -34,7 +34,8 @@ TEST(RealisationResult, RefusesEverythingElse) {
       {"a negative seed", [](Json& r) { r["seed"] = -1; }},
       {"a broken seed", [](Json& r) { r["seed"] = 1.5; }},
       {"an enormous seed", [](Json& r) { r["seed"] = 1LL << 40; }},
-      {"an unknown ending", [](Json& r) { r["ending"]["cause"] = "boredom"; }},
+      {"an ending that is no word", [](Json& r) { r["ending"]["cause"] = "Out of memory?"; }},
+      {"a nameless ending", [](Json& r) { r["ending"]["cause"] = ""; }},
       {"an ending that is no object", [](Json& r) { r["ending"] = "completed"; }},
       {"no mean", [](Json& r) { r["mean"] = nullptr; }},
       {"no blocks", [](Json& r) { r.erase("blocks"); }},
@@ -52,6 +53,23 @@ TEST(RealisationResult, RefusesEverythingElse) {
     fault.inflict(result);
     EXPECT_THROW(parse_result(result.dump()), ResultError) << fault.what;
   }
+}
+
+TEST(RealisationResult, AnotherEngineHasItsOwnEndingsAndLacksOthersNumbers) {
+  Json lost = plain_result(point, 3, 12.5);
+  lost["ending"]["cause"] = "lost-atoms";
+  lost["mean"] = lost["blocks"] = nullptr;
+  EXPECT_FALSE(parse_result(lost.dump()).completed());
+  EXPECT_EQ(parse_result(lost.dump()).cause, "lost-atoms");
+
+  Json plain = plain_result(point, 3, 12.5);
+  plain["mean"].erase("control_variates");
+  for (const char* const key : {"method", "timestep", "statistical_inefficiency", "largest_overlap", "gate"})
+    plain[key] = nullptr;
+  plain["strain"] = {{"equilibration", nullptr}, {"production", nullptr}};
+  EXPECT_TRUE(parse_result(plain.dump()).completed());
+  EXPECT_EQ(observe(plain, "relative_viscosity").value, 12.5);
+  EXPECT_EQ(observe(plain, "relative_viscosity").control, std::nullopt);
 }
 
 TEST(RealisationResult, RefusesTextThatIsNotJsonOrNotFinite) {
