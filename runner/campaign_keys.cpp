@@ -72,7 +72,7 @@ std::vector<Key> keys() {
       {.pointer = "/engine",
        .kind = KeyKind::array,
        .meaning = "Program and arguments. Without a slash it is looked for beside peclet, then on PATH; a "
-                  "relative path starts at the campaign file.",
+                  "relative path starts at the campaign file, in whose folder it runs.",
        .default_value = Json::array({"peclet-engine", "serve"}),
        .minimum_items = 1},
       {.pointer = "/engine/*", .kind = KeyKind::string, .meaning = "A word of the command."},

@@ -44,13 +44,16 @@ void check(int error, const char* doing) {
 // The settings of posix_spawn(3), which own memory.
 class SpawnSettings {
  public:
-  SpawnSettings(int socket, const fs::path& log) {
+  SpawnSettings(int socket, const fs::path& log, const fs::path& folder) {
     check(posix_spawn_file_actions_init(&actions_), "posix_spawn");
     check(posix_spawnattr_init(&attributes_), "posix_spawn");
     check(posix_spawn_file_actions_adddup2(&actions_, socket, 0), "posix_spawn");
     check(posix_spawn_file_actions_addopen(&actions_, 1, log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644),
           log.c_str());
     check(posix_spawn_file_actions_adddup2(&actions_, 1, 2), "posix_spawn");
+    // The last of them: the log's name is the owner's.
+    if (!folder.empty())
+      check(posix_spawn_file_actions_addchdir_np(&actions_, folder.c_str()), folder.c_str());
 
     // The owner takes signals from a descriptor and has them blocked; the engine starts with the usual ones.
     sigset_t none, all;
@@ -82,15 +85,16 @@ class SpawnSettings {
 
 EngineCommand resolve_engine(const Campaign& campaign, const fs::path& campaign_file) {
   const std::string& name = campaign.engine.at(0);
-  EngineCommand command{{}, {campaign.engine.begin() + 1, campaign.engine.end()}};
+  const fs::path home = fs::absolute(campaign_file).parent_path();
+  EngineCommand command{{}, {campaign.engine.begin() + 1, campaign.engine.end()}, home};
   if (name.find('/') != std::string::npos) {
-    command.program = (fs::absolute(campaign_file).parent_path() / name).lexically_normal();
+    command.program = (home / name).lexically_normal();
     if (is_program(command.program)) return command;
     throw InputError(campaign_file.string(), "/engine/0", name,
                      fmt::format("must be a program; there is none at {}", command.program.string()));
   }
   for (const fs::path& folder : search_path()) {
-    command.program = folder / name;
+    command.program = fs::absolute(folder / name);
     if (is_program(command.program)) return command;
   }
   throw InputError(campaign_file.string(), "/engine/0", name, "must be a program beside peclet or on PATH");
@@ -104,7 +108,7 @@ std::string to_string(const ExitStatus& ending) {
 EngineProcess::EngineProcess(const EngineCommand& command, const fs::path& log) {
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) check(errno, "socketpair");
-  const SpawnSettings settings(ends[1], log);
+  const SpawnSettings settings(ends[1], log, command.folder);
   std::vector<std::string> words{command.program.string()};
   words.insert(words.end(), command.arguments.begin(), command.arguments.end());
   std::vector<char*> arguments;

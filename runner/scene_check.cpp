@@ -1,12 +1,16 @@
 #include "runner/scene_check.h"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <optional>
 #include <system_error>
 #include <thread>
 
+#include "contract/durable_file.h"
 #include "contract/frames.h"
 #include "contract/input_error.h"
 #include "runner/blame.h"
@@ -20,11 +24,39 @@ constexpr std::chrono::minutes patience{1};
 constexpr int most_tries = 10;
 struct KilledFromOutside {};
 
+// What an engine prints while it is asked, in memory: nothing may be written before the scenes are known to
+// be sound.
+class Printed {
+ public:
+  Printed() : descriptor_(memfd_create("peclet engine", MFD_CLOEXEC)) {
+    if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "memfd_create");
+  }
+  ~Printed() { close(descriptor_); }
+  Printed(const Printed&) = delete;
+  Printed& operator=(const Printed&) = delete;
+
+  // A name that the child can open too, until it becomes the engine.
+  std::string path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
+
+  std::string last_lines() const {
+    constexpr std::size_t most_lines = 5;
+    std::string text = read_file(path());
+    while (text.ends_with('\n')) text.pop_back();
+    std::size_t begin = text.size();
+    for (std::size_t lines = 0; lines < most_lines && begin != std::string::npos && begin > 0; ++lines)
+      begin = text.rfind('\n', begin - 1);
+    return begin == std::string::npos ? text : text.substr(begin == 0 ? 0 : begin + 1);
+  }
+
+ private:
+  int descriptor_;
+};
+
 // One engine that is asked questions.
 class Conversation {
  public:
   explicit Conversation(const EngineCommand& command)
-      : command_(command), process_(command, "/dev/null"), channel_(process_.descriptor()) {
+      : command_(command), process_(command, printed_.path()), channel_(process_.descriptor()) {
     const Json hello = receive();
     if (hello.at("type") != "hello" || hello.at("protocol") != 1) {
       unsuitable("does not say hello in protocol 1");
@@ -76,11 +108,14 @@ class Conversation {
   }
 
   [[noreturn]] void unsuitable(const std::string& why) const {
-    throw std::runtime_error(
-        fmt::format("{}: {}; is it an engine that speaks peclet's frames?", command_.program.string(), why));
+    const std::string printed = printed_.last_lines();
+    throw std::runtime_error(fmt::format("{}: {}; is it an engine that speaks peclet's frames?{}",
+                                         command_.program.string(), why,
+                                         printed.empty() ? "" : " It printed:\n" + printed));
   }
 
   EngineCommand command_;
+  Printed printed_;
   EngineProcess process_;
   FrameChannel channel_;
   Json identity_;

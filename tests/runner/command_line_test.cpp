@@ -121,6 +121,25 @@ TEST_F(CommandLine, AnEngineThatDoesNotSpeakTheFramesIsAnErrorNotAHang) {
   EXPECT_NE(answer.text.find("/bin/true"), std::string::npos) << answer.text;
 }
 
+TEST_F(CommandLine, WhatAnUnsuitableEnginePrintsIsShown) {
+  campaign["engine"] = {"/bin/sh", "-c", "for i in 1 2 3 4 5 6 7; do echo line $i >&2; done; exit 3"};
+  write();
+  const Answer answer = peclet("validate small.json");
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_TRUE(answer.text.ends_with("It printed:\nline 3\nline 4\nline 5\nline 6\nline 7\n")) << answer.text;
+  EXPECT_NE(answer.text.find("exit status 3"), std::string::npos) << answer.text;
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(CommandLine, AnEngineRunsInTheFolderOfTheCampaignFile) {
+  const fs::path folder = file().parent_path() / "elsewhere";
+  fs::create_directory(folder);
+  campaign["engine"] = {"/bin/sh", "-c", "pwd; exit 3"};
+  std::ofstream(folder / "small.json") << campaign.dump();
+  const Answer answer = peclet("validate elsewhere/small.json");
+  EXPECT_TRUE(answer.text.ends_with("It printed:\n" + folder.string() + '\n')) << answer.text;
+}
+
 TEST_F(CommandLine, AnEngineMayKnowOfNoTimestep) {
   setenv("PECLET_FAKE_STEPLESS", "1", 1);
   write();
