@@ -1,9 +1,11 @@
 #include "runner/scene_check.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <optional>
@@ -121,6 +123,17 @@ class Conversation {
   Json identity_;
 };
 
+// An engine that says what it will measure spares us the first seed of a misspelt observable.
+void check_observable(const Json& answer, const Campaign& campaign,
+                      const std::filesystem::path& campaign_file) {
+  if (!answer.contains("observables")) return;
+  const auto names = answer.at("observables").get<std::vector<std::string>>();
+  const std::string& wanted = campaign.target.observable;
+  if (std::find(names.begin(), names.end(), wanted) != names.end()) return;
+  throw InputError(campaign_file.string(), "/target/observable", wanted,
+                   fmt::format("must be a number that the results will have: {}", fmt::join(names, ", ")));
+}
+
 SceneAnswer read_answer(const Json& message, const Json& identity) {
   SceneAnswer answer;
   if (const Json& timestep = message.at("timestep"); !timestep.is_null())
@@ -146,6 +159,7 @@ std::vector<SceneAnswer> ask_once(const Campaign& campaign, const std::filesyste
                        answer.at("allowed").get<std::string>() + of_point)
           .within(campaign_file.string(), "/scene");
     }
+    check_observable(answer, campaign, campaign_file);
     answers.push_back(read_answer(answer, engine.identity()));
   }
   return answers;

@@ -105,6 +105,19 @@ TEST_F(CommandLine, AFaultyCampaignIsRefusedByEveryVerbThatReadsItAndNothingIsWr
   EXPECT_EQ(files(), 1);
 }
 
+TEST_F(CommandLine, AnObservableThatTheEngineDoesNotMeasureIsRefusedBeforeAnythingRuns) {
+  campaign["target"]["observable"] = "relative_vicosity";
+  write();
+  for (const char* const verb : {"validate", "plan", "run"}) {
+    const Answer answer = peclet(std::string(verb) + " small.json");
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_EQ(answer.text,
+              "peclet: small.json: /target/observable: relative_vicosity: must be a number that the results "
+              "will have: relative_viscosity\n");
+  }
+  EXPECT_EQ(files(), 1);
+}
+
 TEST_F(CommandLine, AnEngineThatIsNotThereIsNamed) {
   campaign["engine"] = {"./no-such-engine"};
   write();

@@ -76,6 +76,7 @@ class Engine {
     }
     const bool stepless = std::getenv("PECLET_FAKE_STEPLESS") != nullptr;
     channel_.send({{"type", "validated"},
+                   {"observables", {"relative_viscosity"}},
                    {"request", message.at("request")},
                    {"timestep", stepless ? Json(nullptr) : Json(0.001)},
                    {"steps", steps_},
