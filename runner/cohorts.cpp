@@ -72,6 +72,10 @@ bool is_skewed(const Look& look, double confidence) {
   return std::abs(look.skewness) > 2.5 * chance && loss > 0.01;
 }
 
+bool has_control(const Look& look) {
+  return look.estimate.count > 0 && look.controlled.mean != look.estimate.mean;
+}
+
 std::vector<int> look_schedule(int minimum, int maximum) {
   std::vector<int> schedule;
   // In whole numbers: ceil(1.25 n) = floor((5 n + 3) / 4).

@@ -65,6 +65,10 @@ bool is_skewed(const Look& look, double confidence);
 // Half-width over |mean| of the estimate that decides; NaN where there is no interval.
 double relative_width(const Look& look);
 
+// Whether there is a control variate: without one (no Brownian motion, another engine) the controlled
+// estimate only repeats the other.
+bool has_control(const Look& look);
+
 // Numbers of seeds at which a point is looked at: minimum, then ceil(1.25 n) each, the last one is maximum.
 std::vector<int> look_schedule(int minimum, int maximum);
 

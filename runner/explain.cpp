@@ -107,17 +107,20 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
 
 std::string looks_table(const std::vector<Look>& looks, const Target& target) {
   if (looks.empty()) return "  no look yet\n";
+  const bool with_control = std::any_of(looks.begin(), looks.end(), has_control);
   TextTable table;
-  for (const char* const title :
-       {"seeds", "lost", "mean ± half-width", "relative", "tolerance", "uncontrolled"}) {
+  for (const char* const title : {"seeds", "lost", "mean ± half-width", "relative", "tolerance"}) {
     table.add_column(title);
   }
+  if (with_control) table.add_column("uncontrolled");
   table.add_column("verdict", TextTable::Align::left);
   for (const Look& look : looks) {
-    table.add_row({fmt::format("{}", look.seeds), fmt::format("{}", look.lost),
-                   with_error(look.controlled.mean, look.controlled_half_width),
-                   percent(relative_width(look)), tolerance_text(target),
-                   with_error(look.estimate.mean, look.half_width), to_string(look.verdict)});
+    std::vector<std::string> row{fmt::format("{}", look.seeds), fmt::format("{}", look.lost),
+                                 with_error(look.controlled.mean, look.controlled_half_width),
+                                 percent(relative_width(look)), tolerance_text(target)};
+    if (with_control) row.push_back(with_error(look.estimate.mean, look.half_width));
+    row.emplace_back(to_string(look.verdict));
+    table.add_row(std::move(row));
   }
   return table.text("  ");
 }

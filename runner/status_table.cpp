@@ -19,11 +19,9 @@ std::string interval(const Look& look) {
                      percent(relative_width(look)));
 }
 
-// Without Brownian motion the control variate is zero, and its column would only repeat another.
 bool has_control(const CampaignStatus& status) {
   return std::any_of(status.points.begin(), status.points.end(), [](const PointSummary& point) {
-    return !point.looks.empty() && point.looks.back().controlled.mean != point.looks.back().estimate.mean &&
-           point.looks.back().estimate.count > 0;
+    return !point.looks.empty() && has_control(point.looks.back());
   });
 }
 

@@ -75,6 +75,16 @@ TEST(Explain, AFewSeedsFarFromTheRestAreCalledSkewed) {
   EXPECT_TRUE(says(text, "trust the bootstrap interval more")) << text;
 }
 
+TEST(Explain, TheLookWithoutTheControlVariateIsShownOnlyWhereThereIsOne) {
+  StoredCampaign campaign(2, 4, 20);
+  for (int seed = 0; seed < 4; ++seed) {
+    campaign.complete(0, seed, 10 + 0.01 * seed);
+    campaign.complete_in_halves(1, seed, 10 + 0.01 * seed, 10 + 0.01 * seed);
+  }
+  EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), "point=0"), "uncontrolled"));
+  EXPECT_FALSE(says(explain(campaign.database(), campaign.directory(), "point=1"), "uncontrolled"));
+}
+
 TEST(Explain, AnOpenPointSaysWhatItWaitsFor) {
   StoredCampaign campaign(2, 4, 20);
   campaign.complete(1, 0, 10);
