@@ -1,10 +1,14 @@
 #!/usr/bin/python3
-"""conversation.py SCHEMAS SCENE ENGINE [ARGUMENT ...]
+"""conversation.py [--refused POINTER=VALUE] SCHEMAS SCENE ENGINE [ARGUMENT ...]
 
-Plays the runner's part for one engine, in another language than both programs: asks about a scene, runs one seed of it,
-and holds every frame and the result to schema/frames.schema.json and schema/result.schema.json with an independent
-validator. Needs Debian's python3-jsonschema.
+Plays the runner's part for one engine, in another language than both programs: asks about a scene and about a bad one (SCENE
+with VALUE at POINTER; unless given, a viscosity of -1), runs one seed, runs it again and takes the job back after the first
+progress, runs it once more and hangs up, each time with a new process that goes on. Holds every frame and result to
+schema/frames.schema.json and schema/result.schema.json with an independent validator (Debian's python3-jsonschema), and the
+results to each other.
 """
+import argparse
+import copy
 import hashlib
 import json
 import pathlib
@@ -16,6 +20,8 @@ import tempfile
 
 from jsonschema import Draft202012Validator, RefResolver
 
+PATIENCE = 120
+
 
 def validators(folder):
     schemas = {name: json.loads((folder / name).read_text()) for name in ("frames.schema.json", "result.schema.json")}
@@ -26,12 +32,17 @@ def validators(folder):
 
 
 class Engine:
+    """A process, from its hello to its exit."""
+
     def __init__(self, command, frames):
         self.frames = frames
         self.socket, theirs = socket.socketpair()
-        self.socket.settimeout(120)
+        self.socket.settimeout(PATIENCE)
         self.process = subprocess.Popen(command, stdin=theirs, stdout=subprocess.DEVNULL)
         theirs.close()
+        hello = self.receive()
+        assert hello["type"] == "hello", hello
+        self.identity = hello["engine"]
 
     def send(self, message):
         self.frames.validate(message)
@@ -54,44 +65,120 @@ class Engine:
         self.frames.validate(message)
         return message
 
+    def leave(self, how="drain"):
+        """`how`: drain, stop, hang up; or asked, when an idle engine has already been told to drain."""
+        if how == "hang up":
+            self.socket.close()
+        elif how != "asked":
+            self.send({"type": how})
+        status = self.process.wait(PATIENCE)
+        assert how == "hang up" or status == 0, status
 
-def converse(engine, scene, folder, result_schema):
-    hello = engine.receive()
-    assert hello["type"] == "hello", hello
-    engine.send({"type": "validate", "request": 7, "scene": scene})
-    answer = engine.receive()
-    assert answer["type"] == "validated" and answer["request"] == 7, answer
-    bad = dict(scene, fluid=dict(scene.get("fluid", {}), viscosity=-1))
-    engine.send({"type": "validate", "request": 8, "scene": bad})
-    answer = engine.receive()
-    assert answer["type"] == "refused" and answer["pointer"] == "/fluid/viscosity", answer
 
-    point = hashlib.sha256(json.dumps(scene, sort_keys=True).encode()).hexdigest()
-    engine.send({"type": "job", "job": 1, "point": point, "seed": 3, "scene": scene, "threads": 1,
-                 "checkpoint": str(folder / "checkpoint"), "checkpoint_seconds": 60, "progress_seconds": 0.01,
-                 "spool": str(folder / "spool.json"), "failures": str(folder)})
-    steps = []
-    while (answer := engine.receive())["type"] == "progress":
-        steps.append(answer["step"])
-    assert answer["type"] == "result", answer
-    assert steps == sorted(steps), steps
-    text = (folder / "spool.json").read_bytes()
-    assert answer["sha256"] == hashlib.sha256(text).hexdigest()
-    result = json.loads(text)
-    result_schema.validate(result)
-    assert (result["point"], result["seed"]) == (point, 3)
-    assert result["engine"] == hello["engine"]
-    engine.send({"type": "drain"})
-    assert engine.process.wait(60) == 0
-    return result
+class Conversation:
+    def __init__(self, command, scene, folder, schemas):
+        self.command, self.scene, self.folder = command, scene, folder
+        self.frames, self.result_schema = schemas
+        self.point = hashlib.sha256(json.dumps(scene, sort_keys=True).encode()).hexdigest()
+
+    def start(self):
+        return Engine(self.command, self.frames)
+
+    def ask(self, refused, value):
+        engine = self.start()
+        engine.send({"type": "validate", "request": 7, "scene": self.scene})
+        answer = engine.receive()
+        assert answer["type"] == "validated" and answer["request"] == 7, answer
+        engine.send({"type": "validate", "request": 8, "scene": with_value(self.scene, refused, value)})
+        answer = engine.receive()
+        assert answer["type"] == "refused" and answer["request"] == 8 and answer["pointer"] == refused, answer
+        engine.leave("stop")
+
+    def give_job(self, engine, job):
+        engine.send({"type": "job", "job": job, "point": self.point, "seed": 3, "scene": self.scene, "threads": 1,
+                     "checkpoint": str(self.folder / "checkpoint"), "checkpoint_seconds": 0.01, "progress_seconds": 0.01,
+                     "spool": str(self.spool(job)), "failures": str(self.folder)})
+
+    def spool(self, job):
+        return self.folder / f"spool-{job}.json"
+
+    def hear_result(self, engine, job):
+        steps = [0]
+        while (answer := engine.receive())["type"] == "progress":
+            steps.append(answer["step"])
+        assert answer["type"] == "result" and answer["job"] == job, answer
+        assert steps == sorted(steps), steps
+        return self.read_result(engine, job, answer["sha256"])
+
+    def read_result(self, engine, job, sha256):
+        text = self.spool(job).read_bytes()
+        assert sha256 == hashlib.sha256(text).hexdigest()
+        result = json.loads(text)
+        self.result_schema.validate(result)
+        assert (result["point"], result["seed"]) == (self.point, 3)
+        assert result["engine"] == engine.identity
+        checkpoint = self.folder / "checkpoint"
+        checkpoint.unlink(missing_ok=True)  # as the runner does when it has the result
+        return result
+
+    def undisturbed(self, job):
+        engine = self.start()
+        self.give_job(engine, job)
+        result = self.hear_result(engine, job)
+        engine.leave()
+        return result
+
+    def disturbed(self, job, how):
+        """Interrupts the job after its first progress and lets another process go on. Returns its result and whether it was cut."""
+        engine = self.start()
+        self.give_job(engine, job)
+        answer = engine.receive()
+        was_cut = answer["type"] == "progress"
+        told = was_cut and how == "drain"
+        if told:
+            engine.send({"type": "drain"})
+            while (answer := engine.receive())["type"] == "progress":
+                pass
+            was_cut = answer["type"] == "drained"
+        if answer["type"] == "result":  # it was faster than we
+            engine.leave("asked" if told else "drain")
+            return self.read_result(engine, job, answer["sha256"]), False
+        engine.leave("hang up" if how == "hang up" else "drain")
+        return self.undisturbed(job + 1), was_cut
+
+
+def with_value(scene, pointer, value):
+    changed = copy.deepcopy(scene)
+    *way, last = (part.replace("~1", "/").replace("~0", "~") for part in pointer.split("/")[1:])
+    inner = changed
+    for part in way:
+        inner = inner[int(part)] if isinstance(inner, list) else inner.setdefault(part, {})
+    inner[int(last) if isinstance(inner, list) else last] = value
+    return changed
+
+
+def without_cost(result):
+    return {key: value for key, value in result.items() if key != "cost"}
 
 
 def main():
-    frames, result_schema = validators(pathlib.Path(sys.argv[1]))
-    scene = json.loads(pathlib.Path(sys.argv[2]).read_text())
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("schemas", type=pathlib.Path)
+    parser.add_argument("scene", type=pathlib.Path)
+    parser.add_argument("--refused", default="/fluid/viscosity=-1", metavar="POINTER=VALUE")
+    parser.add_argument("engine", nargs=argparse.REMAINDER)
+    arguments = parser.parse_args()
+    pointer, _, value = arguments.refused.partition("=")
     with tempfile.TemporaryDirectory() as folder:
-        result = converse(Engine(sys.argv[3:], frames), scene, pathlib.Path(folder), result_schema)
-    print("ended with", result["ending"]["cause"])
+        conversation = Conversation(arguments.engine, json.loads(arguments.scene.read_text()), pathlib.Path(folder),
+                                    validators(arguments.schemas))
+        conversation.ask(pointer, json.loads(value))
+        result = conversation.undisturbed(1)
+        print("ended with", result["ending"]["cause"])
+        for job, how in ((2, "drain"), (4, "hang up")):
+            again, was_cut = conversation.disturbed(job, how)
+            assert without_cost(again) == without_cost(result), f"{how}: another result: {again}"
+            print(f"{how}: {'cut and resumed' if was_cut else 'too fast to be cut'}, the same result")
     return 0
 
 
