@@ -1,0 +1,37 @@
+"""The faults that the preloaded shim makes (shim/plan.h): at which call of which process, and what has come of it."""
+import mmap
+import os
+import struct
+
+LAYOUT = struct.Struct("<5q256s")  # calls, struck, off, sequence, process, what
+
+
+class Board:
+    """One page that the drill shares with the processes it disturbs."""
+
+    def __init__(self, folder):
+        self.path = os.path.join(folder, "board")
+        with open(self.path, "wb") as f:
+            f.write(bytes(4096))
+        with open(self.path, "r+b") as f:
+            self.page = mmap.mmap(f.fileno(), 4096)
+
+    def _field(self, index):
+        return struct.unpack_from("<q", self.page, 8 * index)[0]
+
+    calls = property(lambda self: self._field(0))
+    struck = property(lambda self: self._field(1))
+    process = property(lambda self: self._field(4))
+    what = property(lambda self: self.page[40:296].split(b"\0")[0].decode(errors="replace"))
+
+    def switch_off(self):
+        """Nothing is hit any more."""
+        struct.pack_into("<q", self.page, 16, 1)
+
+    def environment(self, shim, role="any", call="any", number=0, action="kill", path=".peclet/", times=1, journal=None):
+        plan = f"role={role} call={call} number={number} action={action} path={path} for={times}"
+        variables = {"LD_PRELOAD": shim, "PECLET_FAULT_BOARD": self.path, "PECLET_FAULT_PLAN": plan}
+        if journal:
+            os.makedirs(os.path.join(journal, "kept"), exist_ok=True)
+            variables["PECLET_FAULT_JOURNAL"] = journal
+        return variables

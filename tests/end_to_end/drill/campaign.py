@@ -1,0 +1,203 @@
+"""A campaign that is run, disturbed and run again, and what its database and spool say has been acknowledged."""
+import contextlib
+import json
+import os
+import re
+import shutil
+import signal
+import sqlite3
+import subprocess
+import tempfile
+import time
+
+MARKER = "PECLET_DRILL_FOLDER"
+
+# The fake engine's campaign: two points, looks at 8, 10, 13 and 14 seeds.
+FAKE = {
+    "name": "drill",
+    "scene": {"fluid": {"viscosity": 1}, "peclet": 1},
+    "sweep": [{"set": "/peclet", "values": [1, 2]}],
+    "target": {"observable": "relative_viscosity", "relative_tolerance": 0.08},
+    "realisations": {"minimum": 8, "maximum": 14},
+}
+# A tenth of a second of real physics per seed.
+REAL = {
+    "name": "drill",
+    "scene": {
+        "particles": {"count": 60, "density": 0.1,
+                      "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}]},
+        "volume_fraction": 0.4,
+        "peclet": 10,
+        "limits": {"shear_rate": 0.045, "thermal_energy": 0.01},
+        "fluid": {"viscosity": 0.1},
+        "contact": {"normal_stiffness": 1e4, "friction": 0.5},
+        "lubrication": {"form": "kim-karrila", "inner_gap": 0.01, "outer_gap": 0.05},
+        "duration": {"equilibration": {"strain": 0.3}, "production": {"strain": 2.7}},
+    },
+    "sweep": [{"set": "/peclet", "values": [10, 1000]}],
+    "target": {"observable": "relative_viscosity", "relative_tolerance": 0.15},
+    "realisations": {"minimum": 8, "maximum": 20},
+}
+
+# Nothing takes this long: a run that does hangs.
+PATIENCE = 120
+
+
+def alive(process):
+    """Whether a process runs; a zombie does not."""
+    try:
+        with open(f"/proc/{process}/stat") as f:
+            return f.read().rsplit(")", 1)[1].split()[0] not in "ZX"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+def children(process):
+    try:
+        with open(f"/proc/{process}/task/{process}/children") as f:
+            return [int(word) for word in f.read().split()]
+    except (FileNotFoundError, ProcessLookupError):
+        return []
+
+
+def stragglers(folder):
+    """The processes that were started for the campaign in `folder` and still run."""
+    marker = f"{MARKER}={folder}".encode()
+    found = []
+    for name in os.listdir("/proc"):
+        if not name.isdigit() or int(name) == os.getpid():
+            continue
+        try:
+            with open(f"/proc/{name}/environ", "rb") as f:
+                if marker in f.read().split(b"\0") and alive(int(name)):
+                    found.append(int(name))
+        except (FileNotFoundError, ProcessLookupError, PermissionError):
+            pass
+    return found
+
+
+class Campaign:
+    """A folder with drill.json, the runs of it, and what they have acknowledged so far."""
+
+    def __init__(self, lab, document=None, workers=2, lease=120, checkpoint=60, **fake):
+        self.lab = lab
+        self.folder = tempfile.mkdtemp(dir=lab.folder)
+        self.workers, self.lease, self.checkpoint = workers, lease, checkpoint
+        self.document = dict(document or FAKE)
+        self.document["engine"] = [lab.engine if document is REAL else lab.fake_engine, "serve"]
+        self.environment = {f"PECLET_FAKE_{name.upper()}": str(value) for name, value in fake.items()}
+        self.data = os.path.join(self.folder, "drill.peclet")
+        self.safe = {}  # (hash, seed) -> (final state, last attempt when it was acknowledged)
+        self.process = None
+        with open(os.path.join(self.folder, "drill.json"), "w") as f:
+            json.dump(self.document, f)
+
+    def command(self):
+        return [self.lab.peclet, "run", "drill.json", "--workers", str(self.workers), "--threads", "1", "--quiet",
+                "--lease", str(self.lease), "--checkpoint", str(self.checkpoint)]
+
+    def start(self, environment=None, command=None):
+        variables = dict(os.environ, **self.environment, **(environment or {}))
+        variables[MARKER] = self.folder
+        with open(os.path.join(self.folder, "log"), "a") as log:
+            process = subprocess.Popen(command or self.command(), cwd=self.folder, stdin=subprocess.DEVNULL, stdout=log,
+                                       stderr=log, env=variables)
+        return process
+
+    def run(self, environment=None):
+        """The exit code of a run; negative when a signal ended it. A run that hangs is stopped by SIGABRT."""
+        process = self.start(environment)
+        try:
+            return process.wait(PATIENCE)
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGABRT)
+            return process.wait()
+
+    def settle(self):
+        """Waits until the workers of dead owners have left."""
+        patience = time.monotonic() + 20
+        while time.monotonic() < patience and (left := stragglers(self.folder)):
+            time.sleep(0.005)
+        for process in stragglers(self.folder):
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(process, signal.SIGKILL)
+
+    def log(self):
+        with open(os.path.join(self.folder, "log"), errors="replace") as f:
+            return f.read()
+
+    def path(self, *names):
+        return os.path.join(self.data, *names)
+
+    def spool(self):
+        """The results that lie in the spool whole: (hash's beginning, seed) -> final state."""
+        found = {}
+        with contextlib.suppress(FileNotFoundError):
+            for name in os.listdir(self.path("spool")):
+                if re.fullmatch(r"[0-9a-f]{16}-\d+-\d+\.json", name):
+                    with contextlib.suppress(FileNotFoundError, ValueError, KeyError), open(self.path("spool", name)) as f:
+                        result = json.load(f)
+                        found[result["point"][:16], result["seed"]] = result["final_state_sha256"]
+        return found
+
+    def query(self, sql):
+        """Rows of the database, [] before it has tables."""
+        if not os.path.exists(self.path("campaign.db")):
+            return []
+        database = sqlite3.connect(f"file:{self.path('campaign.db')}?mode=ro", uri=True, timeout=20)
+        try:
+            if not database.execute("SELECT count(*) FROM sqlite_schema").fetchone()[0]:
+                return []
+            return database.execute(sql).fetchall()
+        finally:
+            database.close()
+
+    def count(self, sql):
+        rows = self.query(sql)
+        return rows[0][0] if rows else 0
+
+    def acknowledge(self):
+        """Notes what has been acknowledged; requires that no owner runs."""
+        spooled = self.spool()
+        last = self.count("SELECT coalesce(max(attempt_id), 0) FROM attempt")
+        stored = self.query("SELECT substr(hash, 1, 16), seed, final_state_sha256 FROM realisation JOIN point USING "
+                            "(point_id) WHERE state IN ('done', 'failed')")
+        known = {(point, seed): state for point, seed, state in stored}
+        for key, state in {**known, **spooled}.items():
+            self.safe.setdefault(key, (state, last))
+
+    def export(self):
+        command = [self.lab.peclet, "export", "drill.json", "--json", "--canonical"]
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, timeout=PATIENCE)
+        return done.stdout if done.returncode == 0 else done.stderr
+
+    def close(self):
+        self.settle()
+        shutil.rmtree(self.folder)
+
+
+class Lab:
+    """Where the programs are and where campaigns are put; undisturbed answers, each computed once."""
+
+    def __init__(self, programs, folder):
+        self.peclet, self.engine, self.fake_engine, self.shim = (
+            os.path.abspath(os.path.join(programs, name))
+            for name in ("peclet", "peclet-engine", "fake_engine", "fault_shim.so"))
+        self.folder = folder
+        self.known = {}
+
+    def undisturbed(self, campaign):
+        """Exit code and canonical export of the same campaign, run by one worker in peace."""
+        steps = {name: value for name, value in campaign.environment.items() if name == "PECLET_FAKE_STEPS"}
+        key = json.dumps([campaign.document, steps])
+        if key not in self.known:
+            quiet = Campaign(self, campaign.document, workers=1)
+            quiet.document = campaign.document
+            with open(os.path.join(quiet.folder, "drill.json"), "w") as f:
+                json.dump(quiet.document, f)
+            quiet.environment = steps
+            self.known[key] = (quiet.run(), quiet.export())
+            if self.known[key][0] not in (0, 3):
+                raise RuntimeError(f"the undisturbed campaign failed:\n{quiet.log()}")
+            quiet.close()
+        return self.known[key]

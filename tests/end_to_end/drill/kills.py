@@ -1,0 +1,105 @@
+"""Kills and power cuts: at random moments, and before every single call that changes a file or sends a frame."""
+import collections
+import contextlib
+import os
+import re
+import signal
+import time
+
+from drill.board import Board
+from drill.campaign import FAKE, REAL, Campaign, children
+from drill.power import acknowledged_spool, cut, read_journal
+
+
+def strike(process, whom):
+    """Kills the owner, one worker, or the owner and all workers. Returns how many processes were hit."""
+    workers = children(process.pid)
+    victims = {"owner": [process.pid], "worker": workers[:1], "both": [process.pid, *workers]}[whom]
+    for victim in victims:
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(victim, signal.SIGKILL)
+    return len(victims)
+
+
+def random_kills(lab, tally, chance, kills, document, per_campaign, **settings):
+    """Kills at random moments; a campaign takes up to `per_campaign` of them before it is run to its end."""
+    struck = collections.Counter()
+    while sum(struck.values()) < kills:
+        campaign = Campaign(lab, document, **settings)
+        before = sum(struck.values())
+        whole = 0.15 if document is FAKE else 2.5
+        for _ in range(per_campaign):
+            process = campaign.start()
+            time.sleep(chance.uniform(0, whole))
+            whom = chance.choice(("owner", "worker", "both"))
+            if process.poll() is None and strike(process, whom):
+                struck[whom] += 1
+            if whom == "worker":  # the owner goes on with a new one, and is killed later
+                time.sleep(chance.uniform(0, whole / 2))
+                if process.poll() is None:
+                    process.kill()
+                    struck["owner"] += 1
+            process.wait()
+            campaign.acknowledge()
+        blamed = campaign.count("SELECT total(blamed) FROM attempt")
+        tally.expect(campaign, not blamed, f"{blamed:.0f} attempts are blamed for kills")
+        tally.judge(campaign, sum(struck.values()) - before)
+    tally.remarks.append(", ".join(f"{count} of {whom}" for whom, count in sorted(struck.items())))
+
+
+def edges(lab, tally, chance, role, stride, document=FAKE, action="kill"):
+    """Every call of the owner or of its workers that changes a file or sends a frame, and a kill before it."""
+    calls, struck, number = None, collections.Counter(), 1 if stride == 1 else chance.randint(1, stride)
+    while calls is None or number <= calls:
+        campaign = Campaign(lab, document, workers=1, checkpoint=0.001)
+        board = Board(campaign.folder)
+        campaign.run(board.environment(lab.shim, role=role, number=number, action=action))
+        if not board.struck:
+            calls = number  # the campaign was through before
+        else:
+            struck[kind_of(board.what)] += 1
+            tally.judge(campaign)
+        number += stride
+    tally.remarks.append(", ".join(f"{count} {kind}" for kind, count in sorted(struck.items())))
+
+
+def kind_of(what):
+    """The kind of call and of file, without what differs between seeds and processes."""
+    call, path = what.split(" ", 1)
+    if path == "socket":
+        return "send"
+    path = path.split(".peclet/")[-1]
+    file = re.sub(r"campaign\.db", "database", path).split("/")[0]
+    return f"{call} {file}" if not path.endswith(".tmp") else f"{call} {file} (unfinished)"
+
+
+def power_cuts(lab, tally, chance, cuts, document=FAKE):
+    """Everything dies before a random call, and a part of what was not synchronised is not on the disk."""
+    at_stake = collections.Counter()
+    calls = 650 if document is FAKE else 1500
+    while tally.tried < cuts:
+        campaign = Campaign(lab, document, checkpoint=0.001 if document is FAKE else 0.1)
+        for _ in range(2):  # the second cut hits what the first has left
+            board = Board(campaign.folder)
+            journal = os.path.join(campaign.folder, f"journal-{tally.tried}-{_}")
+            environment = board.environment(lab.shim, number=chance.randint(1, calls), action="cut", journal=journal)
+            campaign.run(environment)
+            campaign.settle()
+            if not board.struck:
+                calls = board.calls
+                continue
+            spooled = acknowledged_spool(read_journal(journal))
+            before = {key: state for key, (state, _) in campaign.safe.items()}
+            results = dict(campaign.spool())
+            results.update({(point, seed): state for point, seed, state in campaign.query(
+                "SELECT substr(hash, 1, 16), seed, final_state_sha256 FROM realisation JOIN point USING (point_id) "
+                "WHERE state IN ('done', 'failed')")})
+            contents, names = cut(campaign, journal, chance)
+            at_stake.update(contents=contents, names=names)
+            last = campaign.count("SELECT coalesce(max(attempt_id), 0) FROM attempt")
+            for key in spooled - before.keys():
+                campaign.safe[key] = (results.get(key), last)
+            tally.tried += 1
+        if campaign.count("SELECT count(*) FROM sqlite_schema") >= 0:
+            tally.judge(campaign, 0)
+    tally.remarks.append(f"{at_stake['contents']} unsynchronised writes and {at_stake['names']} names at stake")

@@ -1,0 +1,68 @@
+"""What is counted against the programs: results lost or counted twice, exports that differ, and anything else that
+should not have happened."""
+import sqlite3
+
+
+class Tally:
+    """The row of one fault in the drill's table."""
+
+    def __init__(self, name):
+        self.name = name
+        self.tried = self.lost = self.double = self.different = self.other = 0
+        self.seconds = 0.0
+        self.remarks = []    # measured by the way, for the table's foot
+        self.complaints = []
+
+    def complain(self, campaign, message, column="other", count=1):
+        setattr(self, column, getattr(self, column) + count)
+        self.complaints.append(f"{self.name}, try {self.tried}: {message}\n{campaign.log()[-2000:]}")
+
+    def expect(self, campaign, truth, message):
+        if not truth:
+            self.complain(campaign, message)
+
+    def judge(self, campaign, tried=1):
+        """Runs the disturbed campaign to its end in peace and compares it with the undisturbed one."""
+        self.tried += tried
+        campaign.settle()
+        campaign.acknowledge()
+        code = campaign.run()
+        expected, export = campaign.lab.undisturbed(campaign)
+        self.expect(campaign, code == expected, f"the last run ended with exit code {code}, not {expected}")
+        if campaign.export() != export:
+            self.complain(campaign, "the export differs from the undisturbed one", "different")
+        self._count_losses(campaign)
+        self._count_doubles(campaign)
+        verdict = campaign.count("PRAGMA integrity_check")
+        self.expect(campaign, verdict == "ok", f"integrity_check: {verdict}")
+        campaign.close()
+
+    def _count_losses(self, campaign):
+        """An acknowledged result that is absent, another one, or was computed once more has been lost."""
+        stored = {(point, seed): state for point, seed, state in campaign.query(
+            "SELECT substr(hash, 1, 16), seed, final_state_sha256 FROM realisation JOIN point USING (point_id) "
+            "JOIN result USING (point_id, seed) WHERE state IN ('done', 'failed')")}
+        latest = {(point, seed): attempt for point, seed, attempt in campaign.query(
+            "SELECT substr(hash, 1, 16), seed, max(attempt_id) FROM attempt JOIN point USING (point_id) GROUP BY 1, 2")}
+        lost = [key for key, (state, last) in campaign.safe.items()
+                if stored.get(key) != state or latest.get(key, 0) > last]
+        if lost:
+            self.complain(campaign, f"acknowledged and lost: {sorted(lost)}", "lost", len(lost))
+
+    def _count_doubles(self, campaign):
+        ended = campaign.count("SELECT count(*) FROM realisation WHERE state IN ('done', 'failed')")
+        results = campaign.count("SELECT count(*) FROM result")
+        credited = campaign.count("SELECT count(*) FROM (SELECT 1 FROM attempt WHERE outcome = 'result' "
+                                  "GROUP BY point_id, seed HAVING count(*) > 1)")
+        again = campaign.count("SELECT count(*) FROM attempt late JOIN attempt first USING (point_id, seed) "
+                               "WHERE first.outcome = 'result' AND late.attempt_id > first.attempt_id")
+        surplus = abs(results - ended) + credited + again
+        if surplus:
+            self.complain(campaign, f"{ended} ended, {results} results, {credited} credited twice, {again} run again after "
+                          "their result", "double", surplus)
+
+    def row(self):
+        return [self.name, self.tried, self.lost, self.double, self.different, self.other, f"{self.seconds:.0f}"]
+
+    def passed(self):
+        return self.tried > 0 and not (self.lost or self.double or self.different or self.other)

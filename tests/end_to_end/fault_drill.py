@@ -1,0 +1,72 @@
+#!/usr/bin/python3
+"""fault_drill.py BIN [--quick] [--case NAME ...] [--seed 1] [--list]
+
+Runs campaigns, does to them what happens to programs that are left alone for weeks, runs them to their end, and compares
+with the same campaign run in peace by one worker. Prints a table: the fault, how often it was tried, acknowledged results
+that were lost, results that were counted twice, canonical exports with different bytes, anything else that should not have
+happened (a wrong exit code, a damaged database, a seed that was blamed for what others did), and seconds. All must be zero;
+the exit code is 1 otherwise. A result is acknowledged when its spool file is complete or it has been committed.
+
+BIN holds peclet, peclet-engine, fake_engine and fault_shim.so. --quick is the part that runs with the tests.
+"""
+import argparse
+import os
+import random
+import shutil
+import sys
+import tempfile
+import time
+
+from drill import cases
+from drill.campaign import Lab
+from drill.tally import Tally
+
+HEADINGS = ["fault", "tried", "lost", "double", "different", "other", "seconds"]
+
+
+def print_table(tallies):
+    rows = [HEADINGS] + [[str(cell) for cell in tally.row()] for tally in tallies]
+    widths = [max(len(row[column]) for row in rows) for column in range(len(HEADINGS))]
+    for row in rows:
+        print("  ".join(cell.ljust(width) if column == 0 else cell.rjust(width)
+                        for column, (cell, width) in enumerate(zip(row, widths))))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("bin")
+    parser.add_argument("--quick", action="store_true", help="the part that runs with the tests, about half a minute")
+    parser.add_argument("--case", action="append", metavar="NAME", help="only these; a part of the name is enough")
+    parser.add_argument("--seed", type=int, default=1, help="of the random moments")
+    parser.add_argument("--list", action="store_true", help="names the cases")
+    arguments = parser.parse_args()
+    chosen = [case for case in cases.CASES if not arguments.case or any(part in case.name for part in arguments.case)]
+    if arguments.list:
+        print("\n".join(case.name for case in chosen))
+        return 0
+    # In memory where there is such a file system: a power cut is made by the shim, not by the disk.
+    memory = "/dev/shm" if os.path.isdir("/dev/shm") and os.access("/dev/shm", os.W_OK) else None
+    folder = tempfile.mkdtemp(prefix="fault-drill-", dir=memory)
+    tallies = []
+    try:
+        lab = Lab(arguments.bin, folder)
+        for case in chosen:
+            started = time.monotonic()
+            tally = Tally(case.name)
+            case.run(lab, tally, random.Random(f"{arguments.seed} {case.name}"), arguments.quick)
+            tally.seconds = time.monotonic() - started
+            tallies.append(tally)
+            print(f"{case.name}: {'passed' if tally.passed() else 'FAILED'} in {tally.seconds:.1f} s", file=sys.stderr)
+            for complaint in tally.complaints[:5]:
+                print(complaint, file=sys.stderr)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    print_table(tallies)
+    for tally in tallies:
+        for remark in tally.remarks:
+            print(f"{tally.name}: {remark}")
+    return 0 if tallies and all(tally.passed() for tally in tallies) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
