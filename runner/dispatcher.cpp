@@ -14,6 +14,9 @@ using std::chrono::seconds;
 
 // The longest that a turn waits: leases and the time limit are judged at least this often.
 constexpr std::chrono::milliseconds longest_wait{500};
+// A turn that takes longer was not working but stopped; no more of it than this counts, nor than half a
+// lease.
+constexpr Dispatcher::Awake longest_turn{1};
 constexpr seconds report_interval{1};
 constexpr seconds lease_display_interval{2};
 // Workers that have not checkpointed and left by then are killed; the seeds lose what came after the last
@@ -39,9 +42,9 @@ Dispatcher::Dispatcher(Database& database, Ledger& ledger, WorkerPool& pool, Run
       clock_(std::move(clock)),
       workers_(static_cast<std::size_t>(pool.size())),
       started_(clock_()),
+      heard_(started_),
       reported_(started_),
-      leases_shown_(started_),
-      stopping_since_(started_) {}
+      leases_shown_(started_) {}
 
 Dispatcher::Ending Dispatcher::run() {
   while (!ledger_.scheduler().finished() && stopping_ == Stopping::no) turn();
@@ -60,6 +63,7 @@ bool Dispatcher::anyone_there() const {
 void Dispatcher::turn() {
   start_workers();
   const std::vector<WorkerEvent> events = pool_.wait(longest_wait);
+  stay_awake();
   Transaction booking(database_.connection());
   for (const WorkerEvent& event : events) {
     std::visit([this](const auto& happened) { handle(happened); }, event);
@@ -75,12 +79,20 @@ void Dispatcher::turn() {
   report();
 }
 
+// Called when all news has been fetched: whatever happens until the next time, the news is never older than
+// the time by which it is judged.
+void Dispatcher::stay_awake() {
+  const Time now = clock_();
+  awake_ += std::min<Awake>({now - heard_, longest_turn, settings_.lease / 2});
+  heard_ = now;
+}
+
 void Dispatcher::start_workers() {
   if (stopping_ != Stopping::no) return;
   for (int number = 0; number < pool_.size(); ++number) {
     if (at(number).stage != Stage::absent) continue;
     pool_.start(number);
-    at(number) = Worker{Stage::starting, clock_()};
+    at(number) = Worker{Stage::starting, awake_};
   }
 }
 
@@ -97,33 +109,32 @@ void Dispatcher::give_out_seeds() {
     grant->job.progress_seconds = std::min(1.0, settings_.lease.count() / 5);
     to_send_.emplace_back(number, grant->job);
     worker.stage = Stage::busy;
-    worker.since = clock_();
+    worker.since = awake_;
     worker.assignment = Assignment{std::move(*grant)};
     worker.assignment->renewed = worker.since;
   }
 }
 
 void Dispatcher::judge_leases() {
-  const Time now = clock_();
   for (int number = 0; number < pool_.size(); ++number) {
     const Worker& worker = at(number);
     if (worker.condemned) continue;
-    if (worker.stage == Stage::starting && now - worker.since > hello_patience) {
+    if (worker.stage == Stage::starting && awake_ - worker.since > hello_patience) {
       condemn(number, AttemptOutcome::hung, "it did not say hello");
     }
-    if (worker.stage == Stage::busy && now - worker.assignment->renewed > settings_.lease) {
+    if (worker.stage == Stage::busy && awake_ - worker.assignment->renewed > settings_.lease) {
       condemn(
           number, AttemptOutcome::hung,
           fmt::format("no new step after {} for {:g} s", worker.assignment->step, settings_.lease.count()));
     }
   }
-  if (settings_.time_limit && stopping_ == Stopping::no && now - started_ >= *settings_.time_limit) {
+  if (settings_.time_limit && stopping_ == Stopping::no && heard_ - started_ >= *settings_.time_limit) {
     listener_.note("the time limit is reached: workers checkpoint and stop");
     stop(Stopping::draining);
   }
   const seconds patience = stopping_ == Stopping::finished ? surplus_patience : drain_patience;
   if ((stopping_ == Stopping::finished || stopping_ == Stopping::draining) &&
-      now - stopping_since_ > patience) {
+      awake_ - stopping_since_ > patience) {
     stop(Stopping::at_once);
   }
 }
@@ -141,7 +152,7 @@ void Dispatcher::show_leases() {
 
 void Dispatcher::stop(Stopping why) {
   stopping_ = why;
-  stopping_since_ = clock_();
+  stopping_since_ = awake_;
   for (int number = 0; number < pool_.size(); ++number) {
     if (at(number).stage == Stage::absent) continue;
     if (why == Stopping::at_once) {
@@ -184,7 +195,7 @@ void Dispatcher::set_idle(int number) {
   if (worker.assignment) worker.finished_job = worker.assignment->grant.job.attempt;
   worker.assignment.reset();
   worker.stage = Stage::idle;
-  worker.since = clock_();
+  worker.since = awake_;
 }
 
 void Dispatcher::end_assignment(int number, const AttemptEnd& end) {
@@ -209,7 +220,7 @@ void Dispatcher::handle(const Progressed& event) {
   if (!has_job(event.worker, event.job)) return;
   Assignment& about = *at(event.worker).assignment;
   // Steps count; being alive does not.
-  if (std::tie(event.phase, event.step) > std::tie(about.phase, about.step)) about.renewed = clock_();
+  if (std::tie(event.phase, event.step) > std::tie(about.phase, about.step)) about.renewed = awake_;
   about.phase = event.phase;
   about.step = event.step;
   about.steps = event.steps;

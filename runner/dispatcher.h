@@ -34,6 +34,9 @@ class Dispatcher {
  public:
   using Time = std::chrono::steady_clock::time_point;
   using Clock = std::function<Time()>;
+  // Time during which this process ran. Leases and patience are measured in it: an owner that was stopped, or
+  // frozen together with its workers, has heard nothing meanwhile and must not hold that against them.
+  using Awake = std::chrono::duration<double>;
 
   // All references must outlive the dispatcher.
   Dispatcher(Database& database, Ledger& ledger, WorkerPool& pool, RunListener& listener,
@@ -51,13 +54,13 @@ class Dispatcher {
     int phase = 0;
     std::int64_t step = 0, steps = 0;
     double strain = 0;
-    Time renewed{};      // when it last came forward
+    Awake renewed{};     // when it last came forward
     bool shown = false;  // the database says how far it is
   };
   enum class Stage { absent, starting, idle, busy };
   struct Worker {
     Stage stage = Stage::absent;
-    Time since{};  // of the stage
+    Awake since{};  // of the stage
     std::int64_t engine = 0;
     std::optional<Assignment> assignment{};
     std::int64_t finished_job = 0;              // the last one; attempts are numbered from 1
@@ -76,6 +79,7 @@ class Dispatcher {
   void handle(const StopSignal& event);
 
   void turn();
+  void stay_awake();
   void start_workers();
   void give_out_seeds();
   void judge_leases();
@@ -101,7 +105,8 @@ class Dispatcher {
   std::vector<Worker> workers_;
   std::vector<std::pair<int, Job>> to_send_;  // after the commit
   Stopping stopping_ = Stopping::no;
-  Time started_, reported_, leases_shown_, stopping_since_;
+  Time started_, heard_, reported_, leases_shown_;
+  Awake awake_{}, stopping_since_{};
   int results_ = 0;
   int early_exits_ = 0;  // of workers without a job, in a row
 };
