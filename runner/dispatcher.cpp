@@ -123,9 +123,10 @@ void Dispatcher::judge_leases() {
       condemn(number, AttemptOutcome::hung, "it did not say hello");
     }
     if (worker.stage == Stage::busy && awake_ - worker.assignment->renewed > settings_.lease) {
-      condemn(
-          number, AttemptOutcome::hung,
-          fmt::format("no new step after {} for {:g} s", worker.assignment->step, settings_.lease.count()));
+      const bool stopped = pool_.is_stopped(number);
+      condemn(number, stopped ? AttemptOutcome::killed : AttemptOutcome::hung,
+              fmt::format("no new step after {} for {:g} s{}", worker.assignment->step,
+                          settings_.lease.count(), stopped ? ": its process has been stopped" : ""));
     }
   }
   if (settings_.time_limit && stopping_ == Stopping::no && heard_ - started_ >= *settings_.time_limit) {

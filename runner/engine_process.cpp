@@ -149,6 +149,14 @@ void EngineProcess::kill() const {
   if (process_ > 0) ::kill(process_, SIGKILL);
 }
 
+bool EngineProcess::is_stopped() const {
+  siginfo_t about{};
+  // Without taking the news away, so that it is true as long as the process is stopped.
+  return process_ > 0 &&
+         waitid(P_PID, static_cast<id_t>(process_), &about, WSTOPPED | WNOHANG | WNOWAIT) == 0 &&
+         about.si_pid == process_;
+}
+
 std::optional<ExitStatus> EngineProcess::reap() {
   int status = 0;
   pid_t ended = 0;

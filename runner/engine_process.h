@@ -52,6 +52,8 @@ class EngineProcess {
   void hang_up();
   // SIGKILL. The ending is still to be reaped.
   void kill() const;
+  // Whether it is stopped now (SIGSTOP and the like).
+  bool is_stopped() const;
   // How it ended, once it has. Requires that it has not said so before: afterwards the process no longer
   // exists.
   std::optional<ExitStatus> reap();

@@ -84,6 +84,8 @@ class WorkerPool {
   // Asks for a checkpoint; Drained (when it had a job) and Exited follow.
   virtual void drain(int worker) = 0;
   virtual void kill(int worker) = 0;
+  // Whether its process is stopped (SIGSTOP), which is nobody's fault.
+  virtual bool is_stopped(int worker) const = 0;
 
   // What happened, in order for each worker; waits for the first event, at most for `patience`.
   virtual std::vector<WorkerEvent> wait(std::chrono::milliseconds patience) = 0;

@@ -106,6 +106,11 @@ void ProcessPool::kill(int worker) {
   if (const auto& running = workers_.at(static_cast<std::size_t>(worker))) running->process.kill();
 }
 
+bool ProcessPool::is_stopped(int worker) const {
+  const std::unique_ptr<Worker>& running = workers_.at(static_cast<std::size_t>(worker));
+  return running && running->process.is_stopped();
+}
+
 void ProcessPool::send(int number, const Json& message) {
   const auto& worker = workers_.at(static_cast<std::size_t>(number));
   if (!worker || worker->deaf) return;

@@ -27,6 +27,7 @@ class ProcessPool : public WorkerPool {
   void assign(int worker, const Job& job) override;
   void drain(int worker) override;
   void kill(int worker) override;
+  bool is_stopped(int worker) const override;
   std::vector<WorkerEvent> wait(std::chrono::milliseconds patience) override;
 
  private:

@@ -105,6 +105,20 @@ TEST_F(Dispatching, AWorkerThatTakesNoStepDuringALeaseIsHung) {
   EXPECT_EQ(attempts_of(1).size(), 1U);  // the one that took steps was left alone
 }
 
+TEST_F(Dispatching, AWorkerThatWasStoppedIsReplacedWithoutBlame) {
+  pool_.stopped = 0;
+  pool_.script = [&, this] {
+    if (pool_.now.time_since_epoch() > std::chrono::seconds(200)) return finish_all();
+    pool_.now += std::chrono::milliseconds(900);
+    if (!pool_.has_job(1)) return;
+    pool_.say(Progressed{1, pool_.job(1).attempt, 2, pool_.now.time_since_epoch().count(), 100, 0.1});
+  };
+  EXPECT_EQ(run(), Dispatcher::Ending::finished);
+  EXPECT_EQ(attempts_of(0).at(0).outcome, "killed");
+  EXPECT_EQ(attempts_of(0).at(1).outcome, "result");
+  EXPECT_EQ(database_.connection().integer("SELECT total(blamed) FROM attempt"), 0);
+}
+
 TEST_F(Dispatching, AnOwnerThatWasStoppedBlamesNobody) {
   int stops = 0;
   pool_.script = [&, this] {

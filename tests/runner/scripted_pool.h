@@ -22,6 +22,7 @@ class ScriptedPool : public WorkerPool {
   void assign(int worker, const Job& job) override;
   void drain(int worker) override;
   void kill(int worker) override;
+  bool is_stopped(int worker) const override { return stopped == worker; }
   // The events that have been said since; asks `script` for more when there are none. Time passes by
   // `patience` when there still are none.
   std::vector<WorkerEvent> wait(std::chrono::milliseconds patience) override;
@@ -41,6 +42,7 @@ class ScriptedPool : public WorkerPool {
   std::string identity = "engine";
   bool says_hello = true;
   bool leaves_when_drained = true;
+  int stopped = -1;  // the worker whose process is
 
   std::chrono::steady_clock::time_point now{};  // the test's time
   int starts = 0;
