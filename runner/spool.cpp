@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <charconv>
 #include <csignal>
+#include <cstdint>
 #include <system_error>
 
 #include "contract/durable_file.h"
@@ -15,6 +16,9 @@ namespace peclet::runner {
 namespace {
 
 namespace fs = std::filesystem;
+
+// As for a frame. What is larger is no result, and reading it might take all memory there is.
+constexpr std::uintmax_t largest_spool_file = std::uintmax_t{64} << 20;
 
 // write_durably() names its temporary files NAME.PROCESS.COUNT.tmp. Nothing: not such a name.
 std::optional<int> writer_of(const fs::path& temporary) {
@@ -31,6 +35,9 @@ std::optional<int> writer_of(const fs::path& temporary) {
 RealisationResult read_spool_file(const fs::path& path, const std::string& sha256) {
   std::string text;
   try {
+    if (const std::uintmax_t size = fs::file_size(path); size > largest_spool_file) {
+      throw ResultError(fmt::format("it has {} bytes, more than {}", size, largest_spool_file));
+    }
     text = read_file(path);
   } catch (const std::system_error& error) {
     throw ResultError(error.what());

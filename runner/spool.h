@@ -11,7 +11,7 @@
 namespace peclet::runner {
 
 // Reads one spool file; `sha256` is what the engine says about its bytes ("" when nobody is left to say it).
-// Throws ResultError when it is absent, differs or is no result.
+// Throws ResultError when it is absent, differs, is too large or is no result.
 RealisationResult read_spool_file(const std::filesystem::path& path, const std::string& sha256);
 
 // Complete spool files, by name.

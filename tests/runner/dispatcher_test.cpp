@@ -388,6 +388,16 @@ TEST_F(Dispatching, LeftoversOfTheSpoolAreTakenBeforeAnythingIsGivenOut) {
   EXPECT_TRUE(std::filesystem::exists(directory_.rejected() / "damaged.json"));
 }
 
+TEST_F(Dispatching, ASpoolFileThatIsTooLargeToBeAResultIsSetAsideUnread) {
+  const std::filesystem::path large = directory_.spool() / "large.json";
+  write_durably(large, "{");
+  std::filesystem::resize_file(large, std::uintmax_t{1} << 40);  // a hole: it takes no room on the disk
+  pool_.script = [this] { finish_all(); };
+  EXPECT_EQ(run(), Dispatcher::Ending::finished);
+  EXPECT_TRUE(was_warned_of("large.json is not taken: it has 1099511627776 bytes"));
+  EXPECT_TRUE(std::filesystem::exists(directory_.rejected() / "large.json"));
+}
+
 TEST_F(Dispatching, ACheckpointThatCameAfterTheResultGoesAtTheNextStart) {
   pool_.script = [this] { finish_all(); };
   run();
