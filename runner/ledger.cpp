@@ -78,7 +78,10 @@ void Ledger::ingest_spool() {
   for (const fs::path& file : spool_files(directory_)) {
     Transaction booking(database_.connection());
     try {
-      take(read_spool_file(file, ""), file);
+      const RealisationResult result = read_spool_file(file, "");
+      // An engine that answers with another seed's result may die before it is found out.
+      if (is_named_for_another(file, result)) throw ResultError("it is named for another point or seed");
+      take(result, file);
     } catch (const ResultError& error) {
       turn_down(file, error.what());
     }

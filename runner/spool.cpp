@@ -7,6 +7,7 @@
 #include <charconv>
 #include <csignal>
 #include <cstdint>
+#include <regex>
 #include <system_error>
 
 #include "contract/durable_file.h"
@@ -46,6 +47,15 @@ RealisationResult read_spool_file(const fs::path& path, const std::string& sha25
     throw ResultError("its bytes do not have the hash that the engine gave");
   }
   return parse_result(text);
+}
+
+bool is_named_for_another(const fs::path& path, const RealisationResult& result) {
+  // As CampaignDirectory::spool_file() spells it, apart from the attempt.
+  static const std::regex ours("([0-9a-f]{16})-([0-9]{6,9})-[0-9]+[.]json");
+  const std::string name = path.filename().string();
+  std::smatch parts;
+  if (!std::regex_match(name, parts, ours)) return false;
+  return parts[1] != result.point.substr(0, 16) || std::stoi(parts[2]) != result.seed;
 }
 
 std::vector<fs::path> spool_files(const CampaignDirectory& directory) {

@@ -14,6 +14,9 @@ namespace peclet::runner {
 // Throws ResultError when it is absent, differs, is too large or is no result.
 RealisationResult read_spool_file(const std::filesystem::path& path, const std::string& sha256);
 
+// Whether the file bears the name of another point's or seed's result; any name that is none of ours will do.
+bool is_named_for_another(const std::filesystem::path& path, const RealisationResult& result);
+
 // Complete spool files, by name.
 std::vector<std::filesystem::path> spool_files(const CampaignDirectory& directory);
 

@@ -388,6 +388,18 @@ TEST_F(Dispatching, LeftoversOfTheSpoolAreTakenBeforeAnythingIsGivenOut) {
   EXPECT_TRUE(std::filesystem::exists(directory_.rejected() / "damaged.json"));
 }
 
+TEST_F(Dispatching, ASpoolFileThatIsNamedForAnotherSeedIsSetAside) {
+  const std::string& point = campaign_.points[0].hash;
+  write_durably(directory_.spool_file(point, 1, 77), plain_result(point, 2, 99).dump());
+  write_durably(directory_.spool_file(std::string(64, 'a'), 1, 77), plain_result(point, 1, 99).dump());
+  write_durably(directory_.spool() / "brought-by-hand.json", plain_result(point, 0, 10).dump());
+  pool_.script = [this] { finish_all(); };
+  EXPECT_EQ(run(), Dispatcher::Ending::finished);
+  EXPECT_EQ(pool_.assigned.at(0).seed, 1);
+  EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM realisation WHERE value = 99"), 0);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(directory_.rejected()), {}), 2);
+}
+
 TEST_F(Dispatching, ASpoolFileThatIsTooLargeToBeAResultIsSetAsideUnread) {
   const std::filesystem::path large = directory_.spool() / "large.json";
   write_durably(large, "{");
