@@ -12,7 +12,7 @@ packages=(
   g++ cmake ninja-build pkg-config git                                     # to build
   nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev                 # both programs
   librandom123-dev libsodium-dev libsqlite3-dev libboost-dev
-  libgtest-dev python3 python3-jsonschema sqlite3                         # the tests
+  libgtest-dev python3 python3-jsonschema sqlite3 libfaketime             # the tests
   lammps                                                                  # another engine, which tests run
   gnuplot-nox                                                             # pictures of the studies
   clang-format clang-tidy                                                 # the source

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""fault_drill.py BIN [--quick] [--case NAME ...] [--seed 1] [--list]
+"""fault_drill.py BIN [--quick] [--case NAME ...] [--seed 1] [--every-allocation] [--list]
 
 Runs campaigns, does to them what happens to programs that are left alone for weeks, runs them to their end, and compares
 with the same campaign run in peace by one worker. Prints a table: the fault, how often it was tried, acknowledged results
@@ -13,9 +13,11 @@ import argparse
 import os
 import random
 import shutil
+import signal
 import sys
 import tempfile
 import time
+import traceback
 
 from drill import cases
 from drill.campaign import Lab
@@ -33,14 +35,19 @@ def print_table(tallies):
 
 
 def main():
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # and leave nothing behind
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bin")
     parser.add_argument("--quick", action="store_true", help="the part that runs with the tests, about half a minute")
     parser.add_argument("--case", action="append", metavar="NAME", help="only these; a part of the name is enough")
     parser.add_argument("--seed", type=int, default=1, help="of the random moments")
+    parser.add_argument("--every-allocation", action="store_true",
+                        help="only this: every allocation of SQLite fails in turn")
     parser.add_argument("--list", action="store_true", help="names the cases")
     arguments = parser.parse_args()
     chosen = [case for case in cases.CASES if not arguments.case or any(part in case.name for part in arguments.case)]
+    if arguments.every_allocation:
+        chosen, arguments.quick = [cases.every_allocation()], False
     if arguments.list:
         print("\n".join(case.name for case in chosen))
         return 0
@@ -53,7 +60,11 @@ def main():
         for case in chosen:
             started = time.monotonic()
             tally = Tally(case.name)
-            case.run(lab, tally, random.Random(f"{arguments.seed} {case.name}"), arguments.quick)
+            try:
+                case.run(lab, tally, random.Random(f"{arguments.seed} {case.name}"), arguments.quick)
+            except Exception:  # the other cases are worth their while all the same
+                tally.other += 1
+                tally.complaints.append(traceback.format_exc())
             tally.seconds = time.monotonic() - started
             tallies.append(tally)
             print(f"{case.name}: {'passed' if tally.passed() else 'FAILED'} in {tally.seconds:.1f} s", file=sys.stderr)

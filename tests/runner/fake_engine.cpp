@@ -51,7 +51,7 @@ struct State {
 class Engine {
  public:
   int run() {
-    channel_.send({{"type", "hello"}, {"protocol", 1}, {"program", "fake-engine"}, {"engine", engine()}});
+    say_hello();
     Json message;
     while (!leave_ && channel_.receive(message, milliseconds(-1)) == FrameChannel::Status::message) {
       const std::string type = message.at("type");
@@ -63,6 +63,10 @@ class Engine {
   }
 
  private:
+  void say_hello() {
+    channel_.send({{"type", "hello"}, {"protocol", 1}, {"program", "fake-engine"}, {"engine", engine()}});
+  }
+
   void validate(const Json& message) {
     const Json::json_pointer viscosity("/fluid/viscosity");
     const Json& scene = message.at("scene");
@@ -99,7 +103,7 @@ class Engine {
     const auto start = steady_clock::now();
     auto saved = start, told = start;
     for (; state.step < steps_; ++state.step) {
-      if (state.step >= steps_ / 2) go_wrong(fault, job);
+      if (state.step >= fault_step_) go_wrong(fault, job);
       if (told_to_leave(job, state, checkpoint)) return;
       state.value = mix(state.value + static_cast<std::uint64_t>(state.step));
       const auto now = steady_clock::now();
@@ -120,10 +124,11 @@ class Engine {
     if (fault == Fault::exit) std::_Exit(3);
     if (fault == Fault::kill) kill(getpid(), SIGKILL);
     if (fault == Fault::garble && write(0, "this is no frame", 16) < 0) std::abort();
-    if (fault == Fault::hang || fault == Fault::garble) {
+    if (fault == Fault::rehello) say_hello();
+    if (fault == Fault::hang || fault == Fault::garble || fault == Fault::rehello) {
       for (;;) {
         std::this_thread::sleep_for(milliseconds(20));
-        if (fault == Fault::hang) progress(job, steps_ / 2);  // alive, but standing still
+        if (fault == Fault::hang) progress(job, fault_step_);  // alive, but standing still
       }
     }
   }
@@ -163,15 +168,31 @@ class Engine {
     }
     Json result = outcome(job, state, fault == Fault::overlap);
     result["cost"] = {{"cpu_seconds", wall_seconds}, {"wall_seconds", wall_seconds}};
-    const std::string text = result.dump();
-    write_durably(job.at("spool").get<std::string>(), text);
-    if (fault == Fault::mute) std::abort();
+    if (fault == Fault::swap) result["seed"] = job.at("seed").get<int>() + 1;
+    std::string text = result.dump();
+    // JSON has no such number; an engine that prints it all the same writes no JSON.
+    if (fault == Fault::nan)
+      text.replace(text.find("\"relative_viscosity\":"), 21, "\"relative_viscosity\":nan,\"x\":");
     const Json frame{{"type", "result"},
                      {"job", job.at("job")},
                      {"spool", job.at("spool")},
                      {"sha256", sha256(fault == Fault::lie ? "something else" : text)}};
-    channel_.send(frame);
+    if (fault == Fault::early) announce(frame, fault);
+    write_durably(job.at("spool").get<std::string>(), text);
+    if (fault == Fault::mute) std::abort();
+    announce(frame, fault);
     if (fault == Fault::twice) channel_.send(frame);
+    if (fault == Fault::late) progress(job, steps_);
+  }
+
+  void announce(const Json& frame, Fault fault) {
+    if (fault == Fault::truncate) {
+      const std::string bytes = encode_frame(frame);
+      if (write(0, bytes.data(), bytes.size() / 2) < 0) std::abort();
+      std::_Exit(0);
+    }
+    if (fault == Fault::oversize && write(0, "PCF1\x00\x00\x40\x06", 8) < 0) std::abort();
+    channel_.send(frame);
   }
 
   Json outcome(const Json& job, const State& state, bool blown_up) const {
@@ -213,6 +234,7 @@ class Engine {
 
   FrameChannel channel_{0};
   int steps_ = static_cast<int>(setting("PECLET_FAKE_STEPS", 10));
+  int fault_step_ = static_cast<int>(setting("PECLET_FAKE_FAULT_STEP", steps_ / 2));
   milliseconds step_time_{static_cast<int>(setting("PECLET_FAKE_STEP_MS", 0))};
   bool leave_ = false;
 };

@@ -12,7 +12,7 @@
 namespace peclet::fake {
 namespace {
 
-constexpr std::array<std::pair<const char*, Fault>, 10> names{{{"crash", Fault::crash},
+constexpr std::array<std::pair<const char*, Fault>, 17> names{{{"crash", Fault::crash},
                                                                {"exit", Fault::exit},
                                                                {"kill", Fault::kill},
                                                                {"hang", Fault::hang},
@@ -21,7 +21,14 @@ constexpr std::array<std::pair<const char*, Fault>, 10> names{{{"crash", Fault::
                                                                {"overlap", Fault::overlap},
                                                                {"lie", Fault::lie},
                                                                {"mute", Fault::mute},
-                                                               {"twice", Fault::twice}}};
+                                                               {"twice", Fault::twice},
+                                                               {"swap", Fault::swap},
+                                                               {"nan", Fault::nan},
+                                                               {"early", Fault::early},
+                                                               {"late", Fault::late},
+                                                               {"truncate", Fault::truncate},
+                                                               {"oversize", Fault::oversize},
+                                                               {"rehello", Fault::rehello}}};
 
 Fault fault_named(const std::string& name) {
   for (const auto& [known, fault] : names) {

@@ -7,6 +7,11 @@
 //   garble     bytes that are no frame               refuse   a "failed" frame
 //   overlap    the verdict of a blow-up              lie      a result whose hash is wrong
 //   mute       dies between spool file and frame     twice    the result frame comes twice
+//   swap       another seed's result                 nan      a result that is not a number
+//   early      the result frame before the file      late     progress of the job after its result
+//   truncate   half a result frame, then exit(0)     oversize a frame that announces 100 MiB
+//   rehello    says hello once more half-way
+// PECLET_FAKE_FAULT_STEP is another step for what happens half-way.
 // PECLET_FAKE_CRASH_PROBABILITY crashes any try with this probability, drawn from point, seed and number of
 // the try.
 #pragma once
@@ -18,7 +23,26 @@
 
 namespace peclet::fake {
 
-enum class Fault { none, crash, exit, kill, hang, garble, refuse, overlap, lie, mute, twice };
+enum class Fault {
+  none,
+  crash,
+  exit,
+  kill,
+  hang,
+  garble,
+  refuse,
+  overlap,
+  lie,
+  mute,
+  twice,
+  swap,
+  nan,
+  early,
+  late,
+  truncate,
+  oversize,
+  rehello
+};
 
 // The number of this try of a seed, from 1; counted in a file of `folder`.
 int count_try(const std::filesystem::path& folder, const std::string& point, int seed);

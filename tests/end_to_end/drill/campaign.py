@@ -3,6 +3,7 @@ import contextlib
 import json
 import os
 import re
+import select
 import shutil
 import signal
 import sqlite3
@@ -60,6 +61,15 @@ def children(process):
         return []
 
 
+def ends_within(process, seconds):
+    """Waits for a child without the naps that Popen.wait() takes."""
+    descriptor = os.pidfd_open(process.pid)
+    try:
+        return bool(select.select([descriptor], [], [], seconds)[0])
+    finally:
+        os.close(descriptor)
+
+
 def stragglers(folder):
     """The processes that were started for the campaign in `folder` and still run."""
     marker = f"{MARKER}={folder}".encode()
@@ -88,7 +98,11 @@ class Campaign:
         self.environment = {f"PECLET_FAKE_{name.upper()}": str(value) for name, value in fake.items()}
         self.data = os.path.join(self.folder, "drill.peclet")
         self.safe = {}  # (hash, seed) -> (final state, last attempt when it was acknowledged)
-        self.process = None
+        self.left_alone = False  # whether workers may have outlived their owner
+        self.unmount = None  # a file system of its own that goes with it
+        self.write()
+
+    def write(self):
         with open(os.path.join(self.folder, "drill.json"), "w") as f:
             json.dump(self.document, f)
 
@@ -99,6 +113,7 @@ class Campaign:
     def start(self, environment=None, command=None):
         variables = dict(os.environ, **self.environment, **(environment or {}))
         variables[MARKER] = self.folder
+        self.left_alone = True
         with open(os.path.join(self.folder, "log"), "a") as log:
             process = subprocess.Popen(command or self.command(), cwd=self.folder, stdin=subprocess.DEVNULL, stdout=log,
                                        stderr=log, env=variables)
@@ -106,21 +121,25 @@ class Campaign:
 
     def run(self, environment=None):
         """The exit code of a run; negative when a signal ended it. A run that hangs is stopped by SIGABRT."""
+        left_alone = self.left_alone
         process = self.start(environment)
-        try:
-            return process.wait(PATIENCE)
-        except subprocess.TimeoutExpired:
+        if not ends_within(process, PATIENCE):
             process.send_signal(signal.SIGABRT)
-            return process.wait()
+        code = process.wait()
+        self.left_alone = left_alone or code < 0  # one that exits waits for its workers
+        return code
 
     def settle(self):
         """Waits until the workers of dead owners have left."""
+        if not self.left_alone:
+            return
         patience = time.monotonic() + 20
-        while time.monotonic() < patience and (left := stragglers(self.folder)):
+        while time.monotonic() < patience and stragglers(self.folder):
             time.sleep(0.005)
         for process in stragglers(self.folder):
             with contextlib.suppress(ProcessLookupError):
                 os.kill(process, signal.SIGKILL)
+        self.left_alone = False
 
     def log(self):
         with open(os.path.join(self.folder, "log"), errors="replace") as f:
@@ -130,7 +149,7 @@ class Campaign:
         return os.path.join(self.data, *names)
 
     def spool(self):
-        """The results that lie in the spool whole: (hash's beginning, seed) -> final state."""
+        """Of the results that lie in the spool whole."""
         found = {}
         with contextlib.suppress(FileNotFoundError):
             for name in os.listdir(self.path("spool")):
@@ -142,6 +161,9 @@ class Campaign:
 
     def query(self, sql):
         """Rows of the database, [] before it has tables."""
+        # A rollback journal is there only until the database has been told to keep a write-ahead log, before its tables
+        # are made; a reader cannot roll it back.
+        set_up = not os.path.exists(self.path("campaign.db-journal"))
         if not os.path.exists(self.path("campaign.db")):
             return []
         database = sqlite3.connect(f"file:{self.path('campaign.db')}?mode=ro", uri=True, timeout=20)
@@ -149,6 +171,10 @@ class Campaign:
             if not database.execute("SELECT count(*) FROM sqlite_schema").fetchone()[0]:
                 return []
             return database.execute(sql).fetchall()
+        except sqlite3.OperationalError:
+            if set_up:
+                raise
+            return []
         finally:
             database.close()
 
@@ -156,14 +182,20 @@ class Campaign:
         rows = self.query(sql)
         return rows[0][0] if rows else 0
 
-    def acknowledge(self):
-        """Notes what has been acknowledged; requires that no owner runs."""
+    def results(self):
+        """The final states of what lies in spool or database: (hash's beginning, seed) -> hash of the state."""
         spooled = self.spool()
-        last = self.count("SELECT coalesce(max(attempt_id), 0) FROM attempt")
         stored = self.query("SELECT substr(hash, 1, 16), seed, final_state_sha256 FROM realisation JOIN point USING "
                             "(point_id) WHERE state IN ('done', 'failed')")
-        known = {(point, seed): state for point, seed, state in stored}
-        for key, state in {**known, **spooled}.items():
+        return {**spooled, **{(point, seed): state for point, seed, state in stored}}
+
+    def last_attempt(self):
+        return self.count("SELECT coalesce(max(attempt_id), 0) FROM attempt")
+
+    def acknowledge(self):
+        """Notes what has been acknowledged; requires that no owner runs."""
+        last = self.last_attempt()
+        for key, state in self.results().items():
             self.safe.setdefault(key, (state, last))
 
     def export(self):
@@ -173,6 +205,8 @@ class Campaign:
 
     def close(self):
         self.settle()
+        if self.unmount:
+            subprocess.run(["umount", self.unmount], check=True)
         shutil.rmtree(self.folder)
 
 
@@ -193,8 +227,7 @@ class Lab:
         if key not in self.known:
             quiet = Campaign(self, campaign.document, workers=1)
             quiet.document = campaign.document
-            with open(os.path.join(quiet.folder, "drill.json"), "w") as f:
-                json.dump(quiet.document, f)
+            quiet.write()
             quiet.environment = steps
             self.known[key] = (quiet.run(), quiet.export())
             if self.known[key][0] not in (0, 3):

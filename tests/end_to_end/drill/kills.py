@@ -79,27 +79,26 @@ def power_cuts(lab, tally, chance, cuts, document=FAKE):
     calls = 650 if document is FAKE else 1500
     while tally.tried < cuts:
         campaign = Campaign(lab, document, checkpoint=0.001 if document is FAKE else 0.1)
-        for _ in range(2):  # the second cut hits what the first has left
+        for round_ in range(2):  # the second cut hits what the first has left
             board = Board(campaign.folder)
-            journal = os.path.join(campaign.folder, f"journal-{tally.tried}-{_}")
-            environment = board.environment(lab.shim, number=chance.randint(1, calls), action="cut", journal=journal)
-            campaign.run(environment)
+            journal = os.path.join(campaign.folder, f"journal-{round_}")
+            campaign.run(board.environment(lab.shim, number=chance.randint(1, calls), action="cut", journal=journal))
             campaign.settle()
-            if not board.struck:
+            if board.struck:
+                at_stake.update(take_back(campaign, journal, chance))
+                tally.tried += 1
+            else:
                 calls = board.calls
-                continue
-            spooled = acknowledged_spool(read_journal(journal))
-            before = {key: state for key, (state, _) in campaign.safe.items()}
-            results = dict(campaign.spool())
-            results.update({(point, seed): state for point, seed, state in campaign.query(
-                "SELECT substr(hash, 1, 16), seed, final_state_sha256 FROM realisation JOIN point USING (point_id) "
-                "WHERE state IN ('done', 'failed')")})
-            contents, names = cut(campaign, journal, chance)
-            at_stake.update(contents=contents, names=names)
-            last = campaign.count("SELECT coalesce(max(attempt_id), 0) FROM attempt")
-            for key in spooled - before.keys():
-                campaign.safe[key] = (results.get(key), last)
-            tally.tried += 1
-        if campaign.count("SELECT count(*) FROM sqlite_schema") >= 0:
-            tally.judge(campaign, 0)
+        tally.judge(campaign, 0)
     tally.remarks.append(f"{at_stake['contents']} unsynchronised writes and {at_stake['names']} names at stake")
+
+
+def take_back(campaign, journal, chance):
+    """Results are safe from the moment on at which their spool file and its name were synchronised."""
+    states = campaign.results()
+    durable = acknowledged_spool(read_journal(journal))
+    contents, names = cut(campaign, journal, chance)
+    last = campaign.last_attempt()
+    for key in durable:
+        campaign.safe.setdefault(key, (states.get(key), last))
+    return {"contents": contents, "names": names}

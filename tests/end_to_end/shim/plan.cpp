@@ -5,6 +5,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <climits>
@@ -16,6 +17,7 @@
 #include <map>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 namespace peclet::drill {
 namespace {
@@ -29,9 +31,10 @@ constexpr std::array<std::pair<const char*, Call>, 9> call_names{{{"create", Cal
                                                                   {"send", Call::send},
                                                                   {"read", Call::read},
                                                                   {"allocation", Call::allocation}}};
-constexpr std::array<std::pair<const char*, Action>, 6> action_names{{{"kill", Action::kill},
+constexpr std::array<std::pair<const char*, Action>, 7> action_names{{{"kill", Action::kill},
                                                                       {"cut", Action::cut},
                                                                       {"stop", Action::stop},
+                                                                      {"wait", Action::wait},
                                                                       {"eio", Action::eio},
                                                                       {"enospc", Action::enospc},
                                                                       {"fail", Action::fail}}};
@@ -56,7 +59,7 @@ struct Plan {
   Call call{};
   std::int64_t number = 0, times = 1;
   Action action = Action::kill;
-  std::string path;
+  std::vector<std::string> paths;
   Board* board = nullptr;
 };
 
@@ -90,7 +93,8 @@ Plan read_plan() {
   plan.number = std::atoll(words["number"].c_str());
   plan.times = words.count("for") > 0 ? std::atoll(words["for"].c_str()) : 1;
   plan.action = named(action_names, words["action"]);
-  plan.path = words["path"];
+  std::istringstream paths(words["path"]);
+  for (std::string path; std::getline(paths, path, ',');) plan.paths.push_back(path);
   return plan;
 }
 
@@ -129,8 +133,9 @@ bool fits(const Plan& about, Call call, std::string_view path) {
   if (!about.concerns_us || about.board == nullptr) return false;
   const bool change = call != Call::read && call != Call::allocation;
   if (about.any_change ? !change : call != about.call) return false;
-  if (call == Call::allocation || call == Call::send) return true;
-  return path.find(about.path) != std::string_view::npos;
+  return call == Call::allocation ||
+         std::any_of(about.paths.begin(), about.paths.end(),
+                     [path](const std::string& part) { return path.find(part) != std::string_view::npos; });
 }
 
 const char* name_of(Call call) {
@@ -161,6 +166,12 @@ int strike(Call call, std::string_view path) {
       return 0;
     case Action::stop:
       kill(getpid(), SIGSTOP);
+      return 0;
+    case Action::wait:
+      for (int waited = 0; about.board->off == 0; ++waited) {
+        if (waited > 1000 * longest_wait_seconds) std::_Exit(98);
+        usleep(1000);
+      }
       return 0;
     case Action::eio:
       return EIO;

@@ -9,8 +9,8 @@
 //
 // role: owner (a process called peclet), worker (any other), any. call: the names below, or `any` for those
 // that change something. number: the first call that is hit, from 1, counted over all processes of the role;
-// 0 only counts. for: how many calls in a row are hit. path: a part of the file's name; sockets are sent to.
-// action: see below.
+// 0 only counts. for: how many calls in a row are hit. path: parts of files' names, separated by commas, one
+// of which must occur; the name of what is sent to is "socket". action: see below.
 #pragma once
 
 #include <atomic>
@@ -22,10 +22,14 @@ namespace peclet::drill {
 
 enum class Call { create, write, truncate, sync, rename, remove, send, read, allocation };
 
+// How long `wait` waits at most, so that nothing outlives a drill that was broken off.
+constexpr int longest_wait_seconds = 60;
+
 enum class Action {
   kill,    // SIGKILL of the calling process
   cut,     // SIGKILL of owner and workers, the caller last
   stop,    // SIGSTOP of the calling process, which goes on with SIGCONT
+  wait,    // the calling process hangs in the call until the board's `off`
   eio,     // the call fails with EIO
   enospc,  // the call fails with ENOSPC
   fail     // an allocation that gives nothing

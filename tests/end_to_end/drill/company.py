@@ -1,0 +1,83 @@
+"""Other processes at the same campaign: a second owner, and readers."""
+import os
+import signal
+import subprocess
+import threading
+import time
+
+from drill.board import Board
+from drill.campaign import Campaign, alive
+from drill.stops import busy_workers
+
+
+def second_owners(lab, tally, chance, times):
+    """At a random moment of a run another one is started: exit code 5, and not one call that changes a file."""
+    while tally.tried < times:
+        campaign = Campaign(lab, steps=10, step_ms=60)
+        owner = campaign.start()
+        busy_workers(campaign, owner)
+        while tally.tried < times and owner.poll() is None:
+            board = Board(campaign.folder)
+            time.sleep(chance.uniform(0, 0.1))
+            code = campaign.run(board.environment(lab.shim, role="owner", path=".peclet"))
+            if owner.poll() is not None:
+                break
+            tally.tried += 1
+            tally.expect(campaign, code == 5, f"the second owner ended with exit code {code}")
+            tally.expect(campaign, board.calls == 0, f"the second owner changed files by {board.calls} calls")
+        owner.wait()
+        tally.judge(campaign, 0)
+
+
+def readers(lab, tally, chance, loops, seeds):
+    """`loops` loops of `peclet status` beside the run, and a reader that is stopped while it holds its snapshot."""
+    document_size = {"minimum": seeds, "maximum": seeds}
+    campaign = Campaign(lab, steps=10, step_ms=4)
+    campaign.document["realisations"] = document_size
+    campaign.write()
+    owner = campaign.start()
+    busy_workers(campaign, owner)
+    stopped = stop_a_reader(campaign, tally)
+    lock, answers, slowest = threading.Lock(), [], [0.0]
+
+    def look():
+        while owner.poll() is None:
+            started = time.monotonic()
+            done = subprocess.run([lab.peclet, "status", "drill.json"], cwd=campaign.folder, capture_output=True)
+            with lock:
+                answers.append(done.returncode)
+                slowest[0] = max(slowest[0], time.monotonic() - started)
+                if done.returncode:
+                    tally.complain(campaign, f"status failed: {done.stderr.decode()}")
+
+    started = time.monotonic()
+    threads = [threading.Thread(target=look) for _ in range(loops)]
+    for thread in threads:
+        thread.start()
+    code = owner.wait()
+    seconds = time.monotonic() - started
+    for thread in threads:
+        thread.join()
+    log = os.path.getsize(campaign.path("campaign.db-wal"))
+    tally.expect(campaign, code == lab.undisturbed(campaign)[0], f"the run ended with exit code {code}")
+    tally.expect(campaign, alive(stopped.pid), "the stopped reader has gone")
+    os.kill(stopped.pid, signal.SIGCONT)
+    tally.expect(campaign, stopped.wait(20) == 0, f"the stopped reader ended with exit code {stopped.returncode}")
+    tally.remarks.append(f"{len(answers)} answers, the slowest after {slowest[0]:.1f} s; {2 * seeds} results in "
+                         f"{seconds:.1f} s; the write-ahead log grew to {log / 1e6:.1f} MB beside the stopped reader")
+    tally.judge(campaign, len(answers))
+
+
+def stop_a_reader(campaign, tally):
+    """A `peclet status` that is stopped half-way through the pages it reads."""
+    command = [campaign.lab.peclet, "status", "drill.json"]
+    count = Board(campaign.folder)
+    campaign.start(count.environment(campaign.lab.shim, call="read", path="campaign.db"), command).wait()
+    board = Board(campaign.folder)
+    reader = campaign.start(board.environment(campaign.lab.shim, call="read", path="campaign.db", action="stop",
+                                              number=max(3, count.calls // 2)), command)
+    patience = time.monotonic() + 20
+    while not board.struck and time.monotonic() < patience and reader.poll() is None:
+        time.sleep(0.005)
+    tally.expect(campaign, board.struck == 1, "no reader was stopped within its snapshot")
+    return reader

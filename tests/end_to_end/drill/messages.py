@@ -1,0 +1,109 @@
+"""What comes by socket and spool: frames and files that are repeated, out of order, cut off, too large, or somebody else's;
+and engines that hang, crash or lie."""
+import json
+import os
+import re
+
+from drill.board import Board
+from drill.campaign import Campaign
+
+FRAMES = ["twice", "early", "late", "truncate", "oversize", "garble", "rehello"]
+ENGINES = ["hang", "lie", "swap", "nan", "crash", "exit", "kill", "mute", "refuse"]
+
+
+def engine_faults(lab, tally, chance, times, faults):
+    """Six seeds of each point meet a fault, once or twice, at a random step; the third try is sound."""
+    for _ in range(times):
+        kinds = " ".join(f"{chance.choice(faults)}:{seed}x{chance.randint(1, 2)}" for seed in chance.sample(range(12), 6))
+        campaign = Campaign(lab, lease=1, steps=10, step_ms=1, checkpoint=0.003)
+        code = campaign.run({"PECLET_FAKE_FAULTS": kinds, "PECLET_FAKE_FAULT_STEP": str(chance.randint(0, 9))})
+        tally.expect(campaign, code == lab.undisturbed(campaign)[0], f"{kinds}: exit code {code}")
+        given_up = campaign.count("SELECT count(*) FROM realisation WHERE state = 'quarantined'")
+        tally.expect(campaign, given_up == 0, f"{kinds}: {given_up} seeds were given up")
+        tally.judge(campaign, 6)
+
+
+def crash_at_each_step(lab, tally, chance, steps):
+    for step in steps:
+        campaign = Campaign(lab, steps=10, step_ms=1, checkpoint=0.001)
+        faults = " ".join(f"crash:{seed}x2" for seed in range(12))
+        campaign.run({"PECLET_FAKE_FAULTS": faults, "PECLET_FAKE_FAULT_STEP": str(step)})
+        crashes = campaign.count("SELECT count(*) FROM attempt WHERE outcome = 'crashed'")
+        tally.expect(campaign, crashes >= 8, f"{crashes} crashes at step {step}")
+        tally.judge(campaign, crashes)
+
+
+def other_answer(lab, tally, chance, times):
+    """A worker that wakes up late has another result for its seed: exit code 6 from then on, the numbers as they were."""
+    for _ in range(times):
+        campaign = Campaign(lab, workers=1)
+        board = Board(campaign.folder)
+        owner = campaign.start(dict(board.environment(lab.shim, role="worker", call="rename", path="/spool/", number=1,
+                                                      action="wait"), PECLET_FAKE_DRIFT="1"))
+        while not board.struck and owner.poll() is None:
+            pass
+        owner.kill()
+        owner.wait()
+        code = campaign.run()
+        tally.expect(campaign, code == lab.undisturbed(campaign)[0], f"before it woke up: exit code {code}")
+        board.switch_off()
+        campaign.settle()
+        tally.tried += 1
+        code = campaign.run()
+        tally.expect(campaign, code == 6, f"a point with two answers ended with exit code {code}")
+        tally.expect(campaign, campaign.count("SELECT total(suspect) FROM point") == 1, "no point is suspect")
+        kept = os.listdir(campaign.path("spool", "rejected"))
+        tally.expect(campaign, len(kept) == 1, f"kept aside: {kept}, not the second answer")
+        tally.judge(campaign, 0, code=6)
+
+
+def spool_files(lab, tally, chance, times):
+    """An owner dies beside a full spool, and somebody has put there what does not belong there."""
+    for _ in range(times):
+        campaign = Campaign(lab)
+        board = Board(campaign.folder)
+        campaign.run(board.environment(lab.shim, role="owner", call="remove", path="/spool/", number=chance.randint(1, 12),
+                                       action="cut"))
+        campaign.settle()
+        campaign.acknowledge()
+        spool = campaign.path("spool")
+        name = next(name for name in os.listdir(spool) if re.fullmatch(r"[0-9a-f]{16}-\d+-\d+\.json", name))
+        put = litter(spool, name, chance)
+        campaign.run()
+        tally.expect(campaign, not [left for left in os.listdir(spool) if left.endswith(".json") and "folder" not in left
+                                    and "nowhere" not in left], "files were left in the spool")
+        kept = len(os.listdir(os.path.join(spool, "rejected")))
+        tally.expect(campaign, kept == put, f"{kept} files were kept aside, not {put}")
+        tally.judge(campaign, put)
+
+
+def litter(spool, name, chance):
+    """Puts files beside the complete one. Returns how many of them must be set aside."""
+    with open(os.path.join(spool, name), "rb") as f:
+        good = f.read()
+    point, seed, attempt = name.removesuffix(".json").split("-")
+    other = f"{(int(seed) + 1) % 12:06}"
+    result = json.loads(good)
+    result["mean"]["relative_viscosity"] = 99
+    lie = json.dumps(result).encode()
+    foreign = json.dumps(dict(json.loads(good), point="f" * 64)).encode()
+    bad = {
+        f"{point}-{seed}-9001.json": good[:chance.randint(1, len(good) - 1)],  # cut off
+        f"{point}-{seed}-9002.json": b"",
+        f"{point}-{seed}-9003.json": chance.randbytes(len(good)),
+        f"{point}-{other}-9004.json": lie,  # another seed's, and wrong
+        f"{'0' * 16}-{seed}-9005.json": good,  # another point's name
+        "of-another-campaign.json": foreign,
+        "a list.json": b"[" + good + b"]",
+        "not-utf-8-\udcff.json": b"\xff\xfe",
+        "too-large.json": b"{",
+    }
+    copies = {f"{point}-{seed}-{9100 + copy}.json": good for copy in range(3)}
+    unfinished = {f"{point}-{other}-9200.json.{2 ** 22 + 1}.0.tmp": good[:100]}  # its writer cannot exist
+    for file, content in {**bad, **copies, **unfinished}.items():
+        with open(os.path.join(spool, file), "wb") as f:
+            f.write(content)
+    os.truncate(os.path.join(spool, "too-large.json"), 1 << 40)  # a hole
+    os.mkdir(os.path.join(spool, "folder.json"))
+    os.symlink("/nonexistent", os.path.join(spool, "nowhere.json"))
+    return len(bad)

@@ -1,0 +1,133 @@
+"""Processes that are stopped and go on later, and a wall clock that jumps."""
+import contextlib
+import glob
+import os
+import signal
+import time
+
+from drill.board import Board
+from drill.campaign import Campaign, alive, children
+
+LEASE = 1.2
+BEYOND = 2.5  # so long is a process stopped: longer than its lease, whatever the owner waits for meanwhile
+
+
+def signal_to(process, number):
+    with contextlib.suppress(ProcessLookupError):
+        os.kill(process, number)
+
+
+def nobody_is_blamed(tally, campaign):
+    blamed = campaign.query("SELECT seed, outcome, message FROM attempt WHERE blamed")
+    tally.expect(campaign, not blamed, f"blamed: {blamed}")
+
+
+def busy_workers(campaign, owner):
+    """Waits until there are workers with seeds."""
+    patience = time.monotonic() + 20
+    while time.monotonic() < patience and owner.poll() is None:
+        with contextlib.suppress(Exception):  # there may be no database yet
+            running = [row[0] for row in campaign.query("SELECT process FROM attempt WHERE outcome = 'running'")]
+            if found := [process for process in children(owner.pid) if process in running]:
+                return found
+        time.sleep(0.01)
+    return []
+
+
+def worker_stopped(lab, tally, chance, times):
+    """The owner must not wait for it, nor blame the seed; it must be gone before its seed runs elsewhere."""
+    for _ in range(times):
+        campaign = Campaign(lab, lease=LEASE, steps=10, step_ms=30)
+        owner = campaign.start()
+        time.sleep(chance.uniform(0, 0.5))
+        victim = chance.choice(busy_workers(campaign, owner))
+        signal_to(victim, signal.SIGSTOP)
+        time.sleep(BEYOND)
+        tally.expect(campaign, not alive(victim) or owner.poll() is not None, "a stopped worker outlived its lease")
+        signal_to(victim, signal.SIGCONT)
+        owner.wait()
+        nobody_is_blamed(tally, campaign)
+        tally.judge(campaign)
+
+
+def late_workers(lab, tally, chance, times):
+    """A worker hangs in one of its calls, its owner dies, another one runs the campaign, and then it goes on. (It cannot be
+    stopped for that: a stopped process whose owner dies is ended by the system with SIGHUP.)"""
+    for _ in range(times):
+        campaign = Campaign(lab, checkpoint=0.001, steps=10, step_ms=1)
+        board = Board(campaign.folder)
+        owner = campaign.start(board.environment(lab.shim, role="worker", number=chance.randint(1, 120), action="wait"))
+        while not board.struck and owner.poll() is None:
+            time.sleep(0.002)
+        owner.kill()
+        owner.wait()
+        campaign.acknowledge()
+        if board.struck:
+            successor = campaign.start()
+            if chance.random() < 0.5:  # it wakes up while the other one works, or long afterwards
+                time.sleep(chance.uniform(0, 0.1))
+            else:
+                successor.wait()
+            board.switch_off()
+            successor.wait()
+        nobody_is_blamed(tally, campaign)
+        tally.judge(campaign, 1 if board.struck else 0)
+
+
+def owner_stopped(lab, tally, chance, times):
+    """The owner sleeps beyond the lease, before one of its calls or anywhere, alone or together with its workers."""
+    for number in range(times):
+        campaign = Campaign(lab, lease=LEASE, steps=10, step_ms=40)
+        board = Board(campaign.folder)
+        if number % 2 == 0:
+            call, path = chance.choice((("any", ".peclet/,socket"), ("write", "campaign.db"), ("read", "campaign.db")))
+            owner = campaign.start(board.environment(lab.shim, role="owner", call=call, path=path,
+                                                     number=chance.randint(20, 60), action="stop"))
+            while not board.struck and owner.poll() is None:
+                time.sleep(0.005)
+        else:
+            owner = campaign.start()
+            busy_workers(campaign, owner)
+            time.sleep(chance.uniform(0, 0.6))
+            signal_to(owner.pid, signal.SIGSTOP)
+        frozen = children(owner.pid) if number % 4 >= 2 else []
+        for worker in frozen:
+            signal_to(worker, signal.SIGSTOP)
+        time.sleep(BEYOND)
+        # The owner first: its workers have said nothing when it looks.
+        signal_to(owner.pid, signal.SIGCONT)
+        time.sleep(0.05)
+        for worker in frozen:
+            signal_to(worker, signal.SIGCONT)
+        owner.wait()
+        nobody_is_blamed(tally, campaign)
+        tally.judge(campaign)
+
+
+def clock_jumps(lab, tally, chance, times):
+    """The wall clock of owner and workers jumps to and fro by a day; the monotonic one is left alone."""
+    days = 0.0
+    libraries = glob.glob("/usr/lib/*/faketime/libfaketime.so.1")
+    if not libraries:
+        raise RuntimeError("the clock cannot be moved without Debian's package libfaketime")
+    for _ in range(times):
+        campaign = Campaign(lab, lease=5, checkpoint=0.02, steps=10, step_ms=10)
+        clock = os.path.join(campaign.folder, "clock")
+
+        def set_clock(offset):
+            with open(clock + ".new", "w") as f:
+                f.write(offset)
+            os.rename(clock + ".new", clock)
+
+        set_clock("+0")
+        owner = campaign.start({"LD_PRELOAD": libraries[0], "FAKETIME_TIMESTAMP_FILE": clock, "FAKETIME_NO_CACHE": "1",
+                                "FAKETIME_DONT_FAKE_MONOTONIC": "1", "NO_FAKE_STAT": "1"})
+        while owner.poll() is None:
+            time.sleep(chance.uniform(0.02, 0.15))
+            set_clock(chance.choice(("+1d", "-1d", "+0")))
+        nobody_is_blamed(tally, campaign)
+        span = campaign.count("SELECT max(julianday(started_at)) - min(julianday(started_at)) FROM attempt")
+        tally.expect(campaign, span > 0.9, f"the clock has not jumped: the attempts began within {span} days")
+        days = max(days, span)
+        tally.judge(campaign)
+    tally.remarks.append(f"attempts of one campaign began up to {days:.1f} days apart")
