@@ -64,4 +64,7 @@ CASES = [
          {"call": "allocation", "action": "fail", "path": "", "stride": 2000}),
     case("second owner", company.second_owners, {"times": 50}, {"times": 3}),
     case("64 readers and a stopped one", company.readers, {"loops": 64, "seeds": 200}, {"loops": 64, "seeds": 20}),
+    case("each file system full in turn", storage.full_disks,
+         {"times": 10, "folders": ["", "spool", "checkpoints", "logs"]},
+         {"times": 1, "folders": ["", "spool", "checkpoints", "logs"]}),
 ]

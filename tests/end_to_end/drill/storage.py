@@ -1,11 +1,16 @@
-"""Calls that fail under SQLite."""
+"""Calls that fail under SQLite, and file systems that are full until somebody makes room."""
 import collections
+import ctypes
+import os
+import subprocess
 
 from drill.board import Board
-from drill.campaign import FAKE, Campaign
+from drill.campaign import FAKE, PATIENCE, Campaign, ends_within
 
 # The shortest campaign there is: every one of its calls can fail in turn.
 SHORT = dict(FAKE, sweep=[{"set": "/peclet", "values": [1]}], realisations={"minimum": 2, "maximum": 2})
+
+CLONE_NEWNS, CLONE_NEWUSER = 0x00020000, 0x10000000
 
 
 def failing_calls(lab, tally, chance, call, action, path, stride=1, role="owner", document=SHORT):
@@ -23,9 +28,56 @@ def failing_calls(lab, tally, chance, call, action, path, stride=1, role="owner"
             break
         codes[code] += 1
         log = campaign.log().splitlines()
-        tally.expect(campaign, code in allowed | {lab.undisturbed(campaign)[0]}, f"{board.what} (call {number}): exit code {code}")
+        what = f"{board.what} (call {number})"
+        tally.expect(campaign, code in allowed | {lab.undisturbed(campaign)[0]}, f"{what}: exit code {code}")
         tally.expect(campaign, code not in allowed or any(line.startswith("peclet: ") and len(line) > 20 for line in log),
-                     f"{board.what} (call {number}): no message")
+                     f"{what}: no message")
         tally.judge(campaign)
         number += stride
     tally.remarks.append("exit codes " + ", ".join(f"{code}: {count}" for code, count in sorted(codes.items())))
+
+
+def enter_private_mounts():
+    """What is mounted from now on is seen by this process and its children only, and goes with them."""
+    library = ctypes.CDLL(None, use_errno=True)
+    user, group = os.getuid(), os.getgid()
+    if library.unshare(CLONE_NEWNS) != 0:
+        if library.unshare(CLONE_NEWNS | CLONE_NEWUSER) != 0:
+            raise OSError(ctypes.get_errno(), "the disk-full case needs root or user namespaces (unshare)")
+        for file, text in (("setgroups", "deny"), ("uid_map", f"0 {user} 1"), ("gid_map", f"0 {group} 1")):
+            with open(f"/proc/self/{file}", "w") as f:
+                f.write(text)
+    subprocess.run(["mount", "--make-rprivate", "/"], check=True)
+
+
+def full_disks(lab, tally, chance, times, folders):
+    """Each file system in turn is full from some moment on; then somebody makes room."""
+    enter_private_mounts()
+    outcomes = collections.Counter()
+    for _ in range(times):
+        for name in folders:
+            campaign = Campaign(lab, checkpoint=0.001, steps=10, step_ms=1)
+            place = campaign.path(*filter(None, [name]))
+            os.makedirs(place)
+            subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4m", "none", place], check=True)
+            room = chance.randint(0, 400_000 if not name else 9_000)
+            ballast = os.path.join(place, "ballast.tmp")  # a name that means nothing in a spool
+            fill(ballast, place, room)
+            owner = campaign.start()
+            ended = ends_within(owner, chance.uniform(0.5, 3))
+            os.unlink(ballast)
+            owner.wait(PATIENCE)
+            outcomes[f"exit code {owner.returncode}" if ended else "paused until there was room"] += 1
+            campaign.settle()
+            tally.expect(campaign, owner.returncode in (0, 1, 3), f"{name or 'everything'} full: {owner.returncode}")
+            given_up = campaign.count("SELECT count(*) FROM realisation WHERE state = 'quarantined'")
+            tally.expect(campaign, not given_up, f"{name or 'everything'} full: {given_up} seeds were given up")
+            campaign.unmount = place
+            tally.judge(campaign)
+    tally.remarks.append(", ".join(f"{count} {outcome}" for outcome, count in sorted(outcomes.items())))
+
+
+def fill(ballast, place, room):
+    with open(ballast, "wb") as f:
+        about = os.statvfs(place)
+        f.write(bytes(max(0, about.f_bavail * about.f_frsize - room)))
