@@ -53,6 +53,8 @@ int perform(const StatusOptions& options) {
   return options.check ? standing(status) : 0;
 }
 
+int perform(const WatchOptions& options) { return watch_campaign(options); }
+
 int perform(const ExplainOptions& options) {
   OpenCampaign open = open_campaign(options.campaign, options.directory);
   print(explain(open.database, open.directory, options.point));

@@ -35,6 +35,7 @@ class Reader {
     add_plan();
     add_run();
     add_status();
+    add_watch();
     add_explain();
     add_export();
   }
@@ -135,6 +136,17 @@ class Reader {
     choose(verb, status_);
   }
 
+  void add_watch() {
+    CLI::App* const verb =
+        add_verb("watch", "Show the status in a terminal, kept up to date", "peclet watch flow-curve.json");
+    add_file_or_folder(verb, watch_.campaign);
+    add_directory(verb, watch_.directory);
+    verb->add_option("--interval", watch_.interval_seconds, "Seconds between looks")
+        ->check(CLI::Range(0.1, 86'400.0))
+        ->capture_default_str();
+    choose(verb, watch_);
+  }
+
   void add_explain() {
     CLI::App* const verb = add_verb("explain", "Say why points are where they are, and what comes next",
                                     "peclet explain flow-curve.json peclet=10");
@@ -168,6 +180,7 @@ class Reader {
   PlanOptions plan_;
   RunOptions run_;
   StatusOptions status_;
+  WatchOptions watch_;
   ExplainOptions explain_;
   ExportOptions export_;
 };

@@ -10,11 +10,12 @@
 #include "runner/run.h"
 #include "runner/status.h"
 #include "runner/validate.h"
+#include "runner/watch.h"
 
 namespace peclet::runner {
 
-using Verb =
-    std::variant<ValidateOptions, PlanOptions, RunOptions, StatusOptions, ExplainOptions, ExportOptions>;
+using Verb = std::variant<ValidateOptions, PlanOptions, RunOptions, StatusOptions, WatchOptions,
+                          ExplainOptions, ExportOptions>;
 
 struct CommandLine {
   std::optional<Verb> verb;  // nothing: there is nothing left to do but to leave with

@@ -1,0 +1,27 @@
+// The verb `peclet watch`: the status in a terminal, kept up to date.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace peclet::runner {
+
+struct WatchOptions {
+  std::filesystem::path campaign;  // file or folder
+  std::filesystem::path directory;
+  double interval_seconds = 2;
+};
+
+// Shows the status until every point is decided or somebody presses Ctrl-C; a campaign that nobody runs is
+// shown all the same, because its owner may come back. Off a terminal each state is printed once, whole, when
+// it has changed. The exit code is that of `status --check`. Throws as open_campaign() when there is no such
+// campaign.
+int watch_campaign(const WatchOptions& options);
+
+// As much of the text as a terminal shows without scrolling or folding: the first `rows` lines, each at most
+// `columns` characters long (UTF-8 sequences count as one); what is cut is marked by … or by a last line that
+// says how many more there are.
+std::string fitted(std::string_view text, int rows, int columns);
+
+}  // namespace peclet::runner
