@@ -22,7 +22,9 @@ Json validated(const Json& document, const std::string& file) {
   }
 }
 
-void check_name(const std::string& name, const std::string& file) {
+}  // namespace
+
+void check_campaign_name(const std::string& name, const std::string& file) {
   constexpr const char* allowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
   if (name.empty() || name.find_first_not_of(allowed) != std::string::npos) {
     throw InputError(file, "/name", shortened(name),
@@ -30,15 +32,13 @@ void check_name(const std::string& name, const std::string& file) {
   }
 }
 
-}  // namespace
-
 Campaign read_campaign(const std::filesystem::path& path) {
   const std::string file = path.string();
   Campaign campaign;
   campaign.document = validated(read_json(path), file);
   const Json& document = campaign.document;
   campaign.name = document["name"].get<std::string>();
-  check_name(campaign.name, file);
+  check_campaign_name(campaign.name, file);
 
   const Json& target = document["target"];
   campaign.target = {target["observable"].get<std::string>(), target["relative_tolerance"].get<double>(),

@@ -41,4 +41,8 @@ const KeyTable& campaign_keys();
 // Throws InputError naming file, pointer, value and what is allowed.
 Campaign read_campaign(const std::filesystem::path& path);
 
+// Throws InputError at /name of `file` unless the name is made of letters, digits, dots, underscores and
+// hyphens.
+void check_campaign_name(const std::string& name, const std::string& file);
+
 }  // namespace peclet::runner

@@ -30,6 +30,11 @@ void print(const std::string& text) {
 // What cannot be said, because standard error is closed or full, changes no exit code.
 void say(const std::string& text) { std::fputs(text.c_str(), stderr); }
 
+int perform(const InitOptions& options) {
+  print(init_campaign(options));
+  return 0;
+}
+
 int perform(const ValidateOptions& options) {
   print(validate_campaign(options));
   return 0;

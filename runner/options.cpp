@@ -31,6 +31,7 @@ class Reader {
     app_.require_subcommand(1);
     app_.set_version_flag("--version", std::function<std::string()>(version_text));  // reads the program file
     app_.footer(for_all_verbs);
+    add_init();
     add_validate();
     add_plan();
     add_run();
@@ -80,6 +81,13 @@ class Reader {
   template <typename Options>
   void choose(CLI::App* verb, const Options& options) {
     verb->callback([this, &options] { verb_ = options; });
+  }
+
+  void add_init() {
+    CLI::App* const verb =
+        add_verb("init", "Write a small campaign to begin with", "peclet init flow-curve.json");
+    verb->add_option("campaign", init_.campaign, "Campaign file (JSON) that is not there yet")->required();
+    choose(verb, init_);
   }
 
   void add_validate() {
@@ -176,6 +184,7 @@ class Reader {
 
   CLI::App app_{"Campaigns of dense-suspension simulations: from a scene to converged averages", "peclet"};
   std::optional<Verb> verb_;
+  InitOptions init_;
   ValidateOptions validate_;
   PlanOptions plan_;
   RunOptions run_;

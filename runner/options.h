@@ -6,6 +6,7 @@
 
 #include "runner/explain.h"
 #include "runner/export.h"
+#include "runner/init.h"
 #include "runner/plan.h"
 #include "runner/run.h"
 #include "runner/status.h"
@@ -14,7 +15,7 @@
 
 namespace peclet::runner {
 
-using Verb = std::variant<ValidateOptions, PlanOptions, RunOptions, StatusOptions, WatchOptions,
+using Verb = std::variant<InitOptions, ValidateOptions, PlanOptions, RunOptions, StatusOptions, WatchOptions,
                           ExplainOptions, ExportOptions>;
 
 struct CommandLine {
