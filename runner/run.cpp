@@ -7,24 +7,14 @@
 #include <cstdio>
 #include <thread>
 
-#include "contract/input_error.h"
 #include "runner/dispatcher.h"
+#include "runner/owned_campaign.h"
 #include "runner/progress.h"
-#include "runner/scene_check.h"
-#include "runner/spool.h"
 #include "runner/status.h"
 #include "runner/worker_process.h"
 
 namespace peclet::runner {
 namespace {
-
-constexpr int exit_converged = 0;
-constexpr int exit_unconverged = 3;
-constexpr int exit_integrity = 6;
-constexpr int exit_stopped = 75;
-
-// A seed may fail so often beyond the first time.
-constexpr int retries = 2;
 
 struct Team {
   int workers, threads;
@@ -37,28 +27,6 @@ Team team(const RunOptions& options) {
   if (options.workers > 0) return {options.workers, std::max(1, cores / options.workers)};
   const int threads = std::max(1, options.threads);
   return {std::max(1, cores / threads), threads};
-}
-
-void refuse_network_file_system(const CampaignDirectory& directory, bool force) {
-  const std::optional<std::string> kind = network_file_system(directory.root());
-  if (kind && !force) {
-    throw InputError(
-        directory.root().string(), "", *kind,
-        "a campaign must be on a local file system, where locks and fsync can be trusted: choose another "
-        "--directory, or --force it at your own risk");
-  }
-}
-
-int exit_code(Database& database, const Scheduler& scheduler, Dispatcher::Ending ending) {
-  const std::vector<PointRecord> points = database.points();
-  if (std::any_of(points.begin(), points.end(), [](const PointRecord& point) { return point.suspect; })) {
-    return exit_integrity;
-  }
-  if (ending == Dispatcher::Ending::stopped) return exit_stopped;
-  for (int place = 0; place < scheduler.points(); ++place) {
-    if (scheduler.looks(place).back().verdict != Verdict::converged) return exit_unconverged;
-  }
-  return exit_converged;
 }
 
 Dispatcher::Ending dispatch(Database& database, Ledger& ledger, const RunOptions& options,
@@ -79,30 +47,16 @@ Dispatcher::Ending dispatch(Database& database, Ledger& ledger, const RunOptions
 }  // namespace
 
 int run_campaign(const RunOptions& options) {
-  const Campaign campaign = read_campaign(options.campaign);
-  const EngineCommand command = resolve_engine(campaign, options.campaign);
-  const CampaignDirectory directory = campaign_directory(options.campaign, options.directory);
-  refuse_network_file_system(directory, options.force);
-  check_scenes(campaign, options.campaign, command);
-
-  // From here on things are written.
-  std::filesystem::create_directories(directory.root());
-  const OwnerLock lock(directory);
-  create_folders(directory);
-  remove_unfinished_files(directory.spool());
-  remove_unfinished_files(directory.checkpoints());
-  Database database = Database::open_owner(directory.database());
-  Queue(database).adopt(campaign);
-
-  Dispatcher::Ending ending{};
+  OwnedCampaign owned(options.campaign, options.directory, options.force);
   int code = 0;
   {
     Progress progress(Progress::style_of_stderr(options.quiet));
-    Ledger ledger(database, campaign, directory, progress, retries);
-    ending = dispatch(database, ledger, options, command, directory, progress);
-    code = exit_code(database, ledger.scheduler(), ending);
+    Ledger ledger(owned.database, owned.campaign, owned.directory, progress, retries);
+    const Dispatcher::Ending ending =
+        dispatch(owned.database, ledger, options, owned.command, owned.directory, progress);
+    code = exit_code(owned.database, ledger.scheduler(), ending == Dispatcher::Ending::finished);
   }
-  std::fputs(status_table(database).c_str(), stdout);
+  std::fputs(status_table(owned.database).c_str(), stdout);
   return code;
 }
 

@@ -1,0 +1,65 @@
+#include "runner/owned_campaign.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "contract/input_error.h"
+#include "runner/queue.h"
+#include "runner/scene_check.h"
+#include "runner/spool.h"
+
+namespace peclet::runner {
+namespace {
+
+constexpr int exit_converged = 0;
+constexpr int exit_unconverged = 3;
+constexpr int exit_integrity = 6;
+constexpr int exit_stopped = 75;
+
+// Returns the folder itself. From its creation on things are written.
+const CampaignDirectory& created(const CampaignDirectory& directory, bool force) {
+  const std::optional<std::string> kind = network_file_system(directory.root());
+  if (kind && !force) {
+    throw InputError(
+        directory.root().string(), "", *kind,
+        "a campaign must be on a local file system, where locks and fsync can be trusted: choose another "
+        "--directory, or --force it at your own risk");
+  }
+  std::filesystem::create_directories(directory.root());
+  return directory;
+}
+
+Database open_for_owner(const CampaignDirectory& directory, const Campaign& campaign) {
+  create_folders(directory);
+  remove_unfinished_files(directory.spool());
+  remove_unfinished_files(directory.checkpoints());
+  Database database = Database::open_owner(directory.database());
+  Queue(database).adopt(campaign);
+  return database;
+}
+
+}  // namespace
+
+OwnedCampaign::OwnedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen,
+                             bool force)
+    : campaign(read_campaign(file)),
+      command(resolve_engine(campaign, file)),
+      engine(check_scenes(campaign, file, command).front().identity),
+      directory(campaign_directory(file, chosen)),
+      lock(created(directory, force)),
+      database(open_for_owner(directory, campaign)) {}
+
+int exit_code(Database& database, const Scheduler& scheduler, bool finished) {
+  const std::vector<PointRecord> points = database.points();
+  if (std::any_of(points.begin(), points.end(), [](const PointRecord& point) { return point.suspect; })) {
+    return exit_integrity;
+  }
+  if (!finished) return exit_stopped;
+  for (int place = 0; place < scheduler.points(); ++place) {
+    const std::vector<Look>& looks = scheduler.looks(place);  // none of a point that was cancelled early
+    if (looks.empty() || looks.back().verdict != Verdict::converged) return exit_unconverged;
+  }
+  return exit_converged;
+}
+
+}  // namespace peclet::runner
