@@ -44,7 +44,7 @@ void check(int error, const char* doing) {
 // The settings of posix_spawn(3), which own memory.
 class SpawnSettings {
  public:
-  SpawnSettings(int socket, const fs::path& log, const fs::path& folder) {
+  SpawnSettings(int socket, const EngineCommand& command, const fs::path& log) {
     check(posix_spawn_file_actions_init(&actions_), "posix_spawn");
     check(posix_spawnattr_init(&attributes_), "posix_spawn");
     check(posix_spawn_file_actions_adddup2(&actions_, socket, 0), "posix_spawn");
@@ -52,14 +52,16 @@ class SpawnSettings {
           log.c_str());
     check(posix_spawn_file_actions_adddup2(&actions_, 1, 2), "posix_spawn");
     // The last of them: the log's name is the owner's.
-    if (!folder.empty())
-      check(posix_spawn_file_actions_addchdir_np(&actions_, folder.c_str()), folder.c_str());
+    if (!command.folder.empty()) {
+      check(posix_spawn_file_actions_addchdir_np(&actions_, command.folder.c_str()), command.folder.c_str());
+    }
 
     // The owner takes signals from a descriptor and has them blocked; the engine starts with the usual ones.
-    sigset_t none, all;
-    sigemptyset(&none);
+    sigset_t blocked, all;
+    sigemptyset(&blocked);
+    for (const int number : command.blocked_signals) sigaddset(&blocked, number);
     sigfillset(&all);
-    check(posix_spawnattr_setsigmask(&attributes_, &none), "posix_spawn");
+    check(posix_spawnattr_setsigmask(&attributes_, &blocked), "posix_spawn");
     check(posix_spawnattr_setsigdefault(&attributes_, &all), "posix_spawn");
     check(posix_spawnattr_setpgroup(&attributes_, 0), "posix_spawn");
     check(posix_spawnattr_setflags(&attributes_,
@@ -86,7 +88,7 @@ class SpawnSettings {
 EngineCommand resolve_engine(const Campaign& campaign, const fs::path& campaign_file) {
   const std::string& name = campaign.engine.at(0);
   const fs::path home = fs::absolute(campaign_file).parent_path();
-  EngineCommand command{{}, {campaign.engine.begin() + 1, campaign.engine.end()}, home};
+  EngineCommand command{{}, {campaign.engine.begin() + 1, campaign.engine.end()}, home, {}};
   if (name.find('/') != std::string::npos) {
     command.program = (home / name).lexically_normal();
     if (is_program(command.program)) return command;
@@ -108,7 +110,7 @@ std::string to_string(const ExitStatus& ending) {
 EngineProcess::EngineProcess(const EngineCommand& command, const fs::path& log) {
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) check(errno, "socketpair");
-  const SpawnSettings settings(ends[1], log, command.folder);
+  const SpawnSettings settings(ends[1], command, log);
   std::vector<std::string> words{command.program.string()};
   words.insert(words.end(), command.arguments.begin(), command.arguments.end());
   std::vector<char*> arguments;

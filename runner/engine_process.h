@@ -16,6 +16,9 @@ struct EngineCommand {
   std::filesystem::path program;
   std::vector<std::string> arguments;  // without the program
   std::filesystem::path folder;        // in which it runs
+  // Signals that the engine never hears, because whoever sends them to all processes of a job means its
+  // owner, which then asks the engine by frames.
+  std::vector<int> blocked_signals{};
 };
 
 // Finds campaign.engine[0]: absolute, or with a slash relative to the campaign file's folder; else beside the

@@ -4,33 +4,21 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <csignal>
 #include <system_error>
 
 namespace peclet::runner {
-namespace {
 
-sigset_t stopping() {
-  sigset_t set;
-  sigemptyset(&set);
-  sigaddset(&set, SIGINT);
-  sigaddset(&set, SIGTERM);
-  return set;
-}
-
-}  // namespace
-
-StopSignals::StopSignals() {
-  const sigset_t set = stopping();
-  pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  descriptor_ = signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
+StopSignals::StopSignals(int one_more) {
+  sigemptyset(&stopping_);
+  for (const int number : {SIGINT, SIGTERM, one_more}) sigaddset(&stopping_, number);
+  pthread_sigmask(SIG_BLOCK, &stopping_, nullptr);
+  descriptor_ = signalfd(-1, &stopping_, SFD_NONBLOCK | SFD_CLOEXEC);
   if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "signalfd");
 }
 
 StopSignals::~StopSignals() {
   close(descriptor_);
-  const sigset_t set = stopping();
-  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+  pthread_sigmask(SIG_UNBLOCK, &stopping_, nullptr);
 }
 
 bool StopSignals::take() {

@@ -1,13 +1,15 @@
 // SIGINT and SIGTERM as something to poll for.
 #pragma once
 
+#include <csignal>
+
 namespace peclet::runner {
 
-// From construction to destruction both signals are blocked in this thread and read from a descriptor
-// instead. Threads that are started meanwhile inherit that.
+// From construction to destruction both signals (and one more, when it is given) are blocked in this thread
+// and read from a descriptor instead. Threads that are started meanwhile inherit that.
 class StopSignals {
  public:
-  StopSignals();
+  explicit StopSignals(int one_more = SIGTERM);
   ~StopSignals();
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
@@ -16,6 +18,7 @@ class StopSignals {
   bool take();
 
  private:
+  sigset_t stopping_{};
   int descriptor_ = -1;
 };
 
