@@ -47,7 +47,13 @@ Dispatcher::Dispatcher(Database& database, Ledger& ledger, WorkerPool& pool, Run
       leases_shown_(started_) {}
 
 Dispatcher::Ending Dispatcher::run() {
-  while (!ledger_.scheduler().finished() && stopping_ == Stopping::no) turn();
+  while (!ledger_.scheduler().finished() && stopping_ == Stopping::no) {
+    turn();
+    if (left_to_others()) {
+      listener_.note("every seed that is still to be run is handed over; `peclet ingest` takes results in");
+      break;
+    }
+  }
   if (stopping_ == Stopping::no) stop(Stopping::finished);
   while (anyone_there()) turn();
   // A worker that outlived an earlier owner may have left a result meanwhile.
@@ -58,6 +64,13 @@ Dispatcher::Ending Dispatcher::run() {
 bool Dispatcher::anyone_there() const {
   return std::any_of(workers_.begin(), workers_.end(),
                      [](const Worker& worker) { return worker.stage != Stage::absent; });
+}
+
+// Nobody here has work, there is none to give out, and yet some point is open.
+bool Dispatcher::left_to_others() const {
+  const bool busy = std::any_of(workers_.begin(), workers_.end(),
+                                [](const Worker& worker) { return worker.stage == Stage::busy; });
+  return !busy && !ledger_.scheduler().finished() && !ledger_.scheduler().next();
 }
 
 void Dispatcher::turn() {

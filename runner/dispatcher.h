@@ -95,6 +95,7 @@ class Dispatcher {
   void exited_without_job(int worker, const ExitStatus& ending, Stage stage);
   Worker& at(int worker) { return workers_.at(static_cast<std::size_t>(worker)); }
   bool anyone_there() const;
+  bool left_to_others() const;
 
   Database& database_;
   Ledger& ledger_;

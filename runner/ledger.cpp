@@ -13,6 +13,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The folder whose spool a file lies in: the campaign's own, or one that is shared with a batch system.
+CampaignDirectory home_of(const fs::path& spool_file) {
+  return CampaignDirectory(spool_file.parent_path().parent_path());
+}
+
 std::string names_of_numbers(const Json& mean) {
   std::string names;
   for (const auto& [name, value] : mean.items()) {
@@ -69,13 +74,14 @@ void Ledger::load() {
     scheduler_->set_cancelled(place, point(place).cancelled);
     queue_.store_looks(point(place).id, scheduler_->looks(place));
     if (!scheduler_->decided(place)) queue_.enqueue(point(place).id, scheduler_->wanted(place));
+    leave_to_batch_system(place);
   }
   booking.commit();
 }
 
-void Ledger::ingest_spool() {
+void Ledger::ingest_spool_of(const CampaignDirectory& directory) {
   // Files are committed one by one: a crash in between finds the rest where it was.
-  for (const fs::path& file : spool_files(directory_)) {
+  for (const fs::path& file : spool_files(directory)) {
     Transaction booking(database_.connection());
     try {
       const RealisationResult result = read_spool_file(file, "");
@@ -97,6 +103,7 @@ Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
     case Stored::duplicate:
       to_remove_.push_back(spool);
       to_remove_.push_back(directory_.checkpoint(result.point, result.seed));
+      to_remove_.push_back(home_of(spool).checkpoint(result.point, result.seed));
       break;
     case Stored::conflict:
       turn_down(spool, "another run of the same seed gave another result");
@@ -128,7 +135,7 @@ Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
 void Ledger::turn_down(const fs::path& spool, const std::string& why) {
   const std::string message = fmt::format("{} is not taken: {}", spool.filename().string(), why);
   queue_.event("rejected", std::nullopt, std::nullopt, message);
-  listener_.warn(fmt::format("{}; it is kept in {}", message, directory_.rejected().string()));
+  listener_.warn(fmt::format("{}; it is kept in {}", message, home_of(spool).rejected().string()));
   if (fs::exists(spool)) to_reject_.push_back(spool);
 }
 
@@ -234,7 +241,7 @@ std::int64_t Ledger::admit_engine(const Json& engine) {
 
 void Ledger::after_commit() {
   for (const fs::path& file : to_remove_) fs::remove(file);
-  for (const fs::path& file : to_reject_) reject(directory_, file);
+  for (const fs::path& file : to_reject_) reject(home_of(file), file);
   to_remove_.clear();
   to_reject_.clear();
   if (!lacking_.empty()) {

@@ -33,7 +33,8 @@ class Ledger {
   Ledger(Database& database, const Campaign& campaign, CampaignDirectory directory, RunListener& listener,
          int retries);
 
-  // Takes in every spool file that is there; in a transaction of its own.
+  // Takes in every spool file that is there, also of the folders shared with a batch system; in transactions
+  // of its own.
   void ingest_spool();
 
   // Books the next seed as running; nothing when there is none to run now.
@@ -45,6 +46,19 @@ class Ledger {
   void end_attempt(const Grant& grant, const AttemptEnd& end);
   void renew_lease(const Grant& grant, int phase, std::int64_t step, std::int64_t steps, double strain);
 
+  // The seeds that the next looks need and nobody runs, with `ahead` those of the looks after them, too. They
+  // are out from now on; the caller hands them over.
+  std::vector<SeedId> draw(bool ahead);
+  // Nothing for a point that has left the sweep.
+  std::optional<SeedId> identify(std::int64_t point_id, int seed) const;
+  // The seed has ended, with a result or without.
+  bool has_ended(SeedId id);
+  // Books how an attempt at a seed that was handed over ended on a node: as end_attempt().
+  void end_handed_over(SeedId id, int task, const NodeReport& report,
+                       const std::filesystem::path& checkpoint);
+  // A seed that was handed over comes back without an attempt.
+  void take_back(SeedId id);
+
   // The engine's row. Throws IntegrityError when a point that is still to be run has results of another
   // engine, or when this run has started with another one.
   std::int64_t admit_engine(const Json& engine);
@@ -53,6 +67,7 @@ class Ledger {
   // observable.
   void after_commit();
 
+  const PointRecord& point(int place) const { return points_.at(static_cast<std::size_t>(place)); }
   const Scheduler& scheduler() const { return *scheduler_; }
   // Points, seeds and time to go with so many workers; the rest of the report is the caller's.
   RunReport report(int workers) const;
@@ -60,8 +75,9 @@ class Ledger {
   std::string name(SeedId id) const;
 
  private:
-  const PointRecord& point(int place) const { return points_.at(static_cast<std::size_t>(place)); }
   void load();
+  void leave_to_batch_system(int place);
+  void ingest_spool_of(const CampaignDirectory& directory);
   Stored take(const RealisationResult& result, const std::filesystem::path& spool);
   void book_outcome(SeedId id, const Outcome& outcome);
   void turn_down(const std::filesystem::path& spool, const std::string& why);

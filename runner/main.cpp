@@ -79,6 +79,12 @@ int perform(const ExportOptions& options) {
   return 0;
 }
 
+int perform(const HandOverOptions& options) { return hand_over_campaign(options); }
+
+int perform(const IngestOptions& options) { return ingest_campaign(options); }
+
+int perform(const TaskOptions& options) { return run_task(options); }
+
 int complain(const std::exception& error, int code) {
   say(fmt::format("peclet: {}\n", error.what()));
   return code;

@@ -39,6 +39,9 @@ class Reader {
     add_watch();
     add_explain();
     add_export();
+    add_hand_over();
+    add_ingest();
+    add_task();
   }
 
   CommandLine read(int argc, char** argv) {
@@ -182,6 +185,73 @@ class Reader {
     choose(verb, export_);
   }
 
+  void add_hand_over() {
+    CLI::App* const verb =
+        add_verb("hand-over", "Give seeds to a batch system: job arrays that need no database and no daemon",
+                 "peclet hand-over slurm flow-curve.json --shared /scratch/me/flow-curve --follow \\\n"
+                 "           --option=--partition=short --option=--time=4:00:00");
+    verb->add_option("system", hand_over_.system, "slurm; with --template any name")->required();
+    add_file(verb, hand_over_.campaign);
+    add_directory(verb, hand_over_.directory);
+    verb->add_option("--shared", hand_over_.shared,
+                     "Folder that this machine and the nodes see in the same place; that of the last time "
+                     "unless given");
+    verb->add_option("--seeds-per-task", hand_over_.seeds_per_task,
+                     "Seeds that one task runs, one after another")
+        ->check(CLI::Range(1, 100'000))
+        ->capture_default_str();
+    verb->add_option("--largest-array", hand_over_.largest_array,
+                     "Tasks of one job at most; what the batch system allows unless given")
+        ->check(CLI::Range(1, 1'000'000));
+    verb->add_option("--threads", hand_over_.threads, "Threads of each engine")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    verb->add_option("--option", hand_over_.options, "Word for the submit command (sbatch); may be repeated");
+    verb->add_option("--template", hand_over_.template_folder,
+                     "Folder with job.sh and the commands, for other sites")
+        ->check(CLI::ExistingDirectory);
+    verb->add_flag("--ahead", hand_over_.ahead, "Hand over the seeds of the look after the next one, too");
+    verb->add_flag("--follow", hand_over_.follow,
+                   "Take results in and hand over what the next looks need, until every point is decided");
+    verb->add_option("--interval", hand_over_.interval, "Seconds between two turns of --follow")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    verb->add_option("--lease", hand_over_.lease_seconds,
+                     "Seconds without a new step after which an engine counts as hung")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    verb->add_option("--checkpoint", hand_over_.checkpoint_seconds,
+                     "Seconds between checkpoints of a realisation")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    verb->add_flag("--dry-run", hand_over_.dry_run, "Say what would be handed over; submit nothing");
+    verb->add_flag("--quiet", hand_over_.quiet, "No progress on stderr");
+    verb->add_flag("--force", hand_over_.force, "Use a network file system for the database all the same");
+    choose(verb, hand_over_);
+  }
+
+  void add_ingest() {
+    CLI::App* const verb =
+        add_verb("ingest", "Take in what a batch system has done with the seeds it was given",
+                 "peclet ingest flow-curve.json");
+    add_file(verb, ingest_.campaign);
+    add_directory(verb, ingest_.directory);
+    verb->add_flag("--cancel", ingest_.cancel, "End the jobs and take their seeds back");
+    verb->add_flag("--quiet", ingest_.quiet, "No notes on stderr");
+    verb->add_flag("--force", ingest_.force, "Use a network file system for the database all the same");
+    choose(verb, ingest_);
+  }
+
+  void add_task() {
+    CLI::App* const verb = add_verb("task", "Run one task of a bundle; what job scripts call on a node",
+                                    "peclet task /scratch/me/flow-curve/bundles/NAME/manifest.json 7");
+    verb->add_option("manifest", task_.manifest, "The bundle's manifest.json")->required();
+    verb->add_option("index", task_.index, "Number of the task, from 0")
+        ->required()
+        ->check(CLI::NonNegativeNumber);
+    choose(verb, task_);
+  }
+
   CLI::App app_{"Campaigns of dense-suspension simulations: from a scene to converged averages", "peclet"};
   std::optional<Verb> verb_;
   InitOptions init_;
@@ -192,6 +262,9 @@ class Reader {
   WatchOptions watch_;
   ExplainOptions explain_;
   ExportOptions export_;
+  HandOverOptions hand_over_;
+  IngestOptions ingest_;
+  TaskOptions task_;
 };
 
 }  // namespace

@@ -4,8 +4,10 @@
 #include <optional>
 #include <variant>
 
+#include "runner/batch_task.h"
 #include "runner/explain.h"
 #include "runner/export.h"
+#include "runner/hand_over.h"
 #include "runner/init.h"
 #include "runner/plan.h"
 #include "runner/run.h"
@@ -16,7 +18,7 @@
 namespace peclet::runner {
 
 using Verb = std::variant<InitOptions, ValidateOptions, PlanOptions, RunOptions, StatusOptions, WatchOptions,
-                          ExplainOptions, ExportOptions>;
+                          ExplainOptions, ExportOptions, HandOverOptions, IngestOptions, TaskOptions>;
 
 struct CommandLine {
   std::optional<Verb> verb;  // nothing: there is nothing left to do but to leave with

@@ -54,7 +54,8 @@ std::string progress_line(const RunReport& report) {
     line += fmt::format(" | {} to go ({} to {})", duration_text(report.to_go->likely),
                         duration_text(report.to_go->low), duration_text(report.to_go->high));
   }
-  return line + fmt::format(" | workers {}/{}", report.busy, report.workers);
+  if (report.workers > 0) line += fmt::format(" | workers {}/{}", report.busy, report.workers);
+  return line;
 }
 
 Progress::Style Progress::style_of_stderr(bool quiet) {

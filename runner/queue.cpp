@@ -8,6 +8,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "runner/bundle_files.h"
+
 namespace peclet::runner {
 namespace {
 
@@ -90,6 +92,28 @@ std::int64_t Queue::begin_attempt(std::int64_t point, int seed, int worker, std:
   return attempt;
 }
 
+void Queue::attempt_elsewhere(std::int64_t point, int seed, int task, const NodeReport& report) {
+  Statement(
+      connection_,
+      "INSERT INTO attempt (point_id, seed, worker, process, host, engine_id, started_at, ended_at, outcome, "
+      "blamed, step, exit_status, signal, message) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+      .bind(point)
+      .bind(seed)
+      .bind(task)
+      .bind(report.process)
+      .bind(report.host)
+      .bind(engine(report.engine))
+      .bind(report.started_at)
+      .bind(utc_now())
+      .bind(to_string(report.outcome))
+      .bind(is_blamed(report.outcome))
+      .bind(report.step)
+      .bind(report.ending.status)
+      .bind(report.ending.signal)
+      .bind(report.message.empty() ? std::nullopt : std::optional<std::string>(report.message))
+      .run();
+}
+
 void Queue::renew_lease(std::int64_t attempt, const char* phase, std::int64_t step, std::int64_t steps,
                         double strain) {
   Statement(
@@ -129,6 +153,13 @@ std::vector<PastAttempt> Queue::history(std::int64_t point, int seed) {
   return history;
 }
 
+bool Queue::has_ended(std::int64_t point, int seed) {
+  Statement query(connection_,
+                  "SELECT 1 FROM realisation WHERE point_id = ? AND seed = ? AND state IN ('done', 'failed', "
+                  "'quarantined')");
+  return query.bind(point).bind(seed).step();
+}
+
 void Queue::requeue(std::int64_t point, int seed) {
   Statement(connection_,
             "UPDATE realisation SET state = 'queued' WHERE point_id = ? AND seed = ? AND state = 'running'")
@@ -140,8 +171,8 @@ void Queue::requeue(std::int64_t point, int seed) {
 void Queue::quarantine(std::int64_t point, int seed, const std::string& cause) {
   Statement(
       connection_,
-      "UPDATE realisation SET state = 'quarantined', cause = ? WHERE point_id = ? AND seed = ? AND state = "
-      "'running'")
+      "UPDATE realisation SET state = 'quarantined', cause = ? WHERE point_id = ? AND seed = ? AND state IN "
+      "('queued', 'running')")
       .bind(cause)
       .bind(point)
       .bind(seed)

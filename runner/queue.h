@@ -15,6 +15,8 @@
 
 namespace peclet::runner {
 
+struct NodeReport;  // bundle_files.h
+
 struct AttemptEnd {
   AttemptOutcome outcome = AttemptOutcome::result;
   std::int64_t step = 0;
@@ -47,10 +49,14 @@ class Queue {
   // The seed runs; returns the attempt's number.
   std::int64_t begin_attempt(std::int64_t point, int seed, int worker, std::int64_t process,
                              std::int64_t engine);
+  // An attempt that a batch system's node made, and that has ended; the seed's state is the caller's to
+  // change.
+  void attempt_elsewhere(std::int64_t point, int seed, int task, const NodeReport& report);
   void renew_lease(std::int64_t attempt, const char* phase, std::int64_t step, std::int64_t steps,
                    double strain);
   void end_attempt(std::int64_t attempt, const AttemptEnd& end);
   std::vector<PastAttempt> history(std::int64_t point, int seed);
+  bool has_ended(std::int64_t point, int seed);
   void requeue(std::int64_t point, int seed);
   void quarantine(std::int64_t point, int seed, const std::string& cause);
 

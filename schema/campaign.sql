@@ -171,3 +171,29 @@ CREATE TABLE prediction (
   made_at     TEXT    NOT NULL,
   PRIMARY KEY (point_id, target_id)
 ) STRICT, WITHOUT ROWID;
+
+-- Seeds in the hands of a batch system (Slurm ...). A bundle is one job array, called by the job's name.
+CREATE TABLE bundle (
+  bundle_id    INTEGER PRIMARY KEY,
+  name         TEXT    NOT NULL UNIQUE,
+  shared       TEXT    NOT NULL,  -- the folder that owner and nodes see
+  tasks        INTEGER NOT NULL,
+  job          TEXT,              -- the batch system's number; NULL until an answer to the submission is known
+  made_at      TEXT    NOT NULL,
+  submitted_at TEXT,
+  closed_at    TEXT               -- all of its seeds and tasks have ended
+) STRICT;
+
+-- A seed without an outcome is handed over: it is queued, but nobody else may run it.
+CREATE TABLE bundle_seed (
+  bundle_id INTEGER NOT NULL REFERENCES bundle,
+  place     INTEGER NOT NULL,  -- in the manifest
+  task      INTEGER NOT NULL,
+  point_id  INTEGER NOT NULL,
+  seed      INTEGER NOT NULL,
+  outcome   TEXT,              -- of its attempt, or returned: its task ended without it
+  PRIMARY KEY (bundle_id, place),
+  FOREIGN KEY (point_id, seed) REFERENCES realisation
+) STRICT, WITHOUT ROWID;
+
+CREATE UNIQUE INDEX handed_over_once ON bundle_seed (point_id, seed) WHERE outcome IS NULL;

@@ -1,0 +1,203 @@
+// Bundles: from open seeds to a job that has been submitted.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+
+#include "contract/durable_file.h"
+#include "contract/sha256.h"
+#include "runner/bundles.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of the campaign's folder on this machine: campaigns of one name do not share a job's name.
+std::string mark_of(const CampaignDirectory& directory) {
+  std::array<char, 256> host{};
+  gethostname(host.data(), host.size() - 1);
+  return sha256(std::string(host.data()) + ':' + directory.root().string()).substr(0, 6);
+}
+
+// For a shell: in single quotes.
+std::string quoted(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+}  // namespace
+
+Bundles::Bundles(Database& database, Ledger& ledger, const Campaign& campaign, CampaignDirectory directory,
+                 RunListener& listener)
+    : database_(database),
+      ledger_(ledger),
+      campaign_(campaign),
+      directory_(std::move(directory)),
+      listener_(listener),
+      book_(database.connection()),
+      queue_(database) {}
+
+int Bundles::hand_over(const BundleSettings& settings) {
+  const std::vector<SeedId> seeds = ledger_.draw(settings.ahead);
+  const std::size_t most =
+      static_cast<std::size_t>(settings.seeds_per_task) * static_cast<std::size_t>(settings.largest_array);
+  for (std::size_t from = 0; from < seeds.size(); from += most) {
+    const std::size_t end = std::min(seeds.size(), from + most);
+    make(settings, {seeds.begin() + static_cast<std::ptrdiff_t>(from),
+                    seeds.begin() + static_cast<std::ptrdiff_t>(end)});
+  }
+  return static_cast<int>(seeds.size());
+}
+
+std::string Bundles::describe(const BundleSettings& settings) {
+  const std::vector<SeedId> seeds = ledger_.draw(settings.ahead);
+  const auto per_task = static_cast<std::size_t>(settings.seeds_per_task);
+  const std::size_t tasks = (seeds.size() + per_task - 1) / per_task;
+  const auto largest = static_cast<std::size_t>(settings.largest_array);
+  std::string text =
+      fmt::format("{} seeds in {} tasks in {} job{} would be handed over\n", seeds.size(), tasks,
+                  (tasks + largest - 1) / largest, (tasks + largest - 1) / largest == 1 ? "" : "s");
+  for (const SeedId& id : seeds) text += ledger_.name(id) + '\n';
+  return text;
+}
+
+std::string Bundles::free_name(const fs::path& shared) {
+  // A number whose folder is there was used before this database was restored from an older copy, or by an
+  // owner that died before it had made a bundle of it.
+  for (int number = book_.count() + 1;; ++number) {
+    std::string name = fmt::format("{}-{}-{:04}", campaign_.name, mark_of(directory_), number);
+    if (!fs::exists(BundleFolder(shared, name).root())) return name;
+  }
+}
+
+Manifest Bundles::manifest_of(const BundleSettings& settings, const std::vector<SeedId>& seeds) const {
+  Manifest manifest;
+  manifest.name = "";
+  manifest.campaign = campaign_.name;
+  manifest.engine = settings.engine;
+  manifest.engine_folder = settings.engine_folder;
+  manifest.engine_identity = engine_identity(settings.engine_provenance);
+  manifest.threads = settings.threads;
+  manifest.lease_seconds = settings.lease_seconds;
+  manifest.checkpoint_seconds = settings.checkpoint_seconds;
+  manifest.scenes = Json::object();
+  for (const SeedId& id : seeds) {
+    const PointRecord& point = ledger_.point(id.point);
+    const auto place = static_cast<int>(manifest.seeds.size());
+    manifest.scenes[point.hash] = point.scene;
+    if (place % settings.seeds_per_task == 0) manifest.tasks.emplace_back();
+    manifest.tasks.back().push_back(place);
+    manifest.seeds.push_back({point.hash, id.seed});
+  }
+  return manifest;
+}
+
+void Bundles::write(const BundleFolder& folder, const Manifest& manifest, const BundleSettings& settings) {
+  const auto tasks = static_cast<int>(manifest.tasks.size());
+  folder.create(tasks);
+  for (const BundledSeed& seed : manifest.seeds) {
+    const fs::path here = directory_.checkpoint(seed.point, seed.seed);
+    const fs::path there = folder.shared().checkpoint(seed.point, seed.seed);
+    if (fs::exists(here) && !fs::exists(there)) write_durably(there, read_file(here));
+  }
+  const std::map<std::string, std::string> values{{"NAME", manifest.name},
+                                                  {"LAST", std::to_string(tasks - 1)},
+                                                  {"TASKS", std::to_string(tasks)},
+                                                  {"THREADS", std::to_string(manifest.threads)},
+                                                  {"PECLET", quoted(settings.program)},
+                                                  {"MANIFEST", quoted(folder.manifest().string())},
+                                                  {"FOLDER", folder.root().string()}};
+  for (const auto& [name, text] : settings.scripts) {
+    write_durably(folder.script(name), name == "job.sh" ? fill_in(text, values, name) : text);
+  }
+  write_durably(folder.script("options.json"), Json(settings.options).dump() + '\n');
+  write_durably(folder.manifest(), manifest_json(manifest).dump(1) + '\n');
+}
+
+// The files first, then the rows, then the job: whatever is cut off when, a row without a job is found by the
+// job's name, and a folder without a row was never submitted.
+void Bundles::make(const BundleSettings& settings, const std::vector<SeedId>& seeds) {
+  Manifest manifest = manifest_of(settings, seeds);
+  manifest.name = free_name(settings.shared);
+  write(BundleFolder(settings.shared, manifest.name), manifest, settings);
+
+  BundleRecord bundle;
+  bundle.name = manifest.name;
+  bundle.shared = settings.shared.string();
+  bundle.tasks = static_cast<int>(manifest.tasks.size());
+  std::vector<BundleSeedRecord> rows;
+  for (int task = 0; task < bundle.tasks; ++task) {
+    for (const int place : manifest.tasks[static_cast<std::size_t>(task)]) {
+      const SeedId& id = seeds[static_cast<std::size_t>(place)];
+      rows.push_back({place, task, ledger_.point(id.point).id, id.seed});
+    }
+  }
+  Transaction booking(database_.connection());
+  for (const BundleSeedRecord& row : rows) queue_.enqueue(row.point, row.seed + 1);
+  bundle.id = book_.prepare(bundle, rows);
+  queue_.event("handed-over", std::nullopt, std::nullopt,
+               fmt::format("{} seeds in {} tasks as {}", rows.size(), bundle.tasks, bundle.name));
+  booking.commit();
+  submit(bundle, settings.options);
+}
+
+void Bundles::submit(const BundleRecord& bundle, const std::vector<std::string>& options) {
+  const BundleFolder folder(bundle.shared, bundle.name);
+  const Submission answer = submit_job(folder.root(), bundle.name, options);
+  if (answer.job.empty()) {
+    listener_.warn(
+        fmt::format("{}: the submission failed ({}); before it is made again, the batch system is asked for "
+                    "a job of this name",
+                    bundle.name, answer.complaint));
+    return;
+  }
+  Transaction booking(database_.connection());
+  book_.submitted(bundle.id, answer.job);
+  booking.commit();
+  listener_.note(fmt::format("{}: {} seeds in {} tasks are handed over as job {}", bundle.name,
+                             book_.seeds_out(bundle.id).size(), bundle.tasks, answer.job));
+}
+
+void Bundles::submit_unconfirmed() {
+  for (const BundleRecord& bundle : book_.open_bundles()) {
+    if (!was_never_submitted(bundle)) continue;
+    const BundleFolder folder(bundle.shared, bundle.name);
+    submit(bundle, read_json(folder.script("options.json")).get<std::vector<std::string>>());
+  }
+}
+
+// Asked of the batch system again, just before something is done about it: an answer that came too late for
+// settle() would otherwise be overlooked.
+bool Bundles::was_never_submitted(const BundleRecord& bundle) const {
+  if (!bundle.job.empty()) return false;
+  std::string why;
+  const std::optional<QueryAnswer> known =
+      query_job(BundleFolder(bundle.shared, bundle.name).root(), bundle.name, why);
+  return known && known->jobs.empty();
+}
+
+void Bundles::cancel() {
+  for (const BundleRecord& bundle : book_.open_bundles()) {
+    std::string why;
+    if (was_never_submitted(bundle)) {
+      withdraw(bundle);
+    } else if (!cancel_job(BundleFolder(bundle.shared, bundle.name).root(), bundle.name, why)) {
+      listener_.warn(fmt::format("{}: could not be cancelled: {}", bundle.name, why));
+    }
+  }
+}
+
+void Bundles::withdraw(const BundleRecord& bundle) {
+  Transaction booking(database_.connection());
+  for (const BundleSeedRecord& seed : book_.seeds_out(bundle.id)) {
+    if (const std::optional<SeedId> id = ledger_.identify(seed.point, seed.seed)) ledger_.take_back(*id);
+    book_.seed_ended(bundle.id, seed.place, "returned");
+  }
+  book_.close(bundle.id);
+  booking.commit();
+}
+
+}  // namespace peclet::runner
