@@ -22,6 +22,16 @@ Json lease_json(const LeaseRecord& lease) {
       {"steps", lease.steps}, {"strain", lease.strain}, {"renewed_at", lease.renewed_at}};
 }
 
+Json bundles_json(const std::vector<HandedOver>& bundles) {
+  Json list = Json::array();
+  for (const HandedOver& bundle : bundles) {
+    list.push_back({{"bundle", bundle.bundle},
+                    {"job", bundle.job.empty() ? Json(nullptr) : Json(bundle.job)},
+                    {"seeds", bundle.seeds}});
+  }
+  return list;
+}
+
 Json point_json(const PointSummary& point) {
   Json workers = Json::array();
   for (const LeaseRecord& lease : point.leases) workers.push_back(lease_json(lease));
@@ -54,6 +64,7 @@ CampaignStatus read_status(Database& database) {
   CampaignStatus status;
   status.campaign = database.campaign();
   status.points = summarise_points(database, status.campaign.target);
+  status.handed_over = BundleBook(database.connection()).handed_over();
   return status;
 }
 
@@ -105,6 +116,7 @@ Json status_json(const CampaignStatus& status) {
           {"realisations", {{"minimum", target.minimum}, {"maximum", target.maximum}}},
           {"owner", status.owner ? Json(*status.owner) : Json(nullptr)},
           {"standing", standing(status)},
+          {"handed_over", bundles_json(status.handed_over)},
           {"points", points}};
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "contract/json.h"
+#include "runner/bundle_book.h"
 #include "runner/database_summary.h"
 
 namespace peclet::runner {
@@ -22,7 +23,8 @@ struct StatusOptions {
 struct CampaignStatus {
   CampaignRecord campaign;
   std::vector<PointSummary> points;
-  std::optional<std::int64_t> owner;  // process that runs it now
+  std::vector<HandedOver> handed_over;  // seeds in the hands of a batch system, by job
+  std::optional<std::int64_t> owner;    // process that runs it now
 };
 
 CampaignStatus read_status(Database& database);

@@ -72,6 +72,22 @@ std::string point_totals(const CampaignStatus& status) {
                      listed(verdicts));
 }
 
+// "; 40 handed over (jobs 12, 17)"
+std::string handed_over_text(const CampaignStatus& status) {
+  constexpr std::size_t most_jobs = 4;
+  int seeds = 0;
+  std::string jobs;
+  for (std::size_t i = 0; i < status.handed_over.size(); ++i) {
+    const HandedOver& bundle = status.handed_over[i];
+    seeds += bundle.seeds;
+    if (i < most_jobs) jobs += (i > 0 ? ", " : "") + (bundle.job.empty() ? "not confirmed" : bundle.job);
+  }
+  if (seeds == 0) return "";
+  const std::size_t more = status.handed_over.size() - std::min(most_jobs, status.handed_over.size());
+  if (more > 0) jobs += fmt::format(" and {} more", more);
+  return fmt::format("; {} handed over (job{} {})", seeds, status.handed_over.size() == 1 ? "" : "s", jobs);
+}
+
 std::string seed_totals(const CampaignStatus& status) {
   int ended = 0, running = 0, surplus = 0, lost = 0;
   double cpu_seconds = 0;
@@ -88,6 +104,7 @@ std::string seed_totals(const CampaignStatus& status) {
   if (lost > 0) text += fmt::format(", {} of them lost ({})", lost, listed(losses));
   if (surplus > 0) text += fmt::format(", {} surplus", surplus);
   if (running > 0) text += fmt::format("; {} running", running);
+  text += handed_over_text(status);
   return text + fmt::format("; processor time {}\n", duration_text(cpu_seconds));
 }
 
@@ -117,7 +134,11 @@ std::string status_table(Database& database) { return status_table(read_status(d
 
 std::string workers_text(const CampaignStatus& status) {
   constexpr std::size_t most_lines = 16;
-  if (!status.owner) return standing(status) == 4 ? "\nnobody runs it now; `peclet run` goes on\n" : "";
+  if (!status.owner) {
+    if (standing(status) != 4) return "";
+    return status.handed_over.empty() ? "\nnobody runs it now; `peclet run` goes on\n"
+                                      : "\nnobody takes results in now; `peclet ingest` does\n";
+  }
   TextTable table;
   for (const char* const title : {"worker", "point and seed", "phase", "done", "strain"}) {
     const bool is_text = std::string(title) == "point and seed" || std::string(title) == "phase";
