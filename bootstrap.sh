@@ -14,6 +14,7 @@ packages=(
   librandom123-dev libsodium-dev libsqlite3-dev libboost-dev
   libgtest-dev python3 python3-jsonschema sqlite3 libfaketime             # the tests
   lammps                                                                  # another engine, which tests run
+  slurm-wlm munge                                                         # a Slurm to be tested with
   gnuplot-nox                                                             # pictures of the studies
   clang-format clang-tidy                                                 # the source
 )

@@ -1,0 +1,157 @@
+"""A Slurm of one's own on one machine: munged, slurmctld and slurmd from Debian's packages, as whoever runs the test, with
+their files in a temporary folder. One node with CPUS processors, whatever the machine has; jobs of the partition `urgent`
+preempt those of `usual`, which are queued again."""
+import os
+import pwd
+import signal
+import socket
+import subprocess
+import time
+
+CPUS = 4
+
+CONFIGURATION = """
+ClusterName=drill
+SlurmctldHost={host}(127.0.0.1)
+SlurmUser={user}
+SlurmdUser={user}
+SlurmctldPort={controller_port}
+SlurmdPort={node_port}
+AuthType=auth/munge
+AuthInfo=socket={folder}/munge.socket,cred_expire=5
+CredType=cred/munge
+StateSaveLocation={folder}/state
+SlurmdSpoolDir={folder}/node
+SlurmctldPidFile={folder}/slurmctld.pid
+SlurmdPidFile={folder}/slurmd.pid
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SwitchType=switch/none
+MpiDefault=none
+JobAcctGatherType=jobacct_gather/none
+AccountingStorageType=accounting_storage/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
+SchedulerType=sched/backfill
+SchedulerParameters=sched_interval=1,batch_sched_delay=0,sched_min_interval=0,bf_interval=1
+PreemptType=preempt/partition_prio
+PreemptMode=REQUEUE
+SlurmdParameters=config_overrides
+ReturnToService=2
+KillWait=5
+MessageTimeout=5
+# Jobs that have ended are forgotten soon, as on a busy cluster.
+MinJobAge=2
+MaxArraySize=101
+NodeName={host} NodeAddr=127.0.0.1 CPUs={cpus} RealMemory=1000 State=UNKNOWN
+PartitionName=usual Nodes={host} Default=YES MaxTime=INFINITE PriorityTier=1 PreemptMode=REQUEUE State=UP
+PartitionName=urgent Nodes={host} Default=NO MaxTime=INFINITE PriorityTier=10 PreemptMode=OFF State=UP
+"""
+
+
+def free_port():
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return listener.getsockname()[1]
+
+
+class Cluster:
+    def __init__(self, folder):
+        self.folder = folder
+        self.processes = {}
+        for part in ("state", "node", "log"):
+            os.makedirs(os.path.join(folder, part))
+        with open(os.open(os.path.join(folder, "munge.key"), os.O_WRONLY | os.O_CREAT, 0o600), "wb") as key:
+            key.write(os.urandom(128))
+        self.configuration = os.path.join(folder, "slurm.conf")
+        with open(self.configuration, "w") as f:
+            f.write(CONFIGURATION.format(folder=folder, host=socket.gethostname().split(".")[0], cpus=CPUS,
+                                         user=pwd.getpwuid(os.getuid()).pw_name, controller_port=free_port(),
+                                         node_port=free_port()))
+        os.environ["SLURM_CONF"] = self.configuration
+
+    def __enter__(self):
+        try:
+            self.start("munged", "--foreground", "--force", f"--key-file={self.folder}/munge.key",
+                       f"--socket={self.folder}/munge.socket", f"--pid-file={self.folder}/munge.pid",
+                       f"--log-file={self.folder}/log/munge.log", f"--seed-file={self.folder}/munge.seed")
+            self.start_controller()
+            self.start("slurmd", "-D", "-f", self.configuration)
+            self.wait_until(lambda: self.say("sinfo", "-h", "-o", "%T") == "idle", "the node to be idle")
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def __exit__(self, *_):
+        if "slurmctld" in self.processes:
+            self.clear()
+        for name in ("slurmd", "slurmctld", "munged"):
+            if name in self.processes:
+                self.stop(name)
+
+    def start(self, name, *arguments):
+        program = os.path.join("/usr/sbin", name)
+        if not os.path.exists(program):
+            raise SystemExit(f"{program} is missing; Debian's packages slurm-wlm and munge have it")
+        log = open(os.path.join(self.folder, "log", name + ".out"), "a")
+        self.processes[name] = subprocess.Popen([program, *arguments], stdout=log, stderr=log, stdin=subprocess.DEVNULL)
+
+    def stop(self, name, number=signal.SIGTERM):
+        process = self.processes.pop(name)
+        process.send_signal(number)
+        try:
+            process.wait(15)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+    def start_controller(self):
+        self.start("slurmctld", "-D", "-f", self.configuration)
+
+    def wait_for_controller(self):
+        self.wait_until(lambda: self.say("scontrol", "ping").endswith("UP"), "the controller")
+
+    def clear(self):
+        """Ends all jobs and waits, for a while, until their processes have gone."""
+        end = time.monotonic() + 20
+        while self.say("squeue", "-h", "--me") and time.monotonic() < end:
+            self.say("scancel", "--me")
+            self.resume_node()
+            time.sleep(0.5)
+
+    def say(self, *command):
+        """What a command prints, or "" when it fails."""
+        answer = subprocess.run(command, capture_output=True, text=True)
+        return answer.stdout.strip() if answer.returncode == 0 else ""
+
+    def wait_until(self, is_so, what, seconds=60):
+        end = time.monotonic() + seconds
+        while not is_so():
+            if time.monotonic() > end:
+                raise AssertionError(f"waited {seconds} s for {what}\n{self.say('squeue')}\n{self.log()}")
+            time.sleep(0.1)
+
+    def log(self):
+        text = ""
+        for name in sorted(os.listdir(os.path.join(self.folder, "log"))):
+            with open(os.path.join(self.folder, "log", name), errors="replace") as f:
+                text += f"--- {name}\n" + "".join(f.readlines()[-15:])
+        return text
+
+    def tasks(self, state="RUNNING"):
+        """Array elements in a state, as JOB_INDEX; those of the urgent job apart."""
+        lines = self.say("squeue", "-h", "-r", "--me", "--states=" + state, "-o", "%j %F_%K").split("\n")
+        return [line.split()[1] for line in lines if line and not line.startswith("urgent ")]
+
+    def resume_node(self):
+        """Puts the node back into use when Slurm has taken it out; says whether it had."""
+        if not self.say("sinfo", "-h", "-o", "%T").startswith(("drain", "down")):
+            return False
+        self.say("scontrol", "update", "nodename=" + socket.gethostname().split(".")[0], "state=resume")
+        return True
+
+    def restarts(self):
+        """How often the elements that Slurm still knows were queued again."""
+        words = self.say("scontrol", "show", "job", "-o").split()
+        return sum(int(word.split("=")[1]) for word in words if word.startswith("Restarts="))
