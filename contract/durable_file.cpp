@@ -86,16 +86,20 @@ void synchronise_folder(const std::filesystem::path& path) {
 
 }  // namespace
 
+bool means_no_room(int error) { return error == ENOSPC || error == EDQUOT; }
+
 void write_durably(const std::filesystem::path& path, std::string_view bytes) {
   std::filesystem::path temporary;
-  Descriptor descriptor = create_temporary(path, temporary);
   try {
+    Descriptor descriptor = create_temporary(path, temporary);
     write_all(descriptor.number(), bytes, path);
     synchronise(descriptor.number(), path);
     if (descriptor.close() != 0 && errno != EINTR) fail("cannot close", path);
     if (::rename(temporary.c_str(), path.c_str()) != 0) fail("cannot replace", path);
-  } catch (...) {
+  } catch (const std::system_error& error) {
     ::unlink(temporary.c_str());
+    const int number = error.code().value();
+    if (means_no_room(number)) throw NoRoomError(number, "cannot write " + path.string(), path, bytes.size());
     throw;
   }
   synchronise_folder(path);

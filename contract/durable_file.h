@@ -1,14 +1,34 @@
 // Files that are either there whole or not there: temporary file, fsync, rename, fsync of the folder.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
 namespace peclet {
 
+// The file system is full, or the user's quota of it: what could not be written may be tried again later.
+class NoRoomError : public std::system_error {
+ public:
+  NoRoomError(int error, const std::string& doing, std::filesystem::path path, std::uint64_t bytes)
+      : std::system_error(error, std::generic_category(), doing), path_(std::move(path)), bytes_(bytes) {}
+  const std::filesystem::path& path() const { return path_; }
+  // How much was to be written.
+  std::uint64_t bytes() const { return bytes_; }
+
+ private:
+  std::filesystem::path path_;
+  std::uint64_t bytes_;
+};
+
+// Whether an errno says that there is no room: ENOSPC or EDQUOT.
+bool means_no_room(int error);
+
 // Replaces `path` by `bytes` so that a crash at any moment leaves the old content or the new one.
-// Throws std::system_error naming the path; the temporary file is then removed.
+// Throws NoRoomError, or std::system_error naming the path; the temporary file is then removed.
 void write_durably(const std::filesystem::path& path, std::string_view bytes);
 
 // Gives a file that somebody else has written its final name: its bytes are on disk before the name is.

@@ -17,6 +17,9 @@ using Clock = std::chrono::steady_clock;
 // same.
 constexpr std::size_t fewest_particles_per_thread = 4000;
 
+// How soon a checkpoint is tried again that did not fit onto the disk.
+constexpr std::chrono::duration<double> when_full{5};
+
 double processor_seconds() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -69,10 +72,13 @@ class Job {
       return make_unpacked_result(job_.header, scene_, schedule_, error.what(), meter_.spent());
     }
     if (!ending) {
-      write_checkpoint(job_.checkpoint, identity_, meter_.spent(), *simulation_);
+      if (!save(job_.checkpoint))
+        events_.remark("no room for a checkpoint: what came after the last one is lost");
       return std::nullopt;
     }
-    return make_result(job_.header, scene_, *simulation_, *ending, saved_state(*ending), meter_.spent());
+    std::string state;
+    if (!save_state(*ending, state)) return std::nullopt;
+    return make_result(job_.header, scene_, *simulation_, *ending, state, meter_.spent());
   }
 
  private:
@@ -112,7 +118,9 @@ class Job {
   std::optional<Ending> loop() {
     // Some 65 000 particle-steps are about ten milliseconds.
     const std::uint64_t stride = std::max<std::uint64_t>(1, 65536 / scene_.particles.count);
-    Clock::time_point last_checkpoint = Clock::now();
+    Clock::time_point next_checkpoint =
+        Clock::now() +
+        std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(job_.checkpoint_seconds));
     while (true) {
       if (std::optional<Ending> ending = simulation_->advance(stride)) {
         return ending;
@@ -124,21 +132,40 @@ class Job {
       if (events_.drain_requested()) {
         return std::nullopt;
       }
-      if (std::chrono::duration<double>(Clock::now() - last_checkpoint).count() > job_.checkpoint_seconds) {
-        write_checkpoint(job_.checkpoint, identity_, meter_.spent(), *simulation_);
-        last_checkpoint = Clock::now();
+      if (Clock::now() > next_checkpoint) next_checkpoint = Clock::now() + checkpoint_on_the_way();
+    }
+  }
+
+  // Returns when the next one is due. Want of room is no reason to give up work that is in memory.
+  Clock::duration checkpoint_on_the_way() {
+    const std::chrono::duration<double> interval(job_.checkpoint_seconds);
+    try {
+      write_checkpoint(job_.checkpoint, identity_, meter_.spent(), *simulation_);
+      return std::chrono::duration_cast<Clock::duration>(interval);
+    } catch (const NoRoomError& error) {
+      events_.skipped(error);
+      return std::chrono::duration_cast<Clock::duration>(std::min(interval, when_full));
+    }
+  }
+
+  // False: there is no room, and nobody wants to wait for it.
+  bool save(const std::filesystem::path& path) const {
+    for (;;) {
+      try {
+        write_checkpoint(path, identity_, meter_.spent(), *simulation_);
+        return true;
+      } catch (const NoRoomError& error) {
+        if (!events_.wait_for_room(error)) return false;
       }
     }
   }
 
-  // A realisation that broke off leaves its last state where people can look at it.
-  std::string saved_state(const Ending& ending) const {
-    if (ending.cause == Ending::Cause::completed || job_.failures.empty()) {
-      return "";
-    }
-    std::string name = job_.header.point.substr(0, 12) + "-" + std::to_string(job_.header.seed) + ".state";
-    write_checkpoint(job_.failures / name, identity_, meter_.spent(), *simulation_);
-    return name;
+  // A realisation that broke off leaves its last state where people can look at it: `name` in the folder of
+  // failures. False: there was no room.
+  bool save_state(const Ending& ending, std::string& name) const {
+    if (ending.cause == Ending::Cause::completed || job_.failures.empty()) return true;
+    name = job_.header.point.substr(0, 12) + "-" + std::to_string(job_.header.seed) + ".state";
+    return save(job_.failures / name);
   }
 
   const JobSpecification& job_;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 
+#include "contract/durable_file.h"
 #include "engine/result.h"
 
 namespace peclet::engine {
@@ -32,10 +33,14 @@ struct JobEvents {
   std::function<bool()> drain_requested = [] { return false; };
   std::function<void(const Progress&)> progress = [](const Progress&) {};
   std::function<void(const std::string&)> remark = [](const std::string&) {};  // for a log
+  // A checkpoint on the way did not fit onto the disk; the job goes on, and tries again some seconds later.
+  std::function<void(const NoRoomError&)> skipped = [](const NoRoomError&) {};
+  // A file that the job cannot end without did not fit. True: try again now; false: end all the same.
+  std::function<bool(const NoRoomError&)> wait_for_room = [](const NoRoomError&) { return false; };
 };
 
-// The result, or nothing when the job was drained: its checkpoint is then on disk.
-// Throws InputError, CheckpointError, std::system_error.
+// The result, or nothing when the job was drained: its checkpoint is then on disk, or the one before it when
+// there was no room. Throws InputError, CheckpointError, std::system_error.
 std::optional<Json> run_job(const JobSpecification& job, const JobEvents& events);
 
 }  // namespace peclet::engine

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <exception>
 #include <system_error>
+#include <thread>
 
 #include "contract/durable_file.h"
 #include "contract/frames.h"
@@ -23,8 +24,13 @@ using Clock = std::chrono::steady_clock;
 // How often a running job looks at the socket.
 constexpr std::chrono::milliseconds attention{100};
 
+// How soon a file is tried again that did not fit onto the disk, and how often when the engine is to leave.
+constexpr std::chrono::seconds until_next_try{1};
+constexpr int last_tries = 5;
+
+// A log that cannot be written harms no job.
 void log_line(const std::string& text) {
-  fmt::print(stderr, "{}\n", text);
+  std::fputs((text + "\n").c_str(), stderr);
   std::fflush(stderr);
 }
 
@@ -110,14 +116,11 @@ class Worker {
     job.checkpoint_seconds = message.value("checkpoint_seconds", job.checkpoint_seconds);
     job.failures = message.value("failures", "");
     job.restart_on_bad_checkpoint = true;
+    told_to_leave_ = false;
+    tries_left_ = last_tries;
     try {
-      if (const std::optional<Json> result =
-              run_job(job, events(id, message.value("progress_seconds", 1.0)))) {
-        const std::string text = result->dump(1) + "\n";
-        const auto spool = message.at("spool").get<std::string>();
-        write_durably(spool, text);
-        tell({{"type", "result"}, {"job", id}, {"spool", spool}, {"sha256", sha256(text)}});
-      } else {
+      const std::optional<Json> result = run_job(job, events(id, message.value("progress_seconds", 1.0)));
+      if (!result || !deliver(id, *result, message.at("spool").get<std::string>())) {
         tell({{"type", "drained"}, {"job", id}, {"step", last_step_}});
       }
     } catch (const std::exception& error) {
@@ -127,10 +130,47 @@ class Worker {
     leave_ = leave_ || abandoned_;
   }
 
+  // False: there was no room for the result before the engine had to leave. Its seed will be run again.
+  bool deliver(const Json& id, const Json& result, const std::string& spool) {
+    const std::string text = result.dump(1) + "\n";
+    for (;;) {
+      try {
+        write_durably(spool, text);
+        break;
+      } catch (const NoRoomError& error) {
+        if (!wait_for_room(id, error)) return false;
+      }
+    }
+    tell({{"type", "result"}, {"job", id}, {"spool", spool}, {"sha256", sha256(text)}});
+    leave_ = told_to_leave_;  // heard while it waited; nobody says it twice
+    return true;
+  }
+
+  void say_no_room(const Json& id, const NoRoomError& error) {
+    tell({{"type", "no-room"}, {"job", id}, {"path", error.path().string()}, {"bytes", error.bytes()}});
+  }
+
+  // What is done stays in memory for as long as the runner wants to wait; only leaving has to end some time.
+  bool wait_for_room(const Json& id, const NoRoomError& error) {
+    if (told_to_leave_ || abandoned_) {
+      if (tries_left_-- == 0) {
+        log_line(error.what());
+        return false;
+      }
+      std::this_thread::sleep_for(until_next_try);
+      return true;
+    }
+    say_no_room(id, error);
+    hear(until_next_try);
+    return true;
+  }
+
   JobEvents events(const Json& id, double progress_seconds) {
     JobEvents events;
     events.drain_requested = [this] { return drain_requested(); };
     events.remark = log_line;
+    events.skipped = [this, id](const NoRoomError& error) { say_no_room(id, error); };
+    events.wait_for_room = [this, id](const NoRoomError& error) { return wait_for_room(id, error); };
     events.progress = [this, id, progress_seconds](const Progress& progress) {
       last_step_ = progress.step;
       const Clock::time_point now = Clock::now();
@@ -152,16 +192,22 @@ class Worker {
   bool drain_requested() {
     const Clock::time_point now = Clock::now();
     if (now - last_look_ < attention) {
-      return abandoned_;
+      return told_to_leave_ || abandoned_;
     }
     last_look_ = now;
+    hear(std::chrono::milliseconds(0));
+    return told_to_leave_ || abandoned_;
+  }
+
+  // What the runner may have to say while a job is running.
+  void hear(std::chrono::milliseconds patience) {
     Json message;
-    switch (channel_.receive(message, std::chrono::milliseconds(0))) {
+    switch (channel_.receive(message, patience)) {
       case FrameChannel::Status::nothing:
-        return false;
+        return;
       case FrameChannel::Status::closed:
-        abandoned_ = true;
-        return true;  // the owner is gone: keep the work
+        abandoned_ = true;  // the owner is gone: keep the work
+        return;
       case FrameChannel::Status::message:
         break;
     }
@@ -172,12 +218,14 @@ class Worker {
     if (type != "drain") {
       throw FrameError("a message of type \"" + type + "\" while a job is running");
     }
-    return true;
+    told_to_leave_ = true;
   }
 
   FrameChannel channel_;
   bool leave_ = false;
   bool abandoned_ = false;
+  bool told_to_leave_ = false;  // by a drain during the present job
+  int tries_left_ = 0;          // to write something before leaving
   std::uint64_t last_step_ = 0;
   Clock::time_point last_progress_{}, last_look_{};
 };

@@ -7,6 +7,7 @@
 //   PECLET_FAKE_STEPS (10), PECLET_FAKE_STEP_MS (0)     length of a realisation
 //   PECLET_FAKE_MEAN (10), PECLET_FAKE_DEVIATION (1)    of the relative viscosity
 //   PECLET_FAKE_PADDING (0)                             numbers that make its result longer
+//   PECLET_FAKE_PRINTED (0)                             bytes that it prints at every step
 //   PECLET_FAKE_IDENTITY ("fake")                       what its binary is said to be
 //   PECLET_FAKE_DRIFT                                   set: results differ from those without it
 //   PECLET_FAKE_STEPLESS                                set: it says that it knows of no time step
@@ -106,6 +107,7 @@ class Engine {
       if (state.step >= fault_step_) go_wrong(fault, job);
       if (told_to_leave(job, state, checkpoint)) return;
       state.value = mix(state.value + static_cast<std::uint64_t>(state.step));
+      std::fputs(printed_.c_str(), stderr);
       const auto now = steady_clock::now();
       if (std::chrono::duration<double>(now - told).count() >= job.at("progress_seconds").get<double>()) {
         told = now;
@@ -113,7 +115,7 @@ class Engine {
       }
       if (std::chrono::duration<double>(now - saved).count() >= job.at("checkpoint_seconds").get<double>()) {
         saved = now;
-        save({state.value, state.step + 1}, checkpoint);
+        save(job, {state.value, state.step + 1}, checkpoint);
       }
     }
     finish(job, state, fault, std::chrono::duration<double>(steady_clock::now() - start).count());
@@ -149,15 +151,43 @@ class Engine {
     if (status == FrameChannel::Status::nothing) return false;
     leave_ = true;
     if (status == FrameChannel::Status::message && message.at("type") == "stop") return true;
-    save(state, checkpoint);
+    save(job, state, checkpoint);
     if (status == FrameChannel::Status::message) {
       channel_.send({{"type", "drained"}, {"job", job.at("job")}, {"step", state.step}});
     }
     return true;
   }
 
-  static void save(const State& state, const std::filesystem::path& checkpoint) {
-    write_durably(checkpoint, Json{{"value", state.value}, {"step", state.step}}.dump());
+  // Without room for it the work goes on, and the last checkpoint stays.
+  void save(const Json& job, const State& state, const std::filesystem::path& checkpoint) {
+    try {
+      write_durably(checkpoint, Json{{"value", state.value}, {"step", state.step}}.dump());
+    } catch (const NoRoomError& error) {
+      if (!leave_) say_no_room(job, error);
+    }
+  }
+
+  void say_no_room(const Json& job, const NoRoomError& error) {
+    channel_.send({{"type", "no-room"},
+                   {"job", job.at("job")},
+                   {"path", error.path().string()},
+                   {"bytes", error.bytes()}});
+  }
+
+  // Keeps the result until there is room for it. False: has to leave before.
+  bool spool(const Json& job, const std::string& text) {
+    for (;;) {
+      try {
+        write_durably(job.at("spool").get<std::string>(), text);
+        return true;
+      } catch (const NoRoomError& error) {
+        say_no_room(job, error);
+        Json message;
+        if (channel_.receive(message, milliseconds(200)) == FrameChannel::Status::nothing) continue;
+        leave_ = true;
+        return false;
+      }
+    }
   }
 
   void finish(const Json& job, const State& state, Fault fault, double wall_seconds) {
@@ -178,7 +208,10 @@ class Engine {
                      {"spool", job.at("spool")},
                      {"sha256", sha256(fault == Fault::lie ? "something else" : text)}};
     if (fault == Fault::early) announce(frame, fault);
-    write_durably(job.at("spool").get<std::string>(), text);
+    if (!spool(job, text)) {
+      channel_.send({{"type", "drained"}, {"job", job.at("job")}, {"step", state.step}});
+      return;
+    }
     if (fault == Fault::mute) std::abort();
     announce(frame, fault);
     if (fault == Fault::twice) channel_.send(frame);
@@ -236,6 +269,7 @@ class Engine {
   int steps_ = static_cast<int>(setting("PECLET_FAKE_STEPS", 10));
   int fault_step_ = static_cast<int>(setting("PECLET_FAKE_FAULT_STEP", steps_ / 2));
   milliseconds step_time_{static_cast<int>(setting("PECLET_FAKE_STEP_MS", 0))};
+  const std::string printed_ = std::string(static_cast<std::size_t>(setting("PECLET_FAKE_PRINTED", 0)), 'x');
   bool leave_ = false;
 };
 
