@@ -192,6 +192,8 @@ void BatchTask::handle(const WorkerEvent& event) {
     condemn(AttemptOutcome::garbled, garbled->message);
   } else if (const auto* gone = std::get_if<Exited>(&event)) {
     exited(gone->ending);
+  } else if (std::holds_alternative<ShortOfRoom>(event)) {
+    renewed_ = awake_;  // the engine keeps its result and tries again; nobody blames it for waiting
   } else if (!stopping_) {
     // Only the first signal counts: a batch system sends several, and has the last word itself.
     stopping_ = true;

@@ -14,6 +14,8 @@
 #include <thread>
 #include <utility>
 
+#include "contract/durable_file.h"
+
 namespace peclet::runner {
 namespace {
 
@@ -77,7 +79,7 @@ CampaignDirectory campaign_directory(const fs::path& campaign_file, const fs::pa
 
 void create_folders(const CampaignDirectory& directory) {
   for (const fs::path& folder : {directory.root(), directory.rejected(), directory.checkpoints(),
-                                 directory.failures(), directory.logs()}) {
+                                 directory.failures(), directory.logs(), directory.backup()}) {
     fs::create_directories(folder);
   }
 }
@@ -112,9 +114,10 @@ OwnerLock::OwnerLock(const CampaignDirectory& directory) {
                     directory.root().string(), owner));
   }
   const std::string process = fmt::format("{}\n", getpid());
-  if (ftruncate(descriptor_, 0) != 0 ||
-      pwrite(descriptor_, process.data(), process.size(), 0) != static_cast<ssize_t>(process.size())) {
-    const int error = errno;
+  const bool written = ftruncate(descriptor_, 0) == 0 && pwrite(descriptor_, process.data(), process.size(),
+                                                                0) == static_cast<ssize_t>(process.size());
+  // On a full disk the lock is worth as much without the number.
+  if (const int error = errno; !written && !means_no_room(error)) {
     close(descriptor_);
     throw std::system_error(error, std::generic_category(), path);
   }

@@ -22,6 +22,10 @@ class CampaignDirectory {
   std::filesystem::path checkpoints() const { return root_ / "checkpoints"; }
   std::filesystem::path failures() const { return root_ / "failures"; }
   std::filesystem::path logs() const { return root_ / "logs"; }
+  std::filesystem::path backup() const { return root_ / "backup"; }
+  // Where `peclet restore` keeps what it takes the place of.
+  std::filesystem::path aside() const { return root_ / "aside"; }
+  std::filesystem::path run_log() const { return logs() / "peclet.log"; }
 
   // Of one seed, whoever runs it: the next attempt resumes what the last one left.
   std::filesystem::path checkpoint(const std::string& hash, int seed) const;

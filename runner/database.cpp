@@ -56,8 +56,7 @@ bool is_empty(Connection& connection) {
 std::int64_t version_of(Connection& connection) { return connection.integer("PRAGMA user_version"); }
 
 void check_kind(Connection& connection) {
-  const std::int64_t application = connection.integer("PRAGMA application_id");
-  if (application != our_application) {
+  if (!is_campaign_database(connection)) {
     throw IntegrityError(connection.path() + ": is a database, but not one of a peclet campaign");
   }
   const std::int64_t version = version_of(connection);
@@ -81,6 +80,10 @@ void create_tables(Connection& connection) {
 }
 
 }  // namespace
+
+bool is_campaign_database(Connection& connection) {
+  return connection.integer("PRAGMA application_id") == our_application;
+}
 
 const char* to_string(SeedState state) { return name_of(state_names, state); }
 

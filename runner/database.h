@@ -111,6 +111,9 @@ struct CampaignRecord {
   std::string created_at, updated_at;
 };
 
+// Whether a file that SQLite can open is a campaign's database, of whatever version.
+bool is_campaign_database(Connection& connection);
+
 class Database {
  public:
   // Opens or creates the database for its owner. Requires the campaign's lock.

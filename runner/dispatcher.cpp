@@ -12,8 +12,6 @@ namespace {
 
 using std::chrono::seconds;
 
-// The longest that a turn waits: leases and the time limit are judged at least this often.
-constexpr std::chrono::milliseconds longest_wait{500};
 // A turn that takes longer was not working but stopped; no more of it than this counts, nor than half a
 // lease.
 constexpr Dispatcher::Awake longest_turn{1};
@@ -40,7 +38,7 @@ Dispatcher::Dispatcher(Database& database, Ledger& ledger, WorkerPool& pool, Run
       listener_(listener),
       settings_(settings),
       clock_(std::move(clock)),
-      workers_(static_cast<std::size_t>(pool.size())),
+      now_{std::vector<Worker>(static_cast<std::size_t>(pool.size()))},
       started_(clock_()),
       heard_(started_),
       reported_(started_),
@@ -55,40 +53,40 @@ Dispatcher::Ending Dispatcher::run() {
     }
   }
   if (stopping_ == Stopping::no) stop(Stopping::finished);
-  while (anyone_there()) turn();
-  // A worker that outlived an earlier owner may have left a result meanwhile.
-  ledger_.ingest_spool();
+  while (anyone_there() || (unbooked_ && stopping_ == Stopping::finished)) turn();
+  settle_spool();
   return ledger_.scheduler().finished() ? Ending::finished : Ending::stopped;
 }
 
+// A process that has ended is no longer there, even if that could not be booked yet.
 bool Dispatcher::anyone_there() const {
-  return std::any_of(workers_.begin(), workers_.end(),
-                     [](const Worker& worker) { return worker.stage != Stage::absent; });
+  const auto present = std::count_if(now_.workers.begin(), now_.workers.end(),
+                                     [](const Worker& worker) { return worker.stage != Stage::absent; });
+  const auto ended = std::count_if(news_.begin(), news_.end(), [](const WorkerEvent& event) {
+    return std::holds_alternative<Exited>(event);
+  });
+  return present > ended;
 }
 
 // Nobody here has work, there is none to give out, and yet some point is open.
 bool Dispatcher::left_to_others() const {
-  const bool busy = std::any_of(workers_.begin(), workers_.end(),
+  const bool busy = std::any_of(now_.workers.begin(), now_.workers.end(),
                                 [](const Worker& worker) { return worker.stage == Stage::busy; });
-  return !busy && !ledger_.scheduler().finished() && !ledger_.scheduler().next();
+  return !busy && !unbooked_ && !ledger_.scheduler().finished() && !ledger_.scheduler().next();
 }
 
 void Dispatcher::turn() {
+  settings_.chore();
   start_workers();
-  const std::vector<WorkerEvent> events = pool_.wait(longest_wait);
-  stay_awake();
-  Transaction booking(database_.connection());
-  for (const WorkerEvent& event : events) {
-    std::visit([this](const auto& happened) { handle(happened); }, event);
+  listen();
+  judge_time();
+  look_for_room();
+  if (!unbooked_ && book()) {
+    for (const auto& [worker, job] : to_send_) pool_.assign(worker, job);
+    to_send_.clear();
+    ledger_.after_commit();
+    judge_leases();
   }
-  judge_leases();
-  give_out_seeds();
-  show_leases();
-  booking.commit();
-
-  for (const auto& [worker, job] : to_send_) pool_.assign(worker, job);
-  to_send_.clear();
-  ledger_.after_commit();
   report();
 }
 
@@ -101,7 +99,7 @@ void Dispatcher::stay_awake() {
 }
 
 void Dispatcher::start_workers() {
-  if (stopping_ != Stopping::no) return;
+  if (stopping_ != Stopping::no || unbooked_) return;
   for (int number = 0; number < pool_.size(); ++number) {
     if (at(number).stage != Stage::absent) continue;
     pool_.start(number);
@@ -110,7 +108,7 @@ void Dispatcher::start_workers() {
 }
 
 void Dispatcher::give_out_seeds() {
-  if (stopping_ != Stopping::no || ledger_.scheduler().finished()) return;
+  if (stopping_ != Stopping::no || shortage_.lasts() || ledger_.scheduler().finished()) return;
   for (int number = 0; number < pool_.size(); ++number) {
     Worker& worker = at(number);
     if (worker.stage != Stage::idle) continue;
@@ -121,6 +119,7 @@ void Dispatcher::give_out_seeds() {
     // Several reports fit into a lease.
     grant->job.progress_seconds = std::min(1.0, settings_.lease.count() / 5);
     to_send_.emplace_back(number, grant->job);
+    grant->job.scene = nullptr;  // sent once; the rest is copied at every turn
     worker.stage = Stage::busy;
     worker.since = awake_;
     worker.assignment = Assignment{std::move(*grant)};
@@ -142,6 +141,9 @@ void Dispatcher::judge_leases() {
                           settings_.lease.count(), stopped ? ": its process has been stopped" : ""));
     }
   }
+}
+
+void Dispatcher::judge_time() {
   if (settings_.time_limit && stopping_ == Stopping::no && heard_ - started_ >= *settings_.time_limit) {
     listener_.note("the time limit is reached: workers checkpoint and stop");
     stop(Stopping::draining);
@@ -156,7 +158,7 @@ void Dispatcher::judge_leases() {
 void Dispatcher::show_leases() {
   if (clock_() - leases_shown_ < lease_display_interval) return;
   leases_shown_ = clock_();
-  for (Worker& worker : workers_) {
+  for (Worker& worker : now_.workers) {
     if (!worker.assignment || worker.assignment->shown) continue;
     Assignment& about = *worker.assignment;
     ledger_.renew_lease(about.grant, about.phase, about.step, about.steps, about.strain);
@@ -183,7 +185,7 @@ void Dispatcher::report() {
   reported_ = now;
   RunReport report = ledger_.report(pool_.size());
   report.workers = pool_.size();
-  report.results = results_;
+  report.results = now_.results;
   report.elapsed = std::chrono::duration<double>(now - started_).count();
   listener_.report(report);
 }
@@ -249,8 +251,8 @@ void Dispatcher::handle(const ResultSpooled& event) {
   if (event.spool != about.grant.job.spool) {
     condemn(event.worker, AttemptOutcome::garbled, "spooled its result elsewhere");
   } else if (ledger_.take_result(about.grant, event.sha256, about.step, why)) {
-    ++results_;
-    early_exits_ = 0;
+    ++now_.results;
+    now_.early_exits = 0;
     set_idle(event.worker);
   } else {
     condemn(event.worker, AttemptOutcome::garbled, why);
@@ -259,7 +261,9 @@ void Dispatcher::handle(const ResultSpooled& event) {
 
 void Dispatcher::handle(const JobFailed& event) {
   if (!has_job(event.worker, event.job)) return;
-  end_assignment(event.worker, {AttemptOutcome::refused, 0, {}, event.message});
+  const AttemptOutcome outcome =
+      lacked_room(event.worker) ? AttemptOutcome::drained : AttemptOutcome::refused;
+  end_assignment(event.worker, {outcome, 0, {}, event.message});
 }
 
 void Dispatcher::handle(const Drained& event) {
@@ -267,6 +271,20 @@ void Dispatcher::handle(const Drained& event) {
   at(event.worker).assignment->step = event.step;
   end_assignment(event.worker, {AttemptOutcome::drained});
   pool_.drain(event.worker);  // an idle engine leaves
+}
+
+// It keeps its work and stands still: as long as there really is no room, that is not its fault.
+void Dispatcher::handle(const ShortOfRoom& event) {
+  if (!has_job(event.worker, event.job)) return;
+  const Job& job = at(event.worker).assignment->grant.job;
+  const std::filesystem::path folder = event.path.parent_path();
+  if (event.path != job.spool && event.path != job.checkpoint && folder != job.failures) {
+    condemn(event.worker, AttemptOutcome::garbled, "wrote a file that is none of its job");
+    return;
+  }
+  if (has_room(folder, event.bytes)) return;
+  begin_shortage(folder, event.bytes);
+  at(event.worker).assignment->renewed = awake_;
 }
 
 void Dispatcher::handle(const Garbled& event) {
@@ -291,7 +309,7 @@ void Dispatcher::exited_during_job(int number, const ExitStatus& ending) {
   std::string why;
   if (worker.condemned != AttemptOutcome::garbled && std::filesystem::exists(grant.job.spool) &&
       ledger_.take_result(grant, "", worker.assignment->step, why)) {
-    ++results_;
+    ++now_.results;
     set_idle(number);
     return;
   }
@@ -300,6 +318,8 @@ void Dispatcher::exited_during_job(int number, const ExitStatus& ending) {
     end.outcome = *worker.condemned;
     end.message = worker.message;
   } else if (stopping_ == Stopping::at_once || (stopping_ != Stopping::no && ending.status == 0)) {
+    end.outcome = AttemptOutcome::drained;
+  } else if (is_blamed(end.outcome) && lacked_room(number)) {
     end.outcome = AttemptOutcome::drained;
   }
   end_assignment(number, end);
@@ -311,8 +331,8 @@ void Dispatcher::exited_without_job(int number, const ExitStatus& ending, Stage 
   const std::string how = at(number).message.empty() ? to_string(ending) : at(number).message;
   listener_.warn(fmt::format("worker {} ended {}: {}", number,
                              stage == Stage::starting ? "before it said hello" : "without a job", how));
-  early_exits_ += own_doing ? most_early_kills / most_early_exits + 1 : 1;
-  if (early_exits_ > most_early_kills) {
+  now_.early_exits += own_doing ? most_early_kills / most_early_exits + 1 : 1;
+  if (now_.early_exits > most_early_kills) {
     throw EngineError(
         fmt::format("the engine does not stay until it is given work: {}; what it printed is in the log "
                     "of worker {}",
@@ -320,7 +340,7 @@ void Dispatcher::exited_without_job(int number, const ExitStatus& ending, Stage 
   }
 }
 
-void Dispatcher::handle(const StopSignal&) {
+void Dispatcher::obey_stop_signal() {
   if (stopping_ == Stopping::draining || stopping_ == Stopping::finished) {
     listener_.note("stopping at once");
     stop(Stopping::at_once);

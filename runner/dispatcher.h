@@ -1,7 +1,9 @@
 // Gives seeds to workers and hears what becomes of them, until every point is decided or the run is stopped.
 //
 // One turn: hear what happened, book all of it in one transaction, and act only after the commit: a job is
-// sent when its attempt is durable, a spool file goes when its result is.
+// sent when its attempt is durable, a spool file goes when its result is. When the disk is full, what
+// happened is kept and booked again every few seconds, and until that succeeds no seed is given out: workers
+// go on with those they have.
 #pragma once
 
 #include <chrono>
@@ -13,6 +15,7 @@
 #include <vector>
 
 #include "runner/ledger.h"
+#include "runner/room.h"
 #include "runner/worker_pool.h"
 
 namespace peclet::runner {
@@ -28,6 +31,8 @@ struct DispatchSettings {
   std::chrono::duration<double> lease{120};
   double checkpoint_seconds = 60;
   std::optional<std::chrono::duration<double>> time_limit{};
+  // Called at every turn, about twice a second or more often.
+  std::function<void()> chore = [] {};
 };
 
 class Dispatcher {
@@ -67,6 +72,12 @@ class Dispatcher {
     std::optional<AttemptOutcome> condemned{};  // killed by us, and why
     std::string message{};
   };
+  // What booking changes here, to be taken back with it.
+  struct Picture {
+    std::vector<Worker> workers;
+    int results = 0;
+    int early_exits = 0;  // of workers without a job, in a row
+  };
   enum class Stopping { no, finished, draining, at_once };
 
   void handle(const Hello& event);
@@ -74,26 +85,39 @@ class Dispatcher {
   void handle(const ResultSpooled& event);
   void handle(const JobFailed& event);
   void handle(const Drained& event);
+  void handle(const ShortOfRoom& event);
   void handle(const Garbled& event);
   void handle(const Exited& event);
-  void handle(const StopSignal& event);
+  void handle(const StopSignal&) {}  // listen() has acted on it
 
   void turn();
   void stay_awake();
+  void listen();
+  // Books what was heard. False: there is no room, and nothing has changed.
+  bool book();
+  void take_back(const Picture& before);
+  void begin_shortage(const std::filesystem::path& folder, std::uint64_t bytes);
+  void look_for_room();
+  void end_shortage();
+  void settle_spool();
+  void obey_stop_signal();
   void start_workers();
   void give_out_seeds();
   void judge_leases();
+  void judge_time();
   void show_leases();
   void stop(Stopping why);
   void report();
 
   bool has_job(int worker, std::int64_t job);
+  // Whether the worker may have failed because it could not write.
+  bool lacked_room(int worker);
   void condemn(int worker, AttemptOutcome outcome, const std::string& message);
   void set_idle(int worker);
   void end_assignment(int worker, const AttemptEnd& end);
   void exited_during_job(int worker, const ExitStatus& ending);
   void exited_without_job(int worker, const ExitStatus& ending, Stage stage);
-  Worker& at(int worker) { return workers_.at(static_cast<std::size_t>(worker)); }
+  Worker& at(int worker) { return now_.workers.at(static_cast<std::size_t>(worker)); }
   bool anyone_there() const;
   bool left_to_others() const;
 
@@ -103,13 +127,15 @@ class Dispatcher {
   RunListener& listener_;
   DispatchSettings settings_;
   Clock clock_;
-  std::vector<Worker> workers_;
+  Picture now_;
+  std::vector<WorkerEvent> news_;             // and not booked yet
   std::vector<std::pair<int, Job>> to_send_;  // after the commit
+  Shortage shortage_;
+  bool unbooked_ = false;  // for want of room
+  bool told_of_shortage_ = false;
   Stopping stopping_ = Stopping::no;
   Time started_, heard_, reported_, leases_shown_;
   Awake awake_{}, stopping_since_{};
-  int results_ = 0;
-  int early_exits_ = 0;  // of workers without a job, in a row
 };
 
 }  // namespace peclet::runner

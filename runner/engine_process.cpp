@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -41,26 +42,52 @@ void check(int error, const char* doing) {
   if (error != 0) throw std::system_error(error, std::generic_category(), doing);
 }
 
+// Of the pipe that an engine prints into, and the most that is read of it at a time.
+constexpr int pipe_size = 1 << 18;
+
+// Two descriptors that belong together; those that are left are closed.
+struct Pair {
+  std::array<int, 2> ends{-1, -1};
+  Pair() = default;
+  Pair(const Pair&) = delete;
+  Pair& operator=(const Pair&) = delete;
+  ~Pair() {
+    for (const int end : ends) {
+      if (end >= 0) close(end);
+    }
+  }
+};
+
+// As exec(3) wants them; valid as long as the words are.
+std::vector<char*> pointers(std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  pointers.reserve(words.size() + 1);
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
 // The settings of posix_spawn(3), which own memory.
 class SpawnSettings {
  public:
-  SpawnSettings(int socket, const EngineCommand& command, const fs::path& log) {
+  // What the engine prints goes to `output`.
+  SpawnSettings(int socket, int output, const EngineCommand& command) {
     check(posix_spawn_file_actions_init(&actions_), "posix_spawn");
     check(posix_spawnattr_init(&attributes_), "posix_spawn");
     check(posix_spawn_file_actions_adddup2(&actions_, socket, 0), "posix_spawn");
-    check(posix_spawn_file_actions_addopen(&actions_, 1, log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644),
-          log.c_str());
+    check(posix_spawn_file_actions_adddup2(&actions_, output, 1), "posix_spawn");
     check(posix_spawn_file_actions_adddup2(&actions_, 1, 2), "posix_spawn");
-    // The last of them: the log's name is the owner's.
     if (!command.folder.empty()) {
       check(posix_spawn_file_actions_addchdir_np(&actions_, command.folder.c_str()), command.folder.c_str());
     }
 
-    // The owner takes signals from a descriptor and has them blocked; the engine starts with the usual ones.
+    // The owner takes signals from a descriptor and has them blocked; the engine starts with the usual ones,
+    // but for SIGPIPE: an engine that prints when its owner is gone must live to write its checkpoint.
     sigset_t blocked, all;
     sigemptyset(&blocked);
     for (const int number : command.blocked_signals) sigaddset(&blocked, number);
     sigfillset(&all);
+    sigdelset(&all, SIGPIPE);
     check(posix_spawnattr_setsigmask(&attributes_, &blocked), "posix_spawn");
     check(posix_spawnattr_setsigdefault(&attributes_, &all), "posix_spawn");
     check(posix_spawnattr_setpgroup(&attributes_, 0), "posix_spawn");
@@ -107,31 +134,48 @@ std::string to_string(const ExitStatus& ending) {
   return fmt::format("exit status {}", ending.status.value_or(-1));
 }
 
+EngineProcess::EngineProcess(const EngineCommand& command) {
+  Pair pipe;
+  if (pipe2(pipe.ends.data(), O_CLOEXEC) != 0) check(errno, "pipe");
+  fcntl(pipe.ends[0], F_SETFL, O_NONBLOCK);
+  fcntl(pipe.ends[0], F_SETPIPE_SZ, pipe_size);  // a smaller one does it, too
+  start(command, pipe.ends[1]);
+  output_ = std::exchange(pipe.ends[0], -1);
+}
+
 EngineProcess::EngineProcess(const EngineCommand& command, const fs::path& log) {
-  int ends[2];
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) check(errno, "socketpair");
-  const SpawnSettings settings(ends[1], command, log);
+  Pair file;
+  file.ends[0] = open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (file.ends[0] < 0) check(errno, log.c_str());
+  start(command, file.ends[0]);
+}
+
+void EngineProcess::start(const EngineCommand& command, int output) {
+  Pair socket;
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, socket.ends.data()) != 0) check(errno, "socketpair");
+  const SpawnSettings settings(socket.ends[1], output, command);
   std::vector<std::string> words{command.program.string()};
   words.insert(words.end(), command.arguments.begin(), command.arguments.end());
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
+  std::vector<std::string> variables = command.environment;
+  for (char** variable = environ; *variable != nullptr; ++variable) variables.emplace_back(*variable);
   const int error = posix_spawn(&process_, command.program.c_str(), settings.actions(), settings.attributes(),
-                                arguments.data(), environ);
-  close(ends[1]);
-  if (error != 0) {
-    close(ends[0]);
-    throw std::system_error(error, std::generic_category(), command.program.string());
-  }
-  descriptor_ = ends[0];
+                                pointers(words).data(), pointers(variables).data());
+  if (error != 0) throw std::system_error(error, std::generic_category(), command.program.string());
+  descriptor_ = std::exchange(socket.ends[0], -1);
 }
 
 EngineProcess::EngineProcess(EngineProcess&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)), process_(std::exchange(other.process_, -1)) {}
+    : descriptor_(std::exchange(other.descriptor_, -1)),
+      output_(std::exchange(other.output_, -1)),
+      process_(std::exchange(other.process_, -1)) {}
 
 EngineProcess::~EngineProcess() {
   hang_up();
+  leave_or_be_killed();
+  if (output_ >= 0) close(output_);
+}
+
+void EngineProcess::leave_or_be_killed() {
   if (process_ < 0) return;
   const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(5);
   while (std::chrono::steady_clock::now() < patience) {
@@ -140,6 +184,13 @@ EngineProcess::~EngineProcess() {
   }
   kill();
   waitpid(process_, nullptr, 0);
+}
+
+std::string EngineProcess::printed() {
+  std::string text(pipe_size, '\0');
+  const ssize_t count = output_ >= 0 ? read(output_, text.data(), text.size()) : 0;
+  text.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+  return text;
 }
 
 void EngineProcess::hang_up() {

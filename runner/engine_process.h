@@ -19,6 +19,7 @@ struct EngineCommand {
   // Signals that the engine never hears, because whoever sends them to all processes of a job means its
   // owner, which then asks the engine by frames.
   std::vector<int> blocked_signals{};
+  std::vector<std::string> environment{};  // "NAME=value", beside that of this process
 };
 
 // Finds campaign.engine[0]: absolute, or with a slash relative to the campaign file's folder; else beside the
@@ -39,9 +40,10 @@ std::string to_string(const ExitStatus& ending);
 class EngineProcess {
  public:
   // Starts the engine in a process group of its own, so that a Ctrl-C at the terminal reaches only its owner.
-  // What it prints is appended to `log` (/dev/null for nowhere). Our end of the socket is close-on-exec, so
-  // an owner's death is the end of file that tells the engine to checkpoint and leave. Throws
-  // std::system_error.
+  // What it prints goes into a pipe, to be read with printed(), or is appended to `log`. Our end of the
+  // socket is close-on-exec, so an owner's death is the end of file that tells the engine to checkpoint and
+  // leave. Throws std::system_error.
+  explicit EngineProcess(const EngineCommand& command);
   EngineProcess(const EngineCommand& command, const std::filesystem::path& log);
   // Closes the socket, waits briefly for the engine to leave by itself, then kills it.
   ~EngineProcess();
@@ -50,6 +52,9 @@ class EngineProcess {
 
   int descriptor() const { return descriptor_; }
   pid_t process() const { return process_; }
+
+  // What it has printed since, at most some hundred kilobytes at a time; never waits.
+  std::string printed();
 
   // Closes our end of the socket: the engine checkpoints and leaves.
   void hang_up();
@@ -62,7 +67,11 @@ class EngineProcess {
   std::optional<ExitStatus> reap();
 
  private:
+  void start(const EngineCommand& command, int output);
+  void leave_or_be_killed();
+
   int descriptor_ = -1;
+  int output_ = -1;     // our end of the pipe
   pid_t process_ = -1;  // -1: reaped
 };
 

@@ -45,8 +45,6 @@ Ledger::Ledger(Database& database, const Campaign& campaign, CampaignDirectory d
       retries_(retries),
       points_(database.points()) {
   for (const PointRecord& known : points_) places_[known.hash] = *known.place;
-  costs_.resize(points_.size());
-  running_.resize(points_.size());
   ingest_spool();
   if (const int recovered = queue_.recover(); recovered > 0) {
     listener_.note(fmt::format("{} seeds that an earlier run left unfinished go on", recovered));
@@ -55,28 +53,52 @@ Ledger::Ledger(Database& database, const Campaign& campaign, CampaignDirectory d
 }
 
 void Ledger::load() {
-  std::vector<std::vector<std::optional<Outcome>>> outcomes;
+  read();
   for (const PointRecord& known : points_) {
-    outcomes.push_back(database_.outcomes(known.id));
     for (const RealisationRecord& record : database_.realisations(known.id)) {
       // A worker that outlived its owner may have saved one after its seed had ended elsewhere.
       if (!record.cause.empty()) fs::remove(directory_.checkpoint(known.hash, record.seed));
+    }
+  }
+  Transaction booking(database_.connection());
+  for (int place = 0; place < scheduler_->points(); ++place) {
+    queue_.store_looks(point(place).id, scheduler_->looks(place));
+    if (!scheduler_->decided(place)) queue_.enqueue(point(place).id, scheduler_->wanted(place));
+  }
+  booking.commit();
+}
+
+void Ledger::read() {
+  std::vector<std::vector<std::optional<Outcome>>> outcomes;
+  costs_.assign(points_.size(), {});
+  running_.assign(points_.size(), 0);
+  for (const PointRecord& known : points_) {
+    outcomes.push_back(database_.outcomes(known.id));
+    for (const RealisationRecord& record : database_.realisations(known.id)) {
       if (record.wall_seconds) costs_[static_cast<std::size_t>(*known.place)].add(*record.wall_seconds);
     }
   }
   scheduler_.emplace(std::move(outcomes), campaign_.target, campaign_.minimum_realisations,
                      campaign_.maximum_realisations);
-  Transaction booking(database_.connection());
   for (int place = 0; place < scheduler_->points(); ++place) {
     const Cost& cost = costs_[static_cast<std::size_t>(place)];
     if (cost.count > 0) scheduler_->set_cost(place, cost.sum / cost.count);
     scheduler_->set_priority(place, point(place).priority);
     scheduler_->set_cancelled(place, point(place).cancelled);
-    queue_.store_looks(point(place).id, scheduler_->looks(place));
-    if (!scheduler_->decided(place)) queue_.enqueue(point(place).id, scheduler_->wanted(place));
     leave_to_batch_system(place);
   }
-  booking.commit();
+}
+
+void Ledger::roll_back() {
+  to_remove_.clear();
+  to_reject_.clear();
+  lacking_.clear();
+  read();
+}
+
+void Ledger::keep_running(const Grant& grant) {
+  scheduler_->begin(grant.id);
+  ++running_[static_cast<std::size_t>(grant.id.point)];
 }
 
 void Ledger::ingest_spool_of(const CampaignDirectory& directory) {

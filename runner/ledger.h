@@ -63,6 +63,11 @@ class Ledger {
   // engine, or when this run has started with another one.
   std::int64_t admit_engine(const Json& engine);
 
+  // The transaction failed: forgets what was to follow it, and takes the picture from the database again, in
+  // which the seeds that workers have are then to be marked with keep_running().
+  void roll_back();
+  void keep_running(const Grant& grant);
+
   // Removes and moves files whose results are durable now. Throws InputError when results lack the
   // observable.
   void after_commit();
@@ -76,6 +81,7 @@ class Ledger {
 
  private:
   void load();
+  void read();
   void leave_to_batch_system(int place);
   void ingest_spool_of(const CampaignDirectory& directory);
   Stored take(const RealisationResult& result, const std::filesystem::path& spool);

@@ -85,6 +85,22 @@ int perform(const IngestOptions& options) { return ingest_campaign(options); }
 
 int perform(const TaskOptions& options) { return run_task(options); }
 
+int perform(const BackupOptions& options) {
+  print(backup_campaign(options));
+  return 0;
+}
+
+int perform(const RestoreOptions& options) {
+  print(restore_campaign(options));
+  return 0;
+}
+
+int perform(const DoctorOptions& options) {
+  const Diagnosis diagnosis = examine_campaign(options);
+  print(diagnosis.text);
+  return diagnosis.exit_code;
+}
+
 int complain(const std::exception& error, int code) {
   say(fmt::format("peclet: {}\n", error.what()));
   return code;

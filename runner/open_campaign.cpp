@@ -3,17 +3,20 @@
 #include <fmt/format.h>
 
 #include "contract/input_error.h"
+#include "runner/restore.h"
 
 namespace peclet::runner {
 namespace {
 
 namespace fs = std::filesystem;
 
-CampaignDirectory locate(const fs::path& given, const fs::path& chosen) {
+}  // namespace
+
+CampaignDirectory find_campaign(const fs::path& given, const fs::path& chosen) {
   const bool is_folder = fs::is_directory(given);
   CampaignDirectory directory = is_folder ? CampaignDirectory(fs::absolute(given).lexically_normal())
                                           : campaign_directory(given, chosen);
-  if (fs::exists(directory.database())) return directory;
+  if (fs::exists(directory.database()) || !restore_hint(directory).empty()) return directory;
   if (is_folder) {
     throw InputError(given.string(), "", "",
                      "no campaign has been run in this folder; give the campaign file or its .peclet folder");
@@ -24,10 +27,9 @@ CampaignDirectory locate(const fs::path& given, const fs::path& chosen) {
                                directory.database().string()));
 }
 
-}  // namespace
-
 OpenCampaign open_campaign(const fs::path& given, const fs::path& chosen) {
-  CampaignDirectory directory = locate(given, chosen);
+  CampaignDirectory directory = find_campaign(given, chosen);
+  refuse_lost_database(directory);
   Database database = Database::open_reader(directory.database());
   return {std::move(directory), std::move(database)};
 }

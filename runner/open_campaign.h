@@ -14,6 +14,9 @@ struct OpenCampaign {
   Database database;  // a reader's
 };
 
+// The folder of a campaign that has been run. Also when its database is gone, but not its backups.
+CampaignDirectory find_campaign(const std::filesystem::path& given, const std::filesystem::path& chosen);
+
 // `given` is a campaign's folder, or its file (whose folder is `chosen`, or beside it when that is empty).
 // Throws InputError when there is no campaign there that has been run, IntegrityError, DatabaseError.
 OpenCampaign open_campaign(const std::filesystem::path& given, const std::filesystem::path& chosen);

@@ -42,6 +42,9 @@ class Reader {
     add_hand_over();
     add_ingest();
     add_task();
+    add_backup();
+    add_restore();
+    add_doctor();
   }
 
   CommandLine read(int argc, char** argv) {
@@ -127,6 +130,9 @@ class Reader {
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     verb->add_option("--checkpoint", run_.checkpoint_seconds, "Seconds between checkpoints of a realisation")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    verb->add_option("--backup", run_.backup_seconds, "Seconds between backups of the database")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     verb->add_flag("--quiet", run_.quiet, "No progress on stderr");
@@ -252,6 +258,47 @@ class Reader {
     choose(verb, task_);
   }
 
+  void add_backup() {
+    CLI::App* const verb = add_verb("backup", "Copy a campaign's database, checked, also while it runs",
+                                    "peclet backup flow-curve.json /mnt/usb/flow-curve --checkpoints");
+    add_file_or_folder(verb, backup_.campaign);
+    verb->add_option(
+        "target", backup_.target,
+        "Folder for backup.db; the backup there before becomes backup.previous.db; the campaign's "
+        "own backup/ unless given");
+    add_directory(verb, backup_.directory);
+    verb->add_flag("--checkpoints", backup_.checkpoints,
+                   "With checkpoints and spool, so that seeds that run now need not start again");
+    verb->add_flag("--json", backup_.json, "For programs");
+    choose(verb, backup_);
+  }
+
+  void add_restore() {
+    CLI::App* const verb =
+        add_verb("restore", "Put a backup in the place of a lost or damaged database, here or elsewhere",
+                 "peclet restore /mnt/usb/flow-curve flow-curve.json");
+    verb->add_option("backup", restore_.backup, "Folder of backups, or one file")->required();
+    verb->add_option("campaign", restore_.campaign,
+                     "Campaign file or .peclet folder; made when there is none")
+        ->required();
+    add_directory(verb, restore_.directory);
+    verb->add_flag(
+        "--force", restore_.force,
+        "Also in the place of a sound database that is as new, or another campaign's; it is kept aside");
+    choose(verb, restore_);
+  }
+
+  void add_doctor() {
+    CLI::App* const verb =
+        add_verb("doctor", "Examine a campaign: database, files, processes, clock and disk",
+                 "peclet doctor flow-curve.json --repair");
+    add_file_or_folder(verb, doctor_.campaign);
+    add_directory(verb, doctor_.directory);
+    verb->add_flag("--repair", doctor_.repair, "Do the safe repairs that are named as cures");
+    verb->add_flag("--json", doctor_.json, "For programs");
+    choose(verb, doctor_);
+  }
+
   CLI::App app_{"Campaigns of dense-suspension simulations: from a scene to converged averages", "peclet"};
   std::optional<Verb> verb_;
   InitOptions init_;
@@ -265,6 +312,9 @@ class Reader {
   HandOverOptions hand_over_;
   IngestOptions ingest_;
   TaskOptions task_;
+  BackupOptions backup_;
+  RestoreOptions restore_;
+  DoctorOptions doctor_;
 };
 
 }  // namespace

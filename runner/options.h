@@ -4,12 +4,15 @@
 #include <optional>
 #include <variant>
 
+#include "runner/backup.h"
 #include "runner/batch_task.h"
+#include "runner/doctor.h"
 #include "runner/explain.h"
 #include "runner/export.h"
 #include "runner/hand_over.h"
 #include "runner/init.h"
 #include "runner/plan.h"
+#include "runner/restore.h"
 #include "runner/run.h"
 #include "runner/status.h"
 #include "runner/validate.h"
@@ -18,7 +21,8 @@
 namespace peclet::runner {
 
 using Verb = std::variant<InitOptions, ValidateOptions, PlanOptions, RunOptions, StatusOptions, WatchOptions,
-                          ExplainOptions, ExportOptions, HandOverOptions, IngestOptions, TaskOptions>;
+                          ExplainOptions, ExportOptions, BackupOptions, RestoreOptions, DoctorOptions,
+                          HandOverOptions, IngestOptions, TaskOptions>;
 
 struct CommandLine {
   std::optional<Verb> verb;  // nothing: there is nothing left to do but to leave with

@@ -5,6 +5,7 @@
 
 #include "contract/input_error.h"
 #include "runner/queue.h"
+#include "runner/restore.h"
 #include "runner/scene_check.h"
 #include "runner/spool.h"
 
@@ -14,7 +15,6 @@ namespace {
 constexpr int exit_converged = 0;
 constexpr int exit_unconverged = 3;
 constexpr int exit_integrity = 6;
-constexpr int exit_stopped = 75;
 
 // Returns the folder itself. From its creation on things are written.
 const CampaignDirectory& created(const CampaignDirectory& directory, bool force) {
@@ -29,25 +29,36 @@ const CampaignDirectory& created(const CampaignDirectory& directory, bool force)
   return directory;
 }
 
-Database open_for_owner(const CampaignDirectory& directory, const Campaign& campaign) {
-  create_folders(directory);
-  remove_unfinished_files(directory.spool());
-  remove_unfinished_files(directory.checkpoints());
-  Database database = Database::open_owner(directory.database());
-  Queue(database).adopt(campaign);
-  return database;
-}
-
 }  // namespace
 
-OwnedCampaign::OwnedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen,
-                             bool force)
+ClaimedCampaign::ClaimedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen,
+                                 bool force)
     : campaign(read_campaign(file)),
       command(resolve_engine(campaign, file)),
       engine(check_scenes(campaign, file, command).front().identity),
       directory(campaign_directory(file, chosen)),
-      lock(created(directory, force)),
-      database(open_for_owner(directory, campaign)) {}
+      lock(created(directory, force)) {}
+
+Database open_for_owner(const ClaimedCampaign& claimed) {
+  const CampaignDirectory& directory = claimed.directory;
+  create_folders(directory);
+  for (const std::filesystem::path& folder : {directory.root(), directory.spool(), directory.checkpoints(),
+                                              directory.failures(), directory.backup()}) {
+    remove_unfinished_files(folder);
+  }
+  refuse_lost_database(directory);
+  try {
+    Database database = Database::open_owner(directory.database());
+    Queue(database).adopt(claimed.campaign);
+    return database;
+  } catch (const IntegrityError& error) {
+    throw IntegrityError(error.what() + restore_hint(directory));
+  }
+}
+
+OwnedCampaign::OwnedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen,
+                             bool force)
+    : ClaimedCampaign(file, chosen, force), database(open_for_owner(*this)) {}
 
 int exit_code(Database& database, const Scheduler& scheduler, bool finished) {
   const std::vector<PointRecord> points = database.points();

@@ -13,17 +13,29 @@ namespace peclet::runner {
 // A seed may fail so often beyond the first time.
 constexpr int retries = 2;
 
-struct OwnedCampaign {
+constexpr int exit_stopped = 75;
+
+// Checked and locked: nobody else may write it now.
+struct ClaimedCampaign {
   Campaign campaign;
   EngineCommand command;
   Json engine;  // provenance of the engine here
   CampaignDirectory directory;
   OwnerLock lock;
-  Database database;  // has adopted the campaign
 
-  // Checks the campaign file and its scenes, takes the lock, opens or creates the database and makes it that
-  // of the file. `directory` as in campaign_directory(); `force`: on a network file system, too. Throws
-  // InputError before anything is written, OwnedByAnother, IntegrityError, DatabaseError.
+  // Checks the campaign file and its scenes, makes the folder and takes the lock. `directory` as in
+  // campaign_directory(); `force`: on a network file system, too. Throws InputError before anything is
+  // written, OwnedByAnother.
+  ClaimedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen, bool force);
+};
+
+// Opens or creates the database and makes it that of the campaign file, after what a dead owner left
+// unfinished has been removed. Throws IntegrityError, which says how to restore it from a backup where there
+// is one, InputError, DatabaseError.
+Database open_for_owner(const ClaimedCampaign& claimed);
+
+struct OwnedCampaign : ClaimedCampaign {
+  Database database;  // has adopted the campaign
   OwnedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen, bool force);
 };
 

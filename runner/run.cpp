@@ -1,15 +1,20 @@
 #include "runner/run.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <memory>
 #include <thread>
 
 #include "runner/dispatcher.h"
 #include "runner/owned_campaign.h"
+#include "runner/periodic_backup.h"
 #include "runner/progress.h"
+#include "runner/room.h"
+#include "runner/run_log.h"
 #include "runner/status.h"
 #include "runner/worker_process.h"
 
@@ -29,34 +34,78 @@ Team team(const RunOptions& options) {
   return {std::max(1, cores / threads), threads};
 }
 
-Dispatcher::Ending dispatch(Database& database, Ledger& ledger, const RunOptions& options,
-                            const EngineCommand& command, const CampaignDirectory& directory,
-                            Progress& progress) {
+// A run's database and picture, ready to be dispatched from.
+struct Opened {
+  Opened(const ClaimedCampaign& claimed, RunListener& listener)
+      : database(open_for_owner(claimed)),
+        ledger(database, claimed.campaign, claimed.directory, listener, retries) {}
+
+  Database database;
+  Ledger ledger;
+};
+
+// Waits while the disk is too full to begin. Nothing: a signal came first.
+std::unique_ptr<Opened> open_when_there_is_room(const ClaimedCampaign& claimed, RunListener& listener,
+                                                StopSignals& signals) {
+  for (bool first = true;; first = false) {
+    try {
+      return std::make_unique<Opened>(claimed, listener);
+    } catch (const std::exception& error) {
+      if (!means_no_room(error)) throw;
+      if (first) {
+        listener.warn(shortage_text(claimed.directory.root(), 0) +
+                      "; the campaign begins when there is room");
+      }
+    }
+    if (signals.wait(std::chrono::seconds(3))) return nullptr;
+  }
+}
+
+Dispatcher::Ending dispatch(Opened& opened, const RunOptions& options, const ClaimedCampaign& claimed,
+                            RunLog& log, StopSignals& signals) {
+  using std::chrono::steady_clock;
+  const CampaignDirectory& directory = claimed.directory;
   const Team size = team(options);
+  PeriodicBackup backup(directory, std::chrono::duration<double>(options.backup_seconds), log,
+                        steady_clock::now());
   DispatchSettings settings;
   settings.threads = size.threads;
   settings.lease = std::chrono::duration<double>(options.lease_seconds);
   settings.checkpoint_seconds = options.checkpoint_seconds;
   if (options.time_limit) settings.time_limit = std::chrono::duration<double>(*options.time_limit);
-  StopSignals signals;
-  ProcessPool pool(size.workers, command, directory, signals);
-  Dispatcher dispatcher(database, ledger, pool, progress, settings, std::chrono::steady_clock::now);
-  return dispatcher.run();
+  settings.chore = [&backup] { backup.attend(steady_clock::now()); };
+  log.record(fmt::format("{} begins: process {}, {} workers of {} threads, engine {}",
+                         directory.root().string(), getpid(), size.workers, size.threads,
+                         claimed.command.program.string()));
+  ProcessPool pool(size.workers, claimed.command, directory, signals);
+  Dispatcher dispatcher(opened.database, opened.ledger, pool, log, settings, steady_clock::now);
+  const Dispatcher::Ending ending = dispatcher.run();
+  backup.finish();
+  return ending;
 }
 
 }  // namespace
 
 int run_campaign(const RunOptions& options) {
-  OwnedCampaign owned(options.campaign, options.directory, options.force);
-  int code = 0;
+  const ClaimedCampaign claimed(options.campaign, options.directory, options.force);
+  StopSignals signals;
+  std::unique_ptr<Opened> opened;
+  int code = exit_stopped;
   {
     Progress progress(Progress::style_of_stderr(options.quiet));
-    Ledger ledger(owned.database, owned.campaign, owned.directory, progress, retries);
-    const Dispatcher::Ending ending =
-        dispatch(owned.database, ledger, options, owned.command, owned.directory, progress);
-    code = exit_code(owned.database, ledger.scheduler(), ending == Dispatcher::Ending::finished);
+    RunLog log(claimed.directory.run_log(), progress);
+    opened = open_when_there_is_room(claimed, log, signals);
+    if (!opened) return exit_stopped;
+    try {
+      const Dispatcher::Ending ending = dispatch(*opened, options, claimed, log, signals);
+      code = exit_code(opened->database, opened->ledger.scheduler(), ending == Dispatcher::Ending::finished);
+    } catch (const std::exception& error) {
+      log.record(fmt::format("ends with an error: {}", error.what()));
+      throw;
+    }
+    log.record(fmt::format("ends with exit code {}", code));
   }
-  std::fputs(status_table(owned.database).c_str(), stdout);
+  std::fputs(status_table(opened->database).c_str(), stdout);
   return code;
 }
 

@@ -16,6 +16,7 @@ struct RunOptions {
   bool force = false;                // use a network file system all the same
   double lease_seconds = 120;        // a worker without a new step for so long is hung
   double checkpoint_seconds = 60;    // between two checkpoints of a realisation
+  double backup_seconds = 600;       // between two backups of the database
 };
 
 // Runs until every point is decided or the run is stopped. The result is the exit code: 0 every point

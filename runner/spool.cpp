@@ -76,11 +76,20 @@ fs::path reject(const CampaignDirectory& directory, const fs::path& path) {
   return target;
 }
 
-void remove_unfinished_files(const fs::path& folder) {
+std::vector<fs::path> unfinished_files(const fs::path& folder) {
+  std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() != ".tmp") continue;
     const std::optional<int> writer = writer_of(entry.path());
-    if (writer && kill(*writer, 0) != 0 && errno == ESRCH) fs::remove(entry.path());
+    if (writer && kill(*writer, 0) != 0 && errno == ESRCH) files.push_back(entry.path());
+  }
+  return files;
+}
+
+void remove_unfinished_files(const fs::path& folder) {
+  for (const fs::path& file : unfinished_files(folder)) {
+    // SQLite may have been at it.
+    for (const char* const suffix : {"", "-wal", "-shm", "-journal"}) fs::remove(file.string() + suffix);
   }
 }
 

@@ -23,6 +23,8 @@ std::vector<std::filesystem::path> spool_files(const CampaignDirectory& director
 // Moves a file to spool/rejected/ under a name that is free there, and says where it is now.
 std::filesystem::path reject(const CampaignDirectory& directory, const std::filesystem::path& path);
 
+// The unfinished temporary files in `folder` whose writers no longer run.
+std::vector<std::filesystem::path> unfinished_files(const std::filesystem::path& folder);
 // Removes the unfinished temporary files in `folder` whose writers no longer run.
 void remove_unfinished_files(const std::filesystem::path& folder);
 

@@ -6,17 +6,18 @@
 #include <cmath>
 #include <limits>
 
+#include "contract/durable_file.h"
 #include "runner/integrity_error.h"
 
 namespace peclet::runner {
 namespace {
 
-[[noreturn]] void fail(const std::string& path, sqlite3* handle, int code, std::string_view doing) {
+[[noreturn]] void complain(const std::string& path, sqlite3* handle, int code, std::string_view doing) {
   const std::string said = handle != nullptr ? sqlite3_errmsg(handle) : sqlite3_errstr(code);
   const std::string message = fmt::format("{}: {} (SQLite code {}) while: {}", path, said, code, doing);
   const int primary = code & 0xff;
   if (primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB) throw IntegrityError(message);
-  throw DatabaseError(message, code);
+  throw DatabaseError(message, code, handle != nullptr ? sqlite3_system_errno(handle) : 0);
 }
 
 int flags_of(Connection::Access access) {
@@ -33,6 +34,12 @@ int flags_of(Connection::Access access) {
 
 }  // namespace
 
+bool DatabaseError::no_room() const {
+  const int primary = code_ & 0xff;
+  if (primary == SQLITE_FULL) return true;
+  return (primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN) && means_no_room(system_error_);
+}
+
 Connection::Connection(const std::string& path, Access access, int busy_milliseconds) : path_(path) {
   const int code = sqlite3_open_v2(path.c_str(), &handle_,
                                    flags_of(access) | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, nullptr);
@@ -40,8 +47,10 @@ Connection::Connection(const std::string& path, Access access, int busy_millisec
     sqlite3* const broken = handle_;
     handle_ = nullptr;
     const std::string said = broken != nullptr ? sqlite3_errmsg(broken) : sqlite3_errstr(code);
+    const int system_error = broken != nullptr ? sqlite3_system_errno(broken) : 0;
     sqlite3_close_v2(broken);
-    throw DatabaseError(fmt::format("{}: {} (SQLite code {}) while opening it", path, said, code), code);
+    throw DatabaseError(fmt::format("{}: {} (SQLite code {}) while opening it", path, said, code), code,
+                        system_error);
   }
   sqlite3_busy_timeout(handle_, busy_milliseconds);
 }
@@ -50,7 +59,7 @@ Connection::~Connection() { sqlite3_close_v2(handle_); }
 
 void Connection::execute(const std::string& sql) {
   const int code = sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr);
-  if (code != SQLITE_OK) fail(path_, handle_, code, sql);
+  if (code != SQLITE_OK) complain(path_, handle_, code, sql);
 }
 
 std::int64_t Connection::integer(const std::string& sql) {
@@ -69,17 +78,21 @@ std::int64_t Connection::last_insert_id() const { return sqlite3_last_insert_row
 
 int Connection::changes() const { return sqlite3_changes(handle_); }
 
+void Connection::fail(const std::string& doing, int code) const {
+  complain(path_, handle_, code != 0 ? code : sqlite3_extended_errcode(handle_), doing);
+}
+
 Statement::Statement(Connection& connection, std::string_view sql) : connection_(connection) {
   const int code = sqlite3_prepare_v3(connection.handle(), sql.data(), static_cast<int>(sql.size()),
                                       SQLITE_PREPARE_PERSISTENT, &statement_, nullptr);
-  if (code != SQLITE_OK) fail(connection.path(), connection.handle(), code, sql);
+  if (code != SQLITE_OK) complain(connection.path(), connection.handle(), code, sql);
 }
 
 Statement::~Statement() { sqlite3_finalize(statement_); }
 
 void Statement::check(int code) const {
   if (code == SQLITE_OK) return;
-  fail(connection_.path(), connection_.handle(), code, sqlite3_sql(statement_));
+  complain(connection_.path(), connection_.handle(), code, sqlite3_sql(statement_));
 }
 
 Statement& Statement::bind(std::int64_t value) {
@@ -111,7 +124,7 @@ bool Statement::step() {
     const std::string sql = sqlite3_sql(statement_);
     // Read the message before the statement is reset.
     try {
-      fail(connection_.path(), connection_.handle(), code, sql);
+      complain(connection_.path(), connection_.handle(), code, sql);
     } catch (...) {
       sqlite3_reset(statement_);
       throw;

@@ -14,15 +14,18 @@ struct sqlite3_stmt;
 
 namespace peclet::runner {
 
-// What SQLite said, where, and its extended result code. Nothing is retried or swallowed; a file that is
-// damaged or no database at all is an IntegrityError instead.
+// What SQLite said, where, its extended result code, and the errno behind it (0: none). Nothing is retried or
+// swallowed; a file that is damaged or no database at all is an IntegrityError instead.
 class DatabaseError : public std::runtime_error {
  public:
-  DatabaseError(const std::string& message, int code) : std::runtime_error(message), code_(code) {}
+  DatabaseError(const std::string& message, int code, int system_error = 0)
+      : std::runtime_error(message), code_(code), system_error_(system_error) {}
   int code() const { return code_; }
+  // The file system, or the user's quota of it, is full: nothing was changed, and it may be tried again.
+  bool no_room() const;
 
  private:
-  int code_;
+  int code_, system_error_;
 };
 
 class Connection {
@@ -43,6 +46,8 @@ class Connection {
   std::int64_t last_insert_id() const;
   // Rows changed by the last statement.
   int changes() const;
+  // Throws what SQLite says about its last call, which gave `code` (0: as it remembers), while doing `doing`.
+  [[noreturn]] void fail(const std::string& doing, int code = 0) const;
 
   sqlite3* handle() const { return handle_; }
   const std::string& path() const { return path_; }

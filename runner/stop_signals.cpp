@@ -1,5 +1,6 @@
 #include "runner/stop_signals.h"
 
+#include <poll.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
 
@@ -24,6 +25,11 @@ StopSignals::~StopSignals() {
 bool StopSignals::take() {
   signalfd_siginfo about{};
   return read(descriptor_, &about, sizeof(about)) == static_cast<ssize_t>(sizeof(about));
+}
+
+bool StopSignals::wait(std::chrono::milliseconds patience) {
+  pollfd watched{descriptor_, POLLIN, 0};
+  return poll(&watched, 1, static_cast<int>(patience.count())) > 0 && take();
 }
 
 }  // namespace peclet::runner

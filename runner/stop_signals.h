@@ -1,6 +1,7 @@
 // SIGINT and SIGTERM as something to poll for.
 #pragma once
 
+#include <chrono>
 #include <csignal>
 
 namespace peclet::runner {
@@ -16,6 +17,8 @@ class StopSignals {
   int descriptor() const { return descriptor_; }
   // Takes one signal that has come, if any.
   bool take();
+  // Waits for one at most so long, and takes it.
+  bool wait(std::chrono::milliseconds patience);
 
  private:
   sigset_t stopping_{};

@@ -57,6 +57,12 @@ struct Drained {
   std::int64_t job;
   std::int64_t step;
 };
+struct ShortOfRoom {  // could not write a file of its job, keeps its work and tries again
+  int worker;
+  std::int64_t job;
+  std::filesystem::path path;
+  std::uint64_t bytes;
+};
 struct Garbled {  // said something that is no message; it has been killed, Exited follows
   int worker;
   std::string message;
@@ -67,8 +73,8 @@ struct Exited {  // always the last one of a process
 };
 struct StopSignal {};  // SIGINT or SIGTERM came
 
-using WorkerEvent =
-    std::variant<Hello, Progressed, ResultSpooled, JobFailed, Drained, Garbled, Exited, StopSignal>;
+using WorkerEvent = std::variant<Hello, Progressed, ResultSpooled, JobFailed, Drained, ShortOfRoom, Garbled,
+                                 Exited, StopSignal>;
 
 class WorkerPool {
  public:

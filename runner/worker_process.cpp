@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <system_error>
 #include <utility>
 
@@ -19,6 +21,12 @@ using Time = std::chrono::steady_clock;
 constexpr std::chrono::seconds leaving_patience{2};
 // How soon to look again for the ending of a process that has closed its socket.
 constexpr std::chrono::milliseconds reaping_interval{2};
+
+// What an engine prints is taken from its pipe this often, so one that prints without end waits for us most
+// of the time, and its logs stay small.
+constexpr std::chrono::milliseconds log_interval{100};
+constexpr std::uint64_t largest_log = 1 << 20;
+constexpr int older_logs = 2;
 
 constexpr std::array<const char*, 3> phases{"packing", "equilibration", "production"};
 
@@ -69,6 +77,10 @@ WorkerEvent as_event(int worker, const Json& message) {
   if (type == "drained") {
     return Drained{worker, message.at("job").get<std::int64_t>(), message.at("step").get<std::int64_t>()};
   }
+  if (type == "no-room") {
+    return ShortOfRoom{worker, message.at("job").get<std::int64_t>(), message.at("path").get<std::string>(),
+                       message.at("bytes").get<std::uint64_t>()};
+  }
   throw FrameError("unexpected message: " + type);
 }
 
@@ -80,6 +92,13 @@ ProcessPool::ProcessPool(int workers, EngineCommand command, CampaignDirectory d
                          StopSignals& signals)
     : command_(std::move(command)), directory_(std::move(directory)), signals_(signals) {
   workers_.resize(static_cast<std::size_t>(workers));
+  for (int worker = 0; worker < workers; ++worker) {
+    logs_.push_back(std::make_unique<RotatingFile>(directory_.worker_log(worker), largest_log, older_logs));
+  }
+  // `peclet doctor` finds by these the workers that outlived their owner.
+  command_.environment.push_back("PECLET_CAMPAIGN=" + directory_.root().string());
+  command_.environment.push_back(fmt::format("PECLET_OWNER={}", getpid()));
+  std::signal(SIGPIPE, SIG_IGN);
 }
 
 ProcessPool::~ProcessPool() {
@@ -89,8 +108,7 @@ ProcessPool::~ProcessPool() {
 }
 
 void ProcessPool::start(int worker) {
-  workers_.at(static_cast<std::size_t>(worker)) =
-      std::make_unique<Worker>(Worker{EngineProcess(command_, directory_.worker_log(worker))});
+  workers_.at(static_cast<std::size_t>(worker)) = std::make_unique<Worker>(Worker{EngineProcess(command_)});
 }
 
 std::int64_t ProcessPool::process(int worker) const {
@@ -157,8 +175,19 @@ std::vector<WorkerEvent> ProcessPool::wait(std::chrono::milliseconds patience) {
       if ((watched[i].revents & ~POLLOUT) != 0) receive(numbers[i], events);
     }
   }
+  keep_what_is_printed();
   for (int number = 0; number < size(); ++number) reap(number, events);
   return events;
+}
+
+void ProcessPool::keep_what_is_printed() {
+  if (Time::now() - logs_kept_ < log_interval) return;
+  logs_kept_ = Time::now();
+  for (std::size_t number = 0; number < workers_.size(); ++number) {
+    if (!workers_[number]) continue;
+    const std::string text = workers_[number]->process.printed();
+    if (!text.empty()) logs_[number]->append(text);
+  }
 }
 
 // Takes everything that has come (a socket holds less than this), so that leases are judged by the latest
@@ -200,6 +229,9 @@ void ProcessPool::reap(int number, std::vector<WorkerEvent>& events) {
   if (!worker || !worker->deaf) return;
   if (const std::optional<ExitStatus> ending = worker->process.reap()) {
     events.emplace_back(Exited{number, *ending});
+    // Its last words say why.
+    const std::string text = worker->process.printed();
+    if (!text.empty()) logs_[static_cast<std::size_t>(number)]->append(text);
     worker.reset();
   } else if (worker->grace && Time::now() > *worker->grace) {
     worker->process.kill();

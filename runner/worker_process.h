@@ -9,6 +9,7 @@
 
 #include "contract/frames.h"
 #include "runner/campaign_directory.h"
+#include "runner/rotating_file.h"
 #include "runner/stop_signals.h"
 #include "runner/worker_pool.h"
 
@@ -16,7 +17,7 @@ namespace peclet::runner {
 
 class ProcessPool : public WorkerPool {
  public:
-  // `signals` must outlive the pool.
+  // `signals` must outlive the pool. From now on this process ignores SIGPIPE, and so do its engines.
   ProcessPool(int workers, EngineCommand command, CampaignDirectory directory, StopSignals& signals);
   // Hangs up on all workers: those that still run checkpoint and leave, or are killed after some seconds.
   ~ProcessPool() override;
@@ -39,6 +40,7 @@ class ProcessPool : public WorkerPool {
     std::optional<std::chrono::steady_clock::time_point> grace{};  // then it is killed
   };
 
+  void keep_what_is_printed();
   void send(int worker, const Json& message);
   void flush(Worker& worker);
   void receive(int number, std::vector<WorkerEvent>& events);
@@ -49,6 +51,8 @@ class ProcessPool : public WorkerPool {
   CampaignDirectory directory_;
   StopSignals& signals_;
   std::vector<std::unique_ptr<Worker>> workers_;
+  std::vector<std::unique_ptr<RotatingFile>> logs_;  // by worker
+  std::chrono::steady_clock::time_point logs_kept_{};
 };
 
 }  // namespace peclet::runner

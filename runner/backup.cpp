@@ -1,0 +1,182 @@
+#include "runner/backup.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <system_error>
+
+#include "contract/durable_file.h"
+#include "contract/input_error.h"
+#include "runner/database_copy.h"
+#include "runner/integrity_error.h"
+#include "runner/open_campaign.h"
+#include "runner/spool.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+
+// One writer of a folder at a time: `peclet backup` and the campaign's own backups may meet.
+class FolderLock {
+ public:
+  explicit FolderLock(const fs::path& folder)
+      : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX) != 0) {
+      if (errno == EINTR) continue;
+      close(descriptor_);
+      descriptor_ = -1;
+    }
+    if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), folder.string());
+  }
+  ~FolderLock() { close(descriptor_); }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+// Which campaign a database is of, or "" when it cannot tell any more.
+std::string campaign_in(const fs::path& path) {
+  try {
+    Connection database(path.string(), Connection::Access::read_only, 10'000);
+    return database.text("SELECT name || ', created at ' || created_at FROM campaign");
+  } catch (const IntegrityError&) {
+    return "";
+  }
+}
+
+void refuse_unsuitable_folder(const CampaignDirectory& directory, const fs::path& folder) {
+  if (fs::exists(folder) && !fs::is_directory(folder)) {
+    throw InputError(folder.string(), "", "", "must be a folder for backups");
+  }
+  if (fs::exists(CampaignDirectory(folder).lock())) {
+    throw InputError(folder.string(), "", "", "is the folder of a campaign; backups need one of their own");
+  }
+  if (!fs::exists(newest_backup(folder))) return;
+  const std::string there = campaign_in(newest_backup(folder));
+  if (there.empty() || there == campaign_in(directory.database())) return;
+  throw InputError(folder.string(), "", there, "holds backups of another campaign; choose another folder");
+}
+
+// A file may go while we look: its result was committed, and then it is in the database.
+bool copy_file_that_may_go(const fs::path& from, const fs::path& folder) {
+  try {
+    const std::string bytes = read_file(from);
+    write_durably(folder / from.filename(), bytes);
+    return true;
+  } catch (const std::system_error& error) {
+    if (error.code() == std::errc::no_such_file_or_directory) return false;
+    throw;
+  }
+}
+
+int copy_files(const fs::path& from, const fs::path& to) {
+  fs::create_directories(to);
+  int copied = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(from)) {
+    const bool whole = entry.is_regular_file() && entry.path().extension() != ".tmp";
+    if (whole && copy_file_that_may_go(entry.path(), to)) ++copied;
+  }
+  return copied;
+}
+
+// So that whoever restores the copy can say when and where it was made.
+void sign(Connection& copy, const CampaignDirectory& directory) {
+  Statement(copy,
+            "INSERT INTO event (at, kind, message) VALUES (strftime('%Y-%m-%dT%H:%M:%SZ'), 'backup', ?)")
+      .bind("copied from " + directory.database().string())
+      .run();
+}
+
+Json as_json(const Backup& backup) {
+  return {{"schema_version", 1},
+          {"file", backup.file.string()},
+          {"results", backup.results},
+          {"bytes", backup.bytes},
+          {"seconds", backup.seconds},
+          {"spool_files", backup.spool_files},
+          {"checkpoints", backup.checkpoints}};
+}
+
+std::string as_text(const Backup& backup, const CampaignDirectory& directory, bool checkpoints) {
+  std::string text = fmt::format("{}: {} results, {:.1f} MB, checked, in {:.1f} s\n", backup.file.string(),
+                                 backup.results, 1e-6 * static_cast<double>(backup.bytes), backup.seconds);
+  text += "in it: the campaign as last run and every committed result, attempt, look and event\n";
+  if (checkpoints) {
+    text += fmt::format("beside it: {} checkpoints and {} results on their way\n", backup.checkpoints,
+                        backup.spool_files);
+  }
+  text += fmt::format("not in it: {}states of blow-ups, logs, the engine\n",
+                      checkpoints ? "" : "checkpoints and spool (--checkpoints), ");
+  return text + fmt::format("go on from it with: peclet restore {} {}\n", backup.file.parent_path().string(),
+                            directory.root().filename().string());
+}
+
+}  // namespace
+
+fs::path newest_backup(const fs::path& folder) { return folder / "backup.db"; }
+
+fs::path previous_backup(const fs::path& folder) { return folder / "backup.previous.db"; }
+
+Contents examine(const fs::path& path) {
+  Connection database(path.string(), Connection::Access::read_only, 10'000);
+  if (!is_campaign_database(database)) {
+    throw IntegrityError(path.string() + ": is no database of a peclet campaign");
+  }
+  if (const std::string found = damage(database); !found.empty()) {
+    throw IntegrityError(fmt::format("{}: is damaged: {}", path.string(), found));
+  }
+  if (database.integer("SELECT count(*) FROM campaign") == 0) {
+    throw IntegrityError(path.string() + ": no campaign has been set up in it");
+  }
+  Contents contents;
+  contents.name = database.text("SELECT name FROM campaign");
+  contents.created_at = database.text("SELECT created_at FROM campaign");
+  contents.document = Json::parse(database.text("SELECT document FROM campaign"));
+  contents.results = database.integer("SELECT count(*) FROM result");
+  contents.attempts = database.integer("SELECT coalesce(max(attempt_id), 0) FROM attempt");
+  contents.backed_up_at = database.text(
+      "SELECT at FROM event WHERE event_id = (SELECT max(event_id) FROM event) AND kind = 'backup'");
+  return contents;
+}
+
+Backup make_backup(const CampaignDirectory& directory, const fs::path& folder, bool checkpoints) {
+  const auto started = std::chrono::steady_clock::now();
+  refuse_unsuitable_folder(directory, folder);
+  fs::create_directories(folder);
+  const FolderLock lock(folder);
+  remove_unfinished_files(folder);
+  Backup backup;
+  if (checkpoints) {
+    // Before the database: a result that is committed in between is in both, and counts once.
+    backup.spool_files = copy_files(directory.spool(), folder / "spool");
+    backup.checkpoints = copy_files(directory.checkpoints(), folder / "checkpoints");
+  }
+  const fs::path next = folder / "backup.next.db";
+  copy_database(directory.database(), next, [&](Connection& copy) {
+    sign(copy, directory);
+    backup.results = copy.integer("SELECT count(*) FROM result");
+  });
+  backup.file = newest_backup(folder);
+  if (fs::exists(backup.file)) fs::rename(backup.file, previous_backup(folder));
+  rename_durably(next, backup.file);
+  backup.bytes = fs::file_size(backup.file);
+  backup.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  return backup;
+}
+
+std::string backup_campaign(const BackupOptions& options) {
+  const OpenCampaign open = open_campaign(options.campaign, options.directory);
+  const fs::path folder =
+      options.target.empty() ? open.directory.backup() : fs::absolute(options.target).lexically_normal();
+  const Backup backup = make_backup(open.directory, folder, options.checkpoints);
+  return options.json ? as_json(backup).dump(2) + '\n' : as_text(backup, open.directory, options.checkpoints);
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,197 @@
+#include "runner/restore.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <vector>
+
+#include "contract/durable_file.h"
+#include "contract/input_error.h"
+#include "runner/backup.h"
+#include "runner/campaign.h"
+#include "runner/database_copy.h"
+#include "runner/integrity_error.h"
+#include "runner/queue.h"
+#include "runner/spool.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Source {
+  fs::path file;
+  Contents contents;
+  std::string remarks;  // why it is not a newer one
+};
+
+// The newest sound one. A damaged generation is a reason to look at the one before it, not to give up.
+Source find_backup(const fs::path& given) {
+  std::vector<fs::path> candidates{given};
+  if (fs::is_directory(given)) candidates = {newest_backup(given), previous_backup(given)};
+  Source source;
+  for (const fs::path& file : candidates) {
+    if (!fs::exists(file)) continue;
+    try {
+      source.contents = examine(file);
+      source.file = file;
+      return source;
+    } catch (const IntegrityError& error) {
+      source.remarks += fmt::format("{}\n", error.what());
+    }
+  }
+  if (!source.remarks.empty()) throw IntegrityError("there is no sound backup: " + source.remarks);
+  throw InputError(given.string(), "", "", "there is no backup here (a folder with backup.db, or one file)");
+}
+
+// What the present database holds; nothing when it is absent or damaged, and then `damage` says how.
+std::optional<Contents> examine_present(const fs::path& database, std::string& damage) {
+  if (!fs::exists(database)) return std::nullopt;
+  try {
+    return examine(database);
+  } catch (const IntegrityError& error) {
+    damage = error.what();
+  } catch (const DatabaseError& error) {
+    damage = error.what();
+  }
+  return std::nullopt;
+}
+
+void refuse_to_replace(const CampaignDirectory& directory, const Contents& present, const Contents& backup) {
+  const std::string folder = directory.root().string();
+  if (!present.same_campaign(backup)) {
+    throw InputError(folder, "", present.name,
+                     fmt::format("is a sound database of another campaign, created at {}; --force keeps it "
+                                 "aside all the same",
+                                 present.created_at));
+  }
+  if (present.results < backup.results || present.attempts < backup.attempts) return;
+  throw InputError(folder, "", fmt::format("{} results", present.results),
+                   fmt::format("its database is sound and as new as the backup, which has {}; --force keeps "
+                               "it aside all the same",
+                               backup.results));
+}
+
+// The database first: until the backup has taken its place there is none, and nothing can go on with half of
+// it. Its write-ahead log must never meet another database.
+fs::path keep_aside(const CampaignDirectory& directory) {
+  fs::path folder;
+  for (const char* const suffix : {"", "-wal", "-shm", "-journal"}) {
+    const fs::path file = directory.database().string() + suffix;
+    if (!fs::exists(file)) continue;
+    for (int number = 1; folder.empty(); ++number) {
+      const fs::path free = directory.aside() / std::to_string(number);
+      if (fs::exists(free)) continue;
+      fs::create_directories(free);
+      folder = free;
+    }
+    fs::rename(file, folder / file.filename());
+  }
+  return folder;
+}
+
+int bring(const fs::path& from, const fs::path& to) {
+  if (!fs::is_directory(from)) return 0;
+  int brought = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(from)) {
+    const fs::path target = to / entry.path().filename();
+    if (!entry.is_regular_file() || entry.path().extension() == ".tmp" || fs::exists(target)) continue;
+    write_durably(target, read_file(entry.path()));
+    ++brought;
+  }
+  return brought;
+}
+
+struct Place {
+  CampaignDirectory directory;
+  fs::path file;  // the campaign's
+  std::string run_arguments;
+};
+
+Place place_of(const RestoreOptions& options) {
+  if (options.campaign.extension() == ".json") {
+    const std::string chosen =
+        options.directory.empty() ? "" : fmt::format(" --directory {}", options.directory.string());
+    return {campaign_directory(options.campaign, options.directory), options.campaign,
+            options.campaign.string() + chosen};
+  }
+  fs::path root = fs::absolute(options.campaign).lexically_normal();
+  if (!root.has_filename()) root = root.parent_path();  // a slash at the end
+  if (root.extension() == ".peclet") {
+    fs::path file = root;
+    file.replace_extension(".json");
+    return {CampaignDirectory(root), file, file.string()};
+  }
+  const fs::path file = root / "campaign.json";
+  return {CampaignDirectory(root), file, fmt::format("{} --directory {}", file.string(), root.string())};
+}
+
+void record(const CampaignDirectory& directory, const Source& source) {
+  Database database = Database::open_owner(directory.database());
+  Transaction booking(database.connection());
+  Queue(database).event("restored", std::nullopt, std::nullopt, "from " + source.file.string());
+  booking.commit();
+}
+
+std::string write_campaign_file(const fs::path& file, const Json& document) {
+  if (!fs::exists(file)) {
+    write_durably(file, document.dump(2) + "\n");
+    return fmt::format("{} was written as the campaign was last run\n", file.string());
+  }
+  try {
+    if (read_campaign(file).document == document) return "";
+  } catch (const InputError&) {  // `peclet run` will say what is wrong with it
+  }
+  return fmt::format("{} was there, is not what was run last, and is not touched\n", file.string());
+}
+
+}  // namespace
+
+std::string restore_campaign(const RestoreOptions& options) {
+  const Source source = find_backup(options.backup);
+  const Place place = place_of(options);
+  const CampaignDirectory& directory = place.directory;
+  fs::create_directories(directory.root());
+  const OwnerLock lock(directory);
+  std::string damage;
+  const std::optional<Contents> present = examine_present(directory.database(), damage);
+  if (present && !options.force) refuse_to_replace(directory, *present, source.contents);
+
+  create_folders(directory);
+  const fs::path aside = keep_aside(directory);
+  copy_database(source.file, directory.database(), {});
+  record(directory, source);
+  const fs::path beside = source.file.parent_path();
+  const int spooled = bring(beside / "spool", directory.spool());
+  const int checkpoints = bring(beside / "checkpoints", directory.checkpoints());
+
+  std::string text = source.remarks;
+  if (!damage.empty()) text += damage + "\n";
+  text += fmt::format("{}: restored from {}, made at {}, with {} results\n", directory.root().string(),
+                      source.file.string(), source.contents.backed_up_at, source.contents.results);
+  if (spooled + checkpoints > 0) {
+    text += fmt::format("with it came {} checkpoints and {} results on their way\n", checkpoints, spooled);
+  }
+  if (!aside.empty()) text += fmt::format("the database that was there is kept in {}\n", aside.string());
+  text += write_campaign_file(place.file, source.contents.document);
+  return text + fmt::format("go on with: peclet run {}\n", place.run_arguments);
+}
+
+void refuse_lost_database(const CampaignDirectory& directory) {
+  std::error_code absent;
+  const std::uintmax_t size = fs::file_size(directory.database(), absent);
+  const std::string hint = restore_hint(directory);
+  if (hint.empty() || (!absent && size > 0)) return;
+  throw IntegrityError(
+      fmt::format("{}: is {}, but there are backups of it{}, or move {} away to start afresh",
+                  directory.database().string(), absent ? "gone" : "empty", hint, directory.root().string()));
+}
+
+std::string restore_hint(const CampaignDirectory& directory) {
+  const fs::path folder = directory.backup();
+  if (!fs::exists(newest_backup(folder)) && !fs::exists(previous_backup(folder))) return "";
+  return fmt::format("; put the last one back with `peclet restore {} {}`", folder.string(),
+                     directory.root().string());
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,41 @@
+// Room on the file systems of a campaign: whether something fits, and what to wait for when it did not.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace peclet::runner {
+
+// Whether `bytes` could be written in `folder` now. It is tried, not asked for: quotas do not show in
+// statvfs. True also when it cannot be tried for another reason than want of room.
+bool has_room(const std::filesystem::path& folder, std::uint64_t bytes);
+
+// Whether an exception says that there was no room to write something.
+bool means_no_room(const std::exception& error);
+
+// "/data/friction.peclet/spool is full: 0.0 MB are free there, 1.1 MB are needed"
+std::string shortage_text(const std::filesystem::path& folder, std::uint64_t bytes);
+
+// What could not be written last, until there is room for it.
+class Shortage {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  // Something of `bytes` did not fit into `folder`.
+  void begin(const std::filesystem::path& folder, std::uint64_t bytes, Time now);
+  // Looks whether there is room, every few seconds at most. True when there just turned out to be.
+  bool is_over(Time now);
+
+  bool lasts() const { return folder_.has_value(); }
+  std::string text() const { return lasts() ? shortage_text(*folder_, bytes_) : ""; }
+
+ private:
+  std::optional<std::filesystem::path> folder_;
+  std::uint64_t bytes_ = 0;
+  Time looked_{};
+};
+
+}  // namespace peclet::runner

@@ -1,0 +1,186 @@
+#include "runner/doctor.h"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "contract/durable_file.h"
+#include "runner/backup.h"
+#include "runner/engine_process.h"
+#include "runner/export.h"
+#include "tests/runner/campaign_process.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Doctor : public testing::Test {
+ protected:
+  Doctor() { EXPECT_EQ(campaign_.run(), 0) << campaign_.log(); }
+
+  Diagnosis examine(bool repair = false) {
+    DoctorOptions options;
+    options.campaign = campaign_.options.campaign;
+    options.repair = repair;
+    options.json = true;
+    return examine_campaign(options);
+  }
+  // The severity of a finding, "" when there is no such one.
+  std::string severity(const std::string& code) {
+    const Json diagnosis = Json::parse(examine().text);
+    for (const Json& finding : diagnosis.at("findings")) {
+      if (finding.at("code") == code) return finding.at("severity");
+    }
+    return "";
+  }
+  void edit(const std::string& sql) {
+    Connection connection(campaign_.directory().database().string(), Connection::Access::read_write, 0);
+    connection.execute(sql);
+  }
+  std::string exported() {
+    Database reader = campaign_.reader();
+    return export_json(reader, true);
+  }
+
+  CampaignOnDisk campaign_;
+};
+
+TEST_F(Doctor, FindsNothingWrongWithASoundCampaign) {
+  const Diagnosis diagnosis = examine();
+  EXPECT_EQ(diagnosis.exit_code, 0) << diagnosis.text;
+  EXPECT_EQ(Json::parse(diagnosis.text).at("schema_version"), 1);
+}
+
+struct Fault {
+  const char *sql, *code, *severity;
+};
+
+TEST_F(Doctor, FindsWhatContradictsItself) {
+  const Fault faults[] = {
+      {"UPDATE result SET document = json_set(document, '$.mean.relative_viscosity', 7.0) WHERE seed = 1",
+       "result-altered", "integrity"},
+      {"DELETE FROM result WHERE seed = 1", "result-altered", "integrity"},
+      {"UPDATE realisation SET value = value + 1 WHERE seed = 1", "result-altered", "integrity"},
+      {"UPDATE look SET mean = mean + 1", "look-differs", "integrity"},
+      {"UPDATE point SET suspect = 1", "suspect", "integrity"},
+      {"PRAGMA foreign_keys = OFF; DELETE FROM engine", "database-damaged", "integrity"},
+      {"INSERT INTO lease SELECT point_id, seed, attempt_id, 0, '', 0, 0, 0, '' FROM attempt LIMIT 1",
+       "lease-adrift", "integrity"},
+      {"UPDATE event SET at = '2999-01-01T00:00:00Z' WHERE event_id = 1", "clock-ahead", "warning"},
+      {"UPDATE event SET at = '2999-01-01T00:00:00Z' WHERE event_id = 1", "clock-backwards", "note"},
+  };
+  const fs::path database = campaign_.directory().database();
+  const std::string sound = read_file(database);
+  for (const Fault& fault : faults) {
+    EXPECT_EQ(severity(fault.code), "") << fault.sql;
+    edit(fault.sql);
+    EXPECT_EQ(severity(fault.code), fault.severity) << fault.sql << '\n' << examine().text;
+    EXPECT_EQ(examine().exit_code, std::string(fault.severity) == "integrity" ? 6 : 1) << fault.sql;
+    for (const char* const suffix : {"-wal", "-shm"}) fs::remove(database.string() + suffix);
+    write_durably(database, sound);
+  }
+}
+
+TEST_F(Doctor, RepairsAnAlteredResultByRunningItsSeedAgain) {
+  const std::string before = exported();
+  edit("UPDATE result SET document = json_set(document, '$.mean.relative_viscosity', 7.0) WHERE seed = 1");
+  edit("UPDATE realisation SET value = 7.0 WHERE seed = 1");
+  EXPECT_EQ(examine(true).exit_code, 0);
+  EXPECT_FALSE(fs::is_empty(campaign_.directory().rejected()));
+  EXPECT_EQ(campaign_.run(), 0) << campaign_.log();
+  EXPECT_EQ(exported(), before);
+  fs::remove_all(campaign_.directory().rejected());
+  EXPECT_EQ(examine().exit_code, 0) << examine().text;
+}
+
+TEST_F(Doctor, LooksAgainWhereLooksDiffer) {
+  const std::string before = exported();
+  edit("UPDATE look SET mean = mean + 1");
+  EXPECT_EQ(examine(true).exit_code, 0);
+  EXPECT_EQ(exported(), before);
+}
+
+TEST_F(Doctor, NamesFilesAndRemovesOnlyThoseThatNobodyNeeds) {
+  const CampaignDirectory& directory = campaign_.directory();
+  Database reader = campaign_.reader();
+  const fs::path ended = directory.checkpoint(reader.points().at(0).hash, 0);
+  const fs::path stray = directory.root() / "notes.txt";
+  const fs::path foreign = directory.checkpoints() / "0000000000000000-000001.checkpoint";
+  const fs::path unfinished = directory.spool() / "x.json.999999999.0.tmp";  // no process has this number
+  const fs::path rejected = directory.rejected() / "x.json";
+  for (const fs::path& file : {ended, stray, foreign, unfinished, rejected}) std::ofstream(file) << "x";
+  EXPECT_EQ(severity("checkpoint-left"), "note");
+  EXPECT_EQ(severity("stray-file"), "note");
+  EXPECT_EQ(severity("stray-checkpoint"), "note");
+  EXPECT_EQ(severity("unfinished-file"), "note");
+  EXPECT_EQ(severity("rejected-results"), "warning");
+  EXPECT_EQ(examine(true).exit_code, 1);  // somebody has to look at the rejected one
+  EXPECT_FALSE(fs::exists(ended));
+  EXPECT_FALSE(fs::exists(unfinished));
+  for (const fs::path& file : {stray, foreign, rejected}) EXPECT_TRUE(fs::exists(file)) << file;
+}
+
+TEST_F(Doctor, MissesABackupAndMakesIt) {
+  fs::remove_all(campaign_.directory().backup());
+  EXPECT_EQ(severity("no-backup"), "warning");
+  EXPECT_EQ(examine(true).exit_code, 0);
+  EXPECT_EQ(runner::examine(newest_backup(campaign_.directory().backup())).results,
+            campaign_.count("SELECT count(*) FROM result"));
+}
+
+TEST_F(Doctor, FindsWorkersThatOutlivedTheirOwner) {
+  EXPECT_EQ(severity("orphaned-worker"), "");
+  EngineCommand command{"/bin/sleep", {"60"}, {}};
+  command.environment = {"PECLET_CAMPAIGN=" + campaign_.directory().root().string(),
+                         "PECLET_OWNER=999999999"};
+  const EngineProcess orphan(command, "/dev/null");
+  EXPECT_EQ(severity("orphaned-worker"), "warning");
+  EXPECT_NE(examine().text.find(std::to_string(orphan.process())), std::string::npos);
+  orphan.kill();
+}
+
+TEST_F(Doctor, SeesThatTheDatabaseIsGone) {
+  fs::remove(campaign_.directory().database());
+  EXPECT_EQ(severity("database-gone"), "integrity");
+  EXPECT_EQ(examine().exit_code, 6);
+}
+
+TEST_F(Doctor, RepairsNothingWhileAnOwnerRuns) {
+  const OwnerLock lock(campaign_.directory());
+  EXPECT_EQ(examine().exit_code, 0);
+  EXPECT_THROW(examine(true), OwnedByAnother);
+}
+
+TEST(DoctorOfARunningCampaign, IsNotAlarmed) {
+  CampaignOnDisk campaign;
+  campaign.start({{"PECLET_FAKE_STEP_MS", "5"}});
+  campaign.wait_for_results(2);
+  DoctorOptions options;
+  options.campaign = campaign.directory().root();
+  const Diagnosis diagnosis = examine_campaign(options);
+  EXPECT_NE(diagnosis.exit_code, 6) << diagnosis.text;
+  EXPECT_EQ(diagnosis.text.find("orphan"), std::string::npos) << diagnosis.text;
+  EXPECT_EQ(campaign.finish(), 0) << campaign.log();
+}
+
+TEST(DoctorOfAKilledCampaign, QueuesWhatWasLeftRunning) {
+  CampaignOnDisk campaign;
+  campaign.start({{"PECLET_FAKE_STEP_MS", "5"}});
+  campaign.wait_for_results(2);
+  campaign.signal(SIGKILL);
+  campaign.finish();
+  DoctorOptions options;
+  options.campaign = campaign.directory().root();
+  EXPECT_NE(examine_campaign(options).text.find("left running"), std::string::npos);
+  options.repair = true;
+  examine_campaign(options);
+  EXPECT_EQ(campaign.count("SELECT count(*) FROM realisation WHERE state = 'running'"), 0);
+}
+
+}  // namespace
+}  // namespace peclet::runner
