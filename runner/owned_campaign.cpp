@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "contract/input_error.h"
+#include "runner/backup.h"
 #include "runner/queue.h"
 #include "runner/restore.h"
 #include "runner/scene_check.h"
@@ -29,6 +30,16 @@ const CampaignDirectory& created(const CampaignDirectory& directory, bool force)
   return directory;
 }
 
+// A sound database may be refused for another reason, and there a backup would not help.
+std::string hint_if_damaged(const CampaignDirectory& directory) {
+  try {
+    examine(directory.database());
+    return "";
+  } catch (const IntegrityError&) {
+    return restore_hint(directory);
+  }
+}
+
 }  // namespace
 
 ClaimedCampaign::ClaimedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen,
@@ -52,7 +63,7 @@ Database open_for_owner(const ClaimedCampaign& claimed) {
     Queue(database).adopt(claimed.campaign);
     return database;
   } catch (const IntegrityError& error) {
-    throw IntegrityError(error.what() + restore_hint(directory));
+    throw IntegrityError(error.what() + hint_if_damaged(directory));
   }
 }
 
