@@ -17,6 +17,7 @@
 #include "runner/bundle_files.h"
 #include "runner/dispatcher.h"
 #include "runner/integrity_error.h"
+#include "runner/room.h"
 #include "runner/spool.h"
 #include "runner/worker_process.h"
 
@@ -192,8 +193,11 @@ void BatchTask::handle(const WorkerEvent& event) {
     condemn(AttemptOutcome::garbled, garbled->message);
   } else if (const auto* gone = std::get_if<Exited>(&event)) {
     exited(gone->ending);
-  } else if (std::holds_alternative<ShortOfRoom>(event)) {
-    renewed_ = awake_;  // the engine keeps its result and tries again; nobody blames it for waiting
+  } else if (const auto* shortage = std::get_if<ShortOfRoom>(&event)) {
+    // The engine keeps its work and stands still; as long as there really is no room, nobody blames it.
+    if (busy_ && shortage->job == job_.attempt && !has_room(job_.spool.parent_path(), shortage->bytes)) {
+      renewed_ = awake_;
+    }
   } else if (!stopping_) {
     // Only the first signal counts: a batch system sends several, and has the last word itself.
     stopping_ = true;
