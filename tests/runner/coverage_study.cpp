@@ -1,5 +1,5 @@
-// coverage_study [REPLICATIONS]: how often the intervals at which campaigns stop hold the true mean, as a CSV
-// table.
+// coverage_study [REPLICATIONS [FIRST_ROW]]: how often the intervals at which campaigns stop hold the true
+// mean, as a CSV table.
 //
 // Every row simulates that many points through the scheduler and the stop rule of `peclet run`, with workers
 // that take as long as the population says, three points at a time. Beside it stands what most scripts do:
@@ -37,6 +37,7 @@ struct Case {
   double tolerance = 0.05;
   double needed = 20;  // seeds at which the true spread would just meet the tolerance
   int workers = 1;
+  bool plain = false;  // every interval at the level of the confidence, for comparison
 };
 
 struct Realisation {
@@ -91,7 +92,9 @@ using Clock = std::priority_queue<Running, std::vector<Running>, std::greater<>>
 int most_seeds(const Case& about) { return std::max(2 * about.minimum, static_cast<int>(20 * about.needed)); }
 
 void simulate_campaign(const Case& about, Source& source, Tally& tally) {
-  const Target target{"relative_viscosity", about.tolerance, confidence};
+  // What adjusted_confidence() makes the plain level again.
+  const double asked = about.plain ? 1 - (1 - confidence) / (1 - 1.4 / about.minimum) : confidence;
+  const Target target{"relative_viscosity", about.tolerance, asked};
   Scheduler scheduler(std::vector<std::vector<std::optional<Outcome>>>(points_at_a_time), target,
                       about.minimum, most_seeds(about));
   Clock clock;
@@ -161,6 +164,12 @@ std::vector<Case> cases() {
     }
   }
   for (const int workers : {4, 64}) all.push_back({slow_lognormal, 10, 0.1, std::pow(19.59964, 2), workers});
+  const Population plain{"normal plain"};
+  for (const int minimum : {5, 8, 10}) {
+    for (const double ratio : {0.1, 0.5, 1.0, 1.5, 2.0, 4.0, 10.0, 20.0}) {
+      all.push_back({plain, minimum, 0.05, ratio * minimum, 1, true});
+    }
+  }
   return all;
 }
 
@@ -180,17 +189,20 @@ void print_row(const Case& about, const Tally& rule, const Tally& naive) {
 int main(int argc, char** argv) {
   using namespace peclet::runner;
   const int replications = argc > 1 ? std::atoi(argv[1]) : 21'000;
-  if (replications < 1) {
-    fmt::print(stderr, "coverage_study [REPLICATIONS]: {}: must be an integer >= 1\n", argv[1]);
+  const int first = argc > 2 ? std::atoi(argv[2]) : 0;
+  if (replications < 1 || first < 0) {
+    fmt::print(stderr, "coverage_study [REPLICATIONS [FIRST_ROW]]: integers, from 1 and from 0\n");
     return 2;
   }
   fmt::print(
       "population,minimum,tolerance,needed_seeds,workers,replications,covered_percent,covered_percent_error,"
       "bias_standard_errors,seeds,looks,converged_percent,skewed_percent,naive_covered_percent,"
       "naive_bias_standard_errors\n");
-  unsigned start = 1;
-  for (const Case& about : cases()) {
-    Source source(about, start++), naive_source(about, start++);
+  const std::vector<Case> all = cases();
+  for (std::size_t row = static_cast<std::size_t>(first); row < all.size(); ++row) {
+    const Case& about = all[row];
+    const auto start = static_cast<unsigned>(1 + 2 * row);
+    Source source(about, start), naive_source(about, start + 1);
     Tally rule, naive;
     while (rule.count < replications) simulate_campaign(about, source, rule);
     while (naive.count < replications) simulate_naive(about, naive_source, naive);
