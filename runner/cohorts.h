@@ -50,9 +50,10 @@ struct Look {
 
 // The level that each interval must have so that the one at which a point stops holds the mean with
 // `confidence`. Among several looks the first one within the tolerance is often one whose spread came out too
-// small: with levels of 95 %, 93.5 to 95 % of the last intervals hold the mean from a minimum of 8 on, fewer
-// with smaller ones. 1 - (1 - confidence) (1 - 1.4 / minimum) makes that 94.4 to 96 %, for normal populations
-// of any spread (results/coverage). With a single look (minimum = maximum) Student's interval is exact.
+// small: with levels of 95 %, 93 to 95 % of the last intervals hold the mean from a minimum of 8 on, fewer
+// with smaller ones. 1 - (1 - confidence) (1 - 1.4 / minimum) makes that 94.2 to 95.9 %, for normal
+// populations of any spread (results/coverage). With a single look (minimum = maximum) Student's interval is
+// exact.
 double adjusted_confidence(double confidence, int minimum, int maximum);
 
 // Whether the values are so skewed that Student's interval holds the mean visibly less often than it says:

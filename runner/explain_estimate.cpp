@@ -27,6 +27,7 @@ std::vector<Outcome> completed(Database& database, const PointSummary& point) {
 
 std::vector<double> controlled(const std::vector<Outcome>& outcomes) {
   std::vector<double> values;
+  values.reserve(outcomes.size());
   for (const Outcome& outcome : outcomes) values.push_back(outcome.value + outcome.control);
   return values;
 }
@@ -112,9 +113,14 @@ std::string window_text(Database& database, const PointSummary& point, const std
   const Costs cost = steps(database, point);
   const std::optional<WindowAdvice> advice = advise_window(halves, cost.equilibration, cost.production);
   if (!advice) return "";
-  std::string conclusion = "its length is about right";
-  if (advice->half_as_long < 0.9) conclusion = "shorter windows and more seeds are cheaper";
-  if (advice->twice_as_long_at_worst < 0.9) conclusion = "longer windows are cheaper than more seeds";
+  // What is advised must be true at the end of the correlation's interval that speaks most against it.
+  std::string conclusion = "its length is about right, as far as these seeds can tell";
+  if (advice->half_as_long * (1 + advice->correlation) / (1 + advice->low) < 0.9) {
+    conclusion = "shorter windows and more seeds are cheaper";
+  }
+  if (advice->twice_as_long_at_best * (1 + std::max(advice->high, 0.0)) < 0.9) {
+    conclusion = "longer windows are cheaper than more seeds";
+  }
   return fmt::format(
       "  window: {}; its halves correlate by {:.2f} ({:.2f} .. {:.2f}), equilibration is {:.0f} % of a "
       "realisation;\n"
