@@ -36,7 +36,7 @@ Dispatcher::Dispatcher(Database& database, Ledger& ledger, WorkerPool& pool, Run
       ledger_(ledger),
       pool_(pool),
       listener_(listener),
-      settings_(settings),
+      settings_(std::move(settings)),
       clock_(std::move(clock)),
       now_{std::vector<Worker>(static_cast<std::size_t>(pool.size()))},
       started_(clock_()),
@@ -317,9 +317,8 @@ void Dispatcher::exited_during_job(int number, const ExitStatus& ending) {
   if (worker.condemned) {
     end.outcome = *worker.condemned;
     end.message = worker.message;
-  } else if (stopping_ == Stopping::at_once || (stopping_ != Stopping::no && ending.status == 0)) {
-    end.outcome = AttemptOutcome::drained;
-  } else if (is_blamed(end.outcome) && lacked_room(number)) {
+  } else if (stopping_ == Stopping::at_once || (stopping_ != Stopping::no && ending.status == 0) ||
+             (is_blamed(end.outcome) && lacked_room(number))) {
     end.outcome = AttemptOutcome::drained;
   }
   end_assignment(number, end);
