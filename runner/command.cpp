@@ -102,13 +102,7 @@ ExitStatus wait_for(pid_t process) {
   while (waitpid(process, &status, 0) < 0) {
     if (errno != EINTR) check(errno, "waitpid");
   }
-  ExitStatus ending;
-  if (WIFSIGNALED(status)) {
-    ending.signal = WTERMSIG(status);
-  } else {
-    ending.status = WEXITSTATUS(status);
-  }
-  return ending;
+  return exit_status(status);
 }
 
 }  // namespace

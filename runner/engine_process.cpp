@@ -129,6 +129,16 @@ EngineCommand resolve_engine(const Campaign& campaign, const fs::path& campaign_
   throw InputError(campaign_file.string(), "/engine/0", name, "must be a program beside peclet or on PATH");
 }
 
+ExitStatus exit_status(int wait_status) {
+  ExitStatus ending;
+  if (WIFSIGNALED(wait_status)) {
+    ending.signal = WTERMSIG(wait_status);
+  } else {
+    ending.status = WEXITSTATUS(wait_status);
+  }
+  return ending;
+}
+
 std::string to_string(const ExitStatus& ending) {
   if (ending.signal) return fmt::format("signal {} ({})", *ending.signal, strsignal(*ending.signal));
   return fmt::format("exit status {}", ending.status.value_or(-1));
@@ -219,13 +229,7 @@ std::optional<ExitStatus> EngineProcess::reap() {
   if (ended == 0) return std::nullopt;
   if (ended < 0) check(errno, "waitpid");
   process_ = -1;
-  ExitStatus ending;
-  if (WIFSIGNALED(status)) {
-    ending.signal = WTERMSIG(status);
-  } else {
-    ending.status = WEXITSTATUS(status);
-  }
-  return ending;
+  return exit_status(status);
 }
 
 }  // namespace peclet::runner

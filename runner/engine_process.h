@@ -35,6 +35,8 @@ struct ExitStatus {
 
 // "exit status 3", "signal 11 (Segmentation fault)"
 std::string to_string(const ExitStatus& ending);
+// Of what waitpid(2) says about a process that has ended.
+ExitStatus exit_status(int wait_status);
 
 // Movable owner of the process and of our end of its socket.
 class EngineProcess {

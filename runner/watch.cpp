@@ -1,7 +1,6 @@
 #include "runner/watch.h"
 
 #include <fmt/format.h>
-#include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -79,12 +78,6 @@ void show(const std::string& text) {
   std::fflush(stdout);
 }
 
-// Whether a signal came in that time.
-bool interrupted(const StopSignals& signals, std::chrono::milliseconds interval) {
-  pollfd waiting{signals.descriptor(), POLLIN, 0};
-  return poll(&waiting, 1, static_cast<int>(interval.count())) > 0;
-}
-
 }  // namespace
 
 std::string fitted(std::string_view text, int rows, int columns) {
@@ -117,7 +110,7 @@ int watch_campaign(const WatchOptions& options) {
       std::fflush(stdout);
       before = sight.text;
     }
-    if (sight.standing != exit_unfinished || interrupted(signals, interval)) return sight.standing;
+    if (sight.standing != exit_unfinished || signals.wait(interval)) return sight.standing;
   }
 }
 

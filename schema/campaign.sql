@@ -154,24 +154,6 @@ CREATE TABLE event (
   message  TEXT    NOT NULL
 ) STRICT;
 
--- What people have set with `peclet set`, over what the campaign file says. "tolerance", "minimum", "maximum".
-CREATE TABLE setting (
-  key    TEXT PRIMARY KEY,
-  value  REAL NOT NULL,
-  set_at TEXT NOT NULL
-) STRICT;
-
--- What was foretold for a point from its pilot seeds, to be held against what it took.
-CREATE TABLE prediction (
-  point_id    INTEGER NOT NULL REFERENCES point,
-  target_id   INTEGER NOT NULL REFERENCES target,
-  pilots      INTEGER NOT NULL,
-  seeds       REAL    NOT NULL,
-  cpu_seconds REAL    NOT NULL,
-  made_at     TEXT    NOT NULL,
-  PRIMARY KEY (point_id, target_id)
-) STRICT, WITHOUT ROWID;
-
 -- Seeds in the hands of a batch system (Slurm ...). A bundle is one job array, called by the job's name.
 CREATE TABLE bundle (
   bundle_id    INTEGER PRIMARY KEY,

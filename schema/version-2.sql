@@ -1,5 +1,5 @@
--- From version 1 of the tables to version 2: priorities, cancelled points, settings made on the command line,
--- predictions, seeds in the hands of a batch system, and what the looks need to see a transient or a skewed population.
+-- From version 1 of the tables to version 2: priorities, cancelled points,
+-- seeds in the hands of a batch system, and what the looks need to see a transient or a skewed population.
 
 ALTER TABLE point ADD COLUMN priority INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE point ADD COLUMN cancelled INTEGER NOT NULL DEFAULT 0 CHECK (cancelled IN (0, 1));
@@ -9,22 +9,6 @@ ALTER TABLE realisation ADD COLUMN first_half REAL;
 
 ALTER TABLE look ADD COLUMN skewness REAL;
 ALTER TABLE look ADD COLUMN transient INTEGER NOT NULL DEFAULT 0 CHECK (transient IN (0, 1));
-
-CREATE TABLE setting (
-  key    TEXT PRIMARY KEY,
-  value  REAL NOT NULL,
-  set_at TEXT NOT NULL
-) STRICT;
-
-CREATE TABLE prediction (
-  point_id    INTEGER NOT NULL REFERENCES point,
-  target_id   INTEGER NOT NULL REFERENCES target,
-  pilots      INTEGER NOT NULL,
-  seeds       REAL    NOT NULL,
-  cpu_seconds REAL    NOT NULL,
-  made_at     TEXT    NOT NULL,
-  PRIMARY KEY (point_id, target_id)
-) STRICT, WITHOUT ROWID;
 
 CREATE TABLE bundle (
   bundle_id    INTEGER PRIMARY KEY,
