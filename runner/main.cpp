@@ -66,17 +66,26 @@ int perform(const ExplainOptions& options) {
   return 0;
 }
 
-int perform(const ExportOptions& options) {
-  OpenCampaign open = open_campaign(options.campaign, options.directory);
-  const std::string text = options.format == ExportFormat::csv
-                               ? export_csv(open.database, options.canonical)
-                               : export_json(open.database, options.canonical);
-  if (options.output.empty()) {
+// Into the file, whole or not at all, or to standard output.
+int deliver(const std::string& text, const std::filesystem::path& output) {
+  if (output.empty()) {
     print(text);
   } else {
-    peclet::write_durably(options.output, text);
+    peclet::write_durably(output, text);
   }
   return 0;
+}
+
+int perform(const ExportOptions& options) {
+  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  return deliver(options.format == ExportFormat::csv ? export_csv(open.database, options.canonical)
+                                                     : export_json(open.database, options.canonical),
+                 options.output);
+}
+
+int perform(const ReportOptions& options) {
+  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  return deliver(report_html(open.database), options.output);
 }
 
 int perform(const HandOverOptions& options) { return hand_over_campaign(options); }

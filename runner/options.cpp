@@ -39,6 +39,7 @@ class Reader {
     add_watch();
     add_explain();
     add_export();
+    add_report();
     add_hand_over();
     add_ingest();
     add_task();
@@ -191,6 +192,17 @@ class Reader {
     choose(verb, export_);
   }
 
+  void add_report() {
+    CLI::App* const verb =
+        add_verb("report", "Make one HTML page of a campaign, for a colleague or a notebook",
+                 "peclet report flow-curve.json --output flow-curve.html");
+    add_file_or_folder(verb, report_.campaign);
+    add_directory(verb, report_.directory);
+    verb->add_option("--output", report_.output,
+                     "File to write, whole or not at all; standard output unless given");
+    choose(verb, report_);
+  }
+
   void add_hand_over() {
     CLI::App* const verb =
         add_verb("hand-over", "Give seeds to a batch system: job arrays that need no database and no daemon",
@@ -309,6 +321,7 @@ class Reader {
   WatchOptions watch_;
   ExplainOptions explain_;
   ExportOptions export_;
+  ReportOptions report_;
   HandOverOptions hand_over_;
   IngestOptions ingest_;
   TaskOptions task_;

@@ -12,6 +12,7 @@
 #include "runner/hand_over.h"
 #include "runner/init.h"
 #include "runner/plan.h"
+#include "runner/report.h"
 #include "runner/restore.h"
 #include "runner/run.h"
 #include "runner/status.h"
@@ -21,8 +22,8 @@
 namespace peclet::runner {
 
 using Verb = std::variant<InitOptions, ValidateOptions, PlanOptions, RunOptions, StatusOptions, WatchOptions,
-                          ExplainOptions, ExportOptions, BackupOptions, RestoreOptions, DoctorOptions,
-                          HandOverOptions, IngestOptions, TaskOptions>;
+                          ExplainOptions, ExportOptions, ReportOptions, BackupOptions, RestoreOptions,
+                          DoctorOptions, HandOverOptions, IngestOptions, TaskOptions>;
 
 struct CommandLine {
   std::optional<Verb> verb;  // nothing: there is nothing left to do but to leave with

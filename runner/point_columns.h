@@ -19,6 +19,7 @@ class PointColumns {
   // The first cells of the row of the i-th label.
   const std::vector<std::string>& cells(std::size_t i) const { return cells_[i]; }
   std::size_t count() const { return titles_.size(); }
+  const std::vector<std::string>& titles() const { return titles_; }
 
  private:
   std::vector<std::string> titles_;

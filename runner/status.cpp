@@ -84,10 +84,17 @@ std::string verdict_text(const PointSummary& point) {
   } else if (point.lost() > 0) {
     text += fmt::format(", {} lost", point.lost());
   }
-  if (!point.looks.empty() && point.looks.back().transient) text += ", transient";
-  if (point.decided && is_skewed(point.looks.back(), point.confidence)) text += ", skewed";
-  for (const auto& [code, count] : point.flags) text += fmt::format(", {} flagged {}", count, code);
-  return point.point.suspect ? text + ", suspect" : text;
+  for (const std::string& reservation : reservations(point)) text += ", " + reservation;
+  return text;
+}
+
+std::vector<std::string> reservations(const PointSummary& point) {
+  std::vector<std::string> found;
+  if (!point.looks.empty() && point.looks.back().transient) found.emplace_back("transient");
+  if (point.decided && is_skewed(point.looks.back(), point.confidence)) found.emplace_back("skewed");
+  for (const auto& [code, count] : point.flags) found.push_back(fmt::format("{} flagged {}", count, code));
+  if (point.point.suspect) found.emplace_back("suspect");
+  return found;
 }
 
 Json look_json(const Look& look) {

@@ -35,6 +35,8 @@ int standing(const CampaignStatus& status);
 
 // "converged", "converged-with-losses(2)", "capped, 2 lost", "failed, 10 lost", "open"; "open, suspect".
 std::string verdict_text(const PointSummary& point);
+// What speaks against its estimate: "transient", "skewed", "2 flagged timestep", "suspect".
+std::vector<std::string> reservations(const PointSummary& point);
 
 // The table and its totals, as `peclet run` prints them at the end.
 std::string status_table(Database& database);

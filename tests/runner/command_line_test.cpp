@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "contract/durable_file.h"
 #include "contract/json.h"
 #include "tests/runner/runner_fixture.h"
 
@@ -74,7 +75,7 @@ TEST_F(CommandLine, FaultsOfUsageAreExitCodeTwo) {
 TEST_F(CommandLine, HelpOfEveryVerbHasAnExample) {
   EXPECT_EQ(peclet("--version").code, 0);
   EXPECT_TRUE(peclet("--version").text.starts_with("peclet "));
-  for (const char* const verb : {"validate", "plan", "run", "status", "explain", "export"}) {
+  for (const char* const verb : {"validate", "plan", "run", "status", "explain", "export", "report"}) {
     const Answer answer = peclet(std::string(verb) + " --help");
     EXPECT_EQ(answer.code, 0);
     EXPECT_NE(answer.text.find(std::string("Example: peclet ") + verb), std::string::npos) << answer.text;
@@ -175,6 +176,17 @@ TEST_F(CommandLine, ARunCanBeLookedAtByFileAndByFolder) {
   EXPECT_EQ(peclet("export small.json --csv --output small.csv").code, 0);
   EXPECT_EQ(peclet("export small.json --csv").text, peclet("export small.peclet --csv | cat").text);
   EXPECT_EQ(peclet("export small.json --csv > /dev/full").code, 1);
+}
+
+TEST_F(CommandLine, LabelsOfUsersAreTextInAReport) {
+  campaign["sweep"][0]["values"] = {"<script>&", 1};
+  write();
+  ASSERT_EQ(peclet("run small.json --workers 2 --quiet").code, 0);
+  ASSERT_EQ(peclet("report small.json --output small.html").code, 0);
+  const std::string page = peclet("report small.peclet").text;
+  EXPECT_EQ(page, read_file(file().parent_path() / "small.html"));
+  EXPECT_NE(page.find("&lt;script&gt;&amp;"), std::string::npos);
+  EXPECT_EQ(page.find("<script"), std::string::npos);
 }
 
 TEST_F(CommandLine, AChangedCampaignFileIsSaid) {

@@ -1,0 +1,111 @@
+// The page that a colleague gets.
+#include "runner/report.h"
+
+#include <gtest/gtest.h>
+
+#include "contract/sha256.h"
+#include "runner/export.h"
+#include "tests/runner/stored_campaign.h"
+
+namespace peclet::runner {
+namespace {
+
+bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+// The first element that is closed without having been opened last, or never closed; "" when there is none.
+std::string badly_nested(const std::string& html) {
+  std::vector<std::string> open;
+  for (std::size_t at = html.find('<'); at != std::string::npos; at = html.find('<', at + 1)) {
+    const std::size_t end = html.find('>', at);
+    const std::string tag = html.substr(at + 1, end - at - 1);
+    const std::string name = tag.substr(0, tag.find_first_of(" \n"));
+    if (name == "!DOCTYPE" || name == "meta" || tag.ends_with('/')) continue;
+    if (!name.starts_with('/')) {
+      open.push_back(name);
+    } else if (open.empty() || '/' + open.back() != name) {
+      return name;
+    } else {
+      open.pop_back();
+    }
+  }
+  return open.empty() ? "" : open.back();
+}
+
+class Report : public testing::Test {
+ protected:
+  // 10.05 ± 0.41 with a control of 0.25; Student's t for 3 degrees of freedom is 3.182.
+  void complete_widely(int point) {
+    const double values[] = {9.05, 10.05, 11.05, 10.05};
+    for (int seed = 0; seed < 4; ++seed) campaign_.complete(point, seed, values[seed]);
+  }
+  std::string page() { return report_html(campaign_.database()); }
+
+  StoredCampaign campaign_{2, 4, 4};
+};
+
+TEST_F(Report, HasTheEstimateWithItsIntervalAndVerdict) {
+  complete_widely(0);
+  const std::string text = page();
+  EXPECT_TRUE(says(text, "<td>4/4</td><td>10.3 ± 1.3</td><td>13 %</td>")) << text;
+  EXPECT_TRUE(says(text, "<td class=\"text\">capped</td>")) << text;
+  EXPECT_TRUE(says(text, "<td class=\"text\">open</td>")) << text;
+  EXPECT_TRUE(says(text, "relative_viscosity to 5 % at 95 % confidence, with 4 to 4")) << text;
+  EXPECT_TRUE(says(text, "1 point without an interval is not drawn.")) << text;
+  EXPECT_TRUE(says(text, "<dt>capped</dt>")) << text;
+  EXPECT_FALSE(says(text, "Lost seeds")) << text;
+}
+
+TEST_F(Report, ListsLostSeedsByCauseAndWhatTheyMean) {
+  for (int seed = 0; seed < 2; ++seed) campaign_.complete(0, seed, 10 + 0.001 * seed);
+  campaign_.blow_up(0, 2);
+  campaign_.crash(0, 3);
+  const std::string text = page();
+  EXPECT_TRUE(says(text, "<td class=\"text\">point=0</td><td class=\"text\">crashed</td><td>1</td>")) << text;
+  EXPECT_TRUE(says(text, "<td class=\"text\">point=0</td><td class=\"text\">overlap</td><td>1</td>")) << text;
+  EXPECT_TRUE(says(text, "<dt>converged-with-losses</dt>")) << text;
+}
+
+TEST_F(Report, ExplainsTheMarksAndShowsWhatTheEngineWarnsOf) {
+  const Json warning = {{{"code", "overlap"}, {"message", "0.02 > 0.01 & more"}}};
+  for (int seed = 0; seed < 4; ++seed) campaign_.complete(0, seed, 10, warning);
+  const std::string text = page();
+  EXPECT_TRUE(says(text, "<td class=\"text\">4 flagged overlap</td>")) << text;
+  EXPECT_TRUE(says(text, "<dt>flagged overlap</dt><dd>seeds in which spheres overlapped")) << text;
+  EXPECT_TRUE(says(text, "overlap: 0.02 &gt; 0.01 &amp; more")) << text;
+}
+
+TEST_F(Report, SaysWhereItComesFromAndHowToMakeItAgain) {
+  complete_widely(0);
+  const std::string text = page();
+  EXPECT_TRUE(says(text, sha256("engine"))) << text;  // the binary of plain_engine()
+  EXPECT_TRUE(says(text, sha256(canonical_json(campaign_.database().campaign().document)))) << text;
+  EXPECT_TRUE(says(text, sha256(export_json(campaign_.database(), true)))) << text;
+  EXPECT_TRUE(says(text, "peclet run plain.json")) << text;
+}
+
+TEST_F(Report, IsOnePieceThatNeedsNoOtherFile) {
+  complete_widely(0);
+  complete_widely(1);
+  const std::string text = page();
+  EXPECT_EQ(badly_nested(text), "") << text;
+  EXPECT_TRUE(says(text, "<svg viewBox")) << text;
+  for (const char* const outside : {"http", "src=", "href=", "url(", "@import", "<script"}) {
+    EXPECT_FALSE(says(text, outside)) << outside;
+  }
+}
+
+TEST_F(Report, DependsOnTheDatabaseAlone) {
+  complete_widely(0);
+  const std::string before = page();
+  Database reader = Database::open_reader(campaign_.directory().database());
+  EXPECT_EQ(report_html(reader), before);
+}
+
+TEST_F(Report, IsRefusedWhenALookIsNotWhatTheResultsSay) {
+  complete_widely(0);
+  campaign_.database().connection().execute("UPDATE look SET mean = 9");
+  EXPECT_THROW(page(), IntegrityError);
+}
+
+}  // namespace
+}  // namespace peclet::runner
