@@ -110,6 +110,18 @@ int perform(const DoctorOptions& options) {
   return diagnosis.exit_code;
 }
 
+int perform(const CompletionOptions& options) {
+  return deliver(completion(command_tree(), options.shell), options.output);
+}
+
+int perform(const ManualOptions& options) {
+  if (options.folder.empty()) return deliver(manual_page(command_tree(), options.verb), "");
+  for (const auto& [name, page] : manual_pages(command_tree())) {
+    peclet::write_durably(options.folder / name, page);
+  }
+  return 0;
+}
+
 int complain(const std::exception& error, int code) {
   say(fmt::format("peclet: {}\n", error.what()));
   return code;

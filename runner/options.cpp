@@ -4,9 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <map>
+#include <memory>
 #include <string>
 
 #include "contract/provenance.h"
+#include "runner/parser_tree.h"
+#include "runner/verb_pages.h"
 
 namespace peclet::runner {
 namespace {
@@ -19,10 +23,11 @@ std::string version_text() {
                      origin.value("git_dirty", Json()) == true ? ", with changes" : "");
 }
 
-const char* const for_all_verbs =
-    "Exit codes: 0 done (run: every point converged); 1 error; 2 usage or faulty input; 3 finished, but\n"
-    "some points are capped, failed or lost seeds; 4 not finished (status --check); 5 another process\n"
-    "owns the campaign; 6 integrity; 75 stopped, and can be resumed.";
+std::string exit_code_lines() {
+  std::string text = "Exit codes:\n";
+  for (const auto& [code, meaning] : exit_codes()) text += fmt::format("  {:>2}  {}\n", code, meaning);
+  return text + "`peclet VERB --help` says more about a verb, `peclet manual VERB | man -l -` all there is.";
+}
 
 // One function a verb: its options and its help.
 class Reader {
@@ -30,7 +35,8 @@ class Reader {
   Reader() {
     app_.require_subcommand(1);
     app_.set_version_flag("--version", std::function<std::string()>(version_text));  // reads the program file
-    app_.footer(for_all_verbs);
+    app_.footer(exit_code_lines());
+    app_.formatter(std::make_shared<HelpFormatter>());
     add_init();
     add_validate();
     add_plan();
@@ -46,6 +52,8 @@ class Reader {
     add_backup();
     add_restore();
     add_doctor();
+    add_completion();
+    add_manual();
   }
 
   CommandLine read(int argc, char** argv) {
@@ -61,6 +69,8 @@ class Reader {
     return {verb_, 0};
   }
 
+  CommandTree tree() const { return describe(app_, examples_); }
+
  private:
   bool is_verb_or_option(const std::string& word) {
     const auto has_name = [&](const CLI::App* verb) { return verb->get_name() == word; };
@@ -69,20 +79,26 @@ class Reader {
 
   CLI::App* add_verb(const char* name, const char* description, const char* example) {
     CLI::App* const verb = app_.add_subcommand(name, description);
-    verb->footer(std::string("Example: ") + example);
+    verb->footer(help_footer(name, example));
+    examples_[name] = example;
     return verb;
   }
 
   static void add_file(CLI::App* verb, std::filesystem::path& path) {
-    verb->add_option("campaign", path, "Campaign file (JSON)")->required();
+    verb->add_option("campaign", path, "Campaign file (JSON)")
+        ->required()
+        ->type_name(value_name::campaign_file);
   }
   static void add_file_or_folder(CLI::App* verb, std::filesystem::path& path) {
-    verb->add_option("campaign", path, "Campaign file, or its .peclet folder")->required();
+    verb->add_option("campaign", path, "Campaign file, or its .peclet folder")
+        ->required()
+        ->type_name(value_name::campaign);
   }
   static void add_directory(CLI::App* verb, std::filesystem::path& path) {
     verb->add_option("--directory", path,
                      "Folder of the campaign's database and checkpoints; NAME.peclet beside "
-                     "NAME.json unless given");
+                     "NAME.json unless given")
+        ->type_name(value_name::folder);
   }
   // The verb that was named becomes the command.
   template <typename Options>
@@ -93,7 +109,9 @@ class Reader {
   void add_init() {
     CLI::App* const verb =
         add_verb("init", "Write a small campaign to begin with", "peclet init flow-curve.json");
-    verb->add_option("campaign", init_.campaign, "Campaign file (JSON) that is not there yet")->required();
+    verb->add_option("campaign", init_.campaign, "Campaign file (JSON) that is not there yet")
+        ->required()
+        ->type_name(value_name::campaign_file);
     choose(verb, init_);
   }
 
@@ -125,15 +143,19 @@ class Reader {
     verb->add_option("--threads", run_.threads, "Threads of each; 1, or cores / workers, unless given")
         ->check(CLI::Range(1, 4096));
     verb->add_option("--time-limit", run_.time_limit, "Seconds after which workers checkpoint and stop")
+        ->type_name("SECONDS")
         ->check(CLI::PositiveNumber);
     verb->add_option("--lease", run_.lease_seconds,
                      "Seconds without a new step after which a worker counts as hung")
+        ->type_name("SECONDS")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     verb->add_option("--checkpoint", run_.checkpoint_seconds, "Seconds between checkpoints of a realisation")
+        ->type_name("SECONDS")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     verb->add_option("--backup", run_.backup_seconds, "Seconds between backups of the database")
+        ->type_name("SECONDS")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     verb->add_flag("--quiet", run_.quiet, "No progress on stderr");
@@ -160,6 +182,7 @@ class Reader {
     add_file_or_folder(verb, watch_.campaign);
     add_directory(verb, watch_.directory);
     verb->add_option("--interval", watch_.interval_seconds, "Seconds between looks")
+        ->type_name("SECONDS")
         ->check(CLI::Range(0.1, 86'400.0))
         ->capture_default_str();
     choose(verb, watch_);
@@ -170,7 +193,8 @@ class Reader {
                                     "peclet explain flow-curve.json peclet=10");
     add_file_or_folder(verb, explain_.campaign);
     verb->add_option("point", explain_.point,
-                     "Label of a point, or 4 or more digits of its hash; all unless given");
+                     "Label of a point, or 4 or more digits of its hash; all unless given")
+        ->type_name("POINT");
     add_directory(verb, explain_.directory);
     choose(verb, explain_);
   }
@@ -188,7 +212,8 @@ class Reader {
     verb->add_flag("--canonical", export_.canonical,
                    "Only what depends on campaign, seeds and engine: equal runs give equal bytes");
     verb->add_option("--output", export_.output,
-                     "File to write, whole or not at all; standard output unless given");
+                     "File to write, whole or not at all; standard output unless given")
+        ->type_name(value_name::file);
     choose(verb, export_);
   }
 
@@ -199,7 +224,8 @@ class Reader {
     add_file_or_folder(verb, report_.campaign);
     add_directory(verb, report_.directory);
     verb->add_option("--output", report_.output,
-                     "File to write, whole or not at all; standard output unless given");
+                     "File to write, whole or not at all; standard output unless given")
+        ->type_name(value_name::file);
     choose(verb, report_);
   }
 
@@ -208,12 +234,15 @@ class Reader {
         add_verb("hand-over", "Give seeds to a batch system: job arrays that need no database and no daemon",
                  "peclet hand-over slurm flow-curve.json --shared /scratch/me/flow-curve --follow \\\n"
                  "           --option=--partition=short --option=--time=4:00:00");
-    verb->add_option("system", hand_over_.system, "slurm; with --template any name")->required();
+    verb->add_option("system", hand_over_.system, "slurm; with --template any name")
+        ->required()
+        ->type_name("SYSTEM");
     add_file(verb, hand_over_.campaign);
     add_directory(verb, hand_over_.directory);
     verb->add_option("--shared", hand_over_.shared,
                      "Folder that this machine and the nodes see in the same place; that of the last time "
-                     "unless given");
+                     "unless given")
+        ->type_name(value_name::folder);
     verb->add_option("--seeds-per-task", hand_over_.seeds_per_task,
                      "Seeds that one task runs, one after another")
         ->check(CLI::Range(1, 100'000))
@@ -224,22 +253,27 @@ class Reader {
     verb->add_option("--threads", hand_over_.threads, "Threads of each engine")
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
-    verb->add_option("--option", hand_over_.options, "Word for the submit command (sbatch); may be repeated");
+    verb->add_option("--option", hand_over_.options, "Word for the submit command (sbatch)")
+        ->type_name("WORD");
     verb->add_option("--template", hand_over_.template_folder,
                      "Folder with job.sh and the commands, for other sites")
+        ->type_name(value_name::folder)
         ->check(CLI::ExistingDirectory);
     verb->add_flag("--ahead", hand_over_.ahead, "Hand over the seeds of the look after the next one, too");
     verb->add_flag("--follow", hand_over_.follow,
                    "Take results in and hand over what the next looks need, until every point is decided");
     verb->add_option("--interval", hand_over_.interval, "Seconds between two turns of --follow")
+        ->type_name("SECONDS")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     verb->add_option("--lease", hand_over_.lease_seconds,
                      "Seconds without a new step after which an engine counts as hung")
+        ->type_name("SECONDS")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     verb->add_option("--checkpoint", hand_over_.checkpoint_seconds,
                      "Seconds between checkpoints of a realisation")
+        ->type_name("SECONDS")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     verb->add_flag("--dry-run", hand_over_.dry_run, "Say what would be handed over; submit nothing");
@@ -263,7 +297,9 @@ class Reader {
   void add_task() {
     CLI::App* const verb = add_verb("task", "Run one task of a bundle; what job scripts call on a node",
                                     "peclet task /scratch/me/flow-curve/bundles/NAME/manifest.json 7");
-    verb->add_option("manifest", task_.manifest, "The bundle's manifest.json")->required();
+    verb->add_option("manifest", task_.manifest, "The bundle's manifest.json")
+        ->required()
+        ->type_name(value_name::campaign_file);
     verb->add_option("index", task_.index, "Number of the task, from 0")
         ->required()
         ->check(CLI::NonNegativeNumber);
@@ -275,9 +311,10 @@ class Reader {
                                     "peclet backup flow-curve.json /mnt/usb/flow-curve --checkpoints");
     add_file_or_folder(verb, backup_.campaign);
     verb->add_option(
-        "target", backup_.target,
-        "Folder for backup.db; the backup there before becomes backup.previous.db; the campaign's "
-        "own backup/ unless given");
+            "target", backup_.target,
+            "Folder for backup.db; the backup there before becomes backup.previous.db; the campaign's "
+            "own backup/ unless given")
+        ->type_name(value_name::folder);
     add_directory(verb, backup_.directory);
     verb->add_flag("--checkpoints", backup_.checkpoints,
                    "With checkpoints and spool, so that seeds that run now need not start again");
@@ -289,10 +326,13 @@ class Reader {
     CLI::App* const verb =
         add_verb("restore", "Put a backup in the place of a lost or damaged database, here or elsewhere",
                  "peclet restore /mnt/usb/flow-curve flow-curve.json");
-    verb->add_option("backup", restore_.backup, "Folder of backups, or one file")->required();
+    verb->add_option("backup", restore_.backup, "Folder of backups, or one file")
+        ->required()
+        ->type_name(value_name::file);
     verb->add_option("campaign", restore_.campaign,
                      "Campaign file or .peclet folder; made when there is none")
-        ->required();
+        ->required()
+        ->type_name(value_name::campaign);
     add_directory(verb, restore_.directory);
     verb->add_flag(
         "--force", restore_.force,
@@ -311,8 +351,36 @@ class Reader {
     choose(verb, doctor_);
   }
 
+  void add_completion() {
+    CLI::App* const verb =
+        add_verb("completion", "Print a script with which a shell completes verbs, options and files",
+                 "eval \"$(peclet completion bash)\"");
+    verb->add_option("shell", completion_.shell, "The shell")
+        ->required()
+        ->type_name("SHELL")
+        ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+    verb->add_option("--output", completion_.output,
+                     "File to write, whole or not at all; standard output unless given")
+        ->type_name(value_name::file);
+    choose(verb, completion_);
+  }
+
+  void add_manual() {
+    CLI::App* const verb =
+        add_verb("manual", "Print a page of the manual for man(1)", "peclet manual run | man -l -");
+    CLI::Option* const name =
+        verb->add_option("verb", manual_.verb, "Which; that of peclet itself unless given")
+            ->type_name("VERB");
+    verb->add_option("--folder", manual_.folder, "Folder to write all pages to")
+        ->type_name(value_name::folder)
+        ->check(CLI::ExistingDirectory)
+        ->excludes(name);
+    choose(verb, manual_);
+  }
+
   CLI::App app_{"Campaigns of dense-suspension simulations: from a scene to converged averages", "peclet"};
   std::optional<Verb> verb_;
+  std::map<std::string, std::string> examples_;
   InitOptions init_;
   ValidateOptions validate_;
   PlanOptions plan_;
@@ -328,10 +396,14 @@ class Reader {
   BackupOptions backup_;
   RestoreOptions restore_;
   DoctorOptions doctor_;
+  CompletionOptions completion_;
+  ManualOptions manual_;
 };
 
 }  // namespace
 
 CommandLine read_command_line(int argc, char** argv) { return Reader().read(argc, argv); }
+
+CommandTree command_tree() { return Reader().tree(); }
 
 }  // namespace peclet::runner

@@ -6,11 +6,14 @@
 
 #include "runner/backup.h"
 #include "runner/batch_task.h"
+#include "runner/command_tree.h"
+#include "runner/completion.h"
 #include "runner/doctor.h"
 #include "runner/explain.h"
 #include "runner/export.h"
 #include "runner/hand_over.h"
 #include "runner/init.h"
+#include "runner/manual.h"
 #include "runner/plan.h"
 #include "runner/report.h"
 #include "runner/restore.h"
@@ -21,9 +24,10 @@
 
 namespace peclet::runner {
 
-using Verb = std::variant<InitOptions, ValidateOptions, PlanOptions, RunOptions, StatusOptions, WatchOptions,
-                          ExplainOptions, ExportOptions, ReportOptions, BackupOptions, RestoreOptions,
-                          DoctorOptions, HandOverOptions, IngestOptions, TaskOptions>;
+using Verb =
+    std::variant<InitOptions, ValidateOptions, PlanOptions, RunOptions, StatusOptions, WatchOptions,
+                 ExplainOptions, ExportOptions, ReportOptions, BackupOptions, RestoreOptions, DoctorOptions,
+                 HandOverOptions, IngestOptions, TaskOptions, CompletionOptions, ManualOptions>;
 
 struct CommandLine {
   std::optional<Verb> verb;  // nothing: there is nothing left to do but to leave with
@@ -31,5 +35,8 @@ struct CommandLine {
 };
 
 CommandLine read_command_line(int argc, char** argv);
+
+// All verbs and options.
+CommandTree command_tree();
 
 }  // namespace peclet::runner
