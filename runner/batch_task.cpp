@@ -1,13 +1,11 @@
 #include "runner/batch_task.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <csignal>
-#include <ctime>
 #include <random>
 #include <tuple>
 #include <utility>
@@ -19,6 +17,7 @@
 #include "runner/integrity_error.h"
 #include "runner/room.h"
 #include "runner/spool.h"
+#include "runner/utc_time.h"
 #include "runner/worker_process.h"
 
 namespace peclet::runner {
@@ -40,8 +39,6 @@ std::string host_name() {
   std::array<char, 256> name{};
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
 }
-
-std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
 // Runs of a task on two nodes (a node that was thought to be dead comes back) write under different names.
 std::string name_of_this_run() {

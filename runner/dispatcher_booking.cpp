@@ -102,6 +102,7 @@ void Dispatcher::take_back(const Picture& before) {
 void Dispatcher::begin_shortage(const std::filesystem::path& folder, std::uint64_t bytes) {
   shortage_.begin(folder, bytes, clock_());
   if (std::exchange(told_of_shortage_, true)) return;
+  listener_.happened(ShortageBegan{shortage_.text()});
   listener_.warn(
       shortage_.text() +
       "; workers keep what they have, no further seed is given out, and the campaign goes on by itself "
@@ -115,6 +116,7 @@ void Dispatcher::look_for_room() {
 void Dispatcher::end_shortage() {
   told_of_shortage_ = false;
   listener_.note("there is room again: the campaign goes on");
+  listener_.happened(ShortageEnded{});
   for (Worker& worker : now_.workers) {
     if (worker.assignment) worker.assignment->renewed = awake_;  // nobody listened meanwhile
   }

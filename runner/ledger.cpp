@@ -33,6 +33,13 @@ Outcome outcome_of(const Observed& observed) {
           observed.first_quarter.value_or(none), observed.first_half.value_or(none)};
 }
 
+PointName name_of(const PointRecord& point) { return {point.label, point.hash}; }
+
+std::optional<double> cpu_seconds(const Json& result) {
+  const Json& seconds = result.at("cost").at("cpu_seconds");
+  return seconds.is_number() ? std::optional(seconds.get<double>()) : std::nullopt;
+}
+
 }  // namespace
 
 Ledger::Ledger(Database& database, const Campaign& campaign, CampaignDirectory directory,
@@ -62,10 +69,11 @@ void Ledger::load() {
   }
   Transaction booking(database_.connection());
   for (int place = 0; place < scheduler_->points(); ++place) {
-    queue_.store_looks(point(place).id, scheduler_->looks(place));
+    store_looks(place, database_.looks(point(place).id).size());
     if (!scheduler_->decided(place)) queue_.enqueue(point(place).id, scheduler_->wanted(place));
   }
   booking.commit();
+  after_commit();
 }
 
 void Ledger::read() {
@@ -92,6 +100,7 @@ void Ledger::read() {
 void Ledger::roll_back() {
   to_remove_.clear();
   to_reject_.clear();
+  to_tell_.clear();
   lacking_.clear();
   read();
 }
@@ -141,6 +150,8 @@ Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
   if (stored == Stored::duplicate || place == places_.end()) return stored;
   const Observed observed = observe(result.document, campaign_.target.observable);
   if (result.completed() && !observed.value) lacking_ = names_of_numbers(result.document["mean"]);
+  to_tell_.push_back(SeedEnded{name_of(point(place->second)), result.seed, result.cause, observed.value,
+                               cpu_seconds(result.document)});
   if (!scheduler_) return stored;  // load() finds it
   if (result.document["cost"]["wall_seconds"].is_number()) {
     Cost& cost = costs_[static_cast<std::size_t>(place->second)];
@@ -161,10 +172,22 @@ void Ledger::turn_down(const fs::path& spool, const std::string& why) {
   if (fs::exists(spool)) to_reject_.push_back(spool);
 }
 
+// `known` looks of the point are stored already.
+void Ledger::store_looks(int place, std::size_t known) {
+  const std::vector<Look>& looks = scheduler_->looks(place);
+  queue_.store_looks(point(place).id, looks);
+  for (std::size_t i = known; i < looks.size(); ++i)
+    to_tell_.push_back(Looked{name_of(point(place)), looks[i]});
+  if (looks.size() > known && scheduler_->decided(place)) {
+    to_tell_.push_back(Decided{name_of(point(place)), looks.back()});
+  }
+}
+
 void Ledger::book_outcome(SeedId id, const Outcome& outcome) {
+  const std::size_t known = scheduler_->looks(id.point).size();
   if (!scheduler_->end(id, outcome)) return;
   const PointRecord& about = point(id.point);
-  queue_.store_looks(about.id, scheduler_->looks(id.point));
+  store_looks(id.point, known);
   if (!scheduler_->decided(id.point)) {
     queue_.enqueue(about.id, scheduler_->wanted(id.point));
     return;
@@ -223,12 +246,15 @@ void Ledger::end_attempt(const Grant& grant, const AttemptEnd& end) {
                                end.message.empty() ? "" : ": ", end.message,
                                sentence.quarantine ? "it is given up" : "it is tried again"));
   }
+  to_tell_.push_back(
+      AttemptFailed{name_of(about), grant.id.seed, end.outcome, end.message, sentence.quarantine});
   if (!sentence.quarantine) {
     queue_.requeue(about.id, grant.id.seed);
     scheduler_->give_back(grant.id);
     return;
   }
   queue_.quarantine(about.id, grant.id.seed, sentence.cause);
+  to_tell_.push_back(SeedEnded{name_of(about), grant.id.seed, sentence.cause, std::nullopt, std::nullopt});
   book_outcome(grant.id, Outcome{});
 }
 
@@ -266,6 +292,7 @@ void Ledger::after_commit() {
   for (const fs::path& file : to_reject_) reject(home_of(file), file);
   to_remove_.clear();
   to_reject_.clear();
+  for (const RunEvent& event : std::exchange(to_tell_, {})) listener_.happened(event);
   if (!lacking_.empty()) {
     throw InputError(campaign_.name, "/target/observable", campaign_.target.observable,
                      "must be a number that the results have: " + lacking_);

@@ -68,8 +68,8 @@ class Ledger {
   void roll_back();
   void keep_running(const Grant& grant);
 
-  // Removes and moves files whose results are durable now. Throws InputError when results lack the
-  // observable.
+  // Removes and moves files whose results are durable now, and tells what happened. Throws InputError when
+  // results lack the observable.
   void after_commit();
 
   const PointRecord& point(int place) const { return points_.at(static_cast<std::size_t>(place)); }
@@ -86,6 +86,7 @@ class Ledger {
   void ingest_spool_of(const CampaignDirectory& directory);
   Stored take(const RealisationResult& result, const std::filesystem::path& spool);
   void book_outcome(SeedId id, const Outcome& outcome);
+  void store_looks(int place, std::size_t known);
   void turn_down(const std::filesystem::path& spool, const std::string& why);
 
   Database& database_;
@@ -103,6 +104,7 @@ class Ledger {
   std::string lacking_;   // what results have instead of the target's observable
 
   std::vector<std::filesystem::path> to_remove_, to_reject_;
+  std::vector<RunEvent> to_tell_;
 };
 
 }  // namespace peclet::runner

@@ -7,18 +7,13 @@
 #include <system_error>
 
 #include "contract/durable_file.h"
-#include "contract/input_error.h"
+#include "runner/exit_code.h"
 #include "runner/open_campaign.h"
 #include "runner/options.h"
 
 namespace {
 
 using namespace peclet::runner;
-
-constexpr int exit_error = 1;
-constexpr int exit_input = 2;
-constexpr int exit_owned = 5;
-constexpr int exit_integrity = 6;
 
 // A full disk behind `peclet export > file` must not look like success.
 void print(const std::string& text) {
@@ -122,11 +117,6 @@ int perform(const ManualOptions& options) {
   return 0;
 }
 
-int complain(const std::exception& error, int code) {
-  say(fmt::format("peclet: {}\n", error.what()));
-  return code;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -134,13 +124,8 @@ int main(int argc, char** argv) {
     const CommandLine command = read_command_line(argc, argv);
     if (!command.verb) return command.exit_code;
     return std::visit([](const auto& options) { return perform(options); }, *command.verb);
-  } catch (const peclet::InputError& error) {
-    return complain(error, exit_input);
-  } catch (const OwnedByAnother& error) {
-    return complain(error, exit_owned);
-  } catch (const IntegrityError& error) {
-    return complain(error, exit_integrity);
   } catch (const std::exception& error) {
-    return complain(error, exit_error);
+    say(fmt::format("peclet: {}\n", error.what()));
+    return exit_code_of(error);
   }
 }

@@ -158,6 +158,8 @@ class Reader {
         ->type_name("SECONDS")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
+    verb->add_flag("--jsonl", run_.jsonl,
+                   "What happens as JSON on standard output, one object a line, instead of the table");
     verb->add_flag("--quiet", run_.quiet, "No progress on stderr");
     verb->add_flag("--force", run_.force, "Use a network file system all the same, at your own risk");
     choose(verb, run_);

@@ -1,23 +1,16 @@
 #include "runner/queue.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <array>
-#include <chrono>
 #include <cmath>
 
 #include "runner/bundle_files.h"
+#include "runner/utc_time.h"
 
 namespace peclet::runner {
 namespace {
-
-// Wall-clock time in UTC, for people.
-std::string utc_now() {
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
-                     fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
-}
 
 std::string host_name() {
   std::array<char, 256> name{};

@@ -10,6 +10,8 @@
 #include <thread>
 
 #include "runner/dispatcher.h"
+#include "runner/event_stream.h"
+#include "runner/exit_code.h"
 #include "runner/owned_campaign.h"
 #include "runner/periodic_backup.h"
 #include "runner/progress.h"
@@ -49,20 +51,34 @@ std::unique_ptr<Opened> open_when_there_is_room(const ClaimedCampaign& claimed, 
                                                 StopSignals& signals) {
   for (bool first = true;; first = false) {
     try {
-      return std::make_unique<Opened>(claimed, listener);
+      auto opened = std::make_unique<Opened>(claimed, listener);
+      if (!first) listener.happened(ShortageEnded{});
+      return opened;
     } catch (const std::exception& error) {
       if (!means_no_room(error)) throw;
       if (first) {
-        listener.warn(shortage_text(claimed.directory.root(), 0) +
-                      "; the campaign begins when there is room");
+        const std::string shortage = shortage_text(claimed.directory.root(), 0);
+        listener.happened(ShortageBegan{shortage});
+        listener.warn(shortage + "; the campaign begins when there is room");
       }
     }
     if (signals.wait(std::chrono::seconds(3))) return nullptr;
   }
 }
 
-Dispatcher::Ending dispatch(Opened& opened, const RunOptions& options, const ClaimedCampaign& claimed,
-                            RunLog& log, StopSignals& signals) {
+RunBegan beginning(const ClaimedCampaign& claimed, const RunOptions& options) {
+  const Team size = team(options);
+  return {claimed.campaign.name,
+          claimed.directory.root(),
+          getpid(),
+          static_cast<int>(claimed.campaign.points.size()),
+          size.workers,
+          size.threads};
+}
+
+// The result is the exit code.
+int dispatch(Opened& opened, const RunOptions& options, const ClaimedCampaign& claimed, RunLog& log,
+             StopSignals& signals) {
   using std::chrono::steady_clock;
   const CampaignDirectory& directory = claimed.directory;
   const Team size = team(options);
@@ -81,7 +97,7 @@ Dispatcher::Ending dispatch(Opened& opened, const RunOptions& options, const Cla
   Dispatcher dispatcher(opened.database, opened.ledger, pool, log, settings, steady_clock::now);
   const Dispatcher::Ending ending = dispatcher.run();
   backup.finish();
-  return ending;
+  return exit_code(opened.database, opened.ledger.scheduler(), ending == Dispatcher::Ending::finished);
 }
 
 }  // namespace
@@ -93,19 +109,22 @@ int run_campaign(const RunOptions& options) {
   int code = exit_stopped;
   {
     Progress progress(Progress::style_of_stderr(options.quiet));
-    RunLog log(claimed.directory.run_log(), progress);
-    opened = open_when_there_is_room(claimed, log, signals);
-    if (!opened) return exit_stopped;
+    std::optional<EventStream> events;
+    if (options.jsonl) events.emplace(STDOUT_FILENO, progress);
+    RunLog log(claimed.directory.run_log(), events ? static_cast<RunListener&>(*events) : progress);
+    log.happened(beginning(claimed, options));
     try {
-      const Dispatcher::Ending ending = dispatch(*opened, options, claimed, log, signals);
-      code = exit_code(opened->database, opened->ledger.scheduler(), ending == Dispatcher::Ending::finished);
+      opened = open_when_there_is_room(claimed, log, signals);
+      if (opened) code = dispatch(*opened, options, claimed, log, signals);
     } catch (const std::exception& error) {
       log.record(fmt::format("ends with an error: {}", error.what()));
+      log.happened(RunEnded{exit_code_of(error), error.what()});
       throw;
     }
     log.record(fmt::format("ends with exit code {}", code));
+    log.happened(RunEnded{code, ""});
   }
-  std::fputs(status_table(opened->database).c_str(), stdout);
+  if (opened && !options.jsonl) std::fputs(status_table(opened->database).c_str(), stdout);
   return code;
 }
 

@@ -12,6 +12,7 @@ struct RunOptions {
   int workers = 0;                   // 0: cores / threads
   int threads = 0;                   // of each worker; 0: 1, or cores / workers when workers are given
   bool quiet = false;                // no progress
+  bool jsonl = false;                // events on standard output, instead of the table at the end
   std::optional<double> time_limit;  // seconds until the drain
   bool force = false;                // use a network file system all the same
   double lease_seconds = 120;        // a worker without a new step for so long is hung

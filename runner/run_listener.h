@@ -5,6 +5,7 @@
 #include <string>
 
 #include "runner/forecast.h"
+#include "runner/run_event.h"
 
 namespace peclet::runner {
 
@@ -23,6 +24,8 @@ class RunListener {
   // Something happened that a person may want to know (may have to know).
   virtual void note(const std::string& message) = 0;
   virtual void warn(const std::string& message) = 0;
+  // The same for programs, once each and after it is durable.
+  virtual void happened(const RunEvent&) {}
   // How far the run is; comes about once a second.
   virtual void report(const RunReport& report) = 0;
 };

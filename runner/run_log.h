@@ -19,6 +19,7 @@ class RunLog : public RunListener {
 
   void note(const std::string& message) override;
   void warn(const std::string& message) override;
+  void happened(const RunEvent& event) override { audience_.happened(event); }
   void report(const RunReport& report) override;  // into the file once in ten minutes
 
   // For the file alone: how the run began and ended.

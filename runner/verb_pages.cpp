@@ -63,9 +63,11 @@ changes of its file; nothing that has finished is run again.
 
 Ctrl-C (or SIGTERM) lets the workers write checkpoints and stop, a second one stops at once; either way
 the exit code is 75 and the campaign can be resumed. Progress goes to standard error, the table at the
-end to standard output.
+end to standard output; with --jsonl events take its place, which schema/README.md describes.
 )",
-            {{"peclet run flow-curve.json --time-limit 28800", "eight hours of it; the same again tomorrow"}},
+            {{"peclet run flow-curve.json --time-limit 28800", "eight hours of it; the same again tomorrow"},
+             {"peclet run flow-curve.json --jsonl | jq -r 'select(.event == \"decided\") | .point.label'",
+              "follow it with a program"}},
             {0, 1, 2, 3, 5, 6, 75})},
       {"status",
        page(R"(

@@ -12,27 +12,18 @@
 #include <thread>
 
 #include "contract/durable_file.h"
-#include "contract/input_error.h"
+#include "runner/exit_code.h"
 
 namespace peclet::runner {
 namespace {
 
 // As main.cpp does it.
-int exit_code_of(const RunOptions& options) {
+int run_as_program(const RunOptions& options) {
   try {
     return run_campaign(options);
-  } catch (const InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  } catch (const OwnedByAnother& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 5;
-  } catch (const IntegrityError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 6;
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
-    return 1;
+    return exit_code_of(error);
   }
 }
 
@@ -62,7 +53,7 @@ void CampaignOnDisk::start(const Environment& environment) {
   dup2(log, STDOUT_FILENO);
   dup2(log, STDERR_FILENO);
   for (const auto& [name, value] : environment) setenv(name.c_str(), value.c_str(), 1);
-  const int code = exit_code_of(options);
+  const int code = run_as_program(options);
   std::fflush(nullptr);
   _exit(code);
 }

@@ -104,6 +104,29 @@ TEST_F(FullDatabase, LosesNothingGivesOutNothingAndGoesOn) {
   EXPECT_TRUE(spool_files(directory_).empty());
   ASSERT_EQ(listener_.warnings.size(), 1U);
   EXPECT_NE(listener_.warnings.at(0).find("is full"), std::string::npos);
+  // What was taken back with its booking has been told once all the same.
+  EXPECT_EQ(listener_.count<SeedEnded>(), count("SELECT count(*) FROM result"));
+  EXPECT_EQ(listener_.count<Looked>(), count("SELECT count(*) FROM look"));
+  EXPECT_EQ(listener_.count<ShortageBegan>(), 1);
+  EXPECT_EQ(listener_.count<ShortageEnded>(), 1);
+}
+
+TEST_F(FullDatabase, TellsWhatIsCommittedAndNothingThatWasTakenBack) {
+  const std::int64_t engine = ledger_->admit_engine(plain_engine());
+  {
+    const Transaction booking(database_.connection());
+    ledger_->end_attempt(*ledger_->give_out(0, 4711, engine), {AttemptOutcome::crashed});
+  }
+  ledger_->roll_back();
+  ledger_->after_commit();
+  EXPECT_EQ(listener_.count<AttemptFailed>(), 0);
+
+  Transaction booking(database_.connection());
+  ledger_->end_attempt(*ledger_->give_out(0, 4711, engine), {AttemptOutcome::crashed});
+  EXPECT_EQ(listener_.count<AttemptFailed>(), 0);
+  booking.commit();
+  ledger_->after_commit();
+  EXPECT_EQ(listener_.count<AttemptFailed>(), 1);
 }
 
 TEST_F(FullDatabase, CanBeStoppedAndTheSpoolKeepsTheResults) {

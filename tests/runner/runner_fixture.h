@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -42,8 +43,16 @@ class SilentListener : public RunListener {
  public:
   void note(const std::string& message) override { notes.push_back(message); }
   void warn(const std::string& message) override { warnings.push_back(message); }
+  void happened(const RunEvent& event) override { events.push_back(event); }
   void report(const RunReport& report) override { last = report; }
+  // How many events of a kind there were.
+  template <typename Event>
+  std::ptrdiff_t count() const {
+    return std::count_if(events.begin(), events.end(),
+                         [](const RunEvent& event) { return std::holds_alternative<Event>(event); });
+  }
   std::vector<std::string> notes, warnings;
+  std::vector<RunEvent> events;
   RunReport last;
 };
 
