@@ -10,7 +10,8 @@ foreach(file
     share/man/man1/peclet-run.1
     share/bash-completion/completions/peclet
     share/zsh/site-functions/_peclet
-    share/fish/vendor_completions.d/peclet.fish)
+    share/fish/vendor_completions.d/peclet.fish
+    share/systemd/user/peclet@.service)
   if(NOT EXISTS ${prefix}/${file})
     message(SEND_ERROR "${file} is not installed")
   endif()

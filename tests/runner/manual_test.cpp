@@ -171,6 +171,17 @@ TEST(Manual, GroffHasNothingToSayAgainstItsPages) {
   EXPECT_TRUE(says(text, "75     stopped by a signal or a time limit")) << text;
 }
 
+// `verify` names unknown keys and values that it does not understand.
+TEST(SystemdUnit, SystemdHasNothingToSayAgainstIt) {
+  if (shell("systemd-analyze --version").code != 0) GTEST_SKIP() << "there is no systemd here";
+  const TemporaryFolder runtime;
+  const Answer verdict = shell("XDG_RUNTIME_DIR='" + runtime.path().string() +
+                               "' systemd-analyze --user verify --man=no '" PECLET_SOURCE_DIR
+                               "/templates/systemd/peclet@.service'");
+  EXPECT_EQ(verdict.text, "");
+  EXPECT_EQ(verdict.code, 0);
+}
+
 TEST(Roff, NothingOfATextIsTakenForARequestOrAnEscape) {
   EXPECT_EQ(roff_text(".hidden"), "\\&.hidden");
   EXPECT_EQ(roff_code("'a' \\ b-c"), "\\(aqa\\(aq \\e b\\-c");
