@@ -125,7 +125,48 @@ std::string looks_table(const std::vector<Look>& looks, const Target& target) {
   return table.text("  ");
 }
 
+Json losses_json(Database& database, std::int64_t point) {
+  Json losses = Json::object();
+  for (const RealisationRecord& record : database.realisations(point)) {
+    const bool lost = record.state == SeedState::failed || record.state == SeedState::quarantined;
+    if (lost) losses[record.cause].push_back(record.seed);
+  }
+  return losses;
+}
+
+Json blamed_attempts_json(Database& database, std::int64_t point) {
+  Json blamed = Json::array();
+  for (const AttemptRecord& attempt : database.attempts(point)) {
+    if (!attempt.blamed) continue;
+    blamed.push_back({{"seed", attempt.seed},
+                      {"outcome", attempt.outcome},
+                      {"step", attempt.step},
+                      {"message", attempt.message}});
+  }
+  return blamed;
+}
+
 }  // namespace
+
+Json explain_json(Database& database, const CampaignDirectory& directory, const std::string& point) {
+  const CampaignRecord campaign = database.campaign();
+  Json points = Json::array();
+  for (const PointSummary& summary : selected(summarise_points(database, campaign.target), point)) {
+    Json looks = Json::array();
+    for (const Look& look : summary.looks) looks.push_back(look_json(look));
+    points.push_back(
+        {{"label", summary.point.label},
+         {"hash", summary.point.hash},
+         {"verdict", summary.decided ? Json(to_string(summary.looks.back().verdict)) : Json(nullptr)},
+         {"reservations", reservations(summary)},
+         {"reason", reason(summary, campaign.target.target)},
+         {"next", next_step(summary, campaign.target, directory)},
+         {"looks", looks},
+         {"losses", losses_json(database, summary.point.id)},
+         {"blamed_attempts", blamed_attempts_json(database, summary.point.id)}});
+  }
+  return {{"schema_version", 1}, {"campaign", campaign.name}, {"points", points}};
+}
 
 std::string explain(Database& database, const CampaignDirectory& directory, const std::string& point) {
   const TargetRecord target = database.campaign().target;

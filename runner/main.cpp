@@ -57,7 +57,8 @@ int perform(const WatchOptions& options) { return watch_campaign(options); }
 
 int perform(const ExplainOptions& options) {
   OpenCampaign open = open_campaign(options.campaign, options.directory);
-  print(explain(open.database, open.directory, options.point));
+  print(options.json ? explain_json(open.database, open.directory, options.point).dump(2) + '\n'
+                     : explain(open.database, open.directory, options.point));
   return 0;
 }
 

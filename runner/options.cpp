@@ -198,6 +198,7 @@ class Reader {
                      "Label of a point, or 4 or more digits of its hash; all unless given")
         ->type_name("POINT");
     add_directory(verb, explain_.directory);
+    verb->add_flag("--json", explain_.json, "For programs");
     choose(verb, explain_);
   }
 

@@ -173,6 +173,7 @@ TEST_F(CommandLine, ARunCanBeLookedAtByFileAndByFolder) {
     EXPECT_EQ(peclet("status " + place + " --check").code, 0);
     EXPECT_EQ(Json::parse(peclet("status " + place + " --json").text)["standing"], 0);
     EXPECT_EQ(peclet("explain " + place + " peclet=10").code, 0);
+    EXPECT_EQ(Json::parse(peclet("explain " + place + " --json").text)["points"].size(), 2U);
     EXPECT_EQ(Json::parse(peclet("export " + place).text)["points"].size(), 2U);
   }
   EXPECT_EQ(peclet("export small.json --csv --output small.csv").code, 0);

@@ -25,6 +25,29 @@ TEST(Explain, LossesAreNamedByCauseAndSeedWithTheLastWords) {
   EXPECT_TRUE(says(text, campaign.directory().failures().string())) << text;
 }
 
+TEST(Explain, ProgramsAreToldTheSame) {
+  StoredCampaign campaign(2, 6, 20);
+  for (int seed = 0; seed < 4; ++seed) campaign.complete(0, seed, 10 + 0.01 * seed);
+  campaign.blow_up(0, 4);
+  campaign.crash(0, 5);
+  const Json all = explain_json(campaign.database(), campaign.directory(), "");
+  ASSERT_EQ(all["points"].size(), 2U);
+  EXPECT_EQ(explain_json(campaign.database(), campaign.directory(), "point=0")["points"][0],
+            all["points"][0]);
+  const Json lossy = all["points"][0], open = all["points"][1];
+  EXPECT_EQ(lossy["verdict"], "converged-with-losses");
+  EXPECT_EQ(lossy["looks"].size(), 1U);
+  EXPECT_EQ(lossy["looks"][0]["seeds"], 6);
+  EXPECT_EQ(lossy["losses"], Json({{"crashed", {5}}, {"overlap", {4}}}));
+  EXPECT_EQ(lossy["blamed_attempts"], Json::array({{{"seed", 5},
+                                                    {"outcome", "crashed"},
+                                                    {"step", 42},
+                                                    {"message", "signal 11 (Segmentation fault)"}}}));
+  EXPECT_TRUE(open["verdict"].is_null());
+  EXPECT_EQ(open["reason"], "0 of the 6 seeds of the next look have ended, 0 run");
+  EXPECT_EQ(open["next"], "the first look, at 6 seeds");
+}
+
 TEST(Explain, ACappedPointIsToldHowManySeedsItWouldTake) {
   StoredCampaign campaign(1, 4, 4);
   const double values[] = {9, 10, 11, 10};
