@@ -242,6 +242,9 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
       series.push_back(value.get<double>());
     }
     result["mean"] = reduction.means(whole_window(simulation.production()));
+    for (const std::unique_ptr<Observable>& observable : simulation.observables()) {
+      observable->add_to(result["mean"]);
+    }
     result["blocks"] = transposed(blocks);
     result["statistical_inefficiency"] = statistical_inefficiency(series);
   }

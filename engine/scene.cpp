@@ -28,6 +28,7 @@ class Reading {
   // Rate and temperature, given as they are or by Péclet number and limits.
   void set_flow(const Particles& particles, Physics& physics) const;
   Duration duration(const std::string& pointer, const Physics& physics) const;
+  void set_observables(Scene& scene) const;
 
  private:
   bool has(const char* pointer) const { return document_.contains(Json::json_pointer(pointer)); }
@@ -48,6 +49,9 @@ class Reading {
   ContactParameters contact() const;
   LubricationParameters lubrication() const;
   void set_flow_from_peclet(double radius, Physics& physics) const;
+  bool asks_for(const char* observable) const;
+  template <class Settings>
+  void set_observable(const char* name, std::optional<Settings>& settings) const;
 
   const Json& document_;
   std::string file_;
@@ -188,6 +192,50 @@ Duration Reading::duration(const std::string& pointer, const Physics& physics) c
   return duration;
 }
 
+// Whether the scene lists the observable. Its block of settings alone would be measured by nobody.
+bool Reading::asks_for(const char* observable) const {
+  const Json& list = at("/observables");
+  if (std::find(list.begin(), list.end(), observable) != list.end()) return true;
+  const std::string pointer = fmt::format("/{}", observable);
+  if (has(pointer.c_str())) refuse(pointer, "must be left out unless /observables lists it");
+  return false;
+}
+
+template <class Settings>
+void Reading::set_observable(const char* name, std::optional<Settings>& settings) const {
+  if (!asks_for(name)) return;
+  settings.emplace();
+  const std::string interval = fmt::format("/{}/interval", name);
+  if (has(interval.c_str())) settings->interval = number(interval);
+}
+
+void Reading::set_observables(Scene& scene) const {
+  set_observable("mean_squared_displacement", scene.mean_squared_displacement);
+  set_observable("stress_correlation", scene.stress_correlation);
+  if (scene.stress_correlation && (scene.physics.shear_rate > 0 || scene.physics.thermal_energy <= 0)) {
+    refuse("/observables",
+           "must not list stress_correlation unless the thermal energy is > 0 and the shear rate 0");
+  }
+  set_observable("pair_distribution", scene.pair_distribution);
+  if (scene.pair_distribution && has("/pair_distribution")) {
+    PairDistributionSettings& settings = *scene.pair_distribution;
+    settings.range = number("/pair_distribution/range");
+    settings.bin = number("/pair_distribution/bin");
+    settings.slab = number("/pair_distribution/slab");
+    const double bins = settings.range / settings.bin;
+    constexpr double most_bins = 1000;
+    if (std::abs(bins - std::round(bins)) > 1e-9 * bins || bins < 1 || bins > most_bins) {
+      refuse("/pair_distribution/bin",
+             fmt::format("must divide /pair_distribution/range, which is {}, into 1 to {} equal parts",
+                         shortened(at("/pair_distribution/range")), most_bins));
+    }
+  }
+  set_observable("contact_network", scene.contact_network);
+  if (scene.contact_network && !scene.physics.contact) {
+    refuse("/observables", "must not list contact_network without /contact");
+  }
+}
+
 // The method, and the default of the guard that follows from it. Without lubrication explicit steps are bound
 // by contacts and drag alone, and cheaper.
 void fill_method_and_guard(Json& document) {
@@ -226,6 +274,7 @@ Scene read_scene(const Json& document, const std::string& file) {
   if (timestep.is_number()) scene.timestep = timestep.get<double>();
   scene.equilibration = reading.duration("/duration/equilibration", scene.physics);
   scene.production = reading.duration("/duration/production", scene.physics);
+  reading.set_observables(scene);
   scene.guard = {filled["guard"]["largest_overlap"].get<double>(),
                  filled["guard"]["largest_displacement"].get<double>(),
                  filled["guard"]["energy_imbalance"].get<double>(),

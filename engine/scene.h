@@ -71,6 +71,26 @@ struct DerivedGroups {
   std::optional<double> contact_time, inertial_time, brownian_time, shear_time;
 };
 
+// What is measured besides the stress. An interval is the time between samples; absent: as observables/
+// catalogue.cpp has it.
+struct MeanSquaredDisplacementSettings {
+  std::optional<double> interval;
+};
+
+struct StressCorrelationSettings {
+  std::optional<double> interval;
+};
+
+// Lengths in units of the reference radius.
+struct PairDistributionSettings {
+  std::optional<double> interval;
+  double range = 4, bin = 0.1, slab = 0.1;
+};
+
+struct ContactNetworkSettings {
+  std::optional<double> interval;
+};
+
 // How the equations of motion are solved.
 enum class Method { explicit_steps, implicit_steps };
 
@@ -82,6 +102,10 @@ struct Scene {
   std::optional<double> timestep;  // absent: "auto"
   double solver_tolerance = 1e-3;  // of implicit steps
   Duration equilibration, production;
+  std::optional<MeanSquaredDisplacementSettings> mean_squared_displacement;
+  std::optional<StressCorrelationSettings> stress_correlation;
+  std::optional<PairDistributionSettings> pair_distribution;
+  std::optional<ContactNetworkSettings> contact_network;
   Guard guard;
   Json document;  // as given, defaults filled
 };

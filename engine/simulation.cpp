@@ -11,6 +11,7 @@
 #include "engine/integrators/relaxation.h"
 #include "engine/integrators/stability.h"
 #include "engine/integrators/velocity_verlet.h"
+#include "engine/observables/catalogue.h"
 #include "engine/random/keyed_random.h"
 #include "engine/state/packing.h"
 #include "engine/terms/drag.h"
@@ -145,6 +146,7 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
         ForceField(physics, system_.particles, schedule.timestep, seed, threads), system_.particles,
         schedule.timestep);
   }
+  observables_ = make_observables(scene, system_, schedule.timestep, schedule.production, file);
 }
 
 void Simulation::start() {
@@ -259,12 +261,18 @@ void Simulation::observe(const StepReport& report) {
     production_.add_sample(index, structural_brownian_stress(system_, kinds_, scene_.physics.thermal_energy),
                            kinetic_temperatures(system_));
   }
+  for (const std::unique_ptr<Observable>& observable : observables_) {
+    if (index % observable->interval() != 0) continue;
+    integrator_->complete(system_);
+    observable->sample(system_);
+  }
 }
 
 void Simulation::save(ArchiveWriter& archive) const {
   engine::save(system_, archive);
   integrator_->save(archive);
   production_.save(archive);
+  for (const std::unique_ptr<Observable>& observable : observables_) observable->save(archive);
   archive.put(step_errors_);
   archive.put(largest_overlap_);
 }
@@ -273,6 +281,7 @@ void Simulation::load(ArchiveReader& archive) {
   engine::load(system_, archive);
   integrator_->load(system_, archive);
   production_.load(archive);
+  for (const std::unique_ptr<Observable>& observable : observables_) observable->load(archive);
   step_errors_ = archive.get<StepErrors>();
   largest_overlap_ = archive.get<double>();
 }

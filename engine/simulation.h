@@ -3,8 +3,10 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "engine/integrators/integrator.h"
+#include "engine/observables/observable.h"
 #include "engine/observables/production.h"
 #include "engine/scene.h"
 
@@ -66,6 +68,7 @@ class Simulation {
   const System& system() const { return system_; }
   const Schedule& schedule() const { return schedule_; }
   const Production& production() const { return production_; }
+  const std::vector<std::unique_ptr<Observable>>& observables() const { return observables_; }
   const StepErrors& step_errors() const { return step_errors_; }
   double largest_overlap() const { return largest_overlap_; }  // over the smaller radius, in production
 
@@ -85,6 +88,7 @@ class Simulation {
   std::vector<PairKind> kinds_;
   std::unique_ptr<Integrator> integrator_;
   Production production_;
+  std::vector<std::unique_ptr<Observable>> observables_;  // that the scene asks for
   StepErrors step_errors_;
   double smallest_radius_;
   double largest_overlap_ = 0;

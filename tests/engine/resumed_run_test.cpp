@@ -28,6 +28,9 @@ const Way ways[] = {
      {{"integrator", {{"method", "implicit"}}},
       {"particles", {{"density", 0.01}}},
       {"fluid", {{"thermal_energy", nullptr}}}}},
+    {"with_every_observable_of_a_flow",
+     {{"observables", {"mean_squared_displacement", "pair_distribution", "contact_network"}},
+      {"pair_distribution", {{"range", 3}}}}},
 };
 const auto name_of_way = [](const auto& way) { return std::string(way.param.name); };
 
@@ -174,6 +177,30 @@ TEST_P(ResumedRun, OtherSeedsEndElsewhere) {
   other.start();
   other.advance(total_steps);
   EXPECT_FALSE(bytes_of(other) == uncut());
+}
+
+// The one observable that a flow does not allow.
+TEST(ResumedRunAtRest, KeepsTheStressCorrelation) {
+  const Scene scene = read_scene(
+      small_scene({{"flow", {{"shear_rate", 0}}}, {"observables", {"stress_correlation"}}}), "scene.json");
+  const auto made = [&] {
+    return Simulation(scene, make_schedule(scene, "scene.json"), seed, 1, "scene.json");
+  };
+  Simulation uncut = made();
+  uncut.start();
+  uncut.advance(271);
+  ArchiveWriter checkpoint;
+  uncut.save(checkpoint);
+  Simulation resumed = made();
+  ArchiveReader reader(checkpoint.bytes());
+  resumed.load(reader);
+  uncut.advance(total_steps);
+  resumed.advance(total_steps);
+  Json expected = Json::object(), mean = Json::object();
+  uncut.observables().front()->add_to(expected);
+  resumed.observables().front()->add_to(mean);
+  EXPECT_GT(expected.at("green_kubo_viscosity"), 0);
+  EXPECT_EQ(mean, expected);
 }
 
 // A job that is drained at every opportunity, and one that is left alone.

@@ -1,0 +1,167 @@
+#include "engine/observables/mean_squared_displacement.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace peclet::engine {
+namespace {
+
+Vector3 squares_of(const Vector3& v) { return {v.x * v.x, v.y * v.y, v.z * v.z}; }
+
+std::vector<Vector3> unwrapped_places(const System& system) {
+  std::vector<Vector3> places(system.particles.count());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    places[system.particles.id[i]] =
+        system.particles.position[i] + system.box.displacement(system.particles.image[i]);
+  }
+  return places;
+}
+
+}  // namespace
+
+MeanSquaredDisplacement::MeanSquaredDisplacement(const Scene& scene, const System& system, double timestep,
+                                                 std::uint64_t interval, std::uint64_t steps)
+    : interval_(interval),
+      time_(timestep * static_cast<double>(interval)),
+      sheared_(scene.physics.shear_rate > 0),
+      free_slope_(scene.physics.thermal_energy /
+                  (std::numbers::pi * scene.physics.viscosity * scene.particles.reference_radius)),
+      radius_of_class_(distinct_radii(system.particles.radius)),
+      count_of_class_(radius_of_class_.size()),
+      class_of_(system.particles.count()) {
+  for (std::size_t i = 0; i < class_of_.size(); ++i) {
+    class_of_[system.particles.id[i]] = system.particles.size_class[i];
+    count_of_class_[system.particles.size_class[i]] += 1;
+  }
+  // The longest lag, 4 2^l samples, is at most a quarter of the window.
+  const std::uint64_t samples = (steps - 1) / interval + 1;
+  for (std::uint64_t reach = 1; levels_.empty() || 16 * reach <= samples; reach *= 2) {
+    Level level;
+    level.squares.resize(kept * classes());
+    levels_.push_back(std::move(level));
+  }
+}
+
+void MeanSquaredDisplacement::sample(const System& system) {
+  const std::vector<Vector3> places = unwrapped_places(system);
+  for (std::size_t l = 0; l < levels_.size() && samples_ % (std::uint64_t{1} << l) == 0; ++l) {
+    push(levels_[l], l == 0 ? 1 : kept / 2, places);
+  }
+  ++samples_;
+}
+
+void MeanSquaredDisplacement::push(Level& level, std::size_t first_lag, const std::vector<Vector3>& places) {
+  for (std::size_t k = first_lag; k < kept && k <= level.pushed; ++k) {
+    add(level, k, level.places[(level.pushed - k) % kept], places);
+  }
+  level.places[level.pushed % kept] = places;
+  ++level.pushed;
+}
+
+void MeanSquaredDisplacement::add(Level& level, std::size_t k, const std::vector<Vector3>& from,
+                                  const std::vector<Vector3>& to) {
+  Vector3* const squares = &level.squares[k * classes()];
+  Vector3 sum;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const Vector3 way = to[i] - from[i];
+    sum += way;
+    squares[class_of_[i]] += squares_of(way);
+  }
+  level.sums[k].centre += squares_of((1 / static_cast<double>(from.size())) * sum);
+  ++level.sums[k].origins;
+}
+
+std::vector<MeanSquaredDisplacement::Lag> MeanSquaredDisplacement::lags() const {
+  std::vector<Lag> lags;
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    for (std::size_t k = l == 0 ? 1 : kept / 2; k < kept; ++k) {
+      if (levels_[l].sums[k].origins > 0) lags.push_back({k << l, &levels_[l], k});
+    }
+  }
+  return lags;
+}
+
+Vector3 MeanSquaredDisplacement::of_class(const Lag& lag, std::size_t size_class) const {
+  const double terms = count_of_class_[size_class] * static_cast<double>(lag.level->sums[lag.k].origins);
+  return (1 / terms) * lag.level->squares[lag.k * classes() + size_class];
+}
+
+Vector3 MeanSquaredDisplacement::of_all(const Lag& lag) const {
+  Vector3 sum;
+  for (std::size_t c = 0; c < classes(); ++c) {
+    sum += (count_of_class_[c] / static_cast<double>(class_of_.size())) * of_class(lag, c);
+  }
+  return sum;
+}
+
+Json MeanSquaredDisplacement::axes(const std::vector<Vector3>& values) const {
+  Json x = Json::array(), y = Json::array(), z = Json::array();
+  for (const Vector3& value : values) {
+    x.push_back(value.x);
+    y.push_back(value.y);
+    z.push_back(value.z);
+  }
+  return {{"x", sheared_ ? Json() : x}, {"y", y}, {"z", z}};
+}
+
+Json MeanSquaredDisplacement::self_diffusion(const std::vector<Lag>& lags) const {
+  if (!(free_slope_ > 0)) return nullptr;
+  const auto spread = [&](const Lag& lag) {
+    const Sum& sum = lag.level->sums[lag.k];
+    const Vector3 own = of_all(lag) - (1 / static_cast<double>(sum.origins)) * sum.centre;
+    return sheared_ ? 1.5 * (own.y + own.z) : own.x + own.y + own.z;
+  };
+  for (auto longer = lags.rbegin(); longer != lags.rend(); ++longer) {
+    for (auto shorter = longer; shorter != lags.rend(); ++shorter) {
+      if (2 * shorter->samples != longer->samples) continue;
+      const double time = time_ * static_cast<double>(shorter->samples);
+      return (spread(*longer) - spread(*shorter)) / (time * free_slope_);
+    }
+  }
+  return nullptr;
+}
+
+void MeanSquaredDisplacement::add_to(Json& mean) const {
+  const std::vector<Lag> measured = lags();
+  std::vector<Vector3> all, centre;
+  Json time = Json::array(), species = Json::array();
+  for (const Lag& lag : measured) {
+    const Sum& sum = lag.level->sums[lag.k];
+    time.push_back(time_ * static_cast<double>(lag.samples));
+    all.push_back(of_all(lag));
+    centre.push_back((1 / static_cast<double>(sum.origins)) * sum.centre);
+  }
+  for (std::size_t c = 0; c < classes(); ++c) {
+    std::vector<Vector3> own;
+    for (const Lag& lag : measured) own.push_back(of_class(lag, c));
+    species.push_back(axes(own));
+    species.back()["radius"] = radius_of_class_[c];
+  }
+  mean["mean_squared_displacement"] = {
+      {"time", time}, {"all", axes(all)}, {"centre", axes(centre)}, {"species", species}};
+  mean["self_diffusion"] = self_diffusion(measured);
+}
+
+void MeanSquaredDisplacement::save(ArchiveWriter& archive) const {
+  archive.put(samples_);
+  for (const Level& level : levels_) {
+    archive.put(level.pushed);
+    for (std::size_t k = 0; k < kept && k < level.pushed; ++k) archive.put(level.places[k]);
+    archive.put(level.sums);
+    archive.put(level.squares);
+  }
+}
+
+void MeanSquaredDisplacement::load(ArchiveReader& archive) {
+  samples_ = archive.get<std::uint64_t>();
+  for (Level& level : levels_) {
+    level.pushed = archive.get<std::uint64_t>();
+    for (std::size_t k = 0; k < kept && k < level.pushed; ++k) {
+      level.places[k] = archive.get_vector<Vector3>(class_of_.size());
+    }
+    level.sums = archive.get<std::array<Sum, kept>>();
+    level.squares = archive.get_vector<Vector3>(kept * classes());
+  }
+}
+
+}  // namespace peclet::engine

@@ -1,0 +1,46 @@
+// Autocorrelation of a series over lags from one sample to many, at a cost per sample that does not grow.
+//
+// Level l holds the last 16 means of 2^l consecutive samples. It correlates them over lags of 0 ... 15 of its
+// own spacings (8 ... 15 beyond the first level): the multiple-tau scheme with m = 2 and p = 16 of Ramirez,
+// Sukumaran, Vorselaars & Likhtman, J. Chem. Phys. 133, 154103 (2010).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "engine/state/archive.h"
+
+namespace peclet::engine {
+
+class MultipleTau {
+ public:
+  explicit MultipleTau(std::size_t levels) : levels_(levels) {}
+
+  void add(double value);
+
+  struct Value {
+    std::uint64_t lag;   // samples
+    double correlation;  // <v(s) v(s + lag)>; the mean is not taken away
+  };
+  // In order of the lags; those that were never met are left out.
+  std::vector<Value> values() const;
+
+  void save(ArchiveWriter& archive) const { archive.put(levels_); }
+  void load(ArchiveReader& archive) { levels_ = archive.get_vector<Level>(levels_.size()); }
+
+ private:
+  static constexpr std::size_t kept = 16, block = 2;
+  struct Level {
+    std::uint64_t pushed = 0;
+    std::array<double, kept> last{};  // a ring
+    std::array<double, kept> products{};
+    std::array<std::uint64_t, kept> count{};
+    double sum = 0;  // for the next level
+  };
+  static std::size_t first_lag(std::size_t level) { return level == 0 ? 0 : kept / block; }
+
+  std::vector<Level> levels_;
+};
+
+}  // namespace peclet::engine

@@ -1,0 +1,28 @@
+// What a scene asks for besides the stress: sampled during the production window.
+#pragma once
+
+#include <cstdint>
+
+#include "contract/json.h"
+#include "engine/state/system.h"
+
+namespace peclet::engine {
+
+class Observable {
+ public:
+  virtual ~Observable() = default;
+
+  // Steps between samples, of which the first is at the first step of the window.
+  virtual std::uint64_t interval() const = 0;
+  // Requires a complete step (integrator.h) and the system that every other sample is of.
+  virtual void sample(const System& system) = 0;
+  // Adds an object of its own name to the result's mean, with lists of numbers, and beside it the numbers
+  // that a campaign may aim at. Requires a sample.
+  virtual void add_to(Json& mean) const = 0;
+
+  // Everything that samples have left, bit by bit.
+  virtual void save(ArchiveWriter& archive) const = 0;
+  virtual void load(ArchiveReader& archive) = 0;
+};
+
+}  // namespace peclet::engine
