@@ -49,15 +49,17 @@ class Program:
         self.engine = os.path.join(os.path.abspath(binaries), "peclet-engine")
         self.folder = folder
         self.commits = set()  # of the engines that the results are of
+        self.processor_seconds = 0.0  # that they took
         os.makedirs(folder, exist_ok=True)
 
-    def run(self, name, scene, settings, seeds):
-        """Runs `seeds` realisations with each of `settings` (objects of pointers and values) and returns the points of the export."""
+    def run(self, name, scene, settings, seeds, observable="relative_viscosity"):
+        """Runs `seeds` realisations with each of `settings` (objects of pointers and values) and returns the points of the export.
+        `observable` only has to be a number that the results have."""
         pointers = sorted(settings[0])
         campaign = {
             "name": name, "scene": scene,
             "sweep": [{"set": pointers, "values": [[s[p] for p in pointers] for s in settings]}],
-            "target": {"observable": "relative_viscosity", "relative_tolerance": 1e-9},
+            "target": {"observable": observable, "relative_tolerance": 1e-9},
             "realisations": {"minimum": seeds, "maximum": seeds},
             "engine": [self.engine, "serve"],
         }
@@ -70,6 +72,7 @@ class Program:
             sys.exit(f"{path}: peclet run ended with {done.returncode}")
         export = json.loads(subprocess.run([self.peclet, "export", path], check=True, capture_output=True).stdout)
         self.commits |= {engine["git_commit"][:7] + ("+" if engine["git_dirty"] else "") for engine in export["engines"].values()}
+        self.processor_seconds += sum(r["cost"]["cpu_seconds"] for point in export["points"] for r in point["realisations"])
         return export["points"]
 
     def derived(self, scene):
