@@ -63,7 +63,8 @@ std::string place(std::string_view text, std::size_t offset) {
 }
 
 // The parser's message without its own name and the place: "[json.exception.parse_error.101] parse error at
-// line 1, column 2: syntax error ..." ends as "syntax error ...".
+// line 1, column 2: syntax error ..." ends as "syntax error ...". What it read last may be a part of a
+// character, which no terminal can show.
 std::string reason(std::string_view message) {
   const auto skip_past = [&](std::string_view mark) {
     const auto found = message.find(mark);
@@ -71,7 +72,30 @@ std::string reason(std::string_view message) {
   };
   skip_past("] ");
   if (message.starts_with("parse error")) skip_past(": ");
-  return std::string(message);
+  const bool is_plain = std::all_of(message.begin(), message.end(),
+                                    [](char c) { return static_cast<unsigned char>(c) < 0x80U; });
+  return std::string(is_plain ? message : message.substr(0, message.find("; last read")));
+}
+
+// What people type who write JSON by hand or paste it from a document: the usual faults, named.
+std::string usual_fault(std::string_view text, std::size_t offset) {
+  const std::string_view from_here = text.substr(std::min(offset, text.size()));
+  for (const std::string_view quote : {"\u201c", "\u201d", "\u201e", "\u2018", "\u2019"}) {
+    // The parser stops inside of it, or behind.
+    for (std::size_t back = 0; back < quote.size(); ++back) {
+      if (offset >= back && text.substr(offset - back).starts_with(quote)) {
+        return "; a typographic quotation mark: JSON has straight ones, \"";
+      }
+    }
+  }
+  const std::size_t before = text.substr(0, offset).find_last_not_of(" \t\r\n");
+  const bool closes = from_here.starts_with("]") || from_here.starts_with("}");
+  if (closes && before != std::string_view::npos && text[before] == ',') {
+    return "; the comma before it is one too many";
+  }
+  if (from_here.starts_with("/") || from_here.starts_with("#")) return "; JSON has no comments";
+  if (from_here.starts_with("'")) return "; JSON has double quotation marks, \"";
+  return "";
 }
 
 void write_number(double number, std::string& out) {
@@ -144,7 +168,8 @@ Json parse_json(std::string_view text, const std::string& file) {
     const char* const end = text.data() + text.size();
     return Json::parse(TrackedIterator(text.data(), &furthest), TrackedIterator(end, &furthest), watch);
   } catch (const Json::parse_error& error) {
-    throw fault(std::min(text.size(), error.byte == 0 ? 0 : error.byte - 1), reason(error.what()));
+    const std::size_t offset = std::min(text.size(), error.byte == 0 ? 0 : error.byte - 1);
+    throw fault(offset, reason(error.what()) + usual_fault(text, offset));
   } catch (const Json::exception& error) {
     throw fault(here(), reason(error.what()));
   }

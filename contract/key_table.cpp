@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "contract/input_error.h"
+#include "contract/nearest_name.h"
 
 namespace peclet {
 
@@ -73,13 +74,24 @@ bool is_allowed(const Key& key, const Json& value) {
   return false;
 }
 
+// A share that was given in per cent, as 5 for 5 %.
+std::string hint_at_percent(const Key& key, const Json& value) {
+  const bool is_share = key.kind == KeyKind::number && key.minimum >= 0 && key.maximum <= 1;
+  if (!is_share || !value.is_number()) return "";
+  const double percent = value.get<double>();
+  if (percent < 1 || !in_range(key, percent / 100)) return "";
+  return fmt::format("; {:g} % is written {:g}", percent, percent / 100);
+}
+
 // One pass over a document. `pattern` is where we are in the table, `pointer` where we are in the document.
 class Validation {
  public:
   Validation(const KeyTable& table, const std::string& file) : table_(table), file_(file) {}
 
   void check_value(Json& value, const Key& key, const std::string& pointer) const {
-    if (!is_allowed(key, value)) throw InputError(file_, pointer, shortened(value), allowed_values(key));
+    if (!is_allowed(key, value)) {
+      throw InputError(file_, pointer, shortened(value), allowed_values(key) + hint_at_percent(key, value));
+    }
     if (key.kind == KeyKind::object) check_object(value, key.pointer, pointer);
     if (key.kind == KeyKind::array) check_array(value, key.pointer, pointer);
     if (key.kind == KeyKind::integer) value = static_cast<long long>(value.get<double>());
@@ -91,7 +103,7 @@ class Validation {
     for (const auto& [name, value] : object.items()) {
       const bool is_plain = name != "*" && name.find('/') == std::string::npos;
       const Key* key = is_plain ? table_.find(pattern + '/' + name) : nullptr;
-      if (key == nullptr) refuse_unknown(keys, pointer + '/' + escaped(name));
+      if (key == nullptr) refuse_unknown(keys, name, pointer + '/' + escaped(name));
       check_value(value, *key, pointer + '/' + escaped(name));
     }
     for (const Key* key : keys) {
@@ -114,11 +126,13 @@ class Validation {
     }
   }
 
-  [[noreturn]] void refuse_unknown(const std::vector<const Key*>& keys, const std::string& pointer) const {
-    std::vector<std::string_view> names;
+  [[noreturn]] void refuse_unknown(const std::vector<const Key*>& keys, const std::string& name,
+                                   const std::string& pointer) const {
+    std::vector<std::string> names;
     names.reserve(keys.size());
-    for (const Key* key : keys) names.push_back(name_of(*key));
-    throw InputError(file_, pointer, "unknown key", fmt::format("allowed keys: {}", fmt::join(names, ", ")));
+    for (const Key* key : keys) names.emplace_back(name_of(*key));
+    throw InputError(file_, pointer, "unknown key",
+                     fmt::format("allowed keys: {}{}", fmt::join(names, ", "), suggestion(name, names)));
   }
 
   const KeyTable& table_;

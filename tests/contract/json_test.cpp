@@ -45,6 +45,27 @@ TEST(Json, FaultsAreNamedWithFileLineAndColumn) {
   }
 }
 
+TEST(Json, WhatPeopleUsuallyTypeWrongIsNamedAndTheMessageIsWholeText) {
+  const struct {
+    const char* text;
+    const char* start;
+    const char* hint;
+  } faults[] = {
+      {"{\n \"a\": \u201cb\u201d}", "f.json: line 2, column 7: ", "typographic quotation mark"},
+      {"{\"a\": [1, 2,]}", "f.json: line 1, column 13: ", "; the comma before it is one too many"},
+      {"{\"a\": 1,\n}", "f.json: line 2, column 1: ", "; the comma before it is one too many"},
+      {"{\"a\": 1, // no\n}", "f.json: line 1, column 10: ", "; JSON has no comments"},
+      {"{'a': 1}", "f.json: line 1, column 2: ", "; JSON has double quotation marks"},
+  };
+  for (const auto& fault : faults) {
+    const std::string message = message_of(fault.text);
+    EXPECT_TRUE(message.starts_with(fault.start)) << message;
+    EXPECT_NE(message.find(fault.hint), std::string::npos) << message;
+    EXPECT_NO_THROW(Json(message).dump()) << "not UTF-8: " << message;
+  }
+  EXPECT_EQ(message_of("[NaN]").find("too many"), std::string::npos);
+}
+
 TEST(Json, TheSameKeyInTwoObjectsIsNoDuplicate) {
   EXPECT_EQ(parse_json(R"([{"a": {"a": 1}}, {"a": 2}])", "f")[1]["a"], 2);
 }
