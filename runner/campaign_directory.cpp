@@ -1,20 +1,12 @@
 #include "runner/campaign_directory.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/vfs.h>
-#include <unistd.h>
 
 #include <array>
 #include <cerrno>
-#include <charconv>
-#include <chrono>
 #include <system_error>
-#include <thread>
 #include <utility>
-
-#include "contract/durable_file.h"
 
 namespace peclet::runner {
 namespace {
@@ -36,25 +28,6 @@ constexpr std::array<std::pair<unsigned long, const char*>, 9> network_kinds{{{0
                                                                               {0x47504653, "GPFS"},
                                                                               {0x19830326, "BeeGFS"},
                                                                               {0x5346414f, "AFS"}}};
-
-std::int64_t written_owner(int descriptor) {
-  std::array<char, 32> text{};
-  const ssize_t count = pread(descriptor, text.data(), text.size(), 0);
-  std::int64_t process = 0;
-  if (count > 0) std::from_chars(text.data(), text.data() + count, process);
-  return process;
-}
-
-// Readers that ask current_owner() hold the lock for an instant; an owner holds it for longer than this.
-bool lock_patiently(int descriptor) {
-  for (int attempt = 0; attempt < 20; ++attempt) {
-    if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) return true;
-    if (errno != EWOULDBLOCK && errno != EINTR) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  errno = EWOULDBLOCK;
-  return false;
-}
 
 }  // namespace
 
@@ -97,42 +70,6 @@ std::optional<std::string> network_file_system(const fs::path& path) {
     if (number == magic) return name;
   }
   return std::nullopt;
-}
-
-OwnerLock::OwnerLock(const CampaignDirectory& directory) {
-  const std::string path = directory.lock().string();
-  descriptor_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), path);
-  if (!lock_patiently(descriptor_)) {
-    const int error = errno;
-    const std::int64_t owner = written_owner(descriptor_);
-    close(descriptor_);
-    if (error != EWOULDBLOCK) throw std::system_error(error, std::generic_category(), path);
-    throw OwnedByAnother(
-        fmt::format("{}: process {} owns this campaign; look at it with `peclet status`, or stop "
-                    "that process first",
-                    directory.root().string(), owner));
-  }
-  const std::string process = fmt::format("{}\n", getpid());
-  const bool written = ftruncate(descriptor_, 0) == 0 && pwrite(descriptor_, process.data(), process.size(),
-                                                                0) == static_cast<ssize_t>(process.size());
-  // On a full disk the lock is worth as much without the number.
-  if (const int error = errno; !written && !means_no_room(error)) {
-    close(descriptor_);
-    throw std::system_error(error, std::generic_category(), path);
-  }
-}
-
-OwnerLock::~OwnerLock() { close(descriptor_); }
-
-std::optional<std::int64_t> current_owner(const CampaignDirectory& directory) {
-  const int descriptor = open(directory.lock().c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return std::nullopt;
-  // A shared lock, held for an instant: it fails while there is an owner.
-  std::optional<std::int64_t> owner;
-  if (flock(descriptor, LOCK_SH | LOCK_NB) != 0) owner = written_owner(descriptor);
-  close(descriptor);
-  return owner;
 }
 
 }  // namespace peclet::runner

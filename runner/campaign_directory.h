@@ -54,7 +54,9 @@ class OwnedByAnother : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The right to write a campaign, held from construction to destruction or to the end of the process.
+// The right to write a campaign, held from construction to destruction or to the end of the process. It is a
+// lock on the folder itself, which cannot be deleted and made anew beneath its owner unnoticed as a file can,
+// and on campaign.lock, which says who holds it. Code in owner_lock.cpp.
 class OwnerLock {
  public:
   // Requires the folder to exist. Throws OwnedByAnother naming the owner's process, std::system_error.
@@ -63,8 +65,11 @@ class OwnerLock {
   OwnerLock(const OwnerLock&) = delete;
   OwnerLock& operator=(const OwnerLock&) = delete;
 
+  // Where the folder is now: another place when it was moved; nothing when it was deleted.
+  std::optional<std::filesystem::path> folder() const;
+
  private:
-  int descriptor_ = -1;
+  int folder_ = -1, file_ = -1;
 };
 
 // The process that owns the campaign now, without waiting for it or disturbing it; nothing when nobody does.

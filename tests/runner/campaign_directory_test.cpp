@@ -42,6 +42,32 @@ TEST(OwnerLock, ASecondOwnerIsToldWhoOwnsTheCampaign) {
   }
 }
 
+TEST(OwnerLock, HoldsWhenItsFileIsDeletedAndStillNamesItsHolder) {
+  const TemporaryFolder folder;
+  const CampaignDirectory directory(folder.path());
+  const OwnerLock lock(directory);
+  std::filesystem::remove(directory.lock());
+  EXPECT_EQ(current_owner(directory), getpid());
+  try {
+    const OwnerLock second(directory);
+    FAIL() << "two owners";
+  } catch (const OwnedByAnother& refusal) {
+    EXPECT_NE(std::string(refusal.what()).find("process " + std::to_string(getpid())), std::string::npos);
+  }
+}
+
+TEST(OwnerLock, KnowsWhereItsFolderIs) {
+  const TemporaryFolder folder;
+  const CampaignDirectory directory(folder.path() / "one");
+  std::filesystem::create_directory(directory.root());
+  const OwnerLock lock(directory);
+  EXPECT_EQ(lock.folder(), directory.root());
+  std::filesystem::rename(directory.root(), folder.path() / "two");
+  EXPECT_EQ(lock.folder(), folder.path() / "two");
+  std::filesystem::remove_all(folder.path() / "two");
+  EXPECT_EQ(lock.folder(), std::nullopt);
+}
+
 TEST(OwnerLock, EndsWithItsHolder) {
   const TemporaryFolder folder;
   const CampaignDirectory directory(folder.path());
