@@ -9,9 +9,21 @@
 
 namespace peclet::runner {
 
+namespace {
+
+// Whoever started this with nohup wants it to outlive the terminal. (A signal that is blocked is kept even if
+// it is to be ignored.)
+bool is_ignored(int number) {
+  struct sigaction present {};
+  return sigaction(number, nullptr, &present) == 0 && present.sa_handler == SIG_IGN;
+}
+
+}  // namespace
+
 StopSignals::StopSignals(int one_more) {
   sigemptyset(&stopping_);
   for (const int number : {SIGINT, SIGTERM, one_more}) sigaddset(&stopping_, number);
+  if (!is_ignored(SIGHUP)) sigaddset(&stopping_, SIGHUP);
   pthread_sigmask(SIG_BLOCK, &stopping_, nullptr);
   descriptor_ = signalfd(-1, &stopping_, SFD_NONBLOCK | SFD_CLOEXEC);
   if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "signalfd");

@@ -1,4 +1,4 @@
-// SIGINT and SIGTERM as something to poll for.
+// SIGINT, SIGTERM and SIGHUP (the terminal or connection is gone) as something to poll for.
 #pragma once
 
 #include <chrono>
@@ -6,8 +6,9 @@
 
 namespace peclet::runner {
 
-// From construction to destruction both signals (and one more, when it is given) are blocked in this thread
-// and read from a descriptor instead. Threads that are started meanwhile inherit that.
+// From construction to destruction these signals (and one more, when it is given) are blocked in this thread
+// and read from a descriptor instead. Threads that are started meanwhile inherit that. SIGHUP is left alone
+// where it is ignored, as under nohup.
 class StopSignals {
  public:
   explicit StopSignals(int one_more = SIGTERM);
