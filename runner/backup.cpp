@@ -41,13 +41,22 @@ class FolderLock {
   int descriptor_;
 };
 
-// Which campaign a database is of, or "" when it cannot tell any more.
-std::string campaign_in(const fs::path& path) {
+// What of a campaign never changes: when it was set up, and the first point that it ever had.
+constexpr const char* origin_query =
+    "SELECT created_at || ' ' || (SELECT hash FROM point ORDER BY point_id LIMIT 1) FROM campaign";
+
+// Which campaign a database is of, to be compared and to be read; both "" when it cannot tell any more.
+struct Owner {
+  std::string origin, name;
+};
+
+Owner campaign_in(const fs::path& path) {
   try {
     Connection database(path.string(), Connection::Access::read_only, 10'000);
-    return database.text("SELECT name || ', created at ' || created_at FROM campaign");
+    return {database.text(origin_query),
+            database.text("SELECT name || ', created at ' || created_at FROM campaign")};
   } catch (const IntegrityError&) {
-    return "";
+    return {};
   }
 }
 
@@ -59,9 +68,10 @@ void refuse_unsuitable_folder(const CampaignDirectory& directory, const fs::path
     throw InputError(folder.string(), "", "", "is the folder of a campaign; backups need one of their own");
   }
   if (!fs::exists(newest_backup(folder))) return;
-  const std::string there = campaign_in(newest_backup(folder));
-  if (there.empty() || there == campaign_in(directory.database())) return;
-  throw InputError(folder.string(), "", there, "holds backups of another campaign; choose another folder");
+  const Owner there = campaign_in(newest_backup(folder));
+  if (there.origin.empty() || there.origin == campaign_in(directory.database()).origin) return;
+  throw InputError(folder.string(), "", there.name,
+                   "holds backups of another campaign; choose another folder");
 }
 
 // A file may go while we look: its result was committed, and then it is in the database.
@@ -138,6 +148,7 @@ Contents examine(const fs::path& path) {
   Contents contents;
   contents.name = database.text("SELECT name FROM campaign");
   contents.created_at = database.text("SELECT created_at FROM campaign");
+  contents.origin = database.text(origin_query);
   contents.document = Json::parse(database.text("SELECT document FROM campaign"));
   contents.results = database.integer("SELECT count(*) FROM result");
   contents.attempts = database.integer("SELECT coalesce(max(attempt_id), 0) FROM attempt");

@@ -27,13 +27,12 @@ std::filesystem::path previous_backup(const std::filesystem::path& folder);
 
 // What a database holds, of whatever version its tables are.
 struct Contents {
-  std::string name, created_at;  // of the campaign; together they tell campaigns apart
+  std::string name, created_at;  // of the campaign
+  std::string origin;            // tells campaigns apart, whatever they are called since
   Json document;
   std::int64_t results = 0, attempts = 0;
   std::string backed_up_at;  // of a backup; empty otherwise
-  bool same_campaign(const Contents& other) const {
-    return name == other.name && created_at == other.created_at;
-  }
+  bool same_campaign(const Contents& other) const { return origin == other.origin; }
 };
 
 // Checks a whole database and says what it holds. Throws IntegrityError, DatabaseError.

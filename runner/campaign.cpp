@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "contract/input_error.h"
+#include "runner/campaign_file.h"
 #include "runner/sweep.h"
 
 namespace peclet::runner {
@@ -10,17 +11,6 @@ namespace {
 
 // With fewer, intervals of a rule with several looks hold the mean less often than 94 % (results/coverage).
 constexpr int smallest_minimum = 8;
-
-Json validated(const Json& document, const std::string& file) {
-  try {
-    return campaign_keys().validate(document, file);
-  } catch (const InputError& error) {
-    const bool looks_like_percent =
-        error.pointer() == "/target/relative_tolerance" && error.value() != "missing";
-    if (!looks_like_percent) throw;
-    throw InputError(file, error.pointer(), error.value(), error.allowed() + "; 5 % is written 0.05");
-  }
-}
 
 }  // namespace
 
@@ -33,9 +23,10 @@ void check_campaign_name(const std::string& name, const std::string& file) {
 }
 
 Campaign read_campaign(const std::filesystem::path& path) {
+  require_campaign_file(path);
   const std::string file = path.string();
   Campaign campaign;
-  campaign.document = validated(read_json(path), file);
+  campaign.document = campaign_keys().validate(read_json(path), file);
   const Json& document = campaign.document;
   campaign.name = document["name"].get<std::string>();
   check_campaign_name(campaign.name, file);

@@ -51,8 +51,7 @@ void copy_pages(Connection& from, Connection& to) {
   if (code != SQLITE_DONE) to.fail("copying " + from.path(), code);
 }
 
-void write_copy(const fs::path& from, const fs::path& to) {
-  Connection source(from.string(), Connection::Access::read_only, 10'000);
+void write_copy(Connection& source, const fs::path& to) {
   Connection copy(to.string(), Connection::Access::create, 0);
   // Nobody reads the copy before it is published, and a torn one is thrown away: it needs no journal.
   copy.execute("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF");
@@ -83,6 +82,11 @@ std::string damage(Connection& connection) {
 
 void copy_database(const fs::path& from, const fs::path& to,
                    const std::function<void(Connection& copy)>& amend) {
+  Connection source(from.string(), Connection::Access::read_only, 10'000);
+  copy_database(source, to, amend);
+}
+
+void copy_database(Connection& from, const fs::path& to, const std::function<void(Connection& copy)>& amend) {
   const fs::path temporary = temporary_name(to);
   try {
     write_copy(from, temporary);

@@ -16,6 +16,10 @@ namespace peclet::runner {
 void copy_database(const std::filesystem::path& from, const std::filesystem::path& to,
                    const std::function<void(Connection& copy)>& amend);
 
+// The same from a connection that is in no transaction, whose file may have lost its name.
+void copy_database(Connection& from, const std::filesystem::path& to,
+                   const std::function<void(Connection& copy)>& amend = {});
+
 // What is wrong inside a database: the first complaint of integrity_check or foreign_key_check, or "".
 std::string damage(Connection& connection);
 

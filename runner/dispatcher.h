@@ -110,7 +110,7 @@ class Dispatcher {
   void report();
 
   bool has_job(int worker, std::int64_t job);
-  // Whether the worker may have failed because it could not write.
+  // Whether the worker may have failed because it could not write: no room, or no folder.
   bool lacked_room(int worker);
   void condemn(int worker, AttemptOutcome outcome, const std::string& message);
   void set_idle(int worker);

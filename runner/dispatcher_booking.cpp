@@ -122,11 +122,13 @@ void Dispatcher::end_shortage() {
   }
 }
 
-// An engine that does not know how to wait for room may crash or give up instead.
+// An engine that does not know how to wait for room may crash or give up instead. So may any whose folders
+// somebody has deleted or moved.
 bool Dispatcher::lacked_room(int number) {
   const Job& job = at(number).assignment->grant.job;
   for (const std::filesystem::path& folder :
        {job.spool.parent_path(), job.checkpoint.parent_path(), job.failures}) {
+    if (!std::filesystem::exists(folder)) return true;
     if (has_room(folder, 0)) continue;
     begin_shortage(folder, 0);
     return true;

@@ -26,6 +26,14 @@ namespace fs = std::filesystem;
 
 bool is_program(const fs::path& path) { return fs::is_regular_file(path) && access(path.c_str(), X_OK) == 0; }
 
+[[noreturn]] void refuse_engine(const fs::path& campaign_file, const std::string& name,
+                                const fs::path& program) {
+  throw InputError(campaign_file.string(), "/engine/0", name,
+                   fs::is_regular_file(program)
+                       ? fmt::format("may not be executed: `chmod +x {}`", program.string())
+                       : fmt::format("must be a program; there is none at {}", program.string()));
+}
+
 std::vector<fs::path> search_path() {
   std::vector<fs::path> folders{fs::read_symlink("/proc/self/exe").parent_path()};
   const char* const path = std::getenv("PATH");
@@ -119,8 +127,7 @@ EngineCommand resolve_engine(const Campaign& campaign, const fs::path& campaign_
   if (name.find('/') != std::string::npos) {
     command.program = (home / name).lexically_normal();
     if (is_program(command.program)) return command;
-    throw InputError(campaign_file.string(), "/engine/0", name,
-                     fmt::format("must be a program; there is none at {}", command.program.string()));
+    refuse_engine(campaign_file, name, command.program);
   }
   for (const fs::path& folder : search_path()) {
     command.program = fs::absolute(folder / name);

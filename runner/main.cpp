@@ -16,9 +16,9 @@ namespace {
 using namespace peclet::runner;
 
 // A full disk behind `peclet export > file` must not look like success.
-void print(const std::string& text) {
+void print(const std::string& text, const char* advice = "") {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-    throw std::system_error(errno, std::generic_category(), "standard output");
+    throw std::system_error(errno, std::generic_category(), fmt::format("standard output{}", advice));
   }
 }
 
@@ -65,7 +65,7 @@ int perform(const ExplainOptions& options) {
 // Into the file, whole or not at all, or to standard output.
 int deliver(const std::string& text, const std::filesystem::path& output) {
   if (output.empty()) {
-    print(text);
+    print(text, " (the campaign is as it was; --output FILE writes a file whole or not at all)");
   } else {
     peclet::write_durably(output, text);
   }

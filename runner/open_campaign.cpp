@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "contract/input_error.h"
+#include "runner/campaign_file.h"
 #include "runner/restore.h"
 
 namespace peclet::runner {
@@ -21,17 +22,24 @@ CampaignDirectory find_campaign(const fs::path& given, const fs::path& chosen) {
     throw InputError(given.string(), "", "",
                      "no campaign has been run in this folder; give the campaign file or its .peclet folder");
   }
-  if (!fs::exists(given)) throw InputError(given.string(), "", "", "no such file or folder");
-  throw InputError(given.string(), "", "",
-                   fmt::format("has not been run yet (there is no {}); start it with `peclet run`",
-                               directory.database().string()));
+  if (!fs::exists(given))
+    throw InputError(given.string(), "", "", "no such file or folder" + similar_name(given));
+  throw InputError(
+      given.string(), "", "",
+      fmt::format("has not been run yet (there is no {}); start it with `peclet run {}`, or name its folder "
+                  "with --directory if that is elsewhere",
+                  directory.database().string(), given.string()));
 }
 
 OpenCampaign open_campaign(const fs::path& given, const fs::path& chosen) {
   CampaignDirectory directory = find_campaign(given, chosen);
   refuse_lost_database(directory);
-  Database database = Database::open_reader(directory.database());
-  return {std::move(directory), std::move(database)};
+  try {
+    Database database = Database::open_reader(directory.database());
+    return {std::move(directory), std::move(database)};
+  } catch (const IntegrityError& error) {
+    throw IntegrityError(error.what() + hint_if_damaged(directory));
+  }
 }
 
 std::string difference_from_file(const fs::path& given, const CampaignRecord& campaign) {

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "contract/nearest_name.h"
 #include "contract/provenance.h"
 #include "runner/parser_tree.h"
 #include "runner/verb_pages.h"
@@ -61,7 +64,12 @@ class Reader {
       app_.parse(argc, argv);
     } catch (const CLI::ParseError& end) {
       if (argc > 1 && !is_verb_or_option(argv[1])) {
-        fmt::print(stderr, "peclet: {}: there is no such verb; `peclet --help` lists them\n", argv[1]);
+        fmt::print(stderr, "peclet: {}: there is no such verb; `peclet --help` lists them{}\n", argv[1],
+                   suggestion(argv[1], verbs()));
+        return {std::nullopt, exit_usage};
+      }
+      if (const std::string unknown = unknown_option(argc, argv); !unknown.empty()) {
+        fmt::print(stderr, "peclet {}\n", unknown);
         return {std::nullopt, exit_usage};
       }
       return {std::nullopt, app_.exit(end) == 0 ? 0 : exit_usage};
@@ -72,9 +80,41 @@ class Reader {
   CommandTree tree() const { return describe(app_, examples_); }
 
  private:
-  bool is_verb_or_option(const std::string& word) {
+  // Null: there is none of that name.
+  const CLI::App* verb_called(const std::string& word) {
     const auto has_name = [&](const CLI::App* verb) { return verb->get_name() == word; };
-    return word.starts_with("-") || !app_.get_subcommands(has_name).empty();
+    const std::vector<CLI::App*> found = app_.get_subcommands(has_name);
+    return found.empty() ? nullptr : found.front();
+  }
+
+  bool is_verb_or_option(const std::string& word) {
+    return word.starts_with("-") || verb_called(word) != nullptr;
+  }
+
+  std::vector<std::string> verbs() {
+    std::vector<std::string> names;
+    for (const CLI::App* verb : app_.get_subcommands([](const CLI::App*) { return true; }))
+      names.push_back(verb->get_name());
+    return names;
+  }
+
+  // "run: --wrokers: there is no such option ...", or nothing when the fault is another one.
+  std::string unknown_option(int argc, char** argv) {
+    const CLI::App* const verb = argc > 1 ? verb_called(argv[1]) : nullptr;
+    if (verb == nullptr) return "";
+    std::vector<std::string> names;
+    for (const CLI::Option* option : verb->get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+    for (int place = 2; place < argc; ++place) {
+      const std::string word = argv[place];
+      const std::string name = word.substr(0, word.find('='));
+      if (!name.starts_with("--") || name == "--") continue;
+      if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+      return fmt::format("{0}: {1}: there is no such option; `peclet {0} --help` lists them{2}",
+                         verb->get_name(), name, suggestion(name, names));
+    }
+    return "";
   }
 
   CLI::App* add_verb(const char* name, const char* description, const char* example) {

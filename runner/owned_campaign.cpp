@@ -1,11 +1,14 @@
 #include "runner/owned_campaign.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
 #include "contract/input_error.h"
 #include "runner/backup.h"
 #include "runner/queue.h"
+#include "runner/renamed_file.h"
 #include "runner/restore.h"
 #include "runner/scene_check.h"
 #include "runner/spool.h"
@@ -17,6 +20,13 @@ constexpr int exit_converged = 0;
 constexpr int exit_unconverged = 3;
 constexpr int exit_integrity = 6;
 
+CampaignDirectory directory_for(const Campaign& campaign, const std::filesystem::path& file,
+                                const std::filesystem::path& chosen) {
+  CampaignDirectory directory = campaign_directory(file, chosen);
+  if (chosen.empty()) refuse_renamed_file(campaign, file, directory);
+  return directory;
+}
+
 // Returns the folder itself. From its creation on things are written.
 const CampaignDirectory& created(const CampaignDirectory& directory, bool force) {
   const std::optional<std::string> kind = network_file_system(directory.root());
@@ -26,18 +36,56 @@ const CampaignDirectory& created(const CampaignDirectory& directory, bool force)
         "a campaign must be on a local file system, where locks and fsync can be trusted: choose another "
         "--directory, or --force it at your own risk");
   }
-  std::filesystem::create_directories(directory.root());
+  std::error_code error;
+  std::filesystem::create_directories(directory.root(), error);
+  if (error) {
+    throw InputError(
+        directory.root().string(), "", "",
+        fmt::format("cannot be made: {}; choose another place with --directory", error.message()));
+  }
   return directory;
 }
 
-// A sound database may be refused for another reason, and there a backup would not help.
-std::string hint_if_damaged(const CampaignDirectory& directory) {
+std::int64_t attempts_in(Connection& connection) {
+  return connection.integer("SELECT coalesce(max(attempt_id), 0) FROM attempt");
+}
+
+// Attempts are never forgotten: a database that knows of fewer than its backup is an older copy.
+void refuse_older_copy(const CampaignDirectory& directory, Database& database) {
+  const std::filesystem::path backup = newest_backup(directory.backup());
+  if (!std::filesystem::exists(backup)) return;
+  Connection saved(backup.string(), Connection::Access::read_only, 10'000);
+  const std::int64_t here = attempts_in(database.connection());
+  std::int64_t there = 0;
   try {
-    examine(directory.database());
-    return "";
-  } catch (const IntegrityError&) {
-    return restore_hint(directory);
+    there = attempts_in(saved);
+  } catch (const IntegrityError&) {  // a damaged backup is for `peclet doctor` to find
+    return;
   }
+  if (here >= there) return;
+  const auto results = [](Connection& connection) {
+    return connection.integer("SELECT count(*) FROM result");
+  };
+  throw IntegrityError(fmt::format(
+      "{}: is older than its own backup: {} results of {} attempts, and {} of {} in {}; has an old copy "
+      "taken its "
+      "place? Put the newer one back with `peclet restore {} {}`, or keep what is here with `peclet backup "
+      "{}`; "
+      "then run again",
+      directory.database().string(), results(database.connection()), here, results(saved), there,
+      backup.string(), directory.backup().string(), directory.root().string(), directory.root().string()));
+}
+
+// What the campaign's owner should hear once a changed sweep has been taken up.
+void tell_of_points_left_behind(Database& database, const std::function<void(const std::string&)>& tell) {
+  const std::vector<PointRecord> left = database.inactive_points();
+  int results = 0;
+  for (const PointRecord& point : left) results += database.counts(point.id).terminal();
+  if (results == 0) return;
+  tell(fmt::format(
+      "{} seeds that ended at {} points of earlier versions of the campaign are kept, and count again "
+      "when the sweep contains these points",
+      results, left.size()));
 }
 
 }  // namespace
@@ -47,10 +95,10 @@ ClaimedCampaign::ClaimedCampaign(const std::filesystem::path& file, const std::f
     : campaign(read_campaign(file)),
       command(resolve_engine(campaign, file)),
       engine(check_scenes(campaign, file, command).front().identity),
-      directory(campaign_directory(file, chosen)),
+      directory(directory_for(campaign, file, chosen)),
       lock(created(directory, force)) {}
 
-Database open_for_owner(const ClaimedCampaign& claimed) {
+Database open_for_owner(const ClaimedCampaign& claimed, const std::function<void(const std::string&)>& tell) {
   const CampaignDirectory& directory = claimed.directory;
   create_folders(directory);
   for (const std::filesystem::path& folder : {directory.root(), directory.spool(), directory.checkpoints(),
@@ -60,7 +108,9 @@ Database open_for_owner(const ClaimedCampaign& claimed) {
   refuse_lost_database(directory);
   try {
     Database database = Database::open_owner(directory.database());
+    refuse_older_copy(directory, database);
     Queue(database).adopt(claimed.campaign);
+    tell_of_points_left_behind(database, tell);
     return database;
   } catch (const IntegrityError& error) {
     throw IntegrityError(error.what() + hint_if_damaged(directory));

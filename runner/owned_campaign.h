@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <string>
 
 #include "runner/campaign_directory.h"
 #include "runner/database.h"
@@ -30,9 +32,10 @@ struct ClaimedCampaign {
 };
 
 // Opens or creates the database and makes it that of the campaign file, after what a dead owner left
-// unfinished has been removed. Throws IntegrityError, which says how to restore it from a backup where there
-// is one, InputError, DatabaseError.
-Database open_for_owner(const ClaimedCampaign& claimed);
+// unfinished has been removed. `tell`: what a person should know about it. Throws IntegrityError, which says
+// how to restore it from a backup where there is one, InputError, DatabaseError.
+Database open_for_owner(
+    const ClaimedCampaign& claimed, const std::function<void(const std::string&)>& tell = [](const auto&) {});
 
 struct OwnedCampaign : ClaimedCampaign {
   Database database;  // has adopted the campaign

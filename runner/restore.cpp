@@ -133,6 +133,20 @@ void record(const CampaignDirectory& directory, const Source& source) {
   booking.commit();
 }
 
+// What was restored is what counts now, also where the campaign's own last backup knows more: that becomes
+// the one before.
+bool leave_newer_backup_behind(const CampaignDirectory& directory, const Source& source) {
+  const fs::path newest = newest_backup(directory.backup());
+  if (!fs::exists(newest) || fs::equivalent(newest, source.file)) return false;
+  try {
+    if (examine(newest).attempts <= source.contents.attempts) return false;
+  } catch (const IntegrityError&) {  // why an older one was restored
+    return false;
+  }
+  make_backup(directory, directory.backup(), false);
+  return true;
+}
+
 std::string write_campaign_file(const fs::path& file, const Json& document) {
   if (!fs::exists(file)) {
     write_durably(file, document.dump(2) + "\n");
@@ -165,12 +179,17 @@ std::string restore_campaign(const RestoreOptions& options) {
   const int spooled = bring(beside / "spool", directory.spool());
   const int checkpoints = bring(beside / "checkpoints", directory.checkpoints());
 
+  const bool is_older = leave_newer_backup_behind(directory, source);
   std::string text = source.remarks;
   if (!damage.empty()) text += damage + "\n";
   text += fmt::format("{}: restored from {}, made at {}, with {} results\n", directory.root().string(),
                       source.file.string(), source.contents.backed_up_at, source.contents.results);
   if (spooled + checkpoints > 0) {
     text += fmt::format("with it came {} checkpoints and {} results on their way\n", checkpoints, spooled);
+  }
+  if (is_older) {
+    text += fmt::format("the campaign's own last backup has more in it; it is now {}\n",
+                        previous_backup(directory.backup()).string());
   }
   if (!aside.empty()) text += fmt::format("the database that was there is kept in {}\n", aside.string());
   text += write_campaign_file(place.file, source.contents.document);
@@ -185,6 +204,16 @@ void refuse_lost_database(const CampaignDirectory& directory) {
   throw IntegrityError(
       fmt::format("{}: is {}, but there are backups of it{}, or move {} away to start afresh",
                   directory.database().string(), absent ? "gone" : "empty", hint, directory.root().string()));
+}
+
+// A sound database may be refused for another reason, and there a backup would not help.
+std::string hint_if_damaged(const CampaignDirectory& directory) {
+  try {
+    examine(directory.database());
+    return "";
+  } catch (const IntegrityError&) {
+    return restore_hint(directory);
+  }
 }
 
 std::string restore_hint(const CampaignDirectory& directory) {

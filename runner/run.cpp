@@ -7,11 +7,13 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <string>
 #include <thread>
 
 #include "runner/dispatcher.h"
 #include "runner/event_stream.h"
 #include "runner/exit_code.h"
+#include "runner/folder_watch.h"
 #include "runner/owned_campaign.h"
 #include "runner/periodic_backup.h"
 #include "runner/progress.h"
@@ -28,7 +30,7 @@ struct Team {
 };
 
 // What is not given follows from what is: together they fill the machine.
-Team team(const RunOptions& options) {
+Team wanted_team(const RunOptions& options) {
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   if (options.workers > 0 && options.threads > 0) return {options.workers, options.threads};
   if (options.workers > 0) return {options.workers, std::max(1, cores / options.workers)};
@@ -36,10 +38,29 @@ Team team(const RunOptions& options) {
   return {std::max(1, cores / threads), threads};
 }
 
+// More workers than seeds that may still run have nothing to do.
+Team team(const RunOptions& options, const Campaign& campaign) {
+  Team size = wanted_team(options);
+  const auto seeds = static_cast<std::int64_t>(campaign.points.size()) * campaign.maximum_realisations;
+  size.workers = static_cast<int>(std::min<std::int64_t>(seeds, size.workers));
+  return size;
+}
+
+// What a person should know who asked for more than the machine has.
+void judge_team(const Team& size, RunListener& listener) {
+  constexpr int tolerable = 4;
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  if (size.workers * std::int64_t{size.threads} <= std::int64_t{tolerable} * cores) return;
+  listener.warn(
+      fmt::format("{} workers of {} threads share {} cores: that is slower than --workers {}, and takes "
+                  "more memory",
+                  size.workers, size.threads, cores, std::max(1, cores / size.threads)));
+}
+
 // A run's database and picture, ready to be dispatched from.
 struct Opened {
   Opened(const ClaimedCampaign& claimed, RunListener& listener)
-      : database(open_for_owner(claimed)),
+      : database(open_for_owner(claimed, [&](const std::string& text) { listener.note(text); })),
         ledger(database, claimed.campaign, claimed.directory, listener, retries) {}
 
   Database database;
@@ -67,7 +88,7 @@ std::unique_ptr<Opened> open_when_there_is_room(const ClaimedCampaign& claimed, 
 }
 
 RunBegan beginning(const ClaimedCampaign& claimed, const RunOptions& options) {
-  const Team size = team(options);
+  const Team size = team(options, claimed.campaign);
   return {claimed.campaign.name,
           claimed.directory.root(),
           getpid(),
@@ -81,15 +102,21 @@ int dispatch(Opened& opened, const RunOptions& options, const ClaimedCampaign& c
              StopSignals& signals) {
   using std::chrono::steady_clock;
   const CampaignDirectory& directory = claimed.directory;
-  const Team size = team(options);
+  const Team size = team(options, claimed.campaign);
+  judge_team(size, log);
+  allow_open_files(size.workers);
   PeriodicBackup backup(directory, std::chrono::duration<double>(options.backup_seconds), log,
                         steady_clock::now());
+  FolderWatch watch(directory, claimed.lock, opened.database, log);
   DispatchSettings settings;
   settings.threads = size.threads;
   settings.lease = std::chrono::duration<double>(options.lease_seconds);
   settings.checkpoint_seconds = options.checkpoint_seconds;
   if (options.time_limit) settings.time_limit = std::chrono::duration<double>(*options.time_limit);
-  settings.chore = [&backup] { backup.attend(steady_clock::now()); };
+  settings.chore = [&backup, &watch] {
+    watch.attend(steady_clock::now());
+    backup.attend(steady_clock::now());
+  };
   log.record(fmt::format("{} begins: process {}, {} workers of {} threads, engine {}",
                          directory.root().string(), getpid(), size.workers, size.threads,
                          claimed.command.program.string()));
@@ -98,6 +125,14 @@ int dispatch(Opened& opened, const RunOptions& options, const ClaimedCampaign& c
   const Dispatcher::Ending ending = dispatcher.run();
   backup.finish();
   return exit_code(opened.database, opened.ledger.scheduler(), ending == Dispatcher::Ending::finished);
+}
+
+std::string how_to_go_on(const RunOptions& options, const CampaignStatus& status) {
+  if (!status.handed_over.empty()) return "";  // `peclet ingest` does, as has been said
+  const std::string chosen =
+      options.directory.empty() ? "" : fmt::format(" --directory {}", options.directory.string());
+  return fmt::format("\nstopped; all that was done is kept, and `peclet run {}{}` goes on from there\n",
+                     options.campaign.string(), chosen);
 }
 
 }  // namespace
@@ -124,7 +159,10 @@ int run_campaign(const RunOptions& options) {
     log.record(fmt::format("ends with exit code {}", code));
     log.happened(RunEnded{code, ""});
   }
-  if (opened && !options.jsonl) std::fputs(status_table(opened->database).c_str(), stdout);
+  if (!opened || options.jsonl) return code;
+  const CampaignStatus status = read_status(opened->database);
+  std::fputs((status_table(status) + (code == exit_stopped ? how_to_go_on(options, status) : "")).c_str(),
+             stdout);
   return code;
 }
 

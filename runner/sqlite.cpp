@@ -16,7 +16,11 @@ namespace {
   const std::string said = handle != nullptr ? sqlite3_errmsg(handle) : sqlite3_errstr(code);
   const std::string message = fmt::format("{}: {} (SQLite code {}) while: {}", path, said, code, doing);
   const int primary = code & 0xff;
-  if (primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB) throw IntegrityError(message);
+  if (primary == SQLITE_CORRUPT) {
+    throw IntegrityError(
+        fmt::format("{}: is damaged: {} (SQLite code {}) while: {}", path, said, code, doing));
+  }
+  if (primary == SQLITE_NOTADB) throw IntegrityError(message);
   throw DatabaseError(message, code, handle != nullptr ? sqlite3_system_errno(handle) : 0);
 }
 

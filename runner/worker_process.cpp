@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -11,6 +12,8 @@
 #include <csignal>
 #include <system_error>
 #include <utility>
+
+#include "contract/input_error.h"
 
 namespace peclet::runner {
 namespace {
@@ -87,6 +90,25 @@ WorkerEvent as_event(int worker, const Json& message) {
 }  // namespace
 
 const char* phase_name(int phase) { return phases.at(static_cast<std::size_t>(phase)); }
+
+void allow_open_files(int workers) {
+  // A socket, a pipe and a log each; the database, its copies and what else there is.
+  constexpr rlim_t of_worker = 3, others = 64;
+  const rlim_t needed = of_worker * static_cast<rlim_t>(workers) + others;
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0)
+    throw std::system_error(errno, std::generic_category(), "getrlimit");
+  if (limit.rlim_cur >= needed) return;
+  if (limit.rlim_max < needed) {
+    throw InputError(
+        "", "--workers", std::to_string(workers),
+        fmt::format("needs {} open files, and `ulimit -Hn` allows {}: at most {} workers", needed,
+                    limit.rlim_max, limit.rlim_max > others ? (limit.rlim_max - others) / of_worker : 0));
+  }
+  limit.rlim_cur = needed;
+  if (setrlimit(RLIMIT_NOFILE, &limit) != 0)
+    throw std::system_error(errno, std::generic_category(), "setrlimit");
+}
 
 ProcessPool::ProcessPool(int workers, EngineCommand command, CampaignDirectory directory,
                          StopSignals& signals)

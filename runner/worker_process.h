@@ -15,6 +15,9 @@
 
 namespace peclet::runner {
 
+// Allows this process as many open files as so many workers take. Throws InputError when the system does not.
+void allow_open_files(int workers);
+
 class ProcessPool : public WorkerPool {
  public:
   // `signals` must outlive the pool. From now on this process ignores SIGPIPE, and so do its engines.

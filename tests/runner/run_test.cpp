@@ -156,6 +156,47 @@ TEST(Run, ATimeLimitStopsAndCanBeResumed) {
   EXPECT_EQ(campaign.run(), 0) << campaign.log();
 }
 
+TEST(Run, ALostConnectionStopsAsCtrlCDoes) {
+  CampaignOnDisk campaign;
+  campaign.start({{"PECLET_FAKE_STEP_MS", "50"}});
+  campaign.wait_for_results(0);
+  campaign.signal(SIGHUP);
+  EXPECT_EQ(campaign.finish(), 75);
+  EXPECT_NE(campaign.log().find("goes on from there"), std::string::npos) << campaign.log();
+}
+
+TEST(Run, UnderNohupALostConnectionIsNothing) {
+  CampaignOnDisk campaign;
+  std::signal(SIGHUP, SIG_IGN);  // the run inherits it
+  campaign.start(slow);
+  std::signal(SIGHUP, SIG_DFL);
+  campaign.wait_for_results(1);
+  campaign.signal(SIGHUP);
+  EXPECT_EQ(campaign.finish(), 0) << campaign.log();
+}
+
+TEST(Run, MoreWorkersThanSeedsAreNotStarted) {
+  CampaignOnDisk campaign(1);
+  campaign.document["realisations"] = {{"minimum", 8}, {"maximum", 8}};
+  campaign.options.workers = 1000;
+  EXPECT_NE(campaign.run(), 2) << campaign.log();
+  EXPECT_LE(campaign.count("SELECT max(worker) FROM attempt"), 7);
+}
+
+TEST(Run, ResultsOfScenesThatLeftTheSweepAreKeptAndCountAgain) {
+  CampaignOnDisk campaign(1);
+  campaign.document["realisations"] = {{"minimum", 8}, {"maximum", 8}};
+  campaign.document["target"]["relative_tolerance"] = 0.9;
+  ASSERT_EQ(campaign.run(), 0) << campaign.log();
+  campaign.document["scene"]["fluid"]["viscosity"] = 2;
+  ASSERT_EQ(campaign.run(), 0) << campaign.log();
+  EXPECT_NE(campaign.log().find("8 seeds that ended at 1 points of earlier versions"), std::string::npos)
+      << campaign.log();
+  campaign.document["scene"]["fluid"]["viscosity"] = 1;
+  ASSERT_EQ(campaign.run(), 0) << campaign.log();
+  EXPECT_EQ(campaign.count("SELECT count(*) FROM attempt"), 16);  // two scenes, eight seeds, each once
+}
+
 TEST(Run, ASecondOwnerIsRefused) {
   CampaignOnDisk campaign;
   campaign.start({{"PECLET_FAKE_STEP_MS", "50"}});
