@@ -1,17 +1,73 @@
 #!/usr/bin/python3
-"""large_campaign.py BIN [--points 20] [--seeds 800] [--workers 4]
+"""large_campaign.py BIN [--points 125] [--seeds 800] [--workers 64] [--milliseconds 100] [--block-numbers 1400]
 
-Runs a campaign with the fake engine of the tests, every point up to its maximum, and prints what the owner costs: processor time
-per realisation (that of the fake engines included, so an upper bound), largest memory, the time of `peclet status` while it runs
-and afterwards, and the size of the database. Takes a minute or two.
+Runs a campaign of 100 000 realisations with the fake engine of the tests, whose results are as long as those of peclet-engine
+(--block-numbers) and whose jobs sleep 100 ms, every point up to its maximum, and prints what the owner costs:
+
+- processor time per realisation, of the owner and of the engines apart, and the owner's largest memory;
+- how busy the workers are: the time that they spent on jobs, by their own clocks, over workers times the time between the
+  first job's begin and the last one's end;
+- commits per second and results per commit, by the counter of transactions in the write-ahead log's index;
+- the time of `peclet status` while it runs (median and largest) and afterwards, and the size of the database.
+
+On a quiet machine of two cores it takes some four minutes; --points 5 is a quick look. It fails when a result is missing or
+`status` takes 0.3 s at its median; --claims also when workers are busy for less than 97 %, the database is larger than
+300 MB or the owner larger than 200 MiB.
 """
 import argparse
 import json
 import os
+import statistics
+import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
+
+TICKS = os.sysconf("SC_CLK_TCK")
+
+
+class Owner(threading.Thread):
+    """Watches the run's process: its own processor time, its memory, and the commits that it has made."""
+
+    def __init__(self, process, folder):
+        super().__init__(daemon=True)
+        self.process, self.index = process, os.path.join(folder, "large.peclet", "campaign.db-shm")
+        self.seconds = self.memory = self.commits = 0
+
+    def run(self):
+        while self.process.returncode is None:
+            try:
+                self.look()
+            except (OSError, struct.error):  # not there yet, or not any more
+                pass
+            time.sleep(0.2)
+
+    def look(self):
+        with open(f"/proc/{self.process.pid}/stat") as f:
+            fields = f.read().rsplit(")", 1)[1].split()
+        self.seconds = (int(fields[11]) + int(fields[12])) / TICKS
+        with open(f"/proc/{self.process.pid}/status") as f:
+            self.memory = next((int(line.split()[1]) for line in f if line.startswith("VmHWM")), self.memory)
+        # https://www.sqlite.org/walformat.html: the index begins with the version, a zero, and the counter of transactions.
+        with open(self.index, "rb") as f:
+            self.commits = max(self.commits, struct.unpack("<3I", f.read(12))[2])
+
+
+class Statuses(threading.Thread):
+    """Asks for the status every now and then."""
+
+    def __init__(self, peclet, folder):
+        super().__init__(daemon=True)
+        self.peclet, self.folder = peclet, folder
+        self.asking, self.seconds = True, []
+
+    def run(self):
+        time.sleep(3)
+        while self.asking:
+            self.seconds.append(status_seconds(self.peclet, self.folder))
+            time.sleep(3)
 
 
 def status_seconds(peclet, folder):
@@ -20,44 +76,76 @@ def status_seconds(peclet, folder):
     return time.monotonic() - started
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("bin")
-    parser.add_argument("--points", type=int, default=20)
-    parser.add_argument("--seeds", type=int, default=800)
-    parser.add_argument("--workers", type=int, default=4)
-    arguments = parser.parse_args()
-    peclet, engine = (os.path.abspath(os.path.join(arguments.bin, name)) for name in ("peclet", "fake_engine"))
+def busy_share(path, workers):
+    begins, ends = [], []
+    with open(path) as f:
+        for line in f:
+            begin, end = map(int, line.split())
+            begins.append(begin)
+            ends.append(end)
+    span = max(ends) - min(begins)
+    return (sum(ends) - sum(begins)) / (workers * span), span * 1e-9
+
+
+def campaign_of(arguments, engine):
     scene = json.load(open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../runner/small_scene.json")))
-    campaign = {
+    return {
         "name": "large", "scene": scene,
-        "sweep": [{"set": "/volume_fraction", "values": [0.2 + 0.01 * k for k in range(arguments.points)]}],
+        "sweep": [{"set": "/volume_fraction", "values": [round(0.2 + 0.001 * k, 3) for k in range(arguments.points)]}],
         "target": {"observable": "relative_viscosity", "relative_tolerance": 1e-6},
         "realisations": {"minimum": 10, "maximum": arguments.seeds},
         "engine": [engine],
     }
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("bin")
+    parser.add_argument("--points", type=int, default=125)
+    parser.add_argument("--seeds", type=int, default=800)
+    parser.add_argument("--workers", type=int, default=64)
+    parser.add_argument("--milliseconds", type=int, default=100, help="of a job")
+    parser.add_argument("--block-numbers", type=int, default=1400, help="in a result; 1400 make 27 kB, as peclet-engine's")
+    parser.add_argument("--claims", action="store_true", help="fail unless every claim holds")
+    arguments = parser.parse_args()
+    peclet, engine = (os.path.abspath(os.path.join(arguments.bin, name)) for name in ("peclet", "fake_engine"))
     with tempfile.TemporaryDirectory() as folder:
         with open(os.path.join(folder, "large.json"), "w") as f:
-            json.dump(campaign, f)
+            json.dump(campaign_of(arguments, engine), f)
+        times = os.path.join(folder, "times")
+        environment = dict(os.environ, PECLET_FAKE_STEPS="1", PECLET_FAKE_STEP_MS=str(arguments.milliseconds),
+                           PECLET_FAKE_PADDING=str(arguments.block_numbers), PECLET_FAKE_TIMES=times)
         started = time.monotonic()
-        run = subprocess.Popen([peclet, "run", "large.json", "--quiet", "--workers", str(arguments.workers)], cwd=folder,
-                               stdout=subprocess.DEVNULL)
-        time.sleep(15)
-        during = [status_seconds(peclet, folder) for _ in range(5)]
+        run = subprocess.Popen([peclet, "run", "large.json", "--quiet", "--threads", "1", "--workers", str(arguments.workers)],
+                               cwd=folder, stdout=subprocess.DEVNULL, env=environment)
+        owner, statuses = Owner(run, folder), Statuses(peclet, folder)
+        owner.start()
+        statuses.start()
         _, code, usage = os.wait4(run.pid, 0)
+        run.returncode = os.waitstatus_to_exitcode(code)
+        statuses.asking = False
         wall = time.monotonic() - started
-        after = [status_seconds(peclet, folder) for _ in range(5)]
+        statuses.join()
+        after = [status_seconds(peclet, folder) for _ in range(7)]
         status = json.loads(subprocess.run([peclet, "status", "large.json", "--json"], cwd=folder, capture_output=True,
                                            check=True).stdout)
         done = sum(point["seeds"]["done"] for point in status["points"])
         size = os.path.getsize(os.path.join(folder, "large.peclet", "campaign.db"))
-    per_realisation = 1e3 * (usage.ru_utime + usage.ru_stime) / done
-    print(f"{done} realisations in {wall:.0f} s with {arguments.workers} workers, exit code {os.waitstatus_to_exitcode(code)}")
-    print(f"processor time per realisation, fake engines included: {per_realisation:.2f} ms")
-    print(f"largest memory of any of its processes: {usage.ru_maxrss / 1024:.0f} MiB")
-    print(f"status: {max(during):.3f} s while it runs, {max(after):.3f} s afterwards (largest of five)")
-    print(f"database: {size / 2**20:.0f} MiB")
-    return 0 if done == arguments.points * arguments.seeds and per_realisation < 5 and max(during + after) < 0.3 else 1
+        busy, span = busy_share(times, arguments.workers)
+    engines = usage.ru_utime + usage.ru_stime - owner.seconds
+    during = statuses.seconds or after
+    print(f"{done} realisations in {wall:.0f} s with {arguments.workers} workers, exit code {run.returncode}")
+    print(f"workers busy: {100 * busy:.1f} % of {span:.0f} s; load of the machine: {os.getloadavg()[0]:.1f}")
+    print(f"processor time per realisation: owner {1e3 * owner.seconds / done:.3f} ms, engines {1e3 * engines / done:.3f} ms")
+    print(f"largest memory of the owner: {owner.memory / 1024:.0f} MiB")
+    print(f"{owner.commits} commits: {owner.commits / span:.0f} a second, {done / max(1, owner.commits):.1f} results in each")
+    for name, seconds in (("while it runs", during), ("afterwards", after)):
+        print(f"status {name}: {statistics.median(seconds):.3f} s (median), {max(seconds):.3f} s (largest of {len(seconds)})")
+    print(f"database: {size / 1e6:.0f} MB, {size / done / 1e3:.2f} kB per realisation")
+    passed = done == arguments.points * arguments.seeds and statistics.median(during + after) < 0.3
+    if arguments.claims:
+        passed &= busy >= 0.97 and size < 300e6 and owner.memory < 200 * 1024
+    return 0 if passed else 1
 
 
 if __name__ == "__main__":

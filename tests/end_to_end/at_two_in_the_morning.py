@@ -1,0 +1,60 @@
+#!/usr/bin/python3
+"""at_two_in_the_morning.py BIN [--quick] [--only WORD] [--page FILE]
+
+Does by real commands what a tired person does wrong at two in the morning: names the wrong file or folder, starts a second
+owner, deletes a database, fills the disk, closes the laptop. Every answer must have the right exit code and say what
+happened, what was kept and what to do next; what it names as the next command is then typed literally and must work; and
+no result may be lost. --page writes the transcript, mistakes/README.md.
+"""
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+from mistakes import databases, files, folders, machine, processes, typing_errors
+from mistakes.night import Night, Wrong
+from mistakes.transcript import page
+
+CHAPTERS = [("Typed wrong", typing_errors), ("Files", files), ("Folders and owners", folders), ("Databases", databases),
+            ("Processes", processes), ("The machine", machine)]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("bin")
+    parser.add_argument("--quick", action="store_true", help="leave out what takes seconds")
+    parser.add_argument("--only", metavar="WORD", help="the cases with this in their title")
+    parser.add_argument("--page", metavar="FILE", help="write the transcript as Markdown")
+    arguments = parser.parse_args()
+    told, faults, kinds = [], [], 0
+    for chapter, module in CHAPTERS:
+        cases = []
+        for case in module.CASES:
+            title = case.__doc__.strip()
+            if arguments.only and arguments.only not in title or arguments.quick and getattr(case, "slow", False):
+                continue
+            kinds += 1
+            night = Night(arguments.bin, tempfile.mkdtemp(prefix="night-"))
+            began = time.monotonic()
+            try:
+                case(night)
+                verdict = "ok"
+            except (Wrong, OSError, subprocess.SubprocessError, UnicodeError) as wrong:
+                verdict = f"WRONG: {wrong}"
+                faults.append(title)
+            finally:
+                night.close()
+            print(f"{time.monotonic() - began:5.1f} s  {title}: {verdict}", flush=True)
+            cases.append((title, night))
+        told.append((chapter, cases))
+    if arguments.page and not faults:
+        with open(arguments.page, "w") as f:
+            f.write(page(told))
+    print(f"{kinds} mistakes, {len(faults)} answered badly")
+    return 1 if faults or kinds == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

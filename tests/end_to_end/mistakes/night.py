@@ -1,0 +1,192 @@
+"""One mistake: a folder of its own, what is typed there, what is answered, and what must be true of it."""
+import contextlib
+import json
+import os
+import re
+import shutil
+import signal
+import sqlite3
+import subprocess
+import time
+
+# Nothing takes this long: a command that does hangs.
+PATIENCE = 120
+# The fake engine's: two points of eight seeds and one look each. 20 ms a seed unless a case asks for slower ones.
+CAMPAIGN = {
+    "name": "night",
+    "scene": {"fluid": {"viscosity": 1}, "peclet": 1},
+    "sweep": [{"set": "/peclet", "values": [1, 2]}],
+    "target": {"observable": "relative_viscosity", "relative_tolerance": 0.2},
+    "realisations": {"minimum": 8, "maximum": 8},
+    "engine": ["fake_engine"],
+}
+# A second of real physics a seed.
+SCENE = {
+    "particles": {"count": 30, "density": 0.1,
+                  "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}]},
+    "volume_fraction": 0.3,
+    "fluid": {"viscosity": 0.1},
+    "flow": {"shear_rate": 0.05},
+    "contact": {"normal_stiffness": 1e4},
+    "lubrication": {"form": "kim-karrila", "inner_gap": 0.01, "outer_gap": 0.05},
+    "duration": {"equilibration": {"strain": 0.5}, "production": {"strain": 1}},
+}
+REAL = dict(CAMPAIGN, scene=SCENE, sweep=[{"set": "/flow/shear_rate", "values": [0.05]}], engine=["peclet-engine", "serve"])
+
+
+def workers_of(night):
+    """The engines that run for the case's campaign."""
+    mark = f"PECLET_CAMPAIGN={night.path('night.peclet')}".encode()
+    found = []
+    for name in os.listdir("/proc"):
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError, PermissionError):
+            if name.isdigit():
+                with open(f"/proc/{name}/environ", "rb") as f:
+                    if mark in f.read().split(b"\0"):
+                        found.append(int(name))
+    return found
+
+
+class Wrong(Exception):
+    """What a case expected and did not see."""
+
+
+class Night:
+    def __init__(self, programs, folder):
+        self.programs, self.folder = os.path.abspath(programs), folder
+        self.environment = {**os.environ, "PATH": f"{self.programs}:/usr/bin:/bin", "PECLET_FAKE_STEP_MS": "2"}
+        for name in ("PECLET_FAKE_FAULTS", "PECLET_FAKE_IDENTITY"):
+            self.environment.pop(name, None)
+        self.page = []  # what is typed and answered, for the transcript
+        self.said = ""  # the last answer
+        self.started = []
+        self.known = {}  # results that there have been: (point, seed) -> hash of the final state
+
+    # What a person does.
+
+    def write(self, document=None, name="night.json"):
+        with open(self.path(name), "w") as f:
+            f.write(document if isinstance(document, str) else json.dumps(document or CAMPAIGN, indent=2) + "\n")
+
+    def types(self, command, code=0, says=(), hides=()):
+        """Runs a line as a shell would, and judges exit code and answer. Returns the answer."""
+        done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment, text=True,
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=PATIENCE)
+        self.hear(command, done.stdout)
+        self.judge(done.returncode, code, says, hides)
+        return self.said
+
+    def starts(self, command):
+        """The line with an & behind it, in a process group of its own as an interactive shell makes one."""
+        log = self.path(f"answer-{len(self.started)}")
+        with open(log, "w") as f:
+            process = subprocess.Popen(["bash", "-c", "exec " + command], cwd=self.folder, env=self.environment,
+                                       stdin=subprocess.DEVNULL, stdout=f, stderr=f, start_new_session=True)
+        self.page.append(("types", command + " &"))
+        self.started.append((process, log))
+        return process
+
+    def waits(self, process, code=0, says=(), hides=()):
+        """For the end of what was started."""
+        log = next(log for known, log in self.started if known is process)
+        got = process.wait(timeout=PATIENCE)
+        with open(log) as f:
+            self.said = f.read()
+        self.page.append(("answer", self.said))
+        self.judge(got, code, says, hides)
+        return self.said
+
+    def remarks(self, text):
+        self.page.append(("remark", text))
+
+    def follows(self, pattern=r"peclet [^`\n]*", code=0, says=()):
+        """Does literally what the last answer names as the next command: the first thing between `` or at the end of a line
+        that the pattern fits."""
+        found = re.search(rf"`({pattern})`|(?:with: |: )({pattern})$", self.said, re.MULTILINE)
+        if not found:
+            raise Wrong(f"no command to follow in: {self.said!r}")
+        return self.types(found.group(1) or found.group(2), code, says)
+
+    # What must be true.
+
+    def judge(self, got, code, says, hides):
+        codes = code if isinstance(code, tuple) else (code,)
+        if got not in codes:
+            raise Wrong(f"exit code {got} instead of {code}: {self.said!r}")
+        for phrase in says:
+            if phrase not in self.said:
+                raise Wrong(f"the answer lacks {phrase!r}: {self.said!r}")
+        for phrase in hides:
+            if phrase in self.said:
+                raise Wrong(f"the answer has {phrase!r}: {self.said!r}")
+        if code not in (0, 3) and "Traceback" in self.said:
+            raise Wrong(self.said)
+        self.page.append(("code", got))
+
+    def results(self, data="night.peclet"):
+        """What the database of a campaign's folder holds."""
+        database = sqlite3.connect(f"file:{self.path(data, 'campaign.db')}?mode=ro", uri=True, timeout=20)
+        with contextlib.closing(database):
+            rows = database.execute("SELECT hash, seed, final_state_sha256 FROM realisation JOIN point USING (point_id) "
+                                    "WHERE state IN ('done', 'failed')").fetchall()
+        return {(point, seed): state for point, seed, state in rows}
+
+    def remembers(self, data="night.peclet"):
+        self.known.update(self.results(data))
+        return len(self.known)
+
+    def lost_nothing(self, data="night.peclet", but=0):
+        """Every result there has been is there, with the same content; `but` so many that the mistake itself destroyed."""
+        now = self.results(data)
+        gone = [key for key, state in self.known.items() if now.get(key) != state]
+        if len(gone) > but:
+            raise Wrong(f"{len(gone)} of {len(self.known)} results are lost")
+        self.page.append(("kept", len(self.known) - len(gone), len(gone)))
+
+    def answers_as_undisturbed(self):
+        """The canonical export is that of the same campaign without the mistake."""
+        disturbed = self.quietly("peclet export night.json --canonical")
+        self.quietly("mkdir undisturbed && cp night.json undisturbed/ && cd undisturbed && peclet run night.json --quiet")
+        if self.quietly("cd undisturbed && peclet export night.json --canonical") != disturbed:
+            raise Wrong("the export differs from that of an undisturbed campaign")
+        self.page.append(("same",))
+
+    # The tools of the above.
+
+    def path(self, *names):
+        return os.path.join(self.folder, *names)
+
+    def quietly(self, command):
+        done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment, capture_output=True, text=True,
+                              timeout=PATIENCE)
+        if done.returncode not in (0, 3):
+            raise Wrong(f"{command}: exit code {done.returncode}: {done.stdout}{done.stderr}")
+        return done.stdout
+
+    def hear(self, command, text):
+        self.said = text
+        self.page.append(("types", command))
+        self.page.append(("answer", text))
+
+    def wait_for(self, what, happened):
+        end = time.monotonic() + PATIENCE
+        while time.monotonic() < end:
+            with contextlib.suppress(OSError, sqlite3.Error):
+                if happened():
+                    return
+            time.sleep(0.02)
+        raise Wrong(f"waited in vain for {what}")
+
+    def wait_for_results(self, count, data="night.peclet"):
+        self.wait_for(f"{count} results", lambda: len(self.results(data)) >= count)
+
+    def slow(self, milliseconds):
+        self.environment["PECLET_FAKE_STEP_MS"] = str(milliseconds / 10)
+
+    def close(self):
+        for process, _ in self.started:
+            if process.poll() is None:
+                with contextlib.suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
+        shutil.rmtree(self.folder, ignore_errors=True)

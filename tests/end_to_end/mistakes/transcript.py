@@ -1,0 +1,64 @@
+"""The transcript of the mistakes as a page."""
+import re
+
+HEAD = """# At two in the morning
+
+What a tired person does wrong, and what `peclet` answers: what happened, what was kept, and the next command. Written by
+`tests/end_to_end/at_two_in_the_morning.py BIN --page tests/end_to_end/MISTAKES.md`, which does all of this with real processes and checks it: exit codes, the
+phrases that matter, that no result is lost, and that the command that an answer names works as it stands. Folders are shortened to `~`, long answers cut; `fake_engine` is
+the tests' engine without physics.
+"""
+LONGEST = 16  # lines of an answer
+
+
+def shortened(text, folder):
+    text = text.replace(folder, "~").replace("/private", "")
+    text = re.sub(r"process \d+", "process 4711", text)
+    text = re.sub(r"\b\d\d:\d\d:\d\d\b", "02:00:00", text)
+    text = re.sub(r"\d{4}-\d\d-\d\dT02:00:00Z", "2026-11-22T02:00:00Z", text)
+    lines = text.rstrip("\n").splitlines()
+    if len(lines) > LONGEST:
+        lines = lines[:LONGEST - 1] + [f"... ({len(lines) - LONGEST + 1} lines)"]
+    return lines
+
+
+def of_case(night):
+    lines, block = [], []
+
+    def close():
+        if block:
+            lines.extend(["```", *block, "```", ""])
+            block.clear()
+
+    for kind, *about in night.page:
+        if kind == "types":
+            block.extend(f"$ {line}" for line in shortened(about[0], night.folder))
+        elif kind == "answer":
+            block.extend(shortened(about[0], night.folder))
+        elif kind == "code":
+            if about[0] != 0:
+                block.append(f"[exit code {about[0]}]")
+        else:
+            close()
+            lines.extend([remark(kind, about), ""])
+    close()
+    return lines
+
+
+def remark(kind, about):
+    if kind == "kept":
+        kept, gone = about
+        return f"*{kept} results before, {kept} of them now.*" if not gone else f"*Of {kept + gone} results {kept} are kept.*"
+    return "*The export is that of an undisturbed campaign, byte for byte.*" if kind == "same" else about[0]
+
+
+def page(told):
+    lines = [HEAD]
+    number = 0
+    for chapter, cases in told:
+        lines.append(f"## {chapter}\n")
+        for title, night in cases:
+            number += 1
+            lines.append(f"### {number}. {title}\n")
+            lines.extend(of_case(night))
+    return "\n".join(lines).rstrip("\n") + "\n"
