@@ -29,7 +29,10 @@ StopSignals::StopSignals(int one_more) {
   if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "signalfd");
 }
 
+// A signal that came too late for anybody to take must not kill a process that is leaving anyway.
 StopSignals::~StopSignals() {
+  while (take()) {
+  }
   close(descriptor_);
   pthread_sigmask(SIG_UNBLOCK, &stopping_, nullptr);
 }

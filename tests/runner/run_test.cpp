@@ -11,6 +11,7 @@
 
 #include "contract/durable_file.h"
 #include "runner/spool.h"
+#include "runner/stop_signals.h"
 #include "tests/runner/campaign_process.h"
 
 namespace peclet::runner {
@@ -163,6 +164,13 @@ TEST(Run, ALostConnectionStopsAsCtrlCDoes) {
   campaign.signal(SIGHUP);
   EXPECT_EQ(campaign.finish(), 75);
   EXPECT_NE(campaign.log().find("goes on from there"), std::string::npos) << campaign.log();
+}
+
+TEST(StopSignals, OneThatCameTooLateDoesNotKillWhoIsLeaving) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    const StopSignals signals;
+    std::raise(number);  // kills the tests unless it is taken
+  }
 }
 
 TEST(Run, UnderNohupALostConnectionIsNothing) {
