@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <new>
 
 #include "contract/durable_file.h"
 #include "runner/integrity_error.h"
@@ -59,7 +60,39 @@ Connection::Connection(const std::string& path, Access access, int busy_millisec
   sqlite3_busy_timeout(handle_, busy_milliseconds);
 }
 
-Connection::~Connection() { sqlite3_close_v2(handle_); }
+Connection::~Connection() {
+  for (const auto& [sql, statement] : idle_) sqlite3_finalize(statement);
+  sqlite3_close_v2(handle_);
+}
+
+sqlite3_stmt* Connection::take(std::string_view sql) {
+  if (const auto known = idle_.find(std::string(sql)); known != idle_.end()) {
+    sqlite3_stmt* const statement = known->second;
+    idle_.erase(known);
+    return statement;
+  }
+  sqlite3_stmt* statement = nullptr;
+  const int code = sqlite3_prepare_v3(handle_, sql.data(), static_cast<int>(sql.size()),
+                                      SQLITE_PREPARE_PERSISTENT, &statement, nullptr);
+  if (code != SQLITE_OK) complain(path_, handle_, code, sql);
+  return statement;
+}
+
+// Some pragmas act when they are compiled, so those are never kept.
+void Connection::put_back(sqlite3_stmt* statement) noexcept {
+  const char* const sql = sqlite3_sql(statement);
+  const bool is_pragma = sql == nullptr || std::string_view(sql).starts_with("PRAGMA");
+  sqlite3_reset(statement);  // the code is that of the last step, which has been dealt with
+  sqlite3_clear_bindings(statement);
+  try {
+    if (!is_pragma) {
+      idle_.emplace(sql, statement);
+      return;
+    }
+  } catch (const std::bad_alloc&) {  // then it is compiled again
+  }
+  sqlite3_finalize(statement);
+}
 
 void Connection::execute(const std::string& sql) {
   const int code = sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr);
@@ -86,13 +119,10 @@ void Connection::fail(const std::string& doing, int code) const {
   complain(path_, handle_, code != 0 ? code : sqlite3_extended_errcode(handle_), doing);
 }
 
-Statement::Statement(Connection& connection, std::string_view sql) : connection_(connection) {
-  const int code = sqlite3_prepare_v3(connection.handle(), sql.data(), static_cast<int>(sql.size()),
-                                      SQLITE_PREPARE_PERSISTENT, &statement_, nullptr);
-  if (code != SQLITE_OK) complain(connection.path(), connection.handle(), code, sql);
-}
+Statement::Statement(Connection& connection, std::string_view sql)
+    : connection_(connection), statement_(connection.take(sql)) {}
 
-Statement::~Statement() { sqlite3_finalize(statement_); }
+Statement::~Statement() { connection_.put_back(statement_); }
 
 void Statement::check(int code) const {
   if (code == SQLITE_OK) return;

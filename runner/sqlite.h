@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -52,9 +53,15 @@ class Connection {
   sqlite3* handle() const { return handle_; }
   const std::string& path() const { return path_; }
 
+  // A compiled statement that is nobody's; put_back() keeps it for the next one who asks for the same text,
+  // so that what is done for every result is compiled once. Throws DatabaseError.
+  sqlite3_stmt* take(std::string_view sql);
+  void put_back(sqlite3_stmt* statement) noexcept;
+
  private:
   std::string path_;
   sqlite3* handle_ = nullptr;
+  std::unordered_multimap<std::string, sqlite3_stmt*> idle_;  // reset and without values
 };
 
 // A compiled statement: bind in order of the question marks, step, read columns from 0.
