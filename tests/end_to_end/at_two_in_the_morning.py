@@ -4,7 +4,7 @@
 Does by real commands what a tired person does wrong at two in the morning: names the wrong file or folder, starts a second
 owner, deletes a database, fills the disk, closes the laptop. Every answer must have the right exit code and say what
 happened, what was kept and what to do next; what it names as the next command is then typed literally and must work; and
-no result may be lost. --page writes the transcript, mistakes/README.md.
+no result may be lost. --page writes the transcript, MISTAKES.md.
 """
 import argparse
 import os
@@ -33,7 +33,7 @@ def main():
         cases = []
         for case in module.CASES:
             title = case.__doc__.strip()
-            if arguments.only and arguments.only not in title or arguments.quick and getattr(case, "slow", False):
+            if arguments.only and arguments.only not in title or arguments.quick and case in module.SLOW:
                 continue
             kinds += 1
             night = Night(arguments.bin, tempfile.mkdtemp(prefix="night-"))

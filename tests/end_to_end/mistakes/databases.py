@@ -127,3 +127,4 @@ def newer_program(night):
 
 
 CASES = [deleted, deleted_while_it_runs, cut, older_copy, log_deleted, copied_without_log, restored_over_newer, newer_program]
+SLOW = [deleted_while_it_runs, restored_over_newer, log_deleted]

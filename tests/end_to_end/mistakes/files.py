@@ -98,3 +98,4 @@ def engine_rebuilt(night):
 
 
 CASES = [other_folder, folder_for_file, renamed, other_name, edited, engine_missing, engine_rebuilt]
+SLOW = [engine_rebuilt]

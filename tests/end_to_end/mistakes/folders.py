@@ -114,3 +114,4 @@ def checkpoint_deleted(night):
 
 CASES = [second_owner, lock_deleted, copied, folder_deleted, folder_moved, folders_below_deleted, spool_edited,
          checkpoint_deleted]
+SLOW = [copied, folder_moved]

@@ -96,3 +96,4 @@ def full_disk(night):
 
 
 CASES = [export_on_full_disk, full_disk, read_only_folder, run_as_root, many_workers, empty_environment, clock_set_back]
+SLOW = [full_disk, clock_set_back]

@@ -100,3 +100,4 @@ def too_short(night):
 
 
 CASES = [interrupted_twice, owner_killed, worker_killed, laptop_closed, connection_lost, connection_lost_under_nohup, too_short]
+SLOW = [laptop_closed, too_short, worker_killed]

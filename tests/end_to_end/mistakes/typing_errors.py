@@ -81,3 +81,4 @@ def foreign_line_ends(night):
 
 
 CASES = [verb, option, file_name, point, key, percent, two_seeds, same_point_twice, commas_and_quotes, foreign_line_ends]
+SLOW = []
