@@ -182,8 +182,10 @@ std::string restore_campaign(const RestoreOptions& options) {
   const bool is_older = leave_newer_backup_behind(directory, source);
   std::string text = source.remarks;
   if (!damage.empty()) text += damage + "\n";
-  text += fmt::format("{}: restored from {}, made at {}, with {} results\n", directory.root().string(),
-                      source.file.string(), source.contents.backed_up_at, source.contents.results);
+  const std::string& made_at = source.contents.backed_up_at;  // not of a database that is no backup
+  text += fmt::format("{}: restored from {}{}, with {} results\n", directory.root().string(),
+                      source.file.string(), made_at.empty() ? "" : ", made at " + made_at,
+                      source.contents.results);
   if (spooled + checkpoints > 0) {
     text += fmt::format("with it came {} checkpoints and {} results on their way\n", checkpoints, spooled);
   }

@@ -57,7 +57,7 @@ def edited(night):
     night.wait_for_results(4)
     night.types("sed -i 's/\"viscosity\": 1/\"viscosity\": 2/' night.json && peclet status night.json", 0,
                 ["has changed since it was last run", "`peclet run` takes the changes up"])
-    run.terminate()
+    night.stops(run)
     night.waits(run, 75, ["workers checkpoint and stop"])
     before = night.remembers()
     night.types("peclet run night.json --workers 2", 0, [f"{before} seeds that ended at 2 points of earlier versions",
@@ -85,7 +85,7 @@ def engine_rebuilt(night):
     night.write()
     run = night.starts("peclet run night.json --workers 2")
     night.wait_for_results(4)
-    run.terminate()
+    night.stops(run)
     night.waits(run, 75)
     night.remembers()
     night.environment["PECLET_FAKE_IDENTITY"] = "built at two"

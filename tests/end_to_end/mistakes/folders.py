@@ -105,7 +105,7 @@ def checkpoint_deleted(night):
     night.write()
     run = night.starts("peclet run night.json --workers 2 --checkpoint 0.1")
     night.wait_for("checkpoints", lambda: len(os.listdir(night.path("night.peclet", "checkpoints"))) >= 2)
-    run.terminate()
+    night.stops(run)
     night.waits(run, 75)
     night.slow(20)
     night.types("rm night.peclet/checkpoints/* && peclet run night.json --quiet", 0, ["2 converged"])

@@ -96,6 +96,11 @@ class Night:
         self.judge(got, code, says, hides)
         return self.said
 
+    def stops(self, process):
+        """Ctrl-C."""
+        self.page.append(("remark", "Ctrl-C."))
+        process.send_signal(signal.SIGINT)
+
     def remarks(self, text):
         self.page.append(("remark", text))
 

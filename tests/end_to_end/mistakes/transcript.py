@@ -5,17 +5,22 @@ HEAD = """# At two in the morning
 
 What a tired person does wrong, and what `peclet` answers: what happened, what was kept, and the next command. Written by
 `tests/end_to_end/at_two_in_the_morning.py BIN --page tests/end_to_end/MISTAKES.md`, which does all of this with real processes and checks it: exit codes, the
-phrases that matter, that no result is lost, and that the command that an answer names works as it stands. Folders are shortened to `~`, long answers cut; `fake_engine` is
+phrases that matter, that no result is lost, and that the command that an answer names works as it stands. Folders are shortened to `~`, long answers and the legends of tables cut, times and process numbers replaced; `fake_engine` is
 the tests' engine without physics.
 """
-LONGEST = 16  # lines of an answer
+LONGEST = 12  # lines of an answer
 
 
-def shortened(text, folder):
-    text = text.replace(folder, "~").replace("/private", "")
+# What every table ends with.
+LEGEND = re.compile(r"^(so far: mean|95 % interval at the last).*\n", re.MULTILINE)
+
+
+def shortened(text, night):
+    text = text.replace(night.folder, "~").replace(night.programs, "BIN")
+    text = LEGEND.sub("", text).replace("\n\n", "\n")
     text = re.sub(r"process \d+", "process 4711", text)
-    text = re.sub(r"\b\d\d:\d\d:\d\d\b", "02:00:00", text)
-    text = re.sub(r"\d{4}-\d\d-\d\dT02:00:00Z", "2026-11-22T02:00:00Z", text)
+    text = re.sub(r"kill \d+", "kill 4711", text)
+    text = re.sub(r"(?<!\d)\d\d:\d\d:\d\d", "02:00:00", text)
     lines = text.rstrip("\n").splitlines()
     if len(lines) > LONGEST:
         lines = lines[:LONGEST - 1] + [f"... ({len(lines) - LONGEST + 1} lines)"]
@@ -32,9 +37,9 @@ def of_case(night):
 
     for kind, *about in night.page:
         if kind == "types":
-            block.extend(f"$ {line}" for line in shortened(about[0], night.folder))
+            block.extend(f"$ {line}" for line in shortened(about[0], night))
         elif kind == "answer":
-            block.extend(shortened(about[0], night.folder))
+            block.extend(shortened(about[0], night))
         elif kind == "code":
             if about[0] != 0:
                 block.append(f"[exit code {about[0]}]")
