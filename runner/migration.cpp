@@ -6,16 +6,16 @@
 
 #include "runner/campaign_sql.h"
 #include "runner/database_copy.h"
+#include "runner/integrity_error.h"
 #include "runner/realisation_result.h"
 
 namespace peclet::runner {
 namespace {
 
-void remake_views(Connection& connection) {
+void drop_views(Connection& connection) {
   for (const char* const view : {"points", "realisations", "estimates"}) {
     connection.execute(fmt::format("DROP VIEW {}", view));
   }
-  connection.execute(views_sql);
 }
 
 // What version 1 did not take from the results.
@@ -35,18 +35,31 @@ void take_parts_of_windows(Connection& connection) {
   }
 }
 
+void change_tables(Connection& connection, std::int64_t from) {
+  Transaction migration(connection);
+  drop_views(connection);
+  if (from < 2) {
+    connection.execute(version_2_sql);
+    take_parts_of_windows(connection);
+  }
+  if (from < 3) connection.execute(version_3_sql);
+  connection.execute(views_sql);
+  if (const std::string found = damage(connection); !found.empty()) {
+    throw IntegrityError(fmt::format("{}: could not be brought up to date: {}", connection.path(), found));
+  }
+  migration.commit();
+}
+
 }  // namespace
 
 void migrate(Connection& connection, std::int64_t from) {
   const std::filesystem::path kept = fmt::format("{}.version-{}", connection.path(), from);
   if (!std::filesystem::exists(kept)) copy_database(connection.path(), kept, [](Connection&) {});
-  Transaction migration(connection);
-  if (from < 2) {
-    connection.execute(version_2_sql);
-    take_parts_of_windows(connection);
-  }
-  remake_views(connection);
-  migration.commit();
+  // A table is made again under its own name, to which others refer: references are looked at afterwards
+  // instead. The setting cannot be changed within a transaction, and is meant for this connection's life.
+  connection.execute("PRAGMA foreign_keys = OFF");
+  change_tables(connection, from);
+  connection.execute("PRAGMA foreign_keys = ON");
 }
 
 }  // namespace peclet::runner

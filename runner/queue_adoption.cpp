@@ -70,9 +70,10 @@ std::int64_t Queue::adopt_target(const Campaign& campaign) {
 
 void Queue::adopt_points(const Campaign& campaign) {
   connection_.execute("UPDATE point SET place = NULL");
-  Statement place(connection_,
-                  "INSERT INTO point (hash, scene, settings, label, place) VALUES (?1, ?2, ?3, ?4, ?5) "
-                  "ON CONFLICT (hash) DO UPDATE SET settings = ?3, label = ?4, place = ?5");
+  Statement place(
+      connection_,
+      "INSERT INTO point (hash, scene, settings, label, place) VALUES (?1, ?2, ?3, ?4, ?5) "
+      "ON CONFLICT (hash) WHERE kept_apart = 0 DO UPDATE SET settings = ?3, label = ?4, place = ?5");
   int number = 0;
   for (const StatePoint& point : campaign.points) {
     place.bind(point.hash)

@@ -1,11 +1,11 @@
--- The database of one campaign, version 2; its views are in views.sql. One process writes it (the one that holds
+-- The database of one campaign, version 3; its views are in views.sql. One process writes it (the one that holds
 -- campaign.lock); everybody else opens it read-only. schema/README.md explains the tables and views to pandas
 -- users. A version-N.sql makes version N of the one before it and leaves the same tables as this file.
 --
 -- Times ending in _at are wall-clock times in UTC, for people to look at: no decision is made from them.
 
 PRAGMA application_id = 1346587724;  -- "PCLL" as a big-endian integer
-PRAGMA user_version = 2;
+PRAGMA user_version = 3;
 
 -- What a verdict was reached for. Old targets stay, with the looks that were made for them.
 CREATE TABLE target (
@@ -37,7 +37,7 @@ CREATE TABLE engine (
 
 CREATE TABLE point (
   point_id        INTEGER PRIMARY KEY,
-  hash            TEXT    NOT NULL UNIQUE,  -- SHA-256 of the canonical scene
+  hash            TEXT    NOT NULL,         -- SHA-256 of the canonical scene
   scene           TEXT    NOT NULL CHECK (json_valid(scene)),
   settings        TEXT    NOT NULL CHECK (json_valid(settings)),
   label           TEXT    NOT NULL,
@@ -45,8 +45,14 @@ CREATE TABLE point (
   engine_identity TEXT,                     -- of its first result; every other result must have the same
   suspect         INTEGER NOT NULL DEFAULT 0 CHECK (suspect IN (0, 1)),  -- a seed gave two different results
   priority        INTEGER NOT NULL DEFAULT 0,  -- points of a higher one are served first
-  cancelled       INTEGER NOT NULL DEFAULT 0 CHECK (cancelled IN (0, 1))  -- gets no more seeds
+  cancelled       INTEGER NOT NULL DEFAULT 0 CHECK (cancelled IN (0, 1)),  -- gets no more seeds
+  -- Results of an engine that another one has replaced by name; the scene's own row is the one of 0.
+  kept_apart      INTEGER NOT NULL DEFAULT 0 CHECK (kept_apart IN (0, 1)),
+  UNIQUE (hash, engine_identity),
+  CHECK (kept_apart = 0 OR (place IS NULL AND engine_identity IS NOT NULL))
 ) STRICT;
+
+CREATE UNIQUE INDEX point_by_hash ON point (hash) WHERE kept_apart = 0;
 
 -- One seed at one point: its state and the numbers that are asked for most.
 CREATE TABLE realisation (
@@ -85,7 +91,7 @@ CREATE TABLE result (
   FOREIGN KEY (point_id, seed) REFERENCES realisation
 ) STRICT;
 
--- Every time a worker was given a seed. blamed: counts against the seed.
+-- Every time a worker was given a seed. blamed: counts against the seed, unless it was pardoned since.
 CREATE TABLE attempt (
   attempt_id  INTEGER PRIMARY KEY,
   point_id    INTEGER NOT NULL,
@@ -103,6 +109,7 @@ CREATE TABLE attempt (
   exit_status INTEGER,
   signal      INTEGER,
   message     TEXT,
+  pardoned    INTEGER NOT NULL DEFAULT 0 CHECK (pardoned IN (0, 1)),  -- before the seed was retried
   FOREIGN KEY (point_id, seed) REFERENCES realisation
 ) STRICT;
 
@@ -144,6 +151,19 @@ CREATE TABLE look (
   PRIMARY KEY (point_id, target_id, seeds)
 ) STRICT, WITHOUT ROWID;
 
+-- What the first seeds of a point let expect, for one target.
+CREATE TABLE prediction (
+  point_id    INTEGER NOT NULL REFERENCES point,
+  target_id   INTEGER NOT NULL REFERENCES target,
+  made_at     TEXT    NOT NULL,
+  pilot       INTEGER NOT NULL,  -- seeds that it was made from
+  seeds       INTEGER NOT NULL,  -- of the deciding look, as expected
+  lower       INTEGER NOT NULL,  -- and the range that should hold it 95 % of the time
+  upper       INTEGER NOT NULL,
+  cpu_seconds REAL    NOT NULL,  -- of one seed
+  PRIMARY KEY (point_id, target_id)
+) STRICT, WITHOUT ROWID;
+
 -- What a person may want to know afterwards.
 CREATE TABLE event (
   event_id INTEGER PRIMARY KEY,
@@ -151,8 +171,11 @@ CREATE TABLE event (
   kind     TEXT    NOT NULL,
   point_id INTEGER REFERENCES point,
   seed     INTEGER,
-  message  TEXT    NOT NULL
+  message  TEXT    NOT NULL,
+  request  TEXT               -- the request that caused it, which so is carried out once; NULL: none did
 ) STRICT;
+
+CREATE UNIQUE INDEX event_by_request ON event (request) WHERE request IS NOT NULL;
 
 -- Seeds in the hands of a batch system (Slurm ...). A bundle is one job array, called by the job's name.
 CREATE TABLE bundle (

@@ -6,12 +6,14 @@
 
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
+#include "runner/campaign_sql.h"
 #include "runner/queue.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {
 namespace {
 
+// A database of version 1, from a campaign that was run with it.
 class Migration : public testing::Test {
  protected:
   Migration() {
@@ -23,8 +25,27 @@ class Migration : public testing::Test {
   TemporaryFolder folder_;
 };
 
+// The same of version 2, with what only that had: a point that left the sweep, priorities, seeds handed over,
+// events.
+class MigrationFromVersion2 : public Migration {
+ protected:
+  MigrationFromVersion2() {
+    Connection connection(path().string(), Connection::Access::read_write, 0);
+    connection.execute("DROP VIEW points; DROP VIEW realisations; DROP VIEW estimates");
+    connection.execute(version_2_sql);
+    connection.execute(
+        "INSERT INTO point (point_id, hash, scene, settings, label, priority, cancelled)"
+        " VALUES (7, 'b0b0', '{}', '{}', 'gone', -3, 1);"
+        "INSERT INTO realisation (point_id, seed, state) VALUES (7, 5, 'queued');"
+        "INSERT INTO bundle (bundle_id, name, shared, tasks, made_at) VALUES (1, 'b', '/s', 1, 'now');"
+        "INSERT INTO bundle_seed (bundle_id, place, task, point_id, seed) VALUES (1, 0, 1, 7, 5);"
+        "INSERT INTO event (at, kind, point_id, seed, message) VALUES ('then', 'flag', 7, 5, 'overlap');");
+    connection.execute(views_sql);
+  }
+};
+
 // Table, column, type, NOT NULL, default and place in the key of every column, views included.
-std::string layout(Connection& connection) {
+std::string columns(Connection& connection) {
   return connection.text(
       "SELECT group_concat(line, char(10)) FROM (SELECT t.name || ' ' || c.cid || ' ' || c.name || ' ' || "
       "c.type"
@@ -32,12 +53,65 @@ std::string layout(Connection& connection) {
       " pragma_table_list t, pragma_table_info(t.name) c WHERE t.schema = 'main' ORDER BY t.name, c.cid)");
 }
 
-TEST_F(Migration, LeavesTheTablesThatANewCampaignHas) {
-  Database old = Database::open_owner(path());
-  Database fresh = Database::open_owner(folder_.path() / "fresh.db");
-  EXPECT_EQ(old.connection().integer("PRAGMA user_version"), 2);
-  EXPECT_EQ(layout(old.connection()), layout(fresh.connection()));
+// Index, table, whether unique, whether partial, and columns, in order of the tables.
+std::string indices(Connection& connection) {
+  return connection.text(
+      "SELECT group_concat(line, char(10)) FROM (SELECT t.name || ' ' || i.\"unique\" || ' ' || i.partial || "
+      "' '"
+      " || (SELECT group_concat(c.name) FROM pragma_index_info(i.name) c) AS line"
+      " FROM pragma_table_list t, pragma_index_list(t.name) i WHERE t.schema = 'main' ORDER BY line)");
+}
+
+void expect_newest_layout(const std::filesystem::path& path) {
+  Database old = Database::open_owner(path);
+  Database fresh = Database::open_owner(path.parent_path() / "fresh.db");
+  EXPECT_EQ(old.connection().integer("PRAGMA user_version"), 3);
+  EXPECT_EQ(columns(old.connection()), columns(fresh.connection()));
+  EXPECT_EQ(indices(old.connection()), indices(fresh.connection()));
   EXPECT_EQ(old.connection().text("PRAGMA integrity_check"), "ok");
+  EXPECT_EQ(old.connection().integer("PRAGMA foreign_keys"), 1);
+}
+
+TEST_F(Migration, LeavesTheTablesThatANewCampaignHas) { expect_newest_layout(path()); }
+
+TEST_F(MigrationFromVersion2, LeavesTheTablesThatANewCampaignHas) { expect_newest_layout(path()); }
+
+TEST_F(MigrationFromVersion2, KeepsEveryRowAndWhatRefersToIt) {
+  Database database = Database::open_owner(path());
+  EXPECT_EQ(database.outcomes(database.points().at(0).id).size(), 4U);
+  const PointRecord gone = database.inactive_points().at(0);
+  EXPECT_EQ(gone.id, 7);
+  EXPECT_EQ(gone.hash, "b0b0");
+  EXPECT_EQ(gone.priority, -3);
+  EXPECT_TRUE(gone.cancelled);
+  const auto count = [&](const char* what) {
+    return database.connection().integer(std::string("SELECT count(*) FROM ") + what);
+  };
+  EXPECT_EQ(count("bundle_seed WHERE point_id = 7 AND seed = 5"), 1);
+  EXPECT_EQ(count("event WHERE point_id = 7 AND request IS NULL"), 1);
+  EXPECT_EQ(count("attempt WHERE pardoned = 0"), 4);
+  EXPECT_EQ(count("point WHERE kept_apart = 0"), 2);
+}
+
+TEST_F(MigrationFromVersion2, OfADatabaseWithADanglingReferenceIsRefusedAndUndone) {
+  {
+    Connection connection(path().string(), Connection::Access::read_write, 0);
+    connection.execute("PRAGMA foreign_keys = OFF; DELETE FROM point WHERE point_id = 7");
+  }
+  EXPECT_THROW(Database::open_owner(path()), IntegrityError);
+  Connection connection(path().string(), Connection::Access::read_only, 0);
+  EXPECT_EQ(connection.integer("PRAGMA user_version"), 2);
+  EXPECT_EQ(connection.integer("SELECT count(*) FROM points"), 1);
+}
+
+TEST_F(MigrationFromVersion2, LetsTwoEnginesResultsOfASceneStandSideBySide) {
+  Database database = Database::open_owner(path());
+  const std::string another =
+      "INSERT INTO point (hash, scene, settings, label, engine_identity, kept_apart)"
+      " SELECT hash, scene, settings, label, 'B', ";
+  EXPECT_THROW(database.connection().execute(another + "0 FROM point WHERE place = 0"), DatabaseError);
+  database.connection().execute(another + "1 FROM point WHERE place = 0");
+  EXPECT_THROW(database.connection().execute(another + "1 FROM point WHERE place = 0"), DatabaseError);
 }
 
 TEST_F(Migration, KeepsWhatTheCampaignHadAndTakesWhatItLacked) {
