@@ -1,17 +1,14 @@
 #include "runner/backup.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
 #include <system_error>
 
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
 #include "runner/database_copy.h"
+#include "runner/folder_lock.h"
 #include "runner/integrity_error.h"
 #include "runner/open_campaign.h"
 #include "runner/spool.h"
@@ -20,26 +17,6 @@ namespace peclet::runner {
 namespace {
 
 namespace fs = std::filesystem;
-
-// One writer of a folder at a time: `peclet backup` and the campaign's own backups may meet.
-class FolderLock {
- public:
-  explicit FolderLock(const fs::path& folder)
-      : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX) != 0) {
-      if (errno == EINTR) continue;
-      close(descriptor_);
-      descriptor_ = -1;
-    }
-    if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), folder.string());
-  }
-  ~FolderLock() { close(descriptor_); }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int descriptor_;
-};
 
 // What of a campaign never changes: when it was set up, and the first point that it ever had.
 constexpr const char* origin_query =
@@ -161,7 +138,7 @@ Backup make_backup(const CampaignDirectory& directory, const fs::path& folder, b
   const auto started = std::chrono::steady_clock::now();
   refuse_unsuitable_folder(directory, folder);
   fs::create_directories(folder);
-  const FolderLock lock(folder);
+  const FolderLock lock(folder);  // `peclet backup` and the campaign's own backups may meet
   remove_unfinished_files(folder);
   Backup backup;
   if (checkpoints) {
