@@ -24,9 +24,12 @@ void check_campaign_name(const std::string& name, const std::string& file) {
 
 Campaign read_campaign(const std::filesystem::path& path) {
   require_campaign_file(path);
-  const std::string file = path.string();
+  return parse_campaign(read_json(path), path.string());
+}
+
+Campaign parse_campaign(const Json& written, const std::string& file) {
   Campaign campaign;
-  campaign.document = campaign_keys().validate(read_json(path), file);
+  campaign.document = campaign_keys().validate(written, file);
   const Json& document = campaign.document;
   campaign.name = document["name"].get<std::string>();
   check_campaign_name(campaign.name, file);

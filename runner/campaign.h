@@ -40,6 +40,8 @@ const KeyTable& campaign_keys();
 // Reads and checks a campaign. The scenes themselves are the engine's to judge.
 // Throws InputError naming file, pointer, value and what is allowed.
 Campaign read_campaign(const std::filesystem::path& path);
+// The same of a document that has been read from `file`.
+Campaign parse_campaign(const Json& written, const std::string& file);
 
 // Throws InputError at /name of `file` unless the name is made of letters, digits, dots, underscores and
 // hyphens.

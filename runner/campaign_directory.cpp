@@ -51,8 +51,9 @@ CampaignDirectory campaign_directory(const fs::path& campaign_file, const fs::pa
 }
 
 void create_folders(const CampaignDirectory& directory) {
-  for (const fs::path& folder : {directory.root(), directory.rejected(), directory.checkpoints(),
-                                 directory.failures(), directory.logs(), directory.backup()}) {
+  for (const fs::path& folder :
+       {directory.root(), directory.rejected(), directory.checkpoints(), directory.failures(),
+        directory.logs(), directory.backup(), directory.requests()}) {
     fs::create_directories(folder);
   }
 }

@@ -23,6 +23,8 @@ class CampaignDirectory {
   std::filesystem::path failures() const { return root_ / "failures"; }
   std::filesystem::path logs() const { return root_ / "logs"; }
   std::filesystem::path backup() const { return root_ / "backup"; }
+  // What people ask of the campaign, until its owner has carried it out.
+  std::filesystem::path requests() const { return root_ / "requests"; }
   // Where `peclet restore` keeps what it takes the place of.
   std::filesystem::path aside() const { return root_ / "aside"; }
   std::filesystem::path run_log() const { return logs() / "peclet.log"; }

@@ -34,10 +34,11 @@ struct PointRecord {
   Json scene;
   Json settings;
   std::string label;
-  std::string engine_identity;  // "" before the first result
+  std::string engine_identity;  // "" before the first result, unless it was accepted by name
   bool suspect = false;         // a seed gave two different results
   int priority = 0;             // points of a higher one are served first
   bool cancelled = false;       // gets no more seeds
+  bool kept_apart = false;      // its engine was replaced by name; another row is the scene's
 };
 
 // A seed with the columns that were taken from its result. Numbers that do not exist are absent.
@@ -65,6 +66,7 @@ struct AttemptRecord {
   std::string host, started_at, ended_at;  // ended_at empty: still running
   std::string outcome;                     // the list is in schema/campaign.sql
   bool blamed = false;
+  bool pardoned = false;  // from before a retry: no longer counts
   std::int64_t step = 0;
   std::optional<std::int64_t> exit_status, signal;
   std::string message;
@@ -104,6 +106,12 @@ struct EngineRecord {
   Json provenance;
 };
 
+// Results of a scene that are no part of the campaign any more.
+struct KeptApart {
+  std::string engine;  // identity
+  int results = 0;
+};
+
 struct CampaignRecord {
   std::string name;
   Json document;
@@ -127,7 +135,8 @@ class Database {
   CampaignRecord campaign();
   // The points that the sweep contains, in its order.
   std::vector<PointRecord> points();
-  // Points of earlier versions of the sweep, in order of their first appearance.
+  // Points of earlier versions of the sweep, and those that are kept apart, in order of their first
+  // appearance.
   std::vector<PointRecord> inactive_points();
 
   // All functions below take PointRecord::id. Lists are in order of the seeds (then of time).
@@ -147,7 +156,11 @@ class Database {
   std::vector<LookRecord> look_history(std::int64_t point);
   // The most recent `limit` events, oldest first.
   std::vector<EventRecord> events(int limit);
+  // What became of a request; nothing while it waits.
+  std::optional<EventRecord> event_of(const std::string& request);
   std::vector<EngineRecord> engines();
+  // What other engines did for the scene of that hash before another one was accepted.
+  std::vector<KeptApart> kept_apart(const std::string& hash);
 
   Connection& connection() { return *connection_; }
 

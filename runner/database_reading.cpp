@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* point_columns =
     "SELECT point_id, place, hash, scene, settings, label, engine_identity, suspect, priority, "
-    "cancelled FROM point ";
+    "cancelled, kept_apart FROM point ";
 
 std::vector<PointRecord> read_points(Connection& connection, const std::string& which) {
   Statement query(connection, point_columns + which);
@@ -26,6 +26,7 @@ std::vector<PointRecord> read_points(Connection& connection, const std::string& 
     point.suspect = query.integer(7) != 0;
     point.priority = static_cast<int>(query.integer(8));
     point.cancelled = query.integer(9) != 0;
+    point.kept_apart = query.integer(10) != 0;
     points.push_back(std::move(point));
   }
   return points;
@@ -74,6 +75,12 @@ Json with_engine(const std::string& document, const std::string& provenance) {
   Json result = Json::parse(document);
   result["engine"] = Json::parse(provenance);
   return result;
+}
+
+EventRecord read_event(const Statement& query) {
+  EventRecord record{query.text(0), query.text(1), query.optional_integer(2), std::nullopt, query.text(4)};
+  if (!query.is_null(3)) record.seed = static_cast<int>(query.integer(3));
+  return record;
 }
 
 constexpr const char* result_columns =
@@ -202,7 +209,7 @@ std::vector<AttemptRecord> Database::attempts(std::int64_t point) {
   Statement query(
       *connection_,
       "SELECT seed, worker, process, host, started_at, ended_at, outcome, blamed, step, exit_status, signal,"
-      " message FROM attempt WHERE point_id = ? ORDER BY seed, attempt_id");
+      " message, pardoned FROM attempt WHERE point_id = ? ORDER BY seed, attempt_id");
   query.bind(point);
   std::vector<AttemptRecord> attempts;
   while (query.step()) {
@@ -219,6 +226,7 @@ std::vector<AttemptRecord> Database::attempts(std::int64_t point) {
     record.exit_status = query.optional_integer(9);
     record.signal = query.optional_integer(10);
     record.message = query.text(11);
+    record.pardoned = query.integer(12) != 0;
     attempts.push_back(std::move(record));
   }
   return attempts;
@@ -251,12 +259,15 @@ std::vector<EventRecord> Database::events(int limit) {
                   "DESC LIMIT ?) ORDER BY event_id");
   query.bind(limit);
   std::vector<EventRecord> events;
-  while (query.step()) {
-    EventRecord record{query.text(0), query.text(1), query.optional_integer(2), std::nullopt, query.text(4)};
-    if (!query.is_null(3)) record.seed = static_cast<int>(query.integer(3));
-    events.push_back(std::move(record));
-  }
+  while (query.step()) events.push_back(read_event(query));
   return events;
+}
+
+std::optional<EventRecord> Database::event_of(const std::string& request) {
+  Statement query(*connection_, "SELECT at, kind, point_id, seed, message FROM event WHERE request = ?");
+  query.bind(request);
+  if (!query.step()) return std::nullopt;
+  return read_event(query);
 }
 
 std::vector<EngineRecord> Database::engines() {
@@ -264,6 +275,18 @@ std::vector<EngineRecord> Database::engines() {
   std::vector<EngineRecord> engines;
   while (query.step()) engines.push_back({query.integer(0), query.text(1), Json::parse(query.text(2))});
   return engines;
+}
+
+std::vector<KeptApart> Database::kept_apart(const std::string& hash) {
+  Statement query(
+      *connection_,
+      "SELECT engine_identity, count(content_sha256) FROM point LEFT JOIN realisation USING (point_id) "
+      "WHERE hash = ? AND kept_apart = 1 GROUP BY point_id HAVING count(content_sha256) > 0 ORDER BY "
+      "point_id");
+  query.bind(hash);
+  std::vector<KeptApart> kept;
+  while (query.step()) kept.push_back({query.text(0), static_cast<int>(query.integer(1))});
+  return kept;
 }
 
 }  // namespace peclet::runner

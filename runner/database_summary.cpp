@@ -71,6 +71,7 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
   std::map<std::int64_t, Aggregate> aggregates = read_aggregates(connection);
   CountsByPoint losses = read_losses(connection);
   CountsByPoint flags = read_flags(connection);
+  const bool any_apart = connection.integer("SELECT count(*) FROM point WHERE kept_apart = 1") > 0;
   const std::vector<int> schedule = look_schedule(target.minimum, target.maximum);
 
   std::vector<PointSummary> summaries;
@@ -88,6 +89,7 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
     summary.wanted = summary.decided ? seen : *std::upper_bound(schedule.begin(), schedule.end() - 1, seen);
     summary.wanted_ended = count_ended(connection, point.id, summary.wanted);
     if (summary.counts.running > 0) summary.leases = database.leases(point.id);
+    if (any_apart) summary.kept_apart = database.kept_apart(point.hash);
     summary.point = std::move(point);
     summaries.push_back(std::move(summary));
   }

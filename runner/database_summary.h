@@ -19,10 +19,13 @@ struct PointSummary {
   std::vector<Look> looks;            // for the present target
   double confidence = 0.95;           // of its intervals
   bool decided = false;
-  int wanted = 0;        // seeds of the next look; of a decided point those of the deciding one
-  int wanted_ended = 0;  // of these, how many have ended
+  std::vector<KeptApart> kept_apart;  // results of other engines
+  int wanted = 0;                     // seeds of the next look; of a decided point those of the deciding one
+  int wanted_ended = 0;               // of these, how many have ended
   std::vector<LeaseRecord> leases;
 
+  // Neither decided nor cancelled.
+  bool open() const { return !decided && !point.cancelled; }
   int lost() const { return counts.failed + counts.quarantined; }
   // Seeds of a decided point that have ended beyond the deciding look.
   int surplus() const { return decided ? counts.terminal() - wanted_ended : 0; }

@@ -86,6 +86,7 @@ void Dispatcher::turn() {
     to_send_.clear();
     ledger_.after_commit();
     judge_leases();
+    hear_requests();
   }
   report();
 }
@@ -111,7 +112,7 @@ void Dispatcher::give_out_seeds() {
   if (stopping_ != Stopping::no || shortage_.lasts() || ledger_.scheduler().finished()) return;
   for (int number = 0; number < pool_.size(); ++number) {
     Worker& worker = at(number);
-    if (worker.stage != Stage::idle) continue;
+    if (worker.stage != Stage::idle || worker.recalled) continue;
     std::optional<Grant> grant = ledger_.give_out(number, pool_.process(number), worker.engine);
     if (!grant) return;
     grant->job.threads = settings_.threads;
@@ -136,9 +137,12 @@ void Dispatcher::judge_leases() {
     }
     if (worker.stage == Stage::busy && awake_ - worker.assignment->renewed > settings_.lease) {
       const bool stopped = pool_.is_stopped(number);
-      condemn(number, stopped ? AttemptOutcome::killed : AttemptOutcome::hung,
+      const char* const why = worker.recalled ? ": it was told to leave"
+                              : stopped       ? ": its process has been stopped"
+                                              : "";
+      condemn(number, worker.recalled || stopped ? AttemptOutcome::killed : AttemptOutcome::hung,
               fmt::format("no new step after {} for {:g} s{}", worker.assignment->step,
-                          settings_.lease.count(), stopped ? ": its process has been stopped" : ""));
+                          settings_.lease.count(), why));
     }
   }
 }
@@ -317,7 +321,8 @@ void Dispatcher::exited_during_job(int number, const ExitStatus& ending) {
   if (worker.condemned) {
     end.outcome = *worker.condemned;
     end.message = worker.message;
-  } else if (stopping_ == Stopping::at_once || (stopping_ != Stopping::no && ending.status == 0) ||
+  } else if (stopping_ == Stopping::at_once ||
+             ((stopping_ != Stopping::no || worker.recalled) && ending.status == 0) ||
              (is_blamed(end.outcome) && lacked_room(number))) {
     end.outcome = AttemptOutcome::drained;
   }
@@ -325,7 +330,7 @@ void Dispatcher::exited_during_job(int number, const ExitStatus& ending) {
 }
 
 void Dispatcher::exited_without_job(int number, const ExitStatus& ending, Stage stage) {
-  if (stopping_ != Stopping::no) return;
+  if (stopping_ != Stopping::no || at(number).recalled) return;
   const bool own_doing = at(number).condemned || outcome_of(ending) != AttemptOutcome::killed;
   const std::string how = at(number).message.empty() ? to_string(ending) : at(number).message;
   listener_.warn(fmt::format("worker {} ended {}: {}", number,

@@ -33,6 +33,9 @@ struct DispatchSettings {
   std::optional<std::chrono::duration<double>> time_limit{};
   // Called at every turn, about twice a second or more often.
   std::function<void()> chore = [] {};
+  // Called about once a second, between two bookings: carries out what people ask for. True when the ledger's
+  // picture was taken again; a DatabaseError for want of room leaves it taken again, and nothing changed.
+  std::function<bool()> requests = [] { return false; };
 };
 
 class Dispatcher {
@@ -70,6 +73,7 @@ class Dispatcher {
     std::optional<Assignment> assignment{};
     std::int64_t finished_job = 0;              // the last one; attempts are numbered from 1
     std::optional<AttemptOutcome> condemned{};  // killed by us, and why
+    bool recalled = false;                      // told to leave a seed that is not wanted any more
     std::string message{};
   };
   // What booking changes here, to be taken back with it.
@@ -101,6 +105,9 @@ class Dispatcher {
   void end_shortage();
   void settle_spool();
   void obey_stop_signal();
+  void hear_requests();
+  // The ledger's picture is new: it hears who has which seed, and workers whose seeds nobody wants leave.
+  void mark_running_seeds();
   void start_workers();
   void give_out_seeds();
   void judge_leases();
@@ -131,10 +138,11 @@ class Dispatcher {
   std::vector<WorkerEvent> news_;             // and not booked yet
   std::vector<std::pair<int, Job>> to_send_;  // after the commit
   Shortage shortage_;
-  bool unbooked_ = false;  // for want of room
+  bool unbooked_ = false;       // for want of room
+  bool request_waits_ = false;  // for the same
   bool told_of_shortage_ = false;
   Stopping stopping_ = Stopping::no;
-  Time started_, heard_, reported_, leases_shown_;
+  Time started_, heard_, reported_, leases_shown_, requests_heard_{};
   Awake awake_{}, stopping_since_{};
 };
 

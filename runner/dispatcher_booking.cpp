@@ -75,7 +75,7 @@ bool Dispatcher::book() {
     return false;
   }
   news_.clear();
-  if (told_of_shortage_ && !shortage_.lasts()) end_shortage();
+  if (told_of_shortage_ && !shortage_.lasts() && !request_waits_) end_shortage();
   return true;
 }
 
@@ -83,9 +83,7 @@ void Dispatcher::take_back(const Picture& before) {
   now_ = before;
   to_send_.clear();
   ledger_.roll_back();
-  for (const Worker& worker : now_.workers) {
-    if (worker.assignment) ledger_.keep_running(worker.assignment->grant);
-  }
+  mark_running_seeds();
   unbooked_ = true;
   // What is booked of a result is about as long as its file, and goes into log and database.
   std::uint64_t bytes = 1 << 20;

@@ -8,6 +8,7 @@
 
 #include "runner/backup.h"
 #include "runner/doctor.h"
+#include "runner/request.h"
 #include "runner/spool.h"
 
 namespace peclet::runner {
@@ -15,10 +16,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 12> known_names{
+constexpr std::array<const char*, 13> known_names{
     "campaign.db",   "campaign.db-wal", "campaign.db-shm", "campaign.db-journal",
     "campaign.lock", "spool",           "checkpoints",     "failures",
-    "logs",          "backup",          "aside",           "campaign.json"};
+    "logs",          "backup",          "aside",           "campaign.json",
+    "requests"};
 
 // A campaign that works makes one every ten minutes.
 constexpr double old_backup_hours = 24;
@@ -49,6 +51,7 @@ std::map<std::string, bool> checkpoint_names(Database& database, const CampaignD
   std::map<std::string, bool> names;
   for (const auto& points : {database.points(), database.inactive_points()}) {
     for (const PointRecord& point : points) {
+      if (point.kept_apart) continue;  // a checkpoint of its scene is of the engine that is used now
       for (const RealisationRecord& record : database.realisations(point.id)) {
         names[directory.checkpoint(point.hash, record.seed).filename().string()] = !record.cause.empty();
       }
@@ -110,11 +113,20 @@ void examine_spool(const Patient& patient, Findings& findings) {
   }
 }
 
+void examine_requests(const Patient& patient, Findings& findings) {
+  const std::vector<fs::path> waiting = waiting_requests(patient.directory);
+  if (!waiting.empty() && !patient.owner) {
+    findings.push_back({"request-waiting", Severity::note,
+                        fmt::format("{} requests wait in requests/: {}", waiting.size(), listed(waiting)),
+                        "the next `peclet run` carries them out"});
+  }
+}
+
 void examine_unfinished(const Patient& patient, Findings& findings) {
   std::vector<fs::path> folders, unfinished;
   for (const fs::path& folder :
        {patient.directory.root(), patient.directory.spool(), patient.directory.checkpoints(),
-        patient.directory.failures(), patient.directory.backup()}) {
+        patient.directory.failures(), patient.directory.backup(), patient.directory.requests()}) {
     if (!fs::is_directory(folder)) continue;
     folders.push_back(folder);
     for (const fs::path& file : unfinished_files(folder)) unfinished.push_back(file);
@@ -146,6 +158,7 @@ void examine_strays(const Patient& patient, Findings& findings) {
 void examine_files(Database& database, const Patient& patient, Findings& findings) {
   examine_spool(patient, findings);
   examine_checkpoints(database, patient, findings);
+  examine_requests(patient, findings);
   examine_unfinished(patient, findings);
   examine_strays(patient, findings);
 }

@@ -1,43 +1,28 @@
 #include "runner/explain.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "contract/input_error.h"
 #include "runner/explain_attempts.h"
 #include "runner/explain_estimate.h"
 #include "runner/forecast.h"
 #include "runner/number_text.h"
+#include "runner/point_name.h"
 #include "runner/status.h"
 #include "runner/text_table.h"
 
 namespace peclet::runner {
 namespace {
 
-bool has_name(const PointRecord& point, const std::string& name) {
-  return point.label == name || (name.size() >= 4 && point.hash.starts_with(name));
-}
-
 std::vector<PointSummary> selected(std::vector<PointSummary> points, const std::string& name) {
   if (name.empty()) return points;
-  std::vector<std::string> labels;
-  std::vector<PointSummary> found;
-  for (PointSummary& point : points) {
-    labels.push_back(point.point.label);
-    if (has_name(point.point, name)) found.push_back(std::move(point));
-  }
-  if (found.size() == 1) return found;
-  constexpr std::size_t most_labels = 12;
-  const std::string more = labels.size() > most_labels ? ", ..." : "";
-  labels.resize(std::min(labels.size(), most_labels));
-  throw InputError(
-      "", "", name,
-      fmt::format("must be the label of one point, or 4 or more digits of its hash; labels: {}{}",
-                  fmt::join(labels, ", "), more));
+  std::vector<PointRecord> records;
+  records.reserve(points.size());
+  for (const PointSummary& point : points) records.push_back(point.point);
+  return {std::move(points[find_point(records, name)])};
 }
 
 std::string tolerance_text(const Target& target) {
@@ -54,8 +39,9 @@ std::string seeds_for(const Look& look, const Target& target) {
 std::string reason(const PointSummary& point, const Target& target) {
   const std::string tolerance = tolerance_text(target);
   if (!point.decided) {
-    return fmt::format("{} of the {} seeds of the next look have ended, {} run", point.wanted_ended,
-                       point.wanted, point.counts.running);
+    return fmt::format(
+        "{} of the {} seeds of the next look have ended, {}", point.wanted_ended, point.wanted,
+        point.point.cancelled ? "and it gets no more" : fmt::format("{} run", point.counts.running));
   }
   const Look& look = point.looks.back();
   switch (look.verdict) {
@@ -79,6 +65,7 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
   if (point.point.suspect) {
     return "find out why one seed gave two results (see the events and spool/rejected/) before trusting any";
   }
+  if (point.point.cancelled && !point.decided) return "nothing; `peclet cancel --undo` takes it up again";
   if (!point.decided) {
     if (point.looks.empty()) return fmt::format("the first look, at {} seeds", point.wanted);
     return fmt::format("the look at {} seeds; {} are expected to be enough", point.wanted,
@@ -88,13 +75,15 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
   switch (look.verdict) {
     case Verdict::converged:
       if (look.transient) return "a longer /scene/duration/equilibration: see transient above";
-      return "nothing; a smaller /target/relative_tolerance reopens it";
+      return "nothing; a smaller tolerance (`peclet set`) reopens it";
     case Verdict::converged_with_losses:
-      return fmt::format("see why seeds are lost: the mean leaves them out (states in {})",
-                         directory.failures().string());
+      return fmt::format(
+          "see why seeds are lost: the mean leaves them out (states in {}){}", directory.failures().string(),
+          point.counts.quarantined > 0 ? "; `peclet retry` runs those again that were given up" : "");
     case Verdict::capped:
       return fmt::format(
-          "a larger /realisations/maximum ({} seeds) or /target/relative_tolerance, and run again",
+          "a larger /realisations/maximum ({} seeds) or /target/relative_tolerance (`peclet set`), and run "
+          "again",
           seeds_for(look, target.target));
     case Verdict::failed:
       return fmt::format("change the scene: states are in {}, logs in {}", directory.failures().string(),
@@ -179,6 +168,9 @@ std::string explain(Database& database, const CampaignDirectory& directory, cons
     text += estimate_text(database, summary, target);
     text += losses_text(database, summary.point.id);
     text += attempts_text(database, summary.point.id);
+    for (const KeptApart& kept : summary.kept_apart) {
+      text += fmt::format("  kept apart: {} results of engine {}\n", kept.results, kept.engine);
+    }
     text += fmt::format("  next: {}\n", next_step(summary, target, directory));
   }
   return text;

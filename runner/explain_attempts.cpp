@@ -50,14 +50,17 @@ std::string attempts_text(Database& database, std::int64_t point) {
   const std::vector<AttemptRecord> attempts = database.attempts(point);
   std::map<std::string, int> outcomes;
   std::vector<std::string> blamed;
+  int pardoned = 0;
   for (const AttemptRecord& attempt : attempts) {
     ++outcomes[attempt.outcome];
-    if (attempt.blamed) blamed.push_back(line(attempt));
+    if (attempt.blamed && !attempt.pardoned) blamed.push_back(line(attempt));
+    if (attempt.pardoned) ++pardoned;
   }
   if (attempts.empty()) return "";
   std::vector<std::string> counts;
   counts.reserve(outcomes.size());
   for (const auto& [outcome, count] : outcomes) counts.push_back(fmt::format("{} {}", count, outcome));
+  if (pardoned > 0) counts.push_back(fmt::format("{} of them before a retry", pardoned));
   std::string text = fmt::format("  attempts: {} ({})\n", attempts.size(), fmt::join(counts, ", "));
   const std::size_t first = blamed.size() > most_lines ? blamed.size() - most_lines : 0;
   for (std::size_t i = first; i < blamed.size(); ++i) text += blamed[i];

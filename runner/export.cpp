@@ -37,6 +37,7 @@ Json attempt_json(const AttemptRecord& attempt) {
           {"ended_at", attempt.ended_at.empty() ? Json(nullptr) : Json(attempt.ended_at)},
           {"outcome", attempt.outcome},
           {"blamed", attempt.blamed},
+          {"pardoned", attempt.pardoned},
           {"step", attempt.step},
           {"exit_status", optional(attempt.exit_status)},
           {"signal", optional(attempt.signal)},
@@ -75,6 +76,10 @@ class PointExport {
                  {"realisations", realisations_}};
     if (!canonical_) {
       json["suspect"] = point_.suspect;
+      json["cancelled"] = point_.cancelled;
+      json["kept_apart"] = Json::array();
+      for (const KeptApart& kept : database_.kept_apart(point_.hash))
+        json["kept_apart"].push_back({{"engine", kept.engine}, {"results", kept.results}});
       json["surplus"] = surplus_;
     }
     return json;

@@ -13,6 +13,7 @@
 #include "runner/dispatcher.h"
 #include "runner/owned_campaign.h"
 #include "runner/progress.h"
+#include "runner/requests.h"
 #include "runner/status.h"
 #include "runner/stop_signals.h"
 
@@ -66,8 +67,14 @@ BundleSettings bundle_settings(const HandOverOptions& options, OwnedCampaign& ow
 // Settles and hands over, turn by turn.
 class Follower {
  public:
-  Follower(Ledger& ledger, Bundles& bundles, Progress& progress, const HandOverOptions& options)
-      : ledger_(ledger), bundles_(bundles), progress_(progress), options_(options), started_(Clock::now()) {}
+  Follower(Ledger& ledger, Bundles& bundles, Requests& requests, Progress& progress,
+           const HandOverOptions& options)
+      : ledger_(ledger),
+        bundles_(bundles),
+        requests_(requests),
+        progress_(progress),
+        options_(options),
+        started_(Clock::now()) {}
 
   // True when every point is decided, false when a signal came first.
   bool run(const BundleSettings& settings) {
@@ -75,11 +82,12 @@ class Follower {
     for (;;) {
       const Bundles::Settled settled = bundles_.settle();
       give_up_on_lifeless_tasks(settled);
+      requests_.carry_out();
       if (ledger_.scheduler().finished()) break;
       bundles_.submit_unconfirmed();
       bundles_.hand_over(settings);
       report(settled);
-      if (came(signals, options_.interval)) {
+      if (wait(signals)) {
         progress_.note("stopped; jobs go on, and the same command or `peclet ingest` takes their results in");
         return false;
       }
@@ -88,6 +96,16 @@ class Follower {
   }
 
  private:
+  // Until the next turn is due, or somebody asks for something. True: a signal came.
+  bool wait(StopSignals& signals) {
+    const auto end = Clock::now() + std::chrono::duration<double>(options_.interval);
+    for (;;) {
+      const double left = std::chrono::duration<double>(end - Clock::now()).count();
+      if (came(signals, std::clamp(left, 0.0, 1.0))) return true;
+      if (left <= 0 || requests_.any_waits()) return false;
+    }
+  }
+
   static bool came(StopSignals& signals, double seconds) {
     pollfd watched{signals.descriptor(), POLLIN, 0};
     return poll(&watched, 1, static_cast<int>(1000 * seconds)) > 0 && signals.take();
@@ -122,11 +140,23 @@ class Follower {
 
   Ledger& ledger_;
   Bundles& bundles_;
+  Requests& requests_;
   Progress& progress_;
   const HandOverOptions& options_;
   Clock::time_point started_;
   int results_ = 0, lifeless_turns_ = 0;
 };
+
+void admit(Ledger& ledger, const OwnedCampaign& owned, const HandOverOptions& options, Progress& progress) {
+  if (!options.accept_engine.empty() && !options.dry_run) {
+    accept_engine(ledger, owned.engine, options.accept_engine, progress);
+  }
+  try {
+    ledger.admit_engine(owned.engine);
+  } catch (const OtherEngine& error) {
+    throw OtherEngine(error.what() + acceptance_hint("hand-over ...", owned.engine));
+  }
+}
 
 std::string standing_text(Database& database) {
   std::string text;
@@ -149,7 +179,9 @@ int hand_over_campaign(const HandOverOptions& options) {
   {
     Progress progress(Progress::style_of_stderr(options.quiet));
     Ledger ledger(owned.database, owned.campaign, owned.directory, progress, retries);
-    ledger.admit_engine(owned.engine);
+    Requests requests(owned.database, ledger, owned.directory, progress);
+    if (!options.dry_run) requests.carry_out();
+    admit(ledger, owned, options, progress);
     Bundles bundles(owned.database, ledger, owned.campaign, owned.directory, progress);
     if (options.dry_run) {
       std::fputs(bundles.describe(settings).c_str(), stdout);
@@ -162,7 +194,7 @@ int hand_over_campaign(const HandOverOptions& options) {
       std::fputs(standing_text(owned.database).c_str(), stdout);
       return 0;
     }
-    finished = Follower(ledger, bundles, progress, options).run(settings);
+    finished = Follower(ledger, bundles, requests, progress, options).run(settings);
     code = exit_code(owned.database, ledger.scheduler(), finished);
   }
   std::fputs(status_table(owned.database).c_str(), stdout);
@@ -173,6 +205,7 @@ int ingest_campaign(const IngestOptions& options) {
   OwnedCampaign owned(options.campaign, options.directory, options.force);
   Progress progress(Progress::style_of_stderr(options.quiet));
   Ledger ledger(owned.database, owned.campaign, owned.directory, progress, retries);
+  Requests(owned.database, ledger, owned.directory, progress).carry_out();
   Bundles bundles(owned.database, ledger, owned.campaign, owned.directory, progress);
   Bundles::Settled settled = bundles.settle();
   if (options.cancel) {

@@ -18,6 +18,7 @@ struct HandOverOptions {
   int threads = 1;
   double lease_seconds = 120, checkpoint_seconds = 60;
   std::vector<std::string> options;  // of the submit command
+  std::string accept_engine;         // its name; "": none takes another one's place
   bool ahead = false;
   bool dry_run = false;
   bool follow = false;

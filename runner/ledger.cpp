@@ -33,8 +33,6 @@ Outcome outcome_of(const Observed& observed) {
           observed.first_quarter.value_or(none), observed.first_half.value_or(none)};
 }
 
-PointName name_of(const PointRecord& point) { return {point.label, point.hash}; }
-
 std::optional<double> cpu_seconds(const Json& result) {
   const Json& seconds = result.at("cost").at("cpu_seconds");
   return seconds.is_number() ? std::optional(seconds.get<double>()) : std::nullopt;
@@ -49,9 +47,8 @@ Ledger::Ledger(Database& database, const Campaign& campaign, CampaignDirectory d
       campaign_(campaign),
       directory_(std::move(directory)),
       listener_(listener),
-      retries_(retries),
-      points_(database.points()) {
-  for (const PointRecord& known : points_) places_[known.hash] = *known.place;
+      retries_(retries) {
+  read_points();
   ingest_spool();
   if (const int recovered = queue_.recover(); recovered > 0) {
     listener_.note(fmt::format("{} seeds that an earlier run left unfinished go on", recovered));
@@ -68,12 +65,22 @@ void Ledger::load() {
     }
   }
   Transaction booking(database_.connection());
+  book_looks();
+  booking.commit();
+  after_commit();
+}
+
+void Ledger::read_points() {
+  points_ = database_.points();
+  places_.clear();
+  for (const PointRecord& known : points_) places_[known.hash] = *known.place;
+}
+
+void Ledger::book_looks() {
   for (int place = 0; place < scheduler_->points(); ++place) {
     store_looks(place, database_.looks(point(place).id).size());
     if (!scheduler_->decided(place)) queue_.enqueue(point(place).id, scheduler_->wanted(place));
   }
-  booking.commit();
-  after_commit();
 }
 
 void Ledger::read() {
@@ -102,12 +109,9 @@ void Ledger::roll_back() {
   to_reject_.clear();
   to_tell_.clear();
   lacking_.clear();
+  if (former_) campaign_ = *std::exchange(former_, std::nullopt);
+  read_points();
   read();
-}
-
-void Ledger::keep_running(const Grant& grant) {
-  scheduler_->begin(grant.id);
-  ++running_[static_cast<std::size_t>(grant.id.point)];
 }
 
 void Ledger::ingest_spool_of(const CampaignDirectory& directory) {
@@ -130,6 +134,9 @@ void Ledger::ingest_spool_of(const CampaignDirectory& directory) {
 Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
   const Stored stored = queue_.store(result, campaign_.target.observable);
   switch (stored) {
+    case Stored::stored_apart:
+      to_remove_.push_back(spool);
+      return stored;
     case Stored::stored:
     case Stored::duplicate:
       to_remove_.push_back(spool);
@@ -150,7 +157,7 @@ Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
   if (stored == Stored::duplicate || place == places_.end()) return stored;
   const Observed observed = observe(result.document, campaign_.target.observable);
   if (result.completed() && !observed.value) lacking_ = names_of_numbers(result.document["mean"]);
-  to_tell_.push_back(SeedEnded{name_of(point(place->second)), result.seed, result.cause, observed.value,
+  to_tell_.push_back(SeedEnded{told_name(place->second), result.seed, result.cause, observed.value,
                                cpu_seconds(result.document)});
   if (!scheduler_) return stored;  // load() finds it
   if (result.document["cost"]["wall_seconds"].is_number()) {
@@ -177,9 +184,9 @@ void Ledger::store_looks(int place, std::size_t known) {
   const std::vector<Look>& looks = scheduler_->looks(place);
   queue_.store_looks(point(place).id, looks);
   for (std::size_t i = known; i < looks.size(); ++i)
-    to_tell_.push_back(Looked{name_of(point(place)), looks[i]});
+    to_tell_.push_back(Looked{told_name(place), looks[i]});
   if (looks.size() > known && scheduler_->decided(place)) {
-    to_tell_.push_back(Decided{name_of(point(place)), looks.back()});
+    to_tell_.push_back(Decided{told_name(place), looks.back()});
   }
 }
 
@@ -202,7 +209,7 @@ std::optional<Grant> Ledger::give_out(int worker, std::int64_t process, std::int
   const std::optional<SeedId> id = scheduler_->next();
   if (!id) return std::nullopt;
   const PointRecord& about = point(id->point);
-  Grant grant{*id, {}};
+  Grant grant{*id, about.id, {}};
   grant.job.attempt = queue_.begin_attempt(about.id, id->seed, worker, process, engine);
   grant.job.point = about.hash;
   grant.job.seed = id->seed;
@@ -230,32 +237,35 @@ bool Ledger::take_result(const Grant& grant, const std::string& sha256, std::int
     turn_down(grant.job.spool, why);
     return false;
   }
-  --running_[static_cast<std::size_t>(grant.id.point)];
+  leave(grant);
   queue_.end_attempt(grant.job.attempt, {AttemptOutcome::result, step});
   return true;
 }
 
 void Ledger::end_attempt(const Grant& grant, const AttemptEnd& end) {
-  const PointRecord& about = point(grant.id.point);
-  --running_[static_cast<std::size_t>(grant.id.point)];
+  leave(grant);
   queue_.end_attempt(grant.job.attempt, end);
-  const Sentence sentence = judge(queue_.history(about.id, grant.id.seed), retries_);
+  const Sentence sentence = judge(queue_.history(grant.point_id, grant.id.seed), retries_);
   if (sentence.discard_checkpoint) to_remove_.push_back(grant.job.checkpoint);
   if (is_blamed(end.outcome)) {
-    listener_.warn(fmt::format("{}: {}{}{}; {}", name(grant.id), to_string(end.outcome),
+    listener_.warn(fmt::format("{}: {}{}{}; {}", name_of(grant), to_string(end.outcome),
                                end.message.empty() ? "" : ": ", end.message,
                                sentence.quarantine ? "it is given up" : "it is tried again"));
   }
   to_tell_.push_back(
-      AttemptFailed{name_of(about), grant.id.seed, end.outcome, end.message, sentence.quarantine});
+      AttemptFailed{told_name(grant), grant.id.seed, end.outcome, end.message, sentence.quarantine});
   if (!sentence.quarantine) {
-    queue_.requeue(about.id, grant.id.seed);
-    scheduler_->give_back(grant.id);
+    queue_.requeue(grant.point_id, grant.id.seed);
+    if (takes_part(grant.id)) scheduler_->give_back(grant.id);
     return;
   }
-  queue_.quarantine(about.id, grant.id.seed, sentence.cause);
-  to_tell_.push_back(SeedEnded{name_of(about), grant.id.seed, sentence.cause, std::nullopt, std::nullopt});
-  book_outcome(grant.id, Outcome{});
+  queue_.quarantine(grant.point_id, grant.id.seed, sentence.cause);
+  to_tell_.push_back(SeedEnded{told_name(grant), grant.id.seed, sentence.cause, std::nullopt, std::nullopt});
+  if (takes_part(grant.id)) book_outcome(grant.id, Outcome{});
+}
+
+void Ledger::leave(const Grant& grant) {
+  if (takes_part(grant.id)) --running_[static_cast<std::size_t>(grant.id.point)];
 }
 
 void Ledger::renew_lease(const Grant& grant, int phase, std::int64_t step, std::int64_t steps,
@@ -274,20 +284,13 @@ std::int64_t Ledger::admit_engine(const Json& engine) {
     throw IntegrityError(fmt::format("the engine changed while the campaign ran: it was {}, now it is {}",
                                      identity_, identity));
   }
-  for (const PointRecord& about : points_) {
-    const bool open = !scheduler_->decided(*about.place);
-    if (open && !about.engine_identity.empty() && about.engine_identity != identity) {
-      throw IntegrityError(
-          fmt::format("{}: has results of engine {}, but the engine now is {}; one point never mixes "
-                      "two: run with the old engine, or start in another --directory",
-                      about.label, about.engine_identity, identity));
-    }
-  }
+  refuse_other_engine(identity);
   identity_ = identity;
   return queue_.engine(engine);
 }
 
 void Ledger::after_commit() {
+  former_.reset();
   for (const fs::path& file : to_remove_) fs::remove(file);
   for (const fs::path& file : to_reject_) reject(home_of(file), file);
   to_remove_.clear();
@@ -306,6 +309,8 @@ RunReport Ledger::report(int workers) const {
   for (int place = 0; place < report.points; ++place) {
     const std::vector<Look>& looks = scheduler_->looks(place);
     const bool decided = scheduler_->decided(place);
+    const bool is_left_alone = !decided && scheduler_->cancelled(place);
+    report.cancelled += is_left_alone ? 1 : 0;
     const auto index = static_cast<std::size_t>(place);
     report.decided += decided ? 1 : 0;
     report.converged += decided && (looks.back().verdict == Verdict::converged ||
@@ -313,9 +318,9 @@ RunReport Ledger::report(int workers) const {
                             ? 1
                             : 0;
     report.seeds_ended += scheduler_->ended(place);
-    report.seeds_wanted += scheduler_->wanted(place);
+    report.seeds_wanted += is_left_alone ? scheduler_->ended(place) : scheduler_->wanted(place);
     report.busy += running_[index];
-    forecasts.push_back({costs_[index], looks, scheduler_->begun(place), decided});
+    forecasts.push_back({costs_[index], looks, scheduler_->begun(place), decided || is_left_alone});
   }
   report.to_go = time_to_go(forecasts, campaign_.target, campaign_.minimum_realisations,
                             campaign_.maximum_realisations, workers);
@@ -324,6 +329,18 @@ RunReport Ledger::report(int workers) const {
 
 std::string Ledger::name(SeedId id) const {
   return fmt::format("{} seed {}", point(id.point).label, id.seed);
+}
+
+PointName Ledger::told_name(int place) const { return {point(place).label, point(place).hash}; }
+
+// A point that has left the sweep is known by its hash alone.
+PointName Ledger::told_name(const Grant& grant) const {
+  return {grant.id.point == nowhere ? grant.job.point : point(grant.id.point).label, grant.job.point};
+}
+
+std::string Ledger::name_of(const Grant& grant) const {
+  if (grant.id.point != nowhere) return name(grant.id);
+  return fmt::format("{} (no longer in the sweep) seed {}", grant.job.point.substr(0, 12), grant.id.seed);
 }
 
 }  // namespace peclet::runner

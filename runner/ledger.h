@@ -20,10 +20,19 @@
 
 namespace peclet::runner {
 
+constexpr int nowhere = -1;
+
 // A seed that has been given to a worker.
 struct Grant {
-  SeedId id;
+  SeedId id;  // its place is `nowhere` when the point has left the sweep since
+  std::int64_t point_id = 0;
   Job job;
+};
+
+// Points with results of one engine are to be run with another. what() names both.
+class OtherEngine : public IntegrityError {
+ public:
+  using IntegrityError::IntegrityError;
 };
 
 class Ledger {
@@ -59,19 +68,33 @@ class Ledger {
   // A seed that was handed over comes back without an attempt.
   void take_back(SeedId id);
 
-  // The engine's row. Throws IntegrityError when a point that is still to be run has results of another
-  // engine, or when this run has started with another one.
+  // The engine's row. Throws OtherEngine when a point that is still to be run has results of another engine,
+  // IntegrityError when this run has started with another one.
   std::int64_t admit_engine(const Json& engine);
+  // Keeps the results of other engines apart at every point that is still to be run, in a transaction of its
+  // own. Returns how many points these were.
+  int accept_engine(const std::string& identity);
+  bool has_engine() const { return !identity_.empty(); }
 
+  // The campaign is another one from now on. Throws InputError when finished realisations lack its
+  // observable.
+  void take_over(const Campaign& campaign);
+  // Somebody else has written to the database within the transaction: takes the picture from it again, and
+  // stores the looks and seeds that follow. Throws OtherEngine as admit_engine(). The seeds that workers have
+  // are then to be marked with keep_running().
+  void refresh();
   // The transaction failed: forgets what was to follow it, and takes the picture from the database again, in
   // which the seeds that workers have are then to be marked with keep_running().
   void roll_back();
-  void keep_running(const Grant& grant);
+  // Finds the place of the seed's point. False: the seed is not wanted any more, because its point was
+  // cancelled or left the sweep, or the maximum is smaller now.
+  bool keep_running(Grant& grant);
 
   // Removes and moves files whose results are durable now, and tells what happened. Throws InputError when
   // results lack the observable.
   void after_commit();
 
+  const Campaign& campaign() const { return campaign_; }
   const PointRecord& point(int place) const { return points_.at(static_cast<std::size_t>(place)); }
   const Scheduler& scheduler() const { return *scheduler_; }
   // Points, seeds and time to go with so many workers; the rest of the report is the caller's.
@@ -82,6 +105,15 @@ class Ledger {
  private:
   void load();
   void read();
+  void read_points();
+  void book_looks();
+  void refuse_other_engine(const std::string& identity) const;
+  // Whether the seed has a part in the looks.
+  bool takes_part(SeedId id) const { return id.point != nowhere && id.seed < campaign_.maximum_realisations; }
+  void leave(const Grant& grant);
+  std::string name_of(const Grant& grant) const;
+  PointName told_name(int place) const;
+  PointName told_name(const Grant& grant) const;
   void leave_to_batch_system(int place);
   void ingest_spool_of(const CampaignDirectory& directory);
   Stored take(const RealisationResult& result, const std::filesystem::path& spool);
@@ -91,7 +123,8 @@ class Ledger {
 
   Database& database_;
   Queue queue_;
-  const Campaign& campaign_;
+  Campaign campaign_;
+  std::optional<Campaign> former_;  // until the transaction that changed it is committed
   CampaignDirectory directory_;
   RunListener& listener_;
   int retries_;

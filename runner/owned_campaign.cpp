@@ -8,6 +8,7 @@
 #include "contract/input_error.h"
 #include "runner/backup.h"
 #include "runner/queue.h"
+#include "runner/realisation_result.h"
 #include "runner/renamed_file.h"
 #include "runner/restore.h"
 #include "runner/scene_check.h"
@@ -19,6 +20,8 @@ namespace {
 constexpr int exit_converged = 0;
 constexpr int exit_unconverged = 3;
 constexpr int exit_integrity = 6;
+
+constexpr std::size_t fewest_digits = 6;  // of a hash that names an engine
 
 CampaignDirectory directory_for(const Campaign& campaign, const std::filesystem::path& file,
                                 const std::filesystem::path& chosen) {
@@ -101,8 +104,9 @@ ClaimedCampaign::ClaimedCampaign(const std::filesystem::path& file, const std::f
 Database open_for_owner(const ClaimedCampaign& claimed, const std::function<void(const std::string&)>& tell) {
   const CampaignDirectory& directory = claimed.directory;
   create_folders(directory);
-  for (const std::filesystem::path& folder : {directory.root(), directory.spool(), directory.checkpoints(),
-                                              directory.failures(), directory.backup()}) {
+  for (const std::filesystem::path& folder :
+       {directory.root(), directory.spool(), directory.checkpoints(), directory.failures(),
+        directory.backup(), directory.requests()}) {
     remove_unfinished_files(folder);
   }
   refuse_lost_database(directory);
@@ -120,6 +124,30 @@ Database open_for_owner(const ClaimedCampaign& claimed, const std::function<void
 OwnedCampaign::OwnedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen,
                              bool force)
     : ClaimedCampaign(file, chosen, force), database(open_for_owner(*this)) {}
+
+void accept_engine(Ledger& ledger, const Json& engine, const std::string& name, RunListener& listener) {
+  const std::string identity = engine_identity(engine);
+  const std::string version = engine.at("version"), hash = engine.at("binary_sha256");
+  if (name != version && (name.size() < fewest_digits || !hash.starts_with(name))) {
+    throw InputError(
+        "", "", fmt::format("--accept-engine {}", name),
+        fmt::format("must be the version, or {} or more digits of the hash, of the engine that is "
+                    "there now: {}",
+                    fewest_digits, identity));
+  }
+  if (ledger.accept_engine(identity) == 0) {
+    listener.note(
+        "no point that is still to be run has results of another engine: there was nothing to accept");
+  }
+}
+
+std::string acceptance_hint(const std::string& verb_and_file, const Json& engine) {
+  return fmt::format(
+      ". Run with the engine it was begun with, or accept this one with `peclet {} --accept-engine {}`: what "
+      "points "
+      "that are still to be run have is then kept apart, and they begin again",
+      verb_and_file, engine.at("binary_sha256").get<std::string>().substr(0, 12));
+}
 
 int exit_code(Database& database, const Scheduler& scheduler, bool finished) {
   const std::vector<PointRecord> points = database.points();

@@ -8,6 +8,8 @@
 #include "runner/campaign_directory.h"
 #include "runner/database.h"
 #include "runner/engine_process.h"
+#include "runner/ledger.h"
+#include "runner/run_listener.h"
 #include "runner/scheduler.h"
 
 namespace peclet::runner {
@@ -41,6 +43,15 @@ struct OwnedCampaign : ClaimedCampaign {
   Database database;  // has adopted the campaign
   OwnedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen, bool force);
 };
+
+// Keeps the results of other engines apart at the points that are still to be run, when `name` is that of the
+// engine here: its version, or 6 or more leading digits of its binary's hash. Throws InputError for another
+// name.
+void accept_engine(Ledger& ledger, const Json& engine, const std::string& name, RunListener& listener);
+
+// What accepts the engine that an OtherEngine was thrown for: "; accept it with `peclet run FILE
+// --accept-engine 1a2b3c4d5e6f`: ...".
+std::string acceptance_hint(const std::string& verb_and_file, const Json& engine);
 
 // How a campaign stands whose points are decided (`finished`) or not: 0, 3, 6 or 75, as `peclet run` leaves.
 int exit_code(Database& database, const Scheduler& scheduler, bool finished);

@@ -48,6 +48,7 @@ std::string duration_text(double seconds) {
 std::string progress_line(const RunReport& report) {
   std::string line = fmt::format("points {}/{} converged", report.converged, report.points);
   if (report.decided > report.converged) line += fmt::format(", {} not", report.decided - report.converged);
+  if (report.cancelled > 0) line += fmt::format(", {} cancelled", report.cancelled);
   line += fmt::format(" | seeds {}/{}", report.seeds_ended, report.seeds_wanted);
   if (report.results > 0) line += fmt::format(" | {:.3g}/min", 60 * report.results / report.elapsed);
   if (report.to_go) {

@@ -138,8 +138,10 @@ void Queue::end_attempt(std::int64_t attempt, const AttemptEnd& end) {
 }
 
 std::vector<PastAttempt> Queue::history(std::int64_t point, int seed) {
-  Statement query(connection_,
-                  "SELECT outcome, step FROM attempt WHERE point_id = ? AND seed = ? ORDER BY attempt_id");
+  Statement query(
+      connection_,
+      "SELECT outcome, step FROM attempt WHERE point_id = ? AND seed = ? AND pardoned = 0 ORDER BY "
+      "attempt_id");
   query.bind(point).bind(seed);
   std::vector<PastAttempt> history;
   while (query.step()) history.push_back({attempt_outcome(query.text(0)), query.integer(1)});
@@ -176,12 +178,14 @@ void Queue::quarantine(std::int64_t point, int seed, const std::string& cause) {
 Stored Queue::store(const RealisationResult& result, const std::string& observable) {
   Statement known(
       connection_,
-      "SELECT point.point_id, coalesce(engine_identity, ''), content_sha256, state FROM point LEFT JOIN "
-      "realisation ON realisation.point_id = point.point_id AND seed = ? WHERE hash = ?");
-  known.bind(result.seed).bind(result.point);
+      "SELECT point.point_id, coalesce(engine_identity, ''), content_sha256, state, kept_apart FROM point "
+      "LEFT JOIN realisation ON realisation.point_id = point.point_id AND seed = ? WHERE hash = ? AND "
+      "(kept_apart = 0 OR engine_identity = ?) ORDER BY kept_apart DESC");
+  const std::string identity = engine_identity(result.document.at("engine"));
+  known.bind(result.seed).bind(result.point).bind(identity);
   if (!known.step()) return Stored::unknown_point;
   const std::int64_t point = known.integer(0);
-  const std::string identity = engine_identity(result.document.at("engine"));
+  const bool apart = known.integer(4) != 0;
   const std::string other = known.text(1);
   if (!other.empty() && other != identity) {
     event("mixed-engine", point, result.seed,
@@ -202,7 +206,7 @@ Stored Queue::store(const RealisationResult& result, const std::string& observab
       .bind(identity)
       .bind(point)
       .run();
-  return Stored::stored;
+  return apart ? Stored::stored_apart : Stored::stored;
 }
 
 void Queue::store_numbers(std::int64_t point, const RealisationResult& result, const std::string& observable,
@@ -299,13 +303,15 @@ std::int64_t Queue::engine(const Json& provenance) {
 }
 
 void Queue::event(const std::string& kind, std::optional<std::int64_t> point, std::optional<int> seed,
-                  const std::string& message) {
-  Statement(connection_, "INSERT INTO event (at, kind, point_id, seed, message) VALUES (?, ?, ?, ?, ?)")
+                  const std::string& message, const std::string& request) {
+  Statement(connection_,
+            "INSERT INTO event (at, kind, point_id, seed, message, request) VALUES (?, ?, ?, ?, ?, ?)")
       .bind(utc_now())
       .bind(kind)
       .bind(point)
       .bind(seed)
       .bind(message)
+      .bind(request.empty() ? std::nullopt : std::optional<std::string>(request))
       .run();
 }
 

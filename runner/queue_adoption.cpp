@@ -26,6 +26,11 @@ std::string numbers_in(const Json& mean) {
 
 void Queue::adopt(const Campaign& campaign) {
   Transaction adoption(connection_);
+  take_over(campaign);
+  adoption.commit();
+}
+
+void Queue::take_over(const Campaign& campaign) {
   const std::string before =
       connection_.text("SELECT observable FROM campaign JOIN target USING (target_id)");
   const std::int64_t target = adopt_target(campaign);
@@ -44,7 +49,6 @@ void Queue::adopt(const Campaign& campaign) {
       .bind(target)
       .run();
   if (!unchanged) event("campaign", std::nullopt, std::nullopt, describe(campaign));
-  adoption.commit();
 }
 
 std::int64_t Queue::adopt_target(const Campaign& campaign) {

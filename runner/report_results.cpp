@@ -24,12 +24,6 @@ std::string listed(const std::vector<std::string>& words) {
   return text;
 }
 
-// Its verdict, once there is one.
-std::string standing_of(const PointSummary& point) {
-  if (point.decided) return to_string(point.looks.back().verdict);
-  return point.point.cancelled ? "cancelled" : "open";
-}
-
 bool has_control(const std::vector<PointSummary>& points) {
   return std::any_of(points.begin(), points.end(), [](const PointSummary& point) {
     return !point.looks.empty() && has_control(point.looks.back());
@@ -72,7 +66,7 @@ HtmlTable points_table(const CampaignStatus& status) {
     for (std::string& cell : estimates(point, with_control)) row.push_back(std::move(cell));
     row.push_back(fmt::format("{}", point.lost()));
     row.push_back(duration_text(point.counts.cpu_seconds));
-    row.push_back(standing_of(point));
+    row.push_back(standing_word(point));
     if (any_marks) row.push_back(listed(reservations(point)));
     table.add_row(std::move(row));
   }
@@ -121,7 +115,7 @@ std::string totals(const CampaignStatus& status) {
   double cpu_seconds = 0;
   int ended = 0;
   for (const PointSummary& point : status.points) {
-    ++verdicts[standing_of(point)];
+    ++verdicts[standing_word(point)];
     cpu_seconds += point.counts.cpu_seconds;
     ended += point.counts.terminal();
   }
@@ -183,7 +177,7 @@ std::string losses_section(const CampaignStatus& status) {
 std::string remarks_section(const CampaignStatus& status, const std::vector<Json>& warnings) {
   std::map<std::string, std::string> remarks;
   for (const PointSummary& point : status.points) {
-    const std::string verdict = standing_of(point);
+    const std::string verdict = standing_word(point);
     if (verdict != to_string(Verdict::converged)) remarks[verdict] = meaning(verdict);
     for (const std::string& mark : reservations(point)) {
       const std::string code = mark.substr(mark.rfind(' ') + 1);

@@ -17,6 +17,7 @@
 #include "runner/owned_campaign.h"
 #include "runner/periodic_backup.h"
 #include "runner/progress.h"
+#include "runner/requests.h"
 #include "runner/room.h"
 #include "runner/run_log.h"
 #include "runner/status.h"
@@ -57,22 +58,35 @@ void judge_team(const Team& size, RunListener& listener) {
                   size.workers, size.threads, cores, std::max(1, cores / size.threads)));
 }
 
-// A run's database and picture, ready to be dispatched from.
+// A run's database and picture, ready to be dispatched from: what an earlier owner left undone is done.
 struct Opened {
-  Opened(const ClaimedCampaign& claimed, RunListener& listener)
+  Opened(const ClaimedCampaign& claimed, const RunOptions& options, RunListener& listener)
       : database(open_for_owner(claimed, [&](const std::string& text) { listener.note(text); })),
-        ledger(database, claimed.campaign, claimed.directory, listener, retries) {}
+        ledger(database, claimed.campaign, claimed.directory, listener, retries),
+        requests(database, ledger, claimed.directory, listener) {
+    requests.carry_out();
+    if (!options.accept_engine.empty())
+      accept_engine(ledger, claimed.engine, options.accept_engine, listener);
+  }
 
   Database database;
   Ledger ledger;
+  Requests requests;
 };
 
+// As they were given, for a command that is to be repeated.
+std::string words_for(const RunOptions& options) {
+  std::string words = options.campaign.string();
+  if (!options.directory.empty()) words += " --directory " + options.directory.string();
+  return words;
+}
+
 // Waits while the disk is too full to begin. Nothing: a signal came first.
-std::unique_ptr<Opened> open_when_there_is_room(const ClaimedCampaign& claimed, RunListener& listener,
-                                                StopSignals& signals) {
+std::unique_ptr<Opened> open_when_there_is_room(const ClaimedCampaign& claimed, const RunOptions& options,
+                                                RunListener& listener, StopSignals& signals) {
   for (bool first = true;; first = false) {
     try {
-      auto opened = std::make_unique<Opened>(claimed, listener);
+      auto opened = std::make_unique<Opened>(claimed, options, listener);
       if (!first) listener.happened(ShortageEnded{});
       return opened;
     } catch (const std::exception& error) {
@@ -117,6 +131,7 @@ int dispatch(Opened& opened, const RunOptions& options, const ClaimedCampaign& c
     watch.attend(steady_clock::now());
     backup.attend(steady_clock::now());
   };
+  settings.requests = [&opened] { return opened.requests.carry_out(); };
   log.record(fmt::format("{} begins: process {}, {} workers of {} threads, engine {}",
                          directory.root().string(), getpid(), size.workers, size.threads,
                          claimed.command.program.string()));
@@ -127,12 +142,15 @@ int dispatch(Opened& opened, const RunOptions& options, const ClaimedCampaign& c
   return exit_code(opened.database, opened.ledger.scheduler(), ending == Dispatcher::Ending::finished);
 }
 
+void tell_of_failure(RunLog& log, const std::exception& error) {
+  log.record(fmt::format("ends with an error: {}", error.what()));
+  log.happened(RunEnded{exit_code_of(error), error.what()});
+}
+
 std::string how_to_go_on(const RunOptions& options, const CampaignStatus& status) {
   if (!status.handed_over.empty()) return "";  // `peclet ingest` does, as has been said
-  const std::string chosen =
-      options.directory.empty() ? "" : fmt::format(" --directory {}", options.directory.string());
-  return fmt::format("\nstopped; all that was done is kept, and `peclet run {}{}` goes on from there\n",
-                     options.campaign.string(), chosen);
+  return fmt::format("\nstopped; all that was done is kept, and `peclet run {}` goes on from there\n",
+                     words_for(options));
 }
 
 }  // namespace
@@ -149,11 +167,14 @@ int run_campaign(const RunOptions& options) {
     RunLog log(claimed.directory.run_log(), events ? static_cast<RunListener&>(*events) : progress);
     log.happened(beginning(claimed, options));
     try {
-      opened = open_when_there_is_room(claimed, log, signals);
+      opened = open_when_there_is_room(claimed, options, log, signals);
       if (opened) code = dispatch(*opened, options, claimed, log, signals);
+    } catch (const OtherEngine& error) {
+      const OtherEngine advised(error.what() + acceptance_hint("run " + words_for(options), claimed.engine));
+      tell_of_failure(log, advised);
+      throw advised;
     } catch (const std::exception& error) {
-      log.record(fmt::format("ends with an error: {}", error.what()));
-      log.happened(RunEnded{exit_code_of(error), error.what()});
+      tell_of_failure(log, error);
       throw;
     }
     log.record(fmt::format("ends with exit code {}", code));

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace peclet::runner {
 
@@ -14,6 +15,7 @@ struct RunOptions {
   bool quiet = false;                // no progress
   bool jsonl = false;                // events on standard output, instead of the table at the end
   std::optional<double> time_limit;  // seconds until the drain
+  std::string accept_engine;         // its name; "": none takes another one's place
   bool force = false;                // use a network file system all the same
   double lease_seconds = 120;        // a worker without a new step for so long is hung
   double checkpoint_seconds = 60;    // between two checkpoints of a realisation
@@ -21,9 +23,9 @@ struct RunOptions {
 };
 
 // Runs until every point is decided or the run is stopped. The result is the exit code: 0 every point
-// converged, 3 some points capped, failed or with losses, 5 another process owns the campaign, 6 integrity,
-// 75 stopped. Throws InputError (exit code 2) before anything is written, and std::exception (exit code 1)
-// for the rest.
+// converged, 3 some points capped, failed, cancelled or with losses, 5 another process owns the campaign, 6
+// integrity, 75 stopped. Throws InputError (exit code 2) before anything is written, and std::exception (exit
+// code 1) for the rest.
 int run_campaign(const RunOptions& options);
 
 }  // namespace peclet::runner

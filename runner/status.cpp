@@ -35,12 +35,18 @@ Json bundles_json(const std::vector<HandedOver>& bundles) {
 Json point_json(const PointSummary& point) {
   Json workers = Json::array();
   for (const LeaseRecord& lease : point.leases) workers.push_back(lease_json(lease));
+  Json kept_apart = Json::array();
+  for (const KeptApart& kept : point.kept_apart)
+    kept_apart.push_back({{"engine", kept.engine}, {"results", kept.results}});
   const StateCounts& counts = point.counts;
   return {{"label", point.point.label},
           {"hash", point.point.hash},
           {"settings", point.point.settings},
           {"verdict", point.decided ? Json(to_string(point.looks.back().verdict)) : Json(nullptr)},
           {"suspect", point.point.suspect},
+          {"cancelled", point.point.cancelled},
+          {"priority", point.point.priority},
+          {"kept_apart", kept_apart},
           {"seeds",
            {{"wanted", point.wanted},
             {"wanted_ended", point.wanted_ended},
@@ -71,20 +77,29 @@ CampaignStatus read_status(Database& database) {
 int standing(const CampaignStatus& status) {
   const auto any = [&](auto is) { return std::any_of(status.points.begin(), status.points.end(), is); };
   if (any([](const PointSummary& point) { return point.point.suspect; })) return 6;
-  if (any([](const PointSummary& point) { return !point.decided; })) return 4;
-  if (any([](const PointSummary& point) { return point.looks.back().verdict != Verdict::converged; }))
-    return 3;
-  return 0;
+  if (any([](const PointSummary& point) { return point.open(); })) return 4;
+  // A point that was cancelled early may have no look.
+  const auto converged = [](const PointSummary& point) {
+    return point.decided && point.looks.back().verdict == Verdict::converged;
+  };
+  return std::all_of(status.points.begin(), status.points.end(), converged) ? 0 : 3;
+}
+
+std::string standing_word(const PointSummary& point) {
+  if (point.decided) return to_string(point.looks.back().verdict);
+  return point.point.cancelled ? "cancelled" : "open";
 }
 
 std::string verdict_text(const PointSummary& point) {
-  std::string text = point.decided ? to_string(point.looks.back().verdict) : "open";
+  std::string text = standing_word(point);
   if (point.decided && point.looks.back().verdict == Verdict::converged_with_losses) {
     text += fmt::format("({})", point.looks.back().lost);
   } else if (point.lost() > 0) {
     text += fmt::format(", {} lost", point.lost());
   }
   for (const std::string& reservation : reservations(point)) text += ", " + reservation;
+  if (point.decided && point.point.cancelled) text += ", cancelled";
+  if (point.point.priority != 0) text += fmt::format(", priority {}", point.point.priority);
   return text;
 }
 

@@ -29,11 +29,15 @@ struct CampaignStatus {
 
 CampaignStatus read_status(Database& database);
 
-// 0 every point converged; 3 decided, but some capped, failed or with losses; 4 not finished; 6 some point is
-// suspect: a seed gave two different results.
+// 0 every point converged; 3 decided, but some capped, failed, cancelled or with losses; 4 not finished; 6
+// some point is suspect: a seed gave two different results.
 int standing(const CampaignStatus& status);
 
-// "converged", "converged-with-losses(2)", "capped, 2 lost", "failed, 10 lost", "open"; "open, suspect".
+// The verdict in a word; "open" or "cancelled" without one.
+std::string standing_word(const PointSummary& point);
+
+// "converged", "converged-with-losses(2)", "capped, 2 lost", "failed, 10 lost", "open"; "open, suspect";
+// "cancelled".
 std::string verdict_text(const PointSummary& point);
 // What speaks against its estimate: "transient", "skewed", "2 flagged timestep", "suspect".
 std::vector<std::string> reservations(const PointSummary& point);

@@ -65,9 +65,7 @@ std::string listed(const std::map<std::string, int>& counts) {
 
 std::string point_totals(const CampaignStatus& status) {
   std::map<std::string, int> verdicts;
-  for (const PointSummary& point : status.points) {
-    ++verdicts[point.decided ? to_string(point.looks.back().verdict) : "open"];
-  }
+  for (const PointSummary& point : status.points) ++verdicts[standing_word(point)];
   return fmt::format("{} point{}: {}\n", status.points.size(), status.points.size() == 1 ? "" : "s",
                      listed(verdicts));
 }
@@ -86,6 +84,17 @@ std::string handed_over_text(const CampaignStatus& status) {
   const std::size_t more = status.handed_over.size() - std::min(most_jobs, status.handed_over.size());
   if (more > 0) jobs += fmt::format(" and {} more", more);
   return fmt::format("; {} handed over (job{} {})", seeds, status.handed_over.size() == 1 ? "" : "s", jobs);
+}
+
+std::string kept_apart_text(const CampaignStatus& status) {
+  std::string text;
+  for (const PointSummary& point : status.points) {
+    for (const KeptApart& kept : point.kept_apart) {
+      text += fmt::format("{}: {} results of engine {} are kept apart\n", point.point.label, kept.results,
+                          kept.engine);
+    }
+  }
+  return text;
 }
 
 std::string seed_totals(const CampaignStatus& status) {
@@ -127,7 +136,7 @@ std::string status_table(const CampaignStatus& status) {
     table.add_row(std::move(row));
   }
   return heading(status) + table.text() + '\n' + legend(status, with_control) + '\n' + point_totals(status) +
-         seed_totals(status);
+         seed_totals(status) + kept_apart_text(status);
 }
 
 std::string status_table(Database& database) { return status_table(read_status(database)); }

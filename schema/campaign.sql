@@ -42,7 +42,7 @@ CREATE TABLE point (
   settings        TEXT    NOT NULL CHECK (json_valid(settings)),
   label           TEXT    NOT NULL,
   place           INTEGER UNIQUE,           -- in the sweep; NULL when the sweep no longer contains the point
-  engine_identity TEXT,                     -- of its first result; every other result must have the same
+  engine_identity TEXT,                     -- of its first result, or accepted by name; every result must have the same
   suspect         INTEGER NOT NULL DEFAULT 0 CHECK (suspect IN (0, 1)),  -- a seed gave two different results
   priority        INTEGER NOT NULL DEFAULT 0,  -- points of a higher one are served first
   cancelled       INTEGER NOT NULL DEFAULT 0 CHECK (cancelled IN (0, 1)),  -- gets no more seeds

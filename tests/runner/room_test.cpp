@@ -8,6 +8,7 @@
 
 #include "contract/durable_file.h"
 #include "runner/dispatcher.h"
+#include "runner/requests.h"
 #include "runner/spool.h"
 #include "tests/runner/runner_fixture.h"
 #include "tests/runner/scripted_pool.h"
@@ -44,21 +45,24 @@ class FullDatabase : public testing::Test {
     ledger_.emplace(database_, campaign_, directory_, listener_, 2);
   }
 
-  Dispatcher::Ending run() {
-    Dispatcher dispatcher(database_, *ledger_, pool_, listener_, {}, [this] { return pool_.now; });
+  Dispatcher::Ending run(const DispatchSettings& settings = {}) {
+    Dispatcher dispatcher(database_, *ledger_, pool_, listener_, settings, [this] { return pool_.now; });
     return dispatcher.run();
   }
   // From now on the database cannot grow.
   void fill() {
     Connection& connection = database_.connection();
     connection.execute("PRAGMA max_page_count = " + std::to_string(connection.integer("PRAGMA page_count")));
-    // What is free inside it is used up, too.
-    try {
-      for (;;) {
-        connection.execute("INSERT INTO event (at, kind, message) VALUES ('', 'filler', hex(zeroblob(500)))");
+    // What is free inside it is used up, too, for the shortest event as well.
+    for (const char* const message : {"hex(zeroblob(500))", "''"}) {
+      try {
+        for (;;) {
+          connection.execute(std::string("INSERT INTO event (at, kind, message) VALUES ('', 'filler', ") +
+                             message + ")");
+        }
+      } catch (const DatabaseError& error) {
+        EXPECT_TRUE(error.no_room());
       }
-    } catch (const DatabaseError& error) {
-      EXPECT_TRUE(error.no_room());
     }
   }
   void make_room() {
@@ -127,6 +131,34 @@ TEST_F(FullDatabase, TellsWhatIsCommittedAndNothingThatWasTakenBack) {
   booking.commit();
   ledger_->after_commit();
   EXPECT_EQ(listener_.count<AttemptFailed>(), 1);
+}
+
+TEST_F(FullDatabase, KeepsARequestUntilThereIsRoom) {
+  Requests requests(database_, *ledger_, directory_, listener_);
+  DispatchSettings settings;
+  settings.requests = [&] { return requests.carry_out(); };
+  int turns = 0;
+  pool_.script = [&, this] {
+    ++turns;
+    if (turns == 3) {
+      fill();
+      write_request(directory_, Cancel{{"point=0"}, false});
+    }
+    if (turns == 40) {
+      EXPECT_EQ(waiting_requests(directory_).size(), 1U);
+      EXPECT_EQ(count("SELECT cancelled FROM point"), 0);
+      make_room();
+    }
+    ASSERT_LT(turns, 400) << "it does not go on";
+  };
+  EXPECT_EQ(run(settings), Dispatcher::Ending::finished);
+  EXPECT_GE(turns, 40);
+  EXPECT_TRUE(waiting_requests(directory_).empty());
+  EXPECT_EQ(count("SELECT cancelled FROM point"), 1);
+  EXPECT_EQ(count("SELECT count(*) FROM event WHERE request IS NOT NULL"), 1);
+  EXPECT_EQ(count("SELECT count(*) FROM attempt WHERE outcome = 'drained' AND blamed = 0"), 2);
+  ASSERT_EQ(listener_.warnings.size(), 1U);
+  EXPECT_NE(listener_.warnings.at(0).find("is full"), std::string::npos);
 }
 
 TEST_F(FullDatabase, CanBeStoppedAndTheSpoolKeepsTheResults) {

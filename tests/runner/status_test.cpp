@@ -35,6 +35,28 @@ TEST(Status, AnOpenPointShowsTheSeedsOfItsNextLookAndAProvisionalMean) {
   EXPECT_NE(table.find("1 point: 1 open\n4 seeds ended; processor time 8 s"), std::string::npos) << table;
 }
 
+TEST(Status, APointThatWasCancelledIsNeitherOpenNorASuccess) {
+  StoredCampaign campaign(2, 4, 20);
+  four_values(campaign, 0, 0.1);
+  const std::int64_t second = campaign.database().points().at(1).id;
+  Queue(campaign.database()).set_cancelled(second, true);
+  const CampaignStatus status = read_status(campaign.database());
+  EXPECT_EQ(standing(status), 3);
+  EXPECT_EQ(verdict_text(status.points.at(1)), "cancelled");
+  EXPECT_TRUE(status_json(status)["points"][1]["cancelled"]);
+  EXPECT_TRUE(status_json(status)["points"][1]["verdict"].is_null());
+  EXPECT_NE(status_table(status).find("2 points: 1 cancelled, 1 converged"), std::string::npos);
+}
+
+TEST(Status, ACancelledPointThatHadConvergedIsASuccess) {
+  StoredCampaign campaign(1, 4, 20);
+  four_values(campaign, 0, 0.1);
+  Queue(campaign.database()).set_cancelled(1, true);
+  const CampaignStatus status = read_status(campaign.database());
+  EXPECT_EQ(standing(status), 0);
+  EXPECT_EQ(verdict_text(status.points.at(0)), "converged, cancelled");
+}
+
 TEST(Status, APointWithoutSeedsHasNoNumbers) {
   StoredCampaign campaign(1, 4, 20);
   const CampaignStatus status = read_status(campaign.database());

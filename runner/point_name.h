@@ -1,0 +1,16 @@
+// How people name a point on the command line.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "runner/database.h"
+
+namespace peclet::runner {
+
+// The index of the point of that label, or with those 4 or more leading digits of its hash.
+// Throws InputError for a name that no point, or more than one, has.
+std::size_t find_point(const std::vector<PointRecord>& points, const std::string& name);
+
+}  // namespace peclet::runner
