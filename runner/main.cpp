@@ -84,6 +84,17 @@ int perform(const ReportOptions& options) {
   return deliver(report_html(open.database), options.output);
 }
 
+int perform(const Reply& reply) {
+  print(reply.text);
+  return reply.exit_code;
+}
+
+int perform(const SetOptions& options) { return perform(set_campaign(options)); }
+
+int perform(const CancelOptions& options) { return perform(cancel_points(options)); }
+
+int perform(const RetryOptions& options) { return perform(retry_seeds(options)); }
+
 int perform(const HandOverOptions& options) { return hand_over_campaign(options); }
 
 int perform(const IngestOptions& options) { return ingest_campaign(options); }

@@ -46,7 +46,9 @@ std::string difference_from_file(const fs::path& given, const CampaignRecord& ca
   if (!fs::is_regular_file(given)) return "";
   try {
     if (read_campaign(given).document == campaign.document) return "";
-    return given.string() + " has changed since it was last run; `peclet run` takes the changes up";
+    return fmt::format(
+        "{0} has changed since it was last run; `peclet set {0}` or `peclet run` takes it over",
+        given.string());
   } catch (const InputError& error) {
     return fmt::format("the campaign file has changed since it was last run and has a fault: {}",
                        error.what());

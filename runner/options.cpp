@@ -49,6 +49,9 @@ class Reader {
     add_explain();
     add_export();
     add_report();
+    add_set();
+    add_cancel();
+    add_retry();
     add_hand_over();
     add_ingest();
     add_task();
@@ -140,6 +143,18 @@ class Reader {
                      "NAME.json unless given")
         ->type_name(value_name::folder);
   }
+  static void add_patience(CLI::App* verb, double& seconds) {
+    verb->add_option("--wait", seconds,
+                     "Seconds to wait for the process that runs the campaign; 0: not at all")
+        ->type_name("SECONDS")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+  }
+  static void add_accept_engine(CLI::App* verb, std::string& name) {
+    verb->add_option("--accept-engine", name,
+                     "Version, or 6 or more digits of the hash, of the engine that is there now: results of "
+                     "another one at open points are kept apart");
+  }
   // The verb that was named becomes the command.
   template <typename Options>
   void choose(CLI::App* verb, const Options& options) {
@@ -200,6 +215,7 @@ class Reader {
         ->capture_default_str();
     verb->add_flag("--jsonl", run_.jsonl,
                    "What happens as JSON on standard output, one object a line, instead of the table");
+    add_accept_engine(verb, run_.accept_engine);
     verb->add_flag("--quiet", run_.quiet, "No progress on stderr");
     verb->add_flag("--force", run_.force, "Use a network file system all the same, at your own risk");
     choose(verb, run_);
@@ -272,6 +288,51 @@ class Reader {
     choose(verb, report_);
   }
 
+  void add_set() {
+    CLI::App* const verb =
+        add_verb("set", "Change target, points or priorities of a campaign, also while it runs",
+                 "peclet set flow-curve.json --tolerance 0.03 --maximum 2000");
+    add_file(verb, set_.campaign);
+    add_directory(verb, set_.directory);
+    verb->add_option("--tolerance", set_.tolerance, "/target/relative_tolerance; 5 % is written 0.05");
+    verb->add_option("--confidence", set_.confidence, "/target/confidence");
+    verb->add_option("--minimum", set_.minimum, "/realisations/minimum: seeds before the first look");
+    verb->add_option("--maximum", set_.maximum, "/realisations/maximum: seeds after which a point is capped");
+    verb->add_option("--point", set_.points, "Point that is to have the priority; may be repeated")
+        ->allow_extra_args(false);
+    verb->add_option("--priority", set_.priority, "Points of a higher one are served first; 0 unless set")
+        ->check(CLI::Range(-1'000'000, 1'000'000));
+    add_patience(verb, set_.patience);
+    choose(verb, set_);
+  }
+
+  void add_cancel() {
+    CLI::App* const verb = add_verb("cancel", "Give points no more seeds, also while the campaign runs",
+                                    "peclet cancel flow-curve.json peclet=10");
+    add_file_or_folder(verb, cancel_.campaign);
+    verb->add_option("point", cancel_.points, "Labels of points, or 4 or more digits of their hashes")
+        ->required();
+    add_directory(verb, cancel_.directory);
+    verb->add_flag("--undo", cancel_.undo, "Take them up again");
+    add_patience(verb, cancel_.patience);
+    choose(verb, cancel_);
+  }
+
+  void add_retry() {
+    CLI::App* const verb = add_verb("retry", "Queue seeds again that were given up, with a clean record",
+                                    "peclet retry flow-curve.json peclet=10 --seed 17");
+    add_file_or_folder(verb, retry_.campaign);
+    verb->add_option("point", retry_.points,
+                     "Labels of points, or 4 or more digits of their hashes; all unless given");
+    add_directory(verb, retry_.directory);
+    verb->add_option("--seed", retry_.seeds,
+                     "Of the one point that is named; may be repeated; all unless given")
+        ->allow_extra_args(false)
+        ->check(CLI::NonNegativeNumber);
+    add_patience(verb, retry_.patience);
+    choose(verb, retry_);
+  }
+
   void add_hand_over() {
     CLI::App* const verb =
         add_verb("hand-over", "Give seeds to a batch system: job arrays that need no database and no daemon",
@@ -319,6 +380,7 @@ class Reader {
         ->type_name("SECONDS")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
+    add_accept_engine(verb, hand_over_.accept_engine);
     verb->add_flag("--dry-run", hand_over_.dry_run, "Say what would be handed over; submit nothing");
     verb->add_flag("--quiet", hand_over_.quiet, "No progress on stderr");
     verb->add_flag("--force", hand_over_.force, "Use a network file system for the database all the same");
@@ -433,6 +495,9 @@ class Reader {
   ExplainOptions explain_;
   ExportOptions export_;
   ReportOptions report_;
+  SetOptions set_;
+  CancelOptions cancel_;
+  RetryOptions retry_;
   HandOverOptions hand_over_;
   IngestOptions ingest_;
   TaskOptions task_;

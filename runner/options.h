@@ -6,6 +6,7 @@
 
 #include "runner/backup.h"
 #include "runner/batch_task.h"
+#include "runner/cancel.h"
 #include "runner/command_tree.h"
 #include "runner/completion.h"
 #include "runner/doctor.h"
@@ -17,17 +18,19 @@
 #include "runner/plan.h"
 #include "runner/report.h"
 #include "runner/restore.h"
+#include "runner/retry.h"
 #include "runner/run.h"
+#include "runner/set.h"
 #include "runner/status.h"
 #include "runner/validate.h"
 #include "runner/watch.h"
 
 namespace peclet::runner {
 
-using Verb =
-    std::variant<InitOptions, ValidateOptions, PlanOptions, RunOptions, StatusOptions, WatchOptions,
-                 ExplainOptions, ExportOptions, ReportOptions, BackupOptions, RestoreOptions, DoctorOptions,
-                 HandOverOptions, IngestOptions, TaskOptions, CompletionOptions, ManualOptions>;
+using Verb = std::variant<InitOptions, ValidateOptions, PlanOptions, RunOptions, StatusOptions, WatchOptions,
+                          ExplainOptions, ExportOptions, ReportOptions, BackupOptions, RestoreOptions,
+                          DoctorOptions, HandOverOptions, IngestOptions, TaskOptions, SetOptions,
+                          CancelOptions, RetryOptions, CompletionOptions, ManualOptions>;
 
 struct CommandLine {
   std::optional<Verb> verb;  // nothing: there is nothing left to do but to leave with

@@ -118,6 +118,26 @@ Runs the seeds of the task one after another, those apart that have ended alread
 SIGUSR1 make the engine save a checkpoint and leave.
 )",
                     {}, {0, 1, 2, 6, 75})},
+      {"set", page(R"(
+Changes target, numbers of seeds or priorities. The values are changed in the campaign's file, of which every
+other byte stays, and the campaign takes the file over as it is; without options it does only that, with
+points that you have added to the sweep, for instance. A running campaign does so within seconds, and this
+verb waits for it; points of a finished one that are no longer decided go on with `peclet run`.
+)",
+                   {{"peclet set flow-curve.json", "take over a file that was edited"},
+                    {"peclet set flow-curve.json --point peclet=10 --priority 1", "this point first"}},
+                   {0, 1, 2, 4, 6})},
+      {"cancel",
+       page(R"(
+The points get no more seeds and hold nothing up; seeds that run are saved and put back. What has been done
+is kept and shown.
+)",
+            {{"peclet cancel flow-curve.json peclet=10 --undo", "take it up again"}}, {0, 1, 2, 4, 6})},
+      {"retry", page(R"(
+Seeds are given up after three failures that were their own: crashes, or no progress. What the engine itself
+called failed (an overlap, a step too large) would fail again, and is not retried.
+)",
+                     {}, {0, 1, 2, 4, 6})},
       {"backup", page(R"(
 `peclet run` makes such backups by itself; this makes one now, or elsewhere. The copy is checked before
 it takes the place of the one before.
@@ -160,8 +180,8 @@ const std::map<int, std::string>& exit_codes() {
       {0, "done; of a run: every point converged"},
       {1, "error"},
       {2, "usage, or faulty input; nothing has been written"},
-      {3, "finished, but some points are capped, failed or lost seeds"},
-      {4, "not finished yet"},
+      {3, "finished, but some points are capped, failed, cancelled or lost seeds"},
+      {4, "not finished yet; of set, cancel and retry: asked for, and not carried out yet"},
       {5, "another process owns the campaign"},
       {6, "integrity: the database is damaged, or a seed gave two different results"},
       {75, "stopped by a signal or a time limit; the same command goes on"}};

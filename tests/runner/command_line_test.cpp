@@ -65,7 +65,9 @@ TEST_F(CommandLine, FaultsOfUsageAreExitCodeTwo) {
   for (const char* const arguments :
        {"", "stauts small.json", "status", "run small.json --workers 0", "validate",
         "export small.json --json --csv", "run small.json --time-limit -1", "status absent.json",
-        "explain small.json", "export ."}) {
+        "explain small.json", "export .", "set absent.json", "set small.json --tolerance 5",
+        "set small.json --priority 3", "set small.json --minimum ten", "cancel small.json",
+        "cancel small.json peclet=1", "retry small.json", "retry small.json --seed -1"}) {
     const Answer answer = peclet(arguments);
     EXPECT_EQ(answer.code, 2) << arguments << ": " << answer.text;
     EXPECT_FALSE(answer.text.empty()) << arguments;
@@ -76,7 +78,8 @@ TEST_F(CommandLine, FaultsOfUsageAreExitCodeTwo) {
 TEST_F(CommandLine, HelpOfEveryVerbHasAnExample) {
   EXPECT_EQ(peclet("--version").code, 0);
   EXPECT_TRUE(peclet("--version").text.starts_with("peclet "));
-  for (const char* const verb : {"validate", "plan", "run", "status", "explain", "export", "report"}) {
+  for (const char* const verb :
+       {"validate", "plan", "run", "status", "explain", "export", "report", "set", "cancel", "retry"}) {
     const Answer answer = peclet(std::string(verb) + " --help");
     EXPECT_EQ(answer.code, 0);
     EXPECT_TRUE(std::regex_search(answer.text, std::regex(std::string("\nExamples?:\n  peclet ") + verb)))

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <thread>
@@ -12,6 +13,7 @@
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
 #include "runner/bundle_files.h"
+#include "runner/cancel.h"
 #include "runner/dispatcher.h"
 #include "runner/integrity_error.h"
 #include "tests/runner/batch_fixture.h"
@@ -52,6 +54,35 @@ TEST_F(HandOver, ADryRunSubmitsNothing) {
   EXPECT_EQ(hand_over(), 0);
   EXPECT_EQ(submitted(), 0);
   EXPECT_EQ(seeds_out(), 0);
+}
+
+TEST_F(HandOver, ACancelledPointIsNotHandedOver) {
+  options.dry_run = true;
+  ASSERT_EQ(hand_over(), 0);
+  options.dry_run = false;
+  cancel_points({options.campaign, {}, {"peclet=2"}});
+  ASSERT_EQ(hand_over(), 0);
+  EXPECT_EQ(seeds_out(), 5);
+}
+
+TEST_F(HandOver, WhoFollowsCarriesOutWhatIsAskedForWithoutWaitingForTheNextTurn) {
+  ASSERT_EQ(hand_over(), 0);
+  states(all_waiting);
+  options.follow = true;
+  options.interval = 50;
+  int code = -1;
+  const auto started = std::chrono::steady_clock::now();
+  std::jthread owner([&] { code = hand_over(); });
+  while (!current_owner(campaign_directory(options.campaign, {}))) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  cancel_points({options.campaign, {}, {"peclet=1", "peclet=2"}});
+  states("");  // the jobs that it ends leave
+  owner.join();
+  EXPECT_EQ(code, 3);
+  EXPECT_LT(std::chrono::steady_clock::now() - started, std::chrono::seconds(45));
+  EXPECT_EQ(seeds_out(), 0);
+  EXPECT_EQ(count("SELECT total(blamed) FROM attempt"), 0);
 }
 
 TEST_F(HandOver, AnArrayIsNotLargerThanAsked) {

@@ -1,0 +1,13 @@
+#include "runner/cancel.h"
+
+#include "runner/open_campaign.h"
+
+namespace peclet::runner {
+
+Reply cancel_points(const CancelOptions& options) {
+  const CampaignDirectory directory = find_campaign(options.campaign, options.directory);
+  const Request request = write_request(directory, Cancel{options.points, options.undo});
+  return await_reply(directory, request, campaign_file_of(options.campaign), options.patience);
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,13 @@
+#include "runner/retry.h"
+
+#include "runner/open_campaign.h"
+
+namespace peclet::runner {
+
+Reply retry_seeds(const RetryOptions& options) {
+  const CampaignDirectory directory = find_campaign(options.campaign, options.directory);
+  const Request request = write_request(directory, Retry{options.points, options.seeds});
+  return await_reply(directory, request, campaign_file_of(options.campaign), options.patience);
+}
+
+}  // namespace peclet::runner
