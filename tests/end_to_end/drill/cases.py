@@ -2,7 +2,7 @@
 import dataclasses
 import typing
 
-from drill import company, kills, messages, stops, storage
+from drill import company, kills, messages, requests, stops, storage
 from drill.campaign import FAKE, REAL
 
 
@@ -62,6 +62,8 @@ CASES = [
     case("database: allocation fails", storage.failing_calls,
          {"call": "allocation", "action": "fail", "path": "", "stride": 20},
          {"call": "allocation", "action": "fail", "path": "", "stride": 2000}),
+    case("changed while owner and verbs are killed", requests.changes_and_kills, {"times": 40}, {"times": 2}),
+    case("kill before each call of a verb", requests.edges_of_a_verb, {"stride": 1}, {"stride": 12}),
     case("second owner", company.second_owners, {"times": 50}, {"times": 3}),
     case("64 readers and a stopped one", company.readers, {"loops": 64, "seeds": 200}, {"loops": 64, "seeds": 20}),
     case("each file system full in turn", storage.full_disks,

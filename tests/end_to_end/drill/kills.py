@@ -68,9 +68,10 @@ def kind_of(what):
     call, path = what.split(" ", 1)
     if path == "socket":
         return "send"
-    path = path.split(".peclet/")[-1]
+    unfinished = path.endswith(".tmp")
+    path = path.split(".peclet/")[1] if ".peclet/" in path else "campaign file"
     file = re.sub(r"campaign\.db", "database", path).split("/")[0]
-    return f"{call} {file}" if not path.endswith(".tmp") else f"{call} {file} (unfinished)"
+    return f"{call} {file}" if not unfinished else f"{call} {file} (unfinished)"
 
 
 def power_cuts(lab, tally, chance, cuts, document=FAKE):

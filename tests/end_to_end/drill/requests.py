@@ -1,0 +1,65 @@
+"""Campaigns that are changed while they run: the owner and the verbs that ask are killed."""
+import collections
+import contextlib
+import os
+import time
+
+from drill.board import Board
+from drill.campaign import FAKE, Campaign
+from drill.kills import kind_of
+
+WISHES = [["set", "drill.json", "--tolerance", "0.3"], ["set", "drill.json", "--tolerance", "0.05", "--maximum", "20"],
+          ["set", "drill.json", "--point", "peclet=2", "--priority", "3"], ["cancel", "drill.json", "peclet=2"],
+          ["cancel", "drill.json", "peclet=2", "--undo"], ["retry", "drill.json"]]
+# As the undisturbed campaign was from the beginning.
+LAST = [["set", "drill.json", "--tolerance", "0.08", "--maximum", "14"], ["cancel", "drill.json", "peclet=2", "--undo"]]
+
+
+def changes_and_kills(lab, tally, chance, times):
+    """Whatever was asked for, and whoever was killed over it: the end is that of what was asked for last."""
+    asked = killed = 0
+    while tally.tried < times:
+        campaign = Campaign(lab, step_ms=20, checkpoint=0.005)
+        for _ in range(6):
+            owner = campaign.start()
+            time.sleep(chance.uniform(0, 0.3))
+            verb = campaign.start(command=[lab.peclet, *chance.choice(WISHES)])
+            asked += 1
+            for process in chance.sample([owner, verb], 2):
+                time.sleep(chance.uniform(0, 0.8))
+                if process is owner or chance.random() < 0.5:
+                    killed += process.poll() is None
+                    with contextlib.suppress(ProcessLookupError):
+                        process.kill()
+            owner.wait()
+            verb.wait()
+            campaign.settle()
+        for wish in LAST if os.path.exists(campaign.path("campaign.db")) else LAST[:1]:
+            code = campaign.start(command=[lab.peclet, *wish]).wait()
+            tally.expect(campaign, code == 0, f"peclet {' '.join(wish)} ended with exit code {code}")
+        blamed = campaign.count("SELECT total(blamed) FROM attempt")
+        tally.expect(campaign, not blamed, f"{blamed:.0f} attempts are blamed for what was asked")
+        tally.judge(campaign)
+    tally.remarks.append(f"{asked} requests, {killed} kills of owners and verbs")
+
+
+def edges_of_a_verb(lab, tally, chance, stride):
+    """A finished campaign is reopened, and the verb is killed before every call that changes a file; it is said again."""
+    calls, struck, number = None, collections.Counter(), 1 if stride == 1 else chance.randint(1, stride)
+    tighten = [lab.peclet, "set", "drill.json", "--tolerance", str(FAKE["target"]["relative_tolerance"])]
+    while calls is None or number <= calls:
+        campaign = Campaign(lab, dict(FAKE, target=dict(FAKE["target"], relative_tolerance=0.3)))
+        campaign.run()
+        board = Board(campaign.folder)
+        disturbed = board.environment(lab.shim, role="owner", number=number, path="drill.json,.peclet/")
+        campaign.start(disturbed, tighten).wait()
+        if not board.struck:
+            calls = number  # the verb was through before
+        else:
+            struck[kind_of(board.what)] += 1
+            code = campaign.start(command=tighten).wait()
+            tally.expect(campaign, code == 0, f"peclet set ended with exit code {code}")
+            campaign.document = dict(campaign.document, target=FAKE["target"])
+            tally.judge(campaign)
+        number += stride
+    tally.remarks.append(", ".join(f"{count} {kind}" for kind, count in sorted(struck.items())))
