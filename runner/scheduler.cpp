@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
+#include <tuple>
 #include <utility>
 
 #include "runner/forecast.h"
@@ -21,6 +23,7 @@ Scheduler::Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, 
     : target_(std::move(target)),
       minimum_(minimum),
       maximum_(maximum),
+      ceiling_(maximum),
       schedule_(look_schedule(minimum, maximum)) {
   for (std::vector<std::optional<Outcome>>& known : outcomes) {
     Point point;
@@ -40,6 +43,7 @@ void Scheduler::look_at(Point& point) {
   while (point.closed < maximum_ && point.outcomes[static_cast<std::size_t>(point.closed)]) ++point.closed;
   point.looks = replay_looks(point.outcomes, target_, minimum_, maximum_);
   point.expected = expected_seeds(point.looks, target_, minimum_, maximum_);
+  point.fall = decides(point.looks) ? 0 : expected_fall(point);
 }
 
 bool Scheduler::decided(int point) const { return decides(point_at(point).looks); }
@@ -55,7 +59,7 @@ int Scheduler::look_ahead(const Point& point, int steps) const {
 
 int Scheduler::wanted(int point) const {
   const Point& about = point_at(point);
-  return decides(about.looks) ? about.looks.back().seeds : look_ahead(about, 0);
+  return decides(about.looks) ? about.looks.back().seeds : std::min(look_ahead(about, 0), ceiling_);
 }
 
 int Scheduler::ended(int point) const {
@@ -63,49 +67,86 @@ int Scheduler::ended(int point) const {
   return static_cast<int>(std::count(phases.begin(), phases.begin() + wanted(point), Phase::ended));
 }
 
-bool Scheduler::is_open(const Point& point) const { return !point.cancelled && !decides(point.looks); }
-
-std::optional<SeedId> Scheduler::next() const {
-  if (const std::optional<SeedId> needed = most_urgent(0)) return needed;
-  return most_urgent(1);
+bool Scheduler::is_open(const Point& point) const {
+  return !point.cancelled && !decides(point.looks) && point.closed < ceiling_;
 }
 
-double Scheduler::mean_seconds() const {
-  double sum = 0;
-  int known = 0;
+std::optional<SeedId> Scheduler::next() const {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  if (const std::optional<SeedId> needed = most_urgent(0, unlimited)) return needed;
+  return most_urgent(1, unlimited);
+}
+
+std::optional<SeedId> Scheduler::next_within(double seconds) const {
+  return seconds > 0 ? most_urgent(0, seconds) : std::nullopt;
+}
+
+std::optional<double> Scheduler::seconds_per_work() const {
+  double seconds = 0, work = 0;
   for (const Point& point : points_) {
-    sum += point.seconds.value_or(0);
-    known += point.seconds ? 1 : 0;
+    if (!point.seconds) continue;
+    seconds += *point.seconds;
+    work += point.work;
   }
-  return known > 0 && sum > 0 ? sum / known : 1;
+  if (seconds == 0) return std::nullopt;
+  return seconds / work;
+}
+
+double Scheduler::expected_seconds(int point) const {
+  const Point& about = point_at(point);
+  return about.seconds.value_or(about.work * seconds_per_work().value_or(0));
+}
+
+double Scheduler::expected_fall(const Point& point) const {
+  // Before the first look nothing is known, and nothing tells more.
+  constexpr double of_unknown = 1e6;
+  if (point.looks.empty()) return of_unknown;
+  const Look& last = point.looks.back();
+  const double width = relative_width(last);
+  if (!std::isfinite(width)) return 1;
+  // Student's factor counts: it falls from 4 to 10 seeds by as much as the square root's.
+  const double confidence = adjusted_confidence(target_.confidence, minimum_, maximum_);
+  const double share = static_cast<double>(look_ahead(point, 0)) / last.seeds;
+  const int count = last.controlled.count, later = static_cast<int>(std::lround(count * share));
+  return width * (1 - student_quantile(later - 1, confidence) * std::sqrt(count) /
+                          (student_quantile(count - 1, confidence) * std::sqrt(later)));
 }
 
 double Scheduler::rank(const Point& point, double seconds) const {
   if (allocation_ == Allocation::longest_first) {
     // A point may have begun more seeds than it was expected to need: it is not done for all that.
-    return std::max(1, point.expected - point.begun) * seconds;
+    return std::max(1, std::min(point.expected, ceiling_) - point.begun) * seconds;
   }
-  constexpr double unknown = 1e6;  // before the first look nothing is known, and nothing tells more
-  const double width = point.looks.empty() ? unknown : relative_width(point.looks.back());
-  return (std::isfinite(width) ? width : 1) / (2 * std::max(1, point.begun) * seconds);
+  return point.fall / (std::max(1, waiting(point)) * seconds);
+}
+
+int Scheduler::waiting(const Point& point) const {
+  const auto begin = point.phases.begin() + point.closed;
+  const auto end = std::max(begin, point.phases.begin() + std::min(look_ahead(point, 0), ceiling_));
+  return static_cast<int>(std::count(begin, end, Phase::waiting));
 }
 
 std::optional<int> Scheduler::waiting_seed(const Point& point, int steps) const {
   const auto begin = point.phases.begin() + point.closed;
-  const auto end = std::max(begin, point.phases.begin() + look_ahead(point, steps));
-  const auto waiting = std::find(begin, end, Phase::waiting);
-  if (waiting == end) return std::nullopt;
-  return static_cast<int>(waiting - point.phases.begin());
+  const auto end = std::max(begin, point.phases.begin() + std::min(look_ahead(point, steps), ceiling_));
+  const auto found = std::find(begin, end, Phase::waiting);
+  if (found == end) return std::nullopt;
+  return static_cast<int>(found - point.phases.begin());
 }
 
-std::optional<SeedId> Scheduler::most_urgent(int steps) const {
-  const double mean = mean_seconds();
+std::optional<SeedId> Scheduler::most_urgent(int steps, double budget) const {
+  constexpr double shortest = 1e-9;  // a clock may have read nothing
+  const std::optional<double> known = seconds_per_work();
+  const double scale = known.value_or(1);
   std::optional<SeedId> best;
-  std::pair<int, double> best_rank;
+  std::tuple<int, bool, double> best_rank;
   for (int number = 0; number < points(); ++number) {
     const Point& point = point_at(number);
     if (!is_open(point)) continue;
-    const std::pair<int, double> own{point.priority, rank(point, point.seconds.value_or(mean))};
+    const double seconds = std::max(shortest, point.seconds.value_or(point.work * scale));
+    if (known && seconds > budget) continue;
+    const bool is_whole = !known || seconds * waiting(point) <= budget;
+    const std::tuple<int, bool, double> own{point.priority, is_whole, rank(point, seconds)};
     if (best && own <= best_rank) continue;
     if (const std::optional<int> seed = waiting_seed(point, steps)) {
       best = SeedId{number, *seed};

@@ -6,6 +6,9 @@
 // the look after that: surplus, which costs nothing when the point goes on, and which does not count when it
 // stops.
 //
+// Under a budget nobody runs ahead, and only seeds go that the rest of it is expected to pay for. Under a
+// ceiling only the first seeds of each point go.
+//
 // Priorities, costs and the allocation decide when a seed runs; what it counts for they cannot touch.
 #pragma once
 
@@ -28,8 +31,11 @@ enum class Allocation {
   // campaign is through the sooner the earlier its longest point is begun. Before the first looks all points
   // come forward together, in proportion to their costs.
   longest_first,
-  // The point whose relative error w falls most for a second of processor time: w goes as 1 / sqrt(n), so
-  // w / (2 n cost). For a budget that will not see all points converged.
+  // The point whose relative half-width w will fall most, for a second of processor time, by its next look:
+  //   w (1 - t(n' - 1) sqrt(n) / (t(n - 1) sqrt(n'))) / (seeds still to be begun * seconds of each)
+  // with n values now and n' then. What is begun counts only when its look is reached, so a look once begun
+  // is seen through. Points without a look come before, the cheapest first. For a budget that will not see
+  // all points converged.
   steepest_first
 };
 
@@ -43,12 +49,22 @@ class Scheduler {
   void set_priority(int point, int priority) { point_at(point).priority = priority; }
   // A cancelled point gets no more seeds and holds nothing up. What it has stays.
   void set_cancelled(int point, bool cancelled) { point_at(point).cancelled = cancelled; }
-  // Mean seconds of a realisation of the point, as far as it is known; until then it costs as much as the
-  // mean of the others.
+  // Mean seconds of a realisation of the point, as far as it is known; until then it costs as much as its
+  // share of the work says, beside the others.
   void set_cost(int point, double seconds) { point_at(point).seconds = seconds; }
+  // Work of a realisation in any unit (particle-steps) that is the same for all points; 1 unless set.
+  void set_work(int point, double work) { point_at(point).work = work; }
+  // Only the seeds 0 .. ceiling - 1 of each point are wanted.
+  void set_ceiling(int ceiling) { ceiling_ = ceiling; }
 
   // The next seed for an idle worker; nothing when every seed that could be wanted now is out or ended.
   std::optional<SeedId> next() const;
+  // The same under a budget of which so many seconds are left: a seed that a look needs and that is expected
+  // to cost no more, if possible of a look that can be paid for as a whole. While no cost is known at all
+  // every seed is expected to cost nothing.
+  std::optional<SeedId> next_within(double seconds) const;
+  // Of a seed of the point; 0 while no cost is known at all.
+  double expected_seconds(int point) const;
 
   // The seed has been given to a worker.
   void begin(SeedId id);
@@ -62,10 +78,10 @@ class Scheduler {
   const std::vector<Look>& looks(int point) const { return point_at(point).looks; }
   bool decided(int point) const;
   bool cancelled(int point) const { return point_at(point).cancelled; }
-  // Every point is decided or cancelled.
+  // Every point is decided or cancelled, or has all seeds below the ceiling.
   bool finished() const;
 
-  // Seeds that the next look needs; of a decided point those of the deciding look.
+  // Seeds that the next look needs, or the ceiling allows; of a decided point those of the deciding look.
   int wanted(int point) const;
   // Of these, how many have ended.
   int ended(int point) const;
@@ -82,8 +98,10 @@ class Scheduler {
     int begun = 0;     // out or ended
     int closed = 0;    // the seeds 0 .. closed - 1 have ended
     int expected = 0;  // seeds at which it may be expected to stop
+    double fall = 0;   // of the relative half-width until the next look
     int priority = 0;
     bool cancelled = false;
+    double work = 1;
     std::optional<double> seconds;
   };
 
@@ -93,14 +111,19 @@ class Scheduler {
   // The look after the last one made, and the one after that.
   int look_ahead(const Point& point, int steps) const;
   bool is_open(const Point& point) const;
-  double mean_seconds() const;
+  // Of the points whose cost is known; nothing when there is none.
+  std::optional<double> seconds_per_work() const;
   // How urgent the point is; the largest goes first.
   double rank(const Point& point, double seconds) const;
+  double expected_fall(const Point& point) const;
+  // Seeds of the next look that nobody has begun.
+  int waiting(const Point& point) const;
+  // The first of them, or of those of `steps` looks further.
   std::optional<int> waiting_seed(const Point& point, int steps) const;
-  std::optional<SeedId> most_urgent(int steps) const;
+  std::optional<SeedId> most_urgent(int steps, double budget) const;
 
   Target target_;
-  int minimum_, maximum_;
+  int minimum_, maximum_, ceiling_;
   std::vector<int> schedule_;
   Allocation allocation_ = Allocation::longest_first;
   std::vector<Point> points_;

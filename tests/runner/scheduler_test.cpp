@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 namespace peclet::runner {
@@ -103,6 +104,74 @@ TEST(Scheduler, UnderABudgetPointsThatNobodyHasSeenGoFirst) {
   scheduler.set_allocation(Allocation::steepest_first);
   for (int i = 0; i < 4; ++i) EXPECT_EQ(take(scheduler).point, 1);
   EXPECT_EQ(take(scheduler).point, 0);
+}
+
+TEST(Scheduler, UnderABudgetALookOnceBegunIsSeenThrough) {
+  // Widths of 11 and 10 %, with 4 seeds each: the second is not begun before the first has its fifth.
+  Outcomes known(2);
+  for (int seed = 0; seed < 9; ++seed) {
+    known[0].push_back(value(seed % 2 == 0 ? 9 : 11));
+    known[1].push_back(value(seed % 2 == 0 ? 9.05 : 10.95));
+  }
+  Scheduler scheduler(known, five_percent, 4, 40);
+  scheduler.set_allocation(Allocation::steepest_first);
+  ASSERT_EQ(scheduler.wanted(0), 12);
+  for (int seed = 9; seed < 12; ++seed) EXPECT_EQ(take(scheduler), (SeedId{0, seed}));
+  EXPECT_EQ(take(scheduler), (SeedId{1, 9}));
+}
+
+TEST(Scheduler, UnderABudgetOnlySeedsGoThatItPaysFor) {
+  Scheduler scheduler = fresh(2);
+  scheduler.set_allocation(Allocation::steepest_first);
+  scheduler.set_cost(0, 10);
+  scheduler.set_cost(1, 3);
+  EXPECT_EQ(scheduler.next_within(100), (SeedId{1, 0})) << "of points nobody has seen the cheapest";
+  for (int seed = 0; seed < 4; ++seed) scheduler.begin({1, seed});
+  EXPECT_EQ(scheduler.next_within(10), (SeedId{0, 0}));
+  EXPECT_EQ(scheduler.next_within(9.9), std::nullopt);
+  for (int seed = 0; seed < 4; ++seed) scheduler.begin({0, seed});
+  EXPECT_EQ(scheduler.next_within(100), std::nullopt) << "nobody runs ahead";
+}
+
+TEST(Scheduler, UnderABudgetALookThatItPaysForAsAWholeGoesFirst) {
+  // Both at 9 seeds and wanting three more; the first is wider, but 20 s do not buy its look.
+  Outcomes known(2);
+  for (int seed = 0; seed < 9; ++seed) {
+    known[0].push_back(value(seed % 2 == 0 ? 5 : 15));
+    known[1].push_back(value(seed % 2 == 0 ? 9 : 11));
+  }
+  Scheduler scheduler(known, five_percent, 4, 40);
+  scheduler.set_allocation(Allocation::steepest_first);
+  scheduler.set_cost(0, 8);
+  scheduler.set_cost(1, 4);
+  EXPECT_EQ(scheduler.next_within(24), (SeedId{0, 9}));
+  EXPECT_EQ(scheduler.next_within(20), (SeedId{1, 9}));
+  EXPECT_EQ(scheduler.next_within(9), (SeedId{0, 9})) << "when it buys no look, seeds for later ones";
+}
+
+TEST(Scheduler, CostsThatAreNotKnownFollowFromTheWork) {
+  Scheduler scheduler = fresh(3);
+  for (int point = 0; point < 3; ++point) scheduler.set_work(point, std::pow(10, point));
+  EXPECT_EQ(scheduler.expected_seconds(2), 0);
+  EXPECT_EQ(scheduler.next_within(1e-6), (SeedId{2, 0})) << "nobody knows yet that it is too dear";
+  EXPECT_EQ(scheduler.next_within(0), std::nullopt) << "but nothing is left";
+  scheduler.set_cost(1, 5);
+  EXPECT_DOUBLE_EQ(scheduler.expected_seconds(0), 0.5);
+  EXPECT_DOUBLE_EQ(scheduler.expected_seconds(2), 50);
+  EXPECT_EQ(scheduler.next_within(49), (SeedId{1, 0}));
+}
+
+TEST(Scheduler, UnderACeilingOnlyTheFirstSeedsGo) {
+  Scheduler scheduler = fresh(2);
+  scheduler.set_ceiling(2);
+  for (const SeedId id : {SeedId{0, 0}, SeedId{1, 0}, SeedId{0, 1}, SeedId{1, 1}})
+    EXPECT_EQ(take(scheduler), id);
+  EXPECT_EQ(scheduler.next(), std::nullopt);
+  for (int seed = 0; seed < 2; ++seed) scheduler.end({0, seed}, steady(seed));
+  EXPECT_FALSE(scheduler.finished());
+  for (int seed = 0; seed < 2; ++seed) scheduler.end({1, seed}, steady(seed));
+  EXPECT_TRUE(scheduler.finished());
+  EXPECT_FALSE(scheduler.decided(0));
 }
 
 TEST(Scheduler, PriorityGoesBeforeCost) {
