@@ -47,8 +47,8 @@ Dispatcher::Dispatcher(Database& database, Ledger& ledger, WorkerPool& pool, Run
 Dispatcher::Ending Dispatcher::run() {
   while (!ledger_.scheduler().finished() && stopping_ == Stopping::no) {
     turn();
-    if (left_to_others()) {
-      listener_.note("every seed that is still to be run is handed over; `peclet ingest` takes results in");
+    if (has_nothing_to_do()) {
+      listener_.note(why_nothing());
       break;
     }
   }
@@ -69,10 +69,15 @@ bool Dispatcher::anyone_there() const {
 }
 
 // Nobody here has work, there is none to give out, and yet some point is open.
-bool Dispatcher::left_to_others() const {
+bool Dispatcher::has_nothing_to_do() const {
   const bool busy = std::any_of(now_.workers.begin(), now_.workers.end(),
                                 [](const Worker& worker) { return worker.stage == Stage::busy; });
-  return !busy && !unbooked_ && !ledger_.scheduler().finished() && !ledger_.scheduler().next();
+  return !busy && !unbooked_ && !ledger_.scheduler().finished() && !ledger_.next();
+}
+
+const char* Dispatcher::why_nothing() const {
+  if (ledger_.scheduler().next()) return "no seed that is still needed fits into what is left of the budget";
+  return "every seed that is still to be run is handed over; `peclet ingest` takes results in";
 }
 
 void Dispatcher::turn() {
@@ -125,6 +130,7 @@ void Dispatcher::give_out_seeds() {
     worker.since = awake_;
     worker.assignment = Assignment{std::move(*grant)};
     worker.assignment->renewed = worker.since;
+    worker.assignment->given = clock_();
   }
 }
 
@@ -218,9 +224,14 @@ void Dispatcher::set_idle(int number) {
   worker.since = awake_;
 }
 
+double Dispatcher::held_seconds(int number) {
+  return settings_.threads * std::chrono::duration<double>(clock_() - at(number).assignment->given).count();
+}
+
 void Dispatcher::end_assignment(int number, const AttemptEnd& end) {
   AttemptEnd complete = end;
   complete.step = at(number).assignment->step;
+  complete.held_seconds = held_seconds(number);
   ledger_.end_attempt(at(number).assignment->grant, complete);
   set_idle(number);
 }
@@ -254,7 +265,7 @@ void Dispatcher::handle(const ResultSpooled& event) {
   std::string why;
   if (event.spool != about.grant.job.spool) {
     condemn(event.worker, AttemptOutcome::garbled, "spooled its result elsewhere");
-  } else if (ledger_.take_result(about.grant, event.sha256, about.step, why)) {
+  } else if (ledger_.take_result(about.grant, event.sha256, about.step, held_seconds(event.worker), why)) {
     ++now_.results;
     now_.early_exits = 0;
     set_idle(event.worker);
@@ -312,7 +323,7 @@ void Dispatcher::exited_during_job(int number, const ExitStatus& ending) {
   // A result may be durable although nobody could announce it any more; one that was turned down stays so.
   std::string why;
   if (worker.condemned != AttemptOutcome::garbled && std::filesystem::exists(grant.job.spool) &&
-      ledger_.take_result(grant, "", worker.assignment->step, why)) {
+      ledger_.take_result(grant, "", worker.assignment->step, held_seconds(number), why)) {
     ++now_.results;
     set_idle(number);
     return;

@@ -62,6 +62,7 @@ class Dispatcher {
     int phase = 0;
     std::int64_t step = 0, steps = 0;
     double strain = 0;
+    Time given{};
     Awake renewed{};     // when it last came forward
     bool shown = false;  // the database says how far it is
   };
@@ -121,12 +122,15 @@ class Dispatcher {
   bool lacked_room(int worker);
   void condemn(int worker, AttemptOutcome outcome, const std::string& message);
   void set_idle(int worker);
+  // Processor seconds that the worker may have spent on what it has.
+  double held_seconds(int worker);
   void end_assignment(int worker, const AttemptEnd& end);
   void exited_during_job(int worker, const ExitStatus& ending);
   void exited_without_job(int worker, const ExitStatus& ending, Stage stage);
   Worker& at(int worker) { return now_.workers.at(static_cast<std::size_t>(worker)); }
   bool anyone_there() const;
-  bool left_to_others() const;
+  bool has_nothing_to_do() const;
+  const char* why_nothing() const;
 
   Database& database_;
   Ledger& ledger_;

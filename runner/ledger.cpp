@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -33,8 +34,8 @@ Outcome outcome_of(const Observed& observed) {
           observed.first_quarter.value_or(none), observed.first_half.value_or(none)};
 }
 
-std::optional<double> cpu_seconds(const Json& result) {
-  const Json& seconds = result.at("cost").at("cpu_seconds");
+std::optional<double> cost_of(const RealisationResult& result, const char* which) {
+  const Json& seconds = result.document.at("cost").at(which);
   return seconds.is_number() ? std::optional(seconds.get<double>()) : std::nullopt;
 }
 
@@ -90,21 +91,21 @@ void Ledger::read() {
   for (const PointRecord& known : points_) {
     outcomes.push_back(database_.outcomes(known.id));
     for (const RealisationRecord& record : database_.realisations(known.id)) {
-      if (record.wall_seconds) costs_[static_cast<std::size_t>(*known.place)].add(*record.wall_seconds);
+      add_cost(*known.place, record.wall_seconds, record.cpu_seconds);
     }
   }
   scheduler_.emplace(std::move(outcomes), campaign_.target, campaign_.minimum_realisations,
                      campaign_.maximum_realisations);
   for (int place = 0; place < scheduler_->points(); ++place) {
-    const Cost& cost = costs_[static_cast<std::size_t>(place)];
-    if (cost.count > 0) scheduler_->set_cost(place, cost.sum / cost.count);
     scheduler_->set_priority(place, point(place).priority);
     scheduler_->set_cancelled(place, point(place).cancelled);
     leave_to_batch_system(place);
   }
+  apply_bounds();
 }
 
 void Ledger::roll_back() {
+  spent_seconds_ = committed_seconds_;
   to_remove_.clear();
   to_reject_.clear();
   to_tell_.clear();
@@ -158,13 +159,10 @@ Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
   const Observed observed = observe(result.document, campaign_.target.observable);
   if (result.completed() && !observed.value) lacking_ = names_of_numbers(result.document["mean"]);
   to_tell_.push_back(SeedEnded{told_name(place->second), result.seed, result.cause, observed.value,
-                               cpu_seconds(result.document)});
+                               cost_of(result, "cpu_seconds")});
   if (!scheduler_) return stored;  // load() finds it
-  if (result.document["cost"]["wall_seconds"].is_number()) {
-    Cost& cost = costs_[static_cast<std::size_t>(place->second)];
-    cost.add(result.document["cost"]["wall_seconds"].get<double>());
-    scheduler_->set_cost(place->second, cost.sum / cost.count);
-  }
+  add_cost(place->second, cost_of(result, "wall_seconds"), cost_of(result, "cpu_seconds"));
+  tell_cost(place->second);
   if (!result.completed()) {
     listener_.note(fmt::format("{}: ended with {}", name({place->second, result.seed}), result.cause));
   }
@@ -183,8 +181,7 @@ void Ledger::turn_down(const fs::path& spool, const std::string& why) {
 void Ledger::store_looks(int place, std::size_t known) {
   const std::vector<Look>& looks = scheduler_->looks(place);
   queue_.store_looks(point(place).id, looks);
-  for (std::size_t i = known; i < looks.size(); ++i)
-    to_tell_.push_back(Looked{told_name(place), looks[i]});
+  for (std::size_t i = known; i < looks.size(); ++i) to_tell_.push_back(Looked{told_name(place), looks[i]});
   if (looks.size() > known && scheduler_->decided(place)) {
     to_tell_.push_back(Decided{told_name(place), looks.back()});
   }
@@ -206,7 +203,7 @@ void Ledger::book_outcome(SeedId id, const Outcome& outcome) {
 }
 
 std::optional<Grant> Ledger::give_out(int worker, std::int64_t process, std::int64_t engine) {
-  const std::optional<SeedId> id = scheduler_->next();
+  const std::optional<SeedId> id = next();
   if (!id) return std::nullopt;
   const PointRecord& about = point(id->point);
   Grant grant{*id, about.id, {}};
@@ -222,7 +219,8 @@ std::optional<Grant> Ledger::give_out(int worker, std::int64_t process, std::int
   return grant;
 }
 
-bool Ledger::take_result(const Grant& grant, const std::string& sha256, std::int64_t step, std::string& why) {
+bool Ledger::take_result(const Grant& grant, const std::string& sha256, std::int64_t step,
+                         double held_seconds, std::string& why) {
   try {
     const RealisationResult result = read_spool_file(grant.job.spool, sha256);
     if (result.point != grant.job.point || result.seed != grant.job.seed) {
@@ -232,6 +230,7 @@ bool Ledger::take_result(const Grant& grant, const std::string& sha256, std::int
       throw ResultError("it names another engine than the worker's hello");
     }
     take(result, grant.job.spool);
+    spent_seconds_ += std::min(held_seconds, cost_of(result, "cpu_seconds").value_or(held_seconds));
   } catch (const ResultError& error) {
     why = error.what();
     turn_down(grant.job.spool, why);
@@ -244,6 +243,7 @@ bool Ledger::take_result(const Grant& grant, const std::string& sha256, std::int
 
 void Ledger::end_attempt(const Grant& grant, const AttemptEnd& end) {
   leave(grant);
+  spent_seconds_ += end.held_seconds;
   queue_.end_attempt(grant.job.attempt, end);
   const Sentence sentence = judge(queue_.history(grant.point_id, grant.id.seed), retries_);
   if (sentence.discard_checkpoint) to_remove_.push_back(grant.job.checkpoint);
@@ -291,6 +291,7 @@ std::int64_t Ledger::admit_engine(const Json& engine) {
 
 void Ledger::after_commit() {
   former_.reset();
+  committed_seconds_ = spent_seconds_;
   for (const fs::path& file : to_remove_) fs::remove(file);
   for (const fs::path& file : to_reject_) reject(home_of(file), file);
   to_remove_.clear();
@@ -320,8 +321,12 @@ RunReport Ledger::report(int workers) const {
     report.seeds_ended += scheduler_->ended(place);
     report.seeds_wanted += is_left_alone ? scheduler_->ended(place) : scheduler_->wanted(place);
     report.busy += running_[index];
-    forecasts.push_back({costs_[index], looks, scheduler_->begun(place), decided || is_left_alone});
+    forecasts.push_back({costs_[index].wall, looks, scheduler_->begun(place), decided || is_left_alone});
   }
+  report.spent_seconds = spent_seconds_;
+  report.budget_seconds = bounds_.budget_seconds;
+  // Of a run that is not to see every point decided nobody asks when it would.
+  if (bounds_.ceiling || bounds_.budget_seconds) return report;
   report.to_go = time_to_go(forecasts, campaign_.target, campaign_.minimum_realisations,
                             campaign_.maximum_realisations, workers);
   return report;

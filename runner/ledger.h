@@ -35,6 +35,14 @@ class OtherEngine : public IntegrityError {
   using IntegrityError::IntegrityError;
 };
 
+// What bounds a run beside the campaign itself.
+struct Bounds {
+  std::optional<int> ceiling{};            // only so many seeds of each point
+  std::optional<double> budget_seconds{};  // processor time
+  // Of a realisation, in any unit, by the hash of its point; used when it is known of all points.
+  std::map<std::string, double> work{};
+};
+
 class Ledger {
  public:
   // Requires that the database has adopted the campaign. Takes in what earlier runs left in the spool, then
@@ -42,15 +50,23 @@ class Ledger {
   Ledger(Database& database, const Campaign& campaign, CampaignDirectory directory, RunListener& listener,
          int retries);
 
+  // From now on. With a budget seeds go where they lower the summed relative error most, without one to the
+  // point that will take longest.
+  void set_bounds(Bounds bounds);
+
   // Takes in every spool file that is there, also of the folders shared with a batch system; in transactions
   // of its own.
   void ingest_spool();
 
-  // Books the next seed as running; nothing when there is none to run now.
+  // The next seed to be run within the bounds. Of a budget is left what was not spent and what the seeds that
+  // are out are not expected to cost.
+  std::optional<SeedId> next() const;
+  // Books that seed as running; nothing when there is none to run now.
   std::optional<Grant> give_out(int worker, std::int64_t process, std::int64_t engine);
-  // Books a result that a worker has announced (`sha256`) or left behind (""). False: it is none and has been
-  // turned down; `why` says so, and the attempt has not ended.
-  bool take_result(const Grant& grant, const std::string& sha256, std::int64_t step, std::string& why);
+  // Books a result that a worker has announced (`sha256`) or left behind (""), after `held_seconds` as in
+  // AttemptEnd. False: it is none and has been turned down; `why` says so, and the attempt has not ended.
+  bool take_result(const Grant& grant, const std::string& sha256, std::int64_t step, double held_seconds,
+                   std::string& why);
   // Books any other end of an attempt: the seed is queued again, or given up.
   void end_attempt(const Grant& grant, const AttemptEnd& end);
   void renew_lease(const Grant& grant, int phase, std::int64_t step, std::int64_t steps, double strain);
@@ -97,6 +113,9 @@ class Ledger {
   const Campaign& campaign() const { return campaign_; }
   const PointRecord& point(int place) const { return points_.at(static_cast<std::size_t>(place)); }
   const Scheduler& scheduler() const { return *scheduler_; }
+  // Processor time that this run's attempts took: that of results, and of others the time times the threads.
+  // A result that began in an earlier run counts with what it took in this one.
+  double spent_seconds() const { return spent_seconds_; }
   // Points, seeds and time to go with so many workers; the rest of the report is the caller's.
   RunReport report(int workers) const;
   // "peclet=10 seed 3", for people
@@ -114,6 +133,9 @@ class Ledger {
   std::string name_of(const Grant& grant) const;
   PointName told_name(int place) const;
   PointName told_name(const Grant& grant) const;
+  void apply_bounds();
+  void tell_cost(int place);
+  void add_cost(int place, std::optional<double> wall_seconds, std::optional<double> cpu_seconds);
   void leave_to_batch_system(int place);
   void ingest_spool_of(const CampaignDirectory& directory);
   Stored take(const RealisationResult& result, const std::filesystem::path& spool);
@@ -130,8 +152,13 @@ class Ledger {
   int retries_;
   std::vector<PointRecord> points_;
   std::map<std::string, int> places_;  // of the points, by hash
-  std::vector<Cost> costs_;
+  struct Costs {
+    Cost wall, processor;
+  };
+  std::vector<Costs> costs_;
   std::vector<int> running_;  // workers on each point
+  Bounds bounds_;
+  double spent_seconds_ = 0, committed_seconds_ = 0;
   std::optional<Scheduler> scheduler_;
   std::string identity_;  // of this run's engine
   std::string lacking_;   // what results have instead of the target's observable

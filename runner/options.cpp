@@ -155,6 +155,12 @@ class Reader {
                      "Version, or 6 or more digits of the hash, of the engine that is there now: results of "
                      "another one at open points are kept apart");
   }
+  static void add_team(CLI::App* verb, RunOptions& run) {
+    verb->add_option("--workers", run.workers, "Engine processes; cores / threads unless given")
+        ->check(CLI::Range(1, 100'000));
+    verb->add_option("--threads", run.threads, "Threads of each; 1, or cores / workers, unless given")
+        ->check(CLI::Range(1, 4096));
+  }
   // The verb that was named becomes the command.
   template <typename Options>
   void choose(CLI::App* verb, const Options& options) {
@@ -193,12 +199,13 @@ class Reader {
                  "peclet run flow-curve.json --workers 8");
     add_file(verb, run_.campaign);
     add_directory(verb, run_.directory);
-    verb->add_option("--workers", run_.workers, "Engine processes; cores / threads unless given")
-        ->check(CLI::Range(1, 100'000));
-    verb->add_option("--threads", run_.threads, "Threads of each; 1, or cores / workers, unless given")
-        ->check(CLI::Range(1, 4096));
+    add_team(verb, run_);
     verb->add_option("--time-limit", run_.time_limit, "Seconds after which workers checkpoint and stop")
         ->type_name("SECONDS")
+        ->check(CLI::PositiveNumber);
+    verb->add_option("--budget", run_.budget_hours,
+                     "Hours of processor time that this run may spend, where they lower the summed relative "
+                     "error most")
         ->check(CLI::PositiveNumber);
     verb->add_option("--lease", run_.lease_seconds,
                      "Seconds without a new step after which a worker counts as hung")

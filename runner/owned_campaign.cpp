@@ -11,7 +11,6 @@
 #include "runner/realisation_result.h"
 #include "runner/renamed_file.h"
 #include "runner/restore.h"
-#include "runner/scene_check.h"
 #include "runner/spool.h"
 
 namespace peclet::runner {
@@ -19,7 +18,6 @@ namespace {
 
 constexpr int exit_converged = 0;
 constexpr int exit_unconverged = 3;
-constexpr int exit_integrity = 6;
 
 constexpr std::size_t fewest_digits = 6;  // of a hash that names an engine
 
@@ -97,7 +95,8 @@ ClaimedCampaign::ClaimedCampaign(const std::filesystem::path& file, const std::f
                                  bool force)
     : campaign(read_campaign(file)),
       command(resolve_engine(campaign, file)),
-      engine(check_scenes(campaign, file, command).front().identity),
+      scenes(check_scenes(campaign, file, command)),
+      engine(scenes.front().identity),
       directory(directory_for(campaign, file, chosen)),
       lock(created(directory, force)) {}
 

@@ -10,6 +10,7 @@
 #include "runner/engine_process.h"
 #include "runner/ledger.h"
 #include "runner/run_listener.h"
+#include "runner/scene_check.h"
 #include "runner/scheduler.h"
 
 namespace peclet::runner {
@@ -17,13 +18,15 @@ namespace peclet::runner {
 // A seed may fail so often beyond the first time.
 constexpr int retries = 2;
 
+constexpr int exit_integrity = 6;
 constexpr int exit_stopped = 75;
 
 // Checked and locked: nobody else may write it now.
 struct ClaimedCampaign {
   Campaign campaign;
   EngineCommand command;
-  Json engine;  // provenance of the engine here
+  std::vector<SceneAnswer> scenes;  // of its points
+  Json engine;                      // provenance of the engine here
   CampaignDirectory directory;
   OwnerLock lock;
 

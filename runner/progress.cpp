@@ -10,6 +10,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "runner/number_text.h"
+
 namespace peclet::runner {
 namespace {
 
@@ -54,6 +56,10 @@ std::string progress_line(const RunReport& report) {
   if (report.to_go) {
     line += fmt::format(" | {} to go ({} to {})", duration_text(report.to_go->likely),
                         duration_text(report.to_go->low), duration_text(report.to_go->high));
+  }
+  if (report.budget_seconds) {
+    line += fmt::format(" | budget {} of {} h", rough(report.spent_seconds / 3600),
+                        rough(*report.budget_seconds / 3600));
   }
   if (report.workers > 0) line += fmt::format(" | workers {}/{}", report.busy, report.workers);
   return line;

@@ -23,6 +23,7 @@ struct AttemptEnd {
   std::int64_t step = 0;
   ExitStatus ending{};
   std::string message{};
+  double held_seconds = 0;  // processor time at most: that it lasted, times its threads
 };
 
 // What became of a result that was offered.

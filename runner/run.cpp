@@ -10,11 +10,11 @@
 #include <string>
 #include <thread>
 
+#include "runner/budget.h"
 #include "runner/dispatcher.h"
 #include "runner/event_stream.h"
 #include "runner/exit_code.h"
 #include "runner/folder_watch.h"
-#include "runner/owned_campaign.h"
 #include "runner/periodic_backup.h"
 #include "runner/progress.h"
 #include "runner/requests.h"
@@ -26,22 +26,11 @@
 namespace peclet::runner {
 namespace {
 
-struct Team {
-  int workers, threads;
-};
-
-// What is not given follows from what is: together they fill the machine.
-Team wanted_team(const RunOptions& options) {
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  if (options.workers > 0 && options.threads > 0) return {options.workers, options.threads};
-  if (options.workers > 0) return {options.workers, std::max(1, cores / options.workers)};
-  const int threads = std::max(1, options.threads);
-  return {std::max(1, cores / threads), threads};
-}
+constexpr double seconds_per_hour = 3600;
 
 // More workers than seeds that may still run have nothing to do.
-Team team(const RunOptions& options, const Campaign& campaign) {
-  Team size = wanted_team(options);
+Team useful_team(const RunOptions& options, const Campaign& campaign) {
+  Team size = team(options);
   const auto seeds = static_cast<std::int64_t>(campaign.points.size()) * campaign.maximum_realisations;
   size.workers = static_cast<int>(std::min<std::int64_t>(seeds, size.workers));
   return size;
@@ -72,6 +61,7 @@ struct Opened {
   Database database;
   Ledger ledger;
   Requests requests;
+  SummedError before;  // the run
 };
 
 // As they were given, for a command that is to be repeated.
@@ -102,7 +92,7 @@ std::unique_ptr<Opened> open_when_there_is_room(const ClaimedCampaign& claimed, 
 }
 
 RunBegan beginning(const ClaimedCampaign& claimed, const RunOptions& options) {
-  const Team size = team(options, claimed.campaign);
+  const Team size = useful_team(options, claimed.campaign);
   return {claimed.campaign.name,
           claimed.directory.root(),
           getpid(),
@@ -116,7 +106,7 @@ int dispatch(Opened& opened, const RunOptions& options, const ClaimedCampaign& c
              StopSignals& signals) {
   using std::chrono::steady_clock;
   const CampaignDirectory& directory = claimed.directory;
-  const Team size = team(options, claimed.campaign);
+  const Team size = useful_team(options, claimed.campaign);
   judge_team(size, log);
   allow_open_files(size.workers);
   PeriodicBackup backup(directory, std::chrono::duration<double>(options.backup_seconds), log,
@@ -153,9 +143,18 @@ std::string how_to_go_on(const RunOptions& options, const CampaignStatus& status
                      words_for(options));
 }
 
-}  // namespace
+Bounds bounds_of(const RunOptions& options, const ClaimedCampaign& claimed, std::optional<int> ceiling) {
+  Bounds bounds{ceiling, {}, {}};
+  const std::vector<double> work = particle_steps(claimed.scenes);
+  for (std::size_t i = 0; i < work.size(); ++i) bounds.work[claimed.campaign.points[i].hash] = work[i];
+  if (options.budget_hours) bounds.budget_seconds = seconds_per_hour * *options.budget_hours;
+  return bounds;
+}
 
-int run_campaign(const RunOptions& options) {
+// What the person is told on standard output in the end.
+using Conclusion = std::function<void(const ClaimedCampaign&, Opened&, int code)>;
+
+int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion& conclude) {
   const ClaimedCampaign claimed(options.campaign, options.directory, options.force);
   StopSignals signals;
   std::unique_ptr<Opened> opened;
@@ -168,7 +167,11 @@ int run_campaign(const RunOptions& options) {
     log.happened(beginning(claimed, options));
     try {
       opened = open_when_there_is_room(claimed, options, log, signals);
-      if (opened) code = dispatch(*opened, options, claimed, log, signals);
+      if (opened) {
+        opened->ledger.set_bounds(bounds_of(options, claimed, ceiling));
+        opened->before = summed_error(opened->ledger.scheduler());
+        code = dispatch(*opened, options, claimed, log, signals);
+      }
     } catch (const OtherEngine& error) {
       const OtherEngine advised(error.what() + acceptance_hint("run " + words_for(options), claimed.engine));
       tell_of_failure(log, advised);
@@ -180,11 +183,40 @@ int run_campaign(const RunOptions& options) {
     log.record(fmt::format("ends with exit code {}", code));
     log.happened(RunEnded{code, ""});
   }
-  if (!opened || options.jsonl) return code;
-  const CampaignStatus status = read_status(opened->database);
-  std::fputs((status_table(status) + (code == exit_stopped ? how_to_go_on(options, status) : "")).c_str(),
-             stdout);
+  if (opened && !options.jsonl) conclude(claimed, *opened, code);
   return code;
+}
+
+}  // namespace
+
+Team team(const RunOptions& options) {
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  if (options.workers > 0 && options.threads > 0) return {options.workers, options.threads};
+  if (options.workers > 0) return {options.workers, std::max(1, cores / options.workers)};
+  const int threads = std::max(1, options.threads);
+  return {std::max(1, cores / threads), threads};
+}
+
+int run_campaign(const RunOptions& options) {
+  return run(options, std::nullopt, [&](const ClaimedCampaign&, Opened& opened, int code) {
+    const CampaignStatus status = read_status(opened.database);
+    std::string text = status_table(status);
+    if (options.budget_hours) {
+      text += budget_text(opened.ledger.spent_seconds(), seconds_per_hour * *options.budget_hours,
+                          opened.before, summed_error(opened.ledger.scheduler()));
+    }
+    if (code == exit_stopped) text += how_to_go_on(options, status);
+    std::fputs(text.c_str(), stdout);
+  });
+}
+
+int run_pilot(const RunOptions& options, int seeds,
+              const std::function<void(const ClaimedCampaign&, Database&)>& conclude) {
+  const int code = run(options, seeds, [&](const ClaimedCampaign& claimed, Opened& opened, int ended_with) {
+    if (ended_with != exit_stopped) conclude(claimed, opened.database);
+  });
+  // That points are not decided yet is what a pilot is for.
+  return code == exit_integrity || code == exit_stopped ? code : 0;
 }
 
 }  // namespace peclet::runner

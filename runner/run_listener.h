@@ -17,6 +17,8 @@ struct RunReport {
   int results = 0;     // of this run
   double elapsed = 0;  // seconds of this run
   std::optional<TimeToGo> to_go;
+  double spent_seconds = 0;  // processor time of this run
+  std::optional<double> budget_seconds;
 };
 
 class RunListener {

@@ -182,4 +182,13 @@ std::vector<SceneAnswer> check_scenes(const Campaign& campaign, const std::files
   throw std::runtime_error(command.program.string() + ": is killed again and again before it can answer");
 }
 
+std::vector<double> particle_steps(const std::vector<SceneAnswer>& answers) {
+  std::vector<double> work;
+  for (const SceneAnswer& answer : answers) {
+    work.push_back(answer.steps * static_cast<double>(answer.particles));
+    if (!(work.back() > 0)) return {};
+  }
+  return work;
+}
+
 }  // namespace peclet::runner

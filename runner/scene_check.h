@@ -28,4 +28,7 @@ struct SceneAnswer {
 std::vector<SceneAnswer> check_scenes(const Campaign& campaign, const std::filesystem::path& campaign_file,
                                       const EngineCommand& command);
 
+// Work of a realisation of each point; nothing unless the engine knows all of them.
+std::vector<double> particle_steps(const std::vector<SceneAnswer>& answers);
+
 }  // namespace peclet::runner

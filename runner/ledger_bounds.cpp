@@ -1,0 +1,48 @@
+// The ledger's part in what a run may do: how many seeds, and for how much processor time.
+#include <algorithm>
+#include <utility>
+
+#include "runner/ledger.h"
+
+namespace peclet::runner {
+
+void Ledger::set_bounds(Bounds bounds) {
+  bounds_ = std::move(bounds);
+  apply_bounds();
+}
+
+void Ledger::apply_bounds() {
+  scheduler_->set_allocation(bounds_.budget_seconds ? Allocation::steepest_first : Allocation::longest_first);
+  scheduler_->set_ceiling(bounds_.ceiling.value_or(campaign_.maximum_realisations));
+  const bool work_is_known = std::all_of(points_.begin(), points_.end(), [&](const PointRecord& known) {
+    return bounds_.work.contains(known.hash);
+  });
+  for (int place = 0; place < scheduler_->points(); ++place) {
+    if (work_is_known) scheduler_->set_work(place, bounds_.work.at(point(place).hash));
+    tell_cost(place);
+  }
+}
+
+// Workers are occupied for the wall time of a seed; a budget is of processor time.
+void Ledger::tell_cost(int place) {
+  const Costs& costs = costs_[static_cast<std::size_t>(place)];
+  const Cost& cost = bounds_.budget_seconds ? costs.processor : costs.wall;
+  if (cost.count > 0) scheduler_->set_cost(place, cost.sum / cost.count);
+}
+
+void Ledger::add_cost(int place, std::optional<double> wall_seconds, std::optional<double> cpu_seconds) {
+  Costs& costs = costs_[static_cast<std::size_t>(place)];
+  if (wall_seconds) costs.wall.add(*wall_seconds);
+  if (cpu_seconds) costs.processor.add(*cpu_seconds);
+}
+
+std::optional<SeedId> Ledger::next() const {
+  if (!bounds_.budget_seconds) return scheduler_->next();
+  double left = *bounds_.budget_seconds - spent_seconds_;
+  for (int place = 0; place < scheduler_->points(); ++place) {
+    left -= running_[static_cast<std::size_t>(place)] * scheduler_->expected_seconds(place);
+  }
+  return scheduler_->next_within(left);
+}
+
+}  // namespace peclet::runner
