@@ -56,12 +56,15 @@ CountsByPoint read_flags(Connection& connection) {
                          " GROUP BY point_id, message");
 }
 
-int count_ended(Connection& connection, std::int64_t point, int end) {
+// Of the seeds that are wanted.
+void count_ended(Connection& connection, PointSummary& summary) {
   Statement query(connection,
-                  "SELECT count(*) FROM realisation WHERE point_id = ? AND seed < ? AND state IN ('done',"
+                  "SELECT count(*), total(cpu_seconds) FROM realisation WHERE point_id = ? AND seed < ? AND "
+                  "state IN ('done',"
                   " 'failed', 'quarantined')");
-  query.bind(point).bind(end).step();
-  return static_cast<int>(query.integer(0));
+  query.bind(summary.point.id).bind(summary.wanted).step();
+  summary.wanted_ended = static_cast<int>(query.integer(0));
+  summary.wanted_cpu_seconds = query.real(1);
 }
 
 }  // namespace
@@ -72,6 +75,7 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
   CountsByPoint losses = read_losses(connection);
   CountsByPoint flags = read_flags(connection);
   const bool any_apart = connection.integer("SELECT count(*) FROM point WHERE kept_apart = 1") > 0;
+  const std::map<std::int64_t, StoredPrediction> predictions = stored_predictions(connection);
   const std::vector<int> schedule = look_schedule(target.minimum, target.maximum);
 
   std::vector<PointSummary> summaries;
@@ -87,10 +91,13 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
     summary.decided = !summary.looks.empty() && summary.looks.back().verdict != Verdict::more;
     const int seen = summary.looks.empty() ? 0 : summary.looks.back().seeds;
     summary.wanted = summary.decided ? seen : *std::upper_bound(schedule.begin(), schedule.end() - 1, seen);
-    summary.wanted_ended = count_ended(connection, point.id, summary.wanted);
+    if (const auto known = predictions.find(point.id); known != predictions.end()) {
+      summary.prediction = known->second;
+    }
     if (summary.counts.running > 0) summary.leases = database.leases(point.id);
     if (any_apart) summary.kept_apart = database.kept_apart(point.hash);
     summary.point = std::move(point);
+    count_ended(connection, summary);
     summaries.push_back(std::move(summary));
   }
   return summaries;

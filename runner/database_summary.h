@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runner/database.h"
+#include "runner/prediction_book.h"
 
 namespace peclet::runner {
 
@@ -19,9 +20,11 @@ struct PointSummary {
   std::vector<Look> looks;            // for the present target
   double confidence = 0.95;           // of its intervals
   bool decided = false;
-  std::vector<KeptApart> kept_apart;  // results of other engines
-  int wanted = 0;                     // seeds of the next look; of a decided point those of the deciding one
-  int wanted_ended = 0;               // of these, how many have ended
+  std::vector<KeptApart> kept_apart{};  // results of other engines
+  int wanted = 0;                 // seeds of the next look; of a decided point those of the deciding one
+  int wanted_ended = 0;           // of these, how many have ended
+  double wanted_cpu_seconds = 0;  // that these took
+  std::optional<StoredPrediction> prediction{};
   std::vector<LeaseRecord> leases;
 
   // Neither decided nor cancelled.

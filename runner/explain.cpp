@@ -11,6 +11,7 @@
 #include "runner/forecast.h"
 #include "runner/number_text.h"
 #include "runner/point_name.h"
+#include "runner/prediction_text.h"
 #include "runner/status.h"
 #include "runner/text_table.h"
 
@@ -165,6 +166,7 @@ std::string explain(Database& database, const CampaignDirectory& directory, cons
     text += fmt::format("{}  ({})\n", summary.point.label, summary.point.hash.substr(0, 12));
     text += fmt::format("  {}: {}\n", verdict_text(summary), reason(summary, target.target));
     text += looks_table(summary.looks, target.target);
+    text += prediction_text(summary);
     text += estimate_text(database, summary, target);
     text += losses_text(database, summary.point.id);
     text += attempts_text(database, summary.point.id);

@@ -35,10 +35,7 @@ int perform(const ValidateOptions& options) {
   return 0;
 }
 
-int perform(const PlanOptions& options) {
-  print(plan_campaign(options));
-  return 0;
-}
+int perform(const PlanOptions& options) { return plan_campaign(options); }
 
 int perform(const RunOptions& options) { return run_campaign(options); }
 

@@ -185,10 +185,19 @@ class Reader {
   }
 
   void add_plan() {
-    CLI::App* const verb = add_verb("plan", "Say how much work a campaign may be; writes nothing",
-                                    "peclet plan flow-curve.json");
-    add_file(verb, plan_.campaign);
-    add_directory(verb, plan_.directory);
+    CLI::App* const verb = add_verb(
+        "plan", "Say how much work a campaign is: seeds, hours, finish; writes nothing without --pilot",
+        "peclet plan flow-curve.json --pilot 4 --workers 8");
+    add_file(verb, plan_.run.campaign);
+    add_directory(verb, plan_.run.directory);
+    verb->add_option("--pilot", plan_.pilot,
+                     "Run the first seeds of every point, 4 unless given, which count later as any others; "
+                     "predict from them, and store that for `status` to judge")
+        ->expected(0, 1)
+        ->default_str("4");
+    add_team(verb, plan_.run);
+    verb->add_flag("--quiet", plan_.run.quiet, "No progress on stderr");
+    verb->add_flag("--force", plan_.run.force, "Use a network file system all the same, at your own risk");
     verb->add_flag("--json", plan_.json, "For programs");
     choose(verb, plan_);
   }

@@ -1,136 +1,140 @@
 #include "runner/plan.h"
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <cmath>
-
-#include "runner/campaign_directory.h"
-#include "runner/database_summary.h"
-#include "runner/number_text.h"
-#include "runner/point_columns.h"
-#include "runner/scene_check.h"
-#include "runner/text_table.h"
 
 namespace peclet::runner {
 namespace {
 
-constexpr double seconds_per_hour = 3600;
-
-double hours(const PointPlan& point, int seeds) { return point.cost.cpu_seconds * seeds / seconds_per_hour; }
-
-double total_hours(const Plan& plan, int seeds) {
-  double total = 0;
-  for (const PointPlan& point : plan.points) total += hours(point, seeds);
-  return total;
-}
-
-std::string cost_text(const MeasuredCost& cost) {
-  if (std::isnan(cost.cpu_seconds)) return "-";
-  return cost.count > 0 ? fmt::format("{} ({})", rough(cost.cpu_seconds), cost.count)
-                        : "~" + rough(cost.cpu_seconds);
-}
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-std::map<std::string, MeasuredCost> measured_costs(const CampaignDirectory& directory) {
-  std::map<std::string, MeasuredCost> measured;
-  if (!std::filesystem::exists(directory.database())) return measured;
-  Database database = Database::open_reader(directory.database());
-  for (const PointSummary& point : summarise_points(database, database.campaign().target)) {
-    // A seed that was given up took time too, but nobody counted it.
-    const int count = point.counts.done + point.counts.failed;
-    if (count > 0) measured[point.point.hash] = {count, point.counts.cpu_seconds / count};
+// Of one point that is decided or has a prediction, for every place in the schedule at which it may stop.
+class Ahead {
+ public:
+  Ahead(const PointPlan& point, const std::vector<int>& schedule, int workers) : point_(point) {
+    int seeds = point.ended;
+    double rounds = 0;
+    for (const int look : schedule) {
+      rounds += std::ceil(std::max(0.0, static_cast<double>(look - seeds)) / workers);
+      seeds = std::max(seeds, look);
+      seeds_.push_back(seeds);
+      rounds_.push_back(rounds);
+    }
   }
-  return measured;
+
+  int seeds(std::size_t future) const { return point_.decided ? point_.ended : seeds_[place(future)]; }
+  int to_come(std::size_t future) const { return seeds(future) - point_.ended; }
+  double chain_seconds(std::size_t future) const {
+    return point_.decided ? 0 : rounds_[place(future)] * point_.cost.wall_seconds;
+  }
+  const MeasuredCost& cost() const { return point_.cost; }
+
+ private:
+  std::size_t place(std::size_t future) const {
+    return std::min(seeds_.size() - 1, static_cast<std::size_t>(point_.places[future]));
+  }
+
+  const PointPlan& point_;
+  std::vector<int> seeds_;      // that will have ended
+  std::vector<double> rounds_;  // of all workers until then
+};
+
+Totals totals_of(const Plan& plan) {
+  Totals totals;
+  const std::vector<int> schedule = look_schedule(plan.minimum, plan.maximum);
+  std::vector<Ahead> points;
+  for (const PointPlan& point : plan.points) {
+    const bool counts = point.is_predicted() || (point.decided && std::isfinite(point.cost.cpu_seconds));
+    if (!counts) continue;
+    points.emplace_back(point, schedule, plan.workers);
+    totals.predicted += point.is_predicted() ? 1 : 0;
+    totals.likely_capped += point.is_predicted() && point.prediction.capped > 0.5 ? 1 : 0;
+  }
+  totals.points = static_cast<int>(points.size());
+  std::vector<double> seeds(futures), cpu(futures), cpu_to_come(futures), wall(futures);
+  for (std::size_t future = 0; future < futures; ++future) {
+    double work = 0, longest = 0;
+    for (const Ahead& point : points) {
+      seeds[future] += point.seeds(future);
+      cpu[future] += point.seeds(future) * point.cost().cpu_seconds;
+      cpu_to_come[future] += point.to_come(future) * point.cost().cpu_seconds;
+      work += point.to_come(future) * point.cost().wall_seconds;
+      longest = std::max(longest, point.chain_seconds(future));
+    }
+    wall[future] = std::max(work / plan.workers, longest);
+  }
+  totals.seeds = middle(std::move(seeds));
+  totals.cpu_seconds = middle(std::move(cpu));
+  totals.cpu_seconds_to_come = middle(std::move(cpu_to_come));
+  totals.wall_seconds_to_come = middle(std::move(wall));
+  return totals;
+}
+
+// Looks at what is known as a run for the campaign's target would.
+void predict_point(PointPlan& point, const Campaign& campaign,
+                   const std::vector<std::optional<Outcome>>& outcomes, std::uint64_t stream) {
+  const std::vector<Look> looks =
+      replay_looks(outcomes, campaign.target, campaign.minimum_realisations, campaign.maximum_realisations);
+  if (!looks.empty() && looks.back().verdict != Verdict::more) {
+    point.decided = looks.back();
+    point.ended = looks.back().seeds;
+    return;
+  }
+  point.ended = static_cast<int>(std::count_if(outcomes.begin(), outcomes.end(),
+                                               [](const auto& outcome) { return outcome.has_value(); }));
+  point.prediction = predict(outcomes, campaign.target, campaign.minimum_realisations,
+                             campaign.maximum_realisations, stream);
+}
+
+// Futures in which the points are predicted together.
+void draw_futures(Plan& plan, const Campaign& campaign, const std::map<std::string, PointHistory>& known) {
+  std::vector<Share> shares;
+  for (const PointPlan& point : plan.points) {
+    const Prediction& made = point.prediction;
+    if (!point.is_predicted() || made.seeds.lower == made.seeds.upper) continue;
+    shares.push_back({made.seeds.likely * point.cost.cpu_seconds, made.pilot - made.lost});
+  }
+  const std::vector<double> factors = common_factors(shares);
+  for (std::size_t i = 0; i < plan.points.size(); ++i) {
+    PointPlan& point = plan.points[i];
+    if (!point.is_predicted()) continue;
+    point.places = places_of_looks(known.at(campaign.points[i].hash).outcomes, campaign.target,
+                                   campaign.minimum_realisations, campaign.maximum_realisations, i, factors);
+  }
 }
 
 }  // namespace
 
+bool PointPlan::is_predicted() const { return !decided && obstacle().empty(); }
+
+std::string PointPlan::obstacle() const {
+  if (decided) return "";
+  if (prediction.obstacle != Obstacle::none) return obstacle_text(prediction);
+  return cost.count > 0 ? "" : "its seeds do not say what they cost";
+}
+
 Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_steps,
-               const std::map<std::string, MeasuredCost>& measured) {
-  Plan plan{campaign.name, campaign.minimum_realisations, campaign.maximum_realisations, {}};
-  double known_seconds = 0, known_steps = 0;
+               const std::map<std::string, PointHistory>& known, int workers) {
+  Plan plan{campaign.name, campaign.minimum_realisations, campaign.maximum_realisations, workers};
+  MeasuredCost all;  // per particle-step
+  double known_steps = 0;
   for (std::size_t i = 0; i < campaign.points.size(); ++i) {
     PointPlan point{campaign.points[i].label, particle_steps[i], {}};
-    const auto found = measured.find(campaign.points[i].hash);
-    if (found != measured.end()) {
-      point.cost = found->second;
-      known_seconds += point.cost.cpu_seconds * point.cost.count;
-      known_steps += point.particle_steps * point.cost.count;
-    }
-    plan.points.push_back(point);
+    const auto found = known.find(campaign.points[i].hash);
+    const PointHistory history = found == known.end() ? PointHistory{} : found->second;
+    point.cost = history.cost;
+    all.cpu_seconds += point.cost.cpu_seconds * point.cost.count;
+    all.wall_seconds += point.cost.wall_seconds * point.cost.count;
+    known_steps += point.particle_steps * point.cost.count;
+    predict_point(point, campaign, history.outcomes, i);
+    plan.points.push_back(std::move(point));
   }
   for (PointPlan& point : plan.points) {
-    if (point.cost.count == 0) {
-      point.cost.cpu_seconds =
-          known_steps > 0 ? known_seconds / known_steps * point.particle_steps : std::nan("");
-    }
+    if (point.cost.count > 0) continue;
+    const double share = known_steps > 0 ? point.particle_steps / known_steps : std::nan("");
+    point.cost = {0, all.cpu_seconds * share, all.wall_seconds * share};
   }
+  draw_futures(plan, campaign, known);
+  plan.totals = totals_of(plan);
   return plan;
-}
-
-std::string plan_text(const Plan& plan) {
-  std::vector<std::string> labels;
-  for (const PointPlan& point : plan.points) labels.push_back(point.label);
-  const PointColumns columns(labels);
-  TextTable table;
-  columns.add_to(table);
-  table.add_column("particle-steps/seed");
-  table.add_column("CPU s/seed");
-  table.add_column(fmt::format("CPU h, {} seeds", plan.minimum));
-  table.add_column(fmt::format("CPU h, {} seeds", plan.maximum));
-  double steps = 0;
-  const auto add_row = [&](std::vector<std::string> row, const std::vector<std::string>& rest) {
-    row.insert(row.end(), rest.begin(), rest.end());
-    table.add_row(std::move(row));
-  };
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    const PointPlan& point = plan.points[i];
-    add_row(columns.cells(i), {rough(point.particle_steps), cost_text(point.cost),
-                               rough(hours(point, plan.minimum)), rough(hours(point, plan.maximum))});
-    steps += point.particle_steps;
-  }
-  std::vector<std::string> all(columns.count());
-  all.front() = "all";
-  add_row(all,
-          {rough(steps), "", rough(total_hours(plan, plan.minimum)), rough(total_hours(plan, plan.maximum))});
-  const bool unknown = std::isnan(total_hours(plan, 1));
-  return fmt::format("{}: {} points, {} to {} seeds each\n\n{}\n{}", plan.campaign, plan.points.size(),
-                     plan.minimum, plan.maximum, table.text(),
-                     unknown
-                         ? "-: not known before a seed has ended\n"
-                         : "CPU seconds per seed: mean (of so many seeds); ~: scaled from other points by "
-                           "particle-steps\n");
-}
-
-Json plan_json(const Plan& plan) {
-  Json points = Json::array();
-  for (const PointPlan& point : plan.points) {
-    points.push_back({{"label", point.label},
-                      {"particle_steps", point.particle_steps},
-                      {"measured_seeds", point.cost.count},
-                      {"cpu_seconds_per_seed", number(point.cost.cpu_seconds)},
-                      {"cpu_hours_minimum", number(hours(point, plan.minimum))},
-                      {"cpu_hours_maximum", number(hours(point, plan.maximum))}});
-  }
-  return {{"schema_version", 1},
-          {"campaign", plan.campaign},
-          {"realisations", {{"minimum", plan.minimum}, {"maximum", plan.maximum}}},
-          {"points", points},
-          {"cpu_hours_minimum", number(total_hours(plan, plan.minimum))},
-          {"cpu_hours_maximum", number(total_hours(plan, plan.maximum))}};
-}
-
-std::string plan_campaign(const PlanOptions& options) {
-  const Campaign campaign = read_campaign(options.campaign);
-  std::vector<double> particle_steps;
-  for (const SceneAnswer& answer :
-       check_scenes(campaign, options.campaign, resolve_engine(campaign, options.campaign))) {
-    particle_steps.push_back(answer.steps * static_cast<double>(answer.particles));
-  }
-  const Plan plan = make_plan(campaign, particle_steps,
-                              measured_costs(campaign_directory(options.campaign, options.directory)));
-  return options.json ? plan_json(plan).dump(2) + '\n' : plan_text(plan);
 }
 
 }  // namespace peclet::runner

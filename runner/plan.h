@@ -1,19 +1,23 @@
-// The verb `peclet plan`: what a campaign may cost.
+// The verb `peclet plan`: what a campaign may cost, and with a pilot what it will.
 #pragma once
 
+#include <ctime>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "contract/json.h"
 #include "runner/campaign.h"
+#include "runner/prediction.h"
+#include "runner/run.h"
 
 namespace peclet::runner {
 
 struct PlanOptions {
-  std::filesystem::path campaign;
-  std::filesystem::path directory;
+  RunOptions run;            // of the pilot; its workers are those that the campaign is planned for
+  std::optional<int> pilot;  // seeds of each point to run first; none: nothing is run and nothing written
   bool json = false;
 };
 
@@ -21,29 +25,59 @@ struct PlanOptions {
 struct MeasuredCost {
   int count = 0;
   double cpu_seconds = 0;  // of one
+  double wall_seconds = 0;
+};
+
+// What the database knows of a point.
+struct PointHistory {
+  MeasuredCost cost;
+  std::vector<std::optional<Outcome>> outcomes{};  // of the campaign's observable, else none
 };
 
 struct PointPlan {
   std::string label;
   double particle_steps = 0;  // of one realisation
   MeasuredCost cost;          // cpu_seconds is NaN when nothing is known; count 0: scaled from other points
+  int ended = 0;              // seeds of the looks up to the deciding one, or so far
+  std::optional<Look> decided{};
+  Prediction prediction{};    // of a point that is not decided
+  std::vector<int> places{};  // of its deciding look in the schedule, in the futures of the sums
+
+  // Nothing is expected of a point that is decided, and nothing is known of one with an obstacle.
+  bool is_predicted() const;
+  // Why there is no prediction, in words; nothing for one that has it or needs none.
+  std::string obstacle() const;
+};
+
+// Of the points that are predicted or decided, in seconds. What is still to come takes
+//   max(sum over the points of seeds to come * wall time of one / workers,
+//       the largest sum over the looks to come of a point of ceil(seeds of the look / workers) * wall time)
+// with the workers, since a look waits for all its seeds.
+struct Totals {
+  int points = 0, predicted = 0, likely_capped = 0;
+  Expected<double> seeds, cpu_seconds, cpu_seconds_to_come, wall_seconds_to_come;
 };
 
 struct Plan {
   std::string campaign;
   int minimum = 0, maximum = 0;  // seeds of a point
-  std::vector<PointPlan> points;
+  int workers = 1;
+  std::time_t made_at = 0;
+  std::vector<PointPlan> points{};
+  Totals totals{};
 };
 
 // A point without a realisation of its own is taken to need as much time per particle-step as all the others
-// together. Points are matched with `measured` by hash.
+// together. Points are matched with `known` by hash.
 Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_steps,
-               const std::map<std::string, MeasuredCost>& measured);
+               const std::map<std::string, PointHistory>& known, int workers);
 
 std::string plan_text(const Plan& plan);
 Json plan_json(const Plan& plan);
 
-// Asks the engine how long the realisations are, and the database, if there is one, what they cost.
-std::string plan_campaign(const PlanOptions& options);
+// Asks the engine how long the realisations are, and the database, if there is one, what they cost; with a
+// pilot runs it first and stores its predictions. Prints the plan; returns 0, or as run_pilot(). Throws as
+// run_campaign().
+int plan_campaign(const PlanOptions& options);
 
 }  // namespace peclet::runner

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runner/prediction_text.h"
+
 namespace peclet::runner {
 namespace {
 
@@ -61,6 +63,7 @@ Json point_json(const PointSummary& point) {
           {"so_far", estimate_json(point.so_far)},
           {"look", point.looks.empty() ? Json(nullptr) : look_json(point.looks.back())},
           {"cpu_seconds", counts.cpu_seconds},
+          {"prediction", prediction_json(point)},
           {"workers", workers}};
 }
 

@@ -6,6 +6,7 @@
 
 #include "runner/number_text.h"
 #include "runner/point_columns.h"
+#include "runner/prediction_text.h"
 #include "runner/progress.h"
 #include "runner/status.h"
 #include "runner/text_table.h"
@@ -136,7 +137,7 @@ std::string status_table(const CampaignStatus& status) {
     table.add_row(std::move(row));
   }
   return heading(status) + table.text() + '\n' + legend(status, with_control) + '\n' + point_totals(status) +
-         seed_totals(status) + kept_apart_text(status);
+         seed_totals(status) + kept_apart_text(status) + predictions_text(status.points);
 }
 
 std::string status_table(Database& database) { return status_table(read_status(database)); }

@@ -18,9 +18,9 @@ namespace peclet::runner {
 namespace {
 
 // As main.cpp does it.
-int run_as_program(const RunOptions& options) {
+int run_as_program(const RunOptions& options, std::optional<int> pilot) {
   try {
-    return run_campaign(options);
+    return pilot ? plan_campaign({options, pilot}) : run_campaign(options);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return exit_code_of(error);
@@ -53,7 +53,7 @@ void CampaignOnDisk::start(const Environment& environment) {
   dup2(log, STDOUT_FILENO);
   dup2(log, STDERR_FILENO);
   for (const auto& [name, value] : environment) setenv(name.c_str(), value.c_str(), 1);
-  const int code = run_as_program(options);
+  const int code = run_as_program(options, pilot);
   std::fflush(nullptr);
   _exit(code);
 }

@@ -6,11 +6,12 @@
 #include <chrono>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "contract/json.h"
 #include "runner/database.h"
-#include "runner/run.h"
+#include "runner/plan.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {
@@ -24,6 +25,7 @@ class CampaignOnDisk {
 
   Json document;  // written at each start
   RunOptions options;
+  std::optional<int> pilot;  // of `peclet plan --pilot`, which is then run instead
 
   // Starts a run in a child process; finish() waits for it.
   void start(const Environment& environment = {});

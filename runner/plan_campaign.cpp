@@ -1,0 +1,103 @@
+// The verb `peclet plan`: the pilot is run, the plan made of what the database has, and told.
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <system_error>
+
+#include "contract/input_error.h"
+#include "runner/campaign_directory.h"
+#include "runner/database.h"
+#include "runner/plan.h"
+#include "runner/prediction_book.h"
+#include "runner/scene_check.h"
+
+namespace peclet::runner {
+namespace {
+
+MeasuredCost cost_of(const std::vector<RealisationRecord>& realisations) {
+  MeasuredCost cost;
+  for (const RealisationRecord& record : realisations) {
+    // A seed that was given up took time too, but nobody counted it.
+    if (!record.cpu_seconds) continue;
+    ++cost.count;
+    cost.cpu_seconds += *record.cpu_seconds;
+    cost.wall_seconds += record.wall_seconds.value_or(*record.cpu_seconds);
+  }
+  if (cost.count == 0) return cost;
+  cost.cpu_seconds /= cost.count;
+  cost.wall_seconds /= cost.count;
+  return cost;
+}
+
+std::map<std::string, PointHistory> history(Database& database, const Campaign& campaign) {
+  const bool same_observable = database.campaign().target.target.observable == campaign.target.observable;
+  std::map<std::string, PointHistory> known;
+  for (const PointRecord& point : database.points()) {
+    PointHistory& of = known[point.hash];
+    of.cost = cost_of(database.realisations(point.id));
+    if (same_observable) of.outcomes = database.outcomes(point.id);
+  }
+  return known;
+}
+
+void store_predictions(const Plan& plan, Database& database) {
+  Transaction booking(database.connection());
+  const std::vector<PointRecord> points = database.points();
+  for (std::size_t place = 0; place < points.size(); ++place) {
+    const PointPlan& point = plan.points.at(place);
+    if (!point.is_predicted()) continue;
+    store_prediction(database.connection(), points[place].id, point.prediction, point.cost.cpu_seconds);
+  }
+  booking.commit();
+}
+
+void print(const Plan& plan, bool json) {
+  const std::string text = json ? plan_json(plan).dump(2) + '\n' : plan_text(plan);
+  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
+    throw std::system_error(errno, std::generic_category(), "standard output");
+  }
+}
+
+Plan plan_of(const Campaign& campaign, const std::vector<SceneAnswer>& scenes,
+             const std::map<std::string, PointHistory>& known, const RunOptions& options) {
+  std::vector<double> work;
+  for (const SceneAnswer& answer : scenes)
+    work.push_back(answer.steps * static_cast<double>(answer.particles));
+  Plan plan = make_plan(campaign, work, known, team(options).workers);
+  plan.made_at = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  return plan;
+}
+
+}  // namespace
+
+int plan_campaign(const PlanOptions& options) {
+  const std::filesystem::path& file = options.run.campaign;
+  const Campaign campaign = read_campaign(file);
+  if (options.pilot && (*options.pilot < 2 || *options.pilot > campaign.minimum_realisations)) {
+    throw InputError("--pilot", "", fmt::format("{}", *options.pilot),
+                     fmt::format("must be an integer from 2 to /realisations/minimum of {}, {}",
+                                 file.string(), campaign.minimum_realisations));
+  }
+  if (options.pilot) {
+    return run_pilot(options.run, *options.pilot, [&](const ClaimedCampaign& claimed, Database& database) {
+      const Plan plan =
+          plan_of(claimed.campaign, claimed.scenes, history(database, claimed.campaign), options.run);
+      store_predictions(plan, database);
+      print(plan, options.json);
+    });
+  }
+  const CampaignDirectory directory = campaign_directory(file, options.run.directory);
+  std::map<std::string, PointHistory> known;
+  if (std::filesystem::exists(directory.database())) {
+    Database database = Database::open_reader(directory.database());
+    known = history(database, campaign);
+  }
+  print(plan_of(campaign, check_scenes(campaign, file, resolve_engine(campaign, file)), known, options.run),
+        options.json);
+  return 0;
+}
+
+}  // namespace peclet::runner
