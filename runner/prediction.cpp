@@ -191,6 +191,7 @@ std::vector<int> places_of_looks(const std::vector<std::optional<Outcome>>& outc
                                  const std::vector<double>& factors) {
   Futures drawn(pilot_of(outcomes, maximum), target, minimum, maximum, stream);
   std::vector<int> places;
+  places.reserve(factors.size());
   for (const double factor : factors) places.push_back(drawn.draw(factor));
   return places;
 }

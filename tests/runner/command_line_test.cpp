@@ -62,12 +62,26 @@ class CommandLine : public testing::Test {
 
 TEST_F(CommandLine, FaultsOfUsageAreExitCodeTwo) {
   write();
-  for (const char* const arguments :
-       {"", "stauts small.json", "status", "run small.json --workers 0", "validate",
-        "export small.json --json --csv", "run small.json --time-limit -1", "status absent.json",
-        "explain small.json", "export .", "set absent.json", "set small.json --tolerance 5",
-        "set small.json --priority 3", "set small.json --minimum ten", "cancel small.json",
-        "cancel small.json peclet=1", "retry small.json", "retry small.json --seed -1"}) {
+  for (const char* const arguments : {"",
+                                      "stauts small.json",
+                                      "status",
+                                      "run small.json --workers 0",
+                                      "validate",
+                                      "export small.json --json --csv",
+                                      "run small.json --time-limit -1",
+                                      "run small.json --budget 0",
+                                      "plan small.json --pilot x",
+                                      "status absent.json",
+                                      "explain small.json",
+                                      "export .",
+                                      "set absent.json",
+                                      "set small.json --tolerance 5",
+                                      "set small.json --priority 3",
+                                      "set small.json --minimum ten",
+                                      "cancel small.json",
+                                      "cancel small.json peclet=1",
+                                      "retry small.json",
+                                      "retry small.json --seed -1"}) {
     const Answer answer = peclet(arguments);
     EXPECT_EQ(answer.code, 2) << arguments << ": " << answer.text;
     EXPECT_FALSE(answer.text.empty()) << arguments;

@@ -71,6 +71,13 @@ TEST(Progress, SaysDurationsAsPeopleDo) {
   EXPECT_EQ(duration_text(187200), "2 d 4 h");
 }
 
+TEST(Progress, LineHoldsTheBudget) {
+  RunReport report;
+  report.spent_seconds = 1800;
+  report.budget_seconds = 7200;
+  EXPECT_EQ(progress_line(report), "points 0/0 converged | seeds 0/0 | budget 0.5 of 2 h");
+}
+
 TEST(Progress, LineHoldsPointsSeedsRateAndTimeToGo) {
   RunReport report;
   report.points = 6;
