@@ -276,6 +276,7 @@ TEST_F(CarryingOut, WhatIsNoRequestIsSetAside) {
 
 TEST_F(CarryingOut, RequestsAreInOrderOfTime) {
   std::vector<std::string> names;
+  names.reserve(50);
   for (int i = 0; i < 50; ++i)
     names.push_back(write_request(directory_, Cancel{{"peclet=1"}, i % 2 == 0}).name);
   std::vector<std::string> sorted = names;
