@@ -114,6 +114,8 @@ int perform(const DoctorOptions& options) {
   return diagnosis.exit_code;
 }
 
+int perform(const StudyOptions& options) { return perform_study(options); }
+
 int perform(const CompletionOptions& options) {
   return deliver(completion(command_tree(), options.shell), options.output);
 }

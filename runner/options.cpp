@@ -58,6 +58,7 @@ class Reader {
     add_backup();
     add_restore();
     add_doctor();
+    add_study();
     add_completion();
     add_manual();
   }
@@ -472,6 +473,27 @@ class Reader {
     choose(verb, doctor_);
   }
 
+  void add_study() {
+    CLI::App* const verb = add_verb("study", "List the studies of published statements, or make one again",
+                                    "peclet study pair-potential --quick");
+    CLI::Option* const name =
+        verb->add_option("study", study_.name, "Which; the list unless given")->type_name("STUDY");
+    verb->add_flag("--list", "List them with their verdicts, as without a name")->excludes(name);
+    verb->add_flag("--quick", study_.quick, "Half a minute of it, which fails where the physics is broken")
+        ->needs(name);
+    verb->add_flag("--json", study_.json, "The list, for programs")->excludes(name);
+    verb->add_option(
+            "--folder", study_.folder,
+            "Folder of the study's campaigns, with which a second call goes on; a temporary one unless "
+            "given")
+        ->type_name(value_name::folder)
+        ->needs(name);
+    verb->add_option("--results", study_.results,
+                     "Folder of the studies; that of the source tree unless given")
+        ->type_name(value_name::folder);
+    choose(verb, study_);
+  }
+
   void add_completion() {
     CLI::App* const verb =
         add_verb("completion", "Print a script with which a shell completes verbs, options and files",
@@ -520,6 +542,7 @@ class Reader {
   BackupOptions backup_;
   RestoreOptions restore_;
   DoctorOptions doctor_;
+  StudyOptions study_;
   CompletionOptions completion_;
   ManualOptions manual_;
 };

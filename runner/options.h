@@ -22,6 +22,7 @@
 #include "runner/run.h"
 #include "runner/set.h"
 #include "runner/status.h"
+#include "runner/study.h"
 #include "runner/validate.h"
 #include "runner/watch.h"
 
@@ -30,7 +31,7 @@ namespace peclet::runner {
 using Verb = std::variant<InitOptions, ValidateOptions, PlanOptions, RunOptions, StatusOptions, WatchOptions,
                           ExplainOptions, ExportOptions, ReportOptions, BackupOptions, RestoreOptions,
                           DoctorOptions, HandOverOptions, IngestOptions, TaskOptions, SetOptions,
-                          CancelOptions, RetryOptions, CompletionOptions, ManualOptions>;
+                          CancelOptions, RetryOptions, CompletionOptions, ManualOptions, StudyOptions>;
 
 struct CommandLine {
   std::optional<Verb> verb;  // nothing: there is nothing left to do but to leave with

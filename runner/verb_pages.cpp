@@ -138,6 +138,15 @@ Seeds are given up after three failures that were their own: crashes, or no prog
 called failed (an overlap, a step too large) would fail again, and is not retried.
 )",
                      {}, {0, 1, 2, 4, 6})},
+      {"study",
+       page(R"(
+A study remakes published figures with error bars and answers each published statement with a number and a
+criterion that can fail. The list shows what was found, when and at what cost; a study takes minutes to hours,
+its quick form half a minute.
+)",
+            {{"peclet study --list", "all of them, with their verdicts"},
+             {"peclet study zero-shear --folder /scratch/zero-shear", "hours, which may be interrupted"}},
+            {0, 1, 2})},
       {"backup", page(R"(
 `peclet run` makes such backups by itself; this makes one now, or elsewhere. The copy is checked before
 it takes the place of the one before.
