@@ -39,8 +39,7 @@ class OtherEngine : public IntegrityError {
 struct Bounds {
   std::optional<int> ceiling{};            // only so many seeds of each point
   std::optional<double> budget_seconds{};  // processor time
-  // Of a realisation, in any unit, by the hash of its point; used when it is known of all points.
-  std::map<std::string, double> work{};
+  std::map<std::string, double> work{};    // of a realisation, in any unit, by the point's hash
 };
 
 class Ledger {

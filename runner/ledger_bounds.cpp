@@ -1,5 +1,4 @@
 // The ledger's part in what a run may do: how many seeds, and for how much processor time.
-#include <algorithm>
 #include <utility>
 
 #include "runner/ledger.h"
@@ -14,11 +13,13 @@ void Ledger::set_bounds(Bounds bounds) {
 void Ledger::apply_bounds() {
   scheduler_->set_allocation(bounds_.budget_seconds ? Allocation::steepest_first : Allocation::longest_first);
   scheduler_->set_ceiling(bounds_.ceiling.value_or(campaign_.maximum_realisations));
-  const bool work_is_known = std::all_of(points_.begin(), points_.end(), [&](const PointRecord& known) {
-    return bounds_.work.contains(known.hash);
-  });
+  // A point whose work is not known is taken for an average one.
+  double all = 0;
+  for (const auto& [hash, work] : bounds_.work) all += work;
+  const double average = bounds_.work.empty() ? 1 : all / static_cast<double>(bounds_.work.size());
   for (int place = 0; place < scheduler_->points(); ++place) {
-    if (work_is_known) scheduler_->set_work(place, bounds_.work.at(point(place).hash));
+    const auto known = bounds_.work.find(point(place).hash);
+    scheduler_->set_work(place, known == bounds_.work.end() ? average : known->second);
     tell_cost(place);
   }
 }
