@@ -64,6 +64,7 @@ void print(const Plan& plan, bool json) {
 Plan plan_of(const Campaign& campaign, const std::vector<SceneAnswer>& scenes,
              const std::map<std::string, PointHistory>& known, const RunOptions& options) {
   std::vector<double> work;
+  work.reserve(scenes.size());
   for (const SceneAnswer& answer : scenes)
     work.push_back(answer.steps * static_cast<double>(answer.particles));
   Plan plan = make_plan(campaign, work, known, team(options).workers);
