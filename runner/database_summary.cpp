@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace peclet::runner {
@@ -10,26 +11,59 @@ namespace {
 struct Aggregate {
   StateCounts counts;
   Estimate so_far{0, std::nan(""), std::nan("")};
+  std::vector<int> ended;       // seeds, in order
+  std::vector<double> seconds;  // of processor time that each of these took
+  double squares = 0;           // of the differences from the mean
+
+  void count(SeedState state, int seed, double cpu_seconds) {
+    switch (state) {
+      case SeedState::queued:
+        ++counts.queued;
+        return;
+      case SeedState::running:
+        ++counts.running;
+        return;
+      case SeedState::done:
+        ++counts.done;
+        break;
+      case SeedState::failed:
+        ++counts.failed;
+        break;
+      case SeedState::quarantined:
+        ++counts.quarantined;
+        break;
+    }
+    ended.push_back(seed);
+    seconds.push_back(cpu_seconds);
+    counts.cpu_seconds += cpu_seconds;
+  }
+  // Welford's update, so that the spread does not drown in a large mean.
+  void add(double value) {
+    const double before = so_far.count == 0 ? 0 : so_far.mean;
+    so_far.mean = before + (value - before) / ++so_far.count;
+    squares += (value - before) * (value - so_far.mean);
+    if (so_far.count >= 2) so_far.standard_error = std::sqrt(squares / (so_far.count - 1) / so_far.count);
+  }
+  double seconds_of_first(int count) const {
+    return std::accumulate(seconds.begin(), seconds.begin() + count, 0.0);
+  }
+  int ended_below(int seed) const {
+    return static_cast<int>(std::lower_bound(ended.begin(), ended.end(), seed) - ended.begin());
+  }
 };
 
-// Two passes over the values, so that their spread does not drown in a large mean.
+// One pass over the seeds in the order in which they are stored: of a large campaign it is what takes the
+// time.
 std::map<std::int64_t, Aggregate> read_aggregates(Connection& connection) {
   Statement query(connection,
-                  "WITH controlled AS (SELECT *, value + coalesce(control, 0) AS estimated FROM realisation) "
-                  "SELECT r.point_id, sum(state = 'queued'), sum(state = 'running'), sum(state = 'done'),"
-                  " sum(state = 'failed'), sum(state = 'quarantined'), total(cpu_seconds), count(estimated),"
-                  " mean, sum((estimated - mean) * (estimated - mean))"
-                  " FROM controlled r JOIN (SELECT point_id, avg(estimated) AS mean FROM controlled GROUP BY"
-                  " point_id) USING (point_id) GROUP BY r.point_id");
+                  "SELECT point_id, seed, state, value + coalesce(control, 0), cpu_seconds FROM realisation "
+                  "ORDER BY point_id, seed");
   std::map<std::int64_t, Aggregate> aggregates;
   while (query.step()) {
     Aggregate& aggregate = aggregates[query.integer(0)];
-    const auto count = [&](int column) { return static_cast<int>(query.integer(column)); };
-    aggregate.counts = {count(1), count(2), count(3), count(4), count(5), query.real(6)};
-    aggregate.so_far.count = count(7);
-    aggregate.so_far.mean = query.real(8);
-    const double values = query.real(7);
-    if (values >= 2) aggregate.so_far.standard_error = std::sqrt(query.real(9) / (values - 1) / values);
+    aggregate.count(seed_state(query.text(2)), static_cast<int>(query.integer(1)),
+                    query.optional_real(4).value_or(0));
+    if (!query.is_null(3)) aggregate.add(query.real(3));
   }
   return aggregates;
 }
@@ -54,17 +88,6 @@ CountsByPoint read_flags(Connection& connection) {
   return counts_by_point(connection,
                          "SELECT point_id, message, count(DISTINCT seed) FROM event WHERE kind = 'flag'"
                          " GROUP BY point_id, message");
-}
-
-// Of the seeds that are wanted.
-void count_ended(Connection& connection, PointSummary& summary) {
-  Statement query(connection,
-                  "SELECT count(*), total(cpu_seconds) FROM realisation WHERE point_id = ? AND seed < ? AND "
-                  "state IN ('done',"
-                  " 'failed', 'quarantined')");
-  query.bind(summary.point.id).bind(summary.wanted).step();
-  summary.wanted_ended = static_cast<int>(query.integer(0));
-  summary.wanted_cpu_seconds = query.real(1);
 }
 
 }  // namespace
@@ -94,10 +117,11 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
     if (const auto known = predictions.find(point.id); known != predictions.end()) {
       summary.prediction = known->second;
     }
+    summary.wanted_ended = aggregate.ended_below(summary.wanted);
+    summary.wanted_cpu_seconds = aggregate.seconds_of_first(summary.wanted_ended);
     if (summary.counts.running > 0) summary.leases = database.leases(point.id);
     if (any_apart) summary.kept_apart = database.kept_apart(point.hash);
     summary.point = std::move(point);
-    count_ended(connection, summary);
     summaries.push_back(std::move(summary));
   }
   return summaries;
