@@ -169,7 +169,9 @@ Json parse_json(std::string_view text, const std::string& file) {
     return Json::parse(TrackedIterator(text.data(), &furthest), TrackedIterator(end, &furthest), watch);
   } catch (const Json::parse_error& error) {
     const std::size_t offset = std::min(text.size(), error.byte == 0 ? 0 : error.byte - 1);
-    throw fault(offset, reason(error.what()) + usual_fault(text, offset));
+    const std::string why = reason(error.what()), usual = usual_fault(text, offset);
+    // Where the fault is known, what the parser read last and expected instead says less.
+    throw fault(offset, usual.empty() ? why : why.substr(0, why.find("; ")) + usual);
   } catch (const Json::exception& error) {
     throw fault(here(), reason(error.what()));
   }
