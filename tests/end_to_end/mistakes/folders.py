@@ -100,7 +100,7 @@ def spool_edited(night):
 
 
 def checkpoint_deleted(night):
-    """Checkpoints deleted or cut short between two runs"""
+    """Checkpoints deleted between two runs"""
     night.slow(1000)
     night.write()
     run = night.starts("peclet run night.json --workers 2 --checkpoint 0.1")
