@@ -13,6 +13,7 @@ packages=(
   nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev                 # both programs
   librandom123-dev libsodium-dev libsqlite3-dev libboost-dev
   libgtest-dev python3 python3-jsonschema sqlite3 libfaketime             # the tests
+  groff-base systemd                                                      # read manual pages and the unit, for the tests
   lammps                                                                  # another engine, which tests run
   slurm-wlm munge                                                         # a Slurm to be tested with
   gnuplot-nox                                                             # pictures of the studies
