@@ -478,7 +478,7 @@ class Reader {
                                     "peclet study pair-potential --quick");
     CLI::Option* const name =
         verb->add_option("study", study_.name, "Which; the list unless given")->type_name("STUDY");
-    verb->add_flag("--list", "List them with their verdicts, as without a name")->excludes(name);
+    verb->add_flag("--list", study_.list, "List them with their verdicts, as without a name")->excludes(name);
     verb->add_flag("--quick", study_.quick, "Half a minute of it, which fails where the physics is broken")
         ->needs(name);
     verb->add_flag("--json", study_.json, "The list, for programs")->excludes(name);

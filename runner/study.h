@@ -16,12 +16,12 @@
 namespace peclet::runner {
 
 struct StudyOptions {
-  std::string name;  // "": list them
+  std::string name;   // "": list them
+  bool list = false;  // said, which changes nothing
   bool quick = false;
-  bool json = false;  // the list, for programs
-  std::filesystem::path
-      results;  // folder of the studies; that of the source tree of this program unless given
-  std::filesystem::path folder;  // of the study's campaigns; a temporary one unless given
+  bool json = false;              // the list, for programs
+  std::filesystem::path results;  // folder of the studies; that of the source tree unless given
+  std::filesystem::path folder;   // of the study's campaigns; a temporary one unless given
 };
 
 struct StudySummary {

@@ -193,7 +193,7 @@ const std::map<int, std::string>& exit_codes() {
       {4, "not finished yet; of set, cancel and retry: asked for, and not carried out yet"},
       {5, "another process owns the campaign"},
       {6, "integrity: the database is damaged, or a seed gave two different results"},
-      {75, "stopped by a signal or a time limit; the same command goes on"}};
+      {75, "stopped by a signal or a time limit, or at the end of its budget; the same command goes on"}};
   return codes;
 }
 
