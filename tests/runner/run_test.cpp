@@ -159,7 +159,9 @@ TEST(Run, ATimeLimitStopsAndCanBeResumed) {
 
 TEST(Run, ALostConnectionStopsAsCtrlCDoes) {
   CampaignOnDisk campaign;
+  auto* const before = std::signal(SIGHUP, SIG_DFL);  // whatever these tests were started with
   campaign.start({{"PECLET_FAKE_STEP_MS", "50"}});
+  std::signal(SIGHUP, before);
   campaign.wait_for_results(0);
   campaign.signal(SIGHUP);
   EXPECT_EQ(campaign.finish(), 75);
@@ -175,9 +177,9 @@ TEST(StopSignals, OneThatCameTooLateDoesNotKillWhoIsLeaving) {
 
 TEST(Run, UnderNohupALostConnectionIsNothing) {
   CampaignOnDisk campaign;
-  std::signal(SIGHUP, SIG_IGN);  // the run inherits it
+  auto* const before = std::signal(SIGHUP, SIG_IGN);  // the run inherits it
   campaign.start(slow);
-  std::signal(SIGHUP, SIG_DFL);
+  std::signal(SIGHUP, before);
   campaign.wait_for_results(1);
   campaign.signal(SIGHUP);
   EXPECT_EQ(campaign.finish(), 0) << campaign.log();
