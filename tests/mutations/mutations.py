@@ -1,0 +1,153 @@
+#!/usr/bin/python3
+"""mutations.py FOLDER [--only WORD] [--jobs N]      break the physics in a copy of the source and see who notices
+mutations.py --check                              only see that every mutation still applies
+
+Each mutation is one change of a line of the engine. It is made in FOLDER, a copy of the source that this script makes, built there, and
+shown to the quick forms of the studies and to the tests of the engine and of the physics. A mutation that nobody catches is an error.
+Prints a table and writes it to mutations.md beside this script when all were tried. Some four minutes of two cores for each mutation.
+"""
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SOURCE = os.path.dirname(os.path.dirname(HERE))
+
+# What is broken; file, text in it that occurs once, and what takes its place.
+MUTATIONS = [
+    ("plus sign in the second Brownian torque", "engine/terms/pair_noise.h",
+     "root.pump_second * turned - root.spin_second * spun", "root.pump_second * turned + root.spin_second * spun"),
+    ("noise of half the variance", "engine/kernels/pair_pass.cpp",
+     "std::sqrt(2 * physics.thermal_energy / timestep)", "std::sqrt(physics.thermal_energy / timestep)"),
+    ("image velocity missing", "engine/state/sheared_box.h",
+     "return shear_rate_ * lengths_.y * k.y;", "return 0 * shear_rate_ * lengths_.y * k.y;"),
+    ("torque coupling of lubrication omitted", "engine/terms/pair_resistance.h",
+     "      .pump_first = k.pump_first * pump,\n      .pump_second = k.pump_second * pump,\n",
+     "      .pump_first = 0.0 * pump,\n      .pump_second = 0.0 * pump,\n"),
+    ("squeeze mode doubled", "engine/terms/pair_resistance.h", ".squeeze_inverse = six * 2 * b * b / cube", ".squeeze_inverse = six * 4 * b * b / cube"),
+    ("shear mode with another sign", "engine/terms/lubrication.h",
+     "(R.squeeze * closing) * n + R.shear * sliding", "(R.squeeze * closing) * n - R.shear * sliding"),
+    ("every pair counted twice in the stress", "engine/observables/production.cpp",
+     "block.stress[t] += sums.stress[t];", "block.stress[t] += 2 * sums.stress[t];"),
+    ("contact half as stiff", "engine/terms/contact.h",
+     "(-normal_stiffness * pair.overlap())", "(-0.5 * normal_stiffness * pair.overlap())"),
+    ("spheres carried round the wrong way", "engine/terms/drag.h", "{0, 0, -0.5 * shear_rate}", "{0, 0, 0.5 * shear_rate}"),
+    ("drag of a slip sphere", "engine/terms/drag.h", "return 6 * std::numbers::pi * viscosity * radius;", "return 4 * std::numbers::pi * viscosity * radius;"),
+    ("hollow spheres", "engine/state/particles.cpp", "particles.inertia.push_back(0.4 * mass", "particles.inertia.push_back(2.0 / 3 * mass"),
+    ("friction twice as strong", "engine/kernels/pair_terms.h",
+     "(contact.friction / contact.tangential_stiffness) * normal_force", "(2 * contact.friction / contact.tangential_stiffness) * normal_force"),
+    ("contact spring that is not turned", "engine/terms/tangential_spring.h",
+     "Vector3Of<Real> turned = across(spring, normal);", "Vector3Of<Real> turned = spring;"),
+    ("repulsion of twice the range", "engine/terms/repulsion.h", "exponential((-1 / length)", "exponential((-0.5 / length)"),
+    ("structural stress from one side of each pair", "engine/observables/structure.cpp",
+     "within(kind.radius_first) + within(kind.radius_second)", "within(kind.radius_first)"),
+    ("gap clamped at ten times the inner gap", "engine/terms/pair_resistance.h",
+     "pair.surface_distance(), Real{inner_gap})", "pair.surface_distance(), Real{10 * inner_gap})"),
+]
+
+STUDIES = ["diffusion", "pair-potential", "zero-shear", "speed-accuracy", "stability"]
+
+
+def replaced(mutation, root):
+    """Path and text of the broken file."""
+    name, file, old, new = mutation
+    path = os.path.join(root, file)
+    with open(path) as f:
+        text = f.read()
+    if text.count(old) != 1:
+        sys.exit(f"{name}: its text occurs {text.count(old)} times in {file}; correct the list in mutations.py")
+    return path, text.replace(old, new)
+
+
+def copy_of_source(folder):
+    os.makedirs(folder, exist_ok=True)
+    files = subprocess.run(["git", "ls-files", "-z"], cwd=SOURCE, check=True, capture_output=True, text=True).stdout.split("\0")
+    for file in filter(None, files):
+        target = os.path.join(folder, file)
+        os.makedirs(os.path.dirname(target), exist_ok=True)
+        # Only what differs, so that a second call builds little.
+        source = os.path.join(SOURCE, file)
+        if not os.path.exists(target) or open(source, "rb").read() != open(target, "rb").read():
+            shutil.copyfile(source, target)
+            shutil.copymode(source, target)
+
+
+def build(folder, jobs):
+    if not os.path.exists(os.path.join(folder, "build/release/build.ninja")):
+        subprocess.run(["cmake", "--preset", "release", "-DBUILD_TESTING=ON"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    done = subprocess.run(["cmake", "--build", "--preset", "release", "--target", "peclet", "peclet-engine", "engine_tests", "physics_tests", "--", f"-j{jobs}"],
+                          cwd=folder, capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{folder}: does not build\n{done.stdout[-3000:]}")
+
+
+def failed_tests(folder, program, arguments):
+    """Names of the tests that fail, or the signal that ended them."""
+    try:
+        done = subprocess.run([os.path.join(folder, "build/release/bin", program), *arguments], cwd=folder, capture_output=True, text=True, timeout=1800)
+    except subprocess.TimeoutExpired:
+        return ["does not end"]
+    names = re.findall(r"^\[  FAILED  \] ([\w./]+)(?:, |$| \()", done.stdout, re.M)
+    return sorted(set(names)) or ([] if done.returncode == 0 else [f"exit {done.returncode}"])
+
+
+def who_notices(folder):
+    binaries = os.path.join(folder, "build/release/bin")
+    noticed = []
+    for study in STUDIES:
+        driver = next(d for d in ("study.py", "remake.py") if os.path.exists(os.path.join(folder, "results", study, d)))
+        try:
+            done = subprocess.run(["/usr/bin/python3", os.path.join(folder, "results", study, driver), binaries, "--quick"], capture_output=True, timeout=1800)
+        except subprocess.TimeoutExpired:
+            noticed.append(f"study {study} (does not end)")
+            continue
+        if done.returncode != 0:
+            noticed.append(f"study {study}")
+    for program, arguments in (("engine_tests", ["--gtest_filter=-Benchmark*"]), ("physics_tests", ["--gtest_filter=-PairDensity*"])):
+        names = failed_tests(folder, program, arguments)
+        if names:
+            more = f" and {len(names) - 3} more" if len(names) > 3 else ""
+            noticed.append(f"{program}: {', '.join(names[:3])}{more}")
+    return noticed
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", nargs="?", help="of the copy; kept, so that a second call goes faster")
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--only", default="", help="mutations whose name has this in it")
+    parser.add_argument("--jobs", type=int, default=2)
+    arguments = parser.parse_args()
+    for mutation in MUTATIONS:
+        replaced(mutation, SOURCE)
+    if arguments.check:
+        print(f"{len(MUTATIONS)} mutations apply")
+        return 0
+    if not arguments.folder:
+        parser.error("needs a folder")
+    lines = ["| broken | noticed by |", "|---|---|"]
+    missed = 0
+    for mutation in [("nothing", None, None, None), *MUTATIONS]:
+        if arguments.only not in mutation[0]:
+            continue
+        copy_of_source(arguments.folder)
+        if mutation[1]:
+            path, text = replaced(mutation, arguments.folder)
+            with open(path, "w") as f:
+                f.write(text)
+        build(arguments.folder, arguments.jobs)
+        noticed = who_notices(arguments.folder)
+        missed += bool(mutation[1]) != bool(noticed)
+        lines.append(f"| {mutation[0]} | {'; '.join(noticed) or ('nobody' if mutation[1] else 'nobody, as it should be')} |")
+        print(lines[-1], flush=True)
+    if not arguments.only:
+        with open(os.path.join(HERE, "mutations.md"), "w") as f:
+            f.write("\n".join(lines) + "\n")
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
