@@ -132,8 +132,9 @@ int dispatch(Opened& opened, const RunOptions& options, const ClaimedCampaign& c
   return exit_code(opened.database, opened.ledger.scheduler(), ending == Dispatcher::Ending::finished);
 }
 
-void tell_of_failure(RunLog& log, const std::exception& error) {
-  log.record(fmt::format("ends with an error: {}", error.what()));
+// What failed before it had begun is no part of the campaign's history: nothing is written.
+void tell_of_failure(RunLog& log, bool had_begun, const std::exception& error) {
+  if (had_begun) log.record(fmt::format("ends with an error: {}", error.what()));
   log.happened(RunEnded{exit_code_of(error), error.what()});
 }
 
@@ -174,10 +175,10 @@ int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion&
       }
     } catch (const OtherEngine& error) {
       const OtherEngine advised(error.what() + acceptance_hint("run " + words_for(options), claimed.engine));
-      tell_of_failure(log, advised);
+      tell_of_failure(log, opened != nullptr, advised);
       throw advised;
     } catch (const std::exception& error) {
-      tell_of_failure(log, error);
+      tell_of_failure(log, opened != nullptr, error);
       throw;
     }
     log.record(fmt::format("ends with exit code {}", code));

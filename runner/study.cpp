@@ -71,6 +71,7 @@ void print(const std::string& text) {
   if (!options.folder.empty()) words.push_back(fs::absolute(options.folder).string());
   if (options.quick) words.emplace_back("--quick");
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   execv(interpreter, arguments.data());
@@ -130,6 +131,7 @@ int perform_study(const StudyOptions& options) {
   const auto is_it = [&](const StudySummary& study) { return study.name == options.name; };
   if (std::none_of(studies.begin(), studies.end(), is_it)) {
     std::vector<std::string> names;
+    names.reserve(studies.size());
     for (const StudySummary& study : studies) names.push_back(study.name);
     throw InputError("", "study", options.name, fmt::format("must be one of: {}", fmt::join(names, ", ")));
   }

@@ -56,7 +56,7 @@ def edited(night):
     run = night.starts("peclet run night.json --workers 2")
     night.wait_for_results(4)
     night.types("sed -i 's/\"viscosity\": 1/\"viscosity\": 2/' night.json && peclet status night.json", 0,
-                ["has changed since it was last run", "`peclet run` takes the changes up"])
+                ["has changed since it was last run", "`peclet set night.json` or `peclet run` takes it over"])
     night.stops(run)
     night.waits(run, 75, ["workers checkpoint and stop"])
     before = night.remembers()
