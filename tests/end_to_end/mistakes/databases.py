@@ -15,7 +15,7 @@ def finished(night):
 
 def killed(night):
     """A campaign whose owner was killed when it had results, and whose workers have left."""
-    night.slow(100)
+    night.slow(300)
     night.write()
     night.types("peclet run night.json --quiet --workers 2 --time-limit 0.6 > table", 75)
     run = night.starts("peclet run night.json --workers 2")
@@ -39,7 +39,7 @@ def deleted(night):
 
 def deleted_while_it_runs(night):
     """campaign.db deleted while it runs"""
-    night.slow(100)
+    night.slow(300)
     night.write()
     run = night.starts("peclet run night.json --workers 2")
     night.wait_for_results(3)
@@ -64,7 +64,7 @@ def cut(night):
 
 def older_copy(night):
     """campaign.db overwritten by last week's copy"""
-    night.slow(100)
+    night.slow(300)
     night.write()
     night.types("peclet run night.json --quiet --workers 2 --time-limit 0.8 > table", 75)
     shutil.copy(night.path("night.peclet", "campaign.db"), night.path("last-week.db"))
@@ -100,7 +100,7 @@ def copied_without_log(night):
 
 def restored_over_newer(night):
     """An old backup restored over a newer database"""
-    night.slow(100)
+    night.slow(300)
     night.write()
     night.types("peclet run night.json --quiet --workers 2 --time-limit 0.8 > table", 75)
     night.types("peclet backup night.json usb")

@@ -65,7 +65,7 @@ def clock_set_back(night):
     if not library:
         night.remarks("(libfaketime is not installed: not tried)")
         return
-    night.slow(100)
+    night.slow(200)
     night.write()
     night.types("peclet run night.json --workers 2 --time-limit 0.4 --quiet > table", 75)
     night.remembers()
