@@ -89,11 +89,9 @@ def engine_rebuilt(night):
     night.waits(run, 75)
     night.remembers()
     night.environment["PECLET_FAKE_IDENTITY"] = "built at two"
-    night.types("peclet run night.json --workers 2", 6, ["has results of engine", "never mixes two", "--directory"])
+    night.types("peclet run night.json --workers 2", 6, ["has results of engine", "never mixes two"])
     night.lost_nothing()
-    night.types("peclet run night.json --workers 2 --quiet --directory anew.peclet", 0, ["2 converged"])
-    del night.environment["PECLET_FAKE_IDENTITY"]
-    night.types("peclet run night.json --workers 2 --quiet", 0, ["2 converged"])
+    night.follows(r"peclet run [^`]*--accept-engine [^`]*", 0, ["2 converged", "are kept apart"])
     night.lost_nothing()
 
 
