@@ -133,6 +133,7 @@ void MeanSquaredDisplacement::add_to(Json& mean) const {
   }
   for (std::size_t c = 0; c < classes(); ++c) {
     std::vector<Vector3> own;
+    own.reserve(measured.size());
     for (const Lag& lag : measured) own.push_back(of_class(lag, c));
     species.push_back(axes(own));
     species.back()["radius"] = radius_of_class_[c];
