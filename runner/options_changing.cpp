@@ -1,0 +1,73 @@
+// Verbs that change what a campaign is to do.
+#include <memory>
+
+#include "runner/verb_set.h"
+
+namespace peclet::runner {
+namespace {
+
+void add_patience(CLI::App* verb, double& seconds) {
+  verb->add_option("--wait", seconds, "Seconds to wait for the process that runs the campaign; 0: not at all")
+      ->type_name("SECONDS")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+}
+
+void add_set(VerbSet& verbs) {
+  const auto options = std::make_shared<SetOptions>();
+  CLI::App* const verb =
+      verbs.add("set", "Change target, points or priorities of a campaign, also while it runs",
+                "peclet set flow-curve.json --tolerance 0.03 --maximum 2000");
+  add_file(verb, options->campaign);
+  add_directory(verb, options->directory);
+  verb->add_option("--tolerance", options->tolerance, "/target/relative_tolerance; 5 % is written 0.05");
+  verb->add_option("--confidence", options->confidence, "/target/confidence");
+  verb->add_option("--minimum", options->minimum, "/realisations/minimum: seeds before the first look");
+  verb->add_option("--maximum", options->maximum,
+                   "/realisations/maximum: seeds after which a point is capped");
+  verb->add_option("--point", options->points, "Point that is to have the priority; may be repeated")
+      ->allow_extra_args(false);
+  verb->add_option("--priority", options->priority, "Points of a higher one are served first; 0 unless set")
+      ->check(CLI::Range(-1'000'000, 1'000'000));
+  add_patience(verb, options->patience);
+  verbs.choose(verb, options);
+}
+
+void add_cancel(VerbSet& verbs) {
+  const auto options = std::make_shared<CancelOptions>();
+  CLI::App* const verb = verbs.add("cancel", "Give points no more seeds, also while the campaign runs",
+                                   "peclet cancel flow-curve.json peclet=10");
+  add_file_or_folder(verb, options->campaign);
+  verb->add_option("point", options->points, "Labels of points, or 4 or more digits of their hashes")
+      ->required();
+  add_directory(verb, options->directory);
+  verb->add_flag("--undo", options->undo, "Take them up again");
+  add_patience(verb, options->patience);
+  verbs.choose(verb, options);
+}
+
+void add_retry(VerbSet& verbs) {
+  const auto options = std::make_shared<RetryOptions>();
+  CLI::App* const verb = verbs.add("retry", "Queue seeds again that were given up, with a clean record",
+                                   "peclet retry flow-curve.json peclet=10 --seed 17");
+  add_file_or_folder(verb, options->campaign);
+  verb->add_option("point", options->points,
+                   "Labels of points, or 4 or more digits of their hashes; all unless given");
+  add_directory(verb, options->directory);
+  verb->add_option("--seed", options->seeds,
+                   "Of the one point that is named; may be repeated; all unless given")
+      ->allow_extra_args(false)
+      ->check(CLI::NonNegativeNumber);
+  add_patience(verb, options->patience);
+  verbs.choose(verb, options);
+}
+
+}  // namespace
+
+void add_changing_verbs(VerbSet& verbs) {
+  add_set(verbs);
+  add_cancel(verbs);
+  add_retry(verbs);
+}
+
+}  // namespace peclet::runner
