@@ -25,7 +25,7 @@ std::uint64_t steps_in(const std::optional<double>& interval, double timestep, s
 
 void need_samples(std::uint64_t steps, std::uint64_t interval, std::uint64_t least, const char* name,
                   const std::string& file) {
-  const std::uint64_t samples = (steps - 1) / interval + 1;
+  const std::uint64_t samples = samples_in(steps, interval);
   if (samples >= least) return;
   throw InputError(
       file, fmt::format("/{}/interval", name), fmt::format("{} samples", samples),

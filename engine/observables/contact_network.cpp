@@ -23,7 +23,7 @@ Json shares(const std::array<std::uint64_t, size>& counts, std::uint64_t all) {
 }  // namespace
 
 ContactNetwork::ContactNetwork(const Scene& scene, const System& system, std::uint64_t interval)
-    : interval_(interval),
+    : Observable(interval),
       contact_(*scene.physics.contact),
       kinds_(make_pair_kinds(scene.physics, distinct_radii(system.particles.radius))) {}
 

@@ -21,7 +21,6 @@ class ContactNetwork : public Observable {
   // Requires contacts in the scene.
   ContactNetwork(const Scene& scene, const System& system, std::uint64_t interval);
 
-  std::uint64_t interval() const override { return interval_; }
   void sample(const System& system) override;
   void add_to(Json& mean) const override;
   void save(ArchiveWriter& archive) const override { archive.put(sums_); }
@@ -35,7 +34,6 @@ class ContactNetwork : public Observable {
     std::array<std::uint64_t, 20> by_mobilisation{};
   };
 
-  std::uint64_t interval_;
   ContactParameters contact_;
   std::vector<PairKind> kinds_;
   Sums sums_;

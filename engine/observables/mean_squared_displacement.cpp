@@ -21,7 +21,7 @@ std::vector<Vector3> unwrapped_places(const System& system) {
 
 MeanSquaredDisplacement::MeanSquaredDisplacement(const Scene& scene, const System& system, double timestep,
                                                  std::uint64_t interval, std::uint64_t steps)
-    : interval_(interval),
+    : Observable(interval),
       time_(timestep * static_cast<double>(interval)),
       sheared_(scene.physics.shear_rate > 0),
       free_slope_(scene.physics.thermal_energy /
@@ -34,7 +34,7 @@ MeanSquaredDisplacement::MeanSquaredDisplacement(const Scene& scene, const Syste
     count_of_class_[system.particles.size_class[i]] += 1;
   }
   // The longest lag, 4 2^l samples, is at most a quarter of the window.
-  const std::uint64_t samples = (steps - 1) / interval + 1;
+  const std::uint64_t samples = samples_in(steps, interval);
   for (std::uint64_t reach = 1; levels_.empty() || 16 * reach <= samples; reach *= 2) {
     Level level;
     level.squares.resize(kept * classes());

@@ -30,7 +30,6 @@ class MeanSquaredDisplacement : public Observable {
   MeanSquaredDisplacement(const Scene& scene, const System& system, double timestep, std::uint64_t interval,
                           std::uint64_t steps);
 
-  std::uint64_t interval() const override { return interval_; }
   void sample(const System& system) override;
   void add_to(Json& mean) const override;
   void save(ArchiveWriter& archive) const override;
@@ -64,7 +63,6 @@ class MeanSquaredDisplacement : public Observable {
   Json axes(const std::vector<Vector3>& values) const;
   Json self_diffusion(const std::vector<Lag>& lags) const;
 
-  std::uint64_t interval_;
   double time_;  // between samples
   bool sheared_;
   double free_slope_;  // D_0; 0 without temperature

@@ -10,10 +10,11 @@ namespace peclet::engine {
 
 class Observable {
  public:
+  // Steps between samples, of which the first is at the first step of the window.
+  explicit Observable(std::uint64_t interval) : interval_(interval) {}
   virtual ~Observable() = default;
 
-  // Steps between samples, of which the first is at the first step of the window.
-  virtual std::uint64_t interval() const = 0;
+  std::uint64_t interval() const { return interval_; }
   // Requires a complete step (integrator.h) and the system that every other sample is of.
   virtual void sample(const System& system) = 0;
   // Adds an object of its own name to the result's mean, with lists of numbers, and beside it the numbers
@@ -23,6 +24,14 @@ class Observable {
   // Everything that samples have left, bit by bit.
   virtual void save(ArchiveWriter& archive) const = 0;
   virtual void load(ArchiveReader& archive) = 0;
+
+ private:
+  std::uint64_t interval_;
 };
+
+// Samples in a window of so many steps, one at least.
+constexpr std::uint64_t samples_in(std::uint64_t steps, std::uint64_t interval) {
+  return (steps - 1) / interval + 1;
+}
 
 }  // namespace peclet::engine

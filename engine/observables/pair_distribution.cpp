@@ -13,7 +13,7 @@ namespace peclet::engine {
 
 PairDistribution::PairDistribution(const Scene& scene, const System& system, std::uint64_t interval,
                                    const std::string& file)
-    : interval_(interval),
+    : Observable(interval),
       unit_(scene.particles.reference_radius),
       range_(scene.pair_distribution->range * unit_),
       bin_(scene.pair_distribution->bin * unit_),

@@ -26,7 +26,6 @@ class PairDistribution : public Observable {
   // Throws InputError where the box is too small for the range.
   PairDistribution(const Scene& scene, const System& system, std::uint64_t interval, const std::string& file);
 
-  std::uint64_t interval() const override { return interval_; }
   void sample(const System& system) override;
   void add_to(Json& mean) const override;
   void save(ArchiveWriter& archive) const override;
@@ -36,7 +35,6 @@ class PairDistribution : public Observable {
   void count(const Vector3& separation);
   double ideal_shell(std::size_t bin) const;
 
-  std::uint64_t interval_;
   double unit_;                // the reference radius
   double range_, bin_, slab_;  // lengths
   double edge_;                // of the box

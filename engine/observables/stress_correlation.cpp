@@ -18,13 +18,13 @@ std::size_t levels_of(std::uint64_t samples) {
 
 StressCorrelation::StressCorrelation(const Scene& scene, const System& system, double timestep,
                                      std::uint64_t interval, std::uint64_t steps)
-    : interval_(interval),
+    : Observable(interval),
       time_(timestep * static_cast<double>(interval)),
       thermal_energy_(scene.physics.thermal_energy),
       viscosity_(scene.physics.viscosity),
       volume_(system.box.volume()),
       kinds_(make_pair_kinds(scene.physics, distinct_radii(system.particles.radius))),
-      correlators_(weights.size(), MultipleTau(levels_of((steps - 1) / interval + 1))) {}
+      correlators_(weights.size(), MultipleTau(levels_of(samples_in(steps, interval)))) {}
 
 void StressCorrelation::sample(const System& system) {
   const SymmetricTensor s = structural_brownian_stress(system, kinds_, thermal_energy_);

@@ -26,14 +26,12 @@ class StressCorrelation : public Observable {
   StressCorrelation(const Scene& scene, const System& system, double timestep, std::uint64_t interval,
                     std::uint64_t steps);
 
-  std::uint64_t interval() const override { return interval_; }
   void sample(const System& system) override;
   void add_to(Json& mean) const override;
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
 
  private:
-  std::uint64_t interval_;
   double time_;  // between samples
   double thermal_energy_, viscosity_, volume_;
   std::vector<PairKind> kinds_;
