@@ -94,14 +94,17 @@ def diffusion(program, ratios, fractions, seeds, patch=None, name="crowded"):
 
 
 def line_through(rows):
-    """Least squares with the errors: intercept, slope and chi^2 per degree of freedom of D(phi)."""
+    """D(phi) by least squares with the errors: intercept, slope over intercept and its standard error, and what remains of each row."""
     w = [1 / r["standard_error"] ** 2 for r in rows]
     x, y = [r["fraction"] for r in rows], [r["diffusion"] for r in rows]
     mean_x, mean_y = (sum(a * b for a, b in zip(w, v)) / sum(w) for v in (x, y))
     spread = sum(a * (b - mean_x) ** 2 for a, b in zip(w, x))
     slope = sum(a * (b - mean_x) * (c - mean_y) for a, b, c in zip(w, x, y)) / spread
     residuals = [c - mean_y - slope * (b - mean_x) for b, c in zip(x, y)]
-    return mean_y - slope * mean_x, slope, residuals
+    intercept = mean_y - slope * mean_x
+    of_slope, of_intercept, of_both = 1 / spread, 1 / sum(w) + mean_x**2 / spread, -mean_x / spread
+    ratio = slope / intercept
+    return intercept, ratio, math.sqrt(of_slope + ratio**2 * of_intercept - 2 * ratio * of_both) / intercept, residuals
 
 
 def crowded_statements(table, seeds):
@@ -116,11 +119,11 @@ def crowded_statements(table, seeds):
         a, b = of(warm, fraction), of(cold, fraction)
         yield Statement(f"φ = {fraction:g}: D / D_0 at τ_I/τ_B = 0.17 over that at 0.017", "L4.2d", a["diffusion"] / b["diffusion"],
                         math.hypot(a["standard_error"], b["standard_error"]) / b["diffusion"], 0.9, 1.1, seeds - 1)
-    intercept, slope, residuals = line_through([r for r in table if abs(r["ratio"] - cold) < 1e-9])
+    intercept, slope, slope_error, residuals = line_through([r for r in table if abs(r["ratio"] - cold) < 1e-9])
     largest = max(range(len(FRACTIONS)), key=lambda k: abs(residuals[k]))
     yield Statement(f"largest distance of D / D_0 from a line in φ (at φ = {FRACTIONS[largest]:g}) over its dilute value", "L4.2d",
                     residuals[largest] / intercept, of(cold, FRACTIONS[largest])["standard_error"] / intercept, -0.05, 0.05, seeds - 1, essential=False)
-    yield Statement("slope of that line over the dilute value", "L4.2d", slope / intercept, 0, high=-1)
+    yield Statement("slope of that line over the dilute value", "L4.2d", slope, slope_error, high=-1, degrees=seeds - 1)
     dense = of(hot, 0.5)["diffusion"] / of(cold, 0.5)["diffusion"]
     error = dense * math.hypot(of(hot, 0.5)["standard_error"] / of(hot, 0.5)["diffusion"], of(cold, 0.5)["standard_error"] / of(cold, 0.5)["diffusion"])
     yield Statement("φ = 0.5: D / D_0 at τ_I/τ_B = 1.7 over that at 0.017 (L4.2d: it depends on the temperature there)", "L4.2d", dense, error, low=1.05, degrees=seeds - 1, essential=False)
