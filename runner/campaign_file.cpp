@@ -9,18 +9,14 @@
 #include "contract/nearest_name.h"
 
 namespace peclet::runner {
-namespace {
 
 namespace fs = std::filesystem;
 
-// The file that a campaign's folder belongs to, as it is spelt from here.
-fs::path file_of(const fs::path& folder) {
-  fs::path file = folder;
-  if (!file.has_filename()) file = file.parent_path();  // a slash at the end
+fs::path campaign_file_of(const fs::path& given) {
+  if (!fs::is_directory(given)) return given;
+  fs::path file = given.has_filename() ? given : given.parent_path();  // a slash at the end
   return file.replace_extension(".json");
 }
-
-}  // namespace
 
 std::string similar_name(const fs::path& given) {
   const fs::path folder = given.has_parent_path() ? given.parent_path() : ".";
@@ -38,7 +34,7 @@ std::string similar_name(const fs::path& given) {
 
 void require_campaign_file(const fs::path& given) {
   if (fs::is_directory(given)) {
-    const fs::path file = file_of(given);
+    const fs::path file = campaign_file_of(given);
     throw InputError(given.string(), "", "",
                      fs::is_regular_file(file)
                          ? fmt::format("is a folder, and the campaign's file is asked for: {}", file.string())

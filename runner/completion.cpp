@@ -2,6 +2,7 @@
 #include "runner/completion.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cassert>
 
@@ -27,11 +28,7 @@ std::string zsh_quoted(const std::string& text) {
 
 std::string fish_quoted(const std::string& text) { return "'" + with_backslashes(text, "\\'") + "'"; }
 
-std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
-  return text;
-}
+std::string listed(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, " ")); }
 
 std::string zsh_action(const CommandOption& option) {
   if (!option.choices.empty()) return "(" + listed(option.choices) + ")";

@@ -77,12 +77,6 @@ Reply answer(const CampaignDirectory& directory, const Request& request, const f
 
 }  // namespace
 
-fs::path campaign_file_of(const fs::path& given) {
-  if (!fs::is_directory(given)) return given;
-  fs::path file = given.has_filename() ? given : given.parent_path();  // a slash at the end
-  return file.replace_extension(".json");
-}
-
 Reply await_reply(const CampaignDirectory& directory, const Request& request, const fs::path& file,
                   double patience) {
   if (is_carried_out(directory, request, patience)) return answer(directory, request, file);

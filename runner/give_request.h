@@ -25,7 +25,4 @@ constexpr double usual_patience = 60;
 Reply await_reply(const CampaignDirectory& directory, const Request& request,
                   const std::filesystem::path& file, double patience);
 
-// The campaign file beside a campaign's folder; a file is itself.
-std::filesystem::path campaign_file_of(const std::filesystem::path& given);
-
 }  // namespace peclet::runner

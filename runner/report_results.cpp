@@ -1,5 +1,6 @@
 // The middle sections of a report: what was found, and what may be doubted.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -18,18 +19,6 @@ std::string paragraph(const std::string& text) {
   return text.empty() ? "" : "<p class=\"faint\">" + escaped(text) + "</p>\n";
 }
 
-std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
-bool has_control(const std::vector<PointSummary>& points) {
-  return std::any_of(points.begin(), points.end(), [](const PointSummary& point) {
-    return !point.looks.empty() && has_control(point.looks.back());
-  });
-}
-
 std::vector<std::string> estimates(const PointSummary& point, bool with_control) {
   if (point.looks.empty()) return std::vector<std::string>(with_control ? 3 : 2, "-");
   const Look& look = point.looks.back();
@@ -44,7 +33,7 @@ HtmlTable points_table(const CampaignStatus& status) {
   std::vector<std::string> labels;
   for (const PointSummary& point : status.points) labels.push_back(point.point.label);
   const PointColumns columns(labels);
-  const bool with_control = has_control(status.points);
+  const bool with_control = any_control(status);
   HtmlTable table;
   for (const std::string& title : columns.titles()) {
     table.add_column(title, title == "point" ? Align::left : Align::right);
@@ -67,7 +56,7 @@ HtmlTable points_table(const CampaignStatus& status) {
     row.push_back(fmt::format("{}", point.lost()));
     row.push_back(duration_text(point.counts.cpu_seconds));
     row.push_back(standing_word(point));
-    if (any_marks) row.push_back(listed(reservations(point)));
+    if (any_marks) row.push_back(fmt::format("{}", fmt::join(reservations(point), ", ")));
     table.add_row(std::move(row));
   }
   return table;
@@ -79,9 +68,9 @@ std::string caption(const CampaignStatus& status) {
       "look). The value is the mean over the seeds of the last look, ± the half-width of its {:g} % "
       "interval; relative is the half-width over the mean.{}",
       100 * status.campaign.target.target.confidence,
-      has_control(status.points) ? " Both are with the control variate, a quantity of known mean zero that "
-                                   "takes away scatter; uncontrolled is the same without it."
-                                 : "");
+      any_control(status) ? " Both are with the control variate, a quantity of known mean zero that "
+                            "takes away scatter; uncontrolled is the same without it."
+                          : "");
 }
 
 std::string legend(const Chart& chart) {
@@ -111,21 +100,14 @@ std::string figure(const CampaignStatus& status) {
 }
 
 std::string totals(const CampaignStatus& status) {
-  std::map<std::string, int> verdicts;
   double cpu_seconds = 0;
   int ended = 0;
   for (const PointSummary& point : status.points) {
-    ++verdicts[standing_word(point)];
     cpu_seconds += point.counts.cpu_seconds;
     ended += point.counts.terminal();
   }
-  std::string words;
-  for (const auto& [verdict, count] : verdicts) {
-    words += fmt::format("{}{} {}", words.empty() ? "" : ", ", count, verdict);
-  }
-  return fmt::format("<p>{} point{}: {}. {} seeds ended, which took {} of processor time.</p>\n",
-                     status.points.size(), status.points.size() == 1 ? "" : "s", words, ended,
-                     duration_text(cpu_seconds));
+  return fmt::format("<p>{}. {} seeds ended, which took {} of processor time.</p>\n", point_totals(status),
+                     ended, duration_text(cpu_seconds));
 }
 
 // What a mark of the table means; the marks are those of reservations() and the verdicts.

@@ -1,5 +1,6 @@
 #include "runner/retry.h"
 
+#include "runner/campaign_file.h"
 #include "runner/open_campaign.h"
 
 namespace peclet::runner {

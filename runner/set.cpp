@@ -8,6 +8,7 @@
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
 #include "contract/sha256.h"
+#include "runner/campaign_file.h"
 #include "runner/document_edit.h"
 #include "runner/engine_process.h"
 #include "runner/folder_lock.h"

@@ -33,6 +33,12 @@ CampaignStatus read_status(Database& database);
 // some point is suspect: a seed gave two different results.
 int standing(const CampaignStatus& status);
 
+// Whether the last look of some point has a control variate.
+bool any_control(const CampaignStatus& status);
+
+// "3 points: 1 capped, 2 open"
+std::string point_totals(const CampaignStatus& status);
+
 // The verdict in a word; "open" or "cancelled" without one.
 std::string standing_word(const PointSummary& point);
 

@@ -20,12 +20,6 @@ std::string interval(const Look& look) {
                      percent(relative_width(look)));
 }
 
-bool has_control(const CampaignStatus& status) {
-  return std::any_of(status.points.begin(), status.points.end(), [](const PointSummary& point) {
-    return !point.looks.empty() && has_control(point.looks.back());
-  });
-}
-
 std::vector<std::string> cells(const PointSummary& point, bool with_control) {
   std::vector<std::string> cells{fmt::format("{}/{}", point.wanted_ended, point.wanted),
                                  with_error(point.so_far.mean, point.so_far.standard_error)};
@@ -62,13 +56,6 @@ std::string listed(const std::map<std::string, int>& counts) {
   for (const auto& [name, count] : counts)
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name);
   return text;
-}
-
-std::string point_totals(const CampaignStatus& status) {
-  std::map<std::string, int> verdicts;
-  for (const PointSummary& point : status.points) ++verdicts[standing_word(point)];
-  return fmt::format("{} point{}: {}\n", status.points.size(), status.points.size() == 1 ? "" : "s",
-                     listed(verdicts));
 }
 
 // "; 40 handed over (jobs 12, 17)"
@@ -120,8 +107,21 @@ std::string seed_totals(const CampaignStatus& status) {
 
 }  // namespace
 
+bool any_control(const CampaignStatus& status) {
+  return std::any_of(status.points.begin(), status.points.end(), [](const PointSummary& point) {
+    return !point.looks.empty() && has_control(point.looks.back());
+  });
+}
+
+std::string point_totals(const CampaignStatus& status) {
+  std::map<std::string, int> verdicts;
+  for (const PointSummary& point : status.points) ++verdicts[standing_word(point)];
+  return fmt::format("{} point{}: {}", status.points.size(), status.points.size() == 1 ? "" : "s",
+                     listed(verdicts));
+}
+
 std::string status_table(const CampaignStatus& status) {
-  const bool with_control = has_control(status);
+  const bool with_control = any_control(status);
   std::vector<std::string> labels;
   for (const PointSummary& point : status.points) labels.push_back(point.point.label);
   const PointColumns points(labels);
@@ -137,7 +137,7 @@ std::string status_table(const CampaignStatus& status) {
     table.add_row(std::move(row));
   }
   return heading(status) + table.text() + '\n' + legend(status, with_control) + '\n' + point_totals(status) +
-         seed_totals(status) + kept_apart_text(status) + predictions_text(status.points);
+         '\n' + seed_totals(status) + kept_apart_text(status) + predictions_text(status.points);
 }
 
 std::string status_table(Database& database) { return status_table(read_status(database)); }
