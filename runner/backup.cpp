@@ -45,8 +45,10 @@ void refuse_unsuitable_folder(const CampaignDirectory& directory, const fs::path
     throw InputError(folder.string(), "", "", "is the folder of a campaign; backups need one of their own");
   }
   if (!fs::exists(newest_backup(folder))) return;
+  // Damage is found when the copy is made; here only those are told apart that can still be read.
+  const Owner here = campaign_in(directory.database());
   const Owner there = campaign_in(newest_backup(folder));
-  if (there.origin.empty() || there.origin == campaign_in(directory.database()).origin) return;
+  if (here.origin.empty() || there.origin.empty() || there.origin == here.origin) return;
   throw InputError(folder.string(), "", there.name,
                    "holds backups of another campaign; choose another folder");
 }
