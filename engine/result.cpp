@@ -1,8 +1,11 @@
 #include "engine/result.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string>
 
 #include "contract/provenance.h"
 #include "contract/sha256.h"
@@ -90,6 +93,31 @@ BlockSums whole_window(const Production& production) {
     all.temperature.rotational += block.temperature.rotational;
   }
   return all;
+}
+
+// Five significant digits: far below the scatter of a block, and less than half the room of all seventeen.
+Json rounded(const Json& number) {
+  if (!number.is_number()) return number;
+  return std::stod(fmt::format("{:.5g}", number.get<double>()));
+}
+
+// What is kept of each block's means: all that is one number, and xy of every stress that fluctuates. The
+// total is the relative viscosity.
+Json of_block(const Json& means) {
+  Json kept;
+  for (const auto& [name, value] : means.items()) {
+    if (!value.is_structured()) kept[name] = rounded(value);
+  }
+  for (const auto& [name, value] : means.at("control_variates").items()) {
+    kept["control_variates"][name] = rounded(value);
+  }
+  for (const auto& [term, stress] : means.at("stress").items()) {
+    if (term != "solvent" && term != "stresslet" && term != "total") {
+      kept["shear_stress"][term] = rounded(stress.at(3));
+    }
+  }
+  kept["shear_stress"]["brownian_structural"] = rounded(means.at("brownian_structural").at(3));
+  return kept;
 }
 
 // Turns a list of equal objects into one object of lists.
@@ -237,9 +265,10 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
     std::vector<Json> blocks;
     std::vector<double> series;
     for (const BlockSums& block : simulation.production().blocks()) {
-      blocks.push_back(reduction.means(block));
-      const Json& value = blocks.back().at(scene.physics.shear_rate > 0 ? "relative_viscosity" : "pressure");
+      const Json means = reduction.means(block);
+      const Json& value = means.at(scene.physics.shear_rate > 0 ? "relative_viscosity" : "pressure");
       series.push_back(value.get<double>());
+      blocks.push_back(of_block(means));
     }
     result["mean"] = reduction.means(whole_window(simulation.production()));
     for (const std::unique_ptr<Observable>& observable : simulation.observables()) {
