@@ -11,7 +11,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")"
 packages=(
   g++ cmake ninja-build pkg-config git                                     # to build
   nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev                 # both programs
-  librandom123-dev libsodium-dev libsqlite3-dev libboost-dev
+  librandom123-dev libsodium-dev libsqlite3-dev zlib1g-dev libboost-dev
   libgtest-dev python3 python3-jsonschema sqlite3 libfaketime             # the tests
   groff-base systemd                                                      # read manual pages and the unit, for the tests
   lammps                                                                  # another engine, which tests run

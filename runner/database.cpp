@@ -15,7 +15,7 @@ namespace {
 
 // As in schema/campaign.sql.
 constexpr std::int64_t our_application = 1346587724;
-constexpr std::int64_t newest_version = 3;
+constexpr std::int64_t newest_version = 4;
 
 constexpr std::array<std::pair<SeedState, const char*>, 5> state_names{
     {{SeedState::queued, "queued"},
@@ -101,6 +101,8 @@ Database Database::open_owner(const std::filesystem::path& path) {
   Connection& connection = database.connection();
   const bool fresh = is_empty(connection);
   if (!fresh) check_kind(connection);
+  // Results take some 2 kB, of which pages of 4 kB would hold one each. Ignored where there are tables.
+  connection.execute("PRAGMA page_size = 16384");
   connection.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
   if (connection.text("PRAGMA journal_mode") != "wal") {
     throw DatabaseError(connection.path() + ": cannot keep a write-ahead log on this file system", 0);

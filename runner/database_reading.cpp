@@ -1,8 +1,11 @@
 // The read-only half of database.h: rows into records.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <utility>
 
 #include "runner/database.h"
+#include "runner/result_text.h"
 
 namespace peclet::runner {
 namespace {
@@ -71,10 +74,16 @@ std::vector<LookRecord> read_looks(Connection& connection, std::int64_t point, c
   return looks;
 }
 
-Json with_engine(const std::string& document, const std::string& provenance) {
-  Json result = Json::parse(document);
-  result["engine"] = Json::parse(provenance);
-  return result;
+// Of a query of result_columns.
+Json read_result(const Statement& query) {
+  try {
+    Json result = Json::parse(result_text(query, 1, 2));
+    result["engine"] = Json::parse(query.text(3));
+    return result;
+  } catch (const IntegrityError& error) {
+    throw IntegrityError(
+        fmt::format("the stored result of seed {} {}; see `peclet doctor`", query.integer(0), error.what()));
+  }
 }
 
 EventRecord read_event(const Statement& query) {
@@ -84,8 +93,8 @@ EventRecord read_event(const Statement& query) {
 }
 
 constexpr const char* result_columns =
-    "SELECT seed, document, provenance FROM result JOIN realisation USING (point_id, seed) JOIN engine USING "
-    "(engine_id) WHERE point_id = ? ";
+    "SELECT seed, document, text, provenance FROM result JOIN realisation USING (point_id, seed) JOIN engine "
+    "USING (engine_id) LEFT JOIN dictionary USING (point_id) WHERE point_id = ? ";
 
 }  // namespace
 
@@ -193,7 +202,7 @@ std::optional<Json> Database::result(std::int64_t point, int seed) {
   Statement query(*connection_, std::string(result_columns) + "AND seed = ?");
   query.bind(point).bind(seed);
   if (!query.step()) return std::nullopt;
-  return with_engine(query.text(1), query.text(2));
+  return read_result(query);
 }
 
 void Database::for_each_result(std::int64_t point, int end,
@@ -201,7 +210,7 @@ void Database::for_each_result(std::int64_t point, int end,
   Statement query(*connection_, std::string(result_columns) + "AND seed < ? ORDER BY seed");
   query.bind(point).bind(end);
   while (query.step()) {
-    visit(static_cast<int>(query.integer(0)), with_engine(query.text(1), query.text(2)));
+    visit(static_cast<int>(query.integer(0)), read_result(query));
   }
 }
 

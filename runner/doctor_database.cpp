@@ -7,21 +7,35 @@
 #include "runner/cohorts.h"
 #include "runner/doctor.h"
 #include "runner/export.h"
+#include "runner/integrity_error.h"
 #include "runner/queue.h"
 #include "runner/realisation_result.h"
+#include "runner/result_text.h"
 
 namespace peclet::runner {
 namespace {
+
+// The text of a stored result, or its bytes where they have none.
+std::string readable(const Statement& stored) {
+  try {
+    return result_text(stored, 0, 1);
+  } catch (const IntegrityError&) {
+    return stored.text(0);
+  }
+}
 
 // The seed runs again, and gives the same result if its engine is the same; what was stored is kept for
 // people.
 void run_again(Database& owner, const CampaignDirectory& directory, std::int64_t point, int seed) {
   Connection& connection = owner.connection();
-  Statement stored(connection, "SELECT document FROM result WHERE point_id = ? AND seed = ?");
+  Statement stored(
+      connection,
+      "SELECT document, text FROM result LEFT JOIN dictionary USING (point_id) WHERE point_id = ? "
+      "AND seed = ?");
   stored.bind(point).bind(seed);
   if (stored.step()) {
     write_durably(directory.rejected() / fmt::format("point-{}-seed-{}-altered.json", point, seed),
-                  stored.text(0));
+                  readable(stored));
     stored.step();
   }
   Transaction booking(connection);
@@ -54,6 +68,8 @@ std::string fault_of(Database& database, const PointRecord& point, const Realisa
     return "";
   } catch (const ResultError& error) {
     return fmt::format("has a result that is none: {}", error.what());
+  } catch (const IntegrityError& error) {
+    return fmt::format("has a result that cannot be read: {}", error.what());
   }
 }
 

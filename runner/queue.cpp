@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "runner/bundle_files.h"
+#include "runner/result_text.h"
 #include "runner/utc_time.h"
 
 namespace peclet::runner {
@@ -242,11 +243,7 @@ void Queue::store_numbers(std::int64_t point, const RealisationResult& result, c
       .run();
   Json without_engine = document;
   without_engine.erase("engine");
-  Statement(connection_, "INSERT INTO result (point_id, seed, document) VALUES (?, ?, ?)")
-      .bind(point)
-      .bind(result.seed)
-      .bind(without_engine.dump())
-      .run();
+  store_result_text(connection_, point, result.seed, without_engine.dump(), result.completed());
 }
 
 void Queue::store_looks(std::int64_t point, const std::vector<Look>& looks) {

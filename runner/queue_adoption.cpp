@@ -3,6 +3,7 @@
 
 #include "contract/input_error.h"
 #include "runner/queue.h"
+#include "runner/result_text.h"
 
 namespace peclet::runner {
 namespace {
@@ -93,13 +94,13 @@ void Queue::adopt_points(const Campaign& campaign) {
 void Queue::observe_again(const Campaign& campaign) {
   Statement done(
       connection_,
-      "SELECT point_id, seed, document FROM result JOIN realisation USING (point_id, seed) WHERE state = "
-      "'done'");
+      "SELECT point_id, seed, document, text FROM result JOIN realisation USING (point_id, seed) LEFT JOIN "
+      "dictionary USING (point_id) WHERE state = 'done'");
   Statement change(connection_,
                    "UPDATE realisation SET value = ?, control = ?, first_quarter = ?, first_half = ? WHERE "
                    "point_id = ? AND seed = ?");
   while (done.step()) {
-    const Json document = Json::parse(done.text(2));
+    const Json document = Json::parse(result_text(done, 2, 3));
     const Observed observed = observe(document, campaign.target.observable);
     if (!observed.value) {
       throw InputError(campaign.name, "/target/observable", campaign.target.observable,

@@ -78,6 +78,7 @@ class Statement {
   Statement& bind(double value);  // NaN is NULL
   Statement& bind(std::string_view value);
   Statement& bind(const char* value) { return bind(std::string_view(value)); }
+  Statement& bind_blob(std::string_view bytes);
   Statement& bind(std::nullptr_t);
   template <typename T>
   Statement& bind(const std::optional<T>& value) {
@@ -90,9 +91,10 @@ class Statement {
   void run();
 
   bool is_null(int column) const;
+  bool is_blob(int column) const;
   std::int64_t integer(int column) const;
   double real(int column) const;       // NULL is NaN
-  std::string text(int column) const;  // NULL is empty
+  std::string text(int column) const;  // or the bytes of a blob; NULL is empty
   std::optional<double> optional_real(int column) const;
   std::optional<std::int64_t> optional_integer(int column) const;
 

@@ -1,11 +1,11 @@
--- The database of one campaign, version 3; its views are in views.sql. One process writes it (the one that holds
+-- The database of one campaign, version 4; its views are in views.sql. One process writes it (the one that holds
 -- campaign.lock); everybody else opens it read-only. schema/README.md explains the tables and views to pandas
 -- users. A version-N.sql makes version N of the one before it and leaves the same tables as this file.
 --
 -- Times ending in _at are wall-clock times in UTC, for people to look at: no decision is made from them.
 
 PRAGMA application_id = 1346587724;  -- "PCLL" as a big-endian integer
-PRAGMA user_version = 3;
+PRAGMA user_version = 4;
 
 -- What a verdict was reached for. Old targets stay, with the looks that were made for them.
 CREATE TABLE target (
@@ -82,11 +82,19 @@ CREATE TABLE realisation (
 
 CREATE INDEX realisation_by_state ON realisation (state, point_id);
 
--- The whole result as the engine wrote it, apart from "engine", which is in the table of that name.
+-- The result of the first realisation of a point that completed, against which all results of the point are deflated.
+-- It stays for good.
+CREATE TABLE dictionary (
+  point_id INTEGER PRIMARY KEY REFERENCES point,
+  text     TEXT NOT NULL CHECK (json_valid(text))
+) STRICT;
+
+-- The whole result as the engine wrote it, apart from "engine", which is in the table of that name: deflated (zlib) with
+-- the point's dictionary, if the stream asks for one; JSON text where it was stored before version 4.
 CREATE TABLE result (
   point_id INTEGER NOT NULL,
   seed     INTEGER NOT NULL,
-  document TEXT    NOT NULL CHECK (json_valid(document)),
+  document ANY     NOT NULL CHECK (typeof(document) = 'blob' OR json_valid(document)),
   PRIMARY KEY (point_id, seed),
   FOREIGN KEY (point_id, seed) REFERENCES realisation
 ) STRICT;

@@ -13,11 +13,13 @@ FROM point p WHERE p.place IS NOT NULL ORDER BY p.place;
 CREATE VIEW realisations AS
 SELECT p.place, p.label, p.hash, r.seed, r.state, r.cause, r.value, r.control, r.timestep, r.equilibration_steps,
        r.production_steps, r.production_strain, r.statistical_inefficiency, r.largest_overlap, r.first_quarter,
-       r.first_half, r.cpu_seconds, r.wall_seconds, r.final_state_sha256, e.identity AS engine, d.document AS result
+       r.first_half, r.cpu_seconds, r.wall_seconds, r.final_state_sha256, e.identity AS engine, d.document AS result,
+       t.text AS dictionary
 FROM realisation r
 JOIN point p USING (point_id)
 LEFT JOIN engine e USING (engine_id)
 LEFT JOIN result d USING (point_id, seed)
+LEFT JOIN dictionary t USING (point_id)
 WHERE p.place IS NOT NULL ORDER BY p.place, r.seed;
 
 -- The last look at each point for the campaign's present target.

@@ -10,6 +10,7 @@ import os
 import random
 import sqlite3
 import sys
+import zlib
 
 RESAMPLES = 1000
 
@@ -33,8 +34,9 @@ def main():
         database = sqlite3.connect(f"file:{os.path.join(folder, 'campaign.db')}?mode=ro", uri=True)
         for place, settings in database.execute("SELECT place, settings FROM points").fetchall():
             series, window = [], None
-            for (text,) in database.execute("SELECT result FROM realisations WHERE place = ? AND state = 'done' ORDER BY seed", (place,)):
-                result = json.loads(text)
+            for stored, dictionary in database.execute(
+                    "SELECT result, dictionary FROM realisations WHERE place = ? AND state = 'done' ORDER BY seed", (place,)):
+                result = json.loads(zlib.decompressobj(zdict=dictionary.encode()).decompress(stored))
                 blocks = result["blocks"]
                 series.append((blocks["relative_viscosity"], blocks["control_variates"]["brownian_pairwise"]))
                 window = result["time"]["production"] / result["derived"]["brownian_time"], result["strain"]["production"]

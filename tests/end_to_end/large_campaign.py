@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""large_campaign.py BIN [--points 125] [--seeds 800] [--workers 64] [--milliseconds 100] [--block-numbers 1400]
+"""large_campaign.py BIN [--points 125] [--seeds 800] [--workers 64] [--milliseconds 100] [--block-numbers 475]
 
 Runs a campaign of 100 000 realisations with the fake engine of the tests, whose results are as long as those of peclet-engine
 (--block-numbers) and whose jobs sleep 100 ms, every point up to its maximum, and prints what the owner costs:
@@ -105,7 +105,7 @@ def main():
     parser.add_argument("--seeds", type=int, default=800)
     parser.add_argument("--workers", type=int, default=64)
     parser.add_argument("--milliseconds", type=int, default=100, help="of a job")
-    parser.add_argument("--block-numbers", type=int, default=1400, help="in a result; 1400 make 27 kB, as peclet-engine's")
+    parser.add_argument("--block-numbers", type=int, default=475, help="in a result; 475 make 2.0 kB stored, as those of peclet-engine with friction and noise")
     parser.add_argument("--claims", action="store_true", help="fail unless every claim holds")
     arguments = parser.parse_args()
     peclet, engine = (os.path.abspath(os.path.join(arguments.bin, name)) for name in ("peclet", "fake_engine"))

@@ -25,8 +25,9 @@ TEST_F(Databases, IsDurableStrictAndOurs) {
   EXPECT_EQ(connection.text("PRAGMA journal_mode"), "wal");
   EXPECT_EQ(connection.integer("PRAGMA synchronous"), 2);  // FULL
   EXPECT_EQ(connection.integer("PRAGMA foreign_keys"), 1);
-  EXPECT_EQ(connection.integer("PRAGMA user_version"), 3);
+  EXPECT_EQ(connection.integer("PRAGMA user_version"), 4);
   EXPECT_EQ(connection.integer("PRAGMA application_id"), 0x50434c4c);  // "PCLL"
+  EXPECT_EQ(connection.integer("PRAGMA page_size"), 16384);
   EXPECT_EQ(connection.integer(
                 "SELECT count(*) FROM pragma_table_list WHERE type = 'table' AND schema = 'main' AND "
                 "name NOT LIKE 'sqlite_%' AND NOT strict"),
@@ -49,13 +50,13 @@ TEST_F(Databases, SomebodyElsesDatabaseIsLeftAlone) {
 }
 
 TEST_F(Databases, ANewerVersionAsksForANewerProgram) {
-  Database::open_owner(path()).connection().execute("PRAGMA user_version = 4");
+  Database::open_owner(path()).connection().execute("PRAGMA user_version = 5");
   for (const bool owner : {true, false}) {
     try {
       owner ? Database::open_owner(path()) : Database::open_reader(path());
       FAIL() << "opened";
     } catch (const IntegrityError& error) {
-      EXPECT_NE(std::string(error.what()).find("newer peclet (version 4"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("newer peclet (version 5"), std::string::npos) << error.what();
     }
   }
 }

@@ -42,6 +42,13 @@ class Doctor : public testing::Test {
     Connection connection(campaign_.directory().database().string(), Connection::Access::read_write, 0);
     connection.execute(sql);
   }
+  // The stored result of a seed with another value, as plain text.
+  std::string altered(int seed) {
+    Database reader = campaign_.reader();
+    Json result = reader.result(reader.points().at(0).id, seed).value();
+    result["mean"]["relative_viscosity"] = 7.0;
+    return result.dump();
+  }
   std::string exported() {
     Database reader = campaign_.reader();
     return export_json(reader, true);
@@ -62,8 +69,10 @@ struct Fault {
 
 TEST_F(Doctor, FindsWhatContradictsItself) {
   const Fault faults[] = {
-      {"UPDATE result SET document = json_set(document, '$.mean.relative_viscosity', 7.0) WHERE seed = 1",
+      {"UPDATE result SET document = (SELECT document FROM result WHERE seed = 0) WHERE seed = 1",
        "result-altered", "integrity"},
+      {"UPDATE result SET document = zeroblob(9) WHERE seed = 1", "result-altered", "integrity"},
+      {"UPDATE dictionary SET text = '{}'", "result-altered", "integrity"},
       {"DELETE FROM result WHERE seed = 1", "result-altered", "integrity"},
       {"UPDATE realisation SET value = value + 1 WHERE seed = 1", "result-altered", "integrity"},
       {"UPDATE look SET mean = mean + 1", "look-differs", "integrity"},
@@ -88,7 +97,7 @@ TEST_F(Doctor, FindsWhatContradictsItself) {
 
 TEST_F(Doctor, RepairsAnAlteredResultByRunningItsSeedAgain) {
   const std::string before = exported();
-  edit("UPDATE result SET document = json_set(document, '$.mean.relative_viscosity', 7.0) WHERE seed = 1");
+  edit("UPDATE result SET document = '" + altered(1) + "' WHERE seed = 1");
   edit("UPDATE realisation SET value = 7.0 WHERE seed = 1");
   EXPECT_EQ(examine(true).exit_code, 0);
   EXPECT_FALSE(fs::is_empty(campaign_.directory().rejected()));

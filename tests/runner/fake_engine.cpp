@@ -272,10 +272,10 @@ class Engine {
         {"engine", engine()}};
     if (const auto padding = static_cast<std::size_t>(setting("PECLET_FAKE_PADDING", 0)); padding > 0) {
       Json& numbers = result["blocks"]["padding"] = Json::array();
-      std::uint64_t noise = state.value;  // as many digits as a real engine's, and no two alike
+      std::uint64_t noise = state.value;  // five digits, as a real engine's blocks have, and no two alike
       for (std::size_t i = 0; i < padding; ++i) {
         noise = mix(noise);
-        numbers.push_back(static_cast<double>(noise >> 11) * 0x1p-53);
+        numbers.push_back(static_cast<double>(noise % 100'000) * 1e-5);
       }
     }
     if (blown_up) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "contract/input_error.h"
+#include "runner/result_text.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {
@@ -81,8 +82,13 @@ TEST_F(Queues, AResultOfAnUnknownPointIsNotTaken) {
 TEST_F(Queues, ProvenanceIsStoredOnce) {
   for (int seed = 0; seed < 5; ++seed) offer(plain_result(hash(), seed, 12.5));
   EXPECT_EQ(database_.engines().size(), 1U);
-  EXPECT_EQ(
-      database_.connection().integer("SELECT count(*) FROM result WHERE document LIKE '%binary_sha256%'"), 0);
+  Statement stored(database_.connection(),
+                   "SELECT document, text FROM result JOIN dictionary USING (point_id)");
+  int results = 0;
+  for (; stored.step(); ++results) {
+    EXPECT_EQ(result_text(stored, 0, 1).find("binary_sha256"), std::string::npos);
+  }
+  EXPECT_EQ(results, 5);
 }
 
 TEST_F(Queues, SeedsOfADeadOwnerAreQueuedAgainWithoutBlame) {
