@@ -104,6 +104,7 @@ Database Database::open_owner(const std::filesystem::path& path) {
   // Results take some 2 kB, of which pages of 4 kB would hold one each. Ignored where there are tables.
   connection.execute("PRAGMA page_size = 16384");
   connection.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
+  connection.execute("PRAGMA wal_autocheckpoint = 250");  // a log of some 4 MB
   if (connection.text("PRAGMA journal_mode") != "wal") {
     throw DatabaseError(connection.path() + ": cannot keep a write-ahead log on this file system", 0);
   }

@@ -9,17 +9,6 @@
 namespace peclet::runner {
 namespace {
 
-// Bytes that compress badly, and the same whatever the platform.
-std::string noise(std::size_t size) {
-  std::string bytes;
-  std::uint32_t state = 1;
-  for (std::size_t i = 0; i < size; ++i) {
-    state = state * 1664525U + 1013904223U;
-    bytes += static_cast<char>(state >> 24);
-  }
-  return bytes;
-}
-
 TEST(ResultText, ComesBackAsItWas) {
   const std::string dictionary = R"({"mean":{"relative_viscosity":1.25},"seed":0})";
   for (const std::string& text : {std::string(), std::string("{}"), dictionary, noise(100'000)}) {
@@ -31,7 +20,7 @@ TEST(ResultText, ComesBackAsItWas) {
 
 TEST(ResultText, TakesWhatItRepeatsFromTheDictionary) {
   const std::string text = noise(5000);
-  EXPECT_GT(deflated(text, "").size(), 5000U);
+  EXPECT_GT(deflated(text, "").size(), 3750U);  // six bits a letter
   EXPECT_LT(deflated(text, text).size(), 100U);
 }
 

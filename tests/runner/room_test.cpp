@@ -43,6 +43,7 @@ class FullDatabase : public testing::Test {
     create_folders(directory_);
     Queue(database_).adopt(campaign_);
     ledger_.emplace(database_, campaign_, directory_, listener_, 2);
+    pool_.result_size = 40'000;  // more than what is free in a page of the table of results
   }
 
   Dispatcher::Ending run(const DispatchSettings& settings = {}) {

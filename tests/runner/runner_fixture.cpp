@@ -41,6 +41,16 @@ Json plain_engine(const std::string& identity) {
           {"cpu", "none"}};
 }
 
+std::string noise(std::size_t size, std::uint32_t start) {
+  std::string letters;
+  std::uint32_t state = start;
+  for (std::size_t i = 0; i < size; ++i) {
+    state = state * 1664525U + 1013904223U;
+    letters += static_cast<char>('0' + (state >> 26));
+  }
+  return letters;
+}
+
 Json plain_result(const std::string& point, int seed, double viscosity, const std::string& identity) {
   return {{"schema_version", 1},
           {"point", point},

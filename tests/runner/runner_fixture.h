@@ -35,6 +35,9 @@ Campaign plain_campaign(int points, int minimum, int maximum, double tolerance);
 Json plain_result(const std::string& point, int seed, double viscosity,
                   const std::string& identity = "engine");
 
+// Letters that compress badly: others for each `start`, the same on every platform.
+std::string noise(std::size_t size, std::uint32_t start = 1);
+
 // The engine that plain_result() names.
 Json plain_engine(const std::string& identity = "engine");
 

@@ -47,7 +47,9 @@ std::vector<WorkerEvent> ScriptedPool::wait(std::chrono::milliseconds patience) 
 
 void ScriptedPool::spool(int worker, double viscosity) const {
   const Job& about = job(worker);
-  write_durably(about.spool, plain_result(about.point, about.seed, viscosity, identity).dump());
+  Json result = plain_result(about.point, about.seed, viscosity, identity);
+  result["ending"]["message"] = noise(result_size, static_cast<std::uint32_t>(about.seed));
+  write_durably(about.spool, result.dump());
 }
 
 void ScriptedPool::finish(int worker, double viscosity) {

@@ -42,7 +42,8 @@ class ScriptedPool : public WorkerPool {
   std::string identity = "engine";
   bool says_hello = true;
   bool leaves_when_drained = true;
-  int stopped = -1;  // the worker whose process is
+  std::size_t result_size = 0;  // so many letters more than a plain result, others for each seed
+  int stopped = -1;             // the worker whose process is
 
   std::chrono::steady_clock::time_point now{};  // the test's time
   int starts = 0;

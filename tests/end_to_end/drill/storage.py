@@ -59,8 +59,8 @@ def full_disks(lab, tally, chance, times, folders):
             campaign = Campaign(lab, checkpoint=0.001, steps=10, step_ms=1)
             place = campaign.path(*filter(None, [name]))
             os.makedirs(place)
-            subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4m", "none", place], check=True)
-            room = chance.randint(0, 400_000 if not name else 9_000)
+            subprocess.run(["mount", "-t", "tmpfs", "-o", "size=8m", "none", place], check=True)
+            room = chance.randint(0, 1_600_000 if not name else 9_000)
             ballast = os.path.join(place, "ballast.tmp")  # a name that means nothing in a spool
             fill(ballast, place, room)
             owner = campaign.start()
