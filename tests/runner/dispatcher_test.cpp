@@ -1,65 +1,13 @@
-#include "runner/dispatcher.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <csignal>
 #include <filesystem>
-#include <optional>
 
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
 #include "runner/spool.h"
-#include "tests/runner/runner_fixture.h"
-#include "tests/runner/scripted_pool.h"
+#include "tests/runner/dispatcher_fixture.h"
 
 namespace peclet::runner {
 namespace {
-
-// Four seeds of one point at 5 %: 10 and 10.01 in turn decide it at the first look.
-double steady(int seed) { return seed % 2 == 0 ? 10 : 10.01; }
-
-class Dispatching : public testing::Test {
- protected:
-  Dispatching() {
-    create_folders(directory_);
-    Queue(database_).adopt(campaign_);
-  }
-
-  Dispatcher::Ending run() {
-    ledger_.emplace(database_, campaign_, directory_, listener_, 2);
-    Dispatcher dispatcher(database_, *ledger_, pool_, listener_, settings_, [this] { return pool_.now; });
-    return dispatcher.run();
-  }
-
-  // All busy workers finish.
-  void finish_all() {
-    for (int worker = 0; worker < pool_.size(); ++worker) {
-      if (pool_.has_job(worker)) pool_.finish(worker, steady(pool_.job(worker).seed));
-    }
-  }
-  std::vector<AttemptRecord> attempts_of(int seed) {
-    std::vector<AttemptRecord> found;
-    for (const AttemptRecord& record : database_.attempts(1)) {
-      if (record.seed == seed) found.push_back(record);
-    }
-    return found;
-  }
-  SeedState state_of(int seed) { return database_.realisations(1).at(static_cast<std::size_t>(seed)).state; }
-  bool was_warned_of(const std::string& text) const {
-    return std::any_of(listener_.warnings.begin(), listener_.warnings.end(),
-                       [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
-  }
-
-  TemporaryFolder folder_;
-  CampaignDirectory directory_{folder_.path()};
-  Campaign campaign_ = plain_campaign(1, 4, 40, 0.05);
-  Database database_ = Database::open_owner(directory_.database());
-  ScriptedPool pool_{2};
-  SilentListener listener_;
-  DispatchSettings settings_{};
-  std::optional<Ledger> ledger_;
-};
 
 TEST_F(Dispatching, RunsUntilEveryPointIsDecidedAndLeavesNoFiles) {
   pool_.script = [this] { finish_all(); };
@@ -81,60 +29,6 @@ TEST_F(Dispatching, AnAttemptIsDurableBeforeItsWorkerHearsOfIt) {
     finish_all();
   };
   run();
-}
-
-TEST_F(Dispatching, AWorkerThatTakesNoStepDuringALeaseIsHung) {
-  bool first = true;
-  pool_.script = [&, this] {
-    if (first && pool_.has_job(0)) {
-      // Alive and talking, but standing still.
-      pool_.say(Progressed{0, pool_.job(0).attempt, 2, 7, 100, 0.1});
-      pool_.now += std::chrono::milliseconds(900);
-      first = pool_.now.time_since_epoch() < std::chrono::seconds(200);
-      if (pool_.has_job(1))
-        pool_.say(Progressed{1, pool_.job(1).attempt, 2, pool_.now.time_since_epoch().count(), 100, 0.1});
-      return;
-    }
-    finish_all();
-  };
-  EXPECT_EQ(run(), Dispatcher::Ending::finished);
-  EXPECT_EQ(attempts_of(0).at(0).outcome, "hung");
-  EXPECT_TRUE(attempts_of(0).at(0).blamed);
-  EXPECT_EQ(attempts_of(0).at(0).step, 7);
-  EXPECT_EQ(attempts_of(0).at(1).outcome, "result");
-  EXPECT_EQ(attempts_of(1).size(), 1U);  // the one that took steps was left alone
-}
-
-TEST_F(Dispatching, AWorkerThatWasStoppedIsReplacedWithoutBlame) {
-  pool_.stopped = 0;
-  pool_.script = [&, this] {
-    if (pool_.now.time_since_epoch() > std::chrono::seconds(200)) return finish_all();
-    pool_.now += std::chrono::milliseconds(900);
-    if (!pool_.has_job(1)) return;
-    pool_.say(Progressed{1, pool_.job(1).attempt, 2, pool_.now.time_since_epoch().count(), 100, 0.1});
-  };
-  EXPECT_EQ(run(), Dispatcher::Ending::finished);
-  EXPECT_EQ(attempts_of(0).at(0).outcome, "killed");
-  EXPECT_EQ(attempts_of(0).at(1).outcome, "result");
-  EXPECT_EQ(database_.connection().integer("SELECT total(blamed) FROM attempt"), 0);
-}
-
-TEST_F(Dispatching, AnOwnerThatWasStoppedBlamesNobody) {
-  int stops = 0;
-  pool_.script = [&, this] {
-    if (stops < 5 && pool_.has_job(0) && pool_.has_job(1)) {
-      ++stops;
-      pool_.now += std::chrono::hours(1);  // stopped before it could hear anything
-      if (stops % 2 == 0) pool_.say(Progressed{0, pool_.job(0).attempt, 2, stops, 100, 0.1});
-      return;
-    }
-    finish_all();
-  };
-  EXPECT_EQ(run(), Dispatcher::Ending::finished);
-  EXPECT_EQ(stops, 5);
-  EXPECT_EQ(database_.connection().integer("SELECT total(blamed) FROM attempt"), 0);
-  EXPECT_EQ(attempts_of(0).size(), 1U);
-  EXPECT_EQ(attempts_of(1).size(), 1U);
 }
 
 TEST_F(Dispatching, ASeedThatCrashesThreeTimesIsGivenUpAndCountsAsLost) {
@@ -244,86 +138,6 @@ TEST_F(Dispatching, WordsAboutSomebodyElsesJobEndTheWorker) {
   };
   EXPECT_EQ(run(), Dispatcher::Ending::finished);
   EXPECT_EQ(attempts_of(0).at(0).outcome, "garbled");
-}
-
-TEST_F(Dispatching, TheFirstSignalLetsWorkersCheckpoint) {
-  pool_.script = [this] {
-    if (pool_.has_job(0)) pool_.say(StopSignal{});
-  };
-  EXPECT_EQ(run(), Dispatcher::Ending::stopped);
-  EXPECT_EQ(attempts_of(0).at(0).outcome, "drained");
-  EXPECT_EQ(state_of(0), SeedState::queued);
-  EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM realisation WHERE state = 'running'"), 0);
-}
-
-TEST_F(Dispatching, TheSecondSignalStopsAtOnceWithoutBlame) {
-  pool_.leaves_when_drained = false;
-  int signals = 0;
-  pool_.script = [&, this] {
-    if (pool_.has_job(0) && signals < 2) {
-      ++signals;
-      pool_.say(StopSignal{});
-    }
-  };
-  EXPECT_EQ(run(), Dispatcher::Ending::stopped);
-  EXPECT_LT(pool_.now.time_since_epoch(), std::chrono::seconds(10));
-  EXPECT_EQ(database_.connection().integer("SELECT total(blamed) FROM attempt"), 0);
-  EXPECT_EQ(state_of(0), SeedState::queued);
-}
-
-TEST_F(Dispatching, WorkersThatDoNotDrainAreKilledInTheEnd) {
-  pool_.leaves_when_drained = false;
-  bool signalled = false;
-  pool_.script = [&, this] {
-    if (pool_.has_job(0) && !signalled) {
-      signalled = true;
-      pool_.say(StopSignal{});
-    }
-  };
-  EXPECT_EQ(run(), Dispatcher::Ending::stopped);
-  EXPECT_FALSE(pool_.alive(0));
-}
-
-TEST_F(Dispatching, ATimeLimitDrains) {
-  settings_.time_limit = std::chrono::seconds(20);
-  pool_.script = [this] {
-    pool_.now += std::chrono::seconds(1);
-    for (int worker = 0; worker < 2; ++worker) {
-      if (!pool_.has_job(worker)) continue;
-      pool_.say(Progressed{worker, pool_.job(worker).attempt, 2, pool_.now.time_since_epoch().count(), 1, 0});
-    }
-  };
-  EXPECT_EQ(run(), Dispatcher::Ending::stopped);
-  EXPECT_EQ(attempts_of(0).at(0).outcome, "drained");
-  EXPECT_GE(pool_.now.time_since_epoch(), std::chrono::seconds(20));
-}
-
-TEST_F(Dispatching, AResultThatComesDuringADrainIsStored) {
-  bool signalled = false;
-  pool_.script = [&, this] {
-    if (signalled || !pool_.has_job(0)) return;
-    signalled = true;
-    pool_.say(StopSignal{});
-    pool_.finish(0, steady(0));
-  };
-  EXPECT_EQ(run(), Dispatcher::Ending::stopped);
-  EXPECT_EQ(state_of(0), SeedState::done);
-}
-
-TEST_F(Dispatching, SurplusSeedsAreCheckpointedWhenTheCampaignIsDecided) {
-  campaign_ = plain_campaign(1, 2, 40, 0.05);
-  Queue(database_).adopt(campaign_);
-  // One at a time: the worker that is free first runs ahead.
-  pool_.script = [this] {
-    for (int worker = 0; worker < 2; ++worker) {
-      if (!pool_.has_job(worker) || pool_.job(worker).seed >= 2) continue;
-      pool_.finish(worker, steady(pool_.job(worker).seed));
-      return;
-    }
-  };
-  EXPECT_EQ(run(), Dispatcher::Ending::finished);
-  EXPECT_EQ(state_of(2), SeedState::queued);
-  EXPECT_EQ(attempts_of(2).at(0).outcome, "drained");
 }
 
 TEST_F(Dispatching, AnotherEngineIsRefusedForAPointWithResults) {
