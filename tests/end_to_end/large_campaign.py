@@ -6,7 +6,8 @@ Runs a campaign of 100 000 realisations with the fake engine of the tests, whose
 
 - processor time per realisation, of the owner and of the engines apart, and the owner's largest memory;
 - how busy the workers are: the time that they spent on jobs, by their own clocks, over workers times the time between the
-  first job's begin and the last one's end;
+  first job's begin and the last one's end. A job counts from when its worker takes it up until its result is durable in the
+  spool and announced: delivering it is the worker's work, waiting for the next one is not;
 - commits per second and results per commit, by the counter of transactions in the write-ahead log's index;
 - the time of `peclet status` while it runs (median and largest) and afterwards, and the size of the database.
 

@@ -7,9 +7,9 @@
 //   PECLET_FAKE_STEPS (10), PECLET_FAKE_STEP_MS (0)     length of a realisation
 //   PECLET_FAKE_MEAN (10), PECLET_FAKE_DEVIATION (1)    of the relative viscosity
 //   PECLET_FAKE_PADDING (0)                             numbers that make its result longer
-//   PECLET_FAKE_TIMES                                   a file that gets a line a job: its begin and end on
-//   the
-//                                                       monotonic clock, in nanoseconds
+//   PECLET_FAKE_TIMES                                   a file that gets a line a job, in nanoseconds of the
+//                                                       monotonic clock: when the job was taken up, and when
+//                                                       its result was durable and announced
 //   PECLET_FAKE_PRINTED (0)                             bytes that it prints at every step
 //   PECLET_FAKE_IDENTITY ("fake")                       what its binary is said to be
 //   PECLET_FAKE_DRIFT                                   set: results differ from those without it
@@ -95,6 +95,7 @@ class Engine {
   }
 
   void run_job(const Json& job) {
+    const auto begun = steady_clock::now();
     const std::string point = job.at("point");
     const int seed = job.at("seed");
     const std::filesystem::path checkpoint(job.at("checkpoint").get<std::string>());
@@ -105,8 +106,7 @@ class Engine {
       state = {saved.at("value").get<std::uint64_t>(), saved.at("step").get<int>()};
     }
     if (std::getenv("PECLET_FAKE_DRIFT") != nullptr) state.value = mix(state.value);
-    const auto start = steady_clock::now();
-    auto saved = start, told = start;
+    auto saved = begun, told = begun;
     for (; state.step < steps_; ++state.step) {
       if (state.step >= fault_step_) go_wrong(fault, job);
       if (told_to_leave(job, state, checkpoint)) return;
@@ -122,7 +122,8 @@ class Engine {
         save(job, {state.value, state.step + 1}, checkpoint);
       }
     }
-    finish(job, state, fault, start);
+    finish(job, state, fault, begun);
+    note_times(begun);
   }
 
   void go_wrong(Fault fault, const Json& job) {
@@ -228,7 +229,6 @@ class Engine {
       return;
     }
     if (fault == Fault::mute) std::abort();
-    note_times(begun);
     announce(frame, fault);
     if (fault == Fault::twice) channel_.send(frame);
     if (fault == Fault::late) progress(job, steps_);
