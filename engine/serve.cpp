@@ -6,8 +6,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <optional>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include "contract/durable_file.h"
 #include "contract/frames.h"
@@ -39,11 +41,16 @@ class Worker {
   explicit Worker(int descriptor) : channel_(descriptor) {}
 
   int run() {
-    channel_.send(
-        {{"type", "hello"}, {"protocol", 1}, {"program", "peclet-engine"}, {"engine", engine_identity()}});
+    channel_.send({{"type", "hello"},
+                   {"protocol", 1},
+                   {"program", "peclet-engine"},
+                   {"engine", engine_identity()},
+                   {"ahead", true}});
     Json message;
     while (!leave_) {
-      if (channel_.receive(message, std::chrono::milliseconds(-1)) == FrameChannel::Status::closed) {
+      if (waiting_job_) {
+        message = *std::exchange(waiting_job_, std::nullopt);
+      } else if (channel_.receive(message, std::chrono::milliseconds(-1)) == FrameChannel::Status::closed) {
         return 0;
       }
       try {
@@ -120,12 +127,15 @@ class Worker {
     tries_left_ = last_tries;
     try {
       const std::optional<Json> result = run_job(job, events(id, message.value("progress_seconds", 1.0)));
-      if (!result || !deliver(id, *result, message.at("spool").get<std::string>())) {
+      if (result && deliver(id, *result, message.at("spool").get<std::string>())) {
+        leave_ = told_to_leave_;  // nobody says it twice, except after "drained"
+      } else {
         tell({{"type", "drained"}, {"job", id}, {"step", last_step_}});
       }
     } catch (const std::exception& error) {
       log_line(error.what());
       tell({{"type", "failed"}, {"job", id}, {"message", error.what()}});
+      leave_ = told_to_leave_;
     }
     leave_ = leave_ || abandoned_;
   }
@@ -142,7 +152,6 @@ class Worker {
       }
     }
     tell({{"type", "result"}, {"job", id}, {"spool", spool}, {"sha256", sha256(text)}});
-    leave_ = told_to_leave_;  // heard while it waited; nobody says it twice
     return true;
   }
 
@@ -215,13 +224,21 @@ class Worker {
     if (type == "stop") {
       std::exit(0);
     }
+    if (type == "job" && !waiting_job_ && !told_to_leave_) {
+      waiting_job_ = message;
+      hear(std::chrono::milliseconds(0));  // a drain may be behind it
+      return;
+    }
     if (type != "drain") {
-      throw FrameError("a message of type \"" + type + "\" while a job is running");
+      throw FrameError("a message of type \"" + type + "\" while a job is running" +
+                       (waiting_job_ ? " and another one waits" : ""));
     }
     told_to_leave_ = true;
+    waiting_job_.reset();  // the runner gives it to somebody else
   }
 
   FrameChannel channel_;
+  std::optional<Json> waiting_job_;  // came while another one ran
   bool leave_ = false;
   bool abandoned_ = false;
   bool told_to_leave_ = false;  // by a drain during the present job

@@ -3,7 +3,8 @@
 
 Plays the runner's part for one engine, in another language than both programs: asks about a scene and about a bad one (SCENE
 with VALUE at POINTER; unless given, a viscosity of -1), runs one seed, runs it again and takes the job back after the first
-progress, runs it once more and hangs up, each time with a new process that goes on. Holds every frame and result to
+progress, runs it once more and hangs up, each time with a new process that goes on. An engine that takes a job ahead gets two at
+once, and a drain with two of them. Holds every frame and result to
 schema/frames.schema.json and schema/result.schema.json with an independent validator (Debian's python3-jsonschema), and the
 results to each other.
 """
@@ -43,6 +44,7 @@ class Engine:
         hello = self.receive()
         assert hello["type"] == "hello", hello
         self.identity = hello["engine"]
+        self.takes_ahead = hello.get("ahead", False)
 
     def send(self, message):
         self.frames.validate(message)
@@ -83,6 +85,11 @@ class Conversation:
 
     def start(self):
         return Engine(self.command, self.frames)
+
+    def takes_ahead(self):
+        engine = self.start()
+        engine.leave()
+        return engine.takes_ahead
 
     def ask(self, refused, value):
         engine = self.start()
@@ -147,6 +154,42 @@ class Conversation:
         return self.undisturbed(job + 1), was_cut
 
 
+    def ahead(self, job):
+        """Two jobs at once: one result after the other."""
+        engine = self.start()
+        self.give_job(engine, job)
+        self.give_job(engine, job + 1)
+        results = [self.hear_result(engine, number) for number in (job, job + 1)]
+        engine.leave()
+        return results
+
+    def ahead_and_drained(self, job):
+        """A job that waits is given up without a word. Returns whether it still waited."""
+        engine = self.start()
+        self.give_job(engine, job)
+        answer = engine.receive()
+        waits = answer["type"] == "progress"
+        self.give_job(engine, job + 1)
+        engine.send({"type": "drain"})
+        while answer["type"] == "progress":
+            answer = engine.receive()
+        if answer["type"] == "result":  # it was faster than we, and may have begun the other one
+            waits = False
+        else:
+            assert answer["type"] == "drained" and answer["job"] == job, answer
+            engine.send({"type": "drain"})
+            try:
+                raise AssertionError(engine.receive())
+            except EOFError:
+                assert not self.spool(job + 1).exists()
+        if waits:
+            engine.leave("asked")
+        else:
+            engine.process.kill()
+            engine.process.wait()
+        return waits
+
+
 def with_value(scene, pointer, value):
     changed = copy.deepcopy(scene)
     *way, last = (part.replace("~1", "/").replace("~0", "~") for part in pointer.split("/")[1:])
@@ -179,6 +222,11 @@ def main():
             again, was_cut = conversation.disturbed(job, how)
             assert without_cost(again) == without_cost(result), f"{how}: another result: {again}"
             print(f"{how}: {'cut and resumed' if was_cut else 'too fast to be cut'}, the same result")
+        if conversation.takes_ahead():
+            for again in conversation.ahead(6):
+                assert without_cost(again) == without_cost(result), f"ahead: another result: {again}"
+            waited = conversation.ahead_and_drained(8)
+            print(f"ahead: the same results; {'given up by a drain' if waited else 'too fast to be drained'}")
     return 0
 
 

@@ -13,10 +13,12 @@
 //   PECLET_FAKE_PRINTED (0)                             bytes that it prints at every step
 //   PECLET_FAKE_IDENTITY ("fake")                       what its binary is said to be
 //   PECLET_FAKE_DRIFT                                   set: results differ from those without it
+//   PECLET_FAKE_AHEAD                                   set: it takes a job ahead
 //   PECLET_FAKE_STEPLESS                                set: it says that it knows of no time step
 //   PECLET_FAKE_FAULTS, PECLET_FAKE_CRASH_PROBABILITY   see fake_faults.h
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -26,7 +28,9 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <optional>
 #include <thread>
+#include <utility>
 
 #include "contract/durable_file.h"
 #include "contract/frames.h"
@@ -58,7 +62,7 @@ class Engine {
   int run() {
     say_hello();
     Json message;
-    while (!leave_ && channel_.receive(message, milliseconds(-1)) == FrameChannel::Status::message) {
+    while (!leave_ && next(message)) {
       const std::string type = message.at("type");
       if (type == "validate") validate(message);
       if (type == "job") run_job(message);
@@ -69,7 +73,30 @@ class Engine {
 
  private:
   void say_hello() {
-    channel_.send({{"type", "hello"}, {"protocol", 1}, {"program", "fake-engine"}, {"engine", engine()}});
+    Json hello{{"type", "hello"}, {"protocol", 1}, {"program", "fake-engine"}, {"engine", engine()}};
+    if (takes_ahead_) hello["ahead"] = true;
+    channel_.send(hello);
+  }
+
+  // False: the owner is gone.
+  bool next(Json& message) {
+    if (waiting_job_) {
+      message = *std::exchange(waiting_job_, std::nullopt);
+      return true;
+    }
+    return channel_.receive(message, milliseconds(-1)) == FrameChannel::Status::message;
+  }
+
+  // What the owner has to say while a job runs. A further job is kept, and the time goes on.
+  FrameChannel::Status hear(Json& message, milliseconds patience) {
+    const auto end = steady_clock::now() + patience;
+    for (;;) {
+      const auto left = std::chrono::ceil<milliseconds>(end - steady_clock::now());
+      const FrameChannel::Status status = channel_.receive(message, std::max(milliseconds(0), left));
+      if (status != FrameChannel::Status::message || message.at("type") != "job") return status;
+      if (!takes_ahead_ || waiting_job_) throw FrameError("one job too many");
+      waiting_job_ = message;
+    }
   }
 
   void validate(const Json& message) {
@@ -152,7 +179,7 @@ class Engine {
   // Waits for one step's time and hears what the owner has to say meanwhile.
   bool told_to_leave(const Json& job, const State& state, const std::filesystem::path& checkpoint) {
     Json message;
-    const FrameChannel::Status status = channel_.receive(message, step_time_);
+    const FrameChannel::Status status = hear(message, step_time_);
     if (status == FrameChannel::Status::nothing) return false;
     leave_ = true;
     if (status == FrameChannel::Status::message && message.at("type") == "stop") return true;
@@ -188,7 +215,7 @@ class Engine {
       } catch (const NoRoomError& error) {
         say_no_room(job, error);
         Json message;
-        if (channel_.receive(message, milliseconds(200)) == FrameChannel::Status::nothing) continue;
+        if (hear(message, milliseconds(200)) == FrameChannel::Status::nothing) continue;
         leave_ = true;
         return false;
       }
@@ -291,6 +318,8 @@ class Engine {
   int fault_step_ = static_cast<int>(setting("PECLET_FAKE_FAULT_STEP", steps_ / 2));
   milliseconds step_time_{static_cast<int>(setting("PECLET_FAKE_STEP_MS", 0))};
   const std::string printed_ = std::string(static_cast<std::size_t>(setting("PECLET_FAKE_PRINTED", 0)), 'x');
+  const bool takes_ahead_ = std::getenv("PECLET_FAKE_AHEAD") != nullptr;
+  std::optional<Json> waiting_job_;  // came while another one ran
   bool leave_ = false;
 };
 
