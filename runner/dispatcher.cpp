@@ -113,27 +113,6 @@ void Dispatcher::start_workers() {
   }
 }
 
-void Dispatcher::give_out_seeds() {
-  if (stopping_ != Stopping::no || shortage_.lasts() || ledger_.scheduler().finished()) return;
-  for (int number = 0; number < pool_.size(); ++number) {
-    Worker& worker = at(number);
-    if (worker.stage != Stage::idle || worker.recalled) continue;
-    std::optional<Grant> grant = ledger_.give_out(number, pool_.process(number), worker.engine);
-    if (!grant) return;
-    grant->job.threads = settings_.threads;
-    grant->job.checkpoint_seconds = settings_.checkpoint_seconds;
-    // Several reports fit into a lease.
-    grant->job.progress_seconds = std::min(1.0, settings_.lease.count() / 5);
-    to_send_.emplace_back(number, grant->job);
-    grant->job.scene = nullptr;  // sent once; the rest is copied at every turn
-    worker.stage = Stage::busy;
-    worker.since = awake_;
-    worker.assignment = Assignment{std::move(*grant)};
-    worker.assignment->renewed = worker.since;
-    worker.assignment->given = clock_();
-  }
-}
-
 void Dispatcher::judge_leases() {
   for (int number = 0; number < pool_.size(); ++number) {
     const Worker& worker = at(number);
@@ -195,18 +174,12 @@ void Dispatcher::report() {
   reported_ = now;
   RunReport report = ledger_.report(pool_.size());
   report.workers = pool_.size();
+  report.busy =
+      static_cast<int>(std::count_if(now_.workers.begin(), now_.workers.end(),
+                                     [](const Worker& worker) { return worker.stage == Stage::busy; }));
   report.results = now_.results;
   report.elapsed = std::chrono::duration<double>(now - started_).count();
   listener_.report(report);
-}
-
-bool Dispatcher::has_job(int worker, std::int64_t job) {
-  const Worker& about = at(worker);
-  if (about.condemned) return false;
-  if (about.assignment && about.assignment->grant.job.attempt == job) return true;
-  if (about.finished_job == job) return false;  // said once too often, which does no harm
-  condemn(worker, AttemptOutcome::garbled, fmt::format("spoke of job {}, which it does not have", job));
-  return false;
 }
 
 void Dispatcher::condemn(int number, AttemptOutcome outcome, const std::string& message) {
@@ -214,26 +187,6 @@ void Dispatcher::condemn(int number, AttemptOutcome outcome, const std::string& 
   worker.condemned = outcome;
   worker.message = message;
   pool_.kill(number);
-}
-
-void Dispatcher::set_idle(int number) {
-  Worker& worker = at(number);
-  if (worker.assignment) worker.finished_job = worker.assignment->grant.job.attempt;
-  worker.assignment.reset();
-  worker.stage = Stage::idle;
-  worker.since = awake_;
-}
-
-double Dispatcher::held_seconds(int number) {
-  return settings_.threads * std::chrono::duration<double>(clock_() - at(number).assignment->given).count();
-}
-
-void Dispatcher::end_assignment(int number, const AttemptEnd& end) {
-  AttemptEnd complete = end;
-  complete.step = at(number).assignment->step;
-  complete.held_seconds = held_seconds(number);
-  ledger_.end_attempt(at(number).assignment->grant, complete);
-  set_idle(number);
 }
 
 void Dispatcher::handle(const Hello& event) {
@@ -244,7 +197,9 @@ void Dispatcher::handle(const Hello& event) {
     return;
   }
   worker.engine = ledger_.admit_engine(event.engine);
-  set_idle(event.worker);
+  worker.takes_ahead = event.ahead;
+  worker.stage = Stage::idle;
+  worker.since = awake_;
 }
 
 void Dispatcher::handle(const Progressed& event) {
@@ -265,10 +220,11 @@ void Dispatcher::handle(const ResultSpooled& event) {
   std::string why;
   if (event.spool != about.grant.job.spool) {
     condemn(event.worker, AttemptOutcome::garbled, "spooled its result elsewhere");
-  } else if (ledger_.take_result(about.grant, event.sha256, about.step, held_seconds(event.worker), why)) {
+  } else if (ledger_.take_result(about.grant, event.sha256, about.step, processor_seconds_since(about.given),
+                                 why)) {
     ++now_.results;
     now_.early_exits = 0;
-    set_idle(event.worker);
+    go_on(event.worker);
   } else {
     condemn(event.worker, AttemptOutcome::garbled, why);
   }
@@ -283,7 +239,9 @@ void Dispatcher::handle(const JobFailed& event) {
 
 void Dispatcher::handle(const Drained& event) {
   if (!has_job(event.worker, event.job)) return;
-  at(event.worker).assignment->step = event.step;
+  Worker& worker = at(event.worker);
+  worker.assignment->step = event.step;
+  if (const auto waiting = std::exchange(worker.waiting, std::nullopt)) give_back(*waiting);
   end_assignment(event.worker, {AttemptOutcome::drained});
   pool_.drain(event.worker);  // an idle engine leaves
 }
@@ -308,26 +266,19 @@ void Dispatcher::handle(const Garbled& event) {
 
 void Dispatcher::handle(const Exited& event) {
   Worker& worker = at(event.worker);
-  const Stage stage = worker.stage;
+  const auto waiting = std::exchange(worker.waiting, std::nullopt);
   if (worker.assignment) {
     exited_during_job(event.worker, event.ending);
   } else {
-    exited_without_job(event.worker, event.ending, stage);
+    exited_without_job(event.worker, event.ending, worker.stage);
   }
+  if (waiting && !left_result(event.worker, *waiting)) give_back(*waiting);
   worker = Worker{};
 }
 
 void Dispatcher::exited_during_job(int number, const ExitStatus& ending) {
   const Worker& worker = at(number);
-  const Grant& grant = worker.assignment->grant;
-  // A result may be durable although nobody could announce it any more; one that was turned down stays so.
-  std::string why;
-  if (worker.condemned != AttemptOutcome::garbled && std::filesystem::exists(grant.job.spool) &&
-      ledger_.take_result(grant, "", worker.assignment->step, held_seconds(number), why)) {
-    ++now_.results;
-    set_idle(number);
-    return;
-  }
+  if (left_result(number, *worker.assignment)) return;
   AttemptEnd end{outcome_of(ending), 0, ending, to_string(ending)};
   if (worker.condemned) {
     end.outcome = *worker.condemned;

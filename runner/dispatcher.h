@@ -4,6 +4,10 @@
 // sent when its attempt is durable, a spool file goes when its result is. When the disk is full, what
 // happened is kept and booked again every few seconds, and until that succeeds no seed is given out: workers
 // go on with those they have.
+//
+// A worker whose jobs are short would wait for that commit longer than it works. Where its engine can do it,
+// it has a second job, which it begins by itself when the first has ended; until then that one has not begun,
+// and whatever the worker does is not its fault.
 #pragma once
 
 #include <chrono>
@@ -62,7 +66,8 @@ class Dispatcher {
     int phase = 0;
     std::int64_t step = 0, steps = 0;
     double strain = 0;
-    Time given{};
+    Time given{};        // when the worker got it
+    Time begun{};        // when there was no other before it any more, as far as we know
     Awake renewed{};     // when it last came forward
     bool shown = false;  // the database says how far it is
   };
@@ -71,7 +76,9 @@ class Dispatcher {
     Stage stage = Stage::absent;
     Awake since{};  // of the stage
     std::int64_t engine = 0;
+    bool takes_ahead = false;
     std::optional<Assignment> assignment{};
+    std::optional<Assignment> waiting{};        // behind the assignment; only of a busy worker
     std::int64_t finished_job = 0;              // the last one; attempts are numbered from 1
     std::optional<AttemptOutcome> condemned{};  // killed by us, and why
     bool recalled = false;                      // told to leave a seed that is not wanted any more
@@ -107,7 +114,7 @@ class Dispatcher {
   void settle_spool();
   void obey_stop_signal();
   void hear_requests();
-  // The ledger's picture is new: it hears who has which seed, and workers whose seeds nobody wants leave.
+  // The ledger's picture is new: it hears who has which seeds, and workers with one that nobody wants leave.
   void mark_running_seeds();
   void start_workers();
   void give_out_seeds();
@@ -117,14 +124,21 @@ class Dispatcher {
   void stop(Stopping why);
   void report();
 
+  std::optional<Assignment> next_assignment(int worker);
+  bool takes_one_more(const Worker& worker) const;
   bool has_job(int worker, std::int64_t job);
   // Whether the worker may have failed because it could not write: no room, or no folder.
   bool lacked_room(int worker);
   void condemn(int worker, AttemptOutcome outcome, const std::string& message);
-  void set_idle(int worker);
-  // Processor seconds that the worker may have spent on what it has.
-  double held_seconds(int worker);
+  // The worker is through with its job, and is at the one that waited or idle.
+  void go_on(int worker);
+  // Processor seconds that a worker can have spent since then.
+  double processor_seconds_since(Time time) const;
   void end_assignment(int worker, const AttemptEnd& end);
+  // Takes the result of a worker that has exited. False: it left none for this.
+  bool left_result(int worker, const Assignment& about);
+  // Of an assignment that has waited in vain.
+  void give_back(const Assignment& waiting);
   void exited_during_job(int worker, const ExitStatus& ending);
   void exited_without_job(int worker, const ExitStatus& ending, Stage stage);
   Worker& at(int worker) { return now_.workers.at(static_cast<std::size_t>(worker)); }

@@ -26,7 +26,11 @@ void Dispatcher::hear_requests() {
 void Dispatcher::mark_running_seeds() {
   for (int number = 0; number < pool_.size(); ++number) {
     Worker& worker = at(number);
-    if (!worker.assignment || ledger_.keep_running(worker.assignment->grant) || worker.recalled) continue;
+    bool wanted = true;
+    for (std::optional<Assignment>* const about : {&worker.assignment, &worker.waiting}) {
+      if (*about && !ledger_.keep_running((*about)->grant)) wanted = false;
+    }
+    if (wanted || worker.recalled) continue;
     worker.recalled = true;
     pool_.drain(number);
   }

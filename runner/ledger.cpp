@@ -312,7 +312,6 @@ RunReport Ledger::report(int workers) const {
     const bool decided = scheduler_->decided(place);
     const bool is_left_alone = !decided && scheduler_->cancelled(place);
     report.cancelled += is_left_alone ? 1 : 0;
-    const auto index = static_cast<std::size_t>(place);
     report.decided += decided ? 1 : 0;
     report.converged += decided && (looks.back().verdict == Verdict::converged ||
                                     looks.back().verdict == Verdict::converged_with_losses)
@@ -320,8 +319,8 @@ RunReport Ledger::report(int workers) const {
                             : 0;
     report.seeds_ended += scheduler_->ended(place);
     report.seeds_wanted += is_left_alone ? scheduler_->ended(place) : scheduler_->wanted(place);
-    report.busy += running_[index];
-    forecasts.push_back({costs_[index].wall, looks, scheduler_->begun(place), decided || is_left_alone});
+    forecasts.push_back({costs_[static_cast<std::size_t>(place)].wall, looks, scheduler_->begun(place),
+                         decided || is_left_alone});
   }
   report.spent_seconds = spent_seconds_;
   report.budget_seconds = bounds_.budget_seconds;

@@ -60,12 +60,14 @@ class Ledger {
   // The next seed to be run within the bounds. Of a budget is left what was not spent and what the seeds that
   // are out are not expected to cost.
   std::optional<SeedId> next() const;
-  // Books that seed as running; nothing when there is none to run now.
+  // Books that seed as given to a worker; nothing when there is none to run now.
   std::optional<Grant> give_out(int worker, std::int64_t process, std::int64_t engine);
   // Books a result that a worker has announced (`sha256`) or left behind (""), after `held_seconds` as in
   // AttemptEnd. False: it is none and has been turned down; `why` says so, and the attempt has not ended.
   bool take_result(const Grant& grant, const std::string& sha256, std::int64_t step, double held_seconds,
                    std::string& why);
+  // Mean wall time of the results of the seed's point; nothing when there are none.
+  std::optional<double> wall_seconds(const Grant& grant) const;
   // Books any other end of an attempt: the seed is queued again, or given up.
   void end_attempt(const Grant& grant, const AttemptEnd& end);
   void renew_lease(const Grant& grant, int phase, std::int64_t step, std::int64_t steps, double strain);
@@ -155,7 +157,7 @@ class Ledger {
     Cost wall, processor;
   };
   std::vector<Costs> costs_;
-  std::vector<int> running_;  // workers on each point
+  std::vector<int> running_;  // seeds of each point that workers have
   Bounds bounds_;
   double spent_seconds_ = 0, committed_seconds_ = 0;
   std::optional<Scheduler> scheduler_;

@@ -1,4 +1,4 @@
-// The ledger's part in what a run may do: how many seeds, and for how much processor time.
+// The ledger's part in what a run may do: how many seeds, for how much processor time, and what they cost.
 #include <utility>
 
 #include "runner/ledger.h"
@@ -35,6 +35,12 @@ void Ledger::add_cost(int place, std::optional<double> wall_seconds, std::option
   Costs& costs = costs_[static_cast<std::size_t>(place)];
   if (wall_seconds) costs.wall.add(*wall_seconds);
   if (cpu_seconds) costs.processor.add(*cpu_seconds);
+}
+
+std::optional<double> Ledger::wall_seconds(const Grant& grant) const {
+  if (grant.id.point == nowhere) return std::nullopt;
+  const Cost& cost = costs_.at(static_cast<std::size_t>(grant.id.point)).wall;
+  return cost.count > 0 ? std::optional(cost.sum / cost.count) : std::nullopt;
 }
 
 std::optional<SeedId> Ledger::next() const {

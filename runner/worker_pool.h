@@ -31,6 +31,7 @@ struct Job {
 struct Hello {
   int worker;
   Json engine;
+  bool ahead = false;  // it takes one further job while it has one, and begins it after that
 };
 struct Progressed {
   int worker;
@@ -85,9 +86,11 @@ class WorkerPool {
   virtual void start(int worker) = 0;
   // Number of the worker's process; for people.
   virtual std::int64_t process(int worker) const = 0;
-  // Requires that the worker said hello and has no job. A worker that has died meanwhile will say Exited.
+  // Requires that the worker said hello and has no job, or takes jobs ahead and has only one. A worker that
+  // has died meanwhile will say Exited.
   virtual void assign(int worker, const Job& job) = 0;
-  // Asks for a checkpoint; Drained (when it had a job) and Exited follow.
+  // Asks for a checkpoint; Drained (when it had a job) and Exited follow. A job that it has not begun is
+  // given up without a word.
   virtual void drain(int worker) = 0;
   virtual void kill(int worker) = 0;
   // Whether its process is stopped (SIGSTOP), which is nobody's fault.

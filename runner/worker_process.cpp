@@ -60,7 +60,7 @@ WorkerEvent as_event(int worker, const Json& message) {
     if (message.at("protocol") != 1)
       throw FrameError("protocol " + message.at("protocol").dump() + ", not 1");
     if (!message.at("engine").is_object()) throw FrameError("hello without an engine");
-    return Hello{worker, message.at("engine")};
+    return Hello{worker, message.at("engine"), message.value("ahead", false)};
   }
   if (type == "progress") {
     return Progressed{worker,

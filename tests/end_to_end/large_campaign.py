@@ -2,7 +2,7 @@
 """large_campaign.py BIN [--points 125] [--seeds 800] [--workers 64] [--milliseconds 100] [--block-numbers 475]
 
 Runs a campaign of 100 000 realisations with the fake engine of the tests, whose results are as long as those of peclet-engine
-(--block-numbers) and whose jobs sleep 100 ms, every point up to its maximum, and prints what the owner costs:
+(--block-numbers), whose jobs sleep 100 ms and who takes a job ahead, every point up to its maximum, and prints what the owner costs:
 
 - processor time per realisation, of the owner and of the engines apart, and the owner's largest memory;
 - how busy the workers are: the time that they spent on jobs, by their own clocks, over workers times the time between the
@@ -115,7 +115,8 @@ def main():
             json.dump(campaign_of(arguments, engine), f)
         times = os.path.join(folder, "times")
         environment = dict(os.environ, PECLET_FAKE_STEPS="1", PECLET_FAKE_STEP_MS=str(arguments.milliseconds),
-                           PECLET_FAKE_PADDING=str(arguments.block_numbers), PECLET_FAKE_TIMES=times)
+                           PECLET_FAKE_PADDING=str(arguments.block_numbers), PECLET_FAKE_TIMES=times,
+                           PECLET_FAKE_AHEAD="1")
         started = time.monotonic()
         run = subprocess.Popen([peclet, "run", "large.json", "--quiet", "--threads", "1", "--workers", str(arguments.workers)],
                                cwd=folder, stdout=subprocess.DEVNULL, env=environment)

@@ -68,7 +68,7 @@ TEST_F(Dispatching, AKillFromOutsideCostsNothing) {
 TEST_F(Dispatching, AResultThatNobodyCouldAnnounceIsTaken) {
   pool_.script = [this] {
     if (pool_.has_job(0) && pool_.job(0).seed == 0) {
-      pool_.spool(0, steady(0));
+      pool_.spool(pool_.job(0), steady(0));
       pool_.say(Exited{0, {{}, SIGSEGV}});
       return;
     }
@@ -84,7 +84,7 @@ TEST_F(Dispatching, AResultWhoseHashIsWrongIsKeptAsideAndTheSeedRunAgain) {
   pool_.script = [&, this] {
     if (!lied && pool_.has_job(0)) {
       lied = true;
-      pool_.spool(0, 99);
+      pool_.spool(pool_.job(0), 99);
       pool_.say(ResultSpooled{0, pool_.job(0).attempt, pool_.job(0).spool, std::string(64, '0')});
       return;
     }

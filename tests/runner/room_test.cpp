@@ -116,6 +116,36 @@ TEST_F(FullDatabase, LosesNothingGivesOutNothingAndGoesOn) {
   EXPECT_EQ(listener_.count<ShortageEnded>(), 1);
 }
 
+TEST_F(FullDatabase, LosesNothingOfWorkersThatHaveTwoJobs) {
+  pool_.takes_ahead = true;
+  pool_.wall_seconds = 0.1;
+  int turns = 0;
+  std::size_t assigned = 0;
+  bool had_waiting = false;
+  pool_.script = [&, this] {
+    ++turns;
+    if (turns == 4) {
+      had_waiting = pool_.has_waiting(0) && pool_.has_waiting(1);
+      fill();
+      assigned = pool_.assigned.size();
+    }
+    if (turns > 4 && turns < 60) {
+      EXPECT_EQ(pool_.assigned.size(), assigned);
+    }
+    if (turns == 60) make_room();
+    finish_all();
+  };
+  EXPECT_EQ(run(), Dispatcher::Ending::finished);
+  EXPECT_TRUE(had_waiting);
+  EXPECT_GT(turns, 60);
+  EXPECT_EQ(count("SELECT count(*) FROM attempt WHERE outcome = 'result'"),
+            count("SELECT count(*) FROM result"));
+  // The others were surplus when the point was decided.
+  EXPECT_EQ(count("SELECT count(*) FROM attempt WHERE outcome NOT IN ('result', 'drained') OR blamed"), 0);
+  EXPECT_EQ(count("SELECT count(*) FROM attempt WHERE outcome = 'drained' AND seed < 8"), 0);
+  EXPECT_TRUE(spool_files(directory_).empty());
+}
+
 TEST_F(FullDatabase, TellsWhatIsCommittedAndNothingThatWasTakenBack) {
   const std::int64_t engine = ledger_->admit_engine(plain_engine());
   {

@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <stdexcept>
+#include <utility>
 
 #include "contract/durable_file.h"
 #include "contract/sha256.h"
@@ -10,14 +11,17 @@
 namespace peclet::runner {
 
 void ScriptedPool::start(int worker) {
-  at(worker) = Worker{true, std::nullopt};
+  at(worker) = Worker{true, std::nullopt, std::nullopt};
   ++starts;
-  if (says_hello) say(Hello{worker, plain_engine(identity)});
+  if (says_hello) say(Hello{worker, plain_engine(identity), takes_ahead});
 }
 
 void ScriptedPool::assign(int worker, const Job& job) {
-  if (!at(worker).alive || at(worker).job) throw std::logic_error("the worker is not free");
-  at(worker).job = job;
+  Worker& about = at(worker);
+  if (!about.alive || (about.job && (!takes_ahead || about.waiting))) {
+    throw std::logic_error("the worker is not free");
+  }
+  (about.job ? about.waiting : about.job) = job;
   assigned.push_back(job);
 }
 
@@ -45,17 +49,21 @@ std::vector<WorkerEvent> ScriptedPool::wait(std::chrono::milliseconds patience) 
   return events;
 }
 
-void ScriptedPool::spool(int worker, double viscosity) const {
-  const Job& about = job(worker);
-  Json result = plain_result(about.point, about.seed, viscosity, identity);
-  result["ending"]["message"] = noise(result_size, static_cast<std::uint32_t>(about.seed));
-  write_durably(about.spool, result.dump());
+void ScriptedPool::spool(const Job& job, double viscosity) const {
+  Json result = plain_result(job.point, job.seed, viscosity, identity);
+  result["cost"]["wall_seconds"] = wall_seconds;
+  result["ending"]["message"] = noise(result_size, static_cast<std::uint32_t>(job.seed));
+  write_durably(job.spool, result.dump());
+}
+
+void ScriptedPool::begin_next(int worker) {
+  at(worker).job = std::exchange(at(worker).waiting, std::nullopt);
 }
 
 void ScriptedPool::finish(int worker, double viscosity) {
-  spool(worker, viscosity);
   const Job about = job(worker);
-  at(worker).job.reset();
+  spool(about, viscosity);
+  begin_next(worker);
   say(ResultSpooled{worker, about.attempt, about.spool, sha256_of_file(about.spool)});
 }
 

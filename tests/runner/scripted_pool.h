@@ -28,12 +28,16 @@ class ScriptedPool : public WorkerPool {
   std::vector<WorkerEvent> wait(std::chrono::milliseconds patience) override;
 
   void say(WorkerEvent event) { said_.push_back(std::move(event)); }
-  // The worker spools a result for its job and says so.
+  // The worker spools a result for its job, says so and begins the job that waits.
   void finish(int worker, double viscosity);
-  // Spools it without a word.
-  void spool(int worker, double viscosity) const;
+  // Spools one without a word.
+  void spool(const Job& job, double viscosity) const;
+  // The worker's job has ended in another way.
+  void begin_next(int worker);
   bool has_job(int worker) const { return at(worker).job.has_value(); }
   const Job& job(int worker) const { return *at(worker).job; }
+  bool has_waiting(int worker) const { return at(worker).waiting.has_value(); }
+  const Job& waiting(int worker) const { return *at(worker).waiting; }
   bool alive(int worker) const { return at(worker).alive; }
 
   // Called whenever the dispatcher waits and nothing has been said.
@@ -41,6 +45,8 @@ class ScriptedPool : public WorkerPool {
   // Said at the start of every process.
   std::string identity = "engine";
   bool says_hello = true;
+  bool takes_ahead = false;
+  double wall_seconds = 4;  // in its results
   bool leaves_when_drained = true;
   std::size_t result_size = 0;  // so many letters more than a plain result, others for each seed
   int stopped = -1;             // the worker whose process is
@@ -52,7 +58,7 @@ class ScriptedPool : public WorkerPool {
  private:
   struct Worker {
     bool alive = false;
-    std::optional<Job> job;
+    std::optional<Job> job, waiting;
   };
   const Worker& at(int worker) const { return workers_.at(static_cast<std::size_t>(worker)); }
   Worker& at(int worker) { return workers_.at(static_cast<std::size_t>(worker)); }
