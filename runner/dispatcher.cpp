@@ -87,9 +87,9 @@ void Dispatcher::turn() {
   judge_time();
   look_for_room();
   if (!unbooked_ && book()) {
+    ledger_.after_commit();  // a checkpoint that is discarded goes before its seed's next attempt begins
     for (const auto& [worker, job] : to_send_) pool_.assign(worker, job);
     to_send_.clear();
-    ledger_.after_commit();
     judge_leases();
     hear_requests();
   }

@@ -106,6 +106,7 @@ void Ledger::read() {
 
 void Ledger::roll_back() {
   spent_seconds_ = committed_seconds_;
+  to_discard_.clear();
   to_remove_.clear();
   to_reject_.clear();
   to_tell_.clear();
@@ -142,7 +143,10 @@ Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
     case Stored::duplicate:
       to_remove_.push_back(spool);
       to_remove_.push_back(directory_.checkpoint(result.point, result.seed));
-      to_remove_.push_back(home_of(spool).checkpoint(result.point, result.seed));
+      if (const fs::path there = home_of(spool).checkpoint(result.point, result.seed);
+          there != to_remove_.back()) {
+        to_remove_.push_back(there);
+      }
       break;
     case Stored::conflict:
       turn_down(spool, "another run of the same seed gave another result");
@@ -246,7 +250,7 @@ void Ledger::end_attempt(const Grant& grant, const AttemptEnd& end) {
   spent_seconds_ += end.held_seconds;
   queue_.end_attempt(grant.job.attempt, end);
   const Sentence sentence = judge(queue_.history(grant.point_id, grant.id.seed), retries_);
-  if (sentence.discard_checkpoint) to_remove_.push_back(grant.job.checkpoint);
+  if (sentence.discard_checkpoint) to_discard_.push_back(grant.job.checkpoint);
   if (is_blamed(end.outcome)) {
     listener_.warn(fmt::format("{}: {}{}{}; {}", name_of(grant), to_string(end.outcome),
                                end.message.empty() ? "" : ": ", end.message,
@@ -292,8 +296,10 @@ std::int64_t Ledger::admit_engine(const Json& engine) {
 void Ledger::after_commit() {
   former_.reset();
   committed_seconds_ = spent_seconds_;
-  for (const fs::path& file : to_remove_) fs::remove(file);
+  for (const fs::path& file : to_discard_) fs::remove(file);
+  removal_.add(to_remove_);
   for (const fs::path& file : to_reject_) reject(home_of(file), file);
+  to_discard_.clear();
   to_remove_.clear();
   to_reject_.clear();
   for (const RunEvent& event : std::exchange(to_tell_, {})) listener_.happened(event);

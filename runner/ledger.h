@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "runner/campaign_directory.h"
+#include "runner/file_removal.h"
 #include "runner/queue.h"
 #include "runner/run_listener.h"
 #include "runner/scheduler.h"
@@ -54,7 +55,7 @@ class Ledger {
   void set_bounds(Bounds bounds);
 
   // Takes in every spool file that is there, also of the folders shared with a batch system; in transactions
-  // of its own.
+  // of its own. Then the files of all results that are durable are gone.
   void ingest_spool();
 
   // The next seed to be run within the bounds. Of a budget is left what was not spent and what the seeds that
@@ -107,8 +108,8 @@ class Ledger {
   // cancelled or left the sweep, or the maximum is smaller now.
   bool keep_running(Grant& grant);
 
-  // Removes and moves files whose results are durable now, and tells what happened. Throws InputError when
-  // results lack the observable.
+  // Moves files that are no results and discards checkpoints, begins to remove the files of results that are
+  // durable now, and tells what happened. Throws InputError when results lack the observable.
   void after_commit();
 
   const Campaign& campaign() const { return campaign_; }
@@ -164,8 +165,11 @@ class Ledger {
   std::string identity_;  // of this run's engine
   std::string lacking_;   // what results have instead of the target's observable
 
-  std::vector<std::filesystem::path> to_remove_, to_reject_;
+  // After the commit: what the next attempt must not find, what is left of seeds that have ended, results
+  // that are none.
+  std::vector<std::filesystem::path> to_discard_, to_remove_, to_reject_;
   std::vector<RunEvent> to_tell_;
+  FileRemoval removal_;
 };
 
 }  // namespace peclet::runner

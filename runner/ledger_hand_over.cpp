@@ -11,6 +11,7 @@
 namespace peclet::runner {
 
 void Ledger::ingest_spool() {
+  removal_.finish();  // of what has been taken already
   ingest_spool_of(directory_);
   std::set<std::string> shared;
   for (const BundleRecord& bundle : BundleBook(database_.connection()).open_bundles()) {
@@ -23,6 +24,7 @@ void Ledger::ingest_spool() {
           fmt::format("{}: is not there now; results in it are taken in later", there.spool().string()));
     }
   }
+  removal_.finish();
 }
 
 void Ledger::leave_to_batch_system(int place) {
@@ -58,7 +60,7 @@ void Ledger::end_handed_over(SeedId id, int task, const NodeReport& report,
   queue_.attempt_elsewhere(about.id, id.seed, task, report);
   if (has_ended(id)) return;
   const Sentence sentence = judge(queue_.history(about.id, id.seed), retries_);
-  if (sentence.discard_checkpoint) to_remove_.push_back(checkpoint);
+  if (sentence.discard_checkpoint) to_discard_.push_back(checkpoint);
   if (is_blamed(report.outcome)) {
     listener_.warn(fmt::format("{} on {}: {}{}{}; {}", name(id), report.host, to_string(report.outcome),
                                report.message.empty() ? "" : ": ", report.message,

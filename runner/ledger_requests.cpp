@@ -59,7 +59,7 @@ int Ledger::accept_engine(const std::string& identity) {
     // Another engine could not go on from where they stand.
     for (const RealisationRecord& record : database_.realisations(about.id)) {
       for (const std::string& folder : folders) {
-        to_remove_.push_back(CampaignDirectory(folder).checkpoint(about.hash, record.seed));
+        to_discard_.push_back(CampaignDirectory(folder).checkpoint(about.hash, record.seed));
       }
     }
   }
