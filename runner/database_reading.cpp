@@ -186,13 +186,10 @@ std::vector<std::optional<Outcome>> Database::outcomes(std::int64_t point) {
   std::vector<std::optional<Outcome>> outcomes;
   while (query.step()) {
     outcomes.resize(static_cast<std::size_t>(query.integer(0)) + 1);
-    if (seed_state(query.text(1)) != SeedState::done) {
-      outcomes.back() = Outcome{};
-    } else if (const std::optional<double> value = query.optional_real(2)) {
+    outcomes.back() = Outcome{};  // lost, unless there is a value
+    if (const std::optional<double> value = query.optional_real(2); value) {
       outcomes.back() = Outcome{Outcome::Kind::value, *value, query.optional_real(3).value_or(0),
                                 query.real(4), query.real(5)};
-    } else {
-      outcomes.pop_back();  // done, but without this observable: run_campaign() refuses to go on with it
     }
   }
   return outcomes;

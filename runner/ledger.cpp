@@ -19,14 +19,6 @@ CampaignDirectory home_of(const fs::path& spool_file) {
   return CampaignDirectory(spool_file.parent_path().parent_path());
 }
 
-std::string names_of_numbers(const Json& mean) {
-  std::string names;
-  for (const auto& [name, value] : mean.items()) {
-    if (value.is_number()) names += (names.empty() ? "" : ", ") + name;
-  }
-  return names;
-}
-
 Outcome outcome_of(const Observed& observed) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   if (!observed.value) return {};
@@ -161,14 +153,17 @@ Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
   const auto place = places_.find(result.point);
   if (stored == Stored::duplicate || place == places_.end()) return stored;
   const Observed observed = observe(result.document, campaign_.target.observable);
-  if (result.completed() && !observed.value) lacking_ = names_of_numbers(result.document["mean"]);
-  to_tell_.push_back(SeedEnded{told_name(place->second), result.seed, result.cause, observed.value,
+  const std::string cause = result.completed() && !observed.value ? no_value : result.cause;
+  if (result.completed() && !result.document["mean"].contains(campaign_.target.observable)) {
+    lacking_ = names_of_numbers(result.document["mean"]);
+  }
+  to_tell_.push_back(SeedEnded{told_name(place->second), result.seed, cause, observed.value,
                                cost_of(result, "cpu_seconds")});
   if (!scheduler_) return stored;  // load() finds it
   add_cost(place->second, cost_of(result, "wall_seconds"), cost_of(result, "cpu_seconds"));
   tell_cost(place->second);
-  if (!result.completed()) {
-    listener_.note(fmt::format("{}: ended with {}", name({place->second, result.seed}), result.cause));
+  if (!observed.value) {
+    listener_.note(fmt::format("{}: ended with {}", name({place->second, result.seed}), cause));
   }
   book_outcome({place->second, result.seed}, outcome_of(observed));
   return stored;

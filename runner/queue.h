@@ -66,6 +66,7 @@ class Queue {
   void requeue(std::int64_t point, int seed);
   void quarantine(std::int64_t point, int seed, const std::string& cause);
 
+  // One without a number for the observable is lost with the cause no_value.
   Stored store(const RealisationResult& result, const std::string& observable);
   void store_looks(std::int64_t point, const std::vector<Look>& looks);
   void set_priority(std::int64_t point, int priority);

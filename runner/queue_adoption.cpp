@@ -15,14 +15,6 @@ std::string describe(const Campaign& campaign) {
                      campaign.minimum_realisations, campaign.maximum_realisations);
 }
 
-std::string numbers_in(const Json& mean) {
-  std::string names;
-  for (const auto& [name, value] : mean.items()) {
-    if (value.is_number()) names += (names.empty() ? "" : ", ") + name;
-  }
-  return names;
-}
-
 }  // namespace
 
 void Queue::adopt(const Campaign& campaign) {
@@ -94,19 +86,23 @@ void Queue::adopt_points(const Campaign& campaign) {
 void Queue::observe_again(const Campaign& campaign) {
   Statement done(
       connection_,
-      "SELECT point_id, seed, document, text FROM result JOIN realisation USING (point_id, seed) LEFT JOIN "
-      "dictionary USING (point_id) WHERE state = 'done'");
+      "SELECT point_id, seed, document, dictionary.text, place FROM result JOIN realisation USING (point_id, "
+      "seed) JOIN point USING (point_id) LEFT JOIN dictionary USING (point_id) WHERE state = 'done' OR cause "
+      "= ?");
+  done.bind(no_value);
   Statement change(connection_,
-                   "UPDATE realisation SET value = ?, control = ?, first_quarter = ?, first_half = ? WHERE "
-                   "point_id = ? AND seed = ?");
+                   "UPDATE realisation SET state = ?, cause = ?, value = ?, control = ?, first_quarter = ?, "
+                   "first_half = ? WHERE point_id = ? AND seed = ?");
   while (done.step()) {
     const Json document = Json::parse(result_text(done, 2, 3));
     const Observed observed = observe(document, campaign.target.observable);
-    if (!observed.value) {
+    if (!done.is_null(4) && !document.at("mean").contains(campaign.target.observable)) {
       throw InputError(campaign.name, "/target/observable", campaign.target.observable,
-                       "must be a number that the results have: " + numbers_in(document.at("mean")));
+                       "must be a number that the results have: " + names_of_numbers(document.at("mean")));
     }
-    change.bind(observed.value)
+    change.bind(to_string(observed.value ? SeedState::done : SeedState::failed))
+        .bind(observed.value ? "completed" : no_value)
+        .bind(observed.value)
         .bind(observed.control)
         .bind(observed.first_quarter)
         .bind(observed.first_half)

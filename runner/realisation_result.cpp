@@ -154,6 +154,14 @@ std::set<std::string> flags_of(const RealisationResult& result) {
   return codes;
 }
 
+std::string names_of_numbers(const Json& mean) {
+  std::string names;
+  for (const auto& [name, value] : mean.items()) {
+    if (value.is_number()) names += (names.empty() ? "" : ", ") + name;
+  }
+  return names;
+}
+
 Observed observe(const Json& result, const std::string& observable) {
   Observed observed;
   const Json& mean = result.at("mean");

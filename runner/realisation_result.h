@@ -44,6 +44,13 @@ struct Observed {
 // by itself ("inertia-..."), which `validate` shows.
 std::set<std::string> flags_of(const RealisationResult& result);
 
+// The cause of a completed realisation that has no number for the campaign's observable: it is lost to its
+// point as one that blew up is.
+inline constexpr const char* no_value = "no-value";
+
+// "pressure, relative_viscosity": what a campaign may aim at.
+std::string names_of_numbers(const Json& mean);
+
 // The pairwise Brownian stress is the control variate of the relative viscosities and of nothing else.
 Observed observe(const Json& result, const std::string& observable);
 

@@ -186,7 +186,7 @@ TEST_F(Dispatching, AMissingObservableIsSaidAfterTheResultIsSafe) {
     EXPECT_EQ(error.pointer(), "/target/observable");
     EXPECT_NE(error.allowed().find("pressure, relative_viscosity"), std::string::npos);
   }
-  EXPECT_EQ(state_of(0), SeedState::done);
+  EXPECT_EQ(state_of(0), SeedState::failed);
 }
 
 TEST_F(Dispatching, LeftoversOfTheSpoolAreTakenBeforeAnythingIsGivenOut) {

@@ -162,6 +162,34 @@ TEST_F(Queues, AnotherObservableIsTakenFromTheResultsThatAreThere) {
   EXPECT_EQ(database_.realisations(1).at(0).control, std::nullopt);
 }
 
+TEST_F(Queues, ACompletedSeedWithoutTheNumberIsLostUntilAnotherObservableFindsIt) {
+  Json result = plain_result(hash(), 0, 12.5);
+  result["mean"]["relative_viscosity"] = nullptr;
+  EXPECT_EQ(offer(result), Stored::stored);
+  EXPECT_EQ(database_.realisations(1).at(0).state, SeedState::failed);
+  EXPECT_EQ(database_.realisations(1).at(0).cause, "no-value");
+  EXPECT_EQ(database_.outcomes(1).at(0)->kind, Outcome::Kind::lost);
+  Campaign other = campaign_;
+  other.target.observable = "pressure";
+  queue_.adopt(other);
+  EXPECT_EQ(database_.realisations(1).at(0).state, SeedState::done);
+  EXPECT_EQ(database_.realisations(1).at(0).cause, "completed");
+  EXPECT_EQ(database_.realisations(1).at(0).value, 25);
+  queue_.adopt(campaign_);
+  EXPECT_EQ(database_.realisations(1).at(0).state, SeedState::failed);
+}
+
+TEST_F(Queues, ResultsKeptApartNeedNotHaveAnotherObservable) {
+  Json bare = plain_result(hash(), 0, 12.5, "old");
+  bare["mean"].erase("pressure");
+  offer(bare);
+  queue_.keep_apart(database_.points().at(0), engine_identity(plain_engine("new")));
+  Campaign other = campaign_;
+  other.target.observable = "pressure";
+  queue_.adopt(other);
+  EXPECT_EQ(database_.campaign().target.target.observable, "pressure");
+}
+
 TEST_F(Queues, AnObservableThatResultsLackChangesNothing) {
   offer(plain_result(hash(), 0, 12.5));
   Campaign other = campaign_;
