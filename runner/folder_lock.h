@@ -1,4 +1,4 @@
-// One process at a time at the files of a folder.
+// One process at a time at the files of a folder, or at one file.
 #pragma once
 
 #include <filesystem>
@@ -13,6 +13,19 @@ class FolderLock {
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+// The same of a file, which whoever holds it may replace by another of its name. Not for files of a folder
+// that somebody locks for long.
+class FileLock {
+ public:
+  explicit FileLock(const std::filesystem::path& file);
+  ~FileLock();
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
 
  private:
   int descriptor_;

@@ -45,7 +45,12 @@ bool is_carried_out(const CampaignDirectory& directory, const Request& request, 
   const fs::path file = request_file(directory, request.name);
   const auto end = Clock::now() + std::chrono::duration<double>(patience);
   for (;;) {
-    if (!current_owner(directory)) carry_out_here(directory);
+    try {
+      if (!current_owner(directory)) carry_out_here(directory);
+    } catch (...) {
+      fs::remove(file);  // who is told that it failed must not find it done later
+      throw;
+    }
     if (!fs::exists(file)) return true;
     if (Clock::now() >= end) return false;
     std::this_thread::sleep_for(between_looks);

@@ -73,11 +73,11 @@ Reply take_over(const SetOptions& options) {
   }
   const fs::path file = fs::canonical(options.campaign);
   Request request;
+  std::string before, text;
   {
-    const FolderLock lock(
-        file.parent_path());  // two verbs at once: the second one reads what the first has written
-    const std::string before = read_file(file);
-    const std::string text = edited(before, edits_of(options), options.campaign);
+    const FileLock lock(file);  // two verbs at once: the second one reads what the first has written
+    before = read_file(file);
+    text = edited(before, edits_of(options), options.campaign);
     const Campaign campaign =
         parse_campaign(parse_json(text, options.campaign.string()), options.campaign.string());
     check_scenes(campaign, options.campaign, resolve_engine(campaign, options.campaign));
@@ -88,7 +88,13 @@ Reply take_over(const SetOptions& options) {
     }
     request = write_request(directory, TakeOver{file, sha256(text)});
   }
-  return await_reply(directory, request, options.campaign, options.patience);
+  try {
+    return await_reply(directory, request, options.campaign, options.patience);
+  } catch (const InputError&) {
+    const FileLock lock(file);  // what is refused leaves the file as it was, unless somebody went on with it
+    if (read_file(file) == text && text != before) write_durably(file, before);
+    throw;
+  }
 }
 
 }  // namespace
