@@ -141,6 +141,7 @@ void Dispatcher::settle_spool() {
     ledger_.ingest_spool();
   } catch (const DatabaseError& error) {
     if (!error.no_room()) throw;
+    ledger_.roll_back();  // nothing of it counts: what is decided is what the database says
     listener_.warn("there is no room to book what workers did last: the next run does it");
   }
 }
