@@ -128,6 +128,7 @@ class Ledger {
   void read();
   void read_points();
   void book_looks();
+  bool is_to_be_run(const PointRecord& about) const;
   void refuse_other_engine(const std::string& identity) const;
   // Whether the seed has a part in the looks.
   bool takes_part(SeedId id) const { return id.point != nowhere && id.seed < campaign_.maximum_realisations; }

@@ -31,10 +31,13 @@ bool Ledger::keep_running(Grant& grant) {
   return !scheduler_->cancelled(grant.id.point);
 }
 
+bool Ledger::is_to_be_run(const PointRecord& about) const {
+  return !scheduler_->decided(*about.place) && !about.cancelled;
+}
+
 void Ledger::refuse_other_engine(const std::string& identity) const {
   for (const PointRecord& about : points_) {
-    const bool open = !scheduler_->decided(*about.place) && !about.cancelled;
-    if (open && !about.engine_identity.empty() && about.engine_identity != identity) {
+    if (is_to_be_run(about) && !about.engine_identity.empty() && about.engine_identity != identity) {
       throw OtherEngine(
           fmt::format("{}: has results of engine {}, but the engine now is {}; one point never mixes two",
                       about.label, about.engine_identity, identity));
@@ -50,8 +53,7 @@ int Ledger::accept_engine(const std::string& identity) {
   for (const BundleRecord& bundle : book.open_bundles()) folders.insert(bundle.shared);
   Transaction booking(database_.connection());
   for (const PointRecord& about : points_) {
-    const bool decided = scheduler_->decided(*about.place);
-    if (decided || about.engine_identity.empty() || about.engine_identity == identity) continue;
+    if (!is_to_be_run(about) || about.engine_identity.empty() || about.engine_identity == identity) continue;
     queue_.keep_apart(about, identity);
     listener_.note(
         fmt::format("{}: results of engine {} are kept apart", about.label, about.engine_identity));
