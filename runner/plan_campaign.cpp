@@ -1,6 +1,7 @@
 // The verb `peclet plan`: the pilot is run, the plan made of what the database has, and told.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
@@ -41,6 +42,20 @@ std::map<std::string, PointHistory> history(Database& database, const Campaign& 
     if (same_observable) of.outcomes = database.outcomes(point.id);
   }
   return known;
+}
+
+// Whether the database still is about the points and the target of this campaign: while a pilot runs, people
+// may change both.
+bool is_of(Database& database, const Campaign& campaign) {
+  const Target& target = database.campaign().target.target;
+  if (target.observable != campaign.target.observable ||
+      target.relative_tolerance != campaign.target.relative_tolerance ||
+      target.confidence != campaign.target.confidence) {
+    return false;
+  }
+  const std::vector<PointRecord> points = database.points();
+  return std::equal(points.begin(), points.end(), campaign.points.begin(), campaign.points.end(),
+                    [](const PointRecord& stored, const auto& point) { return stored.hash == point.hash; });
 }
 
 void store_predictions(const Plan& plan, Database& database) {
@@ -84,6 +99,14 @@ int plan_campaign(const PlanOptions& options) {
   }
   if (options.pilot) {
     return run_pilot(options.run, *options.pilot, [&](const ClaimedCampaign& claimed, Database& database) {
+      if (!is_of(database, claimed.campaign)) {
+        fmt::print(
+            stderr,
+            "peclet: {0}: the campaign was changed while the pilot ran: its results are stored, but no "
+            "prediction is; `peclet plan {0}` predicts from what is there\n",
+            file.string());
+        return;
+      }
       const Plan plan =
           plan_of(claimed.campaign, claimed.scenes, history(database, claimed.campaign), options.run);
       store_predictions(plan, database);
