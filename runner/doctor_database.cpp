@@ -73,6 +73,20 @@ std::string fault_of(Database& database, const PointRecord& point, const Realisa
   }
 }
 
+// Results of the point that were deflated with another dictionary than the one that is there: nobody can read
+// them.
+int unreadable_results(Connection& connection, std::int64_t point) {
+  Statement stored(
+      connection,
+      "SELECT document, text FROM result LEFT JOIN dictionary USING (point_id) WHERE point_id = ?");
+  stored.bind(point);
+  int unreadable = 0;
+  while (stored.step()) {
+    if (stored.is_blob(0) && !lean_on(stored.text(0), stored.text(1))) ++unreadable;
+  }
+  return unreadable;
+}
+
 std::vector<PointRecord> all_points(Database& database) {
   std::vector<PointRecord> points = database.points();
   for (PointRecord& point : database.inactive_points()) points.push_back(std::move(point));
@@ -84,17 +98,29 @@ std::vector<PointRecord> all_points(Database& database) {
 void examine_results(Database& database, const Patient& patient, Findings& findings) {
   const std::string observable = database.campaign().target.target.observable;
   for (const PointRecord& point : all_points(database)) {
+    if (const int count = unreadable_results(database.connection(), point.id); count > 0) {
+      findings.push_back({"dictionary-altered", Severity::integrity,
+                          fmt::format("{}: {} results cannot be read: the dictionary that they were deflated "
+                                      "with is not there",
+                                      point.label, count),
+                          "put a backup back with `peclet restore`"});
+      continue;
+    }
     for (const RealisationRecord& record : database.realisations(point.id)) {
       if (record.state != SeedState::done && record.state != SeedState::failed) continue;
       const std::string fault = fault_of(database, point, record, observable);
       if (fault.empty()) continue;
-      findings.push_back(
-          {"result-altered", Severity::integrity,
-           fmt::format("{} seed {}: {}", point.label, record.seed, fault),
-           "`peclet doctor --repair` keeps what is stored in spool/rejected/ and queues the seed again",
-           [directory = patient.directory, id = point.id, seed = record.seed](Database& owner) {
-             run_again(owner, directory, id, seed);
-           }});
+      Finding finding{"result-altered", Severity::integrity,
+                      fmt::format("{} seed {}: {}", point.label, record.seed, fault),
+                      "put a backup back with `peclet restore`: the point is not in the sweep any more"};
+      if (point.place) {
+        finding.cure =
+            "`peclet doctor --repair` keeps what is stored in spool/rejected/ and queues the seed again";
+        finding.repair = [directory = patient.directory, id = point.id, seed = record.seed](Database& owner) {
+          run_again(owner, directory, id, seed);
+        };
+      }
+      findings.push_back(std::move(finding));
     }
   }
 }

@@ -96,6 +96,16 @@ std::string inflated(std::string_view bytes, std::string_view dictionary) {
   return Inflation().run(bytes, dictionary);
 }
 
+// RFC 1950, 2.2: bit 5 of the second byte says that four more follow, with the dictionary's checksum.
+bool lean_on(std::string_view bytes, std::string_view dictionary) {
+  constexpr std::size_t header = 6;
+  constexpr unsigned has_dictionary = 0x20;
+  if (bytes.size() < header || (static_cast<unsigned char>(bytes[1]) & has_dictionary) == 0) return true;
+  uLong checksum = 0;
+  for (std::size_t i = 2; i < header; ++i) checksum = checksum << 8U | static_cast<unsigned char>(bytes[i]);
+  return checksum == adler32(adler32(0, nullptr, 0), bytes_of(dictionary), size_of(dictionary));
+}
+
 void store_result_text(Connection& connection, std::int64_t point, int seed, std::string_view text,
                        bool completed) {
   Statement known(connection, "SELECT text FROM dictionary WHERE point_id = ?");
