@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A mebibyte of 4 KiB pages at a time, with a breath in between: the owner's commits go to the same disk.
-constexpr int pages_at_a_time = 256;
+// Copied at a time, with a breath in between: the owner's commits go to the same disk.
+constexpr std::int64_t bytes_at_a_time = 1 << 20;
 constexpr std::chrono::milliseconds breath{1};
 
 // SQLite's files beside a database.
@@ -44,8 +44,9 @@ void copy_pages(Connection& from, Connection& to) {
   const std::unique_ptr<sqlite3_backup, int (*)(sqlite3_backup*)> backup(
       sqlite3_backup_init(to.handle(), "main", from.handle(), "main"), sqlite3_backup_finish);
   if (!backup) to.fail("copying " + from.path());
+  const auto pages = static_cast<int>(bytes_at_a_time / from.integer("PRAGMA page_size"));
   int code = SQLITE_OK;
-  while ((code = sqlite3_backup_step(backup.get(), pages_at_a_time)) == SQLITE_OK) {
+  while ((code = sqlite3_backup_step(backup.get(), pages)) == SQLITE_OK) {
     std::this_thread::sleep_for(breath);
   }
   if (code != SQLITE_DONE) to.fail("copying " + from.path(), code);

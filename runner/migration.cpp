@@ -51,11 +51,18 @@ void change_tables(Connection& connection, std::int64_t from) {
   migration.commit();
 }
 
+// NAME, or NAME.2, NAME.3 ... where an earlier attempt, or an earlier database, has left a copy.
+std::filesystem::path free_name(const std::string& name) {
+  std::filesystem::path free = name;
+  for (int number = 2; std::filesystem::exists(free); ++number) free = fmt::format("{}.{}", name, number);
+  return free;
+}
+
 }  // namespace
 
 void migrate(Connection& connection, std::int64_t from) {
-  const std::filesystem::path kept = fmt::format("{}.version-{}", connection.path(), from);
-  if (!std::filesystem::exists(kept)) copy_database(connection.path(), kept, [](Connection&) {});
+  copy_database(connection.path(), free_name(fmt::format("{}.version-{}", connection.path(), from)),
+                [](Connection&) {});
   // A table is made again under its own name, to which others refer: references are looked at afterwards
   // instead. The setting cannot be changed within a transaction, and is meant for this connection's life.
   connection.execute("PRAGMA foreign_keys = OFF");

@@ -56,6 +56,9 @@ bool Requests::carry_out() {
     } catch (const RequestError& error) {
       listener_.warn(fmt::format("{}: {}; it is set aside as {}", file.string(), error.what(),
                                  set_request_aside(file).filename().string()));
+    } catch (const DatabaseError&) {
+      ledger_.roll_back();
+      throw;
     }
   }
   return any;
@@ -76,9 +79,6 @@ void Requests::carry_out(const Request& request) {
     why = error.what();
   } catch (const OtherEngine& error) {
     why = fmt::format("{}: stop the run first, then `peclet run` says how to accept it", error.what());
-  } catch (const DatabaseError&) {
-    ledger_.roll_back();
-    throw;
   }
   ledger_.roll_back();
   refuse(request, why);

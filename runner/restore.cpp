@@ -133,15 +133,15 @@ void record(const CampaignDirectory& directory, const Source& source) {
   booking.commit();
 }
 
-// What was restored is what counts now, also where the campaign's own last backup knows more: that becomes
-// the one before.
+// What was restored is what counts now, also where the campaign's own last backup knows more, or is
+// damaged: that becomes the one before.
 bool leave_newer_backup_behind(const CampaignDirectory& directory, const Source& source) {
   const fs::path newest = newest_backup(directory.backup());
   if (!fs::exists(newest) || fs::equivalent(newest, source.file)) return false;
   try {
     if (examine(newest).attempts <= source.contents.attempts) return false;
-  } catch (const IntegrityError&) {  // why an older one was restored
-    return false;
+  } catch (
+      const IntegrityError&) {  // why an older one was restored; what can be read of it may still be newer
   }
   make_backup(directory, directory.backup(), false);
   return true;
