@@ -54,7 +54,7 @@ allowed.
 The work is counted in particle-steps, and in processor time where realisations have been run before:
 from the fewest seeds that a point may take to the most.
 )",
-                    {}, {0, 1, 2, 6})},
+                    {}, {0, 1, 2, 5, 6, 75})},
       {"run",
        page(R"(
 Runs seeds of every point until the interval of its mean is within the tolerance, or all seeds that are
@@ -159,7 +159,7 @@ What was there is kept aside. The campaign then goes on with `peclet run` to the
       {"doctor", page(R"(
 Says what is wrong, how bad it is and what cures it. Without --repair nothing is changed.
 )",
-                      {}, {0, 1, 2, 6})},
+                      {}, {0, 1, 2, 5, 6})},
       {"completion",
        page(R"(
 For bash and zsh, put the line of the example (with the name of the shell) into ~/.bashrc or ~/.zshrc;

@@ -33,7 +33,7 @@ MeanSquaredDisplacement::MeanSquaredDisplacement(const Scene& scene, const Syste
     class_of_[system.particles.id[i]] = system.particles.size_class[i];
     count_of_class_[system.particles.size_class[i]] += 1;
   }
-  // The longest lag, 4 2^l samples, is at most a quarter of the window.
+  // The lags 4 2^l to 7 2^l samples of the last level begin at a quarter of the window or before.
   const std::uint64_t samples = samples_in(steps, interval);
   for (std::uint64_t reach = 1; levels_.empty() || 16 * reach <= samples; reach *= 2) {
     Level level;

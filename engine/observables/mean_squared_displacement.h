@@ -1,4 +1,4 @@
-// Mean squared displacements over lags from one sample to a quarter of the window.
+// Mean squared displacements over lags from one sample to seven sixteenths of the window.
 //
 //   x(t) = < (x_i(s + t) - x_i(s))^2 >, y and z likewise,
 //

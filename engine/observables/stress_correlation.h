@@ -8,7 +8,8 @@
 // exp(-t / tau)).
 //
 // The result has `modulus` G in the scene's units and `viscosity` eta_B / eta, by the trapezoidal rule over
-// the lags `time`; green_kubo_viscosity is the last of them, up to a quarter of the window.
+// the lags `time`; green_kubo_viscosity is the last of them, up to a quarter of a window of 60 samples or
+// more.
 #pragma once
 
 #include <array>
