@@ -34,8 +34,8 @@ TEST_F(FileRemovals, AreThroughWhenItSaysSo) {
 }
 
 TEST_F(FileRemovals, AreThroughAtItsEnd) {
-  std::vector<fs::path> files;
-  for (int number = 0; number < 500; ++number) files.push_back(made(std::to_string(number)));
+  std::vector<fs::path> files(500);
+  for (std::size_t number = 0; number < files.size(); ++number) files[number] = made(std::to_string(number));
   FileRemoval().add(files);
   EXPECT_TRUE(fs::is_empty(folder_.path()));
 }
