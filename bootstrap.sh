@@ -59,7 +59,7 @@ demo() {
   # A campaign belongs to the engine that computed it: another build starts another one.
   local folder
   folder=build/demo-$(sha256sum build/release/bin/peclet-engine | cut -c1-12).peclet
-  say "Running results/demo/campaign.json into $folder (three Péclet numbers, ten seeds each; minutes)"
+  say "Running results/demo/campaign.json into $folder (three Péclet numbers, ten seeds or more each; seconds)"
   echo "   Stop it with Ctrl-C and start again: it goes on where it was."
   build/release/bin/peclet run results/demo/campaign.json --directory "$folder"
 }
