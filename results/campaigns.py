@@ -52,9 +52,9 @@ class Program:
         self.processor_seconds = 0.0  # that they took
         os.makedirs(folder, exist_ok=True)
 
-    def run(self, name, scene, settings, seeds, observable="relative_viscosity"):
+    def run(self, name, scene, settings, seeds, observable="relative_viscosity", options=()):
         """Runs `seeds` realisations with each of `settings` (objects of pointers and values) and returns the points of the export.
-        `observable` only has to be a number that the results have."""
+        `observable` only has to be a number that the results have; `options` are for `peclet run`."""
         pointers = sorted(settings[0])
         campaign = {
             "name": name, "scene": scene,
@@ -67,7 +67,7 @@ class Program:
         with open(path, "w") as f:
             json.dump(campaign, f, indent=1)
         # Points that are not within the tolerance after all seeds, or lost some, are what studies are made of: code 3.
-        done = subprocess.run([self.peclet, "run", path, "--quiet"], stdout=subprocess.DEVNULL)
+        done = subprocess.run([self.peclet, "run", path, "--quiet", *options], stdout=subprocess.DEVNULL)
         if done.returncode not in (0, 3):
             sys.exit(f"{path}: peclet run ended with {done.returncode}")
         export = json.loads(subprocess.run([self.peclet, "export", path], check=True, capture_output=True).stdout)
@@ -132,6 +132,11 @@ def controlled_viscosity(mean):
     """Relative viscosity plus the pairs' Brownian stress, whose mean is zero."""
     control = mean["control_variates"]["brownian_pairwise"]
     return mean["relative_viscosity"] + (control or 0)
+
+
+def pair_viscosity(mean):
+    """The same of the pairs alone, without the solvent's 1 and the stresslet's 2.5 phi: what Li's thesis plots."""
+    return controlled_viscosity(mean) - mean["relative_viscosity"] + mean["relative_viscosity_pair"]
 
 
 def values_by_seed(realisations):

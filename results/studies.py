@@ -86,6 +86,15 @@ def weighted_mean(values, errors):
     return sum(w * v for w, v in zip(weights, values)) / sum(weights), 1 / math.sqrt(sum(weights))
 
 
+def line_through(x, y, errors):
+    """Least squares with weights 1 / error^2: intercept, slope, and the slope's standard error."""
+    weights = [1 / e**2 for e in errors]
+    mean_x, mean_y = (sum(w * v for w, v in zip(weights, values)) / sum(weights) for values in (x, y))
+    spread = sum(w * (v - mean_x) ** 2 for w, v in zip(weights, x))
+    slope = sum(w * (a - mean_x) * (b - mean_y) for w, a, b in zip(weights, x, y)) / spread
+    return mean_y - slope * mean_x, slope, 1 / math.sqrt(spread)
+
+
 def main(folder, title, measure, quick_measure):
     """The command line of a study. measure(program) runs it whole, writes its table and picture beside study.py and returns its
     statements; quick_measure(program) is a version of half a minute, whose statements must all hold: the tests run it."""
