@@ -5,6 +5,7 @@ import csv
 import json
 import math
 import os
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -74,6 +75,15 @@ class Program:
         self.commits |= {engine["git_commit"][:7] + ("+" if engine["git_dirty"] else "") for engine in export["engines"].values()}
         self.processor_seconds += sum(r["cost"]["cpu_seconds"] for point in export["points"] for r in point["realisations"])
         return export["points"]
+
+    def stored_results(self, name):
+        """Of a campaign that run() made: the whole results, with blocks, of every point in the order of its settings; those that have means."""
+        database = sqlite3.connect(f"file:{os.path.join(self.folder, name)}.peclet/campaign.db?mode=ro", uri=True)
+        points = {}
+        for place, text in database.execute("SELECT place, result FROM realisations WHERE state = 'done' ORDER BY place, seed"):
+            points.setdefault(place, []).append(json.loads(text))
+        database.close()
+        return [points[place] for place in sorted(points)]
 
     def derived(self, scene):
         """What `peclet validate` says of one scene: its time step, groups and warnings."""
