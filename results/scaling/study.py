@@ -59,14 +59,15 @@ def statement(text, table, largest, width, time="processor", essential=True):
 
 def measure(program):
     implicit = times(program, COUNTS, 5, 1e6)
-    explicit = times(program, COUNTS[::2], 5, 4e6, "explicit")
+    # Their steps cost little: more of them, or the difference of two packings is what is measured.
+    explicit = times(program, [n for n in COUNTS[::2] if n <= PUBLISHED], 5, 2e7, "explicit")
     rows = [{"method": method, "particles": r["particles"], "steps": r["steps"],
              **{f"{time}_{name}": of(r[time]) for time in ("processor", "wall") for name, of in (("ns", statistics.median), ("lowest", min), ("highest", max))}}
             for method, table in (("implicit", implicit), ("explicit", explicit)) for r in table]
     write_table(os.path.join(HERE, "table.csv"), list(rows[0]), rows, 4)
     draw(implicit, explicit)
     return [statement("", implicit, PUBLISHED, 0.1), statement("", implicit, COUNTS[-1], 0.1, essential=False), statement("", implicit, PUBLISHED, 0.1, "wall", False),
-            statement("explicit steps: ", explicit, PUBLISHED, 0.1), statement("explicit steps: ", explicit, COUNTS[-1], 0.1, essential=False)]
+            statement("explicit steps: ", explicit, PUBLISHED, 0.1)]
 
 
 def draw(implicit, explicit):
@@ -77,7 +78,7 @@ def draw(implicit, explicit):
     lines += ["set logscale xy; set format '10^{%L}'; set xlabel 'N'; set ylabel 'processor time of a step, s'; set key top left; set xrange [5:200000]",
               f"plot {middle * 1e-9:.6g} * x lc rgb 'black' title 'proportional to N', $implicit using 1:($1*$2*1e-9):($1*$3*1e-9):($1*$4*1e-9) with yerrorbars pt 7 lc rgb '#2060b0' title 'implicit steps', "
               "$explicit using 1:($1*$2*1e-9):($1*$3*1e-9):($1*$4*1e-9) with yerrorbars pt 5 lc rgb '#c03028' title 'explicit steps'",
-              "set format y '%g'; set ylabel 'processor time of a step of a particle, ns'; set yrange [50:5000]; set key top left",
+              "set format y '%g'; set ylabel 'processor time of a step of a particle, ns'; set yrange [30:5000]; set key top left",
               "plot $implicit using 1:2:3:4 with yerrorlines pt 7 lc rgb '#2060b0' title 'implicit steps', $explicit using 1:2:3:4 with yerrorlines pt 5 lc rgb '#c03028' title 'explicit steps'"]
     gnuplot(lines)
 
