@@ -60,7 +60,7 @@ def statement(text, table, largest, width, time="processor", essential=True):
 def measure(program):
     implicit = times(program, COUNTS, 5, 1e6)
     # Their steps cost little: more of them, or the difference of two packings is what is measured.
-    explicit = times(program, [n for n in COUNTS[::2] if n <= PUBLISHED], 5, 2e7, "explicit")
+    explicit = times(program, [n for n in COUNTS[::2] if n <= PUBLISHED], 10, 2e7, "explicit")
     rows = [{"method": method, "particles": r["particles"], "steps": r["steps"],
              **{f"{time}_{name}": of(r[time]) for time in ("processor", "wall") for name, of in (("ns", statistics.median), ("lowest", min), ("highest", max))}}
             for method, table in (("implicit", implicit), ("explicit", explicit)) for r in table]
