@@ -9,6 +9,7 @@ import sqlite3
 import subprocess
 import sys
 import tempfile
+import zlib
 
 
 def merged(base, patch):
@@ -40,6 +41,12 @@ REFERENCE_SCENE = {
 def at_peclet(number):
     """A patch: noise and flow at this Peclet number, as in the published table but five times as fast where kT allows it."""
     return {"flow": None, "peclet": number, "limits": {"shear_rate": 0.045, "thermal_energy": 0.017}}
+
+
+def inflated(result, dictionary):
+    """The text of a stored result (schema/README.md, Tables and views)."""
+    stream = zlib.decompressobj(zdict=dictionary.encode())
+    return stream.decompress(result) + stream.flush()
 
 
 class Program:
@@ -80,8 +87,9 @@ class Program:
         """Of a campaign that run() made: the whole results, with blocks, of every point in the order of its settings; those that have means."""
         database = sqlite3.connect(f"file:{os.path.join(self.folder, name)}.peclet/campaign.db?mode=ro", uri=True)
         points = {}
-        for place, text in database.execute("SELECT place, result FROM realisations WHERE state = 'done' ORDER BY place, seed"):
-            points.setdefault(place, []).append(json.loads(text))
+        for place, result, dictionary in database.execute(
+                "SELECT place, result, dictionary FROM realisations WHERE state = 'done' ORDER BY place, seed"):
+            points.setdefault(place, []).append(json.loads(inflated(result, dictionary)))
         database.close()
         return [points[place] for place in sorted(points)]
 

@@ -10,7 +10,9 @@ import os
 import random
 import sqlite3
 import sys
-import zlib
+
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+from campaigns import inflated  # noqa: E402
 
 RESAMPLES = 1000
 
@@ -36,7 +38,7 @@ def main():
             series, window = [], None
             for stored, dictionary in database.execute(
                     "SELECT result, dictionary FROM realisations WHERE place = ? AND state = 'done' ORDER BY seed", (place,)):
-                result = json.loads(zlib.decompressobj(zdict=dictionary.encode()).decompress(stored))
+                result = json.loads(inflated(stored, dictionary))
                 blocks = result["blocks"]
                 series.append((blocks["relative_viscosity"], blocks["control_variates"]["brownian_pairwise"]))
                 window = result["time"]["production"] / result["derived"]["brownian_time"], result["strain"]["production"]
