@@ -5,6 +5,7 @@ import csv
 import json
 import math
 import os
+import random
 import sqlite3
 import subprocess
 import sys
@@ -38,6 +39,14 @@ REFERENCE_SCENE = {
 }
 
 
+# Table 4.1 of Li's thesis, with N = 250 and windows that end with a strain or, at small Peclet numbers, with Brownian times. Ten of these
+# are no equilibration: the viscosity at Pe = 0.1 and phi = 0.5 still rises after 50 (results/control-variates); a^2 / D_0 is 19.
+TABLE_SCENE = merged(REFERENCE_SCENE, {
+    "particles": {"count": 250}, "flow": None, "peclet": 1, "limits": {"shear_rate": 0.009, "thermal_energy": 0.017},
+    "duration": {"equilibration": {"strain": 1, "brownian_times": 100}, "production": {"strain": 2, "brownian_times": 40}},
+})
+
+
 def at_peclet(number):
     """A patch: noise and flow at this Peclet number, as in the published table but five times as fast where kT allows it."""
     return {"flow": None, "peclet": number, "limits": {"shear_rate": 0.045, "thermal_energy": 0.017}}
@@ -58,6 +67,7 @@ class Program:
         self.folder = folder
         self.commits = set()  # of the engines that the results are of
         self.processor_seconds = 0.0  # that they took
+        self.long = False  # whether points that take hours are wanted
         os.makedirs(folder, exist_ok=True)
 
     def run(self, name, scene, settings, seeds, observable="relative_viscosity", options=()):
@@ -159,6 +169,76 @@ def pair_viscosity(mean):
 
 def values_by_seed(realisations):
     return {r["seed"]: controlled_viscosity(r["mean"]) for r in realisations if r.get("mean")}
+
+
+def completed(point):
+    """Means of the realisations that ended well."""
+    return [r["mean"] for r in point["realisations"] if r.get("mean")]
+
+
+def term(mean, *names):
+    """Sum of terms of the shear stress over viscosity and rate; those that the scene lacks are 0."""
+    return sum(mean["stress"][n][3] for n in names if n in mean["stress"])
+
+
+def viscosity_row(point, *others):
+    """Of a point of an export: `seeds` that ended well and were `lost`, whether the window is `transient`, and with its standard error
+    (NAME_error) each of
+    viscosity     relative, with 1 + 2.5 phi and the control variate
+    pairs         the same without 1 + 2.5 phi
+    lubrication, contact, repulsion    its terms, without the control variate
+    structural    the structural Brownian stress, which belongs to no sum
+    and of `others`: numbers directly in the results' mean."""
+    means = completed(point)
+    quantities = {
+        "viscosity": controlled_viscosity,
+        "pairs": pair_viscosity,
+        "lubrication": lambda m: term(m, "lubrication"),
+        "contact": lambda m: term(m, "contact_normal", "contact_damping", "friction", "rolling"),
+        "repulsion": lambda m: term(m, "repulsion"),
+        "structural": lambda m: m["brownian_structural"][3],
+        **{name: (lambda m, name=name: m[name]) for name in others},
+    }
+    row = {"seeds": len(means), "lost": len(point["realisations"]) - len(means), "transient": int(bool((point["look"] or {}).get("transient")))}
+    for name, of in quantities.items():
+        row[name], row[f"{name}_error"] = estimate([of(m) for m in means]) if means else (math.nan, math.inf)
+    return row
+
+
+def number(row, name):
+    """A number of a row and its standard error."""
+    return row[name], row[f"{name}_error"]
+
+
+def columns_of(*names):
+    """Column names of numbers with their errors."""
+    return [c for n in names for c in (n, f"{n}_error")]
+
+
+def quotient(a, b):
+    """Of two independent numbers, each with its standard error: their quotient and its standard error."""
+    value = a[0] / b[0]
+    return value, math.hypot(a[1], value * b[1]) / abs(b[0])
+
+
+def log_minimum(abscissae, values):
+    """log10 of where a curve of positive numbers is lowest: the vertex of the parabola through the logarithms of the lowest point and its
+    neighbours; the lowest point itself where it has only one."""
+    lowest = min(range(len(values)), key=lambda k: values[k])
+    x = [math.log10(a) for a in abscissae]
+    if lowest in (0, len(values) - 1):
+        return x[lowest]
+    (x1, x2, x3), (y1, y2, y3) = x[lowest - 1:lowest + 2], [math.log(max(v, 1e-9)) for v in values[lowest - 1:lowest + 2]]
+    left, right = (y2 - y1) / (x2 - x1), (y3 - y2) / (x3 - x2)
+    return (x1 + x2) / 2 - left * (x3 - x1) / 2 / (right - left)
+
+
+def propagated(numbers, function, draws=400):
+    """function([value, ...]) of independent numbers (value, standard error), and its standard error by drawing the numbers again."""
+    random_numbers = random.Random(1)
+    drawn = [function([random_numbers.gauss(v, e) for v, e in numbers]) for _ in range(draws)]
+    middle = sum(drawn) / draws
+    return function([v for v, _ in numbers]), math.sqrt(sum((d - middle) ** 2 for d in drawn) / (draws - 1))
 
 
 FLAGS = ("timestep", "solver", "overlap")

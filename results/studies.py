@@ -102,10 +102,12 @@ def main(folder, title, measure, quick_measure):
     parser.add_argument("binaries", help="folder of peclet and peclet-engine")
     parser.add_argument("folder", nargs="?", help="of the campaigns, with which a second call goes on; a temporary one unless given")
     parser.add_argument("--quick", action="store_true", help="half a minute; fails where the physics is broken")
+    parser.add_argument("--long", action="store_true", help="also the points that take hours, where the study has such; goes on with FOLDER")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
         program = Program(arguments.binaries, arguments.folder or temporary)
-        statements = (quick_measure if arguments.quick else measure)(program)
+        program.long = arguments.long
+        statements = list((quick_measure if arguments.quick else measure)(program))
         print("| statement | source | value ± standard error | must be | answer |\n|---|---|---|---|---|")
         for statement in statements:
             print(statement.row())
