@@ -48,7 +48,7 @@ MUTATIONS = [
      "pair.surface_distance(), Real{inner_gap})", "pair.surface_distance(), Real{10 * inner_gap})"),
 ]
 
-STUDIES = ["convergence", "diffusion", "divergence", "flow-curve", "inertia", "literature", "microstructure", "pair-potential", "zero-shear", "speed-accuracy", "stability"]
+STUDIES = ["convergence", "diffusion", "divergence", "flow-curve", "friction-repulsion", "inertia", "literature", "microstructure", "pair-potential", "zero-shear", "speed-accuracy", "stability"]
 
 
 def replaced(mutation, root):
