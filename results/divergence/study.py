@@ -16,7 +16,7 @@ from studies import Statement, data_block, gnuplot, main  # noqa: E402
 TITLE = "Divergence of the viscosity with volume fraction"
 PECLET = (4.6, 1e4)
 FRACTIONS = (0.40, 0.45, 0.48, 0.50, 0.52, 0.54, 0.56, 0.58)
-SHEARED = merged(TABLE_SCENE, {"particles": {"count": 500}, "duration": {"production": {"strain": 3}}})
+SHEARED = merged(TABLE_SCENE, {"duration": {"production": {"strain": 3}}})
 SEEDS = 8
 
 # At rest: the correlation of stresses, and lubrication at a small Peclet number.
@@ -24,7 +24,7 @@ REST_FRACTIONS = FRACTIONS[:-2]
 VISCOSITY, THERMAL_ENERGY = 0.1, 0.017
 REST = merged(REFERENCE_SCENE, {
     "particles": {"count": 250}, "flow": {"shear_rate": 0}, "fluid": {"thermal_energy": THERMAL_ENERGY}, "observables": ["stress", "stress_correlation"],
-    "duration": {"equilibration": {"brownian_times": 40}, "production": {"brownian_times": 110}},
+    "duration": {"equilibration": {"brownian_times": 40}, "production": {"brownian_times": 80}},
 })
 REST_SEEDS = 6
 SLOW = merged(TABLE_SCENE, {"peclet": 0.22, "duration": {"equilibration": {"brownian_times": 20}, "production": {"brownian_times": 20}}})
@@ -103,10 +103,10 @@ def measure(program):
     rows = sheared(program, "sheared", [(p, f) for p in PECLET for f in FRACTIONS], SEEDS)
     curves = {0: at_rest(program), **{p: [r for r in rows if r["peclet"] == p] for p in PECLET}}
     fits = {(p, q): fit_with_error(c, q) for p, c in curves.items() for q in ("pairs", "viscosity")}
-    fast = {"particles": {"count": 250}, "limits": {"shear_rate": 0.045}, "duration": {"production": {"strain": 2}}}
+    fast = {"limits": {"shear_rate": 0.045}, "duration": {"production": {"strain": 2}}}
     methods = {m: sheared(program, m, [(1e4, 0.5)], 8, merged(fast, {"integrator": {"method": m}}))[0] for m in ("implicit", "explicit")}
     write_table(os.path.join(HERE, "table.csv"), ["method", "peclet", "fraction", "seeds", "lost", "transient", *columns_of("viscosity", "pairs", "lubrication", "contact", "brownian", "time")],
-                [{"method": "implicit", **r} for c in curves.values() for r in c] + [{"method": f"{m}, N = 250, rate 0.045", **r} for m, r in methods.items()], 4)
+                [{"method": "implicit", **r} for c in curves.values() for r in c] + [{"method": f"{m}, rate 0.045", **r} for m, r in methods.items()], 4)
     write_table(os.path.join(HERE, "fits.csv"), ["peclet", "quantity", "jammed", "jammed_error", "jammed_by_seeds", "jammed_by_fractions", "exponent", "exponent_error", "exponent_by_seeds", "exponent_by_fractions"],
                 [dict(zip(["peclet", "quantity", "jammed", "jammed_error", "jammed_by_seeds", "jammed_by_fractions", "exponent", "exponent_error", "exponent_by_seeds", "exponent_by_fractions"],
                           [p, q, *fit[0], *fit[1]])) for (p, q), fit in fits.items()], 4)

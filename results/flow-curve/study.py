@@ -17,7 +17,7 @@ FRACTIONS = (0.45, 0.50, 0.55)
 # Campaigns: Peclet numbers, seeds and Brownian times of production; the last two take hours and are made with --long.
 CAMPAIGNS = {
     "flow-curve": ((1, 4.6, 22, 100, 460, 2200, 1e4), 12, 40),
-    "flow-curve-0.22": ((0.22,), 12, 60),
+    "flow-curve-0.22": ((0.22,), 8, 60),
     "flow-curve-0.046": ((0.046,), 24, 200),
     "flow-curve-0.01": ((0.01,), 80, 400),
 }
