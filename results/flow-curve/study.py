@@ -16,8 +16,8 @@ TITLE = "Flow curves of Brownian suspensions"
 FRACTIONS = (0.45, 0.50, 0.55)
 # Campaigns: Peclet numbers, seeds and Brownian times of production; the last two take hours and are made with --long.
 CAMPAIGNS = {
-    "flow-curve": ((1, 4.6, 22, 100, 460, 2200, 1e4), 12, 40),
-    "flow-curve-0.22": ((0.22,), 8, 60),
+    "flow-curve": ((1, 4.6, 22, 100, 460, 2200, 1e4), 8, 40),
+    "flow-curve-0.22": ((0.22,), 6, 60),
     "flow-curve-0.046": ((0.046,), 24, 200),
     "flow-curve-0.01": ((0.01,), 80, 400),
 }
@@ -75,21 +75,21 @@ def measure(program):
     for name, (peclets, seeds, times) in CAMPAIGNS.items():
         if name not in LONG or program.long:
             rows += rows_of(program, name, [(f, 1e4, p) for f in FRACTIONS for p in peclets], seeds, {"duration": {"production": {"brownian_times": times}}})
-    stiffness = rows_of(program, "stiffness", [(0.5, k, p) for k in STIFFNESSES if k != 1e4 for p in STIFFNESS_PECLET], 12)
+    stiffness = rows_of(program, "stiffness", [(0.5, k, p) for k in STIFFNESSES if k != 1e4 for p in STIFFNESS_PECLET], 8)
     large = rows_of(program, "large", [(0.45, 1e4, p) for p in (100, 1e4)], 8, {"particles": {"count": 1000}})
     faster = {"limits": {"shear_rate": 0.045}}
-    methods = {m: rows_of(program, m, [(0.45, 1e4, 100)], 8, merged(faster, {"integrator": {"method": m}}))[0] for m in ("implicit", "explicit")}
+    methods = {m: rows_of(program, m, [(0.45, 1e4, 100)], 6, merged(faster, {"integrator": {"method": m}}))[0] for m in ("implicit", "explicit")}
 
     statements = [s for f in FRACTIONS for s in curve_statements(rows, f)]
     for row in stiffness:
         standard = pick(rows, fraction=0.5, peclet=row["peclet"])
         statements.append(Statement(f"φ = 0.5, Pe = {row['peclet']:g}: η_r at k_n = {row['stiffness']:g} over that at 10⁴", "L4.5b",
-                                    *quotient(number(row, "viscosity"), number(standard, "viscosity")), 0.95, 1.05, 11))
+                                    *quotient(number(row, "viscosity"), number(standard, "viscosity")), 0.95, 1.05, 7))
     for row in large:
         statements.append(Statement(f"φ = 0.45, Pe = {row['peclet']:g}: η_r with N = 1000 over that with 250", "method",
                                     *quotient(number(row, "viscosity"), number(pick(rows, fraction=0.45, peclet=row["peclet"]), "viscosity")), 0.95, 1.05, 7, essential=False))
     statements.append(Statement("φ = 0.45, Pe = 100, rate 0.045: η_r with implicit steps over that with explicit ones", "method",
-                                *quotient(number(methods["implicit"], "viscosity"), number(methods["explicit"], "viscosity")), 0.9, 1.1, 7))
+                                *quotient(number(methods["implicit"], "viscosity"), number(methods["explicit"], "viscosity")), 0.9, 1.1, 5))
 
     table = [{"method": "implicit", "count": 250, **r} for r in rows + stiffness] + [{"method": "implicit", "count": 1000, **r} for r in large]
     table += [{"method": f"{m}, rate 0.045", "count": 250, **r} for m, r in methods.items()]
