@@ -102,7 +102,7 @@ def measure(program):
 def draw(rows):
     terms = {"pairs": ("#000000", 7, "all pairs"), "contact": ("#c03028", 5, "contact"), "lubrication": ("#2060b0", 9, "lubrication"), "structural": ("#308030", 4, "structural Brownian")}
     lines = ["set terminal pngcairo size 1400, 460 font 'Sans,11'", f"set output '{os.path.join(HERE, 'chart.png')}'", "set multiplot layout 1, 3",
-             "set grid lc rgb '#d8d8d8'; set logscale xy; set format x '10^{%L}'; set xlabel 'Pe'; set ylabel 'σ / (η γ̇)'; set xrange [5e-3:3e4]; set key top right"]
+             "set grid lc rgb '#d8d8d8'; set logscale xy; set format x '10^{%L}'; set xlabel 'Pe'; set ylabel 'σ / (η γ̇)'; set xrange [5e-3:3e4]; set key bottom left"]
     for fraction in FRACTIONS:
         curve = sorted((r for r in rows if r["fraction"] == fraction), key=lambda r: r["peclet"])
         parts = []

@@ -131,11 +131,11 @@ def draw(rows):
             parts.append(f"$b{blocks} using 1:2:3 with yerrorlines pt {mark} ps 0.8 lc rgb '{colour}' title '{title}'")
             blocks += 1
         lines += [f"set xlabel '{label}'; {limits}", "plot " + ", ".join(parts)]
-    pe = "set xrange [0.5:2e6]"
+    pe = "set xrange [0.5:2e6]; set yrange [4:200]"
     panel([((0.5, m, 0), f"φ = 0.5, A = 0, μ = {m}", c, 7) for m, c in zip(FRICTIONS, colours)], "peclet", "Pe", pe)
     panel([((0.5, 0.5, a), f"φ = 0.5, μ = 0.5, A = {a} k_BT", c, 7) for a, c in zip(STRENGTHS, colours)], "peclet", "Pe", pe)
-    panel([((f, 0.5, a), f"φ = {f:g}, μ = 0.5, A = {a} k_BT", c, m) for f, m in ((0.45, 6), (0.5, 7), (0.53, 5)) for a, c in ((0, colours[0]), (1000, colours[3]))], "peclet", "Pe", pe)
-    panel([((0.5, 1, a), f"φ = 0.5, μ = 1, A = {a} k_BT", c, 7) for a, c in zip(STRENGTHS, colours)], "stress", "σ a³ / k_BT (pairs)", "set xrange [0.1:1e7]")
+    panel([((f, 0.5, a), f"φ = {f:g}, μ = 0.5, A = {a} k_BT", c, m) for f, m in ((0.45, 6), (0.5, 7), (0.53, 5)) for a, c in ((0, colours[0]), (1000, colours[3]))], "peclet", "Pe", "set xrange [0.5:2e6]; set yrange [2:2000]")
+    panel([((0.5, 1, a), f"φ = 0.5, μ = 1, A = {a} k_BT", c, 7) for a, c in zip(STRENGTHS, colours)], "stress", "σ a³ / k_BT (pairs)", "set xrange [0.1:1e7]; set yrange [4:200]")
     gnuplot(lines)
 
 
