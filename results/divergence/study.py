@@ -106,7 +106,7 @@ def measure(program):
     fast = {"limits": {"shear_rate": 0.045}, "duration": {"production": {"strain": 2}}}
     methods = {m: sheared(program, m, [(1e4, 0.5)], 6, merged(fast, {"integrator": {"method": m}}))[0] for m in ("implicit", "explicit")}
     write_table(os.path.join(HERE, "table.csv"), ["method", "peclet", "fraction", "seeds", "lost", "transient", *columns_of("viscosity", "pairs", "lubrication", "contact", "brownian", "time")],
-                [{"method": "implicit", **r} for c in curves.values() for r in c] + [{"method": f"{m}, rate 0.045", **r} for m, r in methods.items()], 4)
+                [{"method": "implicit", **r} for c in curves.values() for r in c] + [{"method": f"{m} at rate 0.045", **r} for m, r in methods.items()], 4)
     write_table(os.path.join(HERE, "fits.csv"), ["peclet", "quantity", "jammed", "jammed_error", "jammed_by_seeds", "jammed_by_fractions", "exponent", "exponent_error", "exponent_by_seeds", "exponent_by_fractions"],
                 [dict(zip(["peclet", "quantity", "jammed", "jammed_error", "jammed_by_seeds", "jammed_by_fractions", "exponent", "exponent_error", "exponent_by_seeds", "exponent_by_fractions"],
                           [p, q, *fit[0], *fit[1]])) for (p, q), fit in fits.items()], 4)

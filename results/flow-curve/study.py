@@ -14,14 +14,13 @@ from studies import Statement, data_block, gnuplot, main  # noqa: E402
 
 TITLE = "Flow curves of Brownian suspensions"
 FRACTIONS = (0.45, 0.50, 0.55)
-# Campaigns: Peclet numbers, seeds and Brownian times of production; the last two take hours and are made with --long.
+# Campaigns: Peclet numbers, seeds, seeds with --long, and Brownian times of production; those without seeds take hours.
 CAMPAIGNS = {
-    "flow-curve": ((1, 4.6, 22, 100, 460, 2200, 1e4), 8, 40),
-    "flow-curve-0.22": ((0.22,), 6, 60),
-    "flow-curve-0.046": ((0.046,), 24, 200),
-    "flow-curve-0.01": ((0.01,), 80, 400),
+    "flow-curve": ((1, 4.6, 22, 100, 460, 2200, 1e4), 8, 32, 40),
+    "flow-curve-0.22": ((0.22,), 6, 24, 60),
+    "flow-curve-0.046": ((0.046,), 0, 24, 200),
+    "flow-curve-0.01": ((0.01,), 0, 80, 400),
 }
-LONG = ("flow-curve-0.046", "flow-curve-0.01")
 STIFFNESSES, STIFFNESS_PECLET = (2.5e3, 1e4, 4e4), (1, 1e4)
 
 
@@ -61,21 +60,23 @@ def curve_statements(rows, fraction):
                     propagated([number(r, "pairs") for r in curve], lambda v: log_minimum([r["peclet"] for r in curve], v)), 0, math.log10(22))
     yield statement("at Pe = 10⁴ over that at 4.6 (thickening)", quotient(number(at[1e4], "pairs"), number(at[4.6], "pairs")), low=1)
     yield statement("lubrication at Pe = 10⁴ over that at 1 (rises weakly: at most twice)", quotient(number(at[1e4], "lubrication"), number(at[1], "lubrication")), 1, 2, essential=False)
-    lowest = curve[0]["peclet"]
-    yield statement(f"structural Brownian stress over contact stress at Pe = {lowest:g}", number(at[lowest], "structural_over_contact"), 0.8, 1.2, lowest)
-    ratio = quotient(number(at[0.01], "pairs"), number(at[0.046], "pairs")) if 0.01 in at else (math.nan, math.inf)
+    unknown = math.nan, math.inf
+    yield statement("structural Brownian stress over contact stress at Pe = 0.22", number(at[0.22], "structural_over_contact"), 0.8, 1.2, 0.22, essential=False)
+    yield statement("structural Brownian stress over contact stress at Pe = 0.01", number(at[0.01], "structural_over_contact") if 0.01 in at else unknown, 0.8, 1.2, curve[0]["peclet"])
+    ratio = quotient(number(at[0.01], "pairs"), number(at[0.046], "pairs")) if 0.01 in at else unknown
     if fraction == 0.55:
-        yield statement("at Pe = 0.01 over that at 0.046 (still rising)", ratio, low=1.1, peclet=lowest)
+        yield statement("at Pe = 0.01 over that at 0.046 (still rising)", ratio, low=1.1, peclet=curve[0]["peclet"])
     else:
-        yield statement("at Pe = 0.01 over that at 0.046 (plateau)", ratio, 0.9, 1.1, lowest)
+        yield statement("at Pe = 0.01 over that at 0.046 (plateau)", ratio, 0.9, 1.1, curve[0]["peclet"])
 
 
 def measure(program):
     rows = []
-    for name, (peclets, seeds, times) in CAMPAIGNS.items():
-        if name not in LONG or program.long:
+    for name, (peclets, few, many, times) in CAMPAIGNS.items():
+        seeds = many if program.long else few
+        if seeds:
             rows += rows_of(program, name, [(f, 1e4, p) for f in FRACTIONS for p in peclets], seeds, {"duration": {"production": {"brownian_times": times}}})
-    stiffness = rows_of(program, "stiffness", [(0.5, k, p) for k in STIFFNESSES if k != 1e4 for p in STIFFNESS_PECLET], 8)
+    stiffness = rows_of(program, "stiffness", [(0.5, k, p) for k in STIFFNESSES if k != 1e4 for p in STIFFNESS_PECLET], 32 if program.long else 8)
     large = rows_of(program, "large", [(0.45, 1e4, p) for p in (100, 1e4)], 8, {"particles": {"count": 1000}})
     faster = {"limits": {"shear_rate": 0.045}}
     methods = {m: rows_of(program, m, [(0.45, 1e4, 100)], 6, merged(faster, {"integrator": {"method": m}}))[0] for m in ("implicit", "explicit")}
@@ -84,7 +85,7 @@ def measure(program):
     for row in stiffness:
         standard = pick(rows, fraction=0.5, peclet=row["peclet"])
         statements.append(Statement(f"φ = 0.5, Pe = {row['peclet']:g}: η_r at k_n = {row['stiffness']:g} over that at 10⁴", "L4.5b",
-                                    *quotient(number(row, "viscosity"), number(standard, "viscosity")), 0.95, 1.05, 7))
+                                    *quotient(number(row, "viscosity"), number(standard, "viscosity")), 0.95, 1.05, row["seeds"] - 1))
     for row in large:
         statements.append(Statement(f"φ = 0.45, Pe = {row['peclet']:g}: η_r with N = 1000 over that with 250", "method",
                                     *quotient(number(row, "viscosity"), number(pick(rows, fraction=0.45, peclet=row["peclet"]), "viscosity")), 0.95, 1.05, 7, essential=False))
@@ -92,7 +93,7 @@ def measure(program):
                                 *quotient(number(methods["implicit"], "viscosity"), number(methods["explicit"], "viscosity")), 0.9, 1.1, 5))
 
     table = [{"method": "implicit", "count": 250, **r} for r in rows + stiffness] + [{"method": "implicit", "count": 1000, **r} for r in large]
-    table += [{"method": f"{m}, rate 0.045", "count": 250, **r} for m, r in methods.items()]
+    table += [{"method": f"{m} at rate 0.045", "count": 250, **r} for m, r in methods.items()]
     write_table(os.path.join(HERE, "table.csv"), ["method", "count", "fraction", "stiffness", "peclet", "seeds", "lost", "transient",
                                                   *columns_of("viscosity", "pairs", "lubrication", "contact", "structural", "structural_over_contact")], table, 4)
     draw(rows)
@@ -102,7 +103,7 @@ def measure(program):
 def draw(rows):
     terms = {"pairs": ("#000000", 7, "all pairs"), "contact": ("#c03028", 5, "contact"), "lubrication": ("#2060b0", 9, "lubrication"), "structural": ("#308030", 4, "structural Brownian")}
     lines = ["set terminal pngcairo size 1400, 460 font 'Sans,11'", f"set output '{os.path.join(HERE, 'chart.png')}'", "set multiplot layout 1, 3",
-             "set grid lc rgb '#d8d8d8'; set logscale xy; set format x '10^{%L}'; set xlabel 'Pe'; set ylabel 'σ / (η γ̇)'; set xrange [5e-3:3e4]; set key bottom left"]
+             "set grid lc rgb '#d8d8d8'; set logscale xy; set format x '10^{%L}'; set xlabel 'Pe'; set ylabel 'σ / (η γ̇)'; set xrange [5e-3:3e4]; set key top right"]
     for fraction in FRACTIONS:
         curve = sorted((r for r in rows if r["fraction"] == fraction), key=lambda r: r["peclet"])
         parts = []
@@ -111,7 +112,7 @@ def draw(rows):
             parts.append(f"${name}{round(fraction * 100)} using 1:2:3 with yerrorlines pt {mark} ps 0.8 lc rgb '{colour}' title '{title}'")
         fits = [(f"(1 - {fraction:g} / {jammed})**-1.5", end) for jammed, end in ((0.587, "x < 0.02"), (0.642, "x > 3e3"))]
         parts += [f"({end} ? {fit} : 1/0) lw 3 lc rgb '#a0a0a0' {'title `published fits of both ends`' if k == 0 else 'notitle'}".replace("`", '"') for k, (fit, end) in enumerate(fits)]
-        largest = {0.45: 30, 0.50: 60, 0.55: 200}[fraction]
+        largest = {0.45: 100, 0.50: 200, 0.55: 600}[fraction]
         lines += [f"set title 'φ = {fraction:g}'; set yrange [0.1:{largest}]; set samples 1000", "plot " + ", ".join(parts)]
     gnuplot(lines)
 

@@ -103,7 +103,7 @@ def measure(program):
     rows += measured(program, "slow", [(0.5, m, 0, SLOW) for m in FRICTIONS], SLOW_SEEDS)
     fast = {"limits": {"shear_rate": 0.045}, "duration": {"equilibration": {"strain": 1}, "production": {"strain": 2}}, "contact": {"friction": 0.5}, "repulsion": {"strength": 1000 * thermal_energy(1e4) * 5}}
     methods = {m: measured_method(program, m, fast) for m in ("implicit", "explicit")}
-    table = [{"method": "implicit", **r} for r in rows] + [{"method": f"{m}, rate 0.045", **r} for m, r in methods.items()]
+    table = [{"method": "implicit", **r} for r in rows] + [{"method": f"{m} at rate 0.045", **r} for m, r in methods.items()]
     write_table(os.path.join(HERE, "table.csv"), ["method", "fraction", "friction", "strength", "peclet", "seeds", "lost", "transient",
                                                   *columns_of("viscosity", "pairs", "lubrication", "contact", "repulsion"), "stress", "stress_over_repulsion"], table, 4)
     draw(rows)
