@@ -17,16 +17,16 @@ TITLE = "Divergence of the viscosity with volume fraction"
 PECLET = (4.6, 1e4)
 FRACTIONS = (0.40, 0.45, 0.48, 0.50, 0.52, 0.54, 0.56, 0.58)
 SHEARED = merged(TABLE_SCENE, {"duration": {"production": {"strain": 3}}})
-SEEDS = 6
+SEEDS = 5
 
 # At rest: the correlation of stresses, and lubrication at a small Peclet number.
 REST_FRACTIONS = FRACTIONS[:5]
 VISCOSITY, THERMAL_ENERGY = 0.1, 0.017
 REST = merged(REFERENCE_SCENE, {
     "particles": {"count": 250}, "flow": {"shear_rate": 0}, "fluid": {"thermal_energy": THERMAL_ENERGY}, "observables": ["stress", "stress_correlation"],
-    "duration": {"equilibration": {"brownian_times": 30}, "production": {"brownian_times": 80}},
+    "duration": {"equilibration": {"brownian_times": 30}, "production": {"brownian_times": 70}},
 })
-REST_SEEDS = 6
+REST_SEEDS = 5
 SLOW = merged(TABLE_SCENE, {"peclet": 0.22, "duration": {"equilibration": {"brownian_times": 20}, "production": {"brownian_times": 20}}})
 SLOW_SEEDS = 3
 
