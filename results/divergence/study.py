@@ -26,7 +26,7 @@ REST = merged(REFERENCE_SCENE, {
     "particles": {"count": 250}, "flow": {"shear_rate": 0}, "fluid": {"thermal_energy": THERMAL_ENERGY}, "observables": ["stress", "stress_correlation"],
     "duration": {"equilibration": {"brownian_times": 30}, "production": {"brownian_times": 70}},
 })
-REST_SEEDS = 5
+REST_SEEDS = 14
 SLOW = merged(TABLE_SCENE, {"peclet": 0.22, "duration": {"equilibration": {"brownian_times": 20}, "production": {"brownian_times": 20}}})
 SLOW_SEEDS = 3
 
@@ -60,6 +60,24 @@ def fit_with_error(rows, quantity):
         middle = sum(p[which] for p in parts) / n
         errors.append((drawn, math.sqrt((n - 1) / n * sum((p[which] - middle) ** 2 for p in parts))))
     return [(value, math.hypot(*error), *error) for value, error in zip(whole, errors)]
+
+
+def other_forms(rows, quantity, lowest):
+    """Of the points from `lowest` on: phi_J with lambda = 1.5; and phi_J, lambda and prefactor of c (1 - phi / phi_J)^-lambda. Least squares in
+    the logarithm as above, with the root of the mean square of what is left."""
+    points = [(r["fraction"], math.log(r[quantity])) for r in rows if r["fraction"] >= lowest]
+    fixed = free = None
+    for step in range(1, 401):
+        jammed = max(f for f, _ in points) + 0.0005 * step
+        x, y = [-math.log(1 - f / jammed) for f, _ in points], [v for _, v in points]
+        mean_x, mean_y = sum(x) / len(x), sum(y) / len(y)
+        slope = sum((a - mean_x) * (b - mean_y) for a, b in zip(x, y)) / sum((a - mean_x) ** 2 for a in x)
+        rest = math.sqrt(sum((b - 1.5 * a) ** 2 for a, b in zip(x, y)) / len(x))
+        fixed = min(fixed or (rest, jammed), (rest, jammed))
+        rest = math.sqrt(sum((b - mean_y - slope * (a - mean_x)) ** 2 for a, b in zip(x, y)) / len(x))
+        candidate = rest, jammed, slope, math.exp(mean_y - slope * mean_x)
+        free = min(free or candidate, candidate)
+    return {"fixed_jammed": fixed[1], "fixed_rest": fixed[0], "free_jammed": free[1], "free_exponent": free[2], "free_prefactor": free[3], "free_rest": free[0]}
 
 
 def sheared(program, name, cases, seeds, patch=None):
@@ -110,6 +128,8 @@ def measure(program):
     write_table(os.path.join(HERE, "fits.csv"), ["peclet", "quantity", "jammed", "jammed_error", "jammed_by_seeds", "jammed_by_fractions", "exponent", "exponent_error", "exponent_by_seeds", "exponent_by_fractions"],
                 [dict(zip(["peclet", "quantity", "jammed", "jammed_error", "jammed_by_seeds", "jammed_by_fractions", "exponent", "exponent_error", "exponent_by_seeds", "exponent_by_fractions"],
                           [p, q, *fit[0], *fit[1]])) for (p, q), fit in fits.items()], 4)
+    forms = [{"peclet": p, "quantity": q, "lowest": f, **other_forms(curves[p], q, f)} for p in PECLET for q in ("pairs", "viscosity") for f in (0.40, 0.48)]
+    write_table(os.path.join(HERE, "forms.csv"), list(forms[0]), forms, 4)
     draw(curves, fits)
     return [*statements_of(curves, fits), Statement("φ = 0.5, Pe = 10⁴, rate 0.045: η_r with implicit steps over that with explicit ones", "method",
                                                     *quotient(number(methods["implicit"], "viscosity"), number(methods["explicit"], "viscosity")), 0.9, 1.1, 5)]
