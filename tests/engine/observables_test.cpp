@@ -258,6 +258,33 @@ TEST(ContactNetwork, CountsContactsAndTheirMobilisation) {
   EXPECT_EQ(mobilisation[19], 0.5);
 }
 
+// A pair that both shells see has the stress -A n n with A = 2 * 20 kT / V, wherever n points: its traceless
+// part squared is 2/3 A^2, and G = (V / kT) / 10 of that at all lags, as long as nothing moves.
+TEST(StressCorrelation, OfAFrozenPairIsTheSquareOfItsTracelessStress) {
+  const Scene scene = scene_with("stress_correlation");
+  constexpr double thermal_energy = 2, volume = edge * edge * edge;
+  constexpr double stress = 2 * 20 * thermal_energy / volume;
+  constexpr double modulus = volume / thermal_energy / 10 * 2 / 3 * stress * stress;
+  for (const Vector3& along : {Vector3{1, 0, 0}, Vector3{1, -1, 0}, Vector3{1, 2, 3}}) {
+    System system = loose_spheres(2);
+    system.particles.position.set(0, {5, 5, 5});
+    system.particles.position.set(1, Vector3{5, 5, 5} + (3.01 / norm(along)) * along);
+    system.list = NeighbourList(range_table(make_pair_kinds(scene.physics, {1, 2}), 2), 0.1);
+    system.list.build(system.particles, system.box);
+    const auto observable = observable_of(scene, system, 256);
+    for (int k = 0; k < 256; ++k) observable->sample(system);
+    const Json mean = mean_of(*observable);
+    const Json& found = mean["stress_correlation"];
+    EXPECT_GT(found["time"].size(), 16u);
+    for (std::size_t k = 0; k < found["time"].size(); ++k) {
+      const double viscosity = modulus * found["time"][k].get<double>() / scene.physics.viscosity;
+      EXPECT_NEAR(found["modulus"][k].get<double>(), modulus, 1e-12 * modulus);
+      EXPECT_NEAR(found["viscosity"][k].get<double>(), viscosity, 1e-12 * viscosity);
+    }
+    EXPECT_EQ(mean["green_kubo_viscosity"], found["viscosity"].back());
+  }
+}
+
 TEST(Observables, AreAbsentUnlessAskedFor) {
   const System system = loose_spheres(2);
   EXPECT_TRUE(make_observables(read_scene(small_scene(), "scene.json"), system, timestep, 256, "").empty());
