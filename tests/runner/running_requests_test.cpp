@@ -75,6 +75,26 @@ TEST(Set, ReopensAFinishedCampaignWhichThenGivesWhatAFreshOneDoes) {
   EXPECT_EQ(canonical(campaign), undisturbed(campaign.document, {}));
 }
 
+TEST(Set, LeavesTheFileAsItWasWhenTheChangeIsRefused) {
+  CampaignOnDisk campaign;
+  ASSERT_EQ(campaign.run(), 0) << campaign.log();
+  campaign.document["target"]["observable"] = "colour";  // which no result has
+  const std::string before = campaign.document.dump();
+  write_durably(campaign.options.campaign, before);
+  EXPECT_THROW(set(campaign, [](SetOptions& options) { options.tolerance = 0.04; }), InputError);
+  EXPECT_EQ(read_file(campaign.options.campaign), before);
+  EXPECT_EQ(campaign.count("SELECT count(*) FROM target"), 1);
+}
+
+// As where a campaign was restored into the folder of its file.
+TEST(Set, DoesNotWaitForWhoOwnsTheFolderOfTheFile) {
+  CampaignOnDisk campaign;
+  write_durably(campaign.options.campaign, campaign.document.dump());
+  const OwnerLock owner(CampaignDirectory(campaign.options.campaign.parent_path()));
+  EXPECT_EQ(set(campaign, [](SetOptions& options) { options.tolerance = 0.04; }).exit_code, 0);
+  EXPECT_EQ(read_json(campaign.options.campaign)["target"]["relative_tolerance"], 0.04);
+}
+
 TEST(Set, ChangesTheTargetOfARunningCampaign) {
   CampaignOnDisk campaign;
   campaign.document["realisations"]["maximum"] = many;
