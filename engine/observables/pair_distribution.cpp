@@ -38,9 +38,10 @@ void PairDistribution::sample(const System& system) {
   std::iota(everyone.begin(), everyone.end(), 0U);
   const CellGrid grid(places, everyone, system.box, range_);
   for (std::uint32_t i = 0; i < everyone.size(); ++i) {
-    grid.visit_near(places.fractional[i], [&](std::uint32_t j, LatticeShift, const Vector3& separation) {
-      if (j != i) count(separation);
-    });
+    grid.visit_near(places.fractional[i], range_,
+                    [&](std::uint32_t j, LatticeShift, const Vector3& separation) {
+                      if (j != i) count(separation);
+                    });
   }
   ++samples_;
 }

@@ -5,15 +5,10 @@
 namespace peclet::engine {
 namespace {
 
-struct Axis {
-  std::int32_t cells, reach;
-};
-
 // More than a few cells per particle would only make the grid slow to walk.
-Axis divide(double width, double range, std::size_t particles) {
+std::int32_t divide(double width, double range, std::size_t particles) {
   const double most = std::max(1.0, std::cbrt(8.0 * static_cast<double>(particles)));
-  const double cells = std::max(1.0, std::floor(std::min(width / range, most)));
-  return {static_cast<std::int32_t>(cells), static_cast<std::int32_t>(std::ceil(range / (width / cells)))};
+  return static_cast<std::int32_t>(std::max(1.0, std::floor(std::min(width / range, most))));
 }
 
 // Splits a lattice coordinate into whole cells and the rest in [0, 1).
@@ -45,10 +40,9 @@ CellGrid::CellGrid(const LatticePlaces& places, std::span<const std::uint32_t> m
                    double range)
     : box_(box) {
   const Vector3 widths = box.widths();
-  const Axis x = divide(widths.x, range, members.size()), y = divide(widths.y, range, members.size()),
-             z = divide(widths.z, range, members.size());
-  cells_ = {x.cells, y.cells, z.cells};
-  reach_ = {x.reach, y.reach, z.reach};
+  cells_ = {divide(widths.x, range, members.size()), divide(widths.y, range, members.size()),
+            divide(widths.z, range, members.size())};
+  per_length_ = {cells_.x / widths.x, cells_.y / widths.y, cells_.z / widths.z};
   first_.assign(linear({0, 0, cells_.z}) + 1, 0);
   std::vector<std::size_t> cell;
   cell.reserve(members.size());

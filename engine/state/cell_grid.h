@@ -1,6 +1,8 @@
 // Cells along the lattice vectors of a sheared box, for finding what is near.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,29 +23,31 @@ LatticePlaces lattice_places(const VectorField& position, const ShearedBox& box)
 // Some of the particles, sorted into cells.
 class CellGrid {
  public:
-  // `members` in the order in which they are visited. Cells at least `range` wide, or as many layers of
-  // neighbours as it takes where the box is smaller than that.
+  // `members` in the order in which they are visited. Cells at least `range` wide where the box is wide
+  // enough.
   CellGrid(const LatticePlaces& places, std::span<const std::uint32_t> members, const ShearedBox& box,
            double range);
 
-  // Calls visit(member, wrap, separation) for every member in every image whose cell is within reach of the
+  // Calls visit(member, wrap, separation) for every member in every image whose cell is within `range` of the
   // point at `fractional` coordinates: `separation` leads from there to the image by `wrap` of the member's
   // place in the cell. Nothing closer than `range` is missed; most visits are of members further away.
   template <class Visit>
-  void visit_near(const Vector3& fractional, Visit&& visit) const {
-    const LatticeShift home = cell_at(fractional);
+  void visit_near(const Vector3& fractional, double range, Visit&& visit) const {
+    const Layers along_x = layers(fractional.x, cells_.x, range * per_length_.x),
+                 along_y = layers(fractional.y, cells_.y, range * per_length_.y),
+                 along_z = layers(fractional.z, cells_.z, range * per_length_.z);
     const Vector3 point = box_.point_at(fractional);
-    for (std::int32_t dz = -reach_.z; dz <= reach_.z; ++dz) {
-      const Wrapped z = wrapped(home.z + dz, cells_.z);
-      for (std::int32_t dy = -reach_.y; dy <= reach_.y; ++dy) {
-        const Wrapped y = wrapped(home.y + dy, cells_.y);
+    for (std::int32_t layer_z = along_z.begin; layer_z < along_z.end; ++layer_z) {
+      const Wrapped z = wrapped(layer_z, cells_.z);
+      for (std::int32_t layer_y = along_y.begin; layer_y < along_y.end; ++layer_y) {
+        const Wrapped y = wrapped(layer_y, cells_.y);
         const std::size_t row = (static_cast<std::size_t>(z.cell) * static_cast<std::size_t>(cells_.y) +
                                  static_cast<std::size_t>(y.cell)) *
                                 static_cast<std::size_t>(cells_.x);
         // Cells that follow each other along x are visited in one go.
-        for (std::int32_t x = home.x - reach_.x, end = home.x + reach_.x + 1; x < end;) {
+        for (std::int32_t x = along_x.begin; x < along_x.end;) {
           const Wrapped first = wrapped(x, cells_.x);
-          const std::int32_t count = std::min(end - x, cells_.x - first.cell);
+          const std::int32_t count = std::min(along_x.end - x, cells_.x - first.cell);
           const std::size_t begin = row + static_cast<std::size_t>(first.cell);
           const LatticeShift wrap = {first.wrap, y.wrap, z.wrap};
           const Vector3 shift = box_.displacement(wrap) - point;
@@ -61,8 +65,20 @@ class CellGrid {
     std::int32_t cell, wrap;
   };
   static Wrapped wrapped(std::int32_t cell, std::int32_t cells) {
+    if (cell >= 0 && cell < cells) {
+      return {cell, 0};
+    }
     const std::int32_t wrap = cell >= 0 ? cell / cells : -((cells - 1 - cell) / cells);
     return {cell - wrap * cells, wrap};
+  }
+  struct Layers {
+    std::int32_t begin, end;
+  };
+  // Of cells that a range of so many cells touches; the share of it that is added is far beyond rounding.
+  static Layers layers(double fractional, std::int32_t cells, double range) {
+    const double place = fractional * cells, wider = range * (1 + 1e-9);
+    return {static_cast<std::int32_t>(std::floor(place - wider)),
+            static_cast<std::int32_t>(std::floor(place + wider)) + 1};
   }
   struct Member {
     Vector3 point;
@@ -78,7 +94,8 @@ class CellGrid {
   }
 
   ShearedBox box_;
-  LatticeShift cells_, reach_;
+  LatticeShift cells_;
+  Vector3 per_length_;                // cells between two parallel planes a unit of length apart
   std::vector<std::uint32_t> first_;  // counting sort by cell
   std::vector<Member> content_;
 };

@@ -82,7 +82,7 @@ void ListBuilder::search_near(std::uint32_t i, std::vector<Found>& found) {
       continue;
     }
     const double range = ranges.at(own, other), listed = list_.reach(range);
-    grids_[other]->visit_near(places_.fractional[i],
+    grids_[other]->visit_near(places_.fractional[i], listed,
                               [&](std::uint32_t j, LatticeShift wrap, const Vector3& separation) {
                                 const double squared = dot(separation, separation);
                                 if (!(squared < listed * listed) || (other == own && j < i)) {
