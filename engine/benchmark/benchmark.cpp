@@ -232,7 +232,7 @@ void print_roofline(const std::vector<Runner>& runners, const std::vector<Measur
     }
     const auto count = static_cast<double>(runner.count());
     const double pairs = results[k].near * count;
-    const double bytes = bytes_per_particle(physics, runner.system());
+    const double bytes = bytes_per_particle(physics, runner.system(), runner.contestant().threads);
     const Roof roof = roof_of(*done, bytes, machine, count);
     const double each = results[k].nanoseconds.median / results[k].near;
     const auto per_pair = [&](std::uint64_t n) { return static_cast<double>(n) / pairs; };

@@ -48,16 +48,22 @@ std::optional<Operations> count_operations(const Physics& physics, System system
   return std::nullopt;
 }
 
-double bytes_per_particle(const Physics& physics, const System& system) {
+double bytes_per_particle(const Physics& physics, const System& system, int threads) {
   constexpr double row = 32, fetched_and_written = 2 * row;
   const Terms terms = required_terms(physics);
   const auto count = static_cast<double>(system.particles.count());
   const double pairs = static_cast<double>(system.list.pairs().size()) / count;
   const double crossings = static_cast<double>(system.list.crossings()) / count;
-  // Kick and drift: forces, torques and the whole state are read, the state is written back.
-  double bytes = 8 * row + sizeof(std::uint16_t);
-  // Pairs, drag and noise: the state is read, forces and torques are overwritten.
-  bytes += 3 * row + 2 * fetched_and_written + sizeof(std::uint16_t);
+  double bytes = 0;
+  if (threads == 1 && !terms.friction) {
+    // One walk: state, forces and torques are read and written back.
+    bytes += 10 * row + sizeof(std::uint16_t);
+  } else {
+    // Kick and drift: forces, torques and the whole state are read, the state is written back.
+    bytes += 8 * row + sizeof(std::uint16_t);
+    // Pairs, drag and noise: the state is read, forces and torques are overwritten.
+    bytes += 3 * row + 2 * fetched_and_written + sizeof(std::uint16_t);
+  }
   bytes += terms.noise ? sizeof(std::uint32_t) : 0;
   bytes += pairs * sizeof(Pair);
   bytes += 2 * pairs * static_cast<double>(system.springs.components() * sizeof(double));

@@ -15,6 +15,6 @@ std::optional<Operations> count_operations(const Physics& physics, System system
 // Bytes per particle that one step moves between the processor and a memory whose caches hold nothing from
 // one step to the next: rows, classes, identities, pairs, springs and crossing loads, each read once per walk
 // through them; what is overwritten is fetched first.
-double bytes_per_particle(const Physics& physics, const System& system);
+double bytes_per_particle(const Physics& physics, const System& system, int threads);
 
 }  // namespace peclet::engine

@@ -4,12 +4,23 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <tuple>
 
 #include "engine/integrators/spectral_bound.h"
 #include "engine/integrators/spurious_energy.h"
 #include "engine/state/for_each_range.h"
 
 namespace peclet::engine {
+namespace {
+
+Speeds either(const Speeds& a, const Speeds& b) { return {std::max(a.largest, b.largest), a.sum + b.sum}; }
+
+// NaN if one is not finite.
+double largest(const Speeds& speeds) {
+  return std::isfinite(speeds.sum) ? std::sqrt(speeds.largest) : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
 
 VelocityVerlet::VelocityVerlet(ForceField field, const ParticleState& particles, double timestep)
     : field_(std::move(field)),
@@ -40,15 +51,25 @@ void VelocityVerlet::start(System& system) {
 }
 
 StepReport VelocityVerlet::advance_open(System& system) {
-  const double speed = move(system);
   ++system.step;
   system.box.set_strain(system.box.shear_rate() * timestep_ * static_cast<double>(system.step));
+  // One walk instead of two, with the same numbers. Whether the list still holds is known only after it;
+  // where it does not, the pairs are computed again with another one. Springs would then have advanced twice.
+  const bool in_one_walk = field_.threads() <= 1 && system.springs.kinds() == SpringKinds::none;
+  double speed = 0;
+  PairSums sums;
+  if (in_one_walk) {
+    std::tie(speed, sums) = move_and_evaluate(system);
+  } else {
+    speed = move(system);
+  }
   // Beyond all bounds there are no neighbours to be found; whoever asked for the step sees why.
   if (!(speed * timestep_ < system.list.ranges().largest())) {
     return {{}, speed * timestep_};
   }
-  keep_list(system, speed);
-  const PairSums sums = field_.evaluate_blocks(system, force_, torque_);
+  if (keep_list(system, speed) || !in_one_walk) {
+    sums = field_.evaluate_blocks(system, force_, torque_);
+  }
   open_ = true;
   return {sums, speed * timestep_};
 }
@@ -88,7 +109,14 @@ Integrator::HalfSteps VelocityVerlet::compare_half_steps(const System& system, i
 }
 
 OneBodyInput VelocityVerlet::kick_input(System& system) {
-  return one_body_input(system.particles, force_, torque_, kicks_, field_.physics().shear_rate);
+  return field_.one_body_input(system, force_, torque_, kicks_.data());
+}
+
+// Forces of the last step that wait for it.
+void VelocityVerlet::add_due(const System& system, const ParticleBlock& block) {
+  if (open_) {
+    field_.add_incoming(system, block, force_, torque_);
+  }
 }
 
 void VelocityVerlet::complete(System& system) {
@@ -111,43 +139,54 @@ void VelocityVerlet::complete(System& system) {
 double VelocityVerlet::move(System& system) {
   const OneBodyInput input = kick_input(system);
   const std::vector<ParticleBlock>& blocks = system.list.blocks();
-  double largest = 0;
-  bool all_bounded = true;
+  Speeds all;
   for_each_range(blocks.size(), field_.threads(), [&](std::size_t begin, std::size_t end) {
     Speeds speeds;
     for (std::size_t b = begin; b < end; ++b) {
-      if (open_) {
-        field_.add_incoming(system, blocks[b], force_, torque_);
-      }
-      const Speeds of_block =
-          field_.one_body().kick_and_drift(input, blocks[b].begin, blocks[b].end, open_, timestep_);
-      speeds.largest = std::max(speeds.largest, of_block.largest);
-      speeds.sum += of_block.sum;
+      add_due(system, blocks[b]);
+      speeds = either(
+          speeds, field_.one_body().kick_and_drift(input, blocks[b].begin, blocks[b].end, open_, timestep_));
     }
 #pragma omp critical(move)
     {
       acquire_work();
-      largest = std::max(largest, speeds.largest);
-      all_bounded = all_bounded && std::isfinite(speeds.sum);
+      all = either(all, speeds);
       release_work();
     }
   });
   open_ = false;
-  return all_bounded ? std::sqrt(largest) : std::numeric_limits<double>::quiet_NaN();
+  return largest(all);
 }
 
-void VelocityVerlet::keep_list(System& system, double speed) {
+// Each block is moved when its forces are due, while it is in the cache. The particles of later blocks, which
+// have not moved yet, are in no pair of this one.
+std::pair<double, PairSums> VelocityVerlet::move_and_evaluate(System& system) {
+  const OneBodyInput input = kick_input(system);
+  Speeds speeds;
+  const PairSums sums = field_.evaluate_blocks(system, force_, torque_, [&](const ParticleBlock& block) {
+    add_due(system, block);
+    speeds = either(speeds,
+                    field_.one_body().kick_drift_and_drag(input, block.begin, block.end, open_, timestep_));
+  });
+  open_ = false;
+  return {largest(speeds), sums};
+}
+
+// Whether the list is another one.
+bool VelocityVerlet::keep_list(System& system, double speed) {
   // A displacement d grows by dt (u - rate y_reference) = dt (peculiar velocity + rate d_y).
   displacement_bound_ += timestep_ * (speed + system.box.shear_rate() * displacement_bound_);
   const double allowed = system.list.allowed_displacement(system.box);
   if (displacement_bound_ < allowed) {
-    return;
+    return false;
   }
   displacement_bound_ = system.list.largest_displacement(system.particles, system.box);
-  if (!(displacement_bound_ < allowed)) {
-    rebuild_neighbours(system, field_.threads());
-    displacement_bound_ = 0;
+  if (displacement_bound_ < allowed) {
+    return false;
   }
+  rebuild_neighbours(system, field_.threads());
+  displacement_bound_ = 0;
+  return true;
 }
 
 void VelocityVerlet::save(ArchiveWriter& archive) const {

@@ -7,6 +7,8 @@
 // of half-step velocities is larger).
 #pragma once
 
+#include <utility>
+
 #include "engine/integrators/integrator.h"
 #include "engine/kernels/force_field.h"
 
@@ -28,9 +30,11 @@ class VelocityVerlet final : public Integrator {
   void load(const System& system, ArchiveReader& archive) override;
 
  private:
+  void add_due(const System& system, const ParticleBlock& block);
   double move(System& system);
+  std::pair<double, PairSums> move_and_evaluate(System& system);
   OneBodyInput kick_input(System& system);
-  void keep_list(System& system, double speed);
+  bool keep_list(System& system, double speed);
 
   ForceField field_;
   double timestep_;

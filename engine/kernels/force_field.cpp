@@ -4,19 +4,6 @@
 
 namespace peclet::engine {
 
-OneBodyInput one_body_input(ParticleState& particles, VectorField& force, VectorField& torque,
-                            const std::vector<OneBodyFactors>& factors, double shear_rate) {
-  return {.position = particles.position.data(),
-          .velocity = particles.velocity.data(),
-          .spin = particles.angular_velocity.data(),
-          .force = force.data(),
-          .torque = torque.data(),
-          .size_class = particles.size_class.data(),
-          .factors = factors.data(),
-          .shear_rate = shear_rate,
-          .streaming_spin = streaming_spin(shear_rate).z};
-}
-
 ForceField::ForceField(const Physics& physics, const ParticleState& particles, double timestep,
                        std::uint64_t seed, int threads, InstructionSet set, double approach_time)
     : physics_(physics),
@@ -69,15 +56,37 @@ std::size_t ForceField::assemble_links(System& system, const LinkWeights& weight
                         terms_, weights, groups.data());
 }
 
+OneBodyInput ForceField::one_body_input(System& system, VectorField& force, VectorField& torque,
+                                        const OneBodyFactors* kicks) const {
+  ParticleState& particles = system.particles;
+  return {.position = particles.position.data(),
+          .velocity = particles.velocity.data(),
+          .spin = particles.angular_velocity.data(),
+          .force = force.data(),
+          .torque = torque.data(),
+          .size_class = particles.size_class.data(),
+          .kicks = kicks,
+          .drag = drag_.data(),
+          .shear_rate = physics_.shear_rate,
+          .streaming_spin = streaming_spin(physics_.shear_rate).z};
+}
+
 PairSums ForceField::evaluate_blocks(System& system, VectorField& force, VectorField& torque) {
-  const PairPassInput input = pair_input(system);
-  const OneBodyInput one_body = one_body_input(system.particles, force, torque, drag_, physics_.shear_rate);
-  return pair_pass_.add_pairs(input, system.springs, force, torque, [&](std::size_t begin, std::size_t end) {
-    one_body_.set_drag(one_body, begin, end);
-    if (physics_.thermal_energy > 0) {
-      add_drag_noise(system, begin, end, force, torque);
-    }
+  const OneBodyInput one_body = one_body_input(system, force, torque);
+  return evaluate_blocks(system, force, torque, [&](const ParticleBlock& block) {
+    one_body_.set_drag(one_body, block.begin, block.end);
   });
+}
+
+PairSums ForceField::evaluate_blocks(System& system, VectorField& force, VectorField& torque,
+                                     const SetDrag& set_drag) {
+  return pair_pass_.add_pairs(pair_input(system), system.springs, force, torque,
+                              [&](const ParticleBlock& block) {
+                                set_drag(block);
+                                if (physics_.thermal_energy > 0) {
+                                  add_drag_noise(system, block.begin, block.end, force, torque);
+                                }
+                              });
 }
 
 void ForceField::add_drag_noise(const System& system, std::size_t begin, std::size_t end, VectorField& force,

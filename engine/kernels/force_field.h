@@ -1,14 +1,12 @@
 // All forces and torques on all particles: pairs, drag and noise.
 #pragma once
 
+#include <functional>
+
 #include "engine/kernels/pair_pass.h"
 #include "engine/state/system.h"
 
 namespace peclet::engine {
-
-// What the loops over particles take: the rows of all of them, and the flow.
-OneBodyInput one_body_input(ParticleState& particles, VectorField& force, VectorField& torque,
-                            const std::vector<OneBodyFactors>& factors, double shear_rate);
 
 class ForceField {
  public:
@@ -22,8 +20,12 @@ class ForceField {
   PairSums evaluate(System& system, VectorField& force, VectorField& torque);
 
   // The same in two parts, the second one block by block: pairs that cross from one block of particles into
-  // another act on their second particle only after add_incoming().
+  // another act on the particle in the earlier one only after add_incoming().
   PairSums evaluate_blocks(System& system, VectorField& force, VectorField& torque);
+  // The same with `set_drag` to set a block's rows, which may also do what is due before: on one thread
+  // it is called before any pair of the block's particles is computed.
+  using SetDrag = std::function<void(const ParticleBlock& block)>;
+  PairSums evaluate_blocks(System& system, VectorField& force, VectorField& torque, const SetDrag& set_drag);
   void add_incoming(const System& system, const ParticleBlock& block, VectorField& force,
                     VectorField& torque) const {
     pair_pass_.add_incoming(system.list, block, force, torque);
@@ -32,6 +34,10 @@ class ForceField {
   // The links of all pairs within their range. `groups` is made as long as it has to be and keeps its
   // storage; returns how many are in use.
   std::size_t assemble_links(System& system, const LinkWeights& weights, std::vector<LinkGroup>& groups);
+
+  // What the loops over particles take: the rows of all of them, the flow, and the caller's kicks, if any.
+  OneBodyInput one_body_input(System& system, VectorField& force, VectorField& torque,
+                              const OneBodyFactors* kicks = nullptr) const;
 
   const Terms& terms() const { return terms_; }
   const std::vector<PairKind>& kinds() const { return kinds_; }

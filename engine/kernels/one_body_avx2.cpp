@@ -2,6 +2,7 @@
 
 namespace peclet::engine {
 
-constinit const OneBodyKernels avx2_one_body_kernels = {&kick, &kick_and_drift, &set_drag};
+constinit const OneBodyKernels avx2_one_body_kernels = {&kick, &kick_and_drift<false>, &set_drag,
+                                                        &kick_and_drift<true>};
 
 }  // namespace peclet::engine

@@ -12,12 +12,13 @@ struct OneBodyFactors {
   double translational, rotational;
 };
 
-// Rows are those of a VectorField; factors are those of each size class.
+// Rows are those of a VectorField; kicks (half a step over mass and moment of inertia) and drag
+// (coefficients) are those of each size class.
 struct OneBodyInput {
   double *position, *velocity, *spin;
   double *force, *torque;
   const std::uint16_t* size_class;
-  const OneBodyFactors* factors;
+  const OneBodyFactors *kicks, *drag;
   double shear_rate, streaming_spin;  // of the flow; the spin along z
 };
 
@@ -28,13 +29,16 @@ struct Speeds {
 };
 
 struct OneBodyKernels {
-  // velocity += factor force and likewise for spins, of particles [begin, end).
+  // velocity += kick force and likewise for spins, of particles [begin, end).
   void (*kick)(const OneBodyInput& in, std::size_t begin, std::size_t end);
   // The same once or twice, and then position += timestep velocity.
   Speeds (*kick_and_drift)(const OneBodyInput& in, std::size_t begin, std::size_t end, bool twice,
                            double timestep);
-  // force = factor (streaming velocity - velocity) and likewise for torques.
+  // force = drag (streaming velocity - velocity) and likewise for torques.
   void (*set_drag)(const OneBodyInput& in, std::size_t begin, std::size_t end);
+  // The last two in one loop.
+  Speeds (*kick_drift_and_drag)(const OneBodyInput& in, std::size_t begin, std::size_t end, bool twice,
+                                double timestep);
 };
 
 extern const OneBodyKernels baseline_one_body_kernels;

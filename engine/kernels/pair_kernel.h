@@ -29,8 +29,8 @@ struct EightPairs {
   NormalBlock normals;
 };
 
-// Up to as many pairs of one run as a number holds.
-template <class Real, Terms terms>
+// Up to as many pairs of one run as a number holds. `mirrored`: of a run whose first particles are away.
+template <class Real, Terms terms, bool mirrored>
 class PairGroup {
  public:
   PECLET_ALWAYS_INLINE PairGroup(const PairKernelInput& in, const PairRun& run, EightPairs& eight,
@@ -148,6 +148,15 @@ class PairGroup {
       if (k == count_) {
         break;
       }
+      if constexpr (mirrored) {
+        const std::size_t j = second_[k] - out.first_particle;
+        row(out.force, j) -= force.row[k];
+        row(out.torque, j) += torque_second.row[k];
+        const std::size_t c = run_.crossing + (begin_ - run_.begin) + static_cast<std::uint32_t>(k);
+        row(out.crossing, 2 * c) = force.row[k];
+        row(out.crossing, 2 * c + 1) = torque_first.row[k];
+        continue;
+      }
       const std::size_t i = first_[k] - out.first_particle;
       row(out.force, i) += force.row[k];
       row(out.torque, i) += torque_first.row[k];
@@ -257,8 +266,8 @@ class PairGroup {
   std::uint32_t first_[width_of<Real>], second_[width_of<Real>], image_[width_of<Real>];
 };
 
-// The second particles of crossing pairs lie in other blocks, which are seldom in a cache: their rows are
-// asked for some pairs ahead.
+// One particle of a crossing pair lies in another block, which is seldom in a cache: its rows are asked for
+// some pairs ahead.
 inline constexpr std::uint32_t pairs_ahead = 16;
 PECLET_ALWAYS_INLINE void ask_for_rows(const PairKernelInput& in, const PairRun& run, std::uint32_t begin,
                                        std::uint32_t end) {
@@ -267,18 +276,18 @@ PECLET_ALWAYS_INLINE void ask_for_rows(const PairKernelInput& in, const PairRun&
   }
   end = end + pairs_ahead < run.end ? end + pairs_ahead : run.end;
   for (std::uint32_t p = begin + pairs_ahead; p < end; ++p) {
-    const std::size_t row = 4 * std::size_t{in.pairs[p].second};
+    const std::size_t row = 4 * std::size_t{run.first_is_away ? in.pairs[p].first : in.pairs[p].second};
     __builtin_prefetch(in.position + row);
     __builtin_prefetch(in.velocity + row);
     __builtin_prefetch(in.spin + row);
   }
 }
 
-template <class Real, Terms terms>
-void run_pair_kernel(const PairKernelInput& in, const PairRun* runs, std::size_t count,
-                     const PairKernelOutput& out) {
+template <class Real, Terms terms, bool mirrored>
+[[gnu::noinline]] void add_runs(const PairKernelInput& in, const PairRun* runs, const PairRun* end,
+                                const PairKernelOutput& out, PairSums& total) {
   LaneSumsOf<Real> sums;
-  for (const PairRun* run = runs; run < runs + count; ++run) {
+  for (const PairRun* run = runs; run < end; ++run) {
     EightPairs eight;
     for (eight.begin = run->begin; eight.begin < run->end; eight.begin = eight.end) {
       const std::uint32_t left = run->end - eight.begin;
@@ -287,12 +296,12 @@ void run_pair_kernel(const PairKernelInput& in, const PairRun* runs, std::size_t
       ask_for_rows(in, *run, eight.begin, eight.end);
       for (std::uint32_t begin = eight.begin; begin < eight.end; begin += width_of<Real>) {
         const auto rest = static_cast<int>(eight.end - begin);
-        PairGroup<Real, terms>(in, *run, eight, begin, rest < width_of<Real> ? rest : width_of<Real>)
+        PairGroup<Real, terms, mirrored>(in, *run, eight, begin,
+                                         rest < width_of<Real> ? rest : width_of<Real>)
             .add(out, sums);
       }
     }
   }
-  PairSums& total = *out.sums;
   for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
     const SymmetricTensorOf<Real>& s = sums.stress[t];
     total.stress[t] = {sum_of_lanes(s.xx), sum_of_lanes(s.yy), sum_of_lanes(s.zz),
@@ -301,6 +310,23 @@ void run_pair_kernel(const PairKernelInput& in, const PairRun* runs, std::size_t
   total.contacts = sums.contacts;
   total.largest_overlap = largest_lane(sums.largest_overlap);
   total.finite = sums.not_finite == 0;
+}
+
+// Mirrored runs, the last ones of a block, have a loop of their own: the compiler makes slower code of one
+// for both.
+template <class Real, Terms terms>
+void run_pair_kernel(const PairKernelInput& in, const PairRun* runs, std::size_t count,
+                     const PairKernelOutput& out) {
+  const PairRun *const end = runs + count, *mirrored = runs;
+  while (mirrored < end && !mirrored->first_is_away) {
+    ++mirrored;
+  }
+  add_runs<Real, terms, false>(in, runs, mirrored, out, out.sums[0]);
+  if (mirrored < end) {
+    add_runs<Real, terms, true>(in, mirrored, end, out, out.sums[1]);
+  } else {
+    out.sums[1] = {};
+  }
 }
 
 template <class Real, unsigned code>

@@ -29,12 +29,12 @@ struct PairKernelInput {
 };
 
 // Where the pairs of one block leave their loads: rows of the block's own particles, and of each crossing
-// pair two rows (force and torque on the second particle).
+// pair two rows (force and torque on its particle in the other block).
 struct PairKernelOutput {
   std::uint32_t first_particle;
   double *force, *torque;
   double* crossing;
-  PairSums* sums;
+  PairSums* sums;  // two: of the pairs whose first particle lies in the block, and of the others
 };
 
 using PairKernel = void (*)(const PairKernelInput& input, const PairRun* runs, std::size_t count,

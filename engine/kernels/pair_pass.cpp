@@ -79,14 +79,14 @@ PairSums PairPass::add_pairs(const PairPassInput& input, SpringField& springs, V
   if (crossing_.size() < 2 * list.crossings()) {
     crossing_ = VectorField(2 * list.crossings());
   }
-  sums_.resize(blocks.size());
+  sums_.resize(2 * blocks.size());
   for_each_range(blocks.size(), input.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       const ParticleBlock& block = blocks[b];
-      set_rows(block.begin, block.end);
+      set_rows(block);
       const std::size_t offset = 4 * std::size_t{block.begin};
       kernel_(kernel, list.runs().data() + block.runs_begin, block.runs_end - block.runs_begin,
-              {block.begin, force.data() + offset, torque.data() + offset, crossing_.data(), &sums_[b]});
+              {block.begin, force.data() + offset, torque.data() + offset, crossing_.data(), &sums_[2 * b]});
     }
   });
   return total_of(sums_);
@@ -106,9 +106,10 @@ void PairPass::add_incoming(const NeighbourList& list, const ParticleBlock& bloc
 
 PairSums PairPass::evaluate(const PairPassInput& input, SpringField& springs, VectorField& force,
                             VectorField& torque) {
-  const auto clear = [&](std::size_t begin, std::size_t end) {
-    std::fill_n(force.data() + 4 * begin, 4 * (end - begin), 0.0);
-    std::fill_n(torque.data() + 4 * begin, 4 * (end - begin), 0.0);
+  const auto clear = [&](const ParticleBlock& block) {
+    const std::size_t begin = 4 * std::size_t{block.begin}, count = 4 * std::size_t{block.end - block.begin};
+    std::fill_n(force.data() + begin, count, 0.0);
+    std::fill_n(torque.data() + begin, count, 0.0);
   };
   const PairSums sums = add_pairs(input, springs, force, torque, clear);
   for (const ParticleBlock& block : input.list.blocks()) {

@@ -1,7 +1,7 @@
 // One evaluation of all pair terms: forces and torques on particles, stress by term.
 //
 // A kernel takes the pairs of one block of particles and adds their loads to that block's rows, in the order
-// of the list. What a crossing pair does to its second particle, in another block, is left aside and added
+// of the list. What a crossing pair does to its particle in an earlier block is left aside and added
 // afterwards, in the order of `incoming`. So no two threads ever write to one place, and the result has the
 // same bits for any number of threads.
 #pragma once
@@ -40,8 +40,9 @@ class PairPass {
   PairPass(const Terms& terms, PairKernel kernel, FillNormals fill_normals)
       : kernel_(kernel), fill_normals_(fill_normals), spring_kinds_(spring_kinds(terms)) {}
 
-  // Sets rows [begin, end) of force and torque to what does not come from pairs.
-  using SetRows = std::function<void(std::size_t begin, std::size_t end)>;
+  // Sets the rows of force and torque of a block to what does not come from pairs. On one thread, what is
+  // done here to a block's particles is done before any of their pairs is computed.
+  using SetRows = std::function<void(const ParticleBlock& block)>;
 
   // Has the rows of each block set, adds the loads of its pairs while they are in the cache, and returns the
   // sums of the stress. What crosses into other blocks is left for add_incoming().
@@ -69,8 +70,8 @@ class PairPass {
   // Storage that is kept from step to step.
   std::vector<ImageFrame> frames_;
   std::vector<std::uint64_t> image_keys_;
-  VectorField crossing_;        // force and torque on the second particle of each crossing pair
-  std::vector<PairSums> sums_;  // of each block
+  VectorField crossing_;        // force and torque on the away particle of each crossing pair
+  std::vector<PairSums> sums_;  // two of each block
 };
 
 }  // namespace peclet::engine

@@ -105,8 +105,9 @@ ListBuilder::Found ListBuilder::make(std::uint32_t i, std::uint32_t j, LatticeSh
     image = LatticeShift{} - image;
   }
   const std::size_t kind = particles_.size_class[i] * list_.ranges_.classes() + particles_.size_class[j];
-  const std::uint32_t block = block_of(i);
-  return {i, j, block, image, static_cast<std::uint16_t>(kind), block != block_of(j)};
+  const std::uint32_t of_first = block_of(i), of_second = block_of(j);
+  const Away away = of_first == of_second ? Away::none : of_first < of_second ? Away::first : Away::second;
+  return {i, j, std::max(of_first, of_second), image, static_cast<std::uint16_t>(kind), away};
 }
 
 std::uint32_t ListBuilder::block_of(std::uint32_t particle) const {
@@ -122,7 +123,7 @@ std::uint32_t ListBuilder::block_of(std::uint32_t particle) const {
   return static_cast<std::uint32_t>(block);
 }
 
-// Pairs that were found from their second particle, in another block, go where their first one lives.
+// Pairs that were found from their particle in the earlier block go to the later one.
 void ListBuilder::deliver_strays() {
   if (found_.size() == 1) {
     return;
@@ -159,7 +160,7 @@ std::uint16_t ListBuilder::image_number(LatticeShift image) const {
 // A counting sort: pairs of one run keep the order in which they were found.
 void ListBuilder::arrange(std::size_t block) {
   const std::vector<Found>& found = found_[block];
-  const std::size_t half = 2 * list_.ranges_.classes() * list_.ranges_.classes(), buckets = 2 * half;
+  const std::size_t part = 2 * list_.ranges_.classes() * list_.ranges_.classes(), buckets = 3 * part;
   std::vector<std::uint32_t> next(buckets + 1);
   for (const Found& pair : found) {
     ++next[bucket(pair) + 1];
@@ -168,9 +169,9 @@ void ListBuilder::arrange(std::size_t block) {
   for (std::size_t k = 0; k < buckets; ++k) {
     next[k + 1] += next[k];
     if (next[k + 1] > next[k]) {
-      const bool crossing = k >= half;
-      const auto kind = static_cast<std::uint16_t>((crossing ? k - half : k) / 2);
-      runs_[block].push_back({next[k], next[k + 1], crossing ? 0 : within_block, kind, k % 2 == 1});
+      const auto away = static_cast<Away>(k / part);
+      runs_[block].push_back({next[k], next[k + 1], away == Away::none ? within_block : 0,
+                              static_cast<std::uint16_t>(k % part / 2), k % 2 == 1, away == Away::first});
     }
   }
   for (const Found& pair : found) {
@@ -199,19 +200,20 @@ void ListBuilder::collect_incoming() {
   const auto for_each_crossing = [&](auto&& use) {
     for (const PairRun& run : list_.runs_) {
       for (std::uint32_t p = run.begin; run.crossing != within_block && p < run.end; ++p) {
-        use(list_.pairs_[p].second, run.crossing + (p - run.begin));
+        const Pair& pair = list_.pairs_[p];
+        use(run.first_is_away ? pair.first : pair.second, run.crossing + (p - run.begin));
       }
     }
   };
-  for_each_crossing([&](std::uint32_t second, std::uint32_t) { ++next[block_of(second) + 1]; });
+  for_each_crossing([&](std::uint32_t away, std::uint32_t) { ++next[block_of(away) + 1]; });
   for (std::size_t b = 0; b < list_.blocks_.size(); ++b) {
     next[b + 1] += next[b];
     list_.blocks_[b].incoming_begin = next[b];
     list_.blocks_[b].incoming_end = next[b + 1];
   }
   list_.incoming_.resize(crossings);
-  for_each_crossing([&](std::uint32_t second, std::uint32_t crossing) {
-    list_.incoming_[next[block_of(second)]++] = {second, crossing};
+  for_each_crossing([&](std::uint32_t away, std::uint32_t crossing) {
+    list_.incoming_[next[block_of(away)]++] = {away, crossing};
   });
 }
 

@@ -20,12 +20,13 @@ class ListBuilder {
   void run();
 
  private:
-  // A pair before the list is arranged. `block` is that of its first particle.
+  // A pair before the list is arranged.
+  enum class Away : std::uint8_t { none, second, first };  // the particle that lies in an earlier block
   struct Found {
     std::uint32_t first, second, block;
     LatticeShift image;
     std::uint16_t kind;
-    bool crossing;
+    Away away;
   };
 
   void search(std::size_t block);
@@ -38,7 +39,8 @@ class ListBuilder {
 
   std::size_t bucket(const Found& pair) const {
     const std::size_t kinds = list_.ranges_.classes() * list_.ranges_.classes();
-    return ((pair.crossing ? kinds : 0) + pair.kind) * 2 + (pair.image == LatticeShift{} ? 0 : 1);
+    return (static_cast<std::size_t>(pair.away) * kinds + pair.kind) * 2 +
+           (pair.image == LatticeShift{} ? 0 : 1);
   }
   std::uint32_t block_of(std::uint32_t particle) const;
   std::uint16_t image_number(LatticeShift image) const;

@@ -11,10 +11,11 @@
 // rebuilt exactly when this can no longer be guaranteed. The same two particles may be listed under several
 // images (small boxes), never with themselves.
 //
-// Particles next to each other in memory form blocks of equal size. The pairs of a block (those whose first
-// particle lies in it) are consecutive, and among them those of equal kind: a run. A pair that crosses into
-// another block is in a run of its own kind of crossing pairs; they are numbered, and `incoming` says which
-// of them end in a block. The list is a function of the positions at the build alone.
+// Particles next to each other in memory form blocks of equal size. The pairs of a block are consecutive, and
+// among them those of equal kind: a run. A pair of two blocks, a crossing pair, is one of the later block, so
+// that whoever walks through the blocks has been at both particles when it meets the pair. Crossing pairs
+// have runs of their own; they are numbered, and `incoming` says which of them have a particle in an earlier
+// block. The list is a function of the positions at the build alone.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +28,7 @@
 
 namespace peclet::engine {
 
-// A crossing pair whose second particle lies in the block.
+// A crossing pair of a later block, and its particle in this one.
 struct IncomingPair {
   std::uint32_t particle, crossing;
 };

@@ -18,7 +18,8 @@ struct PairRun {
   std::uint32_t begin, end;  // pairs
   std::uint32_t crossing;    // number of the first pair among the crossing ones, or within_block
   std::uint16_t kind;
-  bool imaged;  // some image is not the particle itself
+  bool imaged;         // some image is not the particle itself
+  bool first_is_away;  // of crossing pairs: the first particle lies in the other block, not the second one
 };
 
 }  // namespace peclet::engine

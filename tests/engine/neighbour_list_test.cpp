@@ -144,10 +144,13 @@ void expect_arranged(const NeighbourList& list) {
       for (std::uint32_t p = run.begin; p < run.end; ++p) {
         const Pair& pair = list.pairs()[p];
         EXPECT_EQ(pair.kind, run.kind);
-        EXPECT_TRUE(at_home(pair.first));
-        EXPECT_EQ(at_home(pair.second), !crosses);
+        EXPECT_EQ(at_home(pair.first), !run.first_is_away);
+        EXPECT_EQ(at_home(pair.second), !crosses || run.first_is_away);
         imaged = imaged || pair.image != 0;
-        if (crosses) outgoing.emplace(pair.second, crossings++);
+        if (!crosses) continue;
+        const std::uint32_t away = run.first_is_away ? pair.first : pair.second;
+        EXPECT_LT(away, block.begin);  // whoever comes to this block has been at its particle
+        outgoing.emplace(away, crossings++);
       }
       EXPECT_EQ(imaged, run.imaged);
       next = run.end;

@@ -235,6 +235,29 @@ TEST(VelocityVerlet, StepsThatAreLeftOpenHaveTheSameBits) {
   }
 }
 
+// One thread moves particles and computes pairs in one walk through the blocks, several do it in two; where
+// the list no longer holds, the walk comes too early.
+TEST(VelocityVerlet, OneWalkOrTwoHaveTheSameBits) {
+  const Physics physics = physics_with({.lubrication = true, .noise = true, .contact = true});
+  const auto after = [&](int threads) {
+    System system = dense_suspension(physics, 9000, 12);
+    constexpr double dt = 5e-4;
+    VelocityVerlet integrator(ForceField(physics, system.particles, dt, 7, threads), system.particles, dt);
+    integrator.start(system);
+    for (int step = 0; step < 150; ++step) integrator.advance_open(system);
+    integrator.complete(system);
+    return system;
+  };
+  const System one = after(1), two = after(2);
+  EXPECT_EQ(one.list.blocks().size(), 4u);
+  EXPECT_GT(one.list.builds(), 2u);
+  EXPECT_EQ(one.list.builds(), two.list.builds());
+  EXPECT_EQ(one.particles.id, two.particles.id);
+  EXPECT_EQ(one.particles.position, two.particles.position);
+  EXPECT_EQ(one.particles.velocity, two.particles.velocity);
+  EXPECT_EQ(one.particles.angular_velocity, two.particles.angular_velocity);
+}
+
 // The loops over particles of each instruction set beside those of the baseline.
 TEST(VelocityVerlet, MovesParticlesAlikeOnEveryInstructionSet) {
   const auto never = [](int) { return false; };
