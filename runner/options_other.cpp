@@ -15,6 +15,10 @@ void add_study(VerbSet& verbs) {
   verb->add_flag("--list", options->list, "List them with their verdicts, as without a name")->excludes(name);
   verb->add_flag("--quick", options->quick, "Half a minute of it, which fails where the physics is broken")
       ->needs(name);
+  verb->add_flag("--long", options->with_long,
+                 "Also the points that take hours, where the study has such; best with --folder")
+      ->needs(name)
+      ->excludes("--quick");
   verb->add_flag("--json", options->json, "The list, for programs")->excludes(name);
   verb->add_option(
           "--folder", options->folder,

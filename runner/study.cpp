@@ -70,6 +70,7 @@ void print(const std::string& text) {
                                     own_program().parent_path().string()};
   if (!options.folder.empty()) words.push_back(fs::absolute(options.folder).string());
   if (options.quick) words.emplace_back("--quick");
+  if (options.with_long) words.emplace_back("--long");
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());

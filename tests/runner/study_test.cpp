@@ -73,5 +73,18 @@ TEST_F(Studies, RunTheirDriverAndReturnItsExitCode) {
   EXPECT_EXIT(perform_study(options), testing::ExitedWithCode(3), "");
 }
 
+TEST_F(Studies, TellTheirDriverWhatWasAsked) {
+  add("diffusion", "");
+  std::ofstream(folder_.path() / "diffusion" / "study.py") << R"(import sys
+raise SystemExit(7 if sys.argv[2:] == ["/campaigns", "--long"] else 8)
+)";
+  StudyOptions options;
+  options.name = "diffusion";
+  options.results = folder_.path();
+  options.folder = "/campaigns";
+  options.with_long = true;
+  EXPECT_EXIT(perform_study(options), testing::ExitedWithCode(7), "");
+}
+
 }  // namespace
 }  // namespace peclet::runner
