@@ -153,8 +153,8 @@ Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
   const auto place = places_.find(result.point);
   if (stored == Stored::duplicate || place == places_.end()) return stored;
   const Observed observed = observe(result.document, campaign_.target.observable);
-  const std::string cause = result.completed() && !observed.value ? no_value : result.cause;
-  if (result.completed() && !result.document["mean"].contains(campaign_.target.observable)) {
+  const std::string cause = cause_of(result, observed);
+  if (result.completed() && !has_observable(result.document["mean"], campaign_.target.observable)) {
     lacking_ = names_of_numbers(result.document["mean"]);
   }
   to_tell_.push_back(SeedEnded{told_name(place->second), result.seed, cause, observed.value,

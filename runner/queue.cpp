@@ -224,7 +224,7 @@ void Queue::store_numbers(std::int64_t point, const RealisationResult& result, c
       .bind(point)
       .bind(result.seed)
       .bind(to_string(observed.value ? SeedState::done : SeedState::failed))
-      .bind(result.completed() && !observed.value ? no_value : result.cause)
+      .bind(cause_of(result, observed))
       .bind(observed.value)
       .bind(observed.control)
       .bind(number_at<double>(document, "/timestep"))

@@ -96,7 +96,7 @@ void Queue::observe_again(const Campaign& campaign) {
   while (done.step()) {
     const Json document = Json::parse(result_text(done, 2, 3));
     const Observed observed = observe(document, campaign.target.observable);
-    if (!done.is_null(4) && !document.at("mean").contains(campaign.target.observable)) {
+    if (!done.is_null(4) && !has_observable(document.at("mean"), campaign.target.observable)) {
       throw InputError(campaign.name, "/target/observable", campaign.target.observable,
                        "must be a number that the results have: " + names_of_numbers(document.at("mean")));
     }

@@ -154,6 +154,11 @@ std::set<std::string> flags_of(const RealisationResult& result) {
   return codes;
 }
 
+bool has_observable(const Json& mean, const std::string& observable) {
+  const auto found = mean.find(observable);
+  return found != mean.end() && (found->is_number() || found->is_null());
+}
+
 std::string names_of_numbers(const Json& mean) {
   std::string names;
   for (const auto& [name, value] : mean.items()) {
@@ -175,6 +180,10 @@ Observed observe(const Json& result, const std::string& observable) {
   observed.first_quarter = beginning(blocks, observable, observed.control.has_value(), 1);
   observed.first_half = beginning(blocks, observable, observed.control.has_value(), 2);
   return observed;
+}
+
+std::string cause_of(const RealisationResult& result, const Observed& observed) {
+  return result.completed() && !observed.value ? no_value : result.cause;
 }
 
 }  // namespace peclet::runner

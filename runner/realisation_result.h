@@ -48,10 +48,17 @@ std::set<std::string> flags_of(const RealisationResult& result);
 // point as one that blew up is.
 inline constexpr const char* no_value = "no-value";
 
+// Whether the means have the observable, if only as null, which says that it does not exist for this
+// realisation.
+bool has_observable(const Json& mean, const std::string& observable);
+
 // "pressure, relative_viscosity": what a campaign may aim at.
 std::string names_of_numbers(const Json& mean);
 
 // The pairwise Brownian stress is the control variate of the relative viscosities and of nothing else.
 Observed observe(const Json& result, const std::string& observable);
+
+// How the realisation counts for a campaign that has seen this in it.
+std::string cause_of(const RealisationResult& result, const Observed& observed);
 
 }  // namespace peclet::runner

@@ -192,11 +192,14 @@ TEST_F(Queues, ResultsKeptApartNeedNotHaveAnotherObservable) {
 
 TEST_F(Queues, AnObservableThatResultsLackChangesNothing) {
   offer(plain_result(hash(), 0, 12.5));
-  Campaign other = campaign_;
-  other.target.observable = "colour";
-  EXPECT_THROW(queue_.adopt(other), InputError);
-  EXPECT_EQ(database_.campaign().target.target.observable, "relative_viscosity");
-  EXPECT_EQ(database_.realisations(1).at(0).value, 12.5);
+  // The second is there, but no number.
+  for (const char* const name : {"colour", "control_variates"}) {
+    Campaign other = campaign_;
+    other.target.observable = name;
+    EXPECT_THROW(queue_.adopt(other), InputError) << name;
+    EXPECT_EQ(database_.campaign().target.target.observable, "relative_viscosity") << name;
+    EXPECT_EQ(database_.realisations(1).at(0).value, 12.5) << name;
+  }
 }
 
 }  // namespace
