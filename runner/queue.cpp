@@ -194,7 +194,7 @@ Stored Queue::store(const RealisationResult& result, const std::string& observab
     return Stored::mixed_engine;
   }
   if (!known.is_null(2)) {
-    if (known.text(2) == result.content_sha256) return Stored::duplicate;
+    if (known.text(2) == result.content_sha256) return apart ? Stored::stored_apart : Stored::duplicate;
     Statement(connection_, "UPDATE point SET suspect = 1 WHERE point_id = ?").bind(point).run();
     event("suspect", point, result.seed, "two runs of the same seed gave different results");
     return Stored::conflict;

@@ -29,7 +29,8 @@ struct AttemptEnd {
 // What became of a result that was offered.
 enum class Stored {
   stored,
-  stored_apart,  // in the row of an engine that another one has replaced: no part of the campaign
+  stored_apart,  // in the row of an engine that another one has replaced, now or before: no part of the
+                 // campaign
   duplicate,     // the seed has this very content already
   conflict,      // the seed has another content: the point is now suspect
   mixed_engine,  // the point has results of another engine

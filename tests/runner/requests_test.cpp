@@ -329,6 +329,13 @@ TEST_F(CarryingOut, LateResultsOfTheOldEngineGoToItsOwnRow) {
   EXPECT_EQ(database_.kept_apart(hash(0)).at(0).results, 2);
   begin();
   EXPECT_EQ(ledger_->scheduler().begun(0), 1);
+  // Delivered once more, while the new engine is at that seed.
+  write_durably(directory_.checkpoint(hash(0), 1), "of the new engine");
+  const fs::path again = directory_.spool_file(hash(0), 1, 5);
+  write_durably(again, plain_result(hash(0), 1, 11, "old").dump());
+  ledger_->ingest_spool();
+  EXPECT_FALSE(fs::exists(again));
+  EXPECT_TRUE(fs::exists(directory_.checkpoint(hash(0), 1)));
 }
 
 TEST_F(CarryingOut, AnEngineThatWasReplacedIsRefusedEvenBeforeTheFirstResultOfTheOther) {
