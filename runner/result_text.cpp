@@ -5,6 +5,7 @@
 
 #include <array>
 #include <new>
+#include <stdexcept>
 
 #include "runner/integrity_error.h"
 
@@ -31,13 +32,18 @@ class Deflation {
   Deflation& operator=(const Deflation&) = delete;
 
   std::string run(std::string_view text, std::string_view dictionary) {
-    if (!dictionary.empty()) deflateSetDictionary(&stream_, bytes_of(dictionary), size_of(dictionary));
+    if (!dictionary.empty() &&
+        deflateSetDictionary(&stream_, bytes_of(dictionary), size_of(dictionary)) != Z_OK) {
+      throw std::logic_error("zlib refuses a dictionary");
+    }
     std::string bytes(deflateBound(&stream_, text.size()), '\0');
     stream_.next_in = bytes_of(text);
     stream_.avail_in = size_of(text);
     stream_.next_out = reinterpret_cast<Bytef*>(bytes.data());
     stream_.avail_out = size_of(bytes);
-    deflate(&stream_, Z_FINISH);  // the bound is enough to finish in one call
+    if (deflate(&stream_, Z_FINISH) != Z_STREAM_END) {
+      throw std::logic_error("zlib needs more than its own bound");
+    }
     bytes.resize(stream_.total_out);
     return bytes;
   }
