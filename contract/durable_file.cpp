@@ -113,6 +113,14 @@ void rename_durably(const std::filesystem::path& from, const std::filesystem::pa
   synchronise_folder(to);
 }
 
+std::filesystem::path free_name(const std::filesystem::path& path) {
+  std::filesystem::path name = path;
+  for (int count = 1; std::filesystem::exists(name); ++count) {
+    name = path.string() + "." + std::to_string(count);
+  }
+  return name;
+}
+
 std::string read_file(const std::filesystem::path& path) {
   const Descriptor descriptor(open_again_if_interrupted(path, O_RDONLY));
   if (descriptor.number() < 0) fail("cannot open", path);

@@ -35,6 +35,9 @@ void write_durably(const std::filesystem::path& path, std::string_view bytes);
 // Throws std::system_error naming the path.
 void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to);
 
+// The first of PATH, PATH.1, PATH.2 ... that is not there.
+std::filesystem::path free_name(const std::filesystem::path& path);
+
 // The whole content. Throws std::system_error naming the path.
 std::string read_file(const std::filesystem::path& path);
 

@@ -187,7 +187,7 @@ std::vector<std::optional<Outcome>> Database::outcomes(std::int64_t point) {
   while (query.step()) {
     outcomes.resize(static_cast<std::size_t>(query.integer(0)) + 1);
     outcomes.back() = Outcome{};  // lost, unless there is a value
-    if (const std::optional<double> value = query.optional_real(2); value) {
+    if (const std::optional<double> value = query.optional_real(2)) {
       outcomes.back() = Outcome{Outcome::Kind::value, *value, query.optional_real(3).value_or(0),
                                 query.real(4), query.real(5)};
     }

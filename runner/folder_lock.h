@@ -18,8 +18,7 @@ class FolderLock {
   int descriptor_;
 };
 
-// The same of a file, which whoever holds it may replace by another of its name. Not for files of a folder
-// that somebody locks for long.
+// The same of a file, which whoever holds it may replace by another of its name.
 class FileLock {
  public:
   explicit FileLock(const std::filesystem::path& file);

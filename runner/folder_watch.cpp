@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/durable_file.h"
 #include "runner/database_copy.h"
 #include "runner/integrity_error.h"
 
@@ -15,13 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds interval{1};
-
-// The first of NAME, NAME.1, NAME.2 ... that is free.
-fs::path free_name(const fs::path& wanted) {
-  fs::path name = wanted;
-  for (int count = 1; fs::exists(name); ++count) name = fmt::format("{}.{}", wanted.string(), count);
-  return name;
-}
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "contract/durable_file.h"
 #include "runner/campaign_sql.h"
 #include "runner/database_copy.h"
 #include "runner/integrity_error.h"
@@ -51,16 +52,10 @@ void change_tables(Connection& connection, std::int64_t from) {
   migration.commit();
 }
 
-// NAME, or NAME.2, NAME.3 ... where an earlier attempt, or an earlier database, has left a copy.
-std::filesystem::path free_name(const std::string& name) {
-  std::filesystem::path free = name;
-  for (int number = 2; std::filesystem::exists(free); ++number) free = fmt::format("{}.{}", name, number);
-  return free;
-}
-
 }  // namespace
 
 void migrate(Connection& connection, std::int64_t from) {
+  // An earlier attempt, or an earlier database, may have left a copy.
   copy_database(connection.path(), free_name(fmt::format("{}.version-{}", connection.path(), from)),
                 [](Connection&) {});
   // A table is made again under its own name, to which others refer: references are looked at afterwards

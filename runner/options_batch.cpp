@@ -38,20 +38,11 @@ void add_hand_over(VerbSet& verbs) {
   verb->add_flag("--ahead", options->ahead, "Hand over the seeds of the look after the next one, too");
   verb->add_flag("--follow", options->follow,
                  "Take results in and hand over what the next looks need, until every point is decided");
-  verb->add_option("--interval", options->interval, "Seconds between two turns of --follow")
-      ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  verb->add_option("--lease", options->lease_seconds,
-                   "Seconds without a new step after which an engine counts as hung")
-      ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  verb->add_option("--checkpoint", options->checkpoint_seconds,
-                   "Seconds between checkpoints of a realisation")
-      ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  add_seconds(verb, "--interval", options->interval, "Seconds between two turns of --follow");
+  add_seconds(verb, "--lease", options->lease_seconds,
+              "Seconds without a new step after which an engine counts as hung");
+  add_seconds(verb, "--checkpoint", options->checkpoint_seconds,
+              "Seconds between checkpoints of a realisation");
   add_accept_engine(verb, options->accept_engine);
   verb->add_flag("--dry-run", options->dry_run, "Say what would be handed over; submit nothing");
   verb->add_flag("--quiet", options->quiet, "No progress on stderr");

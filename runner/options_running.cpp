@@ -66,20 +66,11 @@ void add_run(VerbSet& verbs) {
                    "Hours of processor time that this run may spend, where they lower the summed relative "
                    "error most")
       ->check(CLI::PositiveNumber);
-  verb->add_option("--lease", options->lease_seconds,
-                   "Seconds without a new step after which a worker counts as hung")
-      ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  verb->add_option("--checkpoint", options->checkpoint_seconds,
-                   "Seconds between checkpoints of a realisation")
-      ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  verb->add_option("--backup", options->backup_seconds, "Seconds between backups of the database")
-      ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  add_seconds(verb, "--lease", options->lease_seconds,
+              "Seconds without a new step after which a worker counts as hung");
+  add_seconds(verb, "--checkpoint", options->checkpoint_seconds,
+              "Seconds between checkpoints of a realisation");
+  add_seconds(verb, "--backup", options->backup_seconds, "Seconds between backups of the database");
   verb->add_flag("--jsonl", options->jsonl,
                  "What happens as JSON on standard output, one object a line, instead of the table");
   add_accept_engine(verb, options->accept_engine);

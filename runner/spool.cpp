@@ -68,10 +68,7 @@ std::vector<fs::path> spool_files(const CampaignDirectory& directory) {
 }
 
 fs::path reject(const CampaignDirectory& directory, const fs::path& path) {
-  fs::path target = directory.rejected() / path.filename();
-  for (int count = 1; fs::exists(target); ++count) {
-    target = directory.rejected() / fmt::format("{}.{}", path.filename().string(), count);
-  }
+  const fs::path target = free_name(directory.rejected() / path.filename());
   fs::rename(path, target);
   return target;
 }

@@ -36,4 +36,11 @@ void add_accept_engine(CLI::App* verb, std::string& name) {
                    "another one at open points are kept apart");
 }
 
+void add_seconds(CLI::App* verb, const char* name, double& seconds, const char* meaning) {
+  verb->add_option(name, seconds, meaning)
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+}
+
 }  // namespace peclet::runner

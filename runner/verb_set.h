@@ -51,5 +51,7 @@ void add_file(CLI::App* verb, std::filesystem::path& path);
 void add_file_or_folder(CLI::App* verb, std::filesystem::path& path);
 void add_directory(CLI::App* verb, std::filesystem::path& path);
 void add_accept_engine(CLI::App* verb, std::string& name);
+// A time > 0, which has a default.
+void add_seconds(CLI::App* verb, const char* name, double& seconds, const char* meaning);
 
 }  // namespace peclet::runner

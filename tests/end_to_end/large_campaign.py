@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """large_campaign.py BIN [--points 125] [--seeds 800] [--workers 64] [--milliseconds 100] [--block-numbers 475]
 
-Runs a campaign of 100 000 realisations with the fake engine of the tests, whose results are as long as those of peclet-engine
-(--block-numbers), whose jobs sleep 100 ms and who takes a job ahead, every point up to its maximum, and prints what the owner costs:
+Runs a campaign of 100 000 realisations with the fake engine of the tests, whose results take as much room as those of
+peclet-engine (--block-numbers), whose jobs sleep 100 ms and who takes a job ahead, every point up to its maximum, and prints what the owner costs:
 
 - processor time per realisation, of the owner and of the engines apart, and the owner's largest memory;
 - how busy the workers are: the time that they spent on jobs, by their own clocks, over workers times the time between the
