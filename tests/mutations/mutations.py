@@ -4,9 +4,12 @@ mutations.py --check                              only see that every mutation s
 
 Each mutation is one change of a line of the engine. It is made in FOLDER, a copy of the source that this script makes, built there, and
 shown to the quick forms of the studies and to the tests of the engine and of the physics. A mutation that nobody catches is an error.
-Prints a table and writes it to mutations.md beside this script when all were tried. Some four minutes of two cores for each mutation.
+Prints a table and writes it to mutations.md beside this script when all were tried. Some four minutes of two cores for each mutation;
+a second call with FOLDER goes on where the first one was stopped, if the source has the same commit and no changes.
 """
 import argparse
+import datetime
+import json
 import os
 import re
 import shutil
@@ -15,6 +18,8 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.dirname(os.path.dirname(HERE))
+sys.path.insert(0, os.path.join(SOURCE, "results"))
+from studies import processor  # noqa: E402
 
 # What is broken; file, text in it that occurs once, and what takes its place.
 MUTATIONS = [
@@ -40,7 +45,7 @@ MUTATIONS = [
     ("friction twice as strong", "engine/kernels/pair_terms.h",
      "(contact.friction / contact.tangential_stiffness) * normal_force", "(2 * contact.friction / contact.tangential_stiffness) * normal_force"),
     ("contact spring that is not turned", "engine/terms/tangential_spring.h",
-     "Vector3Of<Real> turned = across(spring, normal);", "Vector3Of<Real> turned = spring;"),
+     "Vector3Of<Real> turned = across(spring, normal);", "Vector3Of<Real> turned = spring + Real{0.0} * across(spring, normal);"),
     ("repulsion of twice the range", "engine/terms/repulsion.h", "exponential((-1 / length)", "exponential((-0.5 / length)"),
     ("structural stress from one side of each pair", "engine/observables/structure.cpp",
      "within(kind.radius_first) + within(kind.radius_second)", "within(kind.radius_first)"),
@@ -114,6 +119,31 @@ def who_notices(folder):
     return noticed
 
 
+def commit_of_source():
+    def git(*arguments):
+        return subprocess.run(["git", *arguments], cwd=SOURCE, check=True, capture_output=True, text=True).stdout.strip()
+    return git("rev-parse", "--short=7", "HEAD") + (" with changes" if git("status", "--porcelain", "--untracked-files=no") else "")
+
+
+class Known:
+    """Who noticed what, of this call and of earlier ones with the same commit; of source with changes nothing is kept."""
+
+    def __init__(self, folder, commit):
+        os.makedirs(folder, exist_ok=True)
+        self.path, self.commit, self.noticed = os.path.join(folder, "noticed.json"), commit, {}
+        self.lasting = "changes" not in commit
+        if self.lasting and os.path.exists(self.path):
+            with open(self.path) as f:
+                stored = json.load(f)
+            self.noticed = stored["noticed"] if stored["commit"] == commit else {}
+
+    def add(self, name, noticed):
+        self.noticed[name] = noticed
+        if self.lasting:
+            with open(self.path, "w") as f:
+                json.dump({"commit": self.commit, "noticed": self.noticed}, f, indent=1)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", nargs="?", help="of the copy; kept, so that a second call goes faster")
@@ -130,22 +160,27 @@ def main():
         parser.error("needs a folder")
     lines = ["| broken | noticed by |", "|---|---|"]
     missed = 0
+    commit = commit_of_source()
+    known = Known(arguments.folder, commit)
     for mutation in [("nothing", None, None, None), *MUTATIONS]:
         if arguments.only not in mutation[0]:
             continue
-        copy_of_source(arguments.folder)
-        if mutation[1]:
-            path, text = replaced(mutation, arguments.folder)
-            with open(path, "w") as f:
-                f.write(text)
-        build(arguments.folder, arguments.jobs)
-        noticed = who_notices(arguments.folder)
+        if mutation[0] not in known.noticed:
+            copy_of_source(arguments.folder)
+            if mutation[1]:
+                path, text = replaced(mutation, arguments.folder)
+                with open(path, "w") as f:
+                    f.write(text)
+            build(arguments.folder, arguments.jobs)
+            known.add(mutation[0], who_notices(arguments.folder))
+        noticed = known.noticed[mutation[0]]
         missed += bool(mutation[1]) != bool(noticed)
         lines.append(f"| {mutation[0]} | {'; '.join(noticed) or ('nobody' if mutation[1] else 'nobody, as it should be')} |")
         print(lines[-1], flush=True)
     if not arguments.only:
         with open(os.path.join(HERE, "mutations.md"), "w") as f:
-            f.write("\n".join(lines) + "\n")
+            f.write("# Who notices broken physics\n\n`mutations.py` breaks one line of the engine at a time, in a copy, and shows it to the quick forms of the studies and\n"
+                    f"to the tests. Commit {commit}, {processor()}, {datetime.date.today().isoformat()}.\n\n" + "\n".join(lines) + "\n")
     return 1 if missed else 0
 
 
