@@ -21,6 +21,9 @@ import time
 
 from drill.campaign import REAL
 
+# Seeds long enough for some checkpoints each, however fast the machine.
+SCENE = dict(REAL["scene"], duration={"equilibration": {"strain": 0.3}, "production": {"strain": 4}})
+CHECKPOINT_SECONDS = 0.02
 FOLDERS = ("spool", "checkpoints", "logs", "backup", "failures")
 CASES = {  # what is full: the folder whose file system is filled, and which folders have one of their own
     "everything": ("", ()),
@@ -38,11 +41,11 @@ class Drill:
         self.peclet, self.folder = peclet, folder
         os.makedirs(folder)
         with open(os.path.join(folder, "drill.json"), "w") as f:
-            json.dump(dict(REAL, engine=["peclet-engine", "serve"]), f)
+            json.dump(dict(REAL, scene=SCENE, engine=["peclet-engine", "serve"]), f)
 
     def start(self):
         with open(os.path.join(self.folder, "log"), "a") as log:
-            return subprocess.Popen([self.peclet, "run", "drill.json", "--workers", "2", "--checkpoint", "0.2"],
+            return subprocess.Popen([self.peclet, "run", "drill.json", "--workers", "2", "--checkpoint", str(CHECKPOINT_SECONDS)],
                                     cwd=self.folder, stdout=log, stderr=log)
 
     def export(self):
@@ -77,13 +80,20 @@ def mount(path, size):
 
 class FullDisk:
     def __init__(self, peclet, folder, case):
-        self.full, own = CASES[case]
+        self.full, self.own = CASES[case]
         self.drill = Drill(peclet, folder)
         self.root = os.path.join(folder, "drill.peclet")
         mount(self.root, "16m")
-        for name in own:
+        for name in self.own:
             mount(os.path.join(self.root, name), "16m")
         self.filler = os.path.join(self.root, self.full, "filler")
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *raised):
+        for folder in [os.path.join(self.root, name) for name in self.own] + [self.root]:
+            subprocess.run(["umount", "--lazy", folder], check=True)
 
     def log(self):
         with open(os.path.join(self.drill.folder, "log")) as f:
@@ -158,11 +168,6 @@ def stop_while_full(disk):
     return code, time.monotonic() - started
 
 
-def unmount(disk, case):
-    for folder in [os.path.join(disk.root, name) for name in CASES[case][1]] + [disk.root]:
-        subprocess.run(["umount", "--lazy", folder], check=True)
-
-
 def judge(disk, name, code, reference):
     same = disk.drill.export() == reference
     blamed = disk.drill.count("SELECT total(blamed) FROM attempt")
@@ -187,16 +192,14 @@ def main():
         assert undisturbed.start().wait() == 0
         reference = undisturbed.export()
         for case in [arguments.only] if arguments.only else CASES:
-            disk = FullDisk(peclet, os.path.join(folder, case), case)
-            passed &= judge(disk, f"{case} full", starve(disk, case).wait(), reference)
-            unmount(disk, case)
+            with FullDisk(peclet, os.path.join(folder, case), case) as disk:
+                passed &= judge(disk, f"{case} full", starve(disk, case).wait(), reference)
         if not arguments.only or arguments.only == "everything":
-            disk = FullDisk(peclet, os.path.join(folder, "stopped"), "everything")
-            code, seconds = stop_while_full(disk)
-            print(f"SIGTERM while everything is full: exit code {code} after {seconds:.1f} s")
-            passed &= code == 75 and seconds < 30  # well before the owner would kill its workers
-            passed &= judge(disk, "and then resumed", disk.drill.start().wait(), reference)
-            unmount(disk, "everything")
+            with FullDisk(peclet, os.path.join(folder, "stopped"), "everything") as disk:
+                code, seconds = stop_while_full(disk)
+                print(f"SIGTERM while everything is full: exit code {code} after {seconds:.1f} s")
+                passed &= code == 75 and seconds < 30  # well before the owner would kill its workers
+                passed &= judge(disk, "and then resumed", disk.drill.start().wait(), reference)
     return 0 if passed else 1
 
 
