@@ -68,12 +68,14 @@ class Program:
         self.commits = set()  # of the engines that the results are of
         self.processor_seconds = 0.0  # that they took
         self.long = False  # whether points that take hours are wanted
+        self.times = 1  # as many seeds
         os.makedirs(folder, exist_ok=True)
 
     def run(self, name, scene, settings, seeds, observable="relative_viscosity", options=()):
-        """Runs `seeds` realisations with each of `settings` (objects of pointers and values) and returns the points of the export.
+        """Runs `seeds` realisations, times `times`, with each of `settings` (objects of pointers and values) and returns the points of the export.
         `observable` only has to be a number that the results have; `options` are for `peclet run`."""
         pointers = sorted(settings[0])
+        seeds *= self.times
         campaign = {
             "name": name, "scene": scene,
             "sweep": [{"set": pointers, "values": [[s[p] for p in pointers] for s in settings]}],

@@ -103,10 +103,13 @@ def main(folder, title, measure, quick_measure):
     parser.add_argument("folder", nargs="?", help="of the campaigns, with which a second call goes on; a temporary one unless given")
     parser.add_argument("--quick", action="store_true", help="half a minute; fails where the physics is broken")
     parser.add_argument("--long", action="store_true", help="also the points that take hours, where the study has such; goes on with FOLDER")
+    parser.add_argument("--times", type=int, default=1, metavar="N", help="N times as many seeds everywhere, for error bars that are smaller by the root of N; goes on with FOLDER")
     arguments = parser.parse_args()
+    if arguments.times < 1:
+        parser.error("--times: must be at least 1")
     with tempfile.TemporaryDirectory() as temporary:
         program = Program(arguments.binaries, arguments.folder or temporary)
-        program.long = arguments.long
+        program.long, program.times = arguments.long, arguments.times
         statements = list((quick_measure if arguments.quick else measure)(program))
         print("| statement | source | value ± standard error | must be | answer |\n|---|---|---|---|---|")
         for statement in statements:

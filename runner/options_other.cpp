@@ -19,6 +19,13 @@ void add_study(VerbSet& verbs) {
                  "Also the points that take hours, where the study has such; best with --folder")
       ->needs(name)
       ->excludes("--quick");
+  verb->add_option(
+          "--times", options->times,
+          "So many times as many seeds, for error bars smaller by the root of it; best with --folder")
+      ->type_name("NUMBER")
+      ->check(CLI::Range(1, 1000))
+      ->needs(name)
+      ->excludes("--quick");
   verb->add_flag("--json", options->json, "The list, for programs")->excludes(name);
   verb->add_option(
           "--folder", options->folder,

@@ -71,6 +71,7 @@ void print(const std::string& text) {
   if (!options.folder.empty()) words.push_back(fs::absolute(options.folder).string());
   if (options.quick) words.emplace_back("--quick");
   if (options.with_long) words.emplace_back("--long");
+  if (options.times > 1) words.insert(words.end(), {"--times", std::to_string(options.times)});
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());

@@ -94,7 +94,7 @@ def at_rest(program):
         (brownian, tau), (brownian_error, tau_error) = fit_with_errors(*curve(rest, VISCOSITY / THERMAL_ENERGY))
         lubrication = number(viscosity_row(slow), "lubrication")
         pairs, error = brownian + lubrication[0], math.hypot(brownian_error, lubrication[1])
-        rows.append({"peclet": 0, "fraction": fraction, "seeds": REST_SEEDS, "lost": 0, "transient": 0, "brownian": brownian, "brownian_error": brownian_error,
+        rows.append({"peclet": 0, "fraction": fraction, "seeds": len(rest["realisations"]), "lost": 0, "transient": 0, "brownian": brownian, "brownian_error": brownian_error,
                      "time": tau, "time_error": tau_error, "lubrication": lubrication[0], "lubrication_error": lubrication[1],
                      "pairs": pairs, "pairs_error": error, "viscosity": 1 + 2.5 * fraction + pairs, "viscosity_error": error})
     return rows

@@ -19,7 +19,7 @@ CAMPAIGNS = {
     "flow-curve": ((1, 4.6, 22, 100, 460, 2200, 1e4), 8, 32, 40),
     "flow-curve-0.22": ((0.22,), 6, 24, 60),
     "flow-curve-0.046": ((0.046,), 0, 24, 200),
-    "flow-curve-0.01": ((0.01,), 0, 80, 400),
+    "flow-curve-0.01": ((0.01,), 0, 24, 400),
 }
 STIFFNESSES, STIFFNESS_PECLET = (2.5e3, 1e4, 4e4), (1, 1e4)
 

@@ -73,7 +73,7 @@ def steady_statements(rows):
 def noisy_statements(rows):
     def of(fraction, gap):
         return [r for r in rows if r["fraction"] == fraction and r["gap"] == gap]
-    degrees = NOISY_SEEDS - 1
+    degrees = min(r["seeds"] for r in rows) - 1
     for fraction in NOISY_FRACTIONS:
         minima = []
         for gap in NOISY_GAPS:

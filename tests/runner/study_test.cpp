@@ -76,13 +76,14 @@ TEST_F(Studies, RunTheirDriverAndReturnItsExitCode) {
 TEST_F(Studies, TellTheirDriverWhatWasAsked) {
   add("diffusion", "");
   std::ofstream(folder_.path() / "diffusion" / "study.py") << R"(import sys
-raise SystemExit(7 if sys.argv[2:] == ["/campaigns", "--long"] else 8)
+raise SystemExit(7 if sys.argv[2:] == ["/campaigns", "--long", "--times", "4"] else 8)
 )";
   StudyOptions options;
   options.name = "diffusion";
   options.results = folder_.path();
   options.folder = "/campaigns";
   options.with_long = true;
+  options.times = 4;
   EXPECT_EXIT(perform_study(options), testing::ExitedWithCode(7), "");
 }
 
