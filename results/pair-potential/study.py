@@ -85,6 +85,14 @@ def statements_of(method, distance, rows, tolerance):
     ]
 
 
+def local_step(method, distance, rows):
+    """ln of the density in the last shell within the outer gap over that in the first one beyond. Implicit steps have one of their own."""
+    inside, inside_error = potential(distance, rows, 2.045, 2.05)
+    outside, outside_error = potential(distance, rows, 2.05, 2.055)
+    return Statement(f"no step of U / kT from the shell within the outer gap to the next one, {method} steps", "L4.1", outside - inside, math.hypot(inside_error, outside_error),
+                     -0.1, 0.1, len(rows) - 1, essential=method != "implicit")
+
+
 def point_of(program, method, seeds, brownian_times):
     scene = {**SCENE, "integrator": {"method": method},
              "duration": {"equilibration": {"brownian_times": 20}, "production": {"brownian_times": brownian_times}}}
@@ -96,7 +104,7 @@ def measure(program):
     for run in RUNS:
         method = run[0]
         distance, rows = densities(point_of(program, *run))
-        statements += statements_of(method, distance, rows, 0.1)
+        statements += [*statements_of(method, distance, rows, 0.1), local_step(method, distance, rows)]
         curves[method] = []
         for k, r in enumerate(distance):
             density, error = estimate([row[k] for row in rows])
