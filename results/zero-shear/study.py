@@ -47,7 +47,8 @@ def statements_of(table, curves, seeds):
         return value, value * math.hypot(a[f"{what}_error"] / a[what], b[f"{what}_error"] / b[what])
     for fraction, row in rows.items():
         if fraction <= 0.5:
-            yield Statement(f"φ = {fraction:g}: τ_φ in Brownian times is short below 0.5", "L4.3b", row["time"], row["time_error"], high=1, degrees=seeds - 1)
+            # The thesis says "short"; the number is a reading.
+            yield Statement(f"φ = {fraction:g}: τ_φ in Brownian times is short below 0.5", "L4.3b", row["time"], row["time_error"], high=1, degrees=seeds - 1, essential=False)
     lowest, dense, densest = min(rows), max(f for f in rows if f <= 0.5), max(rows)
     growth, error = ratio(dense, densest, "time")
     below, below_error = ratio(lowest, dense, "time")
@@ -83,15 +84,14 @@ def draw(table, curves):
 
 
 def measure(program):
-    seeds = 24
-    table, curves = measured(program, FRACTIONS, seeds)
+    table, curves = measured(program, FRACTIONS, 24)
     write_table(os.path.join(HERE, "table.csv"), list(table[0]), table, 5)
     draw(table, curves)
     explicit, _ = measured(program, [0.4], 4, {"integrator": {"method": "explicit"}, "duration": {"equilibration": {"brownian_times": 5}, "production": {"brownian_times": 40}}}, "zero-shear-explicit")
     implicit = next(row for row in table if row["fraction"] == 0.4)
     comparison = implicit["viscosity"] / explicit[0]["viscosity"]
     error = comparison * math.hypot(implicit["viscosity_error"] / implicit["viscosity"], explicit[0]["viscosity_error"] / explicit[0]["viscosity"])
-    return [*statements_of(table, curves, seeds), Statement("φ = 0.4: η_φ by implicit steps over that by explicit ones", "method", comparison, error, 0.5, 1.5, 3)]
+    return [*statements_of(table, curves, min(row["seeds"] for row in table)), Statement("φ = 0.4: η_φ by implicit steps over that by explicit ones", "method", comparison, error, 0.5, 1.5, 3)]
 
 
 def quick_measure(program):
