@@ -3,6 +3,7 @@
 
 study.py BIN [FOLDER] [--quick] [--long]
 """
+import csv
 import math
 import os
 import sys
@@ -16,10 +17,10 @@ TITLE = "Flow curves of Brownian suspensions"
 FRACTIONS = (0.45, 0.50, 0.55)
 # Campaigns: Peclet numbers, seeds, seeds with --long, and Brownian times of production; those without seeds take hours.
 CAMPAIGNS = {
-    "flow-curve": ((1, 4.6, 22, 100, 460, 2200, 1e4), 8, 32, 40),
-    "flow-curve-0.22": ((0.22,), 6, 24, 60),
-    "flow-curve-0.046": ((0.046,), 0, 24, 200),
-    "flow-curve-0.01": ((0.01,), 0, 24, 400),
+    "flow-curve": ((1, 4.6, 22, 100, 460, 2200, 1e4), 8, 16, 40),
+    "flow-curve-0.22": ((0.22,), 6, 16, 60),
+    "flow-curve-0.046": ((0.046,), 0, 16, 200),
+    "flow-curve-0.01": ((0.01,), 0, 16, 400),
 }
 STIFFNESSES, STIFFNESS_PECLET = (2.5e3, 1e4, 4e4), (1, 1e4)
 
@@ -43,6 +44,16 @@ def rows_of(program, name, cases, seeds, patch=None):
     return rows
 
 
+def at_rest():
+    """By volume fraction: the structural Brownian viscosity at rest over the solvent's, by Green and Kubo, and its standard error."""
+    with open(os.path.join(os.path.dirname(HERE), "zero-shear", "table.csv"), newline="") as f:
+        rows = {float(row["fraction"]): (float(row["viscosity"]), float(row["viscosity_error"])) for row in csv.DictReader(f)}
+    # 0.55 lies between two: their geometric mean.
+    (low, low_error), (high, high_error) = rows[0.54], rows[0.56]
+    middle = math.sqrt(low * high)
+    return {**rows, 0.55: (middle, middle / 2 * math.hypot(low_error / low, high_error / high))}
+
+
 def pick(rows, **keys):
     return next((r for r in rows if all(r[k] == v for k, v in keys.items())), None)
 
@@ -63,6 +74,15 @@ def curve_statements(rows, fraction):
     unknown = math.nan, math.inf
     yield statement("structural Brownian stress over contact stress at Pe = 0.22", number(at[0.22], "structural_over_contact"), 0.8, 1.2, 0.22, essential=False)
     yield statement("structural Brownian stress over contact stress at Pe = 0.01", number(at[0.01], "structural_over_contact") if 0.01 in at else unknown, 0.8, 1.2, curve[0]["peclet"])
+    rest = at_rest()
+    for peclet in (0.22, 0.046):
+        if peclet in at:
+            share = quotient(number(at[peclet], "structural"), rest[fraction])
+            name = f"structural Brownian stress at Pe = {peclet} over that at rest by Green and Kubo"
+            if fraction == 0.55:
+                yield statement(f"{name} (still rising)", share, high=0.9, peclet=peclet, essential=False)
+            else:
+                yield statement(f"{name} (plateau)", share, 0.8, 1.2, peclet, essential=False)
     ratio = quotient(number(at[0.01], "pairs"), number(at[0.046], "pairs")) if 0.01 in at else unknown
     if fraction == 0.55:
         yield statement("at Pe = 0.01 over that at 0.046 (still rising)", ratio, low=1.1, peclet=curve[0]["peclet"])
@@ -76,7 +96,7 @@ def measure(program):
         seeds = many if program.long else few
         if seeds:
             rows += rows_of(program, name, [(f, 1e4, p) for f in FRACTIONS for p in peclets], seeds, {"duration": {"production": {"brownian_times": times}}})
-    stiffness = rows_of(program, "stiffness", [(0.5, k, p) for k in STIFFNESSES if k != 1e4 for p in STIFFNESS_PECLET], 32 if program.long else 8)
+    stiffness = rows_of(program, "stiffness", [(0.5, k, p) for k in STIFFNESSES if k != 1e4 for p in STIFFNESS_PECLET], 16 if program.long else 8)
     large = rows_of(program, "large", [(0.45, 1e4, p) for p in (100, 1e4)], 8, {"particles": {"count": 1000}})
     faster = {"limits": {"shear_rate": 0.045}}
     methods = {m: rows_of(program, m, [(0.45, 1e4, 100)], 6, merged(faster, {"integrator": {"method": m}}))[0] for m in ("implicit", "explicit")}
@@ -101,6 +121,7 @@ def measure(program):
 
 
 def draw(rows):
+    rest = at_rest()
     terms = {"pairs": ("#000000", 7, "all pairs"), "contact": ("#c03028", 5, "contact"), "lubrication": ("#2060b0", 9, "lubrication"), "structural": ("#308030", 4, "structural Brownian")}
     lines = ["set terminal pngcairo size 1400, 460 font 'Sans,11'", f"set output '{os.path.join(HERE, 'chart.png')}'", "set multiplot layout 1, 3",
              "set grid lc rgb '#d8d8d8'; set logscale xy; set format x '10^{%L}'; set xlabel 'Pe'; set ylabel 'σ / (η γ̇)'; set xrange [5e-3:3e4]; set key top right"]
@@ -112,6 +133,7 @@ def draw(rows):
             parts.append(f"${name}{round(fraction * 100)} using 1:2:3 with yerrorlines pt {mark} ps 0.8 lc rgb '{colour}' title '{title}'")
         fits = [(f"(1 - {fraction:g} / {jammed})**-1.5", end) for jammed, end in ((0.587, "x < 0.02"), (0.642, "x > 3e3"))]
         parts += [f"({end} ? {fit} : 1/0) lw 3 lc rgb '#a0a0a0' {'title `published fits of both ends`' if k == 0 else 'notitle'}".replace("`", '"') for k, (fit, end) in enumerate(fits)]
+        parts.append(f"(x < 0.1 ? {rest[fraction][0]:g} : 1/0) lw 2 dt 2 lc rgb '{terms['structural'][0]}' title 'structural Brownian at rest'")
         largest = {0.45: 100, 0.50: 200, 0.55: 600}[fraction]
         lines += [f"set title 'φ = {fraction:g}'; set yrange [0.1:{largest}]; set samples 1000", "plot " + ", ".join(parts)]
     gnuplot(lines)
