@@ -10,7 +10,7 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
 from campaigns import REFERENCE_SCENE, estimate, merged, write_table  # noqa: E402
-from studies import Statement, data_block, gnuplot, main  # noqa: E402
+from studies import Statement, data_block, gnuplot, line_through, main, weighted_mean  # noqa: E402
 
 TITLE = "Mean squared displacement and self-diffusion"
 AT_REST = merged(REFERENCE_SCENE, {"flow": {"shear_rate": 0}, "observables": ["stress", "mean_squared_displacement"]})
@@ -32,6 +32,10 @@ CROWDED = merged(AT_REST, {
     "particles": {"count": 250}, "integrator": {"method": "implicit"},
     "duration": {"equilibration": {"brownian_times": 10}, "production": {"brownian_times": 9}},
 })
+
+# Displacements over windows ten times longer, for the limit of long times.
+LONG_FRACTIONS = (0.001, 0.1, 0.3, 0.5)
+LONG = {"duration": {"production": {"brownian_times": 90}}}
 
 
 def thermal_energy(ratio, viscosity, density):
@@ -93,18 +97,15 @@ def diffusion(program, ratios, fractions, seeds, patch=None, name="crowded"):
     return table
 
 
-def line_through(rows):
+def line_of(rows):
     """D(phi) by least squares with the errors: intercept, slope over intercept and its standard error, and what remains of each row."""
-    w = [1 / r["standard_error"] ** 2 for r in rows]
-    x, y = [r["fraction"] for r in rows], [r["diffusion"] for r in rows]
-    mean_x, mean_y = (sum(a * b for a, b in zip(w, v)) / sum(w) for v in (x, y))
-    spread = sum(a * (b - mean_x) ** 2 for a, b in zip(w, x))
-    slope = sum(a * (b - mean_x) * (c - mean_y) for a, b, c in zip(w, x, y)) / spread
-    residuals = [c - mean_y - slope * (b - mean_x) for b, c in zip(x, y)]
-    intercept = mean_y - slope * mean_x
-    of_slope, of_intercept, of_both = 1 / spread, 1 / sum(w) + mean_x**2 / spread, -mean_x / spread
+    x, y, errors = ([r[name] for r in rows] for name in ("fraction", "diffusion", "standard_error"))
+    intercept, slope, slope_error = line_through(x, y, errors)
+    mean_x, mean_error = weighted_mean(x, errors)
     ratio = slope / intercept
-    return intercept, ratio, math.sqrt(of_slope + ratio**2 * of_intercept - 2 * ratio * of_both) / intercept, residuals
+    # The intercept is the value at the mean of x, whose error is independent, less mean_x times the slope.
+    ratio_error = math.hypot(slope_error * (1 + ratio * mean_x), ratio * mean_error) / abs(intercept)
+    return intercept, ratio, ratio_error, [b - intercept - slope * a for a, b in zip(x, y)]
 
 
 def crowded_statements(table, seeds):
@@ -119,7 +120,7 @@ def crowded_statements(table, seeds):
         a, b = of(warm, fraction), of(cold, fraction)
         yield Statement(f"φ = {fraction:g}: D / D_0 at τ_I/τ_B = 0.17 over that at 0.017", "L4.2d", a["diffusion"] / b["diffusion"],
                         math.hypot(a["standard_error"], b["standard_error"]) / b["diffusion"], 0.9, 1.1, seeds - 1)
-    intercept, slope, slope_error, residuals = line_through([r for r in table if abs(r["ratio"] - cold) < 1e-9])
+    intercept, slope, slope_error, residuals = line_of([r for r in table if abs(r["ratio"] - cold) < 1e-9])
     largest = max(range(len(FRACTIONS)), key=lambda k: abs(residuals[k]))
     yield Statement(f"largest distance of D / D_0 from a line in φ (at φ = {FRACTIONS[largest]:g}) over its dilute value", "L4.2d",
                     residuals[largest] / intercept, of(cold, FRACTIONS[largest])["standard_error"] / intercept, -0.05, 0.05, seeds - 1, essential=False)
@@ -129,23 +130,41 @@ def crowded_statements(table, seeds):
     yield Statement("φ = 0.5: D / D_0 at τ_I/τ_B = 1.7 over that at 0.017 (L4.2d: it depends on the temperature there)", "L4.2d", dense, error, low=1.05, degrees=seeds - 1, essential=False)
 
 
+def long_time_statement(table):
+    """The middle volume fractions against the straight line through the first and the last."""
+    first, *middle, last = table
+    slope = (last["diffusion"] - first["diffusion"]) / (last["fraction"] - first["fraction"])
+    distances = []
+    for row in middle:
+        part = (row["fraction"] - first["fraction"]) / (last["fraction"] - first["fraction"])
+        errors = row["standard_error"], (1 - part) * first["standard_error"], part * last["standard_error"]
+        distances.append((row["diffusion"] - first["diffusion"] - slope * (row["fraction"] - first["fraction"]), math.hypot(*errors), row["fraction"]))
+    distance, error, fraction = max(distances, key=lambda d: abs(d[0]))
+    dilute = first["diffusion"]
+    return Statement(f"windows of 90 Brownian times: largest distance of D / D_0 from the line through the first and the last φ (at φ = {fraction:g}) over its dilute value", "L4.2d",
+                     distance / dilute, error / dilute, -0.05, 0.05, table[0]["seeds"] - 1, essential=False)
+
+
 def measure(program):
     seeds = 32
     curves = dilute_curves(program, RATIOS, seeds)
     table = diffusion(program, RATIOS, FRACTIONS, seeds)
+    seeds = min(row["seeds"] for row in table)
     explicit = diffusion(program, RATIOS[1:2], [0.3], 8, {"integrator": {"method": "explicit"}}, "crowded-explicit")[0]
+    long = diffusion(program, RATIOS[2:], LONG_FRACTIONS, 8, LONG, "crowded-long")
     write_table(os.path.join(HERE, "displacement.csv"), ["ratio", "time", "displacement", "free", "over_free", "standard_error"],
                 [row for rows in curves.values() for row in rows], 5)
     write_table(os.path.join(HERE, "table.csv"), ["method", "ratio", "fraction", "seeds", "diffusion", "standard_error"],
-                [{"method": "implicit", **row} for row in table] + [{"method": "explicit", **explicit}], 5)
-    draw(curves, table)
+                [{"method": "implicit", **row} for row in table] + [{"method": "explicit", **explicit}]
+                + [{"method": "implicit, windows of 90", **row} for row in long], 5)
+    draw(curves, table, long)
     implicit = next(r for r in table if abs(r["ratio"] - RATIOS[1]) < 1e-9 and r["fraction"] == 0.3)
-    return [*dilute_statements(curves, seeds, 0.02), *crowded_statements(table, seeds),
+    return [*dilute_statements(curves, seeds, 0.02), *crowded_statements(table, seeds), long_time_statement(long),
             Statement("φ = 0.3: implicit steps over explicit ones", "method", implicit["diffusion"] / explicit["diffusion"],
                       math.hypot(implicit["standard_error"], explicit["standard_error"]) / explicit["diffusion"], 0.9, 1.1, 7)]
 
 
-def draw(curves, table):
+def draw(curves, table, long):
     lines = ["set terminal pngcairo size 1100, 480 font 'Sans,11'", f"set output '{os.path.join(HERE, 'chart.png')}'",
              "set multiplot layout 1, 2", "set grid lc rgb '#d8d8d8'"]
     colours = ("#c03028", "#308030", "#2060b0")
@@ -158,8 +177,10 @@ def draw(curves, table):
         for k, ratio in enumerate(curves)).replace("`", '"'))
     for k, ratio in enumerate(RATIOS):
         lines += data_block(f"d{k}", [(r["fraction"], r["diffusion"], 2 * r["standard_error"]) for r in table if abs(r["ratio"] - ratio) < 1e-9])
+    lines += data_block("long", [(r["fraction"], r["diffusion"], 2 * r["standard_error"]) for r in long])
     lines += ["unset logscale; set format '%g'; set xlabel 'φ'; set ylabel 'D / D_0'; set key top right; set xrange [-0.02:0.6]; set yrange [0:1.1]"]
-    lines.append("plot " + ", ".join(f"$d{k} using 1:2:3 with yerrorlines pt 7 ps 0.7 lc rgb '{colours[k]}' title 'τ_I/τ_B = {ratio:g}'" for k, ratio in enumerate(RATIOS)))
+    lines.append("plot " + ", ".join(f"$d{k} using 1:2:3 with yerrorlines pt 7 ps 0.7 lc rgb '{colours[k]}' title 'τ_I/τ_B = {ratio:g}'" for k, ratio in enumerate(RATIOS))
+                 + ", $long using 1:2:3 with yerrorbars pt 6 ps 1.2 lc rgb 'black' title 'τ_I/τ_B = 0.017, windows of 90 τ_B'")
     gnuplot(lines)
 
 
