@@ -3,7 +3,6 @@
 
 study.py BIN [FOLDER] [--quick] [--long]
 """
-import csv
 import math
 import os
 import sys
@@ -11,6 +10,7 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
 from campaigns import TABLE_SCENE, columns_of, completed, estimate, log_minimum, merged, number, propagated, quotient, term, viscosity_row, write_table  # noqa: E402
+from green_kubo import table_at_rest  # noqa: E402
 from studies import Statement, data_block, gnuplot, main  # noqa: E402
 
 TITLE = "Flow curves of Brownian suspensions"
@@ -46,8 +46,7 @@ def rows_of(program, name, cases, seeds, patch=None):
 
 def at_rest():
     """By volume fraction: the structural Brownian viscosity at rest over the solvent's, by Green and Kubo, and its standard error."""
-    with open(os.path.join(os.path.dirname(HERE), "zero-shear", "table.csv"), newline="") as f:
-        rows = {float(row["fraction"]): (float(row["viscosity"]), float(row["viscosity_error"])) for row in csv.DictReader(f)}
+    rows = {fraction: number(row, "viscosity") for fraction, row in table_at_rest().items()}
     # 0.55 lies between two: their geometric mean.
     (low, low_error), (high, high_error) = rows[0.54], rows[0.56]
     middle = math.sqrt(low * high)
