@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// 20 ms per realisation: a campaign of a second.
+// 20 ms per realisation.
 const Environment slow{{"PECLET_FAKE_STEP_MS", "2"}};
 
 std::string canonical_export(const fs::path& database) {
@@ -135,7 +135,7 @@ TEST(Restoring, AnOlderBackupByForceIsWhatCountsFromThenOn) {
 
 TEST(Backups, OfARunningCampaignAreSoundAndGrow) {
   CampaignOnDisk campaign;
-  campaign.start(slow);
+  campaign.start(campaign.held_from(7, slow));
   campaign.wait_for_results(1);
   const TemporaryFolder target;
   std::int64_t results = 0;
@@ -144,6 +144,7 @@ TEST(Backups, OfARunningCampaignAreSoundAndGrow) {
     EXPECT_GE(examine(backup.file).results, results);
     results = backup.results;
   }
+  campaign.release();
   EXPECT_EQ(campaign.finish(), 0) << campaign.log();
 }
 
@@ -169,7 +170,7 @@ TEST(Backups, AreMadeByTheRunItself) {
 TEST(Restoring, ElsewhereGoesOnToTheSameBytes) {
   CampaignOnDisk campaign;
   campaign.options.checkpoint_seconds = 0.005;
-  campaign.start(slow);
+  campaign.start(campaign.held_from(7, slow));
   campaign.wait_for_results(8);
   const TemporaryFolder medium;
   make_backup(campaign.directory(), medium.path(), true);
@@ -192,7 +193,7 @@ TEST(Restoring, ElsewhereGoesOnToTheSameBytes) {
 
 TEST(Restoring, AfterTheDatabaseIsDestroyedGoesOnWithWhatTheSpoolGives) {
   CampaignOnDisk campaign;
-  campaign.start(slow);
+  campaign.start(campaign.held_from(7, slow));
   campaign.wait_for_results(4);
   make_backup(campaign.directory(), campaign.directory().backup(), false);
   campaign.wait_for_results(8);

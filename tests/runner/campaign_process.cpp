@@ -78,16 +78,30 @@ void CampaignOnDisk::kill_workers() const {
   for (pid_t child = 0; children >> child;) kill(child, SIGKILL);
 }
 
+Environment CampaignOnDisk::held_from(int seed, Environment environment) const {
+  std::ofstream(hold()) << "";
+  environment["PECLET_FAKE_HOLD"] = hold().string();
+  environment["PECLET_FAKE_HOLD_SEED"] = std::to_string(seed);
+  return environment;
+}
+
+void CampaignOnDisk::release() const { std::filesystem::remove(hold()); }
+
 void CampaignOnDisk::wait_for_results(int count) const {
+  wait_until(fmt::format("{} results", count),
+             [&] { return this->count("SELECT count(*) FROM realisation WHERE state = 'done'") >= count; });
+}
+
+void CampaignOnDisk::wait_until(const std::string& what, const std::function<bool()>& is_so) const {
   const auto patience = std::chrono::steady_clock::now() + std::chrono::minutes(1);
   while (std::chrono::steady_clock::now() < patience) {
     try {
-      if (this->count("SELECT count(*) FROM realisation WHERE state = 'done'") >= count) return;
-    } catch (const std::exception&) {  // not there yet
+      if (is_so()) return;
+    } catch (const std::exception&) {  // there is no database yet
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  throw std::runtime_error("the run gives no results:\n" + log());
+  throw std::runtime_error(fmt::format("waited in vain for {}:\n{}", what, log()));
 }
 
 std::int64_t CampaignOnDisk::count(const std::string& sql) const {

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -32,11 +33,17 @@ class CampaignOnDisk {
   // Its exit code as the program's; -N when signal N killed it.
   int finish();
   int run(const Environment& environment = {});
+  // The environment in which no seed from this one on ends before release(): no run of it is over before the
+  // test says so, however slow the machine is. Of the seeds before, the run gives its results.
+  Environment held_from(int seed, Environment environment = {}) const;
+  void release() const;
   void signal(int number) const;
   // Kills all of its workers.
   void kill_workers() const;
   // Waits until so many realisations are done. Throws when that takes a minute.
   void wait_for_results(int count) const;
+  // Waits until that is so; throws when it takes a minute, too.
+  void wait_until(const std::string& what, const std::function<bool()>& is_so) const;
 
   const CampaignDirectory& directory() const { return directory_; }
   Database reader() const { return Database::open_reader(directory_.database()); }
@@ -47,6 +54,8 @@ class CampaignOnDisk {
   std::string log() const;
 
  private:
+  std::filesystem::path hold() const { return folder_.path() / "hold"; }
+
   TemporaryFolder folder_;
   CampaignDirectory directory_;
   pid_t process_ = -1;

@@ -168,19 +168,20 @@ TEST_F(Doctor, RepairsNothingWhileAnOwnerRuns) {
 
 TEST(DoctorOfARunningCampaign, IsNotAlarmed) {
   CampaignOnDisk campaign;
-  campaign.start({{"PECLET_FAKE_STEP_MS", "5"}});
+  campaign.start(campaign.held_from(7, {{"PECLET_FAKE_STEP_MS", "5"}}));
   campaign.wait_for_results(2);
   DoctorOptions options;
   options.campaign = campaign.directory().root();
   const Diagnosis diagnosis = examine_campaign(options);
   EXPECT_NE(diagnosis.exit_code, 6) << diagnosis.text;
   EXPECT_EQ(diagnosis.text.find("orphan"), std::string::npos) << diagnosis.text;
+  campaign.release();
   EXPECT_EQ(campaign.finish(), 0) << campaign.log();
 }
 
 TEST(DoctorOfAKilledCampaign, QueuesWhatWasLeftRunning) {
   CampaignOnDisk campaign;
-  campaign.start({{"PECLET_FAKE_STEP_MS", "5"}});
+  campaign.start(campaign.held_from(7, {{"PECLET_FAKE_STEP_MS", "5"}}));
   campaign.wait_for_results(2);
   campaign.signal(SIGKILL);
   campaign.finish();

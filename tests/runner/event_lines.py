@@ -93,12 +93,19 @@ class EventLines(unittest.TestCase):
         self.assertEqual([e["event"] for e in events if e["event"] != "progress"], ["begin", "end"])
 
     def test_tell_the_rest_after_a_stop(self):
-        slow = {**os.environ, "PECLET_FAKE_STEP_MS": "10"}
-        process = subprocess.Popen(self.command("stopped"), stdout=subprocess.PIPE, text=True, env=slow)
+        hold = self.path("hold")  # of each point's last seed: the run does not end by itself
+        with open(hold, "w"):
+            pass
+        held = {**os.environ, "PECLET_FAKE_HOLD": hold, "PECLET_FAKE_HOLD_SEED": str(MINIMUM - 1)}
+        process = subprocess.Popen(self.command("stopped"), stdout=subprocess.PIPE, text=True, env=held)
         lines = []
         while sum('"seed-ended"' in line for line in lines) < 4:  # each comes while the run goes on
             lines.append(process.stdout.readline())
             self.assertTrue(lines[-1], "the run ended early")
+        patience = time.monotonic() + 60
+        while self.query("stopped", f"SELECT count(*) FROM realisation WHERE state = 'running' AND seed >= {MINIMUM - 1}") != [(2,)]:
+            self.assertLess(time.monotonic(), patience, "no two workers are held")
+            time.sleep(0.01)
         process.send_signal(signal.SIGTERM)
         lines += process.stdout.readlines()
         process.stdout.close()

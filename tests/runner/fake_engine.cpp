@@ -15,6 +15,9 @@
 //   PECLET_FAKE_DRIFT                                   set: results differ from those without it
 //   PECLET_FAKE_AHEAD                                   set: it takes a job ahead
 //   PECLET_FAKE_STEPLESS                                set: it says that it knows of no time step
+//   PECLET_FAKE_HOLD, PECLET_FAKE_HOLD_SEED (0)         a file: as long as it is there, this and later seeds
+//                                                       stand still at half of their steps, but hear the
+//                                                       owner
 //   PECLET_FAKE_FAULTS, PECLET_FAKE_CRASH_PROBABILITY   see fake_faults.h
 #include <unistd.h>
 
@@ -50,6 +53,11 @@ Json engine() {
           {"compiler", "none"},       {"flags", ""},
           {"build_type", "none"},     {"cpu", "none"},
           {"instruction_set", "none"}};
+}
+
+std::string text_setting(const char* name) {
+  const char* const text = std::getenv(name);
+  return text == nullptr ? "" : text;
 }
 
 struct State {
@@ -176,10 +184,18 @@ class Engine {
                    {"strain", 0.1 * step}});
   }
 
-  // Waits for one step's time and hears what the owner has to say meanwhile.
+  bool is_held(const Json& job, const State& state) const {
+    return !hold_.empty() && job.at("seed").get<int>() >= hold_seed_ && state.step >= half_ &&
+           std::filesystem::exists(hold_);
+  }
+
+  // Waits for one step's time, or as long as the job is held, and hears what the owner has to say meanwhile.
   bool told_to_leave(const Json& job, const State& state, const std::filesystem::path& checkpoint) {
     Json message;
-    const FrameChannel::Status status = hear(message, step_time_);
+    FrameChannel::Status status = hear(message, step_time_);
+    while (status == FrameChannel::Status::nothing && is_held(job, state)) {
+      status = hear(message, milliseconds(5));
+    }
     if (status == FrameChannel::Status::nothing) return false;
     leave_ = true;
     if (status == FrameChannel::Status::message && message.at("type") == "stop") return true;
@@ -315,8 +331,11 @@ class Engine {
 
   FrameChannel channel_{0};
   int steps_ = static_cast<int>(setting("PECLET_FAKE_STEPS", 10));
-  int fault_step_ = static_cast<int>(setting("PECLET_FAKE_FAULT_STEP", steps_ / 2));
+  int half_ = steps_ / 2;
+  int fault_step_ = static_cast<int>(setting("PECLET_FAKE_FAULT_STEP", half_));
   milliseconds step_time_{static_cast<int>(setting("PECLET_FAKE_STEP_MS", 0))};
+  const std::filesystem::path hold_ = text_setting("PECLET_FAKE_HOLD");
+  const int hold_seed_ = static_cast<int>(setting("PECLET_FAKE_HOLD_SEED", 0));
   const std::string printed_ = std::string(static_cast<std::size_t>(setting("PECLET_FAKE_PRINTED", 0)), 'x');
   const bool takes_ahead_ = std::getenv("PECLET_FAKE_AHEAD") != nullptr;
   std::optional<Json> waiting_job_;  // came while another one ran

@@ -10,8 +10,6 @@
 namespace peclet::runner {
 namespace {
 
-const Environment slow{{"PECLET_FAKE_STEP_MS", "10"}};  // 0.1 s for a realisation
-
 TEST(Pilot, RunsTheFirstSeedsOfEveryPointAndPredicts) {
   CampaignOnDisk campaign(3);
   campaign.pilot = 3;
@@ -57,7 +55,7 @@ TEST(Pilot, StatusJudgesTheFirstPrediction) {
 TEST(Pilot, AKilledOneGoesOn) {
   CampaignOnDisk campaign(3);
   campaign.pilot = 4;
-  campaign.start(slow);
+  campaign.start(campaign.held_from(3));
   campaign.wait_for_results(3);
   campaign.signal(SIGKILL);
   ASSERT_EQ(campaign.finish(), -SIGKILL);
@@ -71,7 +69,7 @@ TEST(Pilot, AKilledOneGoesOn) {
 TEST(Pilot, AStoppedOnePredictsNothing) {
   CampaignOnDisk campaign(3);
   campaign.pilot = 4;
-  campaign.start(slow);
+  campaign.start(campaign.held_from(3));
   campaign.wait_for_results(1);
   campaign.signal(SIGTERM);
   EXPECT_EQ(campaign.finish(), 75) << campaign.log();

@@ -51,12 +51,7 @@ Reply cancel(const CampaignOnDisk& campaign, const std::vector<std::string>& poi
 }
 
 void wait_until(const CampaignOnDisk& campaign, const std::string& sql, std::int64_t wanted) {
-  const auto patience = std::chrono::steady_clock::now() + std::chrono::minutes(1);
-  while (std::chrono::steady_clock::now() < patience) {
-    if (campaign.count(sql) == wanted) return;
-    std::this_thread::sleep_for(milliseconds(10));
-  }
-  FAIL() << sql << "\n" << campaign.log();
+  campaign.wait_until(sql, [&] { return campaign.count(sql) == wanted; });
 }
 
 TEST(Set, ReopensAFinishedCampaignWhichThenGivesWhatAFreshOneDoes) {
@@ -250,7 +245,7 @@ TEST(Retry, OnARunningCampaignGivesSeedsAnotherChance) {
 TEST(Requests, AreCarriedOutOnceWhenTheOwnerDiesBefore) {
   CampaignOnDisk campaign;
   campaign.document["realisations"]["maximum"] = 12;
-  campaign.start(endless);
+  campaign.start(campaign.held_from(7, endless));
   campaign.wait_for_results(2);
   campaign.signal(SIGSTOP);
   CancelOptions options{campaign.options.campaign, {}, {"peclet=2"}};
@@ -268,13 +263,12 @@ TEST(Requests, AreCarriedOutOnceWhenTheOwnerDiesBefore) {
 TEST(Requests, AreCarriedOutByTheVerbWhenTheOwnerDiesWhileItWaits) {
   CampaignOnDisk campaign;
   campaign.document["realisations"]["maximum"] = 12;
-  campaign.start(endless);
+  campaign.start(campaign.held_from(7, endless));
   campaign.wait_for_results(2);
   campaign.signal(SIGSTOP);
   Reply reply;
   std::jthread verb([&] { reply = cancel(campaign, {"peclet=2"}); });
-  std::this_thread::sleep_for(milliseconds(300));
-  EXPECT_EQ(waiting_requests(campaign.directory()).size(), 1U);
+  campaign.wait_until("the request", [&] { return waiting_requests(campaign.directory()).size() == 1; });
   campaign.signal(SIGKILL);
   EXPECT_EQ(campaign.finish(), -SIGKILL);
   verb.join();
@@ -285,7 +279,7 @@ TEST(Requests, AreCarriedOutByTheVerbWhenTheOwnerDiesWhileItWaits) {
 TEST(Requests, OfAnOwnerThatDoesNotComeToThemAreLeftToIt) {
   CampaignOnDisk campaign;
   campaign.document["realisations"]["maximum"] = 12;
-  campaign.start(endless);
+  campaign.start(campaign.held_from(7, endless));
   campaign.wait_for_results(2);
   campaign.signal(SIGSTOP);
   CancelOptions options{campaign.options.campaign, {}, {"peclet=2"}};
@@ -294,6 +288,7 @@ TEST(Requests, OfAnOwnerThatDoesNotComeToThemAreLeftToIt) {
   EXPECT_EQ(reply.exit_code, 4);
   EXPECT_NE(reply.text.find("has not come to it in 0.3 s, but will"), std::string::npos) << reply.text;
   campaign.signal(SIGCONT);
+  campaign.release();
   EXPECT_EQ(campaign.finish(), 3) << campaign.log();
   EXPECT_EQ(campaign.count("SELECT count(*) FROM event WHERE kind = 'cancel'"), 1);
 }
@@ -301,7 +296,7 @@ TEST(Requests, OfAnOwnerThatDoesNotComeToThemAreLeftToIt) {
 TEST(AcceptEngine, IsByNameAndNeverMixes) {
   CampaignOnDisk campaign;
   campaign.document["realisations"]["maximum"] = 12;
-  campaign.start(endless);
+  campaign.start(campaign.held_from(7, endless));
   campaign.wait_for_results(2);
   campaign.signal(SIGTERM);
   ASSERT_EQ(campaign.finish(), 75) << campaign.log();
