@@ -201,9 +201,16 @@ class Engine {
     if (status == FrameChannel::Status::message && message.at("type") == "stop") return true;
     save(job, state, checkpoint);
     if (status == FrameChannel::Status::message) {
-      channel_.send({{"type", "drained"}, {"job", job.at("job")}, {"step", state.step}});
+      leave_ = false;
+      give_back(job, state);
     }
     return true;
+  }
+
+  // Idle again: another drain follows, on which it leaves, or a job.
+  void give_back(const Json& job, const State& state) {
+    waiting_job_.reset();
+    channel_.send({{"type", "drained"}, {"job", job.at("job")}, {"step", state.step}});
   }
 
   // Without room for it the work goes on, and the last checkpoint stays.
@@ -231,8 +238,9 @@ class Engine {
       } catch (const NoRoomError& error) {
         say_no_room(job, error);
         Json message;
-        if (hear(message, milliseconds(200)) == FrameChannel::Status::nothing) continue;
-        leave_ = true;
+        const FrameChannel::Status status = hear(message, milliseconds(200));
+        if (status == FrameChannel::Status::nothing) continue;
+        leave_ = status == FrameChannel::Status::closed || message.at("type") == "stop";
         return false;
       }
     }
@@ -268,7 +276,7 @@ class Engine {
                      {"sha256", sha256(fault == Fault::lie ? "something else" : text)}};
     if (fault == Fault::early) announce(frame, fault);
     if (!spool(job, text)) {
-      channel_.send({{"type", "drained"}, {"job", job.at("job")}, {"step", state.step}});
+      if (!leave_) give_back(job, state);
       return;
     }
     if (fault == Fault::mute) std::abort();
