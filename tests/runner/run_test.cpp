@@ -70,7 +70,7 @@ class FailuresInARun : public testing::TestWithParam<bool> {};
 TEST_P(FailuresInARun, AreCountedByCauseAndNeverWithTheSeedThatWaits) {
   CampaignOnDisk campaign(1);
   campaign.document["realisations"]["minimum"] = 12;
-  campaign.options.lease_seconds = 0.5;
+  campaign.options.lease_seconds = 2;  // far more than a sound seed may take on a machine that does much else
   Environment environment =
       with_faults("crash:0 exit:1x1 kill:2x2 hang:3x1 garble:4 refuse:5x2 overlap:6 mute:8 twice:9");
   if (GetParam()) {
