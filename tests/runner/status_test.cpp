@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "tests/runner/stored_campaign.h"
 
@@ -147,11 +147,11 @@ TEST(Status, OfSixteenThousandRealisationsTakesBelowAThirdOfASecond) {
       "INSERT INTO realisation (point_id, seed, state, cause, value, cpu_seconds, final_state_sha256, "
       "content_sha256) SELECT point_id, seed, 'done', 'completed', 10 + seed % 7, 1, hash, hash FROM seeds, "
       "point");
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // processor time: of what else the machine does this says nothing
   const std::string table = status_table(campaign.database());
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  const std::clock_t spent = std::clock() - start;
   EXPECT_NE(table.find("16000 seeds ended"), std::string::npos);
-  EXPECT_LT(elapsed.count(), 0.3);
+  EXPECT_LT(static_cast<double>(spent) / CLOCKS_PER_SEC, 0.3);
 }
 
 }  // namespace
