@@ -4,6 +4,7 @@ import shutil
 import signal
 import sqlite3
 
+from .folders import running
 from .night import workers_of
 
 
@@ -18,12 +19,12 @@ def killed(night):
     night.slow(300)
     night.write()
     night.types("peclet run night.json --quiet --workers 2 --time-limit 0.6 > table", 75)
-    run = night.starts("peclet run night.json --workers 2")
     before = len(night.results())
-    night.wait_for_results(before + 3)
+    run = running(night, before + 3, 300)
     os.killpg(run.pid, signal.SIGKILL)
     run.wait()
     night.wait_for("the end of its workers", lambda: not workers_of(night))
+    night.lets_go()
     night.slow(20)
     return before
 
@@ -39,13 +40,11 @@ def deleted(night):
 
 def deleted_while_it_runs(night):
     """campaign.db deleted while it runs"""
-    night.slow(300)
-    night.write()
-    run = night.starts("peclet run night.json --workers 2")
-    night.wait_for_results(3)
+    run = running(night, 3, 300)
     night.remembers()
     night.types("rm night.peclet/campaign.db")
     night.waits(run, 6, ["was deleted while the campaign ran", "were saved in"])
+    night.lets_go()
     night.follows(r"peclet restore [^`]*", 0, ["restored from"])
     night.types("peclet run night.json --quiet", 0, ["2 converged"])
     night.lost_nothing()

@@ -1,6 +1,7 @@
 """The campaign's file: in the wrong place, renamed, edited in the middle."""
 import os
 
+from .folders import running
 from .night import CAMPAIGN, Wrong
 
 
@@ -51,14 +52,12 @@ def other_name(night):
 
 def edited(night):
     """The scene changed when half of the campaign is done"""
-    night.slow(40)
-    night.write()
-    run = night.starts("peclet run night.json --workers 2")
-    night.wait_for_results(4)
+    run = running(night, 4, 40)
     night.types("sed -i 's/\"viscosity\": 1/\"viscosity\": 2/' night.json && peclet status night.json", 0,
                 ["has changed since it was last run", "`peclet set night.json` or `peclet run` takes it over"])
     night.stops(run)
     night.waits(run, 75, ["workers checkpoint and stop"])
+    night.lets_go()
     before = night.remembers()
     night.types("peclet run night.json --workers 2", 0, [f"{before} seeds that ended at 2 points of earlier versions",
                                                          "are kept, and count again"])
@@ -81,12 +80,10 @@ def engine_missing(night):
 
 def engine_rebuilt(night):
     """The engine built anew when half of the campaign is done"""
-    night.slow(40)
-    night.write()
-    run = night.starts("peclet run night.json --workers 2")
-    night.wait_for_results(4)
+    run = running(night, 4, 40)
     night.stops(run)
     night.waits(run, 75)
+    night.lets_go()
     night.remembers()
     night.environment["PECLET_FAKE_IDENTITY"] = "built at two"
     night.types("peclet run night.json --workers 2", 6, ["has results of engine", "never mixes two"])

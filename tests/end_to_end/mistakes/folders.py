@@ -5,11 +5,12 @@ import signal
 from .night import workers_of
 
 
-def running(night, results=3, milliseconds=100):
-    """A campaign that runs and has its first results."""
+def running(night, results=3, milliseconds=100, command="peclet run night.json --workers 2"):
+    """A campaign that runs and has its first results, and does not end before the case lets go."""
     night.slow(milliseconds)
+    night.holds()
     night.write()
-    run = night.starts("peclet run night.json --workers 2")
+    run = night.starts(command)
     night.wait_for_results(results)
     return run
 
@@ -20,6 +21,7 @@ def second_owner(night):
     night.types("peclet run night.json", 5, [f"process {run.pid} owns this campaign", "peclet status", f"kill {run.pid}"])
     night.follows(r"kill \d+")
     night.waits(run, 75, ["workers checkpoint and stop"])
+    night.lets_go()
     night.remembers()
     night.types("peclet run night.json --quiet", 0, ["2 converged"])
     night.lost_nothing()
@@ -31,6 +33,7 @@ def lock_deleted(night):
     run = running(night)
     night.types("rm night.peclet/campaign.lock && peclet run night.json", 5, [f"process {run.pid} owns this campaign"])
     night.types("peclet status night.peclet", 0, [f"process {run.pid} runs it"])
+    night.lets_go()
     night.waits(run)
     night.remembers()
     night.lost_nothing()
@@ -40,6 +43,7 @@ def lock_deleted(night):
 def copied(night):
     """The folder copied with cp while it runs, and the copy run, too"""
     run = running(night)
+    night.lets_go()
     night.types("cp -r night.peclet copy.peclet && cp night.json copy.json && peclet run copy.json --quiet", (0, 6))
     if "damaged" in night.said:  # what was copied while it was written may be torn: then its own backup must help
         night.follows(r"peclet restore [^`]*")
@@ -56,6 +60,7 @@ def folder_deleted(night):
     night.remembers()
     night.types("rm -rf night.peclet || rm -rf night.peclet")
     night.waits(run, 6, ["was deleted while the campaign ran", "were saved in"])
+    night.lets_go()
     night.follows(r"peclet restore [^`]*", 0, ["restored from"])
     night.follows(r"peclet run [^`\n]*", 0, ["2 converged"])
     night.lost_nothing()
@@ -68,6 +73,7 @@ def folder_moved(night):
     night.remembers()
     night.types("mv night.peclet moved.peclet")
     night.waits(run, 6, ["was moved to", "moved.peclet", "--directory"])
+    night.lets_go()
     night.types("peclet run night.json --quiet --directory moved.peclet", 0, ["2 converged"])
     night.lost_nothing("moved.peclet")
 
@@ -77,6 +83,8 @@ def folders_below_deleted(night):
     run = running(night)
     night.remembers()
     night.types("rm -r night.peclet/spool night.peclet/logs night.peclet/checkpoints")
+    night.wait_for_answer(run, "made anew")
+    night.lets_go()
     night.waits(run, 0, ["somebody deleted", "spool/", "made anew", "2 converged"])
     night.lost_nothing()
     night.answers_as_undisturbed()
@@ -84,7 +92,7 @@ def folders_below_deleted(night):
 
 def spool_edited(night):
     """A result in the spool edited by hand"""
-    run = running(night, milliseconds=300)
+    run = running(night)
     os.kill(run.pid, signal.SIGKILL)
     run.wait()
     night.wait_for("the end of its workers", lambda: not workers_of(night))
@@ -93,6 +101,7 @@ def spool_edited(night):
                   "a bracket goes missing.")
     with open(night.path("night.peclet", "spool", "0123456789abcdef-000000-99.json"), "w") as f:
         f.write('{"schema_version": 1, "point": "corrected"')
+    night.lets_go()
     night.slow(20)
     night.types("peclet run night.json --workers 2", 0, ["is not taken", "it is kept in", "2 converged"])
     night.lost_nothing()

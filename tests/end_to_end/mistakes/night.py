@@ -55,7 +55,7 @@ class Night:
     def __init__(self, programs, folder):
         self.programs, self.folder = os.path.abspath(programs), folder
         self.environment = {**os.environ, "PATH": f"{self.programs}:/usr/bin:/bin", "PECLET_FAKE_STEP_MS": "2"}
-        for name in ("PECLET_FAKE_FAULTS", "PECLET_FAKE_IDENTITY"):
+        for name in ("PECLET_FAKE_FAULTS", "PECLET_FAKE_IDENTITY", "PECLET_FAKE_HOLD"):
             self.environment.pop(name, None)
         self.page = []  # what is typed and answered, for the transcript
         self.said = ""  # the last answer
@@ -128,12 +128,15 @@ class Night:
             raise Wrong(self.said)
         self.page.append(("code", got))
 
-    def results(self, data="night.peclet"):
-        """What the database of a campaign's folder holds."""
+    def query(self, sql, data="night.peclet"):
         database = sqlite3.connect(f"file:{self.path(data, 'campaign.db')}?mode=ro", uri=True, timeout=20)
         with contextlib.closing(database):
-            rows = database.execute("SELECT hash, seed, final_state_sha256 FROM realisation JOIN point USING (point_id) "
-                                    "WHERE state IN ('done', 'failed')").fetchall()
+            return database.execute(sql).fetchall()
+
+    def results(self, data="night.peclet"):
+        """What the database of a campaign's folder holds."""
+        rows = self.query("SELECT hash, seed, final_state_sha256 FROM realisation JOIN point USING (point_id) "
+                          "WHERE state IN ('done', 'failed')", data)
         return {(point, seed): state for point, seed, state in rows}
 
     def remembers(self, data="night.peclet"):
@@ -184,6 +187,27 @@ class Night:
 
     def wait_for_results(self, count, data="night.peclet"):
         self.wait_for(f"{count} results", lambda: len(self.results(data)) >= count)
+
+    def holds(self):
+        """The last seed of each point stands still half-way from now on: a run goes on until lets_go(), whatever the machine
+        does besides."""
+        with open(self.path("hold"), "w"):
+            pass
+        self.environment.update(PECLET_FAKE_HOLD=self.path("hold"), PECLET_FAKE_HOLD_SEED="7")
+
+    def lets_go(self):
+        with contextlib.suppress(FileNotFoundError):
+            os.remove(self.path("hold"))
+
+    def wait_for_answer(self, process, phrase):
+        """Until what was started has said that."""
+        log = next(log for known, log in self.started if known is process)
+
+        def said():
+            with open(log) as f:
+                return phrase in f.read()
+
+        self.wait_for(f"the answer {phrase!r}", said)
 
     def slow(self, milliseconds):
         self.environment["PECLET_FAKE_STEP_MS"] = str(milliseconds / 10)

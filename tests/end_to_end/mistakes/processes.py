@@ -9,12 +9,17 @@ from .night import workers_of
 
 def interrupted_twice(night):
     """Ctrl-C, and again because it takes a second"""
+    night.environment.update(PECLET_FAKE_FAULTS="hang:7", PECLET_FAKE_FAULT_STEP="0")  # it does not hear the first signal
     run = running(night)
+    night.wait_for("a seed that hangs", lambda: night.query("SELECT 1 FROM attempt WHERE seed = 7"))
     night.remembers()
     os.killpg(run.pid, signal.SIGINT)
+    night.wait_for_answer(run, "a second signal")  # two at once may come as one
     os.killpg(run.pid, signal.SIGINT)
     night.waits(run, 75, ["a second signal stops at once", "`peclet run night.json` goes on"])
     night.lost_nothing()
+    del night.environment["PECLET_FAKE_FAULTS"]
+    night.lets_go()
     night.slow(20)
     night.types("peclet run night.json --quiet", 0, ["2 converged"])
     night.lost_nothing()
@@ -29,6 +34,7 @@ def owner_killed(night):
     run.wait()
     night.remarks("The run is killed.")
     night.wait_for("the end of its workers", lambda: not workers_of(night))
+    night.lets_go()
     night.types("peclet status night.json", 0, ["nobody runs it now", "peclet run"])
     night.slow(20)
     night.types("peclet run night.json", 0, ["an earlier run left unfinished go on", "2 converged"])
@@ -41,6 +47,7 @@ def worker_killed(night):
     run = running(night)
     night.remembers()
     os.kill(workers_of(night)[0], signal.SIGKILL)
+    night.lets_go()
     night.waits(run, 0, ["2 converged"], ["lost"])
     night.lost_nothing()
     night.answers_as_undisturbed()
@@ -72,6 +79,7 @@ def connection_lost(night):
     os.killpg(run.pid, signal.SIGHUP)
     night.remarks("The terminal is gone; the shell sends its jobs SIGHUP.")
     night.waits(run, 75, ["workers checkpoint and stop", "`peclet run night.json` goes on"])
+    night.lets_go()
     night.lost_nothing()
     night.slow(20)
     night.types("peclet run night.json --quiet", 0, ["2 converged"])
@@ -80,11 +88,9 @@ def connection_lost(night):
 
 def connection_lost_under_nohup(night):
     """The same with nohup: it goes on"""
-    night.slow(40)
-    night.write()
-    run = night.starts("nohup peclet run night.json --workers 2")
-    night.wait_for_results(3)
+    run = running(night, milliseconds=40, command="nohup peclet run night.json --workers 2")
     os.killpg(run.pid, signal.SIGHUP)
+    night.lets_go()
     night.waits(run, 0, ["2 converged"], ["stop"])
 
 
