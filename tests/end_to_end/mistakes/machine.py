@@ -3,6 +3,8 @@ import glob
 import os
 import subprocess
 
+from .night import NotTried
+
 NOBODY = "setpriv --reuid=65534 --regid=65534 --clear-groups"
 
 
@@ -34,7 +36,7 @@ def read_only_folder(night):
 def run_as_root(night):
     """Run as root once, then as oneself"""
     if os.geteuid() != 0:
-        return
+        raise NotTried("not started as root")
     night.write()
     night.types("sudo() { \"$@\"; }; sudo peclet run night.json --quiet > table")
     night.remembers()
@@ -63,8 +65,7 @@ def clock_set_back(night):
     """The clock set back by a day between two runs"""
     library = glob.glob("/usr/lib/*/faketime/libfaketime.so.1")
     if not library:
-        night.remarks("(libfaketime is not installed: not tried)")
-        return
+        raise NotTried("libfaketime is not installed")
     night.slow(200)
     night.write()
     night.types("peclet run night.json --workers 2 --time-limit 0.4 --quiet > table", 75)
@@ -85,8 +86,7 @@ def can_mount(night):
 def full_disk(night):
     """The disk full while it runs"""
     if not can_mount(night):
-        night.remarks("(no file system can be mounted here: not tried)")
-        return
+        raise NotTried("no file system can be mounted here")
     night.write()
     night.slow(100)
     script = ("unshare -m bash -c 'mkdir night.peclet && mount -t tmpfs -o size=2m none night.peclet && "

@@ -51,6 +51,10 @@ class Wrong(Exception):
     """What a case expected and did not see."""
 
 
+class NotTried(Exception):
+    """What this machine lacks for a case."""
+
+
 class Night:
     def __init__(self, programs, folder):
         self.programs, self.folder = os.path.abspath(programs), folder
