@@ -33,6 +33,10 @@ def readers(lab, tally, chance, loops, seeds):
     """`loops` loops of `peclet status` beside the run, and a reader that is stopped while it holds its snapshot."""
     document_size = {"minimum": seeds, "maximum": seeds}
     campaign = Campaign(lab, steps=10, step_ms=4)
+    hold = os.path.join(campaign.folder, "hold")
+    with open(hold, "w"):  # no seed ends before there are readers
+        pass
+    campaign.environment["PECLET_FAKE_HOLD"] = hold
     campaign.document["realisations"] = document_size
     campaign.write()
     owner = campaign.start()
@@ -54,6 +58,7 @@ def readers(lab, tally, chance, loops, seeds):
     threads = [threading.Thread(target=look) for _ in range(loops)]
     for thread in threads:
         thread.start()
+    os.remove(hold)
     code = owner.wait()
     seconds = time.monotonic() - started
     for thread in threads:

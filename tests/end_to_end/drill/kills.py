@@ -21,13 +21,24 @@ def strike(process, whom):
     return len(victims)
 
 
+def seconds_alone(lab, document, **settings):
+    """How long such a campaign takes on this machine, so that random moments are of its whole length; of a slow one some
+    seconds will do."""
+    campaign = Campaign(lab, document, **settings)
+    started = time.monotonic()
+    campaign.run()
+    seconds = time.monotonic() - started
+    campaign.close()
+    return min(seconds, 2.5)
+
+
 def random_kills(lab, tally, chance, kills, document, per_campaign, **settings):
     """Kills at random moments; a campaign takes up to `per_campaign` of them before it is run to its end."""
     struck = collections.Counter()
+    whole = seconds_alone(lab, document, **settings)
     while sum(struck.values()) < kills:
         campaign = Campaign(lab, document, **settings)
         before = sum(struck.values())
-        whole = 0.15 if document is FAKE else 2.5
         for _ in range(per_campaign):
             process = campaign.start()
             time.sleep(chance.uniform(0, whole))

@@ -3,6 +3,7 @@ and engines that hang, crash or lie."""
 import json
 import os
 import re
+import time
 
 from drill.board import Board
 from drill.campaign import Campaign
@@ -41,7 +42,7 @@ def other_answer(lab, tally, chance, times):
         owner = campaign.start(dict(board.environment(lab.shim, role="worker", call="rename", path="/spool/", number=1,
                                                       action="wait"), PECLET_FAKE_DRIFT="1"))
         while not board.struck and owner.poll() is None:
-            pass
+            time.sleep(0.002)
         owner.kill()
         owner.wait()
         code = campaign.run()
