@@ -48,7 +48,17 @@ class Campaign:
             json.dump(document, f)
         self.environment = {**os.environ, **ENVIRONMENT, **(environment or {})}
         self.shared = os.path.join(folder, "shared")
+        self.hold = os.path.join(folder, "hold")
         self.processes = []
+
+    def holds(self, seed=0):
+        """This and later seeds of the fake engine stand still half-way from now on, and their tasks run, until lets_go()."""
+        with open(self.hold, "w"):
+            pass
+        self.environment.update(PECLET_FAKE_HOLD=self.hold, PECLET_FAKE_HOLD_SEED=str(seed))
+
+    def lets_go(self):
+        os.remove(self.hold)
 
     def start(self, *words):
         log = open(os.path.join(self.folder, "log"), "a")
@@ -89,6 +99,10 @@ class Campaign:
     def ask(self, query):
         with contextlib.closing(sqlite3.connect(f"file:{self.folder}/drill.peclet/campaign.db?mode=ro", uri=True)) as db:
             return db.execute(query).fetchone()[0]
+
+    def spooled(self):
+        spool = os.path.join(self.shared, "spool")
+        return [name for name in os.listdir(spool) if name.endswith(".json")] if os.path.isdir(spool) else []
 
     def ended(self):
         try:
@@ -155,6 +169,7 @@ class Drill:
         return f"{killed} engines of running tasks killed, {seen} reported"
 
     def killed_task(self, campaign):
+        campaign.holds(1)
         owner = campaign.start(*campaign.follow("--seeds-per-task", "2"))
         killed = 0
         for _ in range(3):
@@ -165,6 +180,7 @@ class Drill:
         self.cluster.say("scancel", element)
         self.running(campaign)
         self.cluster.say("scancel", "--signal=KILL", "--full", self.cluster.tasks()[0])
+        campaign.lets_go()
         assert owner.wait(300) == 0
         returned = campaign.ask("SELECT count(*) FROM bundle_seed WHERE outcome IN ('returned', 'killed')")
         assert returned > 0, campaign.log()
@@ -223,11 +239,13 @@ class Drill:
         return f"slurmctld stopped and killed under running tasks, and started again; node resumed {resumed} times"
 
     def controller_away(self, campaign):
+        campaign.holds()
         campaign.do(*campaign.hand_over())
         self.running(campaign, 2)
         out = campaign.ask("SELECT count(*) FROM bundle_seed WHERE outcome IS NULL")
         self.cluster.stop("slurmctld")
-        time.sleep(2)  # tasks end meanwhile
+        campaign.lets_go()
+        self.cluster.wait_until(campaign.spooled, "tasks that end meanwhile")
         campaign.do("ingest", "drill.json")
         assert "unknown" in campaign.log(), campaign.log()
         assert campaign.ask("SELECT count(*) FROM bundle_seed WHERE outcome NOT IN ('result')") == 0
@@ -240,6 +258,7 @@ class Drill:
 
     def answer_lost(self, campaign):
         template = template_of(campaign, 'sbatch --parsable "$@" "$script" >> "$HOME_OF_DRILL/numbers"; exit 1')
+        campaign.holds()
         campaign.do(*campaign.hand_over("--template", template))
         assert campaign.ask("SELECT count(*) FROM bundle WHERE job IS NULL") == 1, campaign.log()
         campaign.do(*campaign.hand_over("--template", template))  # nothing is left to hand over: only the name is asked for
@@ -247,6 +266,7 @@ class Drill:
         with open(os.path.join(campaign.folder, "numbers")) as f:
             submitted = len(f.readlines())
         assert submitted == 1, f"submitted {submitted} times"
+        campaign.lets_go()
         campaign.do(*campaign.follow())
         return "sbatch took the job and failed: found by its name, submitted once"
 
