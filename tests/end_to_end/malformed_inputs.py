@@ -9,12 +9,14 @@ import copy
 import hashlib
 import json
 import os
+import signal
 import socket
 import sqlite3
 import struct
 import subprocess
 import sys
 import tempfile
+import time
 
 SCENE = {
     "particles": {"count": 30, "density": 0.1,
@@ -113,6 +115,13 @@ def snapshot(folder):
     return files
 
 
+def catches(process, number):
+    """Whether a process has a handler of a signal."""
+    with open(f"/proc/{process}/status") as f:
+        caught = next(line.split()[1] for line in f if line.startswith("SigCgt:"))
+    return bool(int(caught, 16) >> (number - 1) & 1)
+
+
 class Trial:
     def __init__(self, bin_folder):
         self.peclet = os.path.abspath(os.path.join(bin_folder, "peclet"))
@@ -176,10 +185,10 @@ class Trial:
                 json.dump(scene, f)
             command = [self.engine, "run", "scene.json", "--checkpoint", "run.checkpoint"]
             process = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-            try:
-                process.wait(timeout=2)
-            except subprocess.TimeoutExpired:
-                process.terminate()
+            patience = time.monotonic() + 60
+            while process.poll() is None and time.monotonic() < patience and not catches(process.pid, signal.SIGTERM):
+                time.sleep(0.01)
+            process.terminate()
             process.communicate()
             assert process.returncode == 75, f"no checkpoint to alter: exit code {process.returncode}"
             with open(path, "rb") as f:
