@@ -88,10 +88,10 @@ def full_disk(night):
     if not can_mount(night):
         raise NotTried("no file system can be mounted here")
     night.write()
-    night.slow(100)
-    script = ("unshare -m bash -c 'mkdir night.peclet && mount -t tmpfs -o size=2m none night.peclet && "
-              "(sleep 1; head -c 3m /dev/zero > night.peclet/film.mkv; sleep 3; rm night.peclet/film.mkv) 2> /dev/null & "
-              "sleep 0.3; peclet run night.json --workers 2; cp -r night.peclet kept.peclet'")
+    night.slow(300)
+    script = ("unshare -m bash -c 'mkdir night.peclet && mount -t tmpfs -o size=16m none night.peclet && "
+              "{ (sleep 1; head -c 20m /dev/zero > night.peclet/film.mkv; sleep 3; rm night.peclet/film.mkv) 2> /dev/null & "
+              "peclet run night.json --workers 2; cp -r night.peclet kept.peclet; }'")
     night.types(script, 0, ["is full", "no further seed is given out", "there is room again", "2 converged"])
 
 
