@@ -17,7 +17,7 @@ TITLE = "Zero-shear viscosity by Green and Kubo"
 FRACTIONS = (0.30, 0.40, 0.45, 0.48, 0.50, 0.52, 0.54, 0.56)
 VISCOSITY, THERMAL_ENERGY = 0.1, 0.017
 BROWNIAN_TIME = VISCOSITY / THERMAL_ENERGY
-# A quarter of the window is the longest lag.
+# The longest lag is between an eighth and a quarter of the window: 15 samples times a power of two.
 SCENE = merged(REFERENCE_SCENE, {
     "particles": {"count": 250}, "flow": {"shear_rate": 0}, "fluid": {"thermal_energy": THERMAL_ENERGY},
     "observables": ["stress", "stress_correlation"],
