@@ -9,7 +9,7 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from campaigns import TABLE_SCENE, columns_of, completed, estimate, log_minimum, merged, number, propagated, quotient, term, viscosity_row, write_table  # noqa: E402
+from campaigns import TABLE_SCENE, columns_of, completed, estimate, log_minimum, merged, number, pair_viscosity, propagated, quotient, term, viscosity_row, write_table  # noqa: E402
 from green_kubo import table_at_rest  # noqa: E402
 from studies import Statement, data_block, gnuplot, main  # noqa: E402
 
@@ -20,17 +20,22 @@ CAMPAIGNS = {
     "flow-curve": ((1, 4.6, 22, 100, 460, 2200, 1e4), 8, 16, 40),
     "flow-curve-0.22": ((0.22,), 6, 16, 60),
     "flow-curve-0.046": ((0.046,), 0, 16, 200),
-    "flow-curve-0.01": ((0.01,), 0, 16, 400),
+    "flow-curve-0.01": ((0.01,), 0, 8, 400),
 }
 STIFFNESSES, STIFFNESS_PECLET = (2.5e3, 1e4, 4e4), (1, 1e4)
 
 
-def contact_over_structural(means):
-    """Of means of both; errors from the seeds' pairs of values."""
-    contact = [term(m, "contact_normal") for m in means]
+def structural_over(means, contact_of):
+    """Ratio of the means of the structural Brownian stress and of a contact stress; its error from the seeds' pairs of values."""
+    contact = [contact_of(m) for m in means]
     structural = [m["brownian_structural"][3] for m in means]
     ratio = sum(structural) / sum(contact)
     return ratio, estimate([s - ratio * c for c, s in zip(contact, structural)])[1] / abs(sum(contact) / len(contact))
+
+
+def controlled_contact(mean):
+    """The contact stress with the control variate, whose mean is zero: all that the pairs have beside lubrication."""
+    return pair_viscosity(mean) - term(mean, "lubrication")
 
 
 def rows_of(program, name, cases, seeds, patch=None):
@@ -39,7 +44,8 @@ def rows_of(program, name, cases, seeds, patch=None):
     rows = []
     for (fraction, stiffness, peclet), point in zip(cases, program.run(name, merged(TABLE_SCENE, patch or {}), settings, seeds)):
         row = {"fraction": fraction, "stiffness": stiffness, "peclet": peclet, **viscosity_row(point)}
-        row["structural_over_contact"], row["structural_over_contact_error"] = contact_over_structural(completed(point))
+        for name, contact_of in (("structural_over_contact", controlled_contact), ("structural_over_plain_contact", lambda m: term(m, "contact_normal"))):
+            row[name], row[f"{name}_error"] = structural_over(completed(point), contact_of)
         rows.append(row)
     return rows
 
@@ -60,6 +66,7 @@ def pick(rows, **keys):
 def curve_statements(rows, fraction):
     curve = sorted((r for r in rows if r["fraction"] == fraction), key=lambda r: r["peclet"])
     at = {r["peclet"]: r for r in curve}
+    known = [r for r in curve if r["peclet"] >= 0.22]  # below, errors are as large as the differences
     source = {0.45: "L4.5a", 0.50: "L4.5b", 0.55: "L4.5c"}[fraction]
 
     def statement(text, numbers, low=-math.inf, high=math.inf, peclet=1e4, essential=True):
@@ -67,12 +74,14 @@ def curve_statements(rows, fraction):
     yield statement("η_r of pairs at Pe = 0.22 over that at 1 (thinning)", quotient(number(at[0.22], "pairs"), number(at[1], "pairs")), low=1)
     yield statement("at Pe = 1 over that at 4.6 (thinning)", quotient(number(at[1], "pairs"), number(at[4.6], "pairs")), low=1)
     yield statement("log10 Pe of the minimum (4.6 within a step of the table)",
-                    propagated([number(r, "pairs") for r in curve], lambda v: log_minimum([r["peclet"] for r in curve], v)), 0, math.log10(22))
+                    propagated([number(r, "pairs") for r in known], lambda v: log_minimum([r["peclet"] for r in known], v)), 0, math.log10(22))
     yield statement("at Pe = 10⁴ over that at 4.6 (thickening)", quotient(number(at[1e4], "pairs"), number(at[4.6], "pairs")), low=1)
     yield statement("lubrication at Pe = 10⁴ over that at 1 (rises weakly: at most twice)", quotient(number(at[1e4], "lubrication"), number(at[1], "lubrication")), 1, 2, essential=False)
     unknown = math.nan, math.inf
     yield statement("structural Brownian stress over contact stress at Pe = 0.22", number(at[0.22], "structural_over_contact"), 0.8, 1.2, 0.22, essential=False)
     yield statement("structural Brownian stress over contact stress at Pe = 0.01", number(at[0.01], "structural_over_contact") if 0.01 in at else unknown, 0.8, 1.2, curve[0]["peclet"])
+    yield statement("the same with the contact stress as it is, without the control variate, at Pe = 0.01",
+                    number(at[0.01], "structural_over_plain_contact") if 0.01 in at else unknown, 0.8, 1.2, curve[0]["peclet"], essential=False)
     rest = at_rest()
     for peclet in (0.22, 0.046):
         if peclet in at:
@@ -114,7 +123,7 @@ def measure(program):
     table = [{"method": "implicit", "count": 250, **r} for r in rows + stiffness] + [{"method": "implicit", "count": 1000, **r} for r in large]
     table += [{"method": f"{m} at rate 0.045", "count": 250, **r} for m, r in methods.items()]
     write_table(os.path.join(HERE, "table.csv"), ["method", "count", "fraction", "stiffness", "peclet", "seeds", "lost", "transient",
-                                                  *columns_of("viscosity", "pairs", "lubrication", "contact", "structural", "structural_over_contact")], table, 4)
+                                                  *columns_of("viscosity", "pairs", "lubrication", "contact", "structural", "structural_over_contact", "structural_over_plain_contact")], table, 4)
     draw(rows)
     return statements
 
