@@ -9,7 +9,7 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from campaigns import TABLE_SCENE, columns_of, merged, number, propagated, quotient, viscosity_row, write_table  # noqa: E402
+from campaigns import TABLE_SCENE, columns_of, log_minimum, merged, number, propagated, quotient, viscosity_row, write_table  # noqa: E402
 from studies import Statement, data_block, gnuplot, main  # noqa: E402
 
 TITLE = "Friction and repulsion in flow curves"
@@ -62,6 +62,12 @@ def thickening(curve):
     return (propagated(numbers, lambda v: crossing(x, v, 0.5)), propagated(numbers, lambda v: crossing(x, v, 0.9) - crossing(x, v, 0.1)))
 
 
+def extent(curve):
+    """Decades of Pe from the minimum to 95 % of the thickening, with its standard error."""
+    x = [r["peclet"] for r in curve]
+    return propagated([number(r, "pairs") for r in curve], lambda v: crossing(x, v, 0.95) - log_minimum(x, v))
+
+
 def middle_stress(curve, scale):
     """log10 of the stress in the middle of the thickening, in units of A / (a^2 kappa) or, with `scale` 1, of kT / a^3."""
     factors = [r["peclet"] / (6 * math.pi) * scale for r in curve]
@@ -88,6 +94,8 @@ def statements_of(rows):
         middle, width = thickening(curve_of(rows, fraction, friction, 0))
         if fraction == 0.5:
             yield Statement(f"{name}, A = 0: decades of Pe from a tenth to nine tenths of the thickening (published: 4 to 5 in all)", source, *width, 3, 5, degrees, essential=False)
+            yield Statement(f"{name}, A = 0: decades of Pe from the minimum to 95 % of the thickening (published: 4 to 5)", source,
+                            *extent(curve_of(rows, fraction, friction, 0)), 3.5, 5.5, degrees, essential=False)
         for strength in (100, 1000):
             shifted, narrowed = thickening(curve_of(rows, fraction, friction, strength))
             yield Statement(f"{name}: width with A = {strength} kT less that with A = 0, decades of Pe", source, *less(narrowed, width), high=0, degrees=degrees)
