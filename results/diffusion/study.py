@@ -161,7 +161,7 @@ def measure(program):
     implicit = next(r for r in table if abs(r["ratio"] - RATIOS[1]) < 1e-9 and r["fraction"] == 0.3)
     return [*dilute_statements(curves, seeds, 0.02), *crowded_statements(table, seeds), long_time_statement(long),
             Statement("φ = 0.3: implicit steps over explicit ones", "method", implicit["diffusion"] / explicit["diffusion"],
-                      math.hypot(implicit["standard_error"], explicit["standard_error"]) / explicit["diffusion"], 0.9, 1.1, 7)]
+                      math.hypot(implicit["standard_error"], explicit["standard_error"]) / explicit["diffusion"], 0.9, 1.1, explicit["seeds"] - 1)]
 
 
 def draw(curves, table, long):

@@ -116,7 +116,7 @@ def measure(program):
                                                   *columns_of("viscosity", "pairs", "lubrication", "contact", "repulsion"), "stress", "stress_over_repulsion"], table, 4)
     draw(rows)
     return [*statements_of(rows), Statement("φ = 0.5, μ = 0.5, A = 1000 kT, Pe = 10⁴: η_r with implicit steps over that with explicit ones", "method",
-                                            *quotient(number(methods["implicit"], "viscosity"), number(methods["explicit"], "viscosity")), 0.9, 1.1, 5)]
+                                            *quotient(number(methods["implicit"], "viscosity"), number(methods["explicit"], "viscosity")), 0.9, 1.1, methods["explicit"]["seeds"] - 1)]
 
 
 def measured_method(program, method, patch):

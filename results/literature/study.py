@@ -110,7 +110,7 @@ def measure(program):
     draw(rows, curves)
     implicit = next(r for r in rows if (r["fraction"], r["friction"], r["gap"]) == (0.45, 1, 0.05))
     return [*steady_statements(rows), *noisy_statements(curves),
-            Statement("φ = 0.45, μ = 1, no noise: implicit steps over explicit ones", "method", *quotient(number(implicit, "viscosity"), number(explicit, "viscosity")), 0.9, 1.1, 3)]
+            Statement("φ = 0.45, μ = 1, no noise: implicit steps over explicit ones", "method", *quotient(number(implicit, "viscosity"), number(explicit, "viscosity")), 0.9, 1.1, explicit["seeds"] - 1)]
 
 
 def draw(rows, curves):

@@ -25,6 +25,11 @@ class Found:
         return self.found
 
 
+def within_bounds(found):
+    """Whether the value itself is what it must be: the error only decides whether that is known."""
+    return (found["low"] is None or found["low"] <= found["value"]) and (found["high"] is None or found["value"] <= found["high"])
+
+
 def statement(value, error, low=-math.inf, high=math.inf, degrees=7, essential=True):
     return Statement("", "", value, error, low, high, degrees, essential)
 
@@ -74,11 +79,15 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(verdict([self.holds, self.open_, self.fails]), "does not hold")
 
     def test_of_the_studies_follow_from_their_answers(self):
+        self.assertGreaterEqual(len(STUDIES), 11)
         for name in STUDIES:
             with self.subTest(name):
                 with open(os.path.join(RESULTS, name, "study.json")) as f:
                     study = json.load(f)
                 self.assertEqual(study["verdict"], verdict([Found(s) for s in study["statements"]]))
+                for found in study["statements"]:
+                    if found["answer"] != "open":
+                        self.assertEqual(found["answer"] == "holds", within_bounds(found), found["statement"])
 
 
 def numbers_of(cell):
@@ -105,12 +114,16 @@ class Pages(unittest.TestCase):
             for row, entry in zip(rows, found):
                 with self.subTest(f"{name}: {row[0].strip()}"):
                     self.assertEqual(row[-1].strip(), entry["answer"])
-                    for (printed, half), key in zip(numbers_of(row[-3]), ("value", "standard_error")):
+                    numbers = list(numbers_of(row[-3]))
+                    self.assertEqual(len(numbers), 2)
+                    for (printed, half), key in zip(numbers, ("value", "standard_error")):
                         if entry[key] is None:
                             self.assertTrue(math.isnan(printed))
                         else:
                             # What is stored has five digits itself.
                             self.assertLessEqual(abs(printed - entry[key]), half * 1.001 + abs(entry[key]) * 5e-5)
+                    bounds = [float(number) for number in re.findall("-?[0-9.]+", row[-2].replace("−", "-"))]
+                    self.assertEqual([f"{b:.4g}" for b in bounds], [f"{entry[key]:.4g}" for key in ("low", "high") if entry[key] is not None])
 
 
 if __name__ == "__main__":
