@@ -21,7 +21,7 @@ import time
 
 from drill.campaign import REAL
 
-# Seeds long enough for some checkpoints each, however fast the machine.
+# Seeds of many checkpoints each here, and of some on a machine that is several times faster.
 SCENE = dict(REAL["scene"], duration={"equilibration": {"strain": 0.3}, "production": {"strain": 4}})
 CHECKPOINT_SECONDS = 0.02
 FOLDERS = ("spool", "checkpoints", "logs", "backup", "failures")
