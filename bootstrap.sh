@@ -1,34 +1,37 @@
 #!/usr/bin/env bash
 # Sets the project up on Debian 12 and shows it at work. Asks nothing; may be repeated at any time.
 #
-#   ./bootstrap.sh demo    install the packages, build, run the demonstration campaign, print its table
-#   ./bootstrap.sh test    install the packages, build, run every test
-#   ./bootstrap.sh lint    formatting and clang-tidy of the whole source
-#   ./bootstrap.sh deps    install the packages only
+#   ./bootstrap.sh demo     install what building needs, build, run the demonstration campaign, print its table
+#   ./bootstrap.sh package  the same, and make a .tar.gz for any Linux and a .deb of it
+#   ./bootstrap.sh test     install the packages, build, run every test
+#   ./bootstrap.sh lint     formatting and clang-tidy of the whole source
+#   ./bootstrap.sh deps     install the packages only
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-packages=(
-  g++ cmake ninja-build pkg-config git                                     # to build
+to_build=(
+  g++ cmake ninja-build pkg-config git
   nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev                 # both programs
   librandom123-dev libsodium-dev libsqlite3-dev zlib1g-dev libboost-dev
-  libgtest-dev python3 python3-jsonschema sqlite3 libfaketime             # the tests
-  groff-base systemd                                                      # read manual pages and the unit, for the tests
-  lammps                                                                  # another engine, which tests run
+)
+to_test=(
+  libgtest-dev python3 python3-jsonschema sqlite3 libfaketime
+  groff-base systemd                                                      # read manual pages and the unit
+  lammps openmpi-bin                                                      # another engine, which tests run, also with MPI
   slurm-wlm munge                                                         # a Slurm to be tested with
   gnuplot-nox                                                             # pictures of the studies
-  clang-format clang-tidy                                                 # the source
 )
+to_lint=(clang-format clang-tidy)
 
 say() { printf '\n== %s\n' "$*"; }
 
 deps() {
   local missing=() package
-  for package in "${packages[@]}"; do
+  for package in "$@"; do
     dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
   done
   if [ ${#missing[@]} -eq 0 ]; then
-    say "All ${#packages[@]} Debian packages are installed."
+    say "All $# Debian packages are installed."
     return
   fi
   local root=()
@@ -55,13 +58,22 @@ build() {
 }
 
 demo() {
-  build ON --target peclet peclet-engine
+  build OFF --target peclet peclet-engine
   # A campaign belongs to the engine that computed it: another build starts another one.
   local folder
   folder=build/demo-$(sha256sum build/release/bin/peclet-engine | cut -c1-12).peclet
   say "Running results/demo/campaign.json into $folder (three Péclet numbers, ten seeds or more each; seconds)"
   echo "   Stop it with Ctrl-C and start again: it goes on where it was."
   build/release/bin/peclet run results/demo/campaign.json --directory "$folder"
+}
+
+package() {
+  say "Building programs that need no shared library into build/package"
+  cmake --preset package >/dev/null
+  cmake --build --preset package
+  cpack --preset package >/dev/null
+  say "build/package has"
+  (cd build/package && ls -lh peclet-*.tar.gz peclet_*.deb)
 }
 
 run_tests() {
@@ -79,12 +91,13 @@ lint() {
 }
 
 case "${1:-}" in
-  demo) deps && demo ;;
-  test) deps && run_tests ;;
-  lint) deps && lint ;;
-  deps) deps ;;
+  demo) deps "${to_build[@]}" && demo ;;
+  package) deps "${to_build[@]}" && package ;;
+  test) deps "${to_build[@]}" "${to_test[@]}" && run_tests ;;
+  lint) deps "${to_build[@]}" "${to_test[@]}" "${to_lint[@]}" && lint ;;
+  deps) deps "${to_build[@]}" "${to_test[@]}" "${to_lint[@]}" ;;
   *)
-    sed -n '2,7s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
+    sed -n '2,8s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
     exit 2
     ;;
 esac

@@ -1,0 +1,155 @@
+#!/usr/bin/python3
+"""release_drill.py FOLDER [--suite bookworm] [--mirror URL] [--root DIR]
+
+Tries the packages that `./bootstrap.sh package` leaves in FOLDER (build/package) on a Debian that has nothing of ours: the smallest
+that debootstrap makes, in a folder, as a user without rights. Needs root, debootstrap, readelf and a mirror; takes minutes, most of
+them debootstrap's; --root keeps what it made, for the next time. What must be so:
+
+    programs  ask for no shared library
+    .tar.gz   unpacked by the user, runs the demonstration; moved, it goes on; studies, adapters and manual pages are found
+    .deb      is installed by dpkg alone, runs the demonstration with the same bytes, and leaves nothing behind when removed
+"""
+import argparse
+import contextlib
+import glob
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+USER, HOME = "guest", "/home/guest"
+DEMO = "share/peclet/results/demo/campaign.json"
+
+
+def fail(message):
+    sys.exit(f"release_drill: {message}")
+
+
+def only(pattern):
+    found = glob.glob(pattern)
+    if len(found) != 1:
+        fail(f"{pattern}: must be one file, there are {len(found)}; `./bootstrap.sh package` makes it")
+    return found[0]
+
+
+def say(what):
+    print(f"ok  {what}", flush=True)
+
+
+class Root:
+    """A Debian in a folder."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def run(self, *command, user=None, folder="/", check=True):
+        words = ["chroot", *([f"--userspec={user}:{user}"] if user else []), self.path, "/usr/bin/env", "-i", "PATH=/usr/bin:/bin:/usr/sbin:/sbin",
+                 f"HOME={HOME}", "/bin/sh", "-c", 'cd "$1" && shift && exec "$@"', "sh", folder, *command]
+        done = subprocess.run(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        if check and done.returncode != 0:
+            fail(f"{' '.join(command)}: exit {done.returncode}\n{done.stdout}")
+        return done.stdout
+
+    def outside(self, path):
+        return os.path.join(self.path, path.lstrip("/"))
+
+
+@contextlib.contextmanager
+def debian(arguments):
+    with contextlib.ExitStack() as stack:
+        path = arguments.root or stack.enter_context(tempfile.TemporaryDirectory(prefix="release-drill-"))
+        path = os.path.abspath(path)
+        if not os.path.exists(os.path.join(path, "etc/debian_version")):
+            subprocess.run(["debootstrap", "--variant=minbase", arguments.suite, path, arguments.mirror], check=True, stdout=subprocess.DEVNULL)
+        # The programs ask /proc where they are.
+        subprocess.run(["mount", "-t", "proc", "proc", os.path.join(path, "proc")], check=True)
+        stack.callback(subprocess.run, ["umount", os.path.join(path, "proc")], check=True)
+        root = Root(path)
+        root.run("sh", "-c", f"id {USER} >/dev/null 2>&1 || useradd --create-home {USER}")
+        shutil.rmtree(root.outside(HOME))
+        os.mkdir(root.outside(HOME))
+        root.run("chown", f"{USER}:{USER}", HOME)
+        yield root
+
+
+def check_libraries(programs):
+    for program in programs:
+        said = subprocess.run(["readelf", "-l", "-d", program], check=True, capture_output=True, text=True).stdout
+        if "NEEDED" in said or "INTERP" in said or "LOAD" not in said:
+            fail(f"{program} asks for shared libraries:\n{said}")
+        notes = subprocess.run(["readelf", "-n", program], check=True, capture_output=True, text=True).stdout
+        [kernel] = re.findall(r"OS: Linux, ABI: ([\d.]+)", notes)
+    say(f"the programs need no shared library, and Linux {kernel} or newer")
+
+
+def demonstration(root, peclet, share, folder):
+    """Its table, and the SHA-256 of its canonical export."""
+    table = root.run(peclet, "run", f"{share}/{DEMO}", "--directory", folder, "--quiet", user=USER, folder=HOME)
+    if "3 points: 3 converged" not in table:
+        fail(f"the demonstration does not converge:\n{table}")
+    export = root.run(peclet, "export", folder, "--canonical", user=USER, folder=HOME)
+    return table, hashlib.sha256(export.encode()).hexdigest()
+
+
+def try_archive(root, archive):
+    shutil.copy(archive, root.outside(HOME))
+    root.run("tar", "xzf", os.path.basename(archive), user=USER, folder=HOME)
+    top = os.path.basename(archive).removesuffix(".tar.gz")
+    check_libraries([root.outside(f"{HOME}/{top}/bin/{name}") for name in ("peclet", "peclet-engine")])
+    table, digest = demonstration(root, f"{HOME}/{top}/bin/peclet", f"{HOME}/{top}", f"{HOME}/demo.peclet")
+    say(f"the archive runs the demonstration as a user without rights:\n\n{table}")
+
+    root.run("mv", top, "elsewhere", user=USER, folder=HOME)
+    peclet = f"{HOME}/elsewhere/bin/peclet"
+    again, same = demonstration(root, peclet, f"{HOME}/elsewhere", f"{HOME}/demo.peclet")
+    if (again, same) != (table, digest):
+        fail(f"after a move the table is another:\n{again}")
+    if "zero-shear" not in root.run(peclet, "study", "--list", user=USER, folder=HOME):
+        fail("the moved archive does not find its studies")
+    root.run(peclet, "init", "own.json", user=USER, folder=HOME)
+    root.run(peclet, "validate", "own.json", user=USER, folder=HOME)
+    root.run("test", "-x", "elsewhere/share/peclet/adapters/lammps/lammps_engine.py", user=USER, folder=HOME)
+    root.run("test", "-s", "elsewhere/share/man/man1/peclet-run.1", user=USER, folder=HOME)
+    say("moved to another folder it goes on, and finds engine, studies and adapters")
+    return digest
+
+
+def try_package(root, package, digest):
+    before = root.run("dpkg-query", "-W")
+    shutil.copy(package, root.outside("/tmp"))
+    root.run("dpkg", "-i", f"/tmp/{os.path.basename(package)}")
+    check_libraries([root.outside(f"/usr/bin/{name}") for name in ("peclet", "peclet-engine")])
+    _, same = demonstration(root, "peclet", "/usr", f"{HOME}/package.peclet")
+    if same != digest:
+        fail("the package gives other bytes than the archive")
+    say("dpkg installs the package with nothing beside it, and it gives the archive's bytes: it is the same engine")
+    files = [f for f in root.run("dpkg", "-L", "peclet").split("\n") if os.path.isfile(root.outside(f))]
+    root.run("dpkg", "--purge", "peclet")
+    left = [f for f in files if os.path.exists(root.outside(f))]
+    if left or root.run("dpkg-query", "-W") != before:
+        fail(f"purging leaves {left}")
+    say(f"purged, it leaves none of its {len(files)} files")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder")
+    parser.add_argument("--suite", default="bookworm")
+    parser.add_argument("--mirror", default="http://deb.debian.org/debian")
+    parser.add_argument("--root")
+    arguments = parser.parse_args()
+    if os.geteuid() != 0:
+        fail("needs root, to make a Debian in a folder")
+    for tool in ("debootstrap", "readelf"):
+        if not shutil.which(tool):
+            fail(f"needs {tool}: apt install debootstrap binutils")
+    archive, package = only(f"{arguments.folder}/peclet-*.tar.gz"), only(f"{arguments.folder}/peclet_*.deb")
+    with debian(arguments) as root:
+        try_package(root, package, try_archive(root, archive))
+
+
+if __name__ == "__main__":
+    main()
