@@ -31,11 +31,14 @@ bool means_no_room(int error);
 // Throws NoRoomError, or std::system_error naming the path; the temporary file is then removed.
 void write_durably(const std::filesystem::path& path, std::string_view bytes);
 
+// The same with what is left to read of an open file of `bytes` bytes, which need not fit into memory.
+void copy_durably(int from, std::uint64_t bytes, const std::filesystem::path& path);
+
 // Gives a file that somebody else has written its final name: its bytes are on disk before the name is.
 // Throws std::system_error naming the path.
 void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to);
 
-// The first of PATH, PATH.1, PATH.2 ... that is not there.
+// The first of PATH, PATH.1, PATH.2 ... that is not there, not even as a link to nothing.
 std::filesystem::path free_name(const std::filesystem::path& path);
 
 // The whole content. Throws std::system_error naming the path.

@@ -111,8 +111,8 @@ std::optional<Json> FrameDecoder::next() {
   for (std::size_t i = 0; i < 4; ++i) {
     length |= std::size_t{static_cast<unsigned char>(unread[magic.size() + i])} << (8 * i);
   }
-  if (length > largest_frame) {
-    throw FrameError(fmt::format("a frame announces {} bytes, more than {}", length, largest_frame));
+  if (length > largest_) {
+    throw FrameError(fmt::format("a frame announces {} bytes, more than {}", length, largest_));
   }
   if (unread.size() - header_size < length) return std::nullopt;
 

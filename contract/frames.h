@@ -17,6 +17,8 @@
 namespace peclet {
 
 constexpr std::size_t largest_frame = std::size_t{64} << 20;
+// Of what an engine says. A job may hold a scene of many particles; a result is a file.
+constexpr std::size_t largest_answer = std::size_t{1} << 20;
 
 // The peer sent something that is no frame: wrong magic or version, oversize, no JSON object, no "type".
 class FrameError : public std::runtime_error {
@@ -29,6 +31,8 @@ std::string encode_frame(const Json& message);
 // Collects bytes as they come and hands out whole messages.
 class FrameDecoder {
  public:
+  // Frames longer than `largest` are refused when they are announced.
+  explicit FrameDecoder(std::size_t largest = largest_frame) : largest_(largest) {}
   void feed(const char* bytes, std::size_t count);
   // The next whole message, or nothing yet. Throws FrameError; the stream is then unusable.
   std::optional<Json> next();
@@ -37,12 +41,15 @@ class FrameDecoder {
  private:
   std::string buffer_;
   std::size_t begin_ = 0;
+  std::size_t largest_;
 };
 
 // Blocking use of one end of a socket pair; the engine's side. Does not own the descriptor.
 class FrameChannel {
  public:
-  explicit FrameChannel(int descriptor) : descriptor_(descriptor) {}
+  // As FrameDecoder.
+  explicit FrameChannel(int descriptor, std::size_t largest = largest_frame)
+      : descriptor_(descriptor), decoder_(largest) {}
 
   // Sends a whole frame. Throws std::system_error; a closed peer is EPIPE, never a signal.
   void send(const Json& message);

@@ -1,15 +1,27 @@
 #include "contract/input_error.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "contract/printable.h"
 
 namespace peclet {
 
 namespace {
 
-std::string joined(const std::string& file, const std::string& pointer, const std::string& value,
-                   const std::string& allowed) {
+// Of what is quoted. What is allowed has the room that is left, which may name files, too.
+constexpr std::size_t longest_file = 160, longest_pointer = 100, longest_value = 60;
+constexpr std::size_t separators = 6;  // three times ": "
+
+std::string fitting(const std::string& allowed, std::size_t used) {
+  constexpr std::size_t least = longest_message - longest_file - longest_pointer - longest_value - separators;
+  return printable(
+      allowed, std::max(least, longest_message - separators - std::min(used, longest_message - separators)));
+}
+
+std::string joined(const InputError::Parts& parts) {
   std::string message;
-  for (const std::string* part : {&file, &pointer, &value, &allowed}) {
+  for (const std::string* part : {&parts.file, &parts.pointer, &parts.value, &parts.allowed}) {
     if (part->empty()) continue;
     if (!message.empty()) message += ": ";
     message += *part;
@@ -17,17 +29,23 @@ std::string joined(const std::string& file, const std::string& pointer, const st
   return message;
 }
 
+InputError::Parts shown(const InputError::Parts& given) {
+  InputError::Parts parts{printable(given.file, longest_file), printable(given.pointer, longest_pointer),
+                          printable(given.value, longest_value), ""};
+  parts.allowed = fitting(given.allowed, parts.file.size() + parts.pointer.size() + parts.value.size());
+  return parts;
+}
+
 }  // namespace
 
-InputError::InputError(std::string file, std::string pointer, std::string value, std::string allowed)
-    : std::runtime_error(joined(file, pointer, value, allowed)),
-      file_(std::move(file)),
-      pointer_(std::move(pointer)),
-      value_(std::move(value)),
-      allowed_(std::move(allowed)) {}
+InputError::InputError(const std::string& file, const std::string& pointer, const std::string& value,
+                       const std::string& allowed)
+    : InputError(shown({file, pointer, value, allowed})) {}
+
+InputError::InputError(Parts parts) : std::runtime_error(joined(parts)), parts_(std::move(parts)) {}
 
 InputError InputError::within(const std::string& file, const std::string& prefix) const {
-  return {file, prefix + pointer_, value_, allowed_};
+  return {file, prefix + parts_.pointer, parts_.value, parts_.allowed};
 }
 
 }  // namespace peclet

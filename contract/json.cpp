@@ -8,20 +8,23 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <set>
+#include <limits>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
+#include "contract/input_file.h"
+#include "contract/printable.h"
 
 namespace peclet {
 
 namespace {
 
 // Deeper documents are refused: everything that walks a document recurses, and nothing of ours is deep.
-constexpr int deepest_nesting = 200;
+constexpr std::size_t deepest_nesting = 200;
 
 // Walks over the text and remembers how far the parser has come, so that faults that only the callback sees
 // (it is told no position) can be placed too.
@@ -98,6 +101,76 @@ std::string usual_fault(std::string_view text, std::size_t offset) {
   return "";
 }
 
+// Builds the document from what the parser meets, and refuses on the way what would take memory or say
+// something twice. What it throws has no place yet.
+class Builder {
+ public:
+  struct Fault {
+    std::string what;
+  };
+
+  explicit Builder(std::size_t most_values) : most_values_(most_values) {}
+
+  Json take() { return std::move(root_); }
+
+  // What the parser asks for.
+  // NOLINTBEGIN(readability-identifier-naming)
+  bool null() { return add(nullptr); }
+  bool boolean(bool value) { return add(value); }
+  bool number_integer(Json::number_integer_t value) { return add(value); }
+  bool number_unsigned(Json::number_unsigned_t value) { return add(value); }
+  bool number_float(Json::number_float_t value, const std::string& /*spelt*/) { return add(value); }
+  bool string(std::string& value) { return add(std::move(value)); }
+  bool binary(Json::binary_t& value) { return add(std::move(value)); }
+  bool start_object(std::size_t /*size*/) { return open(Json::object()); }
+  bool start_array(std::size_t /*size*/) { return open(Json::array()); }
+  bool end_object() { return close(); }
+  bool end_array() { return close(); }
+  bool key(std::string& name) {
+    const auto [member, is_new] = open_.back()->get_ref<Json::object_t&>().try_emplace(name);
+    if (!is_new) throw Fault{fmt::format("duplicate key {}", shortened_key(name))};
+    member_ = &member->second;
+    return true;
+  }
+  [[noreturn]] bool parse_error(std::size_t /*place*/, const std::string& /*last*/,
+                                const Json::exception& error) {
+    if (const auto* fault = dynamic_cast<const Json::parse_error*>(&error)) throw *fault;
+    throw Fault{reason(error.what())};  // a number that is too large
+  }
+  // NOLINTEND(readability-identifier-naming)
+
+ private:
+  static std::string shortened_key(const std::string& name) { return printable(Json(name).dump(), 60); }
+
+  Json& put(Json value) {
+    if (++values_ > most_values_) throw Fault{fmt::format("more than {} values", most_values_)};
+    if (open_.empty()) return root_ = std::move(value);
+    if (open_.back()->is_array()) {
+      return open_.back()->get_ref<Json::array_t&>().emplace_back(std::move(value));
+    }
+    return *member_ = std::move(value);
+  }
+  bool add(Json value) {
+    put(std::move(value));
+    return true;
+  }
+  bool open(Json empty) {
+    if (open_.size() >= deepest_nesting)
+      throw Fault{fmt::format("nested more than {} deep", deepest_nesting)};
+    open_.push_back(&put(std::move(empty)));
+    return true;
+  }
+  bool close() {
+    open_.pop_back();
+    return true;
+  }
+
+  std::size_t most_values_, values_ = 0;
+  Json root_;
+  std::vector<Json*> open_;  // the innermost object or array last
+  Json* member_ = nullptr;   // of an open object: what the key before names
+};
+
 void write_number(double number, std::string& out) {
   if (!std::isfinite(number))
     throw std::invalid_argument("canonical JSON has no spelling for NaN and infinity");
@@ -142,6 +215,10 @@ void write_canonical(const Json& value, std::string& out) {
 }  // namespace
 
 Json parse_json(std::string_view text, const std::string& file) {
+  return parse_json_input(text, file, std::numeric_limits<std::size_t>::max());
+}
+
+Json parse_json_input(std::string_view text, const std::string& file, std::size_t most_values) {
   const char* furthest = text.data();
   const auto fault = [&](std::size_t offset, const std::string& message) {
     return InputError(file, "", "", place(text, offset) + ": " + message);
@@ -151,29 +228,22 @@ Json parse_json(std::string_view text, const std::string& file) {
     return read == 0 ? 0 : read - 1;
   };
 
-  std::vector<std::set<std::string>> open_objects;
-  const auto watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
-    if (depth > deepest_nesting) {
-      throw fault(here(), fmt::format("nested more than {} deep", deepest_nesting));
-    }
-    if (event == Json::parse_event_t::object_start) open_objects.emplace_back();
-    if (event == Json::parse_event_t::object_end) open_objects.pop_back();
-    if (event == Json::parse_event_t::key && !open_objects.back().insert(parsed.get<std::string>()).second) {
-      throw fault(here(), fmt::format("duplicate key {}", parsed.dump()));
-    }
-    return true;
-  };
-
+  // The parser takes it for the end of the text.
+  if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
+    throw fault(nul, "a NUL character; JSON is plain text in UTF-8");
+  }
+  Builder builder(most_values);
   try {
     const char* const end = text.data() + text.size();
-    return Json::parse(TrackedIterator(text.data(), &furthest), TrackedIterator(end, &furthest), watch);
+    Json::sax_parse(TrackedIterator(text.data(), &furthest), TrackedIterator(end, &furthest), &builder);
+    return builder.take();
   } catch (const Json::parse_error& error) {
     const std::size_t offset = std::min(text.size(), error.byte == 0 ? 0 : error.byte - 1);
     const std::string why = reason(error.what()), usual = usual_fault(text, offset);
     // Where the fault is known, what the parser read last and expected instead says less.
     throw fault(offset, usual.empty() ? why : why.substr(0, why.find("; ")) + usual);
-  } catch (const Json::exception& error) {
-    throw fault(here(), reason(error.what()));
+  } catch (const Builder::Fault& refused) {
+    throw fault(here(), refused.what);
   }
 }
 

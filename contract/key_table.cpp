@@ -55,7 +55,7 @@ bool is_allowed(const Key& key, const Json& value) {
     case KeyKind::object:
       return value.is_object();
     case KeyKind::array:
-      return value.is_array() && value.size() >= key.minimum_items;
+      return value.is_array() && value.size() >= key.minimum_items && value.size() <= key.maximum_items;
     case KeyKind::boolean:
       return value.is_boolean();
     case KeyKind::string:

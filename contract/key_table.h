@@ -28,6 +28,7 @@ struct Key {
   bool below_maximum = false;             // strictly less than `maximum`
   std::vector<std::string> choices = {};  // of KeyKind::choice
   std::size_t minimum_items = 0;          // of KeyKind::array
+  std::size_t maximum_items = std::numeric_limits<std::size_t>::max();
 };
 
 class KeyTable {

@@ -23,6 +23,13 @@ std::string range_in_words(const Key& key) {
   return words;
 }
 
+// " of 1 to 256"; nothing where any number will do.
+std::string items_in_words(const Key& key) {
+  if (key.maximum_items < std::numeric_limits<std::size_t>::max())
+    return fmt::format(" of {} to {}", key.minimum_items, key.maximum_items);
+  return key.minimum_items == 0 ? "" : fmt::format(" of {} or more", key.minimum_items);
+}
+
 // A bound as people and canonical JSON write it: 1, not 1.0.
 Json bound(double number) { return Json::parse(canonical_json(number)); }
 
@@ -48,6 +55,7 @@ Json schema_of(const KeyTable& table, const Key& key) {
     case KeyKind::array:
       schema["type"] = "array";
       if (key.minimum_items > 0) schema["minItems"] = key.minimum_items;
+      if (key.maximum_items < std::numeric_limits<std::size_t>::max()) schema["maxItems"] = key.maximum_items;
       if (const Key* element = table.find(key.pointer + "/*")) schema["items"] = schema_of(table, *element);
       break;
     case KeyKind::boolean:
@@ -109,8 +117,7 @@ std::string allowed_values(const Key& key) {
     case KeyKind::object:
       return "must be an object";
     case KeyKind::array:
-      return key.minimum_items == 0 ? "must be an array"
-                                    : fmt::format("must be an array of {} or more", key.minimum_items);
+      return "must be an array" + items_in_words(key);
     case KeyKind::boolean:
       return "must be true or false";
     case KeyKind::string:

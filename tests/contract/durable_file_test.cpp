@@ -2,34 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <system_error>
 #include <thread>
 #include <vector>
 
 #include "contract/sha256.h"
+#include "tests/contract/temporary_folder.h"
 
 namespace peclet {
 namespace {
 
 namespace fs = std::filesystem;
 
-class DurableFile : public testing::Test {
- protected:
-  DurableFile() : folder_(make()) {}
-  ~DurableFile() override { fs::remove_all(folder_); }
-  std::size_t entries() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-  }
-  const fs::path& folder() const { return folder_; }
-
- private:
-  static fs::path make() {
-    std::string pattern = (fs::temp_directory_path() / "durable_file_XXXXXX").string();
-    return ::mkdtemp(pattern.data());
-  }
-  fs::path folder_;
-};
+using DurableFile = TemporaryFolder;
 
 TEST_F(DurableFile, ReadsBackWhatWasWrittenAndLeavesNothingElse) {
   const std::string bytes("a\0b\n\xff", 5);
@@ -76,6 +61,16 @@ TEST_F(DurableFile, Sha256IsThePublishedOne) {
   EXPECT_EQ(sha256_of_file(folder() / "f"),
             "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
   EXPECT_THROW(sha256_of_file(folder() / "g"), std::system_error);
+}
+
+TEST_F(DurableFile, ThatCannotBeMadeIsCalledByItsOwnName) {
+  const std::filesystem::path path = folder() / "absent" / "f";
+  try {
+    write_durably(path, "x");
+    FAIL();
+  } catch (const std::system_error& error) {
+    EXPECT_EQ(error.what(), "cannot create " + path.string() + ": No such file or directory");
+  }
 }
 
 }  // namespace

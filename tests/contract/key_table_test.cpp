@@ -173,5 +173,23 @@ TEST(KeyTable, ManualHasOneRowForEachKey) {
   EXPECT_NE(page.find("| `/box/shape` | It. |  | `\"cubic\"` | one of: cubic, flat |\n"), std::string::npos);
 }
 
+TEST(KeyTable, AnArrayMayHaveAMostNumberOfItems) {
+  const KeyTable table("T", {{.pointer = "/sizes",
+                              .kind = KeyKind::array,
+                              .meaning = "They.",
+                              .minimum_items = 1,
+                              .maximum_items = 3}});
+  EXPECT_NO_THROW(table.validate({{"sizes", {1, 2, 3}}}, "f.json"));
+  for (const Json& sizes : {Json::array(), Json{1, 2, 3, 4}}) {
+    try {
+      table.validate({{"sizes", sizes}}, "f.json");
+      ADD_FAILURE() << sizes;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.allowed(), "must be an array of 1 to 3");
+    }
+  }
+  EXPECT_EQ(table.json_schema("t")["properties"]["sizes"]["maxItems"], 3);
+}
+
 }  // namespace
 }  // namespace peclet

@@ -1,0 +1,110 @@
+#include "contract/output_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <optional>
+#include <string>
+#include <system_error>
+
+#include "contract/descriptor.h"
+#include "contract/durable_file.h"
+#include "contract/input_error.h"
+
+namespace peclet {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int most_links = 40;  // as the kernel
+
+struct Target {
+  fs::path path;                  // no link any more
+  std::optional<int> descriptor;  // of this process, where the name stands for one
+  bool exists = false;
+  mode_t mode = 0;
+};
+
+[[noreturn]] void refuse(const fs::path& path, const std::string& why) {
+  throw InputError(path.string(), "", "", why);
+}
+
+[[noreturn]] void refuse(const fs::path& path, int error) {
+  refuse(path, fmt::format("cannot be written: {}", std::generic_category().message(error)));
+}
+
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
+
+// /dev/stdout is a link to /proc/self/fd/1. Opening that again would begin at the start of a file to which a
+// shell appends, and a socket cannot be opened at all: what is open already is what is meant.
+std::optional<int> descriptor_named(const fs::path& path) {
+  std::error_code absent, without_proc;
+  const fs::path folder = fs::canonical(folder_of(path), absent);
+  const fs::path own = fs::canonical("/proc/self/fd", without_proc);
+  const std::string name = path.filename().string();
+  int number = -1;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  const bool is_number = !name.empty() && error == std::errc{} && end == name.data() + name.size();
+  if (absent || without_proc || !is_number || folder != own) return std::nullopt;
+  return number;
+}
+
+Target follow(const fs::path& given) {
+  Target target{given, std::nullopt};
+  for (int links = 0; links < most_links; ++links) {
+    target.descriptor = descriptor_named(target.path);
+    if (target.descriptor) return target;
+    struct stat about {};
+    target.exists = lstat(target.path.c_str(), &about) == 0;
+    if (!target.exists && errno != ENOENT) refuse(given, errno);
+    target.mode = about.st_mode;
+    if (!target.exists || !S_ISLNK(about.st_mode)) return target;
+    std::error_code error;
+    const fs::path next = fs::read_symlink(target.path, error);
+    if (error) refuse(given, error.value());
+    target.path = next.is_absolute() ? next : folder_of(target.path) / next;
+  }
+  refuse(given, ELOOP);
+}
+
+void check(const fs::path& given, const Target& target) {
+  if (target.descriptor) {
+    const int status = fcntl(*target.descriptor, F_GETFL);
+    if (status < 0 || (status & O_ACCMODE) == O_RDONLY) refuse(given, EBADF);
+    return;
+  }
+  if (!target.path.has_filename()) refuse(given, "must be the name of a file, and is that of a folder");
+  if (!target.exists || S_ISREG(target.mode)) {
+    const fs::path folder = folder_of(target.path);
+    struct stat about {};
+    if (stat(folder.c_str(), &about) != 0) {
+      refuse(given, fmt::format("cannot be written: the folder {} is not there", folder.string()));
+    }
+    if (access(folder.c_str(), W_OK | X_OK) != 0) refuse(given, errno);
+    return;
+  }
+  if (S_ISDIR(target.mode)) refuse(given, "is a folder: must be the name of a file");
+  if (S_ISSOCK(target.mode)) refuse(given, "is a socket: must be the name of a file");
+  if (access(target.path.c_str(), W_OK) != 0) refuse(given, errno);
+}
+
+}  // namespace
+
+void check_output(const fs::path& path) { check(path, follow(path)); }
+
+void write_output(const fs::path& path, std::string_view bytes) {
+  const Target target = follow(path);
+  check(path, target);
+  if (target.descriptor) return write_all(*target.descriptor, bytes, path);
+  if (!target.exists || S_ISREG(target.mode)) return write_durably(target.path, bytes);
+  Descriptor file = open_file(target.path, O_WRONLY | O_NOCTTY);
+  if (file.number() < 0) fail_to("cannot open", path);
+  write_all(file.number(), bytes, path);
+  if (file.close() != 0 && errno != EINTR) fail_to("cannot close", path);
+}
+
+}  // namespace peclet
