@@ -4,8 +4,8 @@
 #include <tuple>
 
 #include "engine/configuration.h"
+#include "engine/kernels/force_field.h"
 #include "engine/kernels/pair_access.h"
-#include "engine/kernels/pair_pass.h"
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {
@@ -201,32 +201,31 @@ class Evaluation {
   }
 
   void add_one_body() {
-    const Physics& physics = configuration_.physics;
-    const ParticleState& particles = configuration_.particles;
-    for (std::size_t i = 0; i < particles.count(); ++i) {
-      const double zeta = translational_drag(physics.viscosity, particles.radius[i]);
-      const double zeta_r = rotational_drag(physics.viscosity, particles.radius[i]);
-      const Vector3 streaming = streaming_velocity(physics.shear_rate, particles.position[i].y);
-      by_term_.add_single(
-          "drag", i, drag_force(zeta, streaming, particles.velocity[i]),
-          drag_force(zeta_r, streaming_spin(physics.shear_rate), particles.angular_velocity[i]));
+    System system;
+    system.particles = configuration_.particles;
+    const std::size_t count = system.particles.count();
+    const ForceField field(configuration_.physics, system.particles,
+                           configuration_.noise ? configuration_.noise->timestep : 0, /*seed=*/0,
+                           /*threads=*/1, set_);
+    VectorField force(count), torque(count), noise_force(count), noise_torque(count);
+    field.one_body().set_drag(field.one_body_input(system, force, torque), 0, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      by_term_.add_single("drag", i, force[i], torque[i]);
       if (configuration_.noise) {
-        const double amplitude = std::sqrt(2 * physics.thermal_energy / configuration_.noise->timestep);
-        by_term_.add_single("brownian_drag", i,
-                            drag_noise_amplitude(amplitude, zeta) * configuration_.noise->force[i],
-                            drag_noise_amplitude(amplitude, zeta_r) * configuration_.noise->torque[i]);
+        const NormalPair normals = {configuration_.noise->force[i], configuration_.noise->torque[i]};
+        field.add_drag_noise(system, i, normals, noise_force, noise_torque);
+        by_term_.add_single("brownian_drag", i, noise_force[i], noise_torque[i]);
       }
     }
   }
 
-  // 2 eta E of the solvent, and 20/3 pi eta a^3 E of each isolated sphere.
   void add_uniform_flow() {
     const Physics& physics = configuration_.physics;
-    SymmetricTensor solvent;
-    solvent.xy = physics.viscosity * physics.shear_rate;
+    const SymmetricTensor solvent = solvent_stress(physics.viscosity, physics.shear_rate);
     by_term_.add_stress("solvent", solvent);
-    const double volume_fraction = solid_volume(configuration_.particles) / configuration_.box.volume();
-    by_term_.add_stress("stresslet", (2.5 * volume_fraction) * solvent);
+    by_term_.add_stress(
+        "stresslet",
+        stresslet(solid_volume(configuration_.particles) / configuration_.box.volume(), solvent));
   }
 
   const Configuration& configuration_;

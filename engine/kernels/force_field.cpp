@@ -102,9 +102,8 @@ void ForceField::add_drag_noise(const System& system, std::size_t begin, std::si
     fill_normals_(key, identity, nullptr, normals);
     for (std::size_t k = 0; k < count; ++k) {
       const auto normal = [&](int c) { return static_cast<double>(normals.value[c][k]); };
-      const OneBodyFactors& amplitude = drag_noise_[system.particles.size_class[first + k]];
-      force.add(first + k, amplitude.translational * Vector3{normal(0), normal(1), normal(2)});
-      torque.add(first + k, amplitude.rotational * Vector3{normal(3), normal(4), normal(5)});
+      add_drag_noise(system, first + k,
+                     {{normal(0), normal(1), normal(2)}, {normal(3), normal(4), normal(5)}}, force, torque);
     }
   }
 }

@@ -39,6 +39,14 @@ class ForceField {
   OneBodyInput one_body_input(System& system, VectorField& force, VectorField& torque,
                               const OneBodyFactors* kicks = nullptr) const;
 
+  // Adds to a particle's rows the noise of its drag that belongs to these standard normals.
+  void add_drag_noise(const System& system, std::size_t i, const NormalPair& normals, VectorField& force,
+                      VectorField& torque) const {
+    const OneBodyFactors& amplitude = drag_noise_[system.particles.size_class[i]];
+    force.add(i, amplitude.translational * normals.first);
+    torque.add(i, amplitude.rotational * normals.second);
+  }
+
   const Terms& terms() const { return terms_; }
   const std::vector<PairKind>& kinds() const { return kinds_; }
   const Physics& physics() const { return physics_; }

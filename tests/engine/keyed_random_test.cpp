@@ -9,6 +9,7 @@
 #include <functional>
 #include <iostream>
 #include <iterator>
+#include <map>
 #include <numbers>
 
 #include "engine/kernels/instruction_set.h"
@@ -106,6 +107,22 @@ TEST(KeyedRandom, NeighbouringKeysAreIndependent) {
       EXPECT_NEAR(products[n][k] / keys, 0, allowed / std::sqrt(keys)) << n << ' ' << k;
       for (std::size_t l = 0; l < k; ++l) {
         EXPECT_NEAR(within[k][l] / keys, 0, allowed / std::sqrt(keys));
+      }
+    }
+  }
+}
+
+// In a small box a sphere meets another one through several images, each of which must have its own noise.
+TEST(KeyedRandom, EveryImageOfAPairHasItsOwnNoise) {
+  const KeyedRandom random(3, Purpose::pair_noise);
+  std::map<double, LatticeShift> seen;
+  for (int x = -2; x <= 2; ++x) {
+    for (int y = -2; y <= 2; ++y) {
+      for (int z = -2; z <= 2; ++z) {
+        const auto [same, is_new] =
+            seen.try_emplace(random.normals(7, 1, 2, {x, y, z}).first.x, LatticeShift{x, y, z});
+        EXPECT_TRUE(is_new) << x << ' ' << y << ' ' << z << " has the noise of " << same->second.x << ' '
+                            << same->second.y << ' ' << same->second.z;
       }
     }
   }

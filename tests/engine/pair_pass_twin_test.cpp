@@ -5,9 +5,9 @@
 #include <array>
 #include <iostream>
 #include <map>
+#include <numbers>
 #include <tuple>
 
-#include "engine/terms/drag.h"
 #include "tests/engine/bits.h"
 #include "tests/engine/dense_suspension.h"
 #include "tests/engine/every_image.h"
@@ -118,15 +118,14 @@ TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
     torque.add(j, sum.torque_second);
   }
   for (std::uint32_t i = 0; i < 150; ++i) {
-    const double zeta = translational_drag(physics.viscosity, all.radius[i]);
-    const double zeta_r = rotational_drag(physics.viscosity, all.radius[i]);
+    const double a = all.radius[i], zeta = 6 * std::numbers::pi * physics.viscosity * a;
+    const double zeta_r = 8 * std::numbers::pi * physics.viscosity * a * a * a;
     const NormalPair normals = single.normals(system.step, i);
     const double c = parameters.noise_amplitude;
-    force.add(i,
-              drag_force(zeta, streaming_velocity(physics.shear_rate, all.position[i].y), all.velocity[i]) +
-                  drag_noise_amplitude(c, zeta) * normals.first);
-    torque.add(i, drag_force(zeta_r, streaming_spin(physics.shear_rate), all.angular_velocity[i]) +
-                      drag_noise_amplitude(c, zeta_r) * normals.second);
+    const Vector3 streaming = {physics.shear_rate * all.position[i].y, 0, 0};
+    const Vector3 spin = {0, 0, -0.5 * physics.shear_rate};
+    force.add(i, zeta * (streaming - all.velocity[i]) + c * std::sqrt(zeta) * normals.first);
+    torque.add(i, zeta_r * (spin - all.angular_velocity[i]) + c * std::sqrt(zeta_r) * normals.second);
   }
   const Evaluation found = evaluated(physics, system, 1);
   expect_near(components(force), components(found.force), "force");

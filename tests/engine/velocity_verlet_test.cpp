@@ -123,6 +123,41 @@ TEST(VelocityVerlet, IsStableExactlyUpToItsLimit) {
   }
 }
 
+// One contact without lubrication: relative motion has w^2 = k_n (1/m + 1/m) and the drag's rate l, and is at
+// the end of its range where w^2 dt^2 + 2 l dt = 4.
+TEST(VelocityVerlet, SharesOfStabilityWeighTheStiffnessOfAContact) {
+  Physics physics;
+  physics.viscosity = 0.1;
+  physics.contact = ContactParameters{.normal_stiffness = 1e4};
+  const double m = 0.1 * 4 * pi / 3, w2 = 1e4 * 2 / m, l = 6 * pi * 0.1 / m;
+  const double limit = 4 / (l + std::sqrt(l * l + 4 * w2));
+  ASSERT_GT(w2 * limit * limit, 40 * 2 * l * limit);  // the stiffness dominates
+  System system = system_of(physics, {1, 1}, {20, 20, 20});
+  system.particles.position.set(0, {10, 10, 10});
+  system.particles.position.set(1, {11.99, 10, 10});
+  for (const double part : {0.5, 1.0}) {
+    VelocityVerlet integrator = integrator_of(physics, system, part * limit);
+    integrator.start(system);
+    const double step = part * limit, share = (w2 * step * step + 2 * l * step) / 4;
+    EXPECT_NEAR(integrator.stability_share(system) / share, 1, 0.02) << part;
+  }
+}
+
+TEST(VelocityVerlet, StrainAfterNStepsIsNTimesRateAndStep) {
+  Physics physics;
+  physics.viscosity = 0.1;
+  physics.shear_rate = 0.7;
+  System system = system_of(physics, {1}, {20, 20, 20});
+  VelocityVerlet integrator = integrator_of(physics, system, 0.01);
+  integrator.start(system);
+  EXPECT_EQ(system.box.strain(), 0);
+  for (int n = 1; n <= 5; ++n) {
+    integrator.advance(system);
+    EXPECT_NEAR(system.box.strain(), n * 0.7 * 0.01, 1e-15) << n;
+    EXPECT_NEAR(system.box.tilt(), 20 * n * 0.7 * 0.01, 1e-12) << n;
+  }
+}
+
 TEST(VelocityVerlet, ReportsTheLargestDisplacementRelativeToTheFlow) {
   Physics physics;
   physics.viscosity = 1e-15;
