@@ -97,6 +97,57 @@ double repulsion_time_beyond_lubrication(const Physics& physics, double first, d
   return drag_first * drag_second / (drag_first + drag_second) / stiffness;
 }
 
+// X_A at the outer gap of the smallest sphere, with the partner that has most of it.
+double largest_resistance_at_the_outer_gap(const Scene& scene, double smallest) {
+  const Physics& physics = scene.physics;
+  double largest = 0;
+  for (const Species& partner : scene.particles.species) {
+    const double sum = smallest + partner.radius, distance = sum * (1 + 0.5 * physics.lubrication->outer_gap);
+    const PairGeometry parting = {{distance, 0, 0}, {1, 0, 0}, distance, sum};
+    largest =
+        std::max(largest, pair_resistance(resistance_constants(physics.viscosity, smallest, partner.radius),
+                                          physics.lubrication->inner_gap, parting)
+                              .squeeze);
+  }
+  return largest;
+}
+
+// What a sphere and a third one do to the distance between them in the step in which a pair of the first one
+// leaves the range of lubrication: twice the outer gap over the standard deviation of that way. The pair
+// keeps the noise F_B^2 = 2 kT X_A / dt of a resistance that is gone, which moves the sphere by
+// dt F_B / (m / dt + zeta); free spheres move by dt^2 kT / (m + zeta dt / 2) squared. Small spheres leap
+// farthest and have the least room, whatever the other sizes.
+double room_over_leap(const Scene& scene, double smallest, double resistance, double timestep) {
+  const double mass = mass_of(scene, smallest), energy = scene.physics.thermal_energy;
+  const double drag = translational_drag(scene.physics.viscosity, smallest);
+  const double inertia = mass + timestep * drag;
+  const double parting = 2 * energy * resistance * timestep / (inertia * inertia);
+  const double free = energy / (mass + 0.5 * timestep * drag);
+  return 2 * scene.physics.lubrication->outer_gap * smallest / (timestep * std::sqrt(parting + 2 * free));
+}
+
+// `longest`, or the step at which so many standard deviations of a leap are that room.
+double step_of_leaps(const Scene& scene, double smallest, double deviations, double longest) {
+  const double resistance = largest_resistance_at_the_outer_gap(scene, smallest);
+  const auto fits = [&](double step) {
+    return room_over_leap(scene, smallest, resistance, step) >= deviations;
+  };
+  if (fits(longest)) return longest;
+  double low = longest;
+  do {
+    low /= 2;
+    // With energies near the largest numbers no step fits that is one: the run itself then says so.
+    if (!std::isnormal(low)) return longest;
+  } while (!fits(low));
+  double high = 2 * low;
+  constexpr int bisections = 48;
+  for (int i = 0; i < bisections; ++i) {
+    const double middle = 0.5 * (low + high);
+    (fits(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
 }  // namespace
 
 PairRates stiffest_pair(const Scene& scene) {
@@ -120,7 +171,7 @@ double automatic_implicit_timestep(const Scene& scene) {
   const Physics& physics = scene.physics;
   const bool friction = physics.contact && physics.contact->friction > 0;
   const double strain = friction ? 0.0025 : 0.005, contact_times = friction ? 2 : 5;
-  constexpr double brownian_times = 0.0017, repulsion_times = 20;
+  constexpr double brownian_times = 0.0017, repulsion_times = 20, leaps = 5;
   double step = std::numeric_limits<double>::infinity();
   double smallest = scene.particles.species.front().radius, largest = smallest;
   for (const Species& species : scene.particles.species) {
@@ -146,6 +197,9 @@ double automatic_implicit_timestep(const Scene& scene) {
             step, repulsion_times * repulsion_time_beyond_lubrication(physics, first.radius, second.radius));
       }
     }
+  }
+  if (physics.lubrication && physics.thermal_energy > 0) {
+    step = step_of_leaps(scene, smallest, leaps, step);
   }
   return step;
 }

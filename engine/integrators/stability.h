@@ -32,8 +32,10 @@ double largest_timestep(const Scene& scene);
 //   2 or, without friction, 5 times the time X_A / k in which lubrication at the inner gap holds up the
 //   stiffest contact or repulsion;
 //   20 times drag / k of the repulsion at the outer gap, where the drag of single spheres alone resists it:
-//   beyond that packings that start unbalanced throw their spheres apart.
-// Without flow and temperature the last two alone; infinite where nothing sets a time.
+//   beyond that packings that start unbalanced throw their spheres apart;
+//   with noise and lubrication, that at which five standard deviations of a leap out of the range of
+//   lubrication are twice the outer gap, so that no third sphere is hit that was out of the range before.
+// Without flow and temperature those of contact and repulsion alone; infinite where nothing sets a time.
 double automatic_implicit_timestep(const Scene& scene);
 
 // A given implicit step may be that many times the automatic one. Errors of larger steps have a flag of their

@@ -138,7 +138,7 @@ def measure(program):
     flow = flow_rows(program, STOKES, 24)
     curves = {run[0]: thermal_rows(program, *run) for run in THERMAL_RUNS}
     # Where inertia is least, steps that are small beside the automatic one; explicit ones take too long there.
-    fine = thermal_rows(program, *THERMAL_RUNS[-1][:2], (0.001,), *THERMAL_RUNS[-1][3:], {"integrator": {"timestep": 0.0025}}, "thermal-fine")
+    fine = thermal_rows(program, *THERMAL_RUNS[-1][:2], (0.001,), *THERMAL_RUNS[-1][3:], {"integrator": {"timestep": 0.0011}}, "thermal-fine")
     explicit = {"integrator": {"method": "explicit"}}
     flow_explicit = flow_rows(program, (0.1, 10), 12, explicit, "flow-explicit")
     thermal_explicit = thermal_rows(program, 1, 8, (0.18,), {"brownian_times": 5}, {"brownian_times": 20}, explicit, "thermal-explicit")

@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include "contract/input_error.h"
 #include "engine/integrators/stability.h"
 #include "engine/integrators/velocity_verlet.h"
 #include "engine/simulation.h"
@@ -184,6 +183,111 @@ TEST(Implicit, SaysWhatItsEquationsAreLeftWith) {
   EXPECT_LT(report.solver_residual, 1e-2);
 }
 
+TEST(Implicit, StrainAfterNStepsIsNTimesRateAndStep) {
+  Physics physics;
+  physics.viscosity = 0.1;
+  physics.shear_rate = 0.7;
+  for (const double thermal_energy : {0.0, 1e-6}) {
+    physics.thermal_energy = thermal_energy;
+    System system = system_of(physics, {1}, 0.1, 20);
+    Implicit integrator(physics, system.particles, 0.01, tight, 1, 1);
+    integrator.start(system);
+    for (int n = 1; n <= 5; ++n) {
+      integrator.advance(system);
+      EXPECT_NEAR(system.box.strain(), n * 0.7 * 0.01, 1e-15) << n;
+    }
+  }
+}
+
+// Iterations end when the residual is below the tolerance, and smooth packings never need more than they may.
+TEST(Implicit, LeavesNoLargerResidualThanItsTolerance) {
+  const Json document = small_scene(
+      {{"particles", {{"count", 100}}},
+       {"fluid", {{"thermal_energy", 0}}},
+       {"repulsion", nullptr},
+       {"lubrication", {{"inner_gap", 1e-3}, {"outer_gap", 0.5}}},
+       {"contact", {{"friction", nullptr}, {"rolling_stiffness", nullptr}, {"rolling_friction", nullptr}}},
+       {"integrator", {{"method", "implicit"}, {"timestep", "auto"}}}});
+  const Scene scene = read_scene(document, "scene.json");
+  constexpr double tolerance = 1e-3;
+  Simulation simulation(scene, make_schedule(scene, "scene.json"), 3, 1, "scene.json");
+  simulation.start();
+  System system = simulation.system();
+  Implicit integrator(scene.physics, system.particles, automatic_timestep(scene), tolerance, 1, 1);
+  integrator.start(system);
+  for (int step = 0; step < 200; ++step) {
+    EXPECT_LE(integrator.advance(system).solver_residual, tolerance) << step;
+  }
+}
+
+// The comparison beside the system: steps as the system will take them, and steps of half the size.
+TEST(Implicit, ComparesStepsWithHalfSteps) {
+  Json document = small_scene(
+      {{"fluid", {{"thermal_energy", 0}}}, {"integrator", {{"method", "implicit"}, {"timestep", "auto"}}}});
+  const Scene scene = read_scene(document, "scene.json");
+  const double step = 4 * automatic_timestep(scene);
+  Simulation simulation(scene, {step, 200, 200}, 1, 1, "scene.json");
+  simulation.start();
+  ASSERT_FALSE(simulation.advance(100));
+  constexpr int steps = 3;
+  const auto stress = [&](int parts) {
+    System system = simulation.system();
+    system.step *= static_cast<std::uint64_t>(parts);
+    Implicit integrator(scene.physics, system.particles, step / parts, tight, 1, 1);
+    integrator.start(system);
+    return steps * mean_stress(integrator, system, steps * step);
+  };
+  System system = simulation.system();
+  Implicit integrator(scene.physics, system.particles, step, tight, 1, 1);
+  integrator.start(system);
+  const Integrator::HalfSteps found = integrator.compare_half_steps(system, steps);
+  const double whole = stress(1), halved = stress(2);
+  EXPECT_GT(std::abs(whole / halved - 1), 2e-4);
+  EXPECT_NEAR(found.whole / whole, 1, 2e-5);
+  EXPECT_NEAR(found.halved / halved, 1, 2e-5);
+}
+
+TEST(Implicit, ReportsTheLargestDisplacementRelativeToTheFlow) {
+  Physics physics;
+  physics.viscosity = 1e-12;
+  physics.shear_rate = 100;
+  for (const double thermal_energy : {0.0, 1e-30}) {
+    physics.thermal_energy = thermal_energy;
+    System system = system_of(physics, {1, 1}, 0.1, 20);
+    system.particles.position.set(0, {5, 15, 5});
+    system.particles.velocity.set(0, {1500, 0, 0});  // at rest in the flow
+    system.particles.position.set(1, {5, 5, 5});
+    system.particles.velocity.set(1, {503, 4, 12});
+    Implicit integrator(physics, system.particles, 1e-3, tight, 1, 1);
+    integrator.start(system);
+    EXPECT_NEAR(integrator.advance(system).largest_displacement, 0.013, 1e-6) << thermal_energy;
+  }
+}
+
+// Heavy spheres that touch pass each other at a constant velocity, far below Coulomb's limit: their spring
+// grows by dt v_t a step, however often a step evaluates the forces.
+TEST(Implicit, StretchesSpringsOnceAStep) {
+  Physics physics;
+  physics.viscosity = 0.1;
+  physics.contact = ContactParameters{.normal_stiffness = 1e3, .friction = 1, .tangential_stiffness = 300};
+  physics.lubrication = LubricationParameters{1e-3, 0.05};
+  constexpr double step = 1e-3, slip = 0.02;
+  constexpr int steps = 4;
+  for (const double thermal_energy : {0.0, 1e-30}) {
+    physics.thermal_energy = thermal_energy;
+    System system = system_of(physics, {1, 1.4}, 1e6, 20);
+    system.particles.position.set(0, {10, 10, 10});
+    system.particles.position.set(1, {12.39, 10, 10});
+    system.particles.velocity.set(1, {0, 0, slip});
+    Implicit integrator(physics, system.particles, step, 1e-3, 1, 1);
+    integrator.start(system);
+    for (int k = 0; k < steps; ++k) integrator.advance(system);
+    const std::vector<HeldContact> held = held_contacts(system.list, system.particles, system.springs);
+    ASSERT_EQ(held.size(), 1u);
+    EXPECT_NEAR(held[0].springs.tangential.z / (steps * step * slip), 1, 1e-3) << thermal_energy;
+  }
+}
+
 // Spheres that fly beyond any list are reported, not looked for.
 TEST(Implicit, ReportsALeapOverTheNeighbours) {
   Physics physics;
@@ -199,76 +303,6 @@ TEST(Implicit, ReportsALeapOverTheNeighbours) {
 
   system.particles.velocity.set(1, {std::numeric_limits<double>::quiet_NaN(), 0, 0});
   EXPECT_FALSE(std::isfinite(integrator.advance(system).largest_displacement));
-}
-
-Scene scene_with(const Json& patch) {
-  Json document = small_scene({{"integrator", {{"method", "implicit"}, {"timestep", "auto"}}}});
-  document.merge_patch(patch);
-  return read_scene(document, "scene.json");
-}
-
-// 0.005 / rate (1 + 2 St), or half of that with friction; 0.0017 eta a^3 / kT; and the contact, whose rates
-// are those of the explicit step's bound.
-TEST(ImplicitTimestep, IsTheLeastOfStrainBrownianAndContactTimes) {
-  const Json soft = {{"contact", {{"normal_stiffness", 1e-3}, {"friction", 0.5}}}, {"repulsion", nullptr}};
-  const double stokes = 0.1 * 1.4 * 1.4 * 2 / 0.1;
-  EXPECT_NEAR(automatic_timestep(scene_with(soft)), 0.0025 / 2 / (1 + 2 * stokes), 1e-12);
-  Json smooth = soft;
-  smooth["contact"] = {{"normal_stiffness", 1e-3},
-                       {"rolling_stiffness", nullptr},
-                       {"friction", nullptr},
-                       {"rolling_friction", nullptr}};
-  EXPECT_NEAR(automatic_timestep(scene_with(smooth)), 0.005 / 2 / (1 + 2 * stokes), 1e-12);
-  Json warm = soft;
-  warm["fluid"] = {{"thermal_energy", 5}};
-  EXPECT_NEAR(automatic_timestep(scene_with(warm)), 0.0017 * 0.1 / 5, 1e-12);
-  Json stiff = soft;
-  stiff["contact"] = {{"normal_stiffness", 1e9},
-                      {"friction", nullptr},
-                      {"rolling_stiffness", nullptr},
-                      {"rolling_friction", nullptr}};
-  const PairRates rates = stiffest_pair(scene_with(stiff));
-  EXPECT_NEAR(automatic_timestep(scene_with(stiff)), 5 * rates.damping / rates.frequency_squared, 1e-15);
-  stiff["contact"] = {{"normal_stiffness", 1e9},
-                      {"friction", 0.5},
-                      {"rolling_stiffness", nullptr},
-                      {"rolling_friction", nullptr}};
-  const PairRates with_friction = stiffest_pair(scene_with(stiff));
-  EXPECT_NEAR(automatic_timestep(scene_with(stiff)),
-              2 * with_friction.damping / with_friction.frequency_squared, 1e-15);
-}
-
-// Springs of strength / kappa^2 exp(-h / kappa) with kappa = 1 at h = outer gap (a_i + a_j) / 2 = 0.1,
-// between two of the small spheres, whose drags 6 pi eta a are in series.
-TEST(ImplicitTimestep, IsBoundByARepulsionBeyondLubrication) {
-  const Scene scene = scene_with(Json::parse(R"({
-    "contact": {"friction": null, "rolling_stiffness": null, "rolling_friction": null},
-    "repulsion": {"strength": 1e5, "relative_length": 0.5}})"));
-  const double drag = 0.5 * 6 * std::numbers::pi * 0.1, stiffness = 1e5 * std::exp(-0.1);
-  EXPECT_NEAR(automatic_timestep(scene) / (20 * drag / stiffness), 1, 1e-12);
-  // One that ends within the range of lubrication is no such bound.
-  const Scene short_scene = scene_with(Json::parse(R"({
-    "contact": {"friction": null, "rolling_stiffness": null, "rolling_friction": null},
-    "repulsion": {"strength": 1e5, "relative_length": 0.5, "cutoff_lengths": 0.09}})"));
-  EXPECT_GT(automatic_timestep(short_scene), 1.2 * automatic_timestep(scene));
-}
-
-TEST(ImplicitTimestep, IsRefusedBeyondFourTimesTheAutomaticOne) {
-  const double automatic = automatic_timestep(scene_with(Json::object()));
-  const auto resolved = [&](double factor) {
-    return resolved_timestep(scene_with({{"integrator", {{"timestep", factor * automatic}}}}), "scene.json");
-  };
-  EXPECT_EQ(resolved(3.99), 3.99 * automatic);
-  EXPECT_THROW(resolved(4.01), InputError);
-}
-
-TEST(ImplicitTimestep, MustBeGivenWhereNothingSetsATime) {
-  Json document = small_scene({{"integrator", {{"method", "implicit"}, {"timestep", "auto"}}},
-                               {"flow", {{"shear_rate", 0}}},
-                               {"fluid", {{"thermal_energy", 0}}}});
-  document.erase("contact");
-  document.erase("repulsion");
-  EXPECT_THROW(resolved_timestep(read_scene(document, "scene.json"), "scene.json"), InputError);
 }
 
 }  // namespace

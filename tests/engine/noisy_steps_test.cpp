@@ -1,0 +1,282 @@
+// The implicit step with noise, beside its equations written down again for two spheres on a line, and where
+// it should go as the temperature vanishes.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <numbers>
+
+#include "engine/integrators/implicit.h"
+#include "engine/integrators/velocity_verlet.h"
+
+namespace peclet::engine {
+namespace {
+
+using std::numbers::pi;
+
+// Small enough to move nothing; the step is that with noise all the same.
+constexpr double cold = 1e-30;
+constexpr double tight = 1e-6;
+constexpr double viscosity = 0.1;
+
+System system_of(const Physics& physics, const std::vector<double>& radius, double density) {
+  System system;
+  system.particles = make_particles(radius, density);
+  system.box = ShearedBox({30, 30, 30}, physics.shear_rate);
+  const std::vector<double> sizes = distinct_radii(radius);
+  system.list = NeighbourList(range_table(make_pair_kinds(physics, sizes), sizes.size()), 0.1);
+  return system;
+}
+
+// Two spheres of radii 1 and 1.4 on a line, the smaller one to the left.
+struct OnALine {
+  double mass[2], drag[2];
+  double inner_gap = 0, stiffness = 0, strength = 0, length = 0;
+
+  static constexpr double sum = 2.4;
+
+  // X_A at the surface distance h: Li, Royer & Ness (2023) eq. 9 with beta = 1.4.
+  double resistance(double h) const {
+    if (inner_gap == 0) return 0;
+    const double gap = std::max(2 * h / sum, inner_gap), b = 1.4, cube = std::pow(1 + b, 3);
+    return 6 * pi * viscosity *
+           (2 * b * b / cube / gap + b * (1 + 7 * b + b * b) / (5 * cube) * std::log(1 / gap));
+  }
+  // What pushes the spheres apart, and its stiffness.
+  double push(double h) const {
+    return stiffness * std::max(-h, 0.0) + (strength > 0 ? strength / length * std::exp(-h / length) : 0);
+  }
+  double stiffness_at(double h) const {
+    return (h < 0 ? stiffness : 0) +
+           (strength > 0 ? strength / (length * length) * std::exp(-h / length) : 0);
+  }
+};
+
+using Two = std::array<double, 2>;
+
+// One iteration of Newton's method for M (V - V_n) = dt F(x, V): from the velocities V, with the resistance
+// at the distance h and what pushes at the distance h + t (V_2 - V_1), whose stiffness counts for dt/2.
+Two corrected(const OnALine& pair, const Two& before, const Two& velocity, double h, double ahead,
+              double dt) {
+  const double closing = velocity[1] - velocity[0], pushed = h + ahead * closing;
+  const double between = pair.resistance(h) * closing - pair.push(pushed);
+  const double link = dt * (pair.resistance(h) + 0.5 * dt * pair.stiffness_at(pushed));
+  const double a = pair.mass[0] + dt * pair.drag[0] + link, d = pair.mass[1] + dt * pair.drag[1] + link;
+  const double p = dt * (between - pair.drag[0] * velocity[0]) - pair.mass[0] * (velocity[0] - before[0]);
+  const double q = dt * (-between - pair.drag[1] * velocity[1]) - pair.mass[1] * (velocity[1] - before[1]);
+  const double determinant = a * d - link * link;
+  return {velocity[0] + (d * p + link * q) / determinant, velocity[1] + (link * p + a * q) / determinant};
+}
+
+struct StepOfTwo {
+  double lubrication, push;  // stresses r F
+  Two velocity;
+};
+
+// V' from x_n with what pushes half a step ahead, V from x_n + dt/2 V', the stress at x_n + dt/2 V.
+StepOfTwo step_by_hand(const OnALine& pair, const Two& before, double h, double dt) {
+  const Two predicted = corrected(pair, before, before, h, 0.5 * dt, dt);
+  const double ahead = h + 0.5 * dt * (predicted[1] - predicted[0]);
+  const Two found = corrected(pair, before, predicted, ahead, 0, dt);
+  const double closing = found[1] - found[0], middle = h + 0.5 * dt * closing, r = OnALine::sum + middle;
+  return {r * pair.resistance(middle) * closing, -r * pair.push(middle), found};
+}
+
+struct NamedPair {
+  const char* name;
+  Physics physics;
+  double h, closing, density, timestep;
+};
+
+// Steps in which resistance, stiffness and inertia each decide.
+std::vector<NamedPair> pairs_on_a_line() {
+  Physics still;
+  still.viscosity = viscosity;
+  still.thermal_energy = cold;
+  std::vector<NamedPair> cases;
+  Physics contact = still;
+  contact.contact = ContactParameters{.normal_stiffness = 40};
+  cases.push_back({"contact", contact, -0.05, -0.3, 0.1, 0.1});
+  contact.lubrication = LubricationParameters{1e-2, 0.9};
+  cases.push_back({"lubricated contact", contact, -0.02, -0.2, 0.1, 0.5});
+  Physics lubricated = still;
+  lubricated.lubrication = LubricationParameters{1e-3, 0.9};
+  cases.push_back({"approach", lubricated, 0.2, -0.8, 0.5, 0.3});
+  lubricated.repulsion = RepulsionParameters{.strength = 0.3, .relative_length = 0.05, .cutoff_lengths = 20};
+  cases.push_back({"repulsion", lubricated, 0.15, -0.6, 0.1, 0.2});
+  cases.push_back({"parting by repulsion", lubricated, 0.05, 0.1, 1e-3, 0.05});
+  return cases;
+}
+
+OnALine line_of(const NamedPair& given, const ParticleState& particles) {
+  OnALine pair{};
+  for (const std::size_t i : {0, 1}) {
+    const double radius = i == 0 ? 1 : 1.4;
+    pair.mass[i] = given.density * 4 * pi / 3 * radius * radius * radius;
+    pair.drag[i] = 6 * pi * viscosity * radius;
+    EXPECT_NEAR(particles.mass[i] / pair.mass[i], 1, 1e-12);
+  }
+  const Physics& physics = given.physics;
+  pair.inner_gap = physics.lubrication ? physics.lubrication->inner_gap : 0;
+  pair.stiffness = physics.contact ? physics.contact->normal_stiffness : 0;
+  pair.strength = physics.repulsion ? physics.repulsion->strength : 0;
+  pair.length = physics.repulsion ? physics.repulsion->relative_length * OnALine::sum : 0;
+  return pair;
+}
+
+TEST(NoisyStep, OfTwoSpheresOnALineIsThatOfItsEquations) {
+  for (const NamedPair& given : pairs_on_a_line()) {
+    System system = system_of(given.physics, {1, 1.4}, given.density);
+    system.particles.position.set(0, {10, 15, 15});
+    system.particles.position.set(1, {10 + OnALine::sum + given.h, 15, 15});
+    system.particles.velocity.set(1, {given.closing, 0, 0});
+    const OnALine pair = line_of(given, system.particles);
+    const StepOfTwo expected = step_by_hand(pair, {0, given.closing}, given.h, given.timestep);
+    // What is to be seen is there: the two iterations differ, and so do the two distances.
+    const double changed = expected.velocity[1] - expected.velocity[0] - given.closing;
+    ASSERT_GT(std::abs(changed), 0.05 * std::abs(given.closing)) << given.name;
+
+    Implicit integrator(given.physics, system.particles, given.timestep, tight, 1, 1);
+    integrator.start(system);
+    const StepReport report = integrator.advance(system);
+    const ParticleState& p = system.particles;
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_NEAR(p.velocity[i].x, expected.velocity[p.id[i]], 2e-6 * std::abs(given.closing))
+          << given.name << ", sphere " << p.id[i];
+    }
+    const auto stress = [&](StressTerm term) { return report.sums.of(term).xx; };
+    const double scale = std::abs(expected.lubrication) + std::abs(expected.push);
+    EXPECT_NEAR(stress(StressTerm::lubrication), expected.lubrication, 2e-5 * scale) << given.name;
+    EXPECT_NEAR(stress(StressTerm::contact_normal) + stress(StressTerm::repulsion), expected.push,
+                2e-5 * scale)
+        << given.name;
+  }
+}
+
+// The control variate: the noise force belongs to the resistance at x_n, and so must the separation that its
+// stress is made of, or its mean would not be zero. F = sqrt(2 kT / dt) (sqrt(X_A) n n + sqrt(Y_A) (1 - n n))
+// theta, eqs. 10 and 22, with the numbers of this pair and step; spheres that fly past each other have the
+// stress r F elsewhere by the middle of the step.
+TEST(NoisyStep, HasTheStressOfItsNoiseWhereItWasDrawn) {
+  Physics physics;
+  physics.viscosity = viscosity;
+  physics.thermal_energy = 0.02;
+  physics.lubrication = LubricationParameters{1e-3, 0.9};
+  System system = system_of(physics, {1, 1.4}, 10);
+  const Vector3 r = {1.5, -1.6, 1.4};  // 2.6
+  system.particles.position.set(0, {10, 15, 15});
+  system.particles.position.set(1, Vector3{10, 15, 15} + r);
+  system.particles.velocity.set(1, {0.5, 3, -1});
+  constexpr double dt = 0.05;
+  constexpr std::uint64_t seed = 8, step = 41;
+  Implicit integrator(physics, system.particles, dt, tight, seed, 1);
+  integrator.start(system);
+  ASSERT_EQ(system.particles.id[0], 0u);
+  system.step = step;
+  const Vector3 n = (1 / norm(r)) * r;
+  OnALine pair{};
+  pair.inner_gap = 1e-3;
+  const double h = norm(r) - OnALine::sum, b = 1.4;
+  const double squeeze = pair.resistance(h);
+  const double shear = 6 * pi * viscosity * 4 * b * (2 + b + 2 * b * b) / (15 * std::pow(1 + b, 3)) *
+                       std::log(OnALine::sum / (2 * h));
+  const Vector3 theta = KeyedRandom(seed, Purpose::pair_noise).normals(step, 0, 1, {}).first;
+  const double along = dot(theta, n), c = std::sqrt(2 * physics.thermal_energy / dt);
+  const Vector3 force = c * (std::sqrt(squeeze) * along * n + std::sqrt(shear) * (theta - along * n));
+  const SymmetricTensor expected = symmetric_dyad(r, force);
+  const SymmetricTensor found = integrator.advance(system).sums.of(StressTerm::brownian_lubrication);
+  const double scale = norm(r) * norm(force);
+  EXPECT_NEAR(found.xx, expected.xx, 1e-9 * scale);
+  EXPECT_NEAR(found.yy, expected.yy, 1e-9 * scale);
+  EXPECT_NEAR(found.zz, expected.zz, 1e-9 * scale);
+  EXPECT_NEAR(found.xy, expected.xy, 1e-9 * scale);
+  EXPECT_NEAR(found.xz, expected.xz, 1e-9 * scale);
+  EXPECT_NEAR(found.yz, expected.yz, 1e-9 * scale);
+}
+
+Vector3 difference(const VectorField& rows, const ParticleState& particles) {
+  const std::size_t first = particles.id[0] == 0 ? 0 : 1;
+  return rows[1 - first] - rows[first];
+}
+
+// The mean of sigma_xy times the volume over so many steps.
+double mean_stress(Integrator& integrator, System& system, int steps) {
+  integrator.start(system);
+  double stress = 0;
+  for (int k = 0; k < steps; ++k) {
+    for (const SymmetricTensor& term : integrator.advance(system).sums.stress) stress += term.xy / steps;
+  }
+  return stress;
+}
+
+// Two spheres pass each other in shear flow while something between them pushes: within the range of
+// lubrication and out of the clamped gap all the time, or in contact without lubrication all the time.
+struct Encounter {
+  const char* name;
+  Physics physics;
+  Vector3 first, second;
+  double density, time;
+  int steps;
+};
+
+std::vector<Encounter> encounters() {
+  Physics sheared;
+  sheared.viscosity = viscosity;
+  sheared.shear_rate = 1;
+  Physics contact = sheared, lubricated = sheared;
+  contact.contact = ContactParameters{.normal_stiffness = 5};
+  lubricated.lubrication = LubricationParameters{1e-3, 0.9};
+  lubricated.repulsion = RepulsionParameters{.strength = 0.2, .relative_length = 0.2, .cutoff_lengths = 20};
+  return {{"lubrication and repulsion", lubricated, {10, 3, 15}, {8.2, 4.9, 15.9}, 1e-4, 1.2, 20},
+          {"contact", contact, {10, 3, 15}, {8.6, 4.5, 15.9}, 2e-5, 0.4, 5}};
+}
+
+// Explicit steps of the pair over some time; returns the mean stress.
+double followed(const Physics& physics, System& system, double time) {
+  // A hundredth of the time in which drag stops the smaller one, and not much of m / X_A.
+  const int steps = static_cast<int>(std::lround(time * viscosity * 240 / system.particles.mass[0]));
+  VelocityVerlet integrator(ForceField(physics, system.particles, time / steps, 1, 1), system.particles,
+                            time / steps);
+  return mean_stress(integrator, system, steps);
+}
+
+// With the velocities that the forces give it: a beginning from others is an error of first order.
+System placed(const Encounter& encounter) {
+  System system = system_of(encounter.physics, {1, 1.4}, encounter.density);
+  system.particles.position.set(0, encounter.first);
+  system.particles.position.set(1, encounter.second);
+  followed(encounter.physics, system, 0.01);
+  system.step = 0;
+  system.box = ShearedBox(system.box.lengths(), encounter.physics.shear_rate);
+  return system;
+}
+
+// As the temperature vanishes the step with noise is of second order, as the one without is: in the places,
+// in the stress, and in the velocities, which are those of the middle of a step.
+TEST(NoisyStep, IsOfSecondOrderWithoutTemperature) {
+  for (const Encounter& encounter : encounters()) {
+    const System begin = placed(encounter);
+    const auto errors = [&](int steps) {
+      Physics physics = encounter.physics;
+      physics.thermal_energy = cold;
+      const double step = encounter.time / steps;
+      System found = begin, middle = begin, end = begin;
+      Implicit integrator(physics, found.particles, step, tight, 1, 1);
+      const double stress = mean_stress(integrator, found, steps);
+      followed(encounter.physics, middle, encounter.time - 0.5 * step);
+      const double exact = followed(encounter.physics, end, encounter.time);
+      const auto apart = [](const System& a, const System& b, auto field) {
+        return norm(difference(a.particles.*field, a.particles) -
+                    difference(b.particles.*field, b.particles));
+      };
+      return std::array<double, 3>{apart(found, end, &ParticleState::position),
+                                   apart(found, middle, &ParticleState::velocity), std::abs(stress - exact)};
+    };
+    const std::array<double, 3> coarse = errors(encounter.steps), fine = errors(2 * encounter.steps);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(std::log2(coarse[k] / fine[k]), 2, 0.2) << encounter.name << ' ' << k;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace peclet::engine
