@@ -1,6 +1,7 @@
 #include "engine/checkpoint.h"
 
 #include "contract/durable_file.h"
+#include "contract/guarded_file.h"
 #include "contract/sha256.h"
 
 namespace peclet::engine {
@@ -10,6 +11,12 @@ constexpr std::string_view magic = "PCLTCKPT";
 constexpr std::uint32_t version = 2;
 constexpr std::size_t header_size = 20;
 constexpr std::size_t checksum_size = 64;
+
+// A particle has some 100 bytes and up to some thirty neighbours; blocks and correlations are of the scene.
+// What is larger is not read: it may be a terabyte of nothing.
+std::uint64_t largest_checkpoint(std::size_t particles) {
+  return (std::uint64_t{64} << 20) + (std::uint64_t{16} << 10) * particles;
+}
 
 std::string_view checked_payload(std::string_view bytes) {
   if (bytes.size() < header_size + checksum_size || bytes.substr(0, magic.size()) != magic) {
@@ -48,8 +55,8 @@ void write_checkpoint(const std::filesystem::path& path, const CheckpointIdentit
 
 Spent read_checkpoint(const std::filesystem::path& path, const CheckpointIdentity& identity,
                       Simulation& simulation) {
-  const std::string bytes = read_file(path);
   try {
+    const std::string bytes = read_regular(path, largest_checkpoint(simulation.system().particles.count()));
     ArchiveReader payload(checked_payload(bytes));
     CheckpointIdentity found;
     found.scene_sha256 = payload.get_string();
@@ -67,7 +74,9 @@ Spent read_checkpoint(const std::filesystem::path& path, const CheckpointIdentit
       throw CheckpointError("holds more than belongs there");
     }
     return spent;
-  } catch (const std::runtime_error& error) {
+  } catch (const UnsuitableFile& error) {
+    throw CheckpointError(error.what());
+  } catch (const std::runtime_error& error) {  // also what may not be read
     throw CheckpointError(path.string() + ": " + error.what());
   }
 }

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <ctime>
 
+#include "contract/durable_file.h"
+#include "contract/guarded_file.h"
 #include "contract/provenance.h"
 #include "contract/sha256.h"
 #include "engine/state/packing.h"
@@ -91,7 +93,7 @@ class Job {
 
   void begin() {
     construct();
-    if (!job_.checkpoint.empty() && std::filesystem::exists(job_.checkpoint) && resume()) {
+    if (!job_.checkpoint.empty() && !kind_of(job_.checkpoint).empty() && resume()) {
       return;
     }
     events_.progress({"packing", 0, schedule_.total(), 0});
@@ -108,7 +110,7 @@ class Job {
       }
       // Results depend on scene, seed and binary alone, so starting again only costs time.
       events_.remark(std::string(error.what()) + ": set aside, the realisation starts again");
-      std::filesystem::rename(job_.checkpoint, job_.checkpoint.string() + ".rejected");
+      std::filesystem::rename(job_.checkpoint, free_name(job_.checkpoint.string() + ".rejected"));
       construct();
       return false;
     }

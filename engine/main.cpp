@@ -2,17 +2,22 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <csignal>
 #include <exception>
+#include <limits>
 
-#include "contract/durable_file.h"
 #include "contract/frames.h"
 #include "contract/input_error.h"
+#include "contract/input_file.h"
+#include "contract/output_file.h"
 #include "contract/provenance.h"
 #include "engine/benchmark/benchmark.h"
 #include "engine/configuration.h"
 #include "engine/job.h"
 #include "engine/serve.h"
+#include "engine/summary.h"
+#include "engine/waiting_threads.h"
 
 namespace {
 
@@ -29,19 +34,44 @@ void request_stop(int signal) {
   std::signal(signal, SIG_DFL);  // the second one stops at once
 }
 
+// A sphere is some 13 values and 200 bytes of a configuration: 100 000 of them.
+constexpr InputLimits configuration_limits{std::size_t{32} << 20, 1'300'000};
+
 struct RunOptions {
   std::string scene, output, checkpoint;
   std::uint64_t seed = 0;
   int threads = 1;
+  bool quiet = false;
 };
 
+// CLI11 would read "-1" as the largest number there is.
+const CLI::Validator whole_number(
+    [](const std::string& text) {
+      std::uint64_t number = 0;
+      const char* const end = text.data() + text.size();
+      const auto read = std::from_chars(text.data(), end, number);
+      return read.ec == std::errc() && read.ptr == end
+                 ? std::string()
+                 : fmt::format("\"{}\" must be a whole number from 0 to {}", text,
+                               std::numeric_limits<std::uint64_t>::max());
+    },
+    "");
+
+// A person may name a link to the checkpoint; what is replaced is what it leads to.
+std::filesystem::path target_of(const std::filesystem::path& path) {
+  std::error_code leads_nowhere;
+  const std::filesystem::path target = std::filesystem::canonical(path, leads_nowhere);
+  return leads_nowhere ? path : target;
+}
+
 int run(const RunOptions& options) {
+  if (!options.output.empty()) check_output(options.output);
   JobSpecification job;
   job.header.seed = options.seed;
-  job.scene = read_json(options.scene);
+  job.scene = read_json_input(options.scene);
   job.scene_name = options.scene;
   job.threads = options.threads;
-  job.checkpoint = options.checkpoint;
+  job.checkpoint = target_of(options.checkpoint);
   JobEvents events;
   if (!options.checkpoint.empty()) {
     std::signal(SIGINT, request_stop);
@@ -54,24 +84,25 @@ int run(const RunOptions& options) {
     return stopped;
   }
   const Json& result = *finished;
-  const std::string text = result.dump(1) + "\n";
   if (options.output.empty()) {
-    fmt::print("{}", text);
+    fmt::print("{}", result_text(result));
   } else {
-    write_durably(options.output, text);
+    write_output(options.output, result_text(result));
   }
   const Json& ending = result.at("ending");
-  if (ending.at("cause") == "completed") {
-    return success;
+  const bool completed = ending.at("cause") == "completed";
+  if (!completed) {
+    fmt::print(stderr, "{}: broke off at step {} ({}): {}\n", options.scene,
+               ending.at("step").get<std::uint64_t>(), ending.at("cause").get<std::string>(),
+               ending.at("message").get<std::string>());
+  } else if (!options.quiet) {
+    fmt::print(stderr, "{}", summary(result, options.output.empty() ? "standard output" : options.output));
   }
-  fmt::print(stderr, "{}: broke off at step {} ({}): {}\n", options.scene,
-             ending.at("step").get<std::uint64_t>(), ending.at("cause").get<std::string>(),
-             ending.at("message").get<std::string>());
-  return broke_off;
+  return completed ? success : broke_off;
 }
 
 int forces(const std::string& path) {
-  const Configuration configuration = read_configuration(read_json(path), path);
+  const Configuration configuration = read_configuration(read_json_input(path, configuration_limits), path);
   try {
     fmt::print("{}\n", evaluate_configuration(configuration).dump());
   } catch (const std::invalid_argument& error) {
@@ -83,20 +114,25 @@ int forces(const std::string& path) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  let_waiting_threads_sleep(argv);
   CLI::App app{"The particle engine of peclet: Langevin dynamics of dense suspensions."};
   app.require_subcommand(1);
   app.set_version_flag("--version", version() + " " + provenance().at("git_commit").get<std::string>());
 
   RunOptions options;
-  CLI::App* run_command = app.add_subcommand("run", "One realisation of a scene; prints the result as JSON");
+  CLI::App* run_command = app.add_subcommand(
+      "run", "One realisation of a scene: the result as JSON, and a summary on standard error");
   run_command->add_option("scene", options.scene, "Scene, a JSON file")->required();
-  run_command->add_option("--seed", options.seed, "Seed of packing and noise")->capture_default_str();
+  run_command->add_option("--seed", options.seed, "Seed of packing and noise")
+      ->capture_default_str()
+      ->check(whole_number);
   run_command->add_option("--threads", options.threads, "Threads of the pair loop")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));
   run_command->add_option("--output", options.output, "File for the result instead of standard output");
   run_command->add_option("--checkpoint", options.checkpoint,
                           "File that is written every five minutes and resumed from when it exists");
+  run_command->add_flag("--quiet", options.quiet, "No summary on standard error");
   CLI::App* serve_command = app.add_subcommand("serve", "Work for `peclet run`: frames on standard input");
   std::string configuration;
   CLI::App* forces_command =
@@ -105,7 +141,12 @@ int main(int argc, char** argv) {
   std::vector<std::string> cases;
   CLI::App* bench_command = app.add_subcommand("bench", "Processor time per particle and step");
   bench_command->add_option("case", cases, "Names of cases; all of them when none is given");
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // Help and the version end here, too.
+    return app.exit(error) == 0 ? success : bad_input;
+  }
 
   try {
     if (*run_command) {

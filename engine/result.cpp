@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -12,11 +13,17 @@
 #include "engine/integrators/stability.h"
 #include "engine/kernels/instruction_set.h"
 #include "engine/kernels/terms.h"
+#include "engine/observables/catalogue.h"
+#include "engine/terms/drag.h"
 
 namespace peclet::engine {
 namespace {
 
 Json to_json(const SymmetricTensor& t) { return {t.xx, t.yy, t.zz, t.xy, t.xz, t.yz}; }
+
+double first_normal_difference(const SymmetricTensor& t) { return t.xx - t.yy; }
+double second_normal_difference(const SymmetricTensor& t) { return t.yy - t.zz; }
+double pressure(const SymmetricTensor& t) { return -(t.xx + t.yy + t.zz) / 3; }
 
 // Turns sums into means in the units of the result.
 class Reduction {
@@ -37,11 +44,9 @@ class Reduction {
       total += value;
     };
     if (physics_.shear_rate > 0) {
-      SymmetricTensor solvent, stresslet;
-      solvent.xy = 1;
-      stresslet.xy = 2.5 * volume_fraction_;
+      const SymmetricTensor solvent = solvent_stress(1, 1);  // in units of itself
       part("solvent", solvent);
-      part("stresslet", stresslet);
+      part("stresslet", stresslet(volume_fraction_, solvent));
     }
     const double per_step = 1 / (static_cast<double>(sums.steps) * volume_ * unit_);
     SymmetricTensor pairs, brownian;
@@ -58,22 +63,31 @@ class Reduction {
     stress["total"] = to_json(total);
     const bool sheared = physics_.shear_rate > 0;
     const double per_sample = 1 / static_cast<double>(sums.samples);
-    return {
-        {"stress", stress},
-        {"brownian_pairwise", to_json(brownian)},
-        {"brownian_structural", to_json((per_sample / unit_) * sums.structural_brownian)},
-        {"relative_viscosity", sheared ? Json(total.xy) : Json()},
-        {"relative_viscosity_pair", sheared ? Json(pairs.xy) : Json()},
-        {"first_normal_difference", total.xx - total.yy},
-        {"second_normal_difference", total.yy - total.zz},
-        {"pressure", -(total.xx + total.yy + total.zz) / 3},
-        {"control_variates", {{"brownian_pairwise", terms_.noise && sheared ? Json(brownian.xy) : Json()}}},
-        {"contacts_per_particle", 2 * sums.contacts / (static_cast<double>(sums.steps) * particles_)},
-        {"kinetic_temperature", per_sample * sums.temperature.translational},
-        {"rotational_temperature", per_sample * sums.temperature.rotational}};
+    return {{"stress", stress},
+            {"brownian_pairwise", to_json(brownian)},
+            {"brownian_structural", to_json((per_sample / unit_) * sums.structural_brownian)},
+            {"relative_viscosity", sheared ? Json(total.xy) : Json()},
+            {"relative_viscosity_pair", sheared ? Json(pairs.xy) : Json()},
+            {"first_normal_difference", first_normal_difference(total)},
+            {"second_normal_difference", second_normal_difference(total)},
+            {"pressure", pressure(total)},
+            {"control_variates", control_variates(brownian)},
+            {"contacts_per_particle", 2 * sums.contacts / (static_cast<double>(sums.steps) * particles_)},
+            {"kinetic_temperature", per_sample * sums.temperature.translational},
+            {"rotational_temperature", per_sample * sums.temperature.rotational}};
   }
 
  private:
+  // Of mean zero: the part that the stress of the pairwise noise would have in each observable. That of the
+  // relative viscosities is named after the stress.
+  Json control_variates(const SymmetricTensor& brownian) const {
+    const auto value = [&](double number) { return terms_.noise ? Json(number) : Json(); };
+    return {{"brownian_pairwise", value(brownian.xy)},
+            {"first_normal_difference", value(first_normal_difference(brownian))},
+            {"second_normal_difference", value(second_normal_difference(brownian))},
+            {"pressure", value(pressure(brownian))}};
+  }
+
   const Physics& physics_;
   Terms terms_;
   double volume_, volume_fraction_, particles_, unit_;
@@ -289,6 +303,19 @@ Json make_unpacked_result(const ResultHeader& header, const Scene& scene, const 
   result["largest_overlap"] = nullptr;
   result["final_state_sha256"] = nullptr;
   return result;
+}
+
+std::vector<std::string> names_of_means(const Scene& scene) {
+  std::vector<std::string> names{"contacts_per_particle",  "first_normal_difference",
+                                 "kinetic_temperature",    "pressure",
+                                 "rotational_temperature", "second_normal_difference"};
+  if (scene.physics.shear_rate > 0) {
+    names.emplace_back("relative_viscosity");
+    names.emplace_back("relative_viscosity_pair");
+  }
+  for (const std::string& name : names_of_numbers(scene)) names.push_back(name);
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 const Json& engine_identity() {

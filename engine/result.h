@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "contract/json.h"
 #include "engine/checkpoint.h"
@@ -24,6 +25,10 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
 // Of a realisation whose spheres could not be packed.
 Json make_unpacked_result(const ResultHeader& header, const Scene& scene, const Schedule& schedule,
                           const std::string& message, const Spent& spent);
+
+// Names of the numbers that the mean of a completed realisation of the scene has, sorted: what a campaign may
+// aim at. One that the configuration may leave undefined (friction without a contact) is among them.
+std::vector<std::string> names_of_means(const Scene& scene);
 
 // Provenance of this engine with the instruction set that its results depend on.
 const Json& engine_identity();

@@ -46,6 +46,7 @@ class Reading {
   }
 
   void read_shares(Particles& particles) const;
+  void check_sizes(const Particles& particles) const;
   ContactParameters contact() const;
   LubricationParameters lubrication() const;
   void set_flow_from_peclet(double radius, Physics& physics) const;
@@ -83,11 +84,32 @@ void Reading::read_shares(Particles& particles) const {
   for (Species& one : particles.species) one.share /= sum;
 }
 
+// Volume, mass and moment of inertia must be numbers, and one can divide by them.
+void Reading::check_sizes(const Particles& particles) const {
+  const auto is_usable = [](double value) { return std::isnormal(value) && std::isnormal(1 / value); };
+  for (std::size_t i = 0; i < particles.species.size(); ++i) {
+    const double a = particles.species[i].radius, volume = a * a * a, mass = particles.density * volume;
+    const double all = static_cast<double>(particles.count) * volume;
+    if (!is_usable(volume) || !is_usable(mass) || !is_usable(mass * a * a) || !is_usable(all)) {
+      refuse(fmt::format("/particles/species/{}/radius", i),
+             fmt::format(
+                 "must leave mass and moment of inertia that can be computed with, at the density {}; choose "
+                 "other units",
+                 particles.density));
+    }
+    if (!is_usable(particles.species[i].share)) {
+      refuse(fmt::format("/particles/species/{}", i),
+             "must have a share that is a part of the sum of all shares");
+    }
+  }
+}
+
 Particles Reading::particles() const {
   Particles particles;
   particles.count = at("/particles/count").get<std::size_t>();
   particles.density = number("/particles/density");
   read_shares(particles);
+  check_sizes(particles);
   particles.reference_radius = number_or("/particles/reference_radius", particles.species.front().radius);
   return particles;
 }

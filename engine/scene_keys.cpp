@@ -7,6 +7,9 @@ namespace peclet::engine {
 
 namespace {
 
+// Each pair of sizes has constants of its own.
+constexpr std::size_t most_species = 256;
+
 constexpr bool required = true;
 
 Key positive(std::string pointer, std::string unit, std::string meaning, bool is_required = false) {
@@ -73,7 +76,8 @@ Keys particle_keys() {
        .meaning =
            "The sizes; all have volume_share or all have number_share. A single species needs neither.",
        .required = true,
-       .minimum_items = 1},
+       .minimum_items = 1,
+       .maximum_items = most_species},
       block("/particles/species/*", "One size."),
       positive("/particles/species/*/radius", "length", "Radius.", required),
       positive(

@@ -17,6 +17,8 @@
 #include "contract/key_table.h"
 #include "contract/sha256.h"
 #include "engine/job.h"
+#include "engine/scene_fit.h"
+#include "engine/summary.h"
 
 namespace peclet::engine {
 namespace {
@@ -93,12 +95,13 @@ class Worker {
     try {
       const Scene scene = read_scene(message.at("scene"), "scene");
       const Schedule schedule = make_schedule(scene, "scene");
-      const Simulation check_of_the_box(scene, schedule, 0, 1, "scene");
+      check_fit(scene, schedule, "scene");
       answer["type"] = "validated";
       answer["timestep"] = schedule.timestep;
       answer["steps"] = schedule.total();
       answer["particles"] = scene.particles.count;
       answer["derived"] = to_json(derived_groups(scene));
+      answer["observables"] = names_of_means(scene);
       answer["warnings"] = Json::array();
       for (const Warning& warning : scene_warnings(scene)) {
         answer["warnings"].push_back({{"code", warning.code}, {"message", warning.message}});
@@ -142,7 +145,7 @@ class Worker {
 
   // False: there was no room for the result before the engine had to leave. Its seed will be run again.
   bool deliver(const Json& id, const Json& result, const std::string& spool) {
-    const std::string text = result.dump(1) + "\n";
+    const std::string text = result_text(result);
     for (;;) {
       try {
         write_durably(spool, text);

@@ -13,6 +13,7 @@
 #include "engine/integrators/velocity_verlet.h"
 #include "engine/observables/catalogue.h"
 #include "engine/random/keyed_random.h"
+#include "engine/scene_fit.h"
 #include "engine/state/packing.h"
 #include "engine/terms/drag.h"
 
@@ -98,6 +99,12 @@ Schedule make_schedule(const Scene& scene, const std::string& file) {
     // A short window is divided into as many steps as it needs.
     schedule.timestep = std::min(schedule.timestep, time_of(scene.production, scene) / count_of_blocks);
   }
+  if (!std::isnormal(schedule.timestep)) {
+    throw InputError(
+        file, "/integrator/timestep", fmt::format("{}", schedule.timestep),
+        "must come out as a number above 0: sizes, forces or durations of the scene are beyond what "
+        "can be computed with; choose other units");
+  }
   schedule.equilibration = steps_of(scene.equilibration, "equilibration", scene, schedule.timestep, file);
   schedule.production = steps_of(scene.production, "production", scene, schedule.timestep, file);
   if (schedule.production < count_of_blocks) {
@@ -112,25 +119,11 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
                        const std::string& file)
     : scene_(scene), schedule_(schedule), seed_(seed), threads_(threads), production_(schedule.production) {
   const Physics& physics = scene.physics;
+  check_fit(scene, schedule, file);
   const std::vector<double> radius = species_radii(scene.particles);
   const std::vector<double> sizes = distinct_radii(radius);
-  for (const Species& species : scene.particles.species) {
-    if (std::find(radius.begin(), radius.end(), species.radius) == radius.end()) {
-      throw InputError(file, "/particles/count", std::to_string(scene.particles.count),
-                       fmt::format("must be large enough for one sphere of radius {}", species.radius));
-    }
-  }
   const double edge = cube_edge(radius, scene.volume_fraction);
   kinds_ = make_pair_kinds(physics, sizes);
-  const double range = range_table(kinds_, sizes.size()).largest();
-  if (!(edge > range)) {
-    throw InputError(
-        file, "/particles/count", std::to_string(scene.particles.count),
-        fmt::format(
-            "must fill a box larger than the range of the forces, {:.4g}, at this volume fraction (its edge "
-            "would be {:.4g})",
-            range, edge));
-  }
   smallest_radius_ = sizes.front();
   system_.particles = make_particles(radius, scene.particles.density);
   system_.box = ShearedBox({edge, edge, edge}, physics.shear_rate);
@@ -146,7 +139,7 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
         ForceField(physics, system_.particles, schedule.timestep, seed, threads), system_.particles,
         schedule.timestep);
   }
-  observables_ = make_observables(scene, system_, schedule.timestep, schedule.production, file);
+  observables_ = make_observables(scene, system_, schedule.timestep, schedule.production);
 }
 
 void Simulation::start() {

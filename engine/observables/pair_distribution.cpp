@@ -11,8 +11,17 @@
 
 namespace peclet::engine {
 
-PairDistribution::PairDistribution(const Scene& scene, const System& system, std::uint64_t interval,
-                                   const std::string& file)
+void check_pair_distribution(const Scene& scene, double edge, const std::string& file) {
+  const double unit = scene.particles.reference_radius;
+  const double reach = scene.physics.shear_rate > 0 ? 0.5 : std::numbers::sqrt2 / 2;
+  if (scene.pair_distribution->range * unit <= reach * edge) return;
+  // The default is no part of a scene without the block.
+  throw InputError(
+      file, "/pair_distribution/range", fmt::format("{}", scene.pair_distribution->range),
+      fmt::format("must be at most {:.4g} in this box of {:.4g} radii", reach * edge / unit, edge / unit));
+}
+
+PairDistribution::PairDistribution(const Scene& scene, const System& system, std::uint64_t interval)
     : Observable(interval),
       unit_(scene.particles.reference_radius),
       range_(scene.pair_distribution->range * unit_),
@@ -22,15 +31,7 @@ PairDistribution::PairDistribution(const Scene& scene, const System& system, std
       particles_(static_cast<double>(system.particles.count())),
       bins_(static_cast<std::size_t>(std::llround(range_ / bin_))),
       radial_(bins_),
-      slice_(2 * bins_ * bins_) {
-  const double reach = scene.physics.shear_rate > 0 ? 0.5 : std::numbers::sqrt2 / 2;
-  if (!(range_ <= reach * edge_)) {
-    throw InputError(file, "/pair_distribution/range",
-                     shortened(scene.document.at("pair_distribution").at("range")),
-                     fmt::format("must be at most {:.4g} in this box of {:.4g} radii", reach * edge_ / unit_,
-                                 edge_ / unit_));
-  }
-}
+      slice_(2 * bins_ * bins_) {}
 
 void PairDistribution::sample(const System& system) {
   const LatticePlaces places = lattice_places(system.particles.position, system.box);

@@ -21,10 +21,13 @@
 
 namespace peclet::engine {
 
+// Throws InputError where pairs within the range have images in the cubic box, so that it is ambiguous.
+void check_pair_distribution(const Scene& scene, double edge, const std::string& file);
+
 class PairDistribution : public Observable {
  public:
   // Throws InputError where the box is too small for the range.
-  PairDistribution(const Scene& scene, const System& system, std::uint64_t interval, const std::string& file);
+  PairDistribution(const Scene& scene, const System& system, std::uint64_t interval);
 
   void sample(const System& system) override;
   void add_to(Json& mean) const override;

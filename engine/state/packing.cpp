@@ -168,7 +168,7 @@ PackingError::PackingError(double wanted, double reached)
           wanted, reached)),
       reached_(reached) {}
 
-std::vector<double> species_radii(const Particles& particles) {
+std::vector<std::size_t> species_numbers(const Particles& particles) {
   const auto weight = [&](const Species& species) {
     const double a = species.radius;
     return particles.shares == Particles::Shares::number ? species.share : species.share / (a * a * a);
@@ -189,6 +189,11 @@ std::vector<double> species_radii(const Particles& particles) {
   for (std::size_t k = 0; given < particles.count; ++k, ++given) {
     ++number[remainder[k % remainder.size()].second];
   }
+  return number;
+}
+
+std::vector<double> species_radii(const Particles& particles) {
+  const std::vector<std::size_t> number = species_numbers(particles);
   std::vector<double> radius;
   for (std::size_t s = 0; s < number.size(); ++s) {
     radius.insert(radius.end(), number[s], particles.species[s].radius);
@@ -200,6 +205,18 @@ double cube_edge(const std::vector<double>& radius, double volume_fraction) {
   double volume = 0;
   for (const double a : radius) {
     volume += 4.0 / 3.0 * std::numbers::pi * a * a * a;
+  }
+  return std::cbrt(volume / volume_fraction);
+}
+
+double cube_edge(const Particles& particles, double volume_fraction) {
+  const std::vector<std::size_t> number = species_numbers(particles);
+  double volume = 0;
+  for (std::size_t s = 0; s < number.size(); ++s) {
+    const double a = particles.species[s].radius, of_one = 4.0 / 3.0 * std::numbers::pi * a * a * a;
+    for (std::size_t i = 0; i < number[s]; ++i) {
+      volume += of_one;  // one by one, because a product would be rounded otherwise
+    }
   }
   return std::cbrt(volume / volume_fraction);
 }

@@ -18,12 +18,17 @@ class PackingError : public std::runtime_error {
   double reached_;
 };
 
-// Radii of all spheres, species by species. The number of each is its number share, or its volume share over
-// a^3, of `count`, rounded by largest remainders.
+// How many spheres each species has: its number share, or its volume share over a^3, of `count`, rounded by
+// largest remainders.
+std::vector<std::size_t> species_numbers(const Particles& particles);
+
+// Radii of all spheres, species by species.
 std::vector<double> species_radii(const Particles& particles);
 
 // Edge of the cube in which these spheres have this volume fraction.
 double cube_edge(const std::vector<double>& radius, double volume_fraction);
+// The same, to the last bit, without a list of all radii.
+double cube_edge(const Particles& particles, double volume_fraction);
 
 // Gives the spheres random places (keyed by seed) in the box at rest, then minimises the energy sum 1/2
 // (sigma_ij - r)^2 of overlaps with FIRE (Bitzek et al. 2006), sigma_ij a thousandth above a_i + a_j, until

@@ -1,6 +1,7 @@
 #include "engine/checkpoint.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <functional>
 
@@ -72,6 +73,25 @@ TEST_F(Checkpoint, WhatIsNoCheckpointIsSaidToBeNone) {
   expect_refused(other, "is no checkpoint");
 }
 
+// Nothing is followed, waited for, or read that is larger than any checkpoint.
+TEST_F(Checkpoint, WhatIsNoFileOfReasonableSizeIsRefused) {
+  const auto refusal_of = [&](const std::filesystem::path& path) {
+    Simulation fresh(scene_, make_schedule(scene_, ""), 7, 1, "");
+    try {
+      read_checkpoint(path, identity, fresh);
+    } catch (const CheckpointError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  std::filesystem::create_symlink(path_, folder_ / "link");
+  EXPECT_NE(refusal_of(folder_ / "link").find("is a link"), std::string::npos);
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  EXPECT_NE(refusal_of(folder_ / "pipe").find("is a FIFO"), std::string::npos);
+  std::filesystem::resize_file(path_, std::uintmax_t{1} << 40);
+  EXPECT_NE(refusal_of(path_).find("is too large"), std::string::npos);
+}
+
 TEST_F(Checkpoint, OtherVersionsAreRefused) {
   std::string other = whole_;
   other[8] = 99;
@@ -110,12 +130,12 @@ TEST_F(Checkpoint, OfAnotherRealisationIsRefusedWithWhatDiffers) {
   EXPECT_NE(refusal(whole_, {"a scene", 7, "another"}).find("another build"), std::string::npos);
 }
 
-TEST_F(Checkpoint, AnAbsentFileIsASystemErrorThatNamesIt) {
+TEST_F(Checkpoint, AnAbsentFileIsAnErrorThatNamesIt) {
   Simulation fresh(scene_, make_schedule(scene_, ""), 7, 1, "");
   try {
     read_checkpoint(folder_ / "absent", identity, fresh);
     ADD_FAILURE() << "accepted";
-  } catch (const std::system_error& error) {
+  } catch (const CheckpointError& error) {
     EXPECT_NE(std::string(error.what()).find("absent"), std::string::npos);
   }
 }

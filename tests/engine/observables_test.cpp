@@ -38,7 +38,7 @@ Scene scene_with(const char* observable, const Json& settings = Json::object(), 
 }
 
 std::unique_ptr<Observable> observable_of(const Scene& scene, const System& system, std::uint64_t steps) {
-  auto made = make_observables(scene, system, timestep, steps, "scene.json");
+  auto made = make_observables(scene, system, timestep, steps);
   EXPECT_EQ(made.size(), 1u);
   return std::move(made.front());
 }
@@ -226,7 +226,7 @@ TEST(PairDistribution, RefusesARangeWhoseImagesAreNotUnique) {
   const System system = loose_spheres(2);
   for (const auto& [shear_rate, range] : {std::pair{0.3, 6}, std::pair{0.0, 8}}) {
     const Scene scene = scene_with("pair_distribution", {{"range", range}}, shear_rate);
-    EXPECT_THROW(make_observables(scene, system, timestep, 256, "scene.json"), InputError);
+    EXPECT_THROW(check_observables(scene, system.box.lengths().x, timestep, 256, "scene.json"), InputError);
   }
 }
 
@@ -285,16 +285,49 @@ TEST(StressCorrelation, OfAFrozenPairIsTheSquareOfItsTracelessStress) {
   }
 }
 
+// A pair that is near at every other sample: the stress is A, 0, A, 0 ..., so that its correlation is A^2 / 2
+// at even lags and 0 at odd ones, and A^2 / 4 of means over two samples, from lag 16 on. Trapezia of the
+// first ones and of the last are of the same mean height, A^2 / 4; the one from lag 15 to 16 is half as high.
+TEST(StressCorrelation, IsIntegratedByTrapezia) {
+  const Scene scene = scene_with("stress_correlation");
+  constexpr double thermal_energy = 2, volume = edge * edge * edge;
+  constexpr double stress = 2 * 20 * thermal_energy / volume;
+  constexpr double modulus = volume / thermal_energy / 10 * 2 / 3 * stress * stress;
+  const auto with_gap = [&](double gap) {
+    System system = loose_spheres(2);
+    system.particles.position.set(0, {5, 5, 5});
+    system.particles.position.set(1, {8 + gap, 5, 5});
+    system.list = NeighbourList(range_table(make_pair_kinds(scene.physics, {1, 2}), 2), 0.1);
+    system.list.build(system.particles, system.box);
+    return system;
+  };
+  const System near = with_gap(0.01), far = with_gap(0.5);
+  const auto observable = observable_of(scene, near, 256);
+  for (int k = 0; k < 128; ++k) {
+    observable->sample(near);
+    observable->sample(far);
+  }
+  const Json found = mean_of(*observable)["stress_correlation"];
+  const double sample = found["time"][1];
+  ASSERT_GT(found["time"].size(), 17u);
+  for (std::size_t k = 0; k < 18; ++k) {
+    const double expected = k > 15 ? 0.25 : k % 2 == 0 ? 0.5 : 0;
+    EXPECT_NEAR(found["modulus"][k].get<double>() / modulus, expected, 1e-12) << k;
+    const double area = 0.25 * found["time"][k].get<double>() / sample - (k > 15 ? 0.125 : 0);
+    EXPECT_NEAR(found["viscosity"][k].get<double>() * scene.physics.viscosity / modulus / sample, area, 1e-12)
+        << k;
+  }
+}
+
 TEST(Observables, AreAbsentUnlessAskedFor) {
   const System system = loose_spheres(2);
-  EXPECT_TRUE(make_observables(read_scene(small_scene(), "scene.json"), system, timestep, 256, "").empty());
+  EXPECT_TRUE(make_observables(read_scene(small_scene(), "scene.json"), system, timestep, 256).empty());
 }
 
 TEST(Observables, NeedAWindowWithSamples) {
-  const System system = loose_spheres(2);
   const Scene scene = scene_with("mean_squared_displacement", {{"interval", 20}});
-  EXPECT_THROW(make_observables(scene, system, timestep, 256, "scene.json"), InputError);  // 7 samples
-  EXPECT_EQ(make_observables(scene, system, timestep, 281, "scene.json").size(), 1u);      // 8
+  EXPECT_THROW(check_observables(scene, edge, timestep, 256, "scene.json"), InputError);  // 7 samples
+  EXPECT_NO_THROW(check_observables(scene, edge, timestep, 281, "scene.json"));           // 8
 }
 
 }  // namespace

@@ -95,6 +95,20 @@ TEST(Packing, WhatCannotBePackedIsRefusedWithTheVolumeFractionReached) {
   }
 }
 
+// Two equal spheres in a cube come no nearer to 1 than in the body-centred lattice, where they are sqrt(3) /
+// 2 edges apart: a cube that is a little too small is refused, one that is a little larger is not.
+TEST(Packing, AcceptsNoOverlapHoweverSmall) {
+  const auto pack_at = [](double distance_over_contact) {
+    const double edge = 2 * distance_over_contact / (0.5 * std::sqrt(3.0));
+    ParticleState particles = make_particles({1, 1}, 1);
+    place_randomly(particles, ShearedBox({edge, edge, edge}, 0), 1);
+  };
+  for (const double overlap : {0.02, 0.009, 0.003}) {
+    EXPECT_THROW(pack_at(1 - overlap), PackingError) << overlap;
+  }
+  EXPECT_NO_THROW(pack_at(1.01));
+}
+
 // Positions, or the volume fraction reached, of eight spheres whose lengths are all multiplied by `unit`.
 struct Scaled {
   VectorField position;

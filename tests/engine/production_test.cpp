@@ -46,7 +46,7 @@ TEST(StatisticalInefficiency, SumsTheCorrelationUpToItsFirstZero) {
 }
 
 // Two spheres of radii 1 and 1.4 whose surfaces are h apart along x; the shells are 0.05 and 0.07 thick.
-SymmetricTensor structural_stress_at(double h) {
+SymmetricTensor structural_stress_at(double h, double skin = 0.1) {
   Physics physics = physics_with({.contact = true});
   physics.thermal_energy = 0.3;
   System system;
@@ -55,7 +55,7 @@ SymmetricTensor structural_stress_at(double h) {
   system.particles.position.set(1, {5 + 2.4 + h, 5, 5});
   system.box = ShearedBox({10, 10, 10}, 0);
   const std::vector<PairKind> kinds = make_pair_kinds(physics, {1, 1.4});
-  system.list = NeighbourList(range_table(kinds, 2), 0.1);
+  system.list = NeighbourList(range_table(kinds, 2), skin);
   system.list.build(system.particles, system.box);
   return structural_brownian_stress(system, kinds, physics.thermal_energy);
 }
@@ -67,6 +67,11 @@ TEST(StructuralBrownianStress, CountsEachSideOfAPairWithinItsOwnShell) {
   EXPECT_NEAR(structural_stress_at(0.06).xx, -0.3 / 1000 * 20, 1e-15);  // seen by the larger one alone
   EXPECT_EQ(structural_stress_at(0.08).xx, 0);
   EXPECT_EQ(structural_stress_at(0.04).yy, 0);
+}
+
+// The list has what the shells need, though no force reaches that far.
+TEST(StructuralBrownianStress, SeesTheWholeShellOfTheLargerSphere) {
+  EXPECT_NEAR(structural_stress_at(0.069, /*skin=*/0).xx, -0.3 / 1000 * 20, 1e-15);
 }
 
 TEST(KineticTemperatures, AreThoseOfMotionRelativeToTheStreamingFlow) {

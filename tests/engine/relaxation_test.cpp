@@ -57,9 +57,11 @@ TEST(Relaxation, MovesSpheresAndNothingElse) {
   }
 }
 
+// Neither flow nor noise is a force here.
 TEST(Relaxation, LeavesAPackingWithoutForcesWhereItIs) {
   Scene scene = repulsive_scene();
   scene.physics.repulsion.reset();
+  scene.physics.thermal_energy = 0.02;
   System system = packed(scene);
   std::vector<Vector3> before(system.particles.count());
   for (std::size_t i = 0; i < before.size(); ++i) {

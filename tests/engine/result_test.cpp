@@ -96,14 +96,26 @@ void expect_average(const Json& blocks, const Json& mean, const std::string& whe
   EXPECT_NEAR(sum / 32, mean.get<double>(), 1e-12 + largest_error) << where;
 }
 
+// What the stress of the pairwise noise would be in each observable, in the mean and in all blocks.
+void expect_controls(const Json& result) {
+  const Json &mean = result.at("mean"), &blocks = result.at("blocks").at("control_variates");
+  const auto b = mean.at("brownian_pairwise").get<std::vector<double>>();  // xx, yy, zz, xy, ...
+  const Json expected = {{"brownian_pairwise", b[3]},
+                         {"first_normal_difference", b[0] - b[1]},
+                         {"second_normal_difference", b[1] - b[2]},
+                         {"pressure", -(b[0] + b[1] + b[2]) / 3}};
+  EXPECT_EQ(mean.at("control_variates"), expected);
+  EXPECT_NE(b[3], 0);
+  for (const auto& [name, value] : expected.items()) expect_average(blocks.at(name), value, name);
+}
+
 TEST(Result, BlocksAverageToTheMean) {
   const Json& mean = usual_result().at("mean");
   const Json& blocks = usual_result().at("blocks");
   for (const auto& [name, value] : mean.items()) {
     if (value.is_number()) expect_average(blocks.at(name), value, name);
   }
-  expect_average(blocks.at("control_variates").at("brownian_pairwise"),
-                 mean.at("control_variates").at("brownian_pairwise"), "control variate");
+  expect_controls(usual_result());
   for (const auto& [term, series] : blocks.at("shear_stress").items()) {
     const Json& whole =
         term == "brownian_structural" ? mean.at("brownian_structural") : mean.at("stress").at(term);
@@ -145,9 +157,41 @@ TEST(Result, AtRestStressesAreInTheScenesUnitsAndThereIsNoViscosity) {
   const Json& mean = result.at("mean");
   EXPECT_TRUE(mean.at("relative_viscosity").is_null());
   EXPECT_TRUE(mean.at("relative_viscosity_pair").is_null());
-  EXPECT_TRUE(mean.at("control_variates").at("brownian_pairwise").is_null());
   EXPECT_FALSE(mean.at("stress").contains("solvent"));
   EXPECT_FALSE(mean.at("stress").contains("stresslet"));
+}
+
+double variance(const std::vector<double>& series) {
+  const double mean = std::accumulate(series.begin(), series.end(), 0.0) / static_cast<double>(series.size());
+  double sum = 0;
+  for (const double x : series) sum += (x - mean) * (x - mean);
+  return sum / static_cast<double>(series.size());
+}
+
+// Lubrication resists what the noise does, so that pressure and control vary less together than the pressure
+// alone: what makes either usable where there is no viscosity.
+TEST(Result, AtRestThePressureHasBlocksAndAControlVariate) {
+  const Json result = result_of(
+      {{"flow", {{"shear_rate", 0}}},
+       {"repulsion", nullptr},
+       {"contact", {{"friction", nullptr}, {"rolling_stiffness", nullptr}, {"rolling_friction", nullptr}}},
+       {"lubrication", {{"inner_gap", 1e-3}, {"outer_gap", 0.05}}},
+       {"integrator", {{"method", "implicit"}, {"timestep", 0.008}}},
+       {"duration", {{"production", {{"time", 1280 * 0.008}}}}}});
+  expect_controls(result);
+  const Json& blocks = result.at("blocks");
+  const auto pressure = blocks.at("pressure").get<std::vector<double>>();
+  const auto control = blocks.at("control_variates").at("pressure").get<std::vector<double>>();
+  std::vector<double> sum(pressure.size());
+  for (std::size_t k = 0; k < sum.size(); ++k) sum[k] = pressure[k] + control[k];
+  EXPECT_LT(variance(sum), 0.3 * variance(pressure));
+}
+
+TEST(Result, WithoutNoiseThereIsNoControlVariate) {
+  const Json result = result_of({{"fluid", {{"thermal_energy", 0}}}});
+  for (const auto& [name, value] : result.at("mean").at("control_variates").items()) {
+    EXPECT_TRUE(value.is_null()) << name;
+  }
 }
 
 TEST(Result, SameSeedSameBytesButForTheCost) {

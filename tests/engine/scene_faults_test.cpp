@@ -34,7 +34,7 @@ const Fault faults[] = {
     {R"({"particles": {"count": 20000000}})", "/particles/count", "20000000", "<= 10000000"},
     {R"({"particles": {"density": 0}})", "/particles/density", "0", "must be a number > 0"},
     {R"({"particles": {"reference_radius": -1}})", "/particles/reference_radius", "-1", "> 0"},
-    {R"({"particles": {"species": []}})", "/particles/species", "[]", "array of 1 or more"},
+    {R"({"particles": {"species": []}})", "/particles/species", "[]", "array of 1 to 256"},
     {R"({"particles": {"species": [{"radius": 1, "volume_share": 1}, {"radius": 0, "volume_share": 1}]}})",
      "/particles/species/1/radius", "0", "must be a number > 0"},
     {R"({"particles": {"species": [{"radius": 1, "volume_share": 1}, {"radius": 2, "number_share": 1}]}})",

@@ -1,0 +1,110 @@
+#!/usr/bin/python3
+"""command_line.py ENGINE      what peclet-engine says to the one who calls it
+
+Bad arguments end with 2 and name what was given; a run ends with a summary on standard error whose numbers are those of the result,
+computed here once more; results begin with the means; waiting threads sleep unless the environment has its own wishes.
+"""
+import json
+import math
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+
+SCENE = {
+    "particles": {"count": 40, "density": 0.1, "species": [{"radius": 1}]}, "volume_fraction": 0.4, "fluid": {"viscosity": 0.1, "thermal_energy": 0.02},
+    "flow": {"shear_rate": 2}, "contact": {"normal_stiffness": 1e4}, "lubrication": {"form": "kim-karrila", "inner_gap": 0.03, "outer_gap": 0.1},
+    "integrator": {"method": "explicit", "timestep": 0.002}, "guard": {"largest_overlap": 0.2, "largest_displacement": 0.2},
+    "duration": {"equilibration": {"time": 0.1}, "production": {"time": 0.64}}}
+
+
+def bad_arguments(engine, scene):
+    for arguments, named in [
+        ([], "subcommand"), (["run"], "scene"), (["frobnicate"], "subcommand"), (["run", scene, "--sead", "1"], "--sead"),
+        (["run", scene, "--seed", "-1"], '"-1" must be a whole number from 0 to 18446744073709551615'),
+        (["run", scene, "--seed", "1.5"], '"1.5"'), (["run", scene, "--seed", "18446744073709551616"], '"18446744073709551616"'),
+        (["run", scene, "--seed", ""], '""'), (["run", scene, "--threads", "0"], "--threads"), (["run", scene, "--threads", "two"], "two"),
+    ]:
+        done = subprocess.run([engine, *arguments], capture_output=True, text=True)
+        assert (done.returncode, done.stdout) == (2, ""), f"{arguments}: exit {done.returncode}, {done.stdout!r}"
+        assert named in done.stderr, f"{arguments}: {done.stderr!r} does not say {named!r}"
+    for arguments in (["--help"], ["run", "--help"], ["--version"]):
+        assert subprocess.run([engine, *arguments], capture_output=True).returncode == 0, arguments
+
+
+def standard_error(series):
+    """Of a correlated series: the variance of the mean times 1 + 2 sum of the correlations before the first that is not positive."""
+    n = len(series)
+    mean = math.fsum(series) / n
+    products = [math.fsum((a - mean) * (b - mean) for a, b in zip(series, series[lag:])) / n for lag in range(n)]
+    inefficiency = 1
+    for product in products[1:]:
+        if product <= 0:
+            break
+        inefficiency += 2 * product / products[0]
+    return math.sqrt(products[0] * inefficiency / (n - 1))
+
+
+def summaries(engine, scene, folder):
+    run = [engine, "run", scene, "--seed", "18446744073709551615"]
+    done = subprocess.run(run, capture_output=True, text=True, check=True)
+    result = json.loads(done.stdout)
+    assert result["seed"] == 2**64 - 1
+    keys = [key for key, _ in json.loads(done.stdout, object_pairs_hook=lambda pairs: pairs)]
+    assert keys[-1] == "blocks" and "mean" in keys[:6], keys
+    assert sorted(keys) == sorted(result)
+    lines = done.stderr.splitlines()
+    assert 8 <= len(lines) <= 12, done.stderr
+    text = {line.split()[0]: line for line in lines}
+
+    def shown(name):
+        return f"{result['mean'][name]:.4g} ± {standard_error(result['blocks'][name]):.2g}"
+
+    for line, name in [("viscosity", "relative_viscosity"), ("viscosity", "relative_viscosity_pair"), ("N1,", "first_normal_difference"),
+                       ("N1,", "second_normal_difference"), ("pressure", "pressure"), ("contacts", "contacts_per_particle")]:
+        assert shown(name) in text[line], f"{name} is {shown(name)}: {text[line]}"
+    assert "50 + 320 explicit" in text["steps"] and "strain of 0.2 + 1.28" in text["steps"], text["steps"]
+    assert "standard output" in text["result"] and str(2**64 - 1) in text["result"], text["result"]
+    assert sum(line.startswith("warning ") for line in lines) == len(result["warnings"]), done.stderr
+
+    path = os.path.join(folder, "result.json")
+    done = subprocess.run([*run, "--output", path], capture_output=True, text=True, check=True)
+    assert done.stdout == "" and path in done.stderr.splitlines()[-1], done.stderr
+    with open(path) as f:
+        assert json.load(f)["mean"] == result["mean"]
+    done = subprocess.run([*run, "--output", path, "--quiet"], capture_output=True, text=True, check=True)
+    assert done.stdout + done.stderr == "", done.stderr
+
+
+def waiting(engine):
+    def environment_of_engine(wishes):
+        environment = {k: v for k, v in os.environ.items() if k not in ("OMP_WAIT_POLICY", "GOMP_SPINCOUNT")} | wishes
+        ours, theirs = socket.socketpair()
+        with ours, theirs, subprocess.Popen([engine, "serve"], stdin=theirs, env=environment) as process:
+            assert ours.recv(4) == b"PCF1"  # it is there
+            with open(f"/proc/{process.pid}/environ", "rb") as f:
+                found = dict(entry.split("=", 1) for entry in f.read().decode().split("\0") if "=" in entry)
+            ours.shutdown(socket.SHUT_RDWR)
+        return {k: found.get(k) for k in ("OMP_WAIT_POLICY", "GOMP_SPINCOUNT")}
+
+    usual = environment_of_engine({})
+    assert usual["OMP_WAIT_POLICY"] is None and int(usual["GOMP_SPINCOUNT"]) < 300000, usual
+    for wishes in ({"GOMP_SPINCOUNT": "7"}, {"OMP_WAIT_POLICY": "active"}):
+        found = environment_of_engine(wishes)
+        assert {k: v for k, v in found.items() if v} == wishes, found
+
+
+def main():
+    engine = os.path.abspath(sys.argv[1])
+    with tempfile.TemporaryDirectory() as folder:
+        scene = os.path.join(folder, "scene.json")
+        with open(scene, "w") as f:
+            json.dump(SCENE, f)
+        bad_arguments(engine, scene)
+        summaries(engine, scene, folder)
+    waiting(engine)
+
+
+if __name__ == "__main__":
+    main()
