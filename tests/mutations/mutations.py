@@ -1,11 +1,13 @@
 #!/usr/bin/python3
-"""mutations.py FOLDER [--only WORD] [--jobs N]      break the physics in a copy of the source and see who notices
-mutations.py --check                              only see that every mutation still applies
+"""mutations.py FOLDER [--named] [--only WORD] [--jobs N]      break the physics in a copy of the source and see who notices
+mutations.py --check                                        only see that every mutation still applies
 
-Each mutation is one change of a line of the engine. It is made in FOLDER, a copy of the source that this script makes, built there, and
-shown to the quick forms of the studies and to the tests of the engine and of the physics. A mutation that nobody catches is an error.
-Prints a table and writes it to mutations.md beside this script when all were tried. Some four minutes of two cores for each mutation;
-a second call with FOLDER goes on where the first one was stopped, if the source has the same commit and no changes.
+Each mutation is one change of a line of the engine. It is made in FOLDER, a copy of the source that this script makes, and built there.
+The coarse ones (mutations.py) are shown to the quick forms of the studies and to the tests of the engine and of the physics; the fine
+ones (named_mutations.py, --named) each to the one test of seconds that has to notice it. A mutation that is missed is an error.
+Prints a table, and writes it to its half of mutations.md beside this script when all were tried. Some four minutes of two cores for each
+coarse mutation, a minute for each fine one; a second call with FOLDER goes on where the first one was stopped, if the source has the same
+commit and no changes.
 """
 import argparse
 import datetime
@@ -20,6 +22,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.dirname(os.path.dirname(HERE))
 sys.path.insert(0, os.path.join(SOURCE, "results"))
 from studies import processor  # noqa: E402
+from named_mutations import NAMED  # noqa: E402
 
 # What is broken; file, text in it that occurs once, and what takes its place.
 MUTATIONS = [
@@ -58,7 +61,7 @@ STUDIES = ["convergence", "diffusion", "divergence", "flow-curve", "friction-rep
 
 def replaced(mutation, root):
     """Path and text of the broken file."""
-    name, file, old, new = mutation
+    name, file, old, new = mutation[:4]
     path = os.path.join(root, file)
     with open(path) as f:
         text = f.read()
@@ -80,10 +83,10 @@ def copy_of_source(folder):
             shutil.copymode(source, target)
 
 
-def build(folder, jobs):
+def build(folder, jobs, targets=("peclet", "peclet-engine", "engine_tests", "physics_tests")):
     if not os.path.exists(os.path.join(folder, "build/release/build.ninja")):
         subprocess.run(["cmake", "--preset", "release", "-DBUILD_TESTING=ON"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
-    done = subprocess.run(["cmake", "--build", "--preset", "release", "--target", "peclet", "peclet-engine", "engine_tests", "physics_tests", "--", f"-j{jobs}"],
+    done = subprocess.run(["cmake", "--build", "--preset", "release", "--target", *targets, "--", f"-j{jobs}"],
                           cwd=folder, capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"{folder}: does not build\n{done.stdout[-3000:]}")
@@ -119,18 +122,39 @@ def who_notices(folder):
     return noticed
 
 
+def who_of_the_named(folder, names):
+    """Of these tests (program:test), those that fail; a program that has none of a name is an error."""
+    noticed = []
+    for program in sorted({name.split(":")[0] for name in names}):
+        tests = [name.split(":")[1] for name in names if name.startswith(program + ":")]
+        chosen = [f"--gtest_filter={':'.join(tests)}"]
+        listed = subprocess.run([os.path.join(folder, "build/release/bin", program), *chosen, "--gtest_list_tests"], capture_output=True, text=True, check=True)
+        if listed.stdout.count("\n  ") < len(tests):
+            sys.exit(f"{program} has not all of {', '.join(tests)}")
+        noticed += [f"{program}: {name}" for name in failed_tests(folder, program, chosen)]
+    return noticed
+
+
+def git(*arguments):
+    return subprocess.run(["git", *arguments], cwd=SOURCE, check=True, capture_output=True, text=True).stdout.strip()
+
+
 def commit_of_source():
-    def git(*arguments):
-        return subprocess.run(["git", *arguments], cwd=SOURCE, check=True, capture_output=True, text=True).stdout.strip()
     return git("rev-parse", "--short=7", "HEAD") + (" with changes" if git("status", "--porcelain", "--untracked-files=no") else "")
+
+
+def trees():
+    """Of the engine and its tests: what the fine mistakes depend on. Outlives commits on other subjects."""
+    folders = ("engine", "tests/engine", "tests/physics")
+    return " ".join(git("rev-parse", "--short=7", f"HEAD:{folder}") for folder in folders) + (" with changes" if git("status", "--porcelain", *folders) else "")
 
 
 class Known:
     """Who noticed what, of this call and of earlier ones with the same commit; of source with changes nothing is kept."""
 
-    def __init__(self, folder, commit):
+    def __init__(self, folder, commit, file):
         os.makedirs(folder, exist_ok=True)
-        self.path, self.commit, self.noticed = os.path.join(folder, "noticed.json"), commit, {}
+        self.path, self.commit, self.noticed = os.path.join(folder, file), commit, {}
         self.lasting = "changes" not in commit
         if self.lasting and os.path.exists(self.path):
             with open(self.path) as f:
@@ -144,25 +168,59 @@ class Known:
                 json.dump({"commit": self.commit, "noticed": self.noticed}, f, indent=1)
 
 
+MARK = "## Fine mistakes\n"
+
+
+def halves():
+    """Of mutations.md: the coarse half, and the rows of the fine one by name."""
+    with open(os.path.join(HERE, "mutations.md")) as f:
+        before, _, after = f.read().partition(MARK)
+    rows = [line for line in after.splitlines() if line.startswith("| ") and not line.startswith("| broken")]
+    return before.rstrip("\n"), {row.split(" | ")[0].removeprefix("| "): row for row in rows}
+
+
+def write_halves(before, rows):
+    names = ["nothing", *(mutation[0] for mutation in NAMED)]
+    with open(os.path.join(HERE, "mutations.md"), "w") as f:
+        f.write(f"{before}\n\n{MARK}\n`mutations.py --named` shows each to the one test of seconds that has to notice it. A row is made by itself (`--only WORD`); its last column is\n"
+                "the tree of `engine/` that it was made with (`git rev-parse HEAD:engine`).\n\n| broken | noticed by | engine |\n|---|---|---|\n")
+        f.write("".join(rows[name] + "\n" for name in names if name in rows))
+
+
+def coarse(folder, jobs, mutation):
+    build(folder, jobs)
+    return who_notices(folder)
+
+
+def fine(folder, jobs, mutation):
+    """Unbroken source is shown to all of the tests."""
+    names = [mutation[4]] if mutation[1] else sorted({m[4] for m in NAMED})
+    build(folder, jobs, sorted({name.split(":")[0] for name in names}))
+    return who_of_the_named(folder, names)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", nargs="?", help="of the copy; kept, so that a second call goes faster")
     parser.add_argument("--check", action="store_true")
+    parser.add_argument("--named", action="store_true", help="the fine ones, each before its own test")
     parser.add_argument("--only", default="", help="mutations whose name has this in it")
     parser.add_argument("--jobs", type=int, default=2)
     arguments = parser.parse_args()
-    for mutation in MUTATIONS:
+    for mutation in (*MUTATIONS, *NAMED):
         replaced(mutation, SOURCE)
     if arguments.check:
-        print(f"{len(MUTATIONS)} mutations apply")
+        print(f"{len(MUTATIONS) + len(NAMED)} mutations apply")
         return 0
     if not arguments.folder:
         parser.error("needs a folder")
-    lines = ["| broken | noticed by |", "|---|---|"]
+    chosen, who = (NAMED, fine) if arguments.named else (MUTATIONS, coarse)
+    commit, tree = commit_of_source(), trees()
+    known = Known(arguments.folder, tree if arguments.named else commit, "noticed-named.json" if arguments.named else "noticed.json")
+    before, rows = halves()
+    lines = []
     missed = 0
-    commit = commit_of_source()
-    known = Known(arguments.folder, commit)
-    for mutation in [("nothing", None, None, None), *MUTATIONS]:
+    for mutation in [("nothing", None, None, None), *chosen]:
         if arguments.only not in mutation[0]:
             continue
         if mutation[0] not in known.noticed:
@@ -171,16 +229,18 @@ def main():
                 path, text = replaced(mutation, arguments.folder)
                 with open(path, "w") as f:
                     f.write(text)
-            build(arguments.folder, arguments.jobs)
-            known.add(mutation[0], who_notices(arguments.folder))
+            known.add(mutation[0], who(arguments.folder, arguments.jobs, mutation))
         noticed = known.noticed[mutation[0]]
         missed += bool(mutation[1]) != bool(noticed)
         lines.append(f"| {mutation[0]} | {'; '.join(noticed) or ('nobody' if mutation[1] else 'nobody, as it should be')} |")
         print(lines[-1], flush=True)
-    if not arguments.only:
-        with open(os.path.join(HERE, "mutations.md"), "w") as f:
-            f.write("# Who notices broken physics\n\n`mutations.py` breaks one line of the engine at a time, in a copy, and shows it to the quick forms of the studies and\n"
-                    f"to the tests. Commit {commit}, {processor()}, {datetime.date.today().isoformat()}.\n\n" + "\n".join(lines) + "\n")
+        if arguments.named and known.lasting:
+            rows[mutation[0]] = f"{lines[-1]} {tree.split()[0]} |"
+            write_halves(before, rows)
+    if not arguments.named and not arguments.only:
+        write_halves("# Who notices broken physics\n\nOne line of the engine is broken at a time, in a copy.\n\n## Coarse mistakes\n\n`mutations.py` shows each to the quick forms of the studies and "
+                     f"to all tests of the engine and of the physics. Commit {commit}, {processor()}, {datetime.date.today().isoformat()}.\n\n"
+                     "| broken | noticed by |\n|---|---|\n" + "\n".join(lines), rows)
     return 1 if missed else 0
 
 
