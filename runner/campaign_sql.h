@@ -8,5 +8,6 @@ extern const char* const views_sql;      // what people read
 extern const char* const version_2_sql;  // from version 1 of the tables
 extern const char* const version_3_sql;  // from version 2
 extern const char* const version_4_sql;  // from version 3
+extern const char* const version_5_sql;  // from version 4
 
 }  // namespace peclet::runner

@@ -2,12 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
+#include <filesystem>
 #include <string_view>
 #include <utility>
 
-#include "contract/input_error.h"
+#include "contract/guarded_file.h"
+#include "runner/being_set_up.h"
 #include "runner/campaign_sql.h"
+#include "runner/database_tables.h"
 #include "runner/migration.h"
 
 namespace peclet::runner {
@@ -15,7 +20,7 @@ namespace {
 
 // As in schema/campaign.sql.
 constexpr std::int64_t our_application = 1346587724;
-constexpr std::int64_t newest_version = 4;
+constexpr std::int64_t newest_version = 5;
 
 constexpr std::array<std::pair<SeedState, const char*>, 5> state_names{
     {{SeedState::queued, "queued"},
@@ -24,10 +29,11 @@ constexpr std::array<std::pair<SeedState, const char*>, 5> state_names{
      {SeedState::failed, "failed"},
      {SeedState::quarantined, "quarantined"}}};
 
-constexpr std::array<std::pair<Verdict, const char*>, 5> verdict_names{
+constexpr std::array<std::pair<Verdict, const char*>, 6> verdict_names{
     {{Verdict::more, "more"},
      {Verdict::converged, "converged"},
      {Verdict::converged_with_losses, "converged-with-losses"},
+     {Verdict::converged_near_maximum, "converged-near-maximum"},
      {Verdict::capped, "capped"},
      {Verdict::failed, "failed"}}};
 
@@ -53,6 +59,11 @@ bool is_empty(Connection& connection) {
          connection.integer("SELECT count(*) FROM sqlite_schema") == 0;
 }
 
+// The tables are made before the campaign is written into them.
+bool holds_anything(Connection& connection) {
+  return connection.integer("SELECT EXISTS (SELECT 1 FROM campaign) OR EXISTS (SELECT 1 FROM point)") != 0;
+}
+
 std::int64_t version_of(Connection& connection) { return connection.integer("PRAGMA user_version"); }
 
 void check_kind(Connection& connection) {
@@ -70,6 +81,7 @@ void check_kind(Connection& connection) {
     throw IntegrityError(
         fmt::format("{}: has tables of version {}, which never existed", connection.path(), version));
   }
+  check_tables(connection, version == newest_version);
 }
 
 void create_tables(Connection& connection) {
@@ -77,6 +89,15 @@ void create_tables(Connection& connection) {
   connection.execute(campaign_sql);
   connection.execute(views_sql);
   creation.commit();
+  connection.empty_log();  // what is to become larger later has its place now
+}
+
+// A log of some 4 MB, and less on a small disk: a full one whose log takes most of it has no room to bring
+// the log into the database either, and nobody could ever go on.
+int pages_of_log(const std::filesystem::path& database) {
+  constexpr std::uintmax_t page = 16384, part = 8, least = 8, most = 250;
+  const std::uintmax_t available = std::filesystem::space(database.parent_path()).available;
+  return static_cast<int>(std::clamp(available / (part * page), least, most));
 }
 
 }  // namespace
@@ -104,7 +125,10 @@ Database Database::open_owner(const std::filesystem::path& path) {
   // Results take some 2 kB, of which pages of 4 kB would hold one each. Ignored where there are tables.
   connection.execute("PRAGMA page_size = 16384");
   connection.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
-  connection.execute("PRAGMA wal_autocheckpoint = 250");  // a log of some 4 MB
+  connection.execute(fmt::format("PRAGMA wal_autocheckpoint = {}", pages_of_log(path)));
+  // Beside a reader that does not come to an end the log grows; when that one is gone, the file shrinks
+  // again.
+  connection.execute("PRAGMA journal_size_limit = 8388608");
   if (connection.text("PRAGMA journal_mode") != "wal") {
     throw DatabaseError(connection.path() + ": cannot keep a write-ahead log on this file system", 0);
   }
@@ -119,21 +143,20 @@ Database Database::open_owner(const std::filesystem::path& path) {
 }
 
 Database Database::open_reader(const std::filesystem::path& path) {
-  if (!std::filesystem::exists(path)) {
+  if (kind_of(path).empty()) {
     throw InputError(path.string(), "", "",
                      "no such database; has the campaign been started with `peclet run`?");
   }
   Database database(std::make_unique<Connection>(path.string(), Connection::Access::read_only, 5'000));
   database.snapshot_ = std::make_unique<Transaction>(database.connection(), Transaction::Kind::snapshot);
-  if (is_empty(database.connection())) {
-    throw InputError(path.string(), "", "", "the campaign is only just being set up; try again in a moment");
-  }
+  if (is_empty(database.connection())) throw BeingSetUp(path.string());
   check_kind(database.connection());
   if (version_of(database.connection()) < newest_version) {
     throw InputError(
         path.string(), "", "",
         "was last written by an older peclet; `peclet run` brings it up to date, after a backup");
   }
+  if (!holds_anything(database.connection())) throw BeingSetUp(path.string());
   return database;
 }
 

@@ -142,7 +142,8 @@ class Database {
   // All functions below take PointRecord::id. Lists are in order of the seeds (then of time).
   StateCounts counts(std::int64_t point);
   std::vector<RealisationRecord> realisations(std::int64_t point);
-  // Index is the seed; as long as the largest known seed asks for. The input of replay_looks().
+  // Index is the seed; as long as the largest seed asks for that a campaign can have. The input of
+  // replay_looks().
   std::vector<std::optional<Outcome>> outcomes(std::int64_t point);
   // The whole result with its "engine"; nothing for a seed without one.
   std::optional<Json> result(std::int64_t point, int seed);
@@ -152,8 +153,6 @@ class Database {
   std::vector<LeaseRecord> leases(std::int64_t point);
   // Looks for the present target, by number of seeds.
   std::vector<LookRecord> looks(std::int64_t point);
-  // Looks for every target there ever was.
-  std::vector<LookRecord> look_history(std::int64_t point);
   // The most recent `limit` events, oldest first.
   std::vector<EventRecord> events(int limit);
   // What became of a request; nothing while it waits.

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "contract/durable_file.h"
+#include "runner/database_tables.h"
 #include "runner/integrity_error.h"
 
 namespace peclet::runner {
@@ -74,6 +75,12 @@ std::string damage(Connection& connection) {
   if (std::string found = connection.text("PRAGMA integrity_check(1)"); found != "ok") {
     std::replace(found.begin(), found.end(), '\n', ' ');
     return found;
+  }
+  // With other tables than ours in their places, references cannot even be looked at.
+  try {
+    check_tables(connection, false);
+  } catch (const IntegrityError& error) {
+    return error.what();
   }
   Statement references(connection, "PRAGMA foreign_key_check");
   if (!references.step()) return "";

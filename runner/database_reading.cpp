@@ -41,34 +41,34 @@ TargetRecord read_target(const Statement& query, int column) {
   record.target = {query.text(column + 1), query.real(column + 2), query.real(column + 3)};
   record.minimum = static_cast<int>(query.integer(column + 4));
   record.maximum = static_cast<int>(query.integer(column + 5));
+  record.target.rule = static_cast<int>(query.integer(column + 6));
   return record;
 }
 
-std::vector<LookRecord> read_looks(Connection& connection, std::int64_t point, const std::string& which) {
+std::vector<LookRecord> read_looks(Connection& connection, std::int64_t point) {
   Statement query(
       connection,
-      "SELECT target_id, observable, relative_tolerance, confidence, minimum, maximum, seeds, lost, count,"
-      " mean, standard_error, half_width, controlled_mean, controlled_standard_error,"
-      " controlled_half_width, verdict, made_at, skewness, transient FROM look JOIN target USING (target_id) "
-      "WHERE point_id = ? " +
-          which + " ORDER BY target_id, seeds");
+      "SELECT target_id, observable, relative_tolerance, confidence, minimum, maximum, rule, seeds, lost, "
+      "count, mean, standard_error, half_width, uncontrolled_mean, uncontrolled_standard_error,"
+      " uncontrolled_half_width, verdict, made_at, skewness, transient FROM look JOIN target USING "
+      "(target_id) WHERE point_id = ? AND target_id = (SELECT target_id FROM campaign) ORDER BY seeds");
   query.bind(point);
   std::vector<LookRecord> looks;
   while (query.step()) {
     LookRecord record;
     record.target = read_target(query, 0);
     Look& look = record.look;
-    look.seeds = static_cast<int>(query.integer(6));
-    look.lost = static_cast<int>(query.integer(7));
-    const int count = static_cast<int>(query.integer(8));
-    look.estimate = {count, query.real(9), query.real(10)};
-    look.half_width = query.real(11);
-    look.controlled = {count, query.real(12), query.real(13)};
-    look.controlled_half_width = query.real(14);
-    look.verdict = verdict(query.text(15));
-    record.made_at = query.text(16);
-    look.skewness = query.real(17);
-    look.transient = query.integer(18) != 0;
+    look.seeds = static_cast<int>(query.integer(7));
+    look.lost = static_cast<int>(query.integer(8));
+    const int count = static_cast<int>(query.integer(9));
+    look.controlled = {count, query.real(10), query.real(11)};
+    look.controlled_half_width = query.real(12);
+    look.estimate = {count, query.real(13), query.real(14)};
+    look.half_width = query.real(15);
+    look.verdict = verdict(query.text(16));
+    record.made_at = query.text(17);
+    look.skewness = query.real(18);
+    look.transient = query.integer(19) != 0;
     looks.push_back(std::move(record));
   }
   return looks;
@@ -101,15 +101,15 @@ constexpr const char* result_columns =
 CampaignRecord Database::campaign() {
   Statement query(
       *connection_,
-      "SELECT target_id, observable, relative_tolerance, confidence, minimum, maximum, name, document,"
-      " created_at, updated_at FROM campaign JOIN target USING (target_id)");
+      "SELECT target_id, observable, relative_tolerance, confidence, minimum, maximum, rule, name, "
+      "document, created_at, updated_at FROM campaign JOIN target USING (target_id)");
   if (!query.step()) throw IntegrityError(connection_->path() + ": holds no campaign");
   CampaignRecord record;
   record.target = read_target(query, 0);
-  record.name = query.text(6);
-  record.document = Json::parse(query.text(7));
-  record.created_at = query.text(8);
-  record.updated_at = query.text(9);
+  record.name = query.text(7);
+  record.document = Json::parse(query.text(8));
+  record.created_at = query.text(9);
+  record.updated_at = query.text(10);
   return record;
 }
 
@@ -181,8 +181,8 @@ std::vector<RealisationRecord> Database::realisations(std::int64_t point) {
 std::vector<std::optional<Outcome>> Database::outcomes(std::int64_t point) {
   Statement query(*connection_,
                   "SELECT seed, state, value, control, first_quarter, first_half FROM realisation WHERE "
-                  "point_id = ? AND state IN ('done', 'failed', 'quarantined') ORDER BY seed");
-  query.bind(point);
+                  "point_id = ? AND seed < ? AND state IN ('done', 'failed', 'quarantined') ORDER BY seed");
+  query.bind(point).bind(most_realisations);
   std::vector<std::optional<Outcome>> outcomes;
   while (query.step()) {
     outcomes.resize(static_cast<std::size_t>(query.integer(0)) + 1);
@@ -251,13 +251,7 @@ std::vector<LeaseRecord> Database::leases(std::int64_t point) {
   return leases;
 }
 
-std::vector<LookRecord> Database::looks(std::int64_t point) {
-  return read_looks(*connection_, point, "AND target_id = (SELECT target_id FROM campaign)");
-}
-
-std::vector<LookRecord> Database::look_history(std::int64_t point) {
-  return read_looks(*connection_, point, "");
-}
+std::vector<LookRecord> Database::looks(std::int64_t point) { return read_looks(*connection_, point); }
 
 std::vector<EventRecord> Database::events(int limit) {
   Statement query(*connection_,

@@ -90,6 +90,16 @@ CountsByPoint read_flags(Connection& connection) {
                          " GROUP BY point_id, message");
 }
 
+// Of looks for targets that the campaign had before, by point.
+std::map<std::int64_t, int> read_largest_earlier_looks(Connection& connection) {
+  Statement query(connection,
+                  "SELECT point_id, max(seeds) FROM look WHERE target_id != (SELECT target_id FROM campaign) "
+                  "GROUP BY point_id");
+  std::map<std::int64_t, int> largest;
+  while (query.step()) largest[query.integer(0)] = static_cast<int>(query.integer(1));
+  return largest;
+}
+
 }  // namespace
 
 std::vector<PointSummary> summarise_points(Database& database, const TargetRecord& target) {
@@ -98,6 +108,7 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
   CountsByPoint losses = read_losses(connection);
   CountsByPoint flags = read_flags(connection);
   const bool any_apart = connection.integer("SELECT count(*) FROM point WHERE kept_apart = 1") > 0;
+  std::map<std::int64_t, int> earlier = read_largest_earlier_looks(connection);
   const std::map<std::int64_t, StoredPrediction> predictions = stored_predictions(connection);
   const std::vector<int> schedule = look_schedule(target.minimum, target.maximum);
 
@@ -113,6 +124,7 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
     for (LookRecord& record : database.looks(point.id)) summary.looks.push_back(record.look);
     summary.decided = !summary.looks.empty() && summary.looks.back().verdict != Verdict::more;
     const int seen = summary.looks.empty() ? 0 : summary.looks.back().seeds;
+    if (summary.decided && earlier[point.id] > seen) summary.earlier_look = earlier[point.id];
     summary.wanted = summary.decided ? seen : *std::upper_bound(schedule.begin(), schedule.end() - 1, seen);
     if (const auto known = predictions.find(point.id); known != predictions.end()) {
       summary.prediction = known->second;

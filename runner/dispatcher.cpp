@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <tuple>
+#include <utility>
 #include <variant>
 
 namespace peclet::runner {
@@ -87,6 +88,7 @@ void Dispatcher::turn() {
   judge_time();
   look_for_room();
   if (!unbooked_ && book()) {
+    for (const std::string& warning : std::exchange(now_.warnings, {})) listener_.warn(warning);
     ledger_.after_commit();  // a checkpoint that is discarded goes before its seed's next attempt begins
     for (const auto& [worker, job] : to_send_) pool_.assign(worker, job);
     to_send_.clear();
@@ -240,6 +242,10 @@ void Dispatcher::handle(const JobFailed& event) {
 void Dispatcher::handle(const Drained& event) {
   if (!has_job(event.worker, event.job)) return;
   Worker& worker = at(event.worker);
+  if (stopping_ == Stopping::no && !worker.recalled) {  // it could do so for ever
+    condemn(event.worker, AttemptOutcome::garbled, "gave back a job that nobody wanted back");
+    return;
+  }
   worker.assignment->step = event.step;
   if (const auto waiting = std::exchange(worker.waiting, std::nullopt)) give_back(*waiting);
   end_assignment(event.worker, {AttemptOutcome::drained});
@@ -295,8 +301,9 @@ void Dispatcher::exited_without_job(int number, const ExitStatus& ending, Stage 
   if (stopping_ != Stopping::no || at(number).recalled) return;
   const bool own_doing = at(number).condemned || outcome_of(ending) != AttemptOutcome::killed;
   const std::string how = at(number).message.empty() ? to_string(ending) : at(number).message;
-  listener_.warn(fmt::format("worker {} ended {}: {}", number,
-                             stage == Stage::starting ? "before it said hello" : "without a job", how));
+  now_.warnings.push_back(fmt::format("worker {} ended {}: {}", number,
+                                      stage == Stage::starting ? "before it said hello" : "without a job",
+                                      how));
   now_.early_exits += own_doing ? most_early_kills / most_early_exits + 1 : 1;
   if (now_.early_exits > most_early_kills) {
     throw EngineError(

@@ -88,7 +88,8 @@ class Dispatcher {
   struct Picture {
     std::vector<Worker> workers;
     int results = 0;
-    int early_exits = 0;  // of workers without a job, in a row
+    int early_exits = 0;                  // of workers without a job, in a row
+    std::vector<std::string> warnings{};  // to be given after the commit
   };
   enum class Stopping { no, finished, draining, at_once };
 

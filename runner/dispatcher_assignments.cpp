@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "runner/dispatcher.h"
+#include "runner/spool.h"
 
 namespace peclet::runner {
 namespace {
@@ -94,7 +95,7 @@ void Dispatcher::end_assignment(int number, const AttemptEnd& end) {
 // A result may be durable although nobody could announce it any more; one that was turned down stays so.
 bool Dispatcher::left_result(int number, const Assignment& about) {
   std::string why;
-  if (at(number).condemned == AttemptOutcome::garbled || !std::filesystem::exists(about.grant.job.spool) ||
+  if (at(number).condemned == AttemptOutcome::garbled || !is_there(about.grant.job.spool) ||
       !ledger_.take_result(about.grant, "", about.step, processor_seconds_since(about.given), why)) {
     return false;
   }

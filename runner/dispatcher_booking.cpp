@@ -108,7 +108,20 @@ void Dispatcher::begin_shortage(const std::filesystem::path& folder, std::uint64
 }
 
 void Dispatcher::look_for_room() {
-  if (shortage_.is_over(clock_())) unbooked_ = false;
+  if (!shortage_.lasts()) return;
+  const Time now = clock_();
+  // The write-ahead log keeps its largest size, which on a small disk is most of what there is.
+  if (shortage_.is_looked_at(now)) database_.connection().empty_log();
+  if (shortage_.is_over(now)) {
+    unbooked_ = false;
+    return;
+  }
+  if (stopping_ != Stopping::no) return;
+  const std::filesystem::path root = std::filesystem::path(database_.connection().path()).parent_path();
+  const std::string why = shortage_.in_vain(root, now);
+  if (why.empty()) return;
+  listener_.warn(why + "; workers checkpoint and stop");
+  stop(Stopping::draining);
 }
 
 void Dispatcher::end_shortage() {

@@ -18,24 +18,31 @@
 #include <utility>
 
 #include "contract/input_error.h"
+#include "runner/campaign_file.h"
+#include "runner/own_files.h"
 
 namespace peclet::runner {
 namespace {
 
 namespace fs = std::filesystem;
 
-bool is_program(const fs::path& path) { return fs::is_regular_file(path) && access(path.c_str(), X_OK) == 0; }
+bool is_file(const fs::path& path) {
+  std::error_code impossible;  // a loop of links, a name that is too long
+  return fs::is_regular_file(path, impossible);
+}
+
+bool is_program(const fs::path& path) { return is_file(path) && access(path.c_str(), X_OK) == 0; }
 
 [[noreturn]] void refuse_engine(const fs::path& campaign_file, const std::string& name,
                                 const fs::path& program) {
   throw InputError(campaign_file.string(), "/engine/0", name,
-                   fs::is_regular_file(program)
+                   is_file(program)
                        ? fmt::format("may not be executed: `chmod +x {}`", program.string())
                        : fmt::format("must be a program; there is none at {}", program.string()));
 }
 
 std::vector<fs::path> search_path() {
-  std::vector<fs::path> folders{fs::read_symlink("/proc/self/exe").parent_path()};
+  std::vector<fs::path> folders{own_folder()};
   const char* const path = std::getenv("PATH");
   std::string_view rest = path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin";
   while (!rest.empty()) {
@@ -43,6 +50,8 @@ std::vector<fs::path> search_path() {
     if (colon != 0) folders.emplace_back(rest.substr(0, colon));
     rest = colon == std::string_view::npos ? std::string_view{} : rest.substr(colon + 1);
   }
+  const std::vector<fs::path> adapters = own_adapters();
+  folders.insert(folders.end(), adapters.begin(), adapters.end());
   return folders;
 }
 
@@ -122,7 +131,7 @@ class SpawnSettings {
 
 EngineCommand resolve_engine(const Campaign& campaign, const fs::path& campaign_file) {
   const std::string& name = campaign.engine.at(0);
-  const fs::path home = fs::absolute(campaign_file).parent_path();
+  const fs::path home = home_of(campaign_file);
   EngineCommand command{{}, {campaign.engine.begin() + 1, campaign.engine.end()}, home, {}};
   if (name.find('/') != std::string::npos) {
     command.program = (home / name).lexically_normal();
@@ -133,7 +142,8 @@ EngineCommand resolve_engine(const Campaign& campaign, const fs::path& campaign_
     command.program = fs::absolute(folder / name);
     if (is_program(command.program)) return command;
   }
-  throw InputError(campaign_file.string(), "/engine/0", name, "must be a program beside peclet or on PATH");
+  throw InputError(campaign_file.string(), "/engine/0", name,
+                   "must be a program beside peclet, on PATH, or one of peclet's adapters");
 }
 
 ExitStatus exit_status(int wait_status) {

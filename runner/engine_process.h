@@ -23,8 +23,9 @@ struct EngineCommand {
 };
 
 // Finds campaign.engine[0]: absolute, or with a slash relative to the campaign file's folder; else beside the
-// running program, else on PATH. It runs in the campaign file's folder, so that names among its arguments
-// mean the same wherever peclet is started. Throws InputError at /engine/0 of `campaign_file`.
+// running program, else on PATH, else among the program's own adapters. It runs in the campaign file's
+// folder, so that names among its arguments mean the same wherever peclet is started. Throws InputError at
+// /engine/0 of `campaign_file`.
 EngineCommand resolve_engine(const Campaign& campaign, const std::filesystem::path& campaign_file);
 
 // How a process ended.

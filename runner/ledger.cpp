@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "contract/input_error.h"
+#include "runner/intruders.h"
+#include "runner/plain_text.h"
 #include "runner/spool.h"
 
 namespace peclet::runner {
@@ -14,21 +16,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t longest_list = 350;
+
 // The folder whose spool a file lies in: the campaign's own, or one that is shared with a batch system.
 CampaignDirectory home_of(const fs::path& spool_file) {
   return CampaignDirectory(spool_file.parent_path().parent_path());
-}
-
-Outcome outcome_of(const Observed& observed) {
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  if (!observed.value) return {};
-  return {Outcome::Kind::value, *observed.value, observed.control.value_or(0),
-          observed.first_quarter.value_or(none), observed.first_half.value_or(none)};
-}
-
-std::optional<double> cost_of(const RealisationResult& result, const char* which) {
-  const Json& seconds = result.document.at("cost").at(which);
-  return seconds.is_number() ? std::optional(seconds.get<double>()) : std::nullopt;
 }
 
 }  // namespace
@@ -41,6 +33,7 @@ Ledger::Ledger(Database& database, const Campaign& campaign, CampaignDirectory d
       directory_(std::move(directory)),
       listener_(listener),
       retries_(retries) {
+  move_intruders_aside(directory_, [&](const std::string& text) { listener_.warn(text); });
   read_points();
   ingest_spool();
   if (const int recovered = queue_.recover(); recovered > 0) {
@@ -108,74 +101,6 @@ void Ledger::roll_back() {
   read();
 }
 
-void Ledger::ingest_spool_of(const CampaignDirectory& directory) {
-  // Files are committed one by one: a crash in between finds the rest where it was.
-  for (const fs::path& file : spool_files(directory)) {
-    Transaction booking(database_.connection());
-    try {
-      const RealisationResult result = read_spool_file(file, "");
-      // An engine that answers with another seed's result may die before it is found out.
-      if (is_named_for_another(file, result)) throw ResultError("it is named for another point or seed");
-      take(result, file);
-    } catch (const ResultError& error) {
-      turn_down(file, error.what());
-    }
-    booking.commit();
-    after_commit();
-  }
-}
-
-Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
-  const Stored stored = queue_.store(result, campaign_.target.observable);
-  switch (stored) {
-    case Stored::stored_apart:
-      to_remove_.push_back(spool);
-      return stored;
-    case Stored::stored:
-    case Stored::duplicate:
-      to_remove_.push_back(spool);
-      to_remove_.push_back(directory_.checkpoint(result.point, result.seed));
-      if (const fs::path there = home_of(spool).checkpoint(result.point, result.seed);
-          there != to_remove_.back()) {
-        to_remove_.push_back(there);
-      }
-      break;
-    case Stored::conflict:
-      turn_down(spool, "another run of the same seed gave another result");
-      return stored;
-    case Stored::mixed_engine:
-      turn_down(spool, "its point has results of another engine");
-      return stored;
-    case Stored::unknown_point:
-      turn_down(spool, "it belongs to no point of this campaign");
-      return stored;
-  }
-  const auto place = places_.find(result.point);
-  if (stored == Stored::duplicate || place == places_.end()) return stored;
-  const Observed observed = observe(result.document, campaign_.target.observable);
-  const std::string cause = cause_of(result, observed);
-  if (result.completed() && !has_observable(result.document["mean"], campaign_.target.observable)) {
-    lacking_ = names_of_numbers(result.document["mean"]);
-  }
-  to_tell_.push_back(SeedEnded{told_name(place->second), result.seed, cause, observed.value,
-                               cost_of(result, "cpu_seconds")});
-  if (!scheduler_) return stored;  // load() finds it
-  add_cost(place->second, cost_of(result, "wall_seconds"), cost_of(result, "cpu_seconds"));
-  tell_cost(place->second);
-  if (!observed.value) {
-    listener_.note(fmt::format("{}: ended with {}", name({place->second, result.seed}), cause));
-  }
-  book_outcome({place->second, result.seed}, outcome_of(observed));
-  return stored;
-}
-
-void Ledger::turn_down(const fs::path& spool, const std::string& why) {
-  const std::string message = fmt::format("{} is not taken: {}", spool.filename().string(), why);
-  queue_.event("rejected", std::nullopt, std::nullopt, message);
-  listener_.warn(fmt::format("{}; it is kept in {}", message, home_of(spool).rejected().string()));
-  if (fs::exists(spool)) to_reject_.push_back(spool);
-}
-
 // `known` looks of the point are stored already.
 void Ledger::store_looks(int place, std::size_t known) {
   const std::vector<Look>& looks = scheduler_->looks(place);
@@ -198,7 +123,7 @@ void Ledger::book_outcome(SeedId id, const Outcome& outcome) {
   const Look& last = scheduler_->looks(id.point).back();
   const std::string message = fmt::format("{} after {} seeds", to_string(last.verdict), last.seeds);
   queue_.event("decided", about.id, std::nullopt, message);
-  listener_.note(fmt::format("{}: {}", about.label, message));
+  to_tell_.emplace_back(Note{fmt::format("{}: {}", about.label, message)});
 }
 
 std::optional<Grant> Ledger::give_out(int worker, std::int64_t process, std::int64_t engine) {
@@ -218,28 +143,6 @@ std::optional<Grant> Ledger::give_out(int worker, std::int64_t process, std::int
   return grant;
 }
 
-bool Ledger::take_result(const Grant& grant, const std::string& sha256, std::int64_t step,
-                         double held_seconds, std::string& why) {
-  try {
-    const RealisationResult result = read_spool_file(grant.job.spool, sha256);
-    if (result.point != grant.job.point || result.seed != grant.job.seed) {
-      throw ResultError("it is of another point or seed than the job");
-    }
-    if (engine_identity(result.document.at("engine")) != identity_) {
-      throw ResultError("it names another engine than the worker's hello");
-    }
-    take(result, grant.job.spool);
-    spent_seconds_ += std::min(held_seconds, cost_of(result, "cpu_seconds").value_or(held_seconds));
-  } catch (const ResultError& error) {
-    why = error.what();
-    turn_down(grant.job.spool, why);
-    return false;
-  }
-  leave(grant);
-  queue_.end_attempt(grant.job.attempt, {AttemptOutcome::result, step});
-  return true;
-}
-
 void Ledger::end_attempt(const Grant& grant, const AttemptEnd& end) {
   leave(grant);
   spent_seconds_ += end.held_seconds;
@@ -247,9 +150,9 @@ void Ledger::end_attempt(const Grant& grant, const AttemptEnd& end) {
   const Sentence sentence = judge(queue_.history(grant.point_id, grant.id.seed), retries_);
   if (sentence.discard_checkpoint) to_discard_.push_back(grant.job.checkpoint);
   if (is_blamed(end.outcome)) {
-    listener_.warn(fmt::format("{}: {}{}{}; {}", name_of(grant), to_string(end.outcome),
-                               end.message.empty() ? "" : ": ", end.message,
-                               sentence.quarantine ? "it is given up" : "it is tried again"));
+    to_tell_.emplace_back(Warning{fmt::format("{}: {}{}{}; {}", name_of(grant), to_string(end.outcome),
+                                              end.message.empty() ? "" : ": ", end.message,
+                                              sentence.quarantine ? "it is given up" : "it is tried again")});
   }
   to_tell_.push_back(
       AttemptFailed{told_name(grant), grant.id.seed, end.outcome, end.message, sentence.quarantine});
@@ -297,10 +200,14 @@ void Ledger::after_commit() {
   to_discard_.clear();
   to_remove_.clear();
   to_reject_.clear();
-  for (const RunEvent& event : std::exchange(to_tell_, {})) listener_.happened(event);
+  for (const auto& told : std::exchange(to_tell_, {})) {
+    if (const auto* const note = std::get_if<Note>(&told)) listener_.note(note->text);
+    if (const auto* const warning = std::get_if<Warning>(&told)) listener_.warn(warning->text);
+    if (const auto* const event = std::get_if<RunEvent>(&told)) listener_.happened(*event);
+  }
   if (!lacking_.empty()) {
     throw InputError(campaign_.name, "/target/observable", campaign_.target.observable,
-                     "must be a number that the results have: " + lacking_);
+                     "must be a number that the results have: " + plain(lacking_, longest_list));
   }
 }
 
@@ -314,14 +221,12 @@ RunReport Ledger::report(int workers) const {
     const bool is_left_alone = !decided && scheduler_->cancelled(place);
     report.cancelled += is_left_alone ? 1 : 0;
     report.decided += decided ? 1 : 0;
-    report.converged += decided && (looks.back().verdict == Verdict::converged ||
-                                    looks.back().verdict == Verdict::converged_with_losses)
-                            ? 1
-                            : 0;
+    report.converged += decided && is_converged(looks.back().verdict) ? 1 : 0;
     report.seeds_ended += scheduler_->ended(place);
     report.seeds_wanted += is_left_alone ? scheduler_->ended(place) : scheduler_->wanted(place);
-    forecasts.push_back({costs_[static_cast<std::size_t>(place)].wall, looks, scheduler_->begun(place),
-                         decided || is_left_alone});
+    const int ended = scheduler_->all_ended(place);
+    forecasts.push_back({costs_[static_cast<std::size_t>(place)].wall, scheduler_->so_far(place), ended,
+                         scheduler_->begun(place) - ended, decided || is_left_alone});
   }
   report.spent_seconds = spent_seconds_;
   report.budget_seconds = bounds_.budget_seconds;

@@ -7,9 +7,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "runner/campaign_directory.h"
@@ -141,6 +144,12 @@ class Ledger {
   void add_cost(int place, std::optional<double> wall_seconds, std::optional<double> cpu_seconds);
   void leave_to_batch_system(int place);
   void ingest_spool_of(const CampaignDirectory& directory);
+  void ingest(const std::filesystem::path& spool);
+  class Taking;
+  using Reading = std::function<RealisationResult()>;
+  using Booking = std::function<void(const RealisationResult&)>;
+  // Reads a result and books it, wholly or not at all. Returns why it is turned down; "" when it is not.
+  std::string take_whole(const std::filesystem::path& spool, const Reading& read, const Booking& book);
   Stored take(const RealisationResult& result, const std::filesystem::path& spool);
   void book_outcome(SeedId id, const Outcome& outcome);
   void store_looks(int place, std::size_t known);
@@ -167,10 +176,18 @@ class Ledger {
   std::string lacking_;   // what results have instead of the target's observable
 
   // After the commit: what the next attempt must not find, what is left of seeds that have ended, results
-  // that are none.
+  // that are none; and what people and programs hear.
+  struct Note {
+    std::string text;
+  };
+  struct Warning {
+    std::string text;
+  };
   std::vector<std::filesystem::path> to_discard_, to_remove_, to_reject_;
-  std::vector<RunEvent> to_tell_;
+  int turned_down_ = 0;  // of the spool files that are looked at together
+  std::vector<std::variant<RunEvent, Note, Warning>> to_tell_;
   FileRemoval removal_;
+  std::set<std::string> away_;  // shared folders that are not there, as has been said
 };
 
 }  // namespace peclet::runner

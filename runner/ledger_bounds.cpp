@@ -45,13 +45,8 @@ std::optional<double> Ledger::wall_seconds(const Grant& grant) const {
 
 std::optional<SeedId> Ledger::next() const {
   if (!bounds_.budget_seconds) return scheduler_->next();
-  double left = *bounds_.budget_seconds - spent_seconds_;
-  for (int place = 0; place < scheduler_->points(); ++place) {
-    const int running = running_[static_cast<std::size_t>(place)];
-    // What a seed is expected to take may need a look at all points, and few of them have running seeds.
-    if (running > 0) left -= running * scheduler_->expected_seconds(place);
-  }
-  return scheduler_->next_within(left);
+  return scheduler_->next_within(*bounds_.budget_seconds - spent_seconds_ -
+                                 scheduler_->expected_seconds(running_));
 }
 
 }  // namespace peclet::runner

@@ -1,8 +1,10 @@
 // The ledger's part in seeds that a batch system runs.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <set>
+#include <map>
+#include <system_error>
 
 #include "runner/bundle_book.h"
 #include "runner/bundle_files.h"
@@ -10,18 +12,51 @@
 
 namespace peclet::runner {
 
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Out {
+  std::size_t seeds = 0;
+  std::vector<std::string> bundles;
+};
+
+// "a-0001, a-0002 and 3 more"
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 3;
+  const std::string text = fmt::format(
+      "{}", fmt::join(names.begin(),
+                      names.begin() + static_cast<std::ptrdiff_t>(std::min(most, names.size())), ", "));
+  return names.size() > most ? fmt::format("{} and {} more", text, names.size() - most) : text;
+}
+
+}  // namespace
+
 void Ledger::ingest_spool() {
   removal_.finish();  // of what has been taken already
   ingest_spool_of(directory_);
-  std::set<std::string> shared;
-  for (const BundleRecord& bundle : BundleBook(database_.connection()).open_bundles()) {
-    if (!shared.insert(bundle.shared).second) continue;
-    const CampaignDirectory there(bundle.shared);
-    if (std::filesystem::is_directory(there.spool())) {
+  const BundleBook book(database_.connection());
+  std::map<std::string, Out> shared;
+  for (const BundleRecord& bundle : book.open_bundles()) {
+    Out& out = shared[bundle.shared];
+    out.seeds += book.seeds_out(bundle.id).size();
+    out.bundles.push_back(bundle.name);
+  }
+  // Tasks of a bundle that was given up may have left results since.
+  for (const BundleRecord& bundle : book.forgotten_bundles()) shared[bundle.shared];
+  for (const auto& [folder, out] : shared) {
+    const CampaignDirectory there(folder);
+    std::error_code unreachable;
+    if (fs::is_directory(there.spool(), unreachable)) {
+      away_.erase(folder);
       ingest_spool_of(there);
-    } else {
+    } else if (out.seeds > 0 && away_.insert(folder).second) {
       listener_.warn(
-          fmt::format("{}: is not there now; results in it are taken in later", there.spool().string()));
+          fmt::format("{}: {}, and {} seeds are out in it ({}). Put it back, and `peclet ingest` takes in "
+                      "what it holds; if it is "
+                      "gone for good, `peclet ingest --forget {}` queues seeds again",
+                      folder, unreachable ? unreachable.message() : "is not there", out.seeds,
+                      listed(out.bundles), out.bundles.front()));
     }
   }
   removal_.finish();
@@ -62,9 +97,10 @@ void Ledger::end_handed_over(SeedId id, int task, const NodeReport& report,
   const Sentence sentence = judge(queue_.history(about.id, id.seed), retries_);
   if (sentence.discard_checkpoint) to_discard_.push_back(checkpoint);
   if (is_blamed(report.outcome)) {
-    listener_.warn(fmt::format("{} on {}: {}{}{}; {}", name(id), report.host, to_string(report.outcome),
-                               report.message.empty() ? "" : ": ", report.message,
-                               sentence.quarantine ? "it is given up" : "it is tried again"));
+    to_tell_.emplace_back(
+        Warning{fmt::format("{} on {}: {}{}{}; {}", name(id), report.host, to_string(report.outcome),
+                            report.message.empty() ? "" : ": ", report.message,
+                            sentence.quarantine ? "it is given up" : "it is tried again")});
   }
   if (!sentence.quarantine) {
     take_back(id);

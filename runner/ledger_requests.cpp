@@ -55,8 +55,8 @@ int Ledger::accept_engine(const std::string& identity) {
   for (const PointRecord& about : points_) {
     if (!is_to_be_run(about) || about.engine_identity.empty() || about.engine_identity == identity) continue;
     queue_.keep_apart(about, identity);
-    listener_.note(
-        fmt::format("{}: results of engine {} are kept apart", about.label, about.engine_identity));
+    to_tell_.emplace_back(
+        Note{fmt::format("{}: results of engine {} are kept apart", about.label, about.engine_identity)});
     ++points;
     // Another engine could not go on from where they stand.
     for (const RealisationRecord& record : database_.realisations(about.id)) {

@@ -45,6 +45,7 @@ void change_tables(Connection& connection, std::int64_t from) {
   }
   if (from < 3) connection.execute(version_3_sql);
   if (from < 4) connection.execute(version_4_sql);
+  if (from < 5) connection.execute(version_5_sql);
   connection.execute(views_sql);
   if (const std::string found = damage(connection); !found.empty()) {
     throw IntegrityError(fmt::format("{}: could not be brought up to date: {}", connection.path(), found));

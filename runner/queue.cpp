@@ -257,29 +257,25 @@ void Queue::store_looks(std::int64_t point, const std::vector<Look>& looks) {
   Statement insert(
       connection_,
       "INSERT INTO look (point_id, target_id, seeds, lost, count, mean, standard_error, half_width, "
-      "controlled_mean, controlled_standard_error, controlled_half_width, verdict, made_at, skewness, "
+      "uncontrolled_mean, uncontrolled_standard_error, uncontrolled_half_width, verdict, made_at, skewness, "
       "transient) SELECT ?1, target_id, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14 FROM "
-      "campaign "
-      "WHERE true ON CONFLICT DO UPDATE SET lost = ?3, count = ?4, mean = ?5, standard_error = ?6, "
-      "half_width "
-      "= ?7, controlled_mean = ?8, controlled_standard_error = ?9, controlled_half_width = ?10, verdict = "
-      "?11, "
-      "made_at = ?12, skewness = ?13, transient = ?14 WHERE count != ?4 OR lost != ?3 OR mean IS NOT ?5 OR "
-      "half_width IS NOT ?7 OR controlled_mean IS NOT ?8 OR controlled_half_width IS NOT ?10 OR verdict != "
-      "?11 "
-      "OR skewness IS NOT ?13 OR transient != ?14");
+      "campaign WHERE true ON CONFLICT DO UPDATE SET lost = ?3, count = ?4, mean = ?5, standard_error = ?6, "
+      "half_width = ?7, uncontrolled_mean = ?8, uncontrolled_standard_error = ?9, uncontrolled_half_width = "
+      "?10, verdict = ?11, made_at = ?12, skewness = ?13, transient = ?14 WHERE count != ?4 OR lost != ?3 OR "
+      "mean IS NOT ?5 OR half_width IS NOT ?7 OR uncontrolled_mean IS NOT ?8 OR uncontrolled_half_width IS "
+      "NOT ?10 OR verdict != ?11 OR skewness IS NOT ?13 OR transient != ?14");
   const std::string now = utc_now();
   for (const Look& look : looks) {
     insert.bind(point)
         .bind(look.seeds)
         .bind(look.lost)
         .bind(look.estimate.count)
-        .bind(look.estimate.mean)
-        .bind(look.estimate.standard_error)
-        .bind(look.half_width)
         .bind(look.controlled.mean)
         .bind(look.controlled.standard_error)
         .bind(look.controlled_half_width)
+        .bind(look.estimate.mean)
+        .bind(look.estimate.standard_error)
+        .bind(look.half_width)
         .bind(to_string(look.verdict))
         .bind(now)
         .bind(look.skewness)

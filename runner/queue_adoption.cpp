@@ -47,11 +47,10 @@ void Queue::take_over(const Campaign& campaign) {
 std::int64_t Queue::adopt_target(const Campaign& campaign) {
   const Target& target = campaign.target;
   const char* const parts[] = {
-      "INSERT OR IGNORE INTO target (observable, relative_tolerance, confidence, minimum, maximum) "
-      "VALUES (?, ?, ?, ?, ?)",
+      "INSERT OR IGNORE INTO target (observable, relative_tolerance, confidence, minimum, maximum, "
+      "rule) VALUES (?, ?, ?, ?, ?, ?)",
       "SELECT target_id FROM target WHERE observable = ? AND relative_tolerance = ? AND confidence = ? AND "
-      "minimum = ? "
-      "AND maximum = ?"};
+      "minimum = ? AND maximum = ? AND rule = ?"};
   std::int64_t id = 0;
   for (const char* const sql : parts) {
     Statement statement(connection_, sql);
@@ -59,7 +58,8 @@ std::int64_t Queue::adopt_target(const Campaign& campaign) {
         .bind(target.relative_tolerance)
         .bind(target.confidence)
         .bind(campaign.minimum_realisations)
-        .bind(campaign.maximum_realisations);
+        .bind(campaign.maximum_realisations)
+        .bind(target.rule);
     if (statement.step()) id = statement.integer(0);
   }
   return id;

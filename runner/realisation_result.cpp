@@ -1,9 +1,5 @@
 #include "runner/realisation_result.h"
 
-#include <fmt/format.h>
-
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "contract/input_error.h"
@@ -14,71 +10,22 @@ namespace {
 
 constexpr const char* control_name = "brownian_pairwise";
 
-[[noreturn]] void refuse(const std::string& pointer, std::string_view allowed) {
-  throw ResultError(fmt::format("{}: {}", pointer, allowed));
-}
-
-const Json& field(const Json& document, const std::string& pointer) {
-  const Json::json_pointer where(pointer);
-  if (!document.contains(where)) refuse(pointer, "is missing");
-  return document.at(where);
-}
-
-const std::string& text_at(const Json& document, const std::string& pointer) {
-  const Json& value = field(document, pointer);
-  if (!value.is_string()) refuse(pointer, "must be text");
-  return value.get_ref<const std::string&>();
-}
-
-std::int64_t count_at(const Json& document, const std::string& pointer) {
-  const Json& value = field(document, pointer);
-  if (!value.is_number_integer() || value < 0) refuse(pointer, "must be a whole number >= 0");
-  return value.get<std::int64_t>();
-}
-
-void check_number(const Json& document, const std::string& pointer) {
-  if (!field(document, pointer).is_number()) refuse(pointer, "must be a number");
-}
-
-bool is_hash(const std::string& text) {
-  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
-}
-
-// The reader refuses numbers that are not finite; what is left to check is that they are numbers at all.
-void check_shape(const Json& document) {
-  if (!document.is_object()) refuse("", "must be an object");
-  if (field(document, "/schema_version") != 1) refuse("/schema_version", "must be 1");
-  if (!is_hash(text_at(document, "/point"))) refuse("/point", "must be a SHA-256");
-  if (count_at(document, "/seed") > std::numeric_limits<int>::max()) refuse("/seed", "is too large");
-  const std::string& cause = text_at(document, "/ending/cause");
-  // Each engine has its own words for how a realisation can go wrong.
-  if (cause.empty() || cause.front() == '-' ||
-      cause.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") != std::string::npos)
-    refuse("/ending/cause", "must be a word of lower-case letters and hyphens");
-  count_at(document, "/ending/step");
-  check_number(document, "/cost/cpu_seconds");
-  check_number(document, "/cost/wall_seconds");
-  const bool completed = cause == "completed";
-  // A realisation that could not be packed has no final state.
-  if ((completed || !field(document, "/final_state_sha256").is_null()) &&
-      !is_hash(text_at(document, "/final_state_sha256"))) {
-    refuse("/final_state_sha256", "must be a SHA-256");
-  }
-  for (const char* const part : {"/mean", "/blocks"}) {
-    const Json& value = field(document, part);
-    if (completed ? !value.is_object() : !value.is_null()) {
-      refuse(part, completed ? "must be an object" : "must be null after this ending");
-    }
-  }
-  engine_identity(field(document, "/engine"));
-}
-
 // Time is no part of the physics; the machine, and where it keeps the state of a blow-up, is none either.
-std::string content_hash(Json document) {
-  document.erase("cost");
-  document.erase("engine");
-  document["ending"].erase("state");
-  return sha256(canonical_json(document));
+std::string content_hash(Json& document) {
+  // A result may be large, so these parts are laid aside, not the others copied.
+  const auto take = [](Json& object, const char* key) {
+    Json part = std::move(object[key]);
+    object.erase(key);
+    return part;
+  };
+  Json& ending = document["ending"];
+  const bool has_state = ending.contains("state");
+  Json cost = take(document, "cost"), engine = take(document, "engine"), state = take(ending, "state");
+  const std::string hash = sha256(canonical_json(document));
+  document["cost"] = std::move(cost);
+  document["engine"] = std::move(engine);
+  if (has_state) ending["state"] = std::move(state);
+  return hash;
 }
 
 std::optional<double> number_in(const Json& object, const std::string& key) {
@@ -121,6 +68,7 @@ std::optional<double> beginning(const Json& blocks, const std::string& observabl
 }  // namespace
 
 RealisationResult parse_result(std::string_view text) {
+  if (const std::string excess = excess_of(text); !excess.empty()) throw ResultError(excess);
   RealisationResult result;
   try {
     result.document = parse_json(text, "result");
@@ -139,16 +87,11 @@ RealisationResult parse_result(std::string_view text) {
   return result;
 }
 
-std::string engine_identity(const Json& engine) {
-  return fmt::format("{} ({}) sha256 {}", text_at(engine, "/version"), text_at(engine, "/instruction_set"),
-                     text_at(engine, "/binary_sha256"));
-}
-
 std::set<std::string> flags_of(const RealisationResult& result) {
   std::set<std::string> codes;
   if (!result.completed()) return codes;
   for (const Json& warning : result.document.value("warnings", Json::array())) {
-    const std::string code = text_at(warning, "/code");
+    const std::string& code = warning.at("code").get_ref<const std::string&>();
     if (!code.starts_with("inertia-")) codes.insert(code);
   }
   return codes;

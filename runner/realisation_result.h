@@ -3,19 +3,13 @@
 
 #include <optional>
 #include <set>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include "contract/json.h"
+#include "runner/result_shape.h"
 
 namespace peclet::runner {
-
-// A text that is no result (schema/result.schema.json says what one is).
-class ResultError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 struct RealisationResult {
   Json document;  // whole
@@ -28,10 +22,6 @@ struct RealisationResult {
 
 // Throws ResultError naming what is wrong.
 RealisationResult parse_result(std::string_view text);
-
-// Engine version, instruction set and hash of the binary: results of one point share it.
-// Throws ResultError when one of the three is missing.
-std::string engine_identity(const Json& engine);
 
 struct Observed {
   std::optional<double> value;    // of the observable; none after a blow-up, or where it does not exist

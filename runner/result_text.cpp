@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "runner/integrity_error.h"
+#include "runner/result_shape.h"
 
 namespace peclet::runner {
 namespace {
@@ -71,6 +72,9 @@ class Inflation {
       stream_.avail_out = static_cast<uInt>(part.size());
       const int code = inflate(&stream_, Z_NO_FLUSH);
       text.append(part.data(), part.size() - stream_.avail_out);
+      if (text.size() > largest_result) {
+        throw IntegrityError(fmt::format("inflates to more than {} bytes", largest_result));
+      }
       if (code == Z_STREAM_END && stream_.avail_in == 0) return text;
       if (code == Z_NEED_DICT && is_taken(dictionary)) continue;
       if (code != Z_OK) throw IntegrityError(fmt::format("cannot be inflated: {}", reason(code)));
@@ -135,8 +139,12 @@ void store_result_text(Connection& connection, std::int64_t point, int seed, std
 }
 
 std::string result_text(const Statement& query, int document, int dictionary) {
-  const std::string stored = query.text(document);
-  return query.is_blob(document) ? inflated(stored, query.text(dictionary)) : stored;
+  std::string text = query.text(document);
+  if (query.is_blob(document)) text = inflated(text, query.text(dictionary));
+  if (const std::string excess = excess_of(text); !excess.empty()) {
+    throw IntegrityError("is none that this program stores: " + excess);
+  }
+  return text;
 }
 
 }  // namespace peclet::runner

@@ -12,7 +12,8 @@ namespace peclet::runner {
 
 // `dictionary`: the other result, or nothing.
 std::string deflated(std::string_view text, std::string_view dictionary);
-// Throws IntegrityError when the bytes are not what deflated() made of some text with the same dictionary.
+// Throws IntegrityError when the bytes are not what deflated() made of some text with the same dictionary, or
+// when the text exceeds what a result may have (excess_of()).
 std::string inflated(std::string_view bytes, std::string_view dictionary);
 
 // Stores the text of a result that has none yet. That of the first completed realisation becomes its point's

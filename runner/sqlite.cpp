@@ -4,10 +4,13 @@
 #include <sqlite3.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <new>
+#include <system_error>
 
 #include "contract/durable_file.h"
+#include "contract/guarded_file.h"
 #include "runner/integrity_error.h"
 
 namespace peclet::runner {
@@ -37,6 +40,15 @@ int flags_of(Connection::Access access) {
   return SQLITE_OPEN_READONLY;
 }
 
+// SQLITE_OPEN_NOFOLLOW minds links anywhere in the path; the folder is where its user wanted it to be.
+std::string without_links_above(const std::filesystem::path& path) {
+  if (path == Connection::in_memory) return path.string();  // no file at all
+  std::error_code absent;                                   // then SQLite says so
+  const std::filesystem::path folder =
+      std::filesystem::canonical(path.has_parent_path() ? path.parent_path() : ".", absent);
+  return absent ? path.string() : (folder / path.filename()).string();
+}
+
 }  // namespace
 
 bool DatabaseError::no_room() const {
@@ -45,17 +57,27 @@ bool DatabaseError::no_room() const {
   return (primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN) && means_no_room(system_error_);
 }
 
-Connection::Connection(const std::string& path, Access access, int busy_milliseconds) : path_(path) {
-  const int code = sqlite3_open_v2(path.c_str(), &handle_,
-                                   flags_of(access) | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, nullptr);
+bool DatabaseError::refuses_values() const {
+  const int primary = code_ & 0xff;
+  return primary == SQLITE_CONSTRAINT || primary == SQLITE_MISMATCH || primary == SQLITE_TOOBIG;
+}
+
+Connection::Connection(const std::string& path, Access access, int busy_milliseconds)
+    : path_(path), busy_milliseconds_(busy_milliseconds) {
+  // Looked at beforehand, because SQLite would wait for a FIFO; that it never follows a link is its own rule.
+  for (const char* const suffix : {"", "-wal", "-shm", "-journal"}) require_regular(path + suffix);
+  const int code = sqlite3_open_v2(
+      without_links_above(path).c_str(), &handle_,
+      flags_of(access) | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE | SQLITE_OPEN_NOFOLLOW, nullptr);
   if (code != SQLITE_OK) {
     sqlite3* const broken = handle_;
     handle_ = nullptr;
     const std::string said = broken != nullptr ? sqlite3_errmsg(broken) : sqlite3_errstr(code);
     const int system_error = broken != nullptr ? sqlite3_system_errno(broken) : 0;
     sqlite3_close_v2(broken);
-    throw DatabaseError(fmt::format("{}: {} (SQLite code {}) while opening it", path, said, code), code,
-                        system_error);
+    const std::string why = system_error != 0 ? ": " + std::generic_category().message(system_error) : "";
+    throw DatabaseError(fmt::format("{}: {}{} (SQLite code {}) while opening it", path, said, why, code),
+                        code, system_error);
   }
   sqlite3_busy_timeout(handle_, busy_milliseconds);
 }
@@ -112,6 +134,18 @@ std::string Connection::text(const std::string& sql) {
 }
 
 std::int64_t Connection::last_insert_id() const { return sqlite3_last_insert_rowid(handle_); }
+
+// Without waiting for a reader: it is only tried.
+void Connection::empty_log() {
+  sqlite3_busy_timeout(handle_, 0);
+  const int code = sqlite3_wal_checkpoint_v2(handle_, nullptr, SQLITE_CHECKPOINT_TRUNCATE, nullptr, nullptr);
+  const int system_error = sqlite3_system_errno(handle_);
+  sqlite3_busy_timeout(handle_, busy_milliseconds_);
+  const int primary = code & 0xff;
+  if (primary == SQLITE_OK || primary == SQLITE_BUSY || primary == SQLITE_LOCKED) return;
+  const DatabaseError error(fmt::format("{}: cannot empty its write-ahead log", path_), code, system_error);
+  if (!error.no_room()) throw error;
+}
 
 int Connection::changes() const { return sqlite3_changes(handle_); }
 
@@ -220,6 +254,25 @@ Transaction::~Transaction() {
 
 void Transaction::commit() {
   connection_.execute("COMMIT");
+  open_ = false;
+}
+
+Savepoint::Savepoint(Connection& connection) : connection_(connection) {
+  connection_.execute("SAVEPOINT part");
+}
+
+Savepoint::~Savepoint() {
+  // Where SQLite has rolled the whole transaction back by itself, or cannot do it, the caller's Transaction
+  // does: nothing is ever committed of what could not be taken back.
+  if (!open_ || sqlite3_get_autocommit(connection_.handle()) != 0) return;
+  if (sqlite3_exec(connection_.handle(), "ROLLBACK TO part; RELEASE part", nullptr, nullptr, nullptr) !=
+      SQLITE_OK) {
+    sqlite3_exec(connection_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
+  }
+}
+
+void Savepoint::keep() {
+  connection_.execute("RELEASE part");
   open_ = false;
 }
 

@@ -24,6 +24,8 @@ class DatabaseError : public std::runtime_error {
   int code() const { return code_; }
   // The file system, or the user's quota of it, is full: nothing was changed, and it may be tried again.
   bool no_room() const;
+  // What was to be written is not what the tables hold: the statement changed nothing, and never will.
+  bool refuses_values() const;
 
  private:
   int code_, system_error_;
@@ -32,8 +34,11 @@ class DatabaseError : public std::runtime_error {
 class Connection {
  public:
   enum class Access { create, read_write, read_only };
+  // The name of a database that is no file and ends with its connection.
+  static constexpr const char* in_memory = ":memory:";
 
-  // Waits up to `busy_milliseconds` for other connections' locks. Throws DatabaseError.
+  // Waits up to `busy_milliseconds` for other connections' locks. Throws DatabaseError, and UnsuitableFile
+  // when the database or a file of SQLite's beside it is no regular file.
   Connection(const std::string& path, Access access, int busy_milliseconds);
   ~Connection();
   Connection(const Connection&) = delete;
@@ -47,6 +52,9 @@ class Connection {
   std::int64_t last_insert_id() const;
   // Rows changed by the last statement.
   int changes() const;
+  // Brings what is in the write-ahead log into the database and gives its room back, unless a reader or a
+  // full disk stands in the way. Outside of transactions. Throws DatabaseError.
+  void empty_log();
   // Throws what SQLite says about its last call, which gave `code` (0: as it remembers), while doing `doing`.
   [[noreturn]] void fail(const std::string& doing, int code = 0) const;
 
@@ -60,6 +68,7 @@ class Connection {
 
  private:
   std::string path_;
+  int busy_milliseconds_;
   sqlite3* handle_ = nullptr;
   std::unordered_multimap<std::string, sqlite3_stmt*> idle_;  // reset and without values
 };
@@ -115,6 +124,20 @@ class Transaction {
   Transaction(const Transaction&) = delete;
   Transaction& operator=(const Transaction&) = delete;
   void commit();
+
+ private:
+  Connection& connection_;
+  bool open_ = true;
+};
+
+// A part of a transaction that is taken back unless it is kept. Not more than one at a time.
+class Savepoint {
+ public:
+  explicit Savepoint(Connection& connection);
+  ~Savepoint();
+  Savepoint(const Savepoint&) = delete;
+  Savepoint& operator=(const Savepoint&) = delete;
+  void keep();
 
  private:
   Connection& connection_;

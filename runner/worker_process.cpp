@@ -9,11 +9,14 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <system_error>
 #include <utility>
 
 #include "contract/input_error.h"
+#include "runner/plain_text.h"
+#include "runner/result_shape.h"
 
 namespace peclet::runner {
 namespace {
@@ -32,6 +35,30 @@ constexpr std::uint64_t largest_log = 1 << 20;
 constexpr int older_logs = 2;
 
 constexpr std::array<const char*, 3> phases{"packing", "equilibration", "production"};
+
+// The most bytes that an engine may say it needs for one file: the state of 10^8 particles.
+constexpr double most_bytes = double{std::uint64_t{1} << 36};
+// Every double below it is whole or not.
+constexpr double most_steps = double{std::int64_t{1} << 53};
+
+// A whole number of a message, at least 0 and below `end`.
+std::int64_t count_in(const Json& message, const char* key, double end) {
+  const Json& value = message.at(key);
+  const double number = value.is_number() ? value.get<double>() : -1;
+  if (!(number >= 0 && number < end) || std::trunc(number) != number) {
+    throw FrameError(
+        fmt::format("\"{}\" of a message must be a whole number, at least 0 and below {:g}", key, end));
+  }
+  return value.get<std::int64_t>();
+}
+
+std::int64_t job_in(const Json& message) { return count_in(message, "job", most_steps); }
+
+double strain_in(const Json& message) {
+  const double strain = message.at("strain").get<double>();
+  if (!(std::abs(strain) <= largest_number)) throw FrameError("\"strain\" of a message is out of range");
+  return strain;
+}
 
 int phase_number(const std::string& name) {
   const auto found = std::find(phases.begin(), phases.end(), name);
@@ -64,25 +91,25 @@ WorkerEvent as_event(int worker, const Json& message) {
   }
   if (type == "progress") {
     return Progressed{worker,
-                      message.at("job").get<std::int64_t>(),
+                      job_in(message),
                       phase_number(message.at("phase").get<std::string>()),
-                      message.at("step").get<std::int64_t>(),
-                      message.at("steps").get<std::int64_t>(),
-                      message.at("strain").get<double>()};
+                      count_in(message, "step", most_steps),
+                      count_in(message, "steps", most_steps),
+                      strain_in(message)};
   }
   if (type == "result") {
-    return ResultSpooled{worker, message.at("job").get<std::int64_t>(),
-                         message.at("spool").get<std::string>(), message.at("sha256").get<std::string>()};
+    return ResultSpooled{worker, job_in(message), message.at("spool").get<std::string>(),
+                         message.at("sha256").get<std::string>()};
   }
   if (type == "failed") {
-    return JobFailed{worker, message.at("job").get<std::int64_t>(), message.at("message").get<std::string>()};
+    return JobFailed{worker, job_in(message), plain(message.at("message").get<std::string>())};
   }
   if (type == "drained") {
-    return Drained{worker, message.at("job").get<std::int64_t>(), message.at("step").get<std::int64_t>()};
+    return Drained{worker, job_in(message), count_in(message, "step", most_steps)};
   }
   if (type == "no-room") {
-    return ShortOfRoom{worker, message.at("job").get<std::int64_t>(), message.at("path").get<std::string>(),
-                       message.at("bytes").get<std::uint64_t>()};
+    return ShortOfRoom{worker, job_in(message), message.at("path").get<std::string>(),
+                       static_cast<std::uint64_t>(count_in(message, "bytes", most_bytes))};
   }
   throw FrameError("unexpected message: " + type);
 }
@@ -238,9 +265,9 @@ void ProcessPool::hear(int number, std::vector<WorkerEvent>& events) {
       events.push_back(as_event(number, *message));
     return;
   } catch (const FrameError& error) {
-    events.emplace_back(Garbled{number, error.what()});
+    events.emplace_back(Garbled{number, plain(error.what())});
   } catch (const Json::exception& error) {
-    events.emplace_back(Garbled{number, error.what()});
+    events.emplace_back(Garbled{number, plain(error.what())});
   }
   worker.process.kill();
   worker.deaf = true;

@@ -37,7 +37,7 @@ class ProcessPool : public WorkerPool {
  private:
   struct Worker {
     EngineProcess process;
-    FrameDecoder decoder{};
+    FrameDecoder decoder{largest_answer};
     std::string unsent{};  // bytes that the socket did not take yet
     bool deaf = false;     // its socket has ended, or what it says no longer counts
     std::optional<std::chrono::steady_clock::time_point> grace{};  // then it is killed

@@ -1,11 +1,11 @@
--- The database of one campaign, version 4; its views are in views.sql. One process writes it (the one that holds
+-- The database of one campaign, version 5; its views are in views.sql. One process writes it (the one that holds
 -- campaign.lock); everybody else opens it read-only. schema/README.md explains the tables and views to pandas
 -- users. A version-N.sql makes version N of the one before it and leaves the same tables as this file.
 --
 -- Times ending in _at are wall-clock times in UTC, for people to look at: no decision is made from them.
 
 PRAGMA application_id = 1346587724;  -- "PCLL" as a big-endian integer
-PRAGMA user_version = 4;
+PRAGMA user_version = 5;
 
 -- What a verdict was reached for. Old targets stay, with the looks that were made for them.
 CREATE TABLE target (
@@ -15,7 +15,8 @@ CREATE TABLE target (
   confidence         REAL    NOT NULL,
   minimum            INTEGER NOT NULL,
   maximum            INTEGER NOT NULL,
-  UNIQUE (observable, relative_tolerance, confidence, minimum, maximum)
+  rule               INTEGER NOT NULL,  -- by which looks decide: 1 before version 5 of the tables
+  UNIQUE (observable, relative_tolerance, confidence, minimum, maximum, rule)
 ) STRICT;
 
 -- The campaign as last run: exactly one row.
@@ -140,22 +141,22 @@ CREATE TABLE lease (
 
 -- What the closed cohort of the first `seeds` seeds said. NULL: does not exist for so few values.
 CREATE TABLE look (
-  point_id                  INTEGER NOT NULL REFERENCES point,
-  target_id                 INTEGER NOT NULL REFERENCES target,
-  seeds                     INTEGER NOT NULL,
-  lost                      INTEGER NOT NULL,
-  count                     INTEGER NOT NULL,
-  mean                      REAL,
-  standard_error            REAL,
-  half_width                REAL,
-  controlled_mean           REAL,
-  controlled_standard_error REAL,
-  controlled_half_width     REAL,
-  verdict                   TEXT    NOT NULL CHECK (verdict IN
-                              ('more', 'converged', 'converged-with-losses', 'capped', 'failed')),
-  made_at                   TEXT    NOT NULL,
-  skewness                  REAL,     -- of the values that decide
-  transient                 INTEGER NOT NULL DEFAULT 0 CHECK (transient IN (0, 1)),  -- the window is too early
+  point_id                    INTEGER NOT NULL REFERENCES point,
+  target_id                   INTEGER NOT NULL REFERENCES target,
+  seeds                       INTEGER NOT NULL,
+  lost                        INTEGER NOT NULL,
+  count                       INTEGER NOT NULL,
+  mean                        REAL,     -- of value + control: the estimate that decides
+  standard_error              REAL,
+  half_width                  REAL,
+  uncontrolled_mean           REAL,     -- of the values alone
+  uncontrolled_standard_error REAL,
+  uncontrolled_half_width     REAL,
+  verdict                     TEXT    NOT NULL CHECK (verdict IN ('more', 'converged', 'converged-with-losses',
+                                'converged-near-maximum', 'capped', 'failed')),
+  made_at                     TEXT    NOT NULL,
+  skewness                    REAL,     -- of the values that decide
+  transient                   INTEGER NOT NULL DEFAULT 0 CHECK (transient IN (0, 1)),  -- the window is too early
   PRIMARY KEY (point_id, target_id, seeds)
 ) STRICT, WITHOUT ROWID;
 

@@ -7,6 +7,8 @@
 
 #include "contract/input_error.h"
 #include "contract/sha256.h"
+#include "runner/being_set_up.h"
+#include "runner/database_copy.h"
 #include "runner/queue.h"
 #include "tests/runner/runner_fixture.h"
 
@@ -25,7 +27,7 @@ TEST_F(Databases, IsDurableStrictAndOurs) {
   EXPECT_EQ(connection.text("PRAGMA journal_mode"), "wal");
   EXPECT_EQ(connection.integer("PRAGMA synchronous"), 2);  // FULL
   EXPECT_EQ(connection.integer("PRAGMA foreign_keys"), 1);
-  EXPECT_EQ(connection.integer("PRAGMA user_version"), 4);
+  EXPECT_EQ(connection.integer("PRAGMA user_version"), 5);
   EXPECT_EQ(connection.integer("PRAGMA application_id"), 0x50434c4c);  // "PCLL"
   EXPECT_EQ(connection.integer("PRAGMA page_size"), 16384);
   EXPECT_EQ(connection.integer(
@@ -50,13 +52,13 @@ TEST_F(Databases, SomebodyElsesDatabaseIsLeftAlone) {
 }
 
 TEST_F(Databases, ANewerVersionAsksForANewerProgram) {
-  Database::open_owner(path()).connection().execute("PRAGMA user_version = 5");
+  Database::open_owner(path()).connection().execute("PRAGMA user_version = 6");
   for (const bool owner : {true, false}) {
     try {
       owner ? Database::open_owner(path()) : Database::open_reader(path());
       FAIL() << "opened";
     } catch (const IntegrityError& error) {
-      EXPECT_NE(std::string(error.what()).find("newer peclet (version 5"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("newer peclet (version 6"), std::string::npos) << error.what();
     }
   }
 }
@@ -74,8 +76,85 @@ TEST_F(Databases, DamageIsFoundWhenTheOwnerOpens) {
   EXPECT_THROW(Database::open_owner(path()), IntegrityError);
 }
 
+// Made by somebody who wants a reader to wait for ever, or a writer to write something else.
+TEST_F(Databases, TablesThatThisProgramDidNotMakeAreNotRead) {
+  const char* const changes[] = {
+      "ALTER TABLE point RENAME TO real_point; CREATE VIEW point AS WITH RECURSIVE n(i) AS (SELECT 1 UNION "
+      "ALL "
+      "SELECT i + 1 FROM n) SELECT i AS point_id, i AS place FROM n",
+      "CREATE TRIGGER more AFTER INSERT ON event BEGIN UPDATE realisation SET value = 1; END",
+      "ALTER TABLE look ADD COLUMN more INTEGER",
+      "ALTER TABLE look ADD COLUMN more BLOB AS (zeroblob(1000000000))",
+      "DROP VIEW estimates; DROP TABLE look",
+      "DROP TABLE prediction; CREATE VIRTUAL TABLE prediction USING fts5(point_id)",
+  };
+  for (const char* const change : changes) {
+    Database::open_owner(path()).connection().execute(
+        std::string("PRAGMA foreign_keys = OFF; PRAGMA legacy_alter_table = ON; ") + change);
+    for (const bool owner : {true, false}) {
+      try {
+        owner ? Database::open_owner(path()) : Database::open_reader(path());
+        FAIL() << "opened after " << change;
+      } catch (const IntegrityError& error) {
+        EXPECT_NE(std::string(error.what()).find("somebody else made or changed this file"),
+                  std::string::npos)
+            << error.what();
+      }
+    }
+    for (const char* const suffix : {"", "-wal", "-shm"}) std::filesystem::remove(path().string() + suffix);
+  }
+}
+
+// References to what is no table are an error of SQLite's own, which would hide what is wrong.
+TEST_F(Databases, AViewInThePlaceOfATableIsDamage) {
+  Database database = Database::open_owner(path());
+  Connection& connection = database.connection();
+  connection.execute(
+      "PRAGMA foreign_keys = OFF; PRAGMA legacy_alter_table = ON; ALTER TABLE point RENAME TO real_point; "
+      "CREATE VIEW point AS SELECT * FROM real_point");
+  EXPECT_NE(damage(connection).find("point is not the table"), std::string::npos) << damage(connection);
+}
+
+TEST_F(Databases, ViewsOfPeopleDoNoHarm) {
+  Database owner = Database::open_owner(path());
+  Queue(owner).adopt(plain_campaign(1, 4, 40, 0.05));
+  owner.connection().execute("CREATE VIEW mine AS SELECT label FROM point");
+  EXPECT_EQ(Database::open_reader(path()).points().size(), 1U);
+}
+
+// SQLite cannot begin its log anew while somebody reads an earlier state.
+TEST_F(Databases, TheLogShrinksWhenAReaderThatHeldItUpHasGone) {
+  Database owner = Database::open_owner(path());
+  Queue(owner).adopt(plain_campaign(1, 4, 40, 0.05));
+  const auto write = [&owner](std::size_t bytes) {
+    Statement(owner.connection(), "INSERT INTO event (at, kind, message) VALUES ('now', 'test', ?)")
+        .bind(noise(bytes))
+        .run();
+  };
+  const auto log_size = [this] { return std::filesystem::file_size(path().string() + "-wal"); };
+  write(1);
+  {
+    Database reader = Database::open_reader(path());
+    reader.events(1);
+    for (int i = 0; i < 24; ++i) write(1 << 20);
+    EXPECT_GT(log_size(), 24U << 20);
+  }
+  for (int i = 0; i < 3; ++i) write(1);
+  EXPECT_LE(log_size(), 8U << 20);
+}
+
+TEST_F(Databases, AReaderOfWhatIsOnlyJustBeingSetUpMayWait) {
+  std::ofstream(path()) << "";
+  EXPECT_THROW(Database::open_reader(path()), BeingSetUp);
+  Database owner = Database::open_owner(path());  // the tables, and no campaign yet
+  EXPECT_THROW(Database::open_reader(path()), BeingSetUp);
+  Queue(owner).adopt(plain_campaign(1, 4, 40, 0.05));
+  EXPECT_NO_THROW(Database::open_reader(path()));
+}
+
 TEST_F(Databases, AReaderCannotWrite) {
-  Database::open_owner(path());
+  Database owner = Database::open_owner(path());
+  Queue(owner).adopt(plain_campaign(1, 4, 40, 0.05));
   Database reader = Database::open_reader(path());
   EXPECT_THROW(reader.connection().execute("DELETE FROM point"), DatabaseError);
 }
@@ -125,9 +204,13 @@ TEST_F(Databases, NumbersThatDoNotExistAreNull) {
   look.lost = 3;
   look.estimate = {1, 12, std::nan("")};
   look.half_width = std::nan("");
+  look.controlled = look.estimate;
+  look.controlled_half_width = std::nan("");
   look.verdict = Verdict::more;
   queue.store_looks(1, {look});
-  EXPECT_EQ(owner.connection().integer("SELECT half_width IS NULL FROM estimates"), 1);
+  EXPECT_EQ(owner.connection().integer(
+                "SELECT half_width IS NULL AND uncontrolled_half_width IS NULL FROM estimates"),
+            1);
   ASSERT_EQ(owner.looks(1).size(), 1U);
   EXPECT_TRUE(std::isnan(owner.looks(1)[0].look.half_width));
   EXPECT_EQ(owner.looks(1)[0].look.estimate.mean, 12);

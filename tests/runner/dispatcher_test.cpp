@@ -220,7 +220,7 @@ TEST_F(Dispatching, ASpoolFileThatIsTooLargeToBeAResultIsSetAsideUnread) {
   std::filesystem::resize_file(large, std::uintmax_t{1} << 40);  // a hole: it takes no room on the disk
   pool_.script = [this] { finish_all(); };
   EXPECT_EQ(run(), Dispatcher::Ending::finished);
-  EXPECT_TRUE(was_warned_of("large.json is not taken: it has 1099511627776 bytes"));
+  EXPECT_TRUE(was_warned_of("large.json is not taken: "));
   EXPECT_TRUE(std::filesystem::exists(directory_.rejected() / "large.json"));
 }
 

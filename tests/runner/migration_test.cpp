@@ -7,6 +7,7 @@
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
 #include "runner/campaign_sql.h"
+#include "runner/export.h"
 #include "runner/queue.h"
 #include "tests/runner/runner_fixture.h"
 
@@ -65,7 +66,7 @@ std::string indices(Connection& connection) {
 void expect_newest_layout(const std::filesystem::path& path) {
   Database old = Database::open_owner(path);
   Database fresh = Database::open_owner(path.parent_path() / "fresh.db");
-  EXPECT_EQ(old.connection().integer("PRAGMA user_version"), 4);
+  EXPECT_EQ(old.connection().integer("PRAGMA user_version"), 5);
   EXPECT_EQ(columns(old.connection()), columns(fresh.connection()));
   EXPECT_EQ(indices(old.connection()), indices(fresh.connection()));
   EXPECT_EQ(old.connection().text("PRAGMA integrity_check"), "ok");
@@ -127,6 +128,32 @@ TEST_F(Migration, KeepsWhatTheCampaignHadAndTakesWhatItLacked) {
     EXPECT_NEAR(outcome.first_half, result["blocks"]["relative_viscosity"][0].get<double>(), 1e-12);
   }
   EXPECT_FALSE(database.looks(point.id).empty());
+}
+
+// Looks that an earlier rule made are read, checked and shown by it, until the campaign is run again.
+TEST_F(Migration, LeavesLooksAndTheirRule) {
+  Connection(path().string(), Connection::Access::read_write, 0)
+      .execute(
+          "UPDATE look SET mean = 1, standard_error = 2, half_width = 3, controlled_mean = 4, "
+          "controlled_standard_error = 5, controlled_half_width = 6");
+  Database database = Database::open_owner(path());
+  const PointRecord point = database.points().at(0);
+  const LookRecord look = database.looks(point.id).back();
+  EXPECT_EQ(look.target.target.rule, Target::first_rule);
+  EXPECT_EQ(look.look.controlled.mean, 4);
+  EXPECT_EQ(look.look.controlled_half_width, 6);
+  EXPECT_EQ(look.look.estimate.mean, 1);
+  EXPECT_EQ(look.look.half_width, 3);
+  const std::string columns =
+      "SELECT mean || standard_error || half_width || uncontrolled_mean || "
+      "uncontrolled_standard_error || uncontrolled_half_width FROM estimates";
+  EXPECT_EQ(database.connection().text(columns), "4.05.06.01.02.03.0");
+}
+
+TEST_F(Migration, LeavesLooksThatTheStoredResultsConfirm) {
+  Database database = Database::open_owner(path());
+  const TargetRecord target = database.campaign().target;
+  for (const PointRecord& point : database.points()) EXPECT_NO_THROW(checked_look(database, point, target));
 }
 
 TEST_F(Migration, KeepsACopyOfTheOldDatabase) {

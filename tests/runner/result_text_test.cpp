@@ -42,6 +42,18 @@ TEST(ResultText, OfOtherBytesIsAnError) {
   }
 }
 
+// 128 MiB of zeros take 128 kB; a stored text may not make a reader take all memory.
+TEST(ResultText, OfABombIsAnErrorBeforeItHasGoneOff) {
+  const std::string bytes = deflated(std::string(128 << 20, '0'), "");
+  EXPECT_LT(bytes.size(), 200'000U);
+  try {
+    inflated(bytes, "");
+    FAIL() << "inflated";
+  } catch (const IntegrityError& error) {
+    EXPECT_STREQ(error.what(), "inflates to more than 67108864 bytes");
+  }
+}
+
 class StoredTexts : public testing::Test {
  protected:
   StoredTexts() {
@@ -91,6 +103,13 @@ TEST_F(StoredTexts, OutliveTheResultThatTheyLeanOn) {
   store(1, R"({"name":[1,2,3,4,5],"seed":1})", true);
   database_.connection().execute("DELETE FROM result WHERE seed = 0");
   EXPECT_EQ(text_of(1), R"({"name":[1,2,3,4,5],"seed":1})");
+}
+
+TEST_F(StoredTexts, OfTooManyValuesAreNotRead) {
+  std::string list = "[0";
+  for (int i = 0; i < 600'000; ++i) list += ",[]";
+  store(0, list + "]", false);
+  EXPECT_THROW(text_of(0), IntegrityError);
 }
 
 TEST_F(StoredTexts, OfEarlierVersionsAreReadAsTheyAre) {

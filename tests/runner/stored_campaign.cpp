@@ -26,6 +26,14 @@ void StoredCampaign::look(int point) {
                                              campaign_.minimum_realisations, campaign_.maximum_realisations));
 }
 
+void StoredCampaign::set_tolerance(double tolerance) {
+  campaign_.target.relative_tolerance = tolerance;
+  queue_.adopt(campaign_);
+  Transaction booking(database_.connection());
+  for (int point = 0; point < static_cast<int>(campaign_.points.size()); ++point) look(point);
+  booking.commit();
+}
+
 void StoredCampaign::complete(int point, int seed, double viscosity, const Json& warnings) {
   Json result = plain_result(campaign_.points.at(static_cast<std::size_t>(point)).hash, seed, viscosity);
   result["warnings"] = warnings;

@@ -18,6 +18,8 @@ class StoredCampaign {
   void complete(int point, int seed, double viscosity, const Json& warnings = Json::array());
   // The same with a window whose halves differ; its control variate is zero.
   void complete_in_halves(int point, int seed, double first, double second);
+  // As `peclet set --tolerance`, with the looks that follow.
+  void set_tolerance(double tolerance);
   // One more result of a seed that has ended.
   void repeat(int point, int seed, double viscosity);
   void blow_up(int point, int seed);

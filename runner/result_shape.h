@@ -1,0 +1,45 @@
+// What a result must be before anything of it is stored: schema/result.schema.json, as far as the runner
+// reads it.
+//
+// Results come from outside: an engine may lie, and a file may have been put where results are looked for.
+// Whatever is wrong with one is found here, in one go and without a trace; who takes a result that has passed
+// need not ask again.
+#pragma once
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "contract/json.h"
+
+namespace peclet::runner {
+
+// A text that is no result. What it says is one short line, whatever the text holds.
+class ResultError : public std::runtime_error {
+ public:
+  explicit ResultError(const std::string& message);
+};
+
+// Of a result's text. Most have some ten thousand bytes and a few thousand values; a pair distribution in the
+// plane of shear may have four million numbers. Lists, objects and keys take more memory than numbers do.
+constexpr std::size_t largest_result = std::size_t{64} << 20;
+constexpr std::size_t most_values = std::size_t{1} << 22;
+constexpr std::size_t most_structures = std::size_t{1} << 19;
+constexpr int deepest_result = 200;
+
+// No number of a result is larger: so no sum, square or cube of a campaign's values overflows.
+constexpr double largest_number = 1e100;
+
+// "" when the text keeps within these bounds, otherwise what it exceeds. It need not be JSON.
+std::string excess_of(std::string_view text);
+
+// Throws ResultError naming the first value that is not as it must be, and what is allowed. `completed`
+// realisations have means, others none. Members that engines did not always write may be absent.
+void check_shape(const Json& document);
+
+// Engine version, instruction set and hash of the binary: results of one point share it.
+// Throws ResultError when one of the three is missing or none.
+std::string engine_identity(const Json& engine);
+
+}  // namespace peclet::runner
