@@ -8,6 +8,8 @@
 #include <system_error>
 #include <utility>
 
+#include "contract/guarded_file.h"
+
 namespace peclet::runner {
 namespace {
 
@@ -55,6 +57,24 @@ void create_folders(const CampaignDirectory& directory) {
        {directory.root(), directory.rejected(), directory.checkpoints(), directory.failures(),
         directory.logs(), directory.backup(), directory.requests()}) {
     fs::create_directories(folder);
+  }
+}
+
+void require_own_folders(const CampaignDirectory& directory) {
+  require_own_folder(directory.root(), true);
+  for (const fs::path& folder :
+       {directory.spool(), directory.rejected(), directory.checkpoints(), directory.failures(),
+        directory.logs(), directory.backup(), directory.requests(), directory.aside()}) {
+    require_own_folder(folder);
+  }
+}
+
+fs::path make_folder_aside(const CampaignDirectory& directory) {
+  require_own_folder(directory.aside());
+  fs::create_directories(directory.aside());
+  for (int number = 1;; ++number) {
+    const fs::path folder = directory.aside() / std::to_string(number);
+    if (kind_of(folder).empty() && fs::create_directory(folder)) return folder;
   }
 }
 

@@ -25,7 +25,7 @@ class CampaignDirectory {
   std::filesystem::path backup() const { return root_ / "backup"; }
   // What people ask of the campaign, until its owner has carried it out.
   std::filesystem::path requests() const { return root_ / "requests"; }
-  // Where `peclet restore` keeps what it takes the place of.
+  // What was in the way is kept here: of `peclet restore`, or of a run.
   std::filesystem::path aside() const { return root_ / "aside"; }
   std::filesystem::path run_log() const { return logs() / "peclet.log"; }
 
@@ -46,6 +46,14 @@ CampaignDirectory campaign_directory(const std::filesystem::path& campaign_file,
 // Makes the folder and those below it. Throws std::filesystem::filesystem_error.
 void create_folders(const CampaignDirectory& directory);
 
+// A campaign works only in folders that nobody else can make lead elsewhere: those below its own must be
+// folders, not links, and all must belong to the user of this process or to root. The campaign's folder
+// itself is the one that its user has named, and may be a link. Throws UnsuitableFile naming the folder.
+void require_own_folders(const CampaignDirectory& directory);
+
+// A new folder in aside/, for what is in the way.
+std::filesystem::path make_folder_aside(const CampaignDirectory& directory);
+
 // The kind of network file system that `path` (or the nearest folder above it that exists) is on, if it is on
 // one.
 std::optional<std::string> network_file_system(const std::filesystem::path& path);
@@ -61,7 +69,8 @@ class OwnedByAnother : public std::runtime_error {
 // and on campaign.lock, which says who holds it. Code in owner_lock.cpp.
 class OwnerLock {
  public:
-  // Requires the folder to exist. Throws OwnedByAnother naming the owner's process, std::system_error.
+  // Requires the folder to exist. Throws OwnedByAnother naming the owner's process, UnsuitableFile as
+  // require_own_folders() or when the lock is no regular file, std::system_error.
   explicit OwnerLock(const CampaignDirectory& directory);
   ~OwnerLock();
   OwnerLock(const OwnerLock&) = delete;

@@ -8,7 +8,8 @@ namespace peclet::runner {
 Reply cancel_points(const CancelOptions& options) {
   const CampaignDirectory directory = find_campaign(options.campaign, options.directory);
   const Request request = write_request(directory, Cancel{options.points, options.undo});
-  return await_reply(directory, request, campaign_file_of(options.campaign), options.patience);
+  return await_reply(directory, request, words_for(campaign_file_of(options.campaign), options.directory),
+                     options.patience);
 }
 
 }  // namespace peclet::runner

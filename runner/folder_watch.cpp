@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "contract/durable_file.h"
+#include "contract/guarded_file.h"
 #include "runner/database_copy.h"
 #include "runner/integrity_error.h"
+#include "runner/quoting.h"
 
 namespace peclet::runner {
 namespace {
@@ -28,6 +30,7 @@ void FolderWatch::attend(Time now) {
   last_ = now;
   refuse_move();
   refuse_deletion();
+  require_own_folders(directory_);
   mend_folders();
 }
 
@@ -36,10 +39,10 @@ void FolderWatch::refuse_move() const {
   std::error_code absent;
   if (!folder || fs::equivalent(*folder, directory_.root(), absent)) return;
   throw IntegrityError(
-      fmt::format("{0}: was moved to {1} while the campaign ran, which stops here; everything that was "
+      fmt::format("{}: was moved to {} while the campaign ran, which stops here; everything that was "
                   "committed is there: "
-                  "move it back and run again, or go on there with --directory {1}",
-                  directory_.root().string(), folder->string()));
+                  "move it back and run again, or go on there with --directory {}",
+                  directory_.root().string(), folder->string(), shell_word(folder->string())));
 }
 
 void FolderWatch::refuse_deletion() const {
@@ -51,14 +54,14 @@ void FolderWatch::refuse_deletion() const {
       "them "
       "back with `peclet restore {} {}`",
       directory_.database().string(), database_.connection().integer("SELECT count(*) FROM result"),
-      saved.string(), saved.string(), directory_.root().string()));
+      saved.string(), shell_word(saved.string()), shell_word(directory_.root().string())));
 }
 
 void FolderWatch::mend_folders() const {
   std::vector<std::string> gone;
   for (const fs::path& folder : {directory_.spool(), directory_.checkpoints(), directory_.failures(),
                                  directory_.logs(), directory_.backup()}) {
-    if (!fs::exists(folder)) gone.push_back(folder.filename().string() + "/");
+    if (kind_of(folder).empty()) gone.push_back(folder.filename().string() + "/");
   }
   if (gone.empty()) return;
   create_folders(directory_);

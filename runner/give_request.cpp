@@ -57,17 +57,16 @@ bool is_carried_out(const CampaignDirectory& directory, const Request& request, 
   }
 }
 
-std::string next_step(const CampaignDirectory& directory, Database& database, const fs::path& file) {
+std::string next_step(const CampaignDirectory& directory, Database& database, const std::string& words) {
   if (const std::optional<std::int64_t> owner = current_owner(directory)) {
-    return fmt::format("process {} goes on with it; `peclet status {}` shows how far it is\n", *owner,
-                       file.string());
+    return fmt::format("process {} goes on with it; `peclet status {}` shows how far it is\n", *owner, words);
   }
   const CampaignStatus status = read_status(database);
   if (standing(status) != exit_not_finished) return "no point is open: there is nothing to run\n";
-  return fmt::format("go on with: peclet run {}\n", file.string());
+  return fmt::format("go on with: peclet run {}\n", words);
 }
 
-Reply answer(const CampaignDirectory& directory, const Request& request, const fs::path& file) {
+Reply answer(const CampaignDirectory& directory, const Request& request, const std::string& words) {
   Database database = Database::open_reader(directory.database());
   const std::optional<EventRecord> event = database.event_of(request.name);
   if (!event) {
@@ -77,18 +76,18 @@ Reply answer(const CampaignDirectory& directory, const Request& request, const f
         request_file(directory, request.name).string()));
   }
   if (event->kind == "refused") throw InputError("", "", "", event->message);
-  return {fmt::format("{}: {}\n{}", event->kind, event->message, next_step(directory, database, file))};
+  return {fmt::format("{}: {}\n{}", event->kind, event->message, next_step(directory, database, words))};
 }
 
 }  // namespace
 
-Reply await_reply(const CampaignDirectory& directory, const Request& request, const fs::path& file,
+Reply await_reply(const CampaignDirectory& directory, const Request& request, const std::string& words,
                   double patience) {
-  if (is_carried_out(directory, request, patience)) return answer(directory, request, file);
+  if (is_carried_out(directory, request, patience)) return answer(directory, request, words);
   const std::string owner = fmt::format("process {}", current_owner(directory).value_or(0));
   if (patience <= 0) return {fmt::format("{} will come to it\n", owner)};
   return {fmt::format("{} has not come to it in {:g} s, but will: see `peclet status {}`\n", owner, patience,
-                      file.string()),
+                      words),
           exit_not_finished};
 }
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "contract/input_error.h"
+#include "contract/guarded_file.h"
 #include "runner/campaign_file.h"
 #include "runner/restore.h"
 
@@ -11,13 +11,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool has_been_run(const CampaignDirectory& directory) {
+  return !kind_of(directory.database()).empty() || !restore_hint(directory).empty();
+}
+
 }  // namespace
+
+bool awaits_its_first_run(const fs::path& given, const fs::path& chosen) {
+  return fs::is_regular_file(given) && !has_been_run(campaign_directory(given, chosen));
+}
 
 CampaignDirectory find_campaign(const fs::path& given, const fs::path& chosen) {
   const bool is_folder = fs::is_directory(given);
   CampaignDirectory directory = is_folder ? CampaignDirectory(fs::absolute(given).lexically_normal())
                                           : campaign_directory(given, chosen);
-  if (fs::exists(directory.database()) || !restore_hint(directory).empty()) return directory;
+  if (has_been_run(directory)) return directory;
   if (is_folder) {
     throw InputError(given.string(), "", "",
                      "no campaign has been run in this folder; give the campaign file or its .peclet folder");
@@ -28,7 +36,7 @@ CampaignDirectory find_campaign(const fs::path& given, const fs::path& chosen) {
       given.string(), "", "",
       fmt::format("has not been run yet (there is no {}); start it with `peclet run {}`, or name its folder "
                   "with --directory if that is elsewhere",
-                  directory.database().string(), given.string()));
+                  directory.database().string(), words_for(given, chosen)));
 }
 
 OpenCampaign open_campaign(const fs::path& given, const fs::path& chosen) {
@@ -42,13 +50,14 @@ OpenCampaign open_campaign(const fs::path& given, const fs::path& chosen) {
   }
 }
 
-std::string difference_from_file(const fs::path& given, const CampaignRecord& campaign) {
+std::string difference_from_file(const fs::path& given, const fs::path& chosen,
+                                 const CampaignRecord& campaign) {
   if (!fs::is_regular_file(given)) return "";
   try {
     if (read_campaign(given).document == campaign.document) return "";
     return fmt::format(
-        "{0} has changed since it was last run; `peclet set {0}` or `peclet run` takes it over",
-        given.string());
+        "{0} has changed since it was last run; `peclet set {1}` or `peclet run {1}` takes it over",
+        given.string(), words_for(given, chosen));
   } catch (const InputError& error) {
     return fmt::format("the campaign file has changed since it was last run and has a fault: {}",
                        error.what());

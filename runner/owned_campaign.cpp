@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "contract/input_error.h"
+#include "contract/guarded_file.h"
 #include "runner/backup.h"
 #include "runner/queue.h"
+#include "runner/quoting.h"
 #include "runner/realisation_result.h"
 #include "runner/renamed_file.h"
 #include "runner/restore.h"
@@ -23,9 +24,25 @@ constexpr std::size_t fewest_digits = 6;  // of a hash that names an engine
 
 CampaignDirectory directory_for(const Campaign& campaign, const std::filesystem::path& file,
                                 const std::filesystem::path& chosen) {
+  if (chosen.empty() && !std::filesystem::is_regular_file(file)) {
+    throw InputError(file.string(), "", "",
+                     "is no file beside which the campaign could be kept: name its folder with --directory");
+  }
   CampaignDirectory directory = campaign_directory(file, chosen);
   if (chosen.empty()) refuse_renamed_file(campaign, file, directory);
   return directory;
+}
+
+// Returns the engine itself, when `name` is one of its names or empty.
+const Json& accepted(const Json& engine, const std::string& name) {
+  const std::string version = engine.at("version"), hash = engine.at("binary_sha256");
+  const bool is_name =
+      name.empty() || name == version || (name.size() >= fewest_digits && hash.starts_with(name));
+  if (is_name) return engine;
+  throw InputError("", "--accept-engine", name,
+                   fmt::format("must be the version, or {} or more digits of the hash, of the engine that is "
+                               "there now: {}",
+                               fewest_digits, engine_identity(engine)));
 }
 
 // Returns the folder itself. From its creation on things are written.
@@ -54,7 +71,7 @@ std::int64_t attempts_in(Connection& connection) {
 // Attempts are never forgotten: a database that knows of fewer than its backup is an older copy.
 void refuse_older_copy(const CampaignDirectory& directory, Database& database) {
   const std::filesystem::path backup = newest_backup(directory.backup());
-  if (!std::filesystem::exists(backup)) return;
+  if (kind_of(backup).empty()) return;
   Connection saved(backup.string(), Connection::Access::read_only, 10'000);
   const std::int64_t here = attempts_in(database.connection());
   std::int64_t there = 0;
@@ -74,7 +91,8 @@ void refuse_older_copy(const CampaignDirectory& directory, Database& database) {
       "{}`; "
       "then run again",
       directory.database().string(), results(database.connection()), here, results(saved), there,
-      backup.string(), directory.backup().string(), directory.root().string(), directory.root().string()));
+      backup.string(), shell_word(directory.backup().string()), shell_word(directory.root().string()),
+      shell_word(directory.root().string())));
 }
 
 // What the campaign's owner should hear once a changed sweep has been taken up.
@@ -92,11 +110,11 @@ void tell_of_points_left_behind(Database& database, const std::function<void(con
 }  // namespace
 
 ClaimedCampaign::ClaimedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen,
-                                 bool force)
+                                 bool force, const std::string& accepted_engine)
     : campaign(read_campaign(file)),
       command(resolve_engine(campaign, file)),
       scenes(check_scenes(campaign, file, command)),
-      engine(scenes.front().identity),
+      engine(accepted(scenes.front().identity, accepted_engine)),
       directory(directory_for(campaign, file, chosen)),
       lock(created(directory, force)) {}
 
@@ -121,20 +139,11 @@ Database open_for_owner(const ClaimedCampaign& claimed, const std::function<void
 }
 
 OwnedCampaign::OwnedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen,
-                             bool force)
-    : ClaimedCampaign(file, chosen, force), database(open_for_owner(*this)) {}
+                             bool force, const std::string& accepted_engine)
+    : ClaimedCampaign(file, chosen, force, accepted_engine), database(open_for_owner(*this)) {}
 
-void accept_engine(Ledger& ledger, const Json& engine, const std::string& name, RunListener& listener) {
-  const std::string identity = engine_identity(engine);
-  const std::string version = engine.at("version"), hash = engine.at("binary_sha256");
-  if (name != version && (name.size() < fewest_digits || !hash.starts_with(name))) {
-    throw InputError(
-        "", "", fmt::format("--accept-engine {}", name),
-        fmt::format("must be the version, or {} or more digits of the hash, of the engine that is "
-                    "there now: {}",
-                    fewest_digits, identity));
-  }
-  if (ledger.accept_engine(identity) == 0) {
+void accept_engine(Ledger& ledger, const Json& engine, RunListener& listener) {
+  if (ledger.accept_engine(engine_identity(engine)) == 0) {
     listener.note(
         "no point that is still to be run has results of another engine: there was nothing to accept");
   }

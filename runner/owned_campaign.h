@@ -31,9 +31,11 @@ struct ClaimedCampaign {
   OwnerLock lock;
 
   // Checks the campaign file and its scenes, makes the folder and takes the lock. `directory` as in
-  // campaign_directory(); `force`: on a network file system, too. Throws InputError before anything is
-  // written, OwnedByAnother.
-  ClaimedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen, bool force);
+  // campaign_directory(); `force`: on a network file system, too; `accepted_engine`: a name of the engine
+  // here, its version or 6 or more leading digits of its binary's hash, or nothing. Throws InputError before
+  // anything is written, OwnedByAnother.
+  ClaimedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen, bool force,
+                  const std::string& accepted_engine = "");
 };
 
 // Opens or creates the database and makes it that of the campaign file, after what a dead owner left
@@ -44,13 +46,12 @@ Database open_for_owner(
 
 struct OwnedCampaign : ClaimedCampaign {
   Database database;  // has adopted the campaign
-  OwnedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen, bool force);
+  OwnedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen, bool force,
+                const std::string& accepted_engine = "");
 };
 
-// Keeps the results of other engines apart at the points that are still to be run, when `name` is that of the
-// engine here: its version, or 6 or more leading digits of its binary's hash. Throws InputError for another
-// name.
-void accept_engine(Ledger& ledger, const Json& engine, const std::string& name, RunListener& listener);
+// Keeps the results of other engines than this one apart at the points that are still to be run.
+void accept_engine(Ledger& ledger, const Json& engine, RunListener& listener);
 
 // What accepts the engine that an OtherEngine was thrown for: "; accept it with `peclet run FILE
 // --accept-engine 1a2b3c4d5e6f`: ...".

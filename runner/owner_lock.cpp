@@ -1,7 +1,6 @@
 // The half of campaign_directory.h that says who may write a campaign.
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <pwd.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -17,29 +16,16 @@
 #include <thread>
 #include <utility>
 
+#include "contract/descriptor.h"
 #include "contract/durable_file.h"
+#include "contract/guarded_file.h"
 #include "runner/campaign_directory.h"
+#include "runner/quoting.h"
 
 namespace peclet::runner {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Closed unless it is taken.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int number() const { return number_; }
-  int take() { return std::exchange(number_, -1); }
-
- private:
-  int number_;
-};
 
 int open_folder(const CampaignDirectory& directory) {
   return open(directory.root().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -51,8 +37,14 @@ std::int64_t number_in(std::string_view text) {
   return number;
 }
 
+// Below 0: it is not there, or not ours to read.
+Descriptor open_to_look(const fs::path& file) {
+  require_regular(file);
+  return open_file(file, O_RDONLY | O_NOFOLLOW | O_NONBLOCK);
+}
+
 std::int64_t written_owner(const CampaignDirectory& directory) {
-  const Descriptor file(open(directory.lock().c_str(), O_RDONLY | O_CLOEXEC));
+  const Descriptor file = open_to_look(directory.lock());
   std::array<char, 32> text{};
   const ssize_t count = pread(file.number(), text.data(), text.size(), 0);
   return count > 0 ? number_in({text.data(), static_cast<std::size_t>(count)}) : 0;
@@ -79,11 +71,6 @@ std::int64_t owner_of(const CampaignDirectory& directory, int folder) {
   return listed > 0 ? listed : written_owner(directory);
 }
 
-std::string user_name(uid_t user) {
-  const passwd* const entry = getpwuid(user);
-  return entry == nullptr ? std::to_string(user) : entry->pw_name;
-}
-
 enum class Attempt { locked, owned, impossible };
 
 // Readers that ask current_owner() hold the lock for an instant; an owner holds it for longer than this.
@@ -102,7 +89,8 @@ Attempt lock_patiently(int descriptor) {
   const std::string stop =
       owner > 0 ? fmt::format("`kill {}` lets it save and stop", owner) : "stop it first";
   throw OwnedByAnother(fmt::format("{}: {} owns this campaign; look at it with `peclet status {}`; {}",
-                                   directory.root().string(), who, directory.root().string(), stop));
+                                   directory.root().string(), who, shell_word(directory.root().string()),
+                                   stop));
 }
 
 // A campaign that was run as root is not its author's to go on with.
@@ -122,11 +110,13 @@ Attempt lock_patiently(int descriptor) {
 
 OwnerLock::OwnerLock(const CampaignDirectory& directory) {
   const std::string path = directory.lock().string();
+  require_own_folders(directory);
   Descriptor folder(open_folder(directory));
   if (folder.number() < 0) fail(path, errno);
   // Some network file systems, where a campaign is at its user's own risk, lock no folders.
   if (lock_patiently(folder.number()) == Attempt::owned) refuse_owned(directory, folder.number());
-  Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
+  require_regular(directory.lock());
+  Descriptor file = open_file(path, O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK, 0644);
   if (file.number() < 0) fail(path, errno);
   const Attempt attempt = lock_patiently(file.number());
   if (attempt == Attempt::owned) refuse_owned(directory, folder.number());
@@ -156,7 +146,7 @@ std::optional<fs::path> OwnerLock::folder() const {
 
 std::optional<std::int64_t> current_owner(const CampaignDirectory& directory) {
   const Descriptor folder(open_folder(directory));
-  const Descriptor file(open(directory.lock().c_str(), O_RDONLY | O_CLOEXEC));
+  const Descriptor file = open_to_look(directory.lock());
   // Shared locks, held for an instant: they fail while there is an owner.
   for (const int descriptor : {folder.number(), file.number()}) {
     if (descriptor < 0 || flock(descriptor, LOCK_SH | LOCK_NB) == 0 || errno != EWOULDBLOCK) continue;

@@ -9,6 +9,7 @@
 #include "contract/input_error.h"
 #include "runner/database.h"
 #include "runner/integrity_error.h"
+#include "runner/quoting.h"
 
 namespace peclet::runner {
 namespace {
@@ -66,10 +67,11 @@ void refuse_renamed_file(const Campaign& campaign, const fs::path& file, const C
     const fs::path other = file.parent_path() / orphan.filename();
     throw InputError(
         file.string(), "", "",
-        fmt::format("has not been run under this name, but {0} has {1} results of its points and no file any "
+        fmt::format("has not been run under this name, but {4} has {1} results of its points and no file any "
                     "more: was it renamed? Go on with them: `mv {0} {2} && peclet run {3}`; or start "
                     "afresh: `peclet run {3} --directory {2}`",
-                    other.string(), results, own.string(), file.string()));
+                    shell_word(other.string()), results, shell_word(own.string()), shell_word(file.string()),
+                    other.string()));
   }
 }
 

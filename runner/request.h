@@ -57,7 +57,8 @@ std::filesystem::path request_file(const CampaignDirectory& directory, const std
 // The requests that wait, oldest first.
 std::vector<std::filesystem::path> waiting_requests(const CampaignDirectory& directory);
 
-// Gives a file that is no request a name under which it waits no longer, and says where it is now.
-std::filesystem::path set_request_aside(const std::filesystem::path& file);
+// Gives a file that is no request a name under which it waits no longer, and says where it is now. Nothing:
+// it may not be moved.
+std::optional<std::filesystem::path> set_request_aside(const std::filesystem::path& file);
 
 }  // namespace peclet::runner

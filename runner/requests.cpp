@@ -7,10 +7,10 @@
 #include <set>
 #include <utility>
 
-#include "contract/durable_file.h"
-#include "contract/input_error.h"
+#include "contract/guarded_file.h"
 #include "contract/sha256.h"
 #include "runner/campaign_changes.h"
+#include "runner/plain_text.h"
 #include "runner/point_name.h"
 #include "runner/retry_plan.h"
 
@@ -18,6 +18,9 @@ namespace peclet::runner {
 namespace {
 
 namespace fs = std::filesystem;
+
+// One that is larger is not taken over while the campaign runs; `peclet run` reads it.
+constexpr std::uint64_t largest_campaign_file = 64 << 20;
 
 std::vector<PointRecord> named(const std::vector<PointRecord>& points,
                                const std::vector<std::string>& names) {
@@ -46,6 +49,7 @@ std::optional<std::int64_t> only(const std::vector<PointRecord>& points) {
 bool Requests::carry_out() {
   bool any = false;
   for (const fs::path& file : waiting_requests(directory_)) {
+    if (left_alone_.contains(file)) continue;
     try {
       const Request request = read_request(file);
       if (!queue_.has_answered(request.name)) {
@@ -54,8 +58,11 @@ bool Requests::carry_out() {
       }
       fs::remove(file);
     } catch (const RequestError& error) {
-      listener_.warn(fmt::format("{}: {}; it is set aside as {}", file.string(), error.what(),
-                                 set_request_aside(file).filename().string()));
+      const std::optional<fs::path> aside = set_request_aside(file);
+      if (!aside) left_alone_.insert(file);
+      const std::string now = aside ? "set aside as " + plain_name(*aside) : "left alone";
+      listener_.warn(fmt::format("requests/{}: is no request: {}; it is {}", plain_name(file),
+                                 plain(error.what()), now));
     } catch (const DatabaseError&) {
       ledger_.roll_back();
       throw;
@@ -94,7 +101,7 @@ void Requests::refuse(const Request& request, const std::string& why) {
 Requests::Done Requests::apply(const TakeOver& wish) {
   std::string text;
   try {
-    text = read_file(wish.file);
+    text = read_regular(wish.file, largest_campaign_file);
   } catch (const std::system_error& error) {
     throw InputError(wish.file.string(), "", "", error.what());
   }

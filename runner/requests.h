@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 
 #include "runner/campaign_directory.h"
@@ -48,6 +49,7 @@ class Requests {
   Ledger& ledger_;
   CampaignDirectory directory_;
   RunListener& listener_;
+  std::set<std::filesystem::path> left_alone_;  // no requests, and could not be set aside
 };
 
 }  // namespace peclet::runner

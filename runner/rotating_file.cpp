@@ -11,6 +11,8 @@
 #include <system_error>
 #include <utility>
 
+#include "contract/guarded_file.h"
+
 namespace peclet::runner {
 
 namespace fs = std::filesystem;
@@ -22,9 +24,17 @@ RotatingFile::~RotatingFile() {
   if (descriptor_ >= 0) close(descriptor_);
 }
 
+void RotatingFile::reopen(int flags) {
+  try {
+    descriptor_ = open_regular(path_, O_WRONLY | O_CREAT | O_APPEND | flags, 0644).take();
+  } catch (const std::exception&) {  // then it is counted as dropped
+    descriptor_ = -1;
+  }
+}
+
 bool RotatingFile::open() {
   if (descriptor_ >= 0) return true;
-  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  reopen(0);
   struct stat about {};
   if (descriptor_ >= 0 && fstat(descriptor_, &about) == 0) size_ = static_cast<std::uint64_t>(about.st_size);
   return descriptor_ >= 0;
@@ -38,7 +48,7 @@ void RotatingFile::rotate() {
   std::error_code failed;  // then the file that is there is written over
   for (int age = older_; age > 0; --age) fs::rename(name(age - 1), name(age), failed);
   size_ = 0;
-  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644);
+  reopen(O_TRUNC);
 }
 
 void RotatingFile::append(std::string_view bytes) {

@@ -7,7 +7,8 @@
 
 namespace peclet::runner {
 
-// Not thread-safe. Logs are never worth a campaign: what cannot be written, because the disk is full, is
+// Not thread-safe. Logs are never worth a campaign: what cannot be written, because the disk is full or
+// something else than a regular file bears the name, is
 // dropped and counted, and the next line that can be written is preceded by how much was lost.
 class RotatingFile {
  public:
@@ -22,6 +23,7 @@ class RotatingFile {
 
  private:
   bool open();
+  void reopen(int flags);
   void rotate();
   void write(std::string_view bytes);
 

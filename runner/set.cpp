@@ -7,6 +7,7 @@
 
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
+#include "contract/input_file.h"
 #include "contract/sha256.h"
 #include "runner/campaign_file.h"
 #include "runner/document_edit.h"
@@ -49,7 +50,7 @@ void check_usage(const SetOptions& options) {
 
 // The text as it is to be.
 std::string edited(const std::string& text, const std::vector<Edit>& edits, const fs::path& file) {
-  Json expected = parse_json(text, file.string());
+  Json expected = parse_json_input(text, file.string());
   std::string changed = text;
   for (const Edit& edit : edits) {
     const bool has_block =
@@ -58,7 +59,7 @@ std::string edited(const std::string& text, const std::vector<Edit>& edits, cons
     changed = with_value(changed, {edit.block, edit.key}, edit.value);
     expected[edit.block][edit.key] = edit.value;
   }
-  if (parse_json(changed, file.string()) != expected) {
+  if (parse_json_input(changed, file.string()) != expected) {
     throw std::logic_error(file.string() + ": could not be changed in place; change it by hand");
   }
   return changed;
@@ -76,23 +77,24 @@ Reply take_over(const SetOptions& options) {
   std::string before, text;
   {
     const FileLock lock(file);  // two verbs at once: the second one reads what the first has written
-    before = read_file(file);
+    before = read_input(file);
     text = edited(before, edits_of(options), options.campaign);
     const Campaign campaign =
-        parse_campaign(parse_json(text, options.campaign.string()), options.campaign.string());
+        parse_campaign(parse_json_input(text, options.campaign.string()), options.campaign.string());
     check_scenes(campaign, options.campaign, resolve_engine(campaign, options.campaign));
     if (text != before) write_durably(file, text);
     if (!fs::exists(directory.database())) {
       return {fmt::format("{} is {}; it has not been run yet: peclet run {}\n", options.campaign.string(),
-                          text != before ? "changed" : "sound, and as it was", options.campaign.string())};
+                          text != before ? "changed" : "sound, and as it was",
+                          words_for(options.campaign, options.directory))};
     }
     request = write_request(directory, TakeOver{file, sha256(text)});
   }
   try {
-    return await_reply(directory, request, options.campaign, options.patience);
+    return await_reply(directory, request, words_for(options.campaign, options.directory), options.patience);
   } catch (const InputError&) {
     const FileLock lock(file);  // what is refused leaves the file as it was, unless somebody went on with it
-    if (read_file(file) == text && text != before) write_durably(file, before);
+    if (read_input(file) == text && text != before) write_durably(file, before);
     throw;
   }
 }
@@ -104,7 +106,8 @@ Reply set_campaign(const SetOptions& options) {
   if (!options.priority) return take_over(options);
   const CampaignDirectory directory = find_campaign(options.campaign, options.directory);
   const Request request = write_request(directory, Prioritise{options.points, *options.priority});
-  return await_reply(directory, request, campaign_file_of(options.campaign), options.patience);
+  return await_reply(directory, request, words_for(campaign_file_of(options.campaign), options.directory),
+                     options.patience);
 }
 
 }  // namespace peclet::runner

@@ -11,15 +11,13 @@
 #include <system_error>
 
 #include "contract/durable_file.h"
+#include "contract/guarded_file.h"
 #include "contract/sha256.h"
 
 namespace peclet::runner {
 namespace {
 
 namespace fs = std::filesystem;
-
-// As for a frame. What is larger is no result, and reading it might take all memory there is.
-constexpr std::uintmax_t largest_spool_file = std::uintmax_t{64} << 20;
 
 // write_durably() names its temporary files NAME.PROCESS.COUNT.tmp. Nothing: not such a name.
 std::optional<int> writer_of(const fs::path& temporary) {
@@ -36,10 +34,9 @@ std::optional<int> writer_of(const fs::path& temporary) {
 RealisationResult read_spool_file(const fs::path& path, const std::string& sha256) {
   std::string text;
   try {
-    if (const std::uintmax_t size = fs::file_size(path); size > largest_spool_file) {
-      throw ResultError(fmt::format("it has {} bytes, more than {}", size, largest_spool_file));
-    }
-    text = read_file(path);
+    text = read_regular(path, largest_result);
+  } catch (const UnsuitableFile& error) {
+    throw ResultError(fmt::format("it {} and {}", error.value(), error.allowed()));
   } catch (const std::system_error& error) {
     throw ResultError(error.what());
   }
@@ -59,12 +56,22 @@ bool is_named_for_another(const fs::path& path, const RealisationResult& result)
 }
 
 std::vector<fs::path> spool_files(const CampaignDirectory& directory) {
+  return whole_files(directory.spool());
+}
+
+std::vector<fs::path> whole_files(const fs::path& folder) {
   std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(directory.spool())) {
-    if (entry.is_regular_file() && entry.path().extension() != ".tmp") files.push_back(entry.path());
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const bool is_regular = entry.symlink_status().type() == fs::file_type::regular;
+    if (is_regular && entry.path().extension() != ".tmp") files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   return files;
+}
+
+bool is_there(const fs::path& path) {
+  std::error_code error;
+  return fs::symlink_status(path, error).type() != fs::file_type::not_found;
 }
 
 fs::path reject(const CampaignDirectory& directory, const fs::path& path) {
@@ -76,7 +83,7 @@ fs::path reject(const CampaignDirectory& directory, const fs::path& path) {
 std::vector<fs::path> unfinished_files(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() != ".tmp") continue;
+    if (entry.path().extension() != ".tmp" || kind_of(entry.path()) == "a folder") continue;
     const std::optional<int> writer = writer_of(entry.path());
     if (writer && kill(*writer, 0) != 0 && errno == ESRCH) files.push_back(entry.path());
   }

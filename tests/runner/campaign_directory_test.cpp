@@ -6,6 +6,8 @@
 
 #include <fstream>
 
+#include "contract/durable_file.h"
+#include "contract/guarded_file.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {
@@ -28,6 +30,42 @@ TEST(CampaignDirectory, AttemptsShareACheckpointAndNeverASpoolFile) {
 TEST(CampaignDirectory, ALocalFileSystemIsNoNetwork) {
   const TemporaryFolder folder;
   EXPECT_EQ(network_file_system(folder.path() / "not" / "there" / "yet"), std::nullopt);
+}
+
+TEST(OwnerLock, OfWhatSomebodyElseMayLeadElsewhereIsRefused) {
+  const TemporaryFolder folder;
+  const std::filesystem::path elsewhere = folder.path() / "elsewhere";
+  std::filesystem::create_directory(elsewhere);
+  for (const char* const name : {"spool", "checkpoints", "failures", "logs", "backup", "requests", "aside"}) {
+    const CampaignDirectory directory(folder.path() / (std::string("with-") + name));
+    std::filesystem::create_directory(directory.root());
+    std::filesystem::create_symlink(elsewhere, directory.root() / name);
+    EXPECT_THROW(OwnerLock{directory}, UnsuitableFile) << name;
+    EXPECT_FALSE(std::filesystem::exists(directory.lock())) << name;
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(elsewhere));
+}
+
+TEST(OwnerLock, IsNeverALink) {
+  const TemporaryFolder folder;
+  const CampaignDirectory directory(folder.path() / "campaign");
+  std::filesystem::create_directory(directory.root());
+  write_durably(folder.path() / "victim", "precious");
+  std::filesystem::create_symlink(folder.path() / "victim", directory.lock());
+  EXPECT_THROW(OwnerLock{directory}, UnsuitableFile);
+  EXPECT_THROW(current_owner(directory), UnsuitableFile);
+  EXPECT_EQ(read_file(folder.path() / "victim"), "precious");
+}
+
+// As people do it whose scratch disk is elsewhere.
+TEST(OwnerLock, TheFolderThatItsUserNamesMayBeALink) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "scratch");
+  const CampaignDirectory directory(folder.path() / "campaign");
+  std::filesystem::create_symlink("scratch", directory.root());
+  const OwnerLock lock(directory);
+  EXPECT_TRUE(std::filesystem::equivalent(lock.folder().value(), directory.root()));
+  EXPECT_EQ(current_owner(directory), getpid());
 }
 
 TEST(OwnerLock, ASecondOwnerIsToldWhoOwnsTheCampaign) {

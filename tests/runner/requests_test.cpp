@@ -2,6 +2,7 @@
 #include "runner/requests.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <fstream>
@@ -190,10 +191,10 @@ TEST_F(CarryingOut, ACancelledPointHoldsNothingUpUntilItIsTakenUpAgain) {
 }
 
 TEST_F(CarryingOut, APointThatNobodyKnowsIsRefusedWithTheNamesThatThereAre) {
-  EXPECT_EQ(
-      ask(Cancel{{"peclet=1", "peclet=7"}, false}),
-      "refused: peclet=7: must be the label of one point, or 4 or more digits of its hash; labels: peclet=1, "
-      "peclet=10");
+  EXPECT_EQ(ask(Cancel{{"peclet=1", "peclet=7"}, false}),
+            "refused: peclet=7: must be the label of one point, its values alone, or 4 or more digits of its "
+            "hash; labels: peclet=1, "
+            "peclet=10");
   EXPECT_FALSE(ledger_->scheduler().cancelled(0));
   EXPECT_EQ(listener_.notes.size(), 1U);
 }
@@ -256,12 +257,28 @@ TEST_F(CarryingOut, ARequestThatWasCarriedOutBeforeIsOnlyRemoved) {
 }
 
 TEST_F(CarryingOut, WhatIsNoRequestIsSetAside) {
-  const char* const texts[] = {"",
-                               "{",
-                               "[]",
-                               R"({"version": 1, "verb": "sing"})",
-                               R"({"version": 2, "verb": "retry"})",
-                               R"({"version": 1, "verb": "cancel", "points": "peclet=1", "undo": false})"};
+  const char* const texts[] = {
+      "",
+      "{",
+      "[]",
+      R"({"version": 1, "verb": "sing"})",
+      R"({"version": 2, "verb": "retry"})",
+      "null",
+      R"({"version": "1", "verb": "retry", "points": [], "seeds": []})",
+      R"({"version": 1, "verb": 7})",
+      R"({"version": 1, "verb": "cancel", "points": "peclet=1", "undo": false})",
+      R"({"version": 1, "verb": "cancel", "points": [1], "undo": false})",
+      R"({"version": 1, "verb": "cancel", "points": ["peclet=1"], "undo": 0})",
+      R"({"version": 1, "verb": "cancel", "points": ["peclet=1"]})",
+      R"({"version": 1, "verb": "retry", "points": [], "seeds": [-1]})",
+      R"({"version": 1, "verb": "retry", "points": [], "seeds": [2147483648]})",
+      R"({"version": 1, "verb": "retry", "points": [], "seeds": {"0": 1}})",
+      R"({"version": 1, "verb": "take-over", "file": 7, "sha256": ""})",
+      R"({"version": 1, "verb": "prioritise", "points": ["peclet=1"], "priority": 1e300})",
+      R"({"version": 1, "verb": "prioritise", "points": ["peclet=1"], "priority": 1.5})",
+      R"({"version": 1, "verb": "prioritise", "points": ["peclet=1"], "priority": 2147483648})",
+      R"({"version": 1, "verb": "prioritise", "points": ["peclet=1"], "priority": -2147483649})",
+      R"({"version": 1, "verb": "prioritise", "points": ["peclet=1"], "priority": 18446744073709551615})"};
   int number = 0;
   for (const char* const text : texts) {
     write_durably(directory_.requests() / (std::to_string(number++) + ".json"), text);
@@ -270,8 +287,35 @@ TEST_F(CarryingOut, WhatIsNoRequestIsSetAside) {
   EXPECT_FALSE(requests_->carry_out());
   EXPECT_TRUE(waiting_requests(directory_).empty());
   EXPECT_EQ(listener_.warnings.size(), std::size(texts));
+  for (const std::string& warning : listener_.warnings) EXPECT_LT(warning.size(), 500U) << warning;
   EXPECT_TRUE(fs::exists(directory_.requests() / "0.json.rejected"));
-  EXPECT_EQ(count("point WHERE cancelled = 1"), 0);
+  EXPECT_EQ(count("point WHERE cancelled = 1 OR priority <> 0"), 0);
+}
+
+// Whatever bears the name of a request: nobody waits for it or follows it, and the next request is heard.
+TEST_F(CarryingOut, WhatIsNoFileIsSetAside) {
+  const fs::path folder = directory_.requests();
+  const fs::path outside = folder_.path() / "outside.json";
+  write_durably(outside, R"({"version": 1, "verb": "cancel", "points": ["peclet=1"], "undo": false})");
+  fs::create_symlink(outside, folder / "0.json");
+  fs::create_symlink("1.json", folder / "1.json");
+  ASSERT_EQ(mkfifo((folder / "2.json").c_str(), 0600), 0);
+  fs::create_directories(folder / "3.json" / "full");
+  write_durably(folder / "4.json", "");
+  fs::resize_file(folder / "4.json", std::uintmax_t{1} << 40);
+  fs::create_directories(folder / "5.json.rejected" / "full");  // where one would go
+  write_durably(folder / "5.json", "{");
+  EXPECT_EQ(ask(Cancel{{"peclet=10"}, false}), "cancel: no more seeds: peclet=10");
+  EXPECT_EQ(listener_.warnings.size(), 6U);
+  EXPECT_TRUE(waiting_requests(directory_).empty());
+  EXPECT_EQ(count("point WHERE cancelled = 1"), 1);
+  EXPECT_TRUE(fs::exists(outside));
+}
+
+TEST_F(CarryingOut, ACampaignFileThatIsNoFileIsNotWaitedFor) {
+  const fs::path pipe = folder_.path() / "pipe.json";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_NE(ask(TakeOver{pipe, std::string(64, '0')}).find("refused: "), std::string::npos);
 }
 
 TEST_F(CarryingOut, RequestsAreInOrderOfTime) {

@@ -3,6 +3,7 @@
 #include "runner/room.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cerrno>
 
@@ -35,6 +36,16 @@ TEST(Room, IsThereInAnOrdinaryFolderAndLeavesNoTrace) {
   const TemporaryFolder folder;
   EXPECT_TRUE(has_room(folder.path(), 1000));
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+// The name of the trial can be foretold.
+TEST(Room, IsTriedWithoutFollowingALink) {
+  const TemporaryFolder folder;
+  const std::filesystem::path victim = folder.path() / "victim";
+  write_durably(victim, "precious");
+  std::filesystem::create_symlink(victim, folder.path() / (".room." + std::to_string(getpid()) + ".0.tmp"));
+  EXPECT_TRUE(has_room(folder.path(), 1000));
+  EXPECT_EQ(read_file(victim), "precious");
 }
 
 class FullDatabase : public testing::Test {

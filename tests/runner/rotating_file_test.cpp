@@ -1,6 +1,7 @@
 #include "runner/rotating_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <string>
 
@@ -34,6 +35,22 @@ TEST(RotatingFiles, GoOnWithTheFileThatIsThere) {
   EXPECT_EQ(read_file(path.string() + ".1"), "12345678");
 }
 
+TEST(RotatingFiles, FollowNoLinkAndWaitForNoFifo) {
+  const TemporaryFolder folder;
+  const fs::path victim = folder.path() / "victim";
+  write_durably(victim, "precious");
+  for (const char* const name : {"log", "log.1"}) fs::create_symlink(victim, folder.path() / name);
+  RotatingFile(folder.path() / "log", 10, 2).append("a line\n");
+  RotatingFile rotating(folder.path() / "other", 10, 2);
+  rotating.append("12345678");
+  fs::create_symlink(victim, folder.path() / "other.1");
+  rotating.append("abcdefgh");
+  ASSERT_EQ(mkfifo((folder.path() / "pipe").c_str(), 0600), 0);
+  RotatingFile(folder.path() / "pipe", 10, 2).append("a line\n");
+  EXPECT_EQ(read_file(victim), "precious");
+  EXPECT_EQ(read_file(folder.path() / "other"), "abcdefgh");
+}
+
 TEST(RotatingFiles, DivideWhatIsLongerThanAFile) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "log";
@@ -44,10 +61,11 @@ TEST(RotatingFiles, DivideWhatIsLongerThanAFile) {
 
 TEST(RotatingFiles, OnAFullDiskDropWhatDoesNotFit) {
   RotatingFile file("/dev/full", 1000, 1);
-  file.append("nobody will read this\n");
-  file.append("nor this\n");
+  EXPECT_NO_THROW(file.append("nobody will read this\n"));
+  EXPECT_NO_THROW(file.append("nor this\n"));
   RotatingFile nowhere("/nonexistent/log", 1000, 1);
-  nowhere.append("nor this\n");
+  EXPECT_NO_THROW(nowhere.append("nor this\n"));
+  EXPECT_FALSE(fs::exists("/nonexistent"));
 }
 
 // Half a mebibyte a seed: without a bound, the logs would have some fifteen.
