@@ -16,23 +16,7 @@ bool is_closed(const std::vector<std::optional<Outcome>>& outcomes, int seeds) {
                      [](const std::optional<Outcome>& outcome) { return outcome.has_value(); });
 }
 
-// Not within it either: an interval that does not exist, and one around a mean of 0.
-bool is_within_tolerance(const Look& look, const Target& target) {
-  return relative_width(look) <= target.relative_tolerance;
-}
-
-Verdict judge(const Look& look, const Target& target, int minimum, int maximum) {
-  if (is_within_tolerance(look, target)) {
-    return look.lost == 0 ? Verdict::converged : Verdict::converged_with_losses;
-  }
-  // Where not one of the first seeds lives, more of them are waste.
-  const bool none_lives = look.seeds == minimum && look.estimate.count == 0;
-  if (none_lives) return Verdict::failed;
-  if (look.seeds < maximum) return Verdict::more;
-  return look.estimate.count < 2 ? Verdict::failed : Verdict::capped;
-}
-
-Look look_at(std::span<const std::optional<Outcome>> cohort, double confidence) {
+Look look_at(std::span<const std::optional<Outcome>> cohort, StopRule& rule) {
   std::vector<double> values, controlled;
   for (const std::optional<Outcome>& outcome : cohort) {
     if (outcome->kind == Outcome::Kind::lost) continue;
@@ -43,9 +27,11 @@ Look look_at(std::span<const std::optional<Outcome>> cohort, double confidence) 
   look.seeds = static_cast<int>(cohort.size());
   look.lost = look.seeds - static_cast<int>(values.size());
   look.estimate = estimate(values);
-  look.half_width = student_half_width(look.estimate, confidence);
+  look.half_width = rule.half_width(look.estimate);
   look.controlled = estimate(controlled);
-  look.controlled_half_width = student_half_width(look.controlled, confidence);
+  const StopRule::Judgement judgement = rule.judge(look.seeds, look.controlled);
+  look.controlled_half_width = judgement.half_width;
+  look.verdict = judgement.verdict;
   look.skewness = skewness(controlled);
   look.transient = has_transient(cohort);
   return look;
@@ -55,10 +41,6 @@ Look look_at(std::span<const std::optional<Outcome>> cohort, double confidence) 
 
 double relative_width(const Look& look) {
   return look.controlled_half_width / std::abs(look.controlled.mean);
-}
-
-double adjusted_confidence(double confidence, int minimum, int maximum) {
-  return minimum == maximum ? confidence : 1 - (1 - confidence) * (1 - 1.4 / std::max(minimum, 2));
 }
 
 bool is_skewed(const Look& look, double confidence) {
@@ -76,22 +58,13 @@ bool has_control(const Look& look) {
   return look.estimate.count > 0 && look.controlled.mean != look.estimate.mean;
 }
 
-std::vector<int> look_schedule(int minimum, int maximum) {
-  std::vector<int> schedule;
-  // In whole numbers: ceil(1.25 n) = floor((5 n + 3) / 4).
-  for (int seeds = minimum; seeds < maximum; seeds = (5 * seeds + 3) / 4) schedule.push_back(seeds);
-  schedule.push_back(maximum);
-  return schedule;
-}
-
 std::vector<Look> replay_looks(const std::vector<std::optional<Outcome>>& outcomes, const Target& target,
                                int minimum, int maximum) {
-  const double confidence = adjusted_confidence(target.confidence, minimum, maximum);
+  StopRule rule(target, minimum, maximum);
   std::vector<Look> looks;
-  for (const int seeds : look_schedule(minimum, maximum)) {
+  for (const int seeds : rule.schedule()) {
     if (!is_closed(outcomes, seeds)) break;
-    looks.push_back(look_at(std::span(outcomes).first(static_cast<std::size_t>(seeds)), confidence));
-    looks.back().verdict = judge(looks.back(), target, minimum, maximum);
+    looks.push_back(look_at(std::span(outcomes).first(static_cast<std::size_t>(seeds)), rule));
     if (looks.back().verdict != Verdict::more) break;
   }
   return looks;

@@ -9,8 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "runner/campaign.h"
-#include "runner/statistics.h"
+#include "runner/stop_rule.h"
 
 namespace peclet::runner {
 
@@ -25,36 +24,20 @@ struct Outcome {
   double first_half = std::numeric_limits<double>::quiet_NaN();
 };
 
-enum class Verdict {
-  more,  // not within the tolerance: go on to the next look
-  converged,
-  converged_with_losses,  // within the tolerance, but seeds of the cohort were lost
-  capped,                 // the maximum is reached without convergence
-  failed                  // fewer than two values at the maximum or every seed of the first cohort lost
-};
-
 // One look at a closed cohort. The controlled estimate decides: of value + control, the control variate with
 // the coefficient -1 that was fixed before any value was seen, so that it is as unbiased as the plain one and
 // its interval as honest. Without a control variate both are the same.
 struct Look {
   int seeds = 0;  // n
   int lost = 0;
-  Estimate estimate;      // of the observable
-  double half_width = 0;  // Student-t, at the level of adjusted_confidence()
-  Estimate controlled;    // of value + control
-  double controlled_half_width = 0;
+  Estimate estimate;                 // of the observable
+  double half_width = 0;             // Student-t, at the level of adjusted_confidence()
+  Estimate controlled;               // of value + control
+  double controlled_half_width = 0;  // the rule's: see stop_rule.h
   double skewness = std::numeric_limits<double>::quiet_NaN();  // of value + control
   bool transient = false;  // the beginning of the window differs from its end: see transient.h
   Verdict verdict = Verdict::more;
 };
-
-// The level that each interval must have so that the one at which a point stops holds the mean with
-// `confidence`. Among several looks the first one within the tolerance is often one whose spread came out too
-// small: with levels of 95 %, 93 to 95 % of the last intervals hold the mean from a minimum of 8 on, fewer
-// with smaller ones. 1 - (1 - confidence) (1 - 1.4 / minimum) makes that 94.2 to 95.9 %, for normal
-// populations of any spread (results/coverage). With a single look (minimum = maximum) Student's interval is
-// exact.
-double adjusted_confidence(double confidence, int minimum, int maximum);
 
 // Whether the values are so skewed that Student's interval holds the mean visibly less often than it says:
 // the skewness is beyond what a normal population of this size shows, and the loss of coverage that belongs
@@ -69,9 +52,6 @@ double relative_width(const Look& look);
 // Whether there is a control variate: without one (no Brownian motion, another engine) the controlled
 // estimate only repeats the other.
 bool has_control(const Look& look);
-
-// Numbers of seeds at which a point is looked at: minimum, then ceil(1.25 n) each, the last one is maximum.
-std::vector<int> look_schedule(int minimum, int maximum);
 
 // All looks that the outcomes allow, in order, ending with the first that decides (any verdict but more).
 // outcomes[s] is that of seed s. A pure function: replaying it is how a stored look is checked.

@@ -14,14 +14,19 @@ void MeanEstimates::add(const Json& mean) {
   }
 }
 
+namespace {
+
+Json number_or_null(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
+
+}  // namespace
+
 Json MeanEstimates::estimates() const {
   Json all = Json::object();
   for (const auto& [pointer, values] : values_) {
     const Estimate found = estimate(values);
-    all[pointer] = {
-        {"count", found.count},
-        {"mean", found.mean},
-        {"standard_error", std::isfinite(found.standard_error) ? Json(found.standard_error) : Json(nullptr)}};
+    all[pointer] = {{"count", found.count},
+                    {"mean", number_or_null(found.mean)},
+                    {"standard_error", number_or_null(found.standard_error)}};
   }
   return all;
 }

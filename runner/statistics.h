@@ -21,6 +21,10 @@ double skewness(std::span<const double> values);
 // Quantile of Student's t for a two-sided interval: t(degrees, (1 + confidence) / 2).
 double student_quantile(int degrees, double confidence);
 
+// By what the variance of a normal population may exceed that of a sample, but for this probability:
+// f / chi^2_p(f), f the sample's degrees of freedom and chi^2_p the quantile of p.
+double variance_excess(int degrees, double probability);
+
 // Half-width t(n - 1, (1 + confidence) / 2) * standard error of Student's interval; NaN for fewer than two
 // values.
 double student_half_width(const Estimate& estimate, double confidence);

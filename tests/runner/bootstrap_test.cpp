@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -49,6 +50,17 @@ TEST(Bootstrap, HoldsTheMeanOfASkewedPopulationMoreOftenThanStudent) {
 TEST(Bootstrap, OfEqualValuesAgainIsTheSame) {
   const std::vector<double> values{1, 2, 4, 8, 16, 3};
   EXPECT_EQ(bootstrap_t(values, 0.9)->low, bootstrap_t(values, 0.9)->low);
+}
+
+// Of values this large not even the sum is a number; it must come to an end all the same.
+TEST(Bootstrap, OfNumbersBeyondAllSumsComesToAnEnd) {
+  constexpr double largest = std::numeric_limits<double>::max();
+  const std::vector<double> values{largest, -largest, largest, -largest, 0, 1, largest};
+  const std::optional<Interval> interval = bootstrap_t(values, 0.95);
+  EXPECT_TRUE(!interval || interval->low <= interval->high);
+  const std::vector<double> infinite{1, 2, 3, 4, std::numeric_limits<double>::infinity()};
+  EXPECT_FALSE(bootstrap_t(infinite, 0.95));
+  EXPECT_FALSE(bootstrap_t(std::vector<double>{1, 2, 3, 4, std::nan("")}, 0.95));
 }
 
 TEST(Bootstrap, NeedsFiveValuesThatDiffer) {

@@ -140,11 +140,9 @@ class Trial {
 
  private:
   double seconds_left() const {
-    double left = budget_ - spent_;
-    for (int point = 0; point < points; ++point) {
-      left -= costs_[static_cast<std::size_t>(point)].out * scheduler_.expected_seconds(point);
-    }
-    return left;
+    std::vector<int> running;
+    for (const auto& cost : costs_) running.push_back(cost.out);
+    return budget_ - spent_ - scheduler_.expected_seconds(running);
   }
 
   void give_out() {

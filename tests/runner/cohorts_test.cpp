@@ -138,6 +138,44 @@ TEST(Cohorts, TheControlledEstimateDecides) {
   EXPECT_NEAR(relative_width(open), 0.0785, 1e-4);
 }
 
+// Ten values 10 +- s: w = 2.354 s / 30 at 95.7 %. chi^2_0.02(9) = 2.532 (f = 3.554), chi^2_0.05(9) = 3.325 (f
+// = 2.707).
+TEST(Cohorts, ALookConvergesOnlyIfALargerSpreadWouldHaveDoneSoWithinTheMaximum) {
+  // s = 0.6: w = 4.708 %, 10 (w (1 + w) / 5 %)^2 f = 34.6 seeds.
+  const Outcomes outcomes = alternating(10, 10, 0.6);
+  EXPECT_EQ(replay_looks(outcomes, five_percent, 10, 35).at(0).verdict, Verdict::converged);
+  EXPECT_EQ(replay_looks(outcomes, five_percent, 10, 34).at(0).verdict, Verdict::more);
+  // Between the maximum and a third of it the interval is no narrower than the tolerance.
+  EXPECT_NEAR(replay_looks(outcomes, five_percent, 10, 35).at(0).controlled_half_width, 0.5, 1e-12);
+  EXPECT_NEAR(replay_looks(outcomes, five_percent, 10, 104).at(0).controlled_half_width, 0.4708, 1e-4);
+  EXPECT_NEAR(replay_looks(outcomes, five_percent, 10, 35).at(0).half_width, 0.4708, 1e-4);
+}
+
+// With a single look t(9, 0.975) = 2.262 and w = 2.262 s / 30.
+TEST(Cohorts, TheLastLookIsConvergedNearMaximumOrCapped) {
+  const auto last = [](double spread) {
+    return replay_looks(alternating(10, 10, spread), five_percent, 10, 10).at(0);
+  };
+  // w (1 + w) sqrt(2.707) <= 5 % up to w = 2.95 %, s = 0.39.
+  EXPECT_EQ(last(0.38).verdict, Verdict::converged);
+  EXPECT_EQ(last(0.40).verdict, Verdict::converged_near_maximum);
+  EXPECT_FALSE(is_converged(Verdict::converged_near_maximum));
+  // w = 3.016 %, w (1 + w) sqrt(3.554) = 5.86 % of the mean.
+  EXPECT_NEAR(last(0.40).controlled_half_width, 0.586, 1e-3);
+  // Within the tolerance of some mean of the interval: w <= 5 % (1 + w), w <= 5.26 %, s = 0.698.
+  EXPECT_EQ(last(0.69).verdict, Verdict::converged_near_maximum);
+  EXPECT_EQ(last(0.71).verdict, Verdict::capped);
+  EXPECT_NEAR(last(0.71).controlled_half_width, 2.262 * 0.71 / 3, 1e-3);
+}
+
+TEST(Cohorts, TheFirstRuleTookEveryLookWithinTheToleranceForConverged) {
+  Target target = five_percent;
+  target.rule = Target::first_rule;
+  const Look look = replay_looks(alternating(10, 10, 0.6), target, 10, 11).at(0);
+  EXPECT_EQ(look.verdict, Verdict::converged);
+  EXPECT_NEAR(look.controlled_half_width, 0.4708, 1e-4);
+}
+
 TEST(Cohorts, IntervalsAreWidenedForRepeatedLooksOnly) {
   EXPECT_DOUBLE_EQ(adjusted_confidence(0.95, 10, 100), 0.957);
   EXPECT_DOUBLE_EQ(adjusted_confidence(0.90, 14, 100), 0.91);

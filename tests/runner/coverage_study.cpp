@@ -89,7 +89,10 @@ struct Running {
 };
 using Clock = std::priority_queue<Running, std::vector<Running>, std::greater<>>;
 
-int most_seeds(const Case& about) { return std::max(2 * about.minimum, static_cast<int>(20 * about.needed)); }
+// Far away: maximum_study is about what a near one does.
+int most_seeds(const Case& about) {
+  return static_cast<int>(20 * std::max(about.needed, 1.0 * about.minimum));
+}
 
 void simulate_campaign(const Case& about, Source& source, Tally& tally) {
   // What adjusted_confidence() makes the plain level again.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace peclet::runner {
@@ -33,6 +34,20 @@ TEST(Statistics, EqualValuesHaveExactlyTheirMeanAndNoSpread) {
     EXPECT_EQ(result.mean, value);
     EXPECT_EQ(result.standard_error, 0);
   }
+}
+
+// The sums of these overflow or vanish; n equal steps have the mean of the first and the last.
+TEST(Statistics, NumbersNearTheEndsOfWhatThereIsHaveTheirMeanAndSpread) {
+  for (const double size : {1e308, 1e-300, 4e-308, 1e200}) {
+    const Estimate result = estimate(std::vector<double>{1.1 * size, 1.2 * size, 1.3 * size, 1.4 * size});
+    EXPECT_NEAR(result.mean / size, 1.25, 1e-12);
+    // Variance .05 / 3 of the values, over 4 that of the mean.
+    EXPECT_NEAR(result.standard_error / size, std::sqrt(0.05 / 12), 1e-12);
+    EXPECT_NEAR(skewness(std::vector<double>{size, size, 1.7 * size}), std::sqrt(0.5), 1e-9);
+  }
+  const double most = std::numeric_limits<double>::max();
+  EXPECT_EQ(estimate(std::vector<double>(7, most)).mean, most);
+  EXPECT_EQ(estimate(std::vector<double>{most, -most}).mean, 0);
 }
 
 TEST(Statistics, FewerThanTwoValuesHaveNoStandardErrorAndNoInterval) {
