@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runner/forecast.h"
+
 namespace peclet::runner {
 namespace {
 
@@ -65,6 +67,9 @@ Totals totals_of(const Plan& plan) {
   totals.cpu_seconds = middle(std::move(cpu));
   totals.cpu_seconds_to_come = middle(std::move(cpu_to_come));
   totals.wall_seconds_to_come = middle(std::move(wall));
+  // The machine may be faster or slower than it was for the seeds that the costs come from.
+  totals.wall_seconds_to_come.lower /= machine_allowance;
+  totals.wall_seconds_to_come.upper *= machine_allowance;
   return totals;
 }
 
@@ -112,7 +117,8 @@ std::string PointPlan::obstacle() const {
 }
 
 Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_steps,
-               const std::map<std::string, PointHistory>& known, int workers) {
+               const std::map<std::string, PointHistory>& known, int workers,
+               const std::optional<CostGuess>& guess) {
   Plan plan{campaign.name, campaign.minimum_realisations, campaign.maximum_realisations, workers};
   MeasuredCost all;  // per particle-step
   double known_steps = 0;
@@ -126,6 +132,11 @@ Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_ste
     known_steps += point.particle_steps * point.cost.count;
     predict_point(point, campaign, history.outcomes, i);
     plan.points.push_back(std::move(point));
+  }
+  if (known_steps == 0 && guess && plan.points.at(guess->point).particle_steps > 0) {
+    known_steps = plan.points[guess->point].particle_steps;
+    all = {0, guess->seconds, guess->seconds};
+    plan.guessed_from = plan.points[guess->point].label;
   }
   for (PointPlan& point : plan.points) {
     if (point.cost.count > 0) continue;

@@ -52,10 +52,17 @@ struct PointPlan {
 // Of the points that are predicted or decided, in seconds. What is still to come takes
 //   max(sum over the points of seeds to come * wall time of one / workers,
 //       the largest sum over the looks to come of a point of ceil(seeds of the look / workers) * wall time)
-// with the workers, since a look waits for all its seeds.
+// with the workers, since a look waits for all its seeds; its range leaves room for a machine whose speed
+// changes (machine_allowance).
 struct Totals {
   int points = 0, predicted = 0, likely_capped = 0;
   Expected<double> seeds, cpu_seconds, cpu_seconds_to_come, wall_seconds_to_come;
+};
+
+// What a realisation of one point may cost where none has ended: see cost_trial.h.
+struct CostGuess {
+  std::size_t point = 0;  // place in the sweep
+  double seconds = 0;
 };
 
 struct Plan {
@@ -65,17 +72,20 @@ struct Plan {
   std::time_t made_at = 0;
   std::vector<PointPlan> points{};
   Totals totals{};
+  std::string guessed_from{};  // label of the point of the guess that all costs come from; "": none does
 };
 
 // A point without a realisation of its own is taken to need as much time per particle-step as all the others
-// together. Points are matched with `known` by hash.
+// together; without any, as much as the guess says. Points are matched with `known` by hash.
 Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_steps,
-               const std::map<std::string, PointHistory>& known, int workers);
+               const std::map<std::string, PointHistory>& known, int workers,
+               const std::optional<CostGuess>& guess = {});
 
 std::string plan_text(const Plan& plan);
 Json plan_json(const Plan& plan);
 
-// Asks the engine how long the realisations are, and the database, if there is one, what they cost; with a
+// Asks the engine how long the realisations are, and the database, if there is one, what they cost; where it
+// does not know, the engine tries a realisation of the point with the median work for two seconds. With a
 // pilot runs it first and stores its predictions. Prints the plan; returns 0, or as run_pilot(). Throws as
 // run_campaign().
 int plan_campaign(const PlanOptions& options);

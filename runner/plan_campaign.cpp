@@ -6,10 +6,13 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <system_error>
 
 #include "contract/input_error.h"
 #include "runner/campaign_directory.h"
+#include "runner/campaign_file.h"
+#include "runner/cost_trial.h"
 #include "runner/database.h"
 #include "runner/plan.h"
 #include "runner/prediction_book.h"
@@ -76,13 +79,36 @@ void print(const Plan& plan, bool json) {
   }
 }
 
-Plan plan_of(const Campaign& campaign, const std::vector<SceneAnswer>& scenes,
-             const std::map<std::string, PointHistory>& known, const RunOptions& options) {
+std::vector<double> work_of(const std::vector<SceneAnswer>& scenes) {
   std::vector<double> work;
   work.reserve(scenes.size());
   for (const SceneAnswer& answer : scenes)
     work.push_back(answer.steps * static_cast<double>(answer.particles));
-  Plan plan = make_plan(campaign, work, known, team(options).workers);
+  return work;
+}
+
+// Of the point in the middle: the one from which the others are least far.
+std::optional<CostGuess> guess_cost(const Campaign& campaign, const std::vector<double>& work,
+                                    const EngineCommand& command) {
+  std::vector<std::size_t> order(work.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
+  std::nth_element(order.begin(), middle, order.end(),
+                   [&](std::size_t a, std::size_t b) { return work[a] < work[b]; });
+  const std::optional<double> seconds = try_cost(campaign.points.at(*middle).scene, command);
+  if (!seconds) return std::nullopt;
+  return CostGuess{*middle, *seconds};
+}
+
+bool any_cost(const std::map<std::string, PointHistory>& known) {
+  return std::any_of(known.begin(), known.end(),
+                     [](const auto& point) { return point.second.cost.count > 0; });
+}
+
+Plan plan_of(const Campaign& campaign, const std::vector<SceneAnswer>& scenes,
+             const std::map<std::string, PointHistory>& known, const RunOptions& options,
+             const std::optional<CostGuess>& guess = {}) {
+  Plan plan = make_plan(campaign, work_of(scenes), known, team(options).workers, guess);
   plan.made_at = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   return plan;
 }
@@ -103,8 +129,8 @@ int plan_campaign(const PlanOptions& options) {
         fmt::print(
             stderr,
             "peclet: {0}: the campaign was changed while the pilot ran: its results are stored, but no "
-            "prediction is; `peclet plan {0}` predicts from what is there\n",
-            file.string());
+            "prediction is; `peclet plan {1}` predicts from what is there\n",
+            file.string(), words_for(file, options.run.directory));
         return;
       }
       const Plan plan =
@@ -119,8 +145,11 @@ int plan_campaign(const PlanOptions& options) {
     Database database = Database::open_reader(directory.database());
     known = history(database, campaign);
   }
-  print(plan_of(campaign, check_scenes(campaign, file, resolve_engine(campaign, file)), known, options.run),
-        options.json);
+  const EngineCommand command = resolve_engine(campaign, file);
+  const std::vector<SceneAnswer> scenes = check_scenes(campaign, file, command);
+  std::optional<CostGuess> guess;
+  if (!any_cost(known)) guess = guess_cost(campaign, work_of(scenes), command);
+  print(plan_of(campaign, scenes, known, options.run, guess), options.json);
   return 0;
 }
 

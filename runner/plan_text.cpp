@@ -111,6 +111,13 @@ std::string legend(const Plan& plan, bool predicted) {
       unknown
           ? "-: not known before a seed has ended\n"
           : "CPU seconds per seed: mean (of so many seeds); ~: scaled from other points by particle-steps\n";
+  if (!plan.guessed_from.empty()) {
+    text = fmt::format(
+        "~: a guess, from the first two seconds of one realisation of {} and the particle-steps of the "
+        "others; "
+        "--pilot measures\n",
+        plan.guessed_from);
+  }
   if (predicted) {
     text +=
         "seeds: of the look that will decide, expected (range that holds it 95 % of the time)\n"
@@ -212,6 +219,7 @@ Json plan_json(const Plan& plan) {
           {"points", points},
           {"cpu_hours_minimum", number(total_hours(plan, plan.minimum))},
           {"cpu_hours_maximum", number(total_hours(plan, plan.maximum))},
+          {"guessed_from", plan.guessed_from.empty() ? Json(nullptr) : Json(plan.guessed_from)},
           {"prediction", totals_json(plan)}};
 }
 

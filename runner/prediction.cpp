@@ -4,13 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <limits>
 #include <random>
 
 namespace peclet::runner {
 namespace {
 
 constexpr double outside = 0.025;  // share of the futures on either side of the range
+// Points have the streams 0, 1 ...; what they have in common is independent of each of them.
+constexpr std::uint64_t common_stream = std::numeric_limits<std::uint64_t>::max();
 
 // Values seen so far in one future: count, mean and sum of the squared deviations from it.
 struct Sample {
@@ -26,6 +28,7 @@ struct Sample {
     mean += difference * other.count / total;
     count = total;
   }
+  Estimate estimate() const { return {count, mean, std::sqrt(squares / (count - 1) / count)}; }
 };
 
 // What a point's first seeds say.
@@ -51,32 +54,16 @@ Pilot pilot_of(const std::vector<std::optional<Outcome>>& outcomes, int maximum)
   return pilot;
 }
 
-// Student's factors by number of values, each computed once.
-class Factors {
- public:
-  explicit Factors(double confidence) : confidence_(confidence) {}
-  double of(int count) {
-    const auto known = known_.find(count);
-    if (known != known_.end()) return known->second;
-    return known_[count] = student_quantile(count - 1, confidence_);
-  }
-
- private:
-  double confidence_;
-  std::map<int, double> known_;
-};
-
 class Futures {
  public:
   Futures(const Pilot& pilot, const Target& target, int minimum, int maximum, std::uint64_t stream)
       : random_(stream),
         known_(pilot.sample()),
         seeds_(pilot.seeds),
-        tolerance_(target.relative_tolerance),
-        schedule_(look_schedule(minimum, maximum)),
-        factors_(adjusted_confidence(target.confidence, minimum, maximum)),
-        first_(static_cast<std::size_t>(std::upper_bound(schedule_.begin(), schedule_.end(), seeds_) -
-                                        schedule_.begin())) {}
+        rule_(target, minimum, maximum),
+        first_(static_cast<std::size_t>(
+            std::upper_bound(rule_.schedule().begin(), rule_.schedule().end(), seeds_) -
+            rule_.schedule().begin())) {}
 
   // By what the variance may be off.
   double own_factor() {
@@ -90,12 +77,13 @@ class Futures {
     const double mean = known_.mean + deviation / std::sqrt(known_.count) * normal_(random_);
     Sample sample = known_;
     int seeds = seeds_;
-    for (std::size_t place = first_; place < schedule_.size(); ++place) {
-      sample.add(draw_values(survivors(schedule_[place] - seeds), mean, deviation));
-      seeds = schedule_[place];
-      if (is_within_tolerance(sample)) return static_cast<int>(place);
+    const std::vector<int>& schedule = rule_.schedule();
+    for (std::size_t place = first_; place < schedule.size(); ++place) {
+      sample.add(draw_values(survivors(schedule[place] - seeds), mean, deviation));
+      seeds = schedule[place];
+      if (is_converged(rule_.judge(seeds, sample.estimate()).verdict)) return static_cast<int>(place);
     }
-    return static_cast<int>(schedule_.size());
+    return static_cast<int>(schedule.size());
   }
 
  private:
@@ -115,18 +103,11 @@ class Futures {
     return {count, own_mean, count > 1 ? deviation * deviation * chi_squared(count - 1) : 0};
   }
 
-  bool is_within_tolerance(const Sample& sample) {
-    const double error = std::sqrt(sample.squares / (sample.count - 1) / sample.count);
-    return factors_.of(sample.count) * error <= tolerance_ * std::abs(sample.mean);
-  }
-
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
   Sample known_;
   int seeds_;
-  double tolerance_;
-  std::vector<int> schedule_;
-  Factors factors_;
+  StopRule rule_;
   std::size_t first_;
 };
 
@@ -179,7 +160,7 @@ std::vector<double> common_factors(const std::vector<Share>& shares) {
   }
   const double degrees = sum * sum / squares;
   if (!(degrees > 0)) return std::vector<double>(futures, 1.0);  // nothing is open
-  std::mt19937_64 random(0);
+  std::mt19937_64 random(common_stream);
   std::chi_squared_distribution<double> chi_squared(degrees);
   std::vector<double> factors(futures);
   for (double& factor : factors) factor = degrees / chi_squared(random);

@@ -3,8 +3,8 @@
 // The stop rule is carried out in many futures. In each of them the true mean mu and standard deviation sigma
 // are drawn from what n values of mean m and sample variance s^2 leave open,
 //   (n - 1) s^2 / sigma^2 ~ chi^2(n - 1),   mu ~ N(m, sigma^2 / n),
-// and the values to come from a normal population of these, look by look, until Student's interval at the
-// adjusted level is within the tolerance or the maximum is reached. What is expected is the median of the
+// and the values to come from a normal population of these, look by look, until the stop rule
+// (stop_rule.h) calls it converged or the maximum is reached. What is expected is the median of the
 // futures' deciding looks; 95 % of them lie within the range.
 //
 // Of a sum over points more is known than of each, since their errors partly cancel. There the variances of
@@ -49,7 +49,8 @@ Prediction predict(const std::vector<std::optional<Outcome>>& outcomes, const Ta
 // "2 of 4 seeds are lost", for people; nothing without an obstacle.
 std::string obstacle_text(const Prediction& prediction);
 
-// By what the variances of all points are off in each future, for a sum of what they cost.
+// By what the variances of all points are off in each future, for a sum of what they cost; of a stream that
+// no point has.
 struct Share {
   double cost = 0;  // w
   int values = 0;   // n, 2 or more

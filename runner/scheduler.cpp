@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <compare>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -32,7 +33,10 @@ Scheduler::Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, 
     point.outcomes.resize(static_cast<std::size_t>(maximum_));
     for (const std::optional<Outcome>& outcome : point.outcomes) {
       point.phases.push_back(outcome ? Phase::ended : Phase::waiting);
-      if (outcome) ++point.begun;
+      if (!outcome) continue;
+      ++point.begun;
+      ++point.all_ended;
+      count_in(point, *outcome);
     }
     look_at(point);
     points_.push_back(std::move(point));
@@ -44,6 +48,22 @@ void Scheduler::look_at(Point& point) {
   point.looks = replay_looks(point.outcomes, target_, minimum_, maximum_);
   point.expected = expected_seeds(point.looks, target_, minimum_, maximum_);
   point.fall = decides(point.looks) ? 0 : expected_fall(point);
+}
+
+// Welford's update.
+void Scheduler::count_in(Point& point, const Outcome& outcome) {
+  if (outcome.kind == Outcome::Kind::lost) return;
+  const double value = outcome.value + outcome.control, before = point.mean;
+  point.mean += (value - before) / ++point.values;
+  point.squares += (value - before) * (value - point.mean);
+}
+
+Estimate Scheduler::so_far(int point) const {
+  const Point& about = point_at(point);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  if (about.values == 0) return {0, none, none};
+  const double count = about.values;
+  return {about.values, about.mean, about.values < 2 ? none : std::sqrt(about.squares / (count - 1) / count)};
 }
 
 bool Scheduler::decided(int point) const { return decides(point_at(point).looks); }
@@ -92,9 +112,14 @@ std::optional<double> Scheduler::seconds_per_work() const {
   return seconds / work;
 }
 
-double Scheduler::expected_seconds(int point) const {
-  const Point& about = point_at(point);
-  return about.seconds.value_or(about.work * seconds_per_work().value_or(0));
+double Scheduler::expected_seconds(const std::vector<int>& running) const {
+  const double scale = seconds_per_work().value_or(0);  // a look at all points, once
+  double seconds = 0;
+  for (int number = 0; number < points(); ++number) {
+    const Point& about = point_at(number);
+    seconds += running[static_cast<std::size_t>(number)] * about.seconds.value_or(about.work * scale);
+  }
+  return seconds;
 }
 
 double Scheduler::expected_fall(const Point& point) const {
@@ -112,12 +137,13 @@ double Scheduler::expected_fall(const Point& point) const {
                           (student_quantile(count - 1, confidence) * std::sqrt(later)));
 }
 
-double Scheduler::rank(const Point& point, double seconds) const {
-  if (allocation_ == Allocation::longest_first) {
-    // A point may have begun more seeds than it was expected to need: it is not done for all that.
-    return std::max(1, std::min(point.expected, ceiling_) - point.begun) * seconds;
+Scheduler::Rank Scheduler::rank(const Point& point, double seconds) const {
+  if (allocation_ == Allocation::steepest_first) {
+    return {0, point.fall / (std::max(1, waiting(point)) * seconds)};
   }
-  return point.fall / (std::max(1, waiting(point)) * seconds);
+  if (point.begun < seeds_of_pass) return {seeds_of_pass - point.begun, -seconds};
+  // A point may have begun more seeds than it was expected to need: it is not done for all that.
+  return {0, std::max(1, std::min(point.expected, ceiling_) - point.begun) * seconds};
 }
 
 int Scheduler::waiting(const Point& point) const {
@@ -139,14 +165,14 @@ std::optional<SeedId> Scheduler::most_urgent(int steps, double budget) const {
   const std::optional<double> known = seconds_per_work();
   const double scale = known.value_or(1);
   std::optional<SeedId> best;
-  std::tuple<int, bool, double> best_rank;
+  std::tuple<int, bool, Rank> best_rank;
   for (int number = 0; number < points(); ++number) {
     const Point& point = point_at(number);
     if (!is_open(point)) continue;
     const double seconds = std::max(shortest, point.seconds.value_or(point.work * scale));
     if (known && seconds > budget) continue;
     const bool is_whole = !known || seconds * waiting(point) <= budget;
-    const std::tuple<int, bool, double> own{point.priority, is_whole, rank(point, seconds)};
+    const std::tuple<int, bool, Rank> own{point.priority, is_whole, rank(point, seconds)};
     if (best && own <= best_rank) continue;
     if (const std::optional<int> seed = waiting_seed(point, steps)) {
       best = SeedId{number, *seed};
@@ -179,6 +205,10 @@ bool Scheduler::end(SeedId id, const Outcome& outcome) {
   if (point.phases[seed] == Phase::waiting) ++point.begun;
   point.phases[seed] = Phase::ended;
   const bool again = point.outcomes[seed].has_value();
+  // A late result comes in place of a seed that was lost.
+  const bool had_value = again && point.outcomes[seed]->kind == Outcome::Kind::value;
+  if (!had_value) count_in(point, outcome);
+  point.all_ended += again ? 0 : 1;
   point.outcomes[seed] = outcome;
   if (again) {
     look_at(point);

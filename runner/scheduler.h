@@ -13,6 +13,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "runner/cohorts.h"
@@ -27,9 +28,10 @@ struct SeedId {
 };
 
 enum class Allocation {
-  // The point with the largest cost still to come, seeds that it is expected to need times seconds of each: a
-  // campaign is through the sooner the earlier its longest point is begun. Before the first looks all points
-  // come forward together, in proportion to their costs.
+  // First a pass over all points: the one with fewest begun seeds goes first, and among these the cheapest,
+  // until each has seeds_of_pass, so that something is soon known of all. Then the point with the largest
+  // cost still to come, seeds that it is expected to need times seconds of each: a campaign is through the
+  // sooner the earlier its longest point is begun.
   longest_first,
   // The point whose relative half-width w will fall most, for a second of processor time, by its next look:
   //   w (1 - t(n' - 1) sqrt(n) / (t(n - 1) sqrt(n'))) / (seeds still to be begun * seconds of each)
@@ -41,6 +43,10 @@ enum class Allocation {
 
 class Scheduler {
  public:
+  // As many as `peclet plan --pilot` begins with: a mean with an error, and what a seed costs. The longest
+  // point is hardly held up, because its own seeds are part of the pass.
+  static constexpr int seeds_of_pass = 4;
+
   // `outcomes[point][seed]` is what earlier runs left; seeds beyond the end have none.
   Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, Target target, int minimum,
             int maximum);
@@ -63,8 +69,8 @@ class Scheduler {
   // to cost no more, if possible of a look that can be paid for as a whole. While no cost is known at all
   // every seed is expected to cost nothing.
   std::optional<SeedId> next_within(double seconds) const;
-  // Of a seed of the point; 0 while no cost is known at all.
-  double expected_seconds(int point) const;
+  // Of seeds that are out, so many of each point; 0 while no cost is known at all.
+  double expected_seconds(const std::vector<int>& running) const;
 
   // The seed has been given to a worker.
   void begin(SeedId id);
@@ -85,17 +91,25 @@ class Scheduler {
   int wanted(int point) const;
   // Of these, how many have ended.
   int ended(int point) const;
+  // Values (observable + control) of the seeds that have ended, in whatever order they came.
+  Estimate so_far(int point) const;
   // Seeds of the point that run or have ended.
   int begun(int point) const { return point_at(point).begun; }
+  // Of these, those that have ended.
+  int all_ended(int point) const { return point_at(point).all_ended; }
   int points() const { return static_cast<int>(points_.size()); }
 
- private:
+  // What is known of one point; for kept() and put_back().
   enum class Phase : unsigned char { waiting, out, ended };
   struct Point {
     std::vector<std::optional<Outcome>> outcomes;  // maximum long
     std::vector<Phase> phases;
     std::vector<Look> looks;
-    int begun = 0;     // out or ended
+    int begun = 0;  // out or ended
+    int all_ended = 0;
+    // Of the values: count, mean, and sum of the squared deviations from it.
+    int values = 0;
+    double mean = 0, squares = 0;
     int closed = 0;    // the seeds 0 .. closed - 1 have ended
     int expected = 0;  // seeds at which it may be expected to stop
     double fall = 0;   // of the relative half-width until the next look
@@ -104,17 +118,27 @@ class Scheduler {
     double work = 1;
     std::optional<double> seconds;
   };
+  // A point as it is now, to be put back when what is told of it from now on turns out not to count.
+  Point kept(int point) const { return point_at(point); }
+  void put_back(int point, Point&& kept) noexcept { point_at(point) = std::move(kept); }
 
+ private:
   const Point& point_at(int point) const { return points_[static_cast<std::size_t>(point)]; }
   Point& point_at(int point) { return points_[static_cast<std::size_t>(point)]; }
   void look_at(Point& point);
+  static void count_in(Point& point, const Outcome& outcome);
   // The look after the last one made, and the one after that.
   int look_ahead(const Point& point, int steps) const;
   bool is_open(const Point& point) const;
   // Of the points whose cost is known; nothing when there is none.
   std::optional<double> seconds_per_work() const;
   // How urgent the point is; the largest goes first.
-  double rank(const Point& point, double seconds) const;
+  struct Rank {
+    int pass = 0;  // seeds that it lacks of the first pass
+    double urgency = 0;
+    auto operator<=>(const Rank&) const = default;
+  };
+  Rank rank(const Point& point, double seconds) const;
   double expected_fall(const Point& point) const;
   // Seeds of the next look that nobody has begun.
   int waiting(const Point& point) const;

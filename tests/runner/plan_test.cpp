@@ -20,6 +20,22 @@ TEST(Plan, ACampaignWithoutASeedHasUnknownHours) {
   EXPECT_NE(plan_text(plan).find("not known before a seed has ended"), std::string::npos);
 }
 
+// 3 s for 1e6 particle-steps of the first point; 10 and 800 seeds of 3 + 6 s.
+TEST(Plan, AGuessIsCalledOne) {
+  const Plan plan = make_plan(plain_campaign(2, 10, 800, 0.05), {1e6, 2e6}, {}, 1, CostGuess{0, 3});
+  EXPECT_DOUBLE_EQ(plan.points[1].cost.cpu_seconds, 6);
+  const Json json = plan_json(plan);
+  EXPECT_EQ(json["guessed_from"], "point=0");
+  EXPECT_NEAR(json["cpu_hours_minimum"].get<double>(), 90 / 3600.0, 1e-12);
+  EXPECT_NE(plan_text(plan).find("~: a guess, from the first two seconds of one realisation of point=0"),
+            std::string::npos)
+      << plan_text(plan);
+  EXPECT_TRUE(make_plan(plain_campaign(2, 10, 800, 0.05), {1e6, 2e6},
+                        {{plain_campaign(2, 10, 800, 0.05).points[0].hash, {{1, 5}}}}, 1, CostGuess{0, 3})
+                  .guessed_from.empty())
+      << "what has been measured is no guess";
+}
+
 TEST(Plan, APointWithoutASeedCostsWhatTheOthersDoForEachParticleStep) {
   const Campaign campaign = plain_campaign(3, 10, 100, 0.05);
   // 4 seeds of 36 s for 1e6 particle-steps and one of 216 s for 2e6: 360 s for 6e6, 60 s for each million.

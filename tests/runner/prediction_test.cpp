@@ -145,6 +145,16 @@ TEST(Prediction, OfASumMoreIsKnownThanOfEachPart) {
   EXPECT_NEAR(middle(common_factors(unequal)).likely, one.likely, 1e-3);
 }
 
+// What all points have in common must not be drawn from the numbers of one of them.
+TEST(Prediction, CommonFactorsAreOfNoPointsStream) {
+  const std::vector<double> factors = common_factors({{5, 4}});
+  for (std::uint64_t stream = 0; stream < 1000; ++stream) {
+    std::mt19937_64 random(stream);
+    std::chi_squared_distribution<double> chi_squared(3);
+    EXPECT_NE(factors.front(), 3 / chi_squared(random)) << stream;
+  }
+}
+
 TEST(Prediction, SaysWhyThereIsNone) {
   Outcomes one = values(4, 0.2);
   one[1].reset();  // what ended after it says nothing of a cohort in seed order

@@ -31,6 +31,21 @@ SeedId take(Scheduler& scheduler) {
   return *id;
 }
 
+TEST(Scheduler, KnowsTheMeanOfWhatHasEndedInAnyOrder) {
+  Scheduler scheduler = fresh(1, 8);
+  EXPECT_EQ(scheduler.so_far(0).count, 0);
+  for (const int seed : {5, 0, 3}) scheduler.end({0, seed}, value(seed));
+  scheduler.end({0, 1}, Outcome{});
+  EXPECT_EQ(scheduler.so_far(0).count, 3);
+  EXPECT_DOUBLE_EQ(scheduler.so_far(0).mean, 8.0 / 3);
+  // Deviations 7/3, -8/3 and 1/3: variance 19/3, of the mean a third of it.
+  EXPECT_DOUBLE_EQ(scheduler.so_far(0).standard_error, std::sqrt(19.0) / 3);
+  EXPECT_EQ(scheduler.all_ended(0), 4);
+  scheduler.end({0, 1}, value(8.0 / 3));  // its late result
+  EXPECT_EQ(scheduler.so_far(0).count, 4);
+  EXPECT_EQ(scheduler.all_ended(0), 4);
+}
+
 TEST(Scheduler, PointsComeForwardTogetherInTheOrderOfTheSweep) {
   Scheduler scheduler = fresh(3);
   std::vector<SeedId> taken(7);
@@ -48,8 +63,31 @@ TEST(Scheduler, ThePointFurthestBehindGoesFirst) {
   EXPECT_EQ(take(scheduler), (SeedId{0, 3}));
 }
 
+// Whatever the costs are: after 4 n seeds every one of n points has 4, after 4 n - k no point lacks more than
+// one of the round before; in each round they go by cost.
+TEST(Scheduler, FirstAllPointsGetSomeSeedsTheCheapestFirst) {
+  std::vector<double> costs{0.2, 3, 0.5, 100};
+  std::sort(costs.begin(), costs.end());
+  do {
+    Scheduler scheduler = fresh(4, 10);
+    for (int point = 0; point < 4; ++point) scheduler.set_cost(point, costs[static_cast<std::size_t>(point)]);
+    for (int seed = 0; seed < Scheduler::seeds_of_pass; ++seed) {
+      double last = 0;
+      for (int i = 0; i < 4; ++i) {
+        const SeedId id = take(scheduler);
+        EXPECT_EQ(id.seed, seed);
+        EXPECT_GT(costs[static_cast<std::size_t>(id.point)], last);
+        last = costs[static_cast<std::size_t>(id.point)];
+      }
+    }
+    EXPECT_EQ(costs[static_cast<std::size_t>(take(scheduler).point)], 100) << "then the longest";
+  } while (std::next_permutation(costs.begin(), costs.end()));
+}
+
+// Each needs 8 seeds and has 4 after the pass.
 TEST(Scheduler, ThePointWithMostCostToComeGoesFirst) {
-  Scheduler scheduler = fresh(3);  // each needs 4 seeds first
+  Scheduler scheduler = fresh(3, 8);
+  for (int i = 0; i < 12; ++i) take(scheduler);
   scheduler.set_cost(0, 1);
   scheduler.set_cost(1, 3);  // 12 s, then 9, 6 and 3
   scheduler.set_cost(2, 2);  // 8 s, then 6, 4 and 2
@@ -59,7 +97,8 @@ TEST(Scheduler, ThePointWithMostCostToComeGoesFirst) {
 }
 
 TEST(Scheduler, APointWithoutKnownCostIsTakenForAnAverageOne) {
-  Scheduler scheduler = fresh(3);
+  Scheduler scheduler = fresh(3, 8);
+  for (int i = 0; i < 12; ++i) take(scheduler);
   scheduler.set_cost(0, 1);
   scheduler.set_cost(2, 4);
   EXPECT_EQ(take(scheduler).point, 2);  // 16 s, then 12, 8; the second point 4 * 2.5 = 10 s
@@ -152,13 +191,24 @@ TEST(Scheduler, UnderABudgetALookThatItPaysForAsAWholeGoesFirst) {
 TEST(Scheduler, CostsThatAreNotKnownFollowFromTheWork) {
   Scheduler scheduler = fresh(3);
   for (int point = 0; point < 3; ++point) scheduler.set_work(point, std::pow(10, point));
-  EXPECT_EQ(scheduler.expected_seconds(2), 0);
-  EXPECT_EQ(scheduler.next_within(1e-6), (SeedId{2, 0})) << "nobody knows yet that it is too dear";
+  EXPECT_EQ(scheduler.expected_seconds({1, 1, 1}), 0);
+  EXPECT_EQ(scheduler.next_within(1e-6), (SeedId{0, 0})) << "nobody knows yet that it is too dear";
   EXPECT_EQ(scheduler.next_within(0), std::nullopt) << "but nothing is left";
   scheduler.set_cost(1, 5);
-  EXPECT_DOUBLE_EQ(scheduler.expected_seconds(0), 0.5);
-  EXPECT_DOUBLE_EQ(scheduler.expected_seconds(2), 50);
-  EXPECT_EQ(scheduler.next_within(49), (SeedId{1, 0}));
+  EXPECT_DOUBLE_EQ(scheduler.expected_seconds({1, 0, 0}), 0.5);
+  EXPECT_DOUBLE_EQ(scheduler.expected_seconds({0, 0, 1}), 50);
+  EXPECT_DOUBLE_EQ(scheduler.expected_seconds({2, 1, 3}), 2 * 0.5 + 5 + 3 * 50);
+  EXPECT_EQ(scheduler.next_within(0.51), (SeedId{0, 0}));
+  EXPECT_EQ(scheduler.next_within(0.49), std::nullopt);
+}
+
+// A look at all points for each of them would be 4e10 looks, more than a test may take.
+TEST(Scheduler, WhatManyPointsHaveOutIsSeenAtOneLook) {
+  constexpr int many = 200'000;
+  Scheduler scheduler(Outcomes(many), five_percent, 4, 4);
+  for (int point = 0; point < many; ++point) scheduler.set_work(point, 1);
+  scheduler.set_cost(0, 3);
+  EXPECT_DOUBLE_EQ(scheduler.expected_seconds(std::vector<int>(many, 1)), 3.0 * many);
 }
 
 TEST(Scheduler, UnderACeilingOnlyTheFirstSeedsGo) {
