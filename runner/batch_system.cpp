@@ -1,16 +1,18 @@
 #include "runner/batch_system.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <sstream>
+#include <system_error>
 
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
 #include "runner/batch_templates.h"
 #include "runner/command.h"
+#include "runner/quoting.h"
 
 namespace peclet::runner {
 namespace {
@@ -19,6 +21,9 @@ namespace fs = std::filesystem;
 
 // A controller that is restarted answers after some tens of seconds.
 constexpr std::chrono::seconds patience{60};
+// Of submit.sh: the connection failed on the way (EX_TEMPFAIL).
+constexpr int exit_nobody_knows = 75;
+constexpr const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ_";
 
 std::string one_line(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
@@ -46,6 +51,43 @@ void add(QueryAnswer& answer, const std::string& job, int task, TaskState state)
   if (!is_new && known->second == TaskState::ended) known->second = state;
 }
 
+// What the shell makes of a character after this beginning of a line.
+bool is_between_quotes(const std::string& before) {
+  char open = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const char c = before[i];
+    if (c == '\\' && open != '\'') {
+      ++i;
+    } else if (open == 0 && (c == '"' || c == '\'')) {
+      open = c;
+    } else if (c == open) {
+      open = 0;
+    }
+  }
+  return open != 0;
+}
+
+std::string quoted_for(const std::string& before, const std::string& name, const std::string& value,
+                       const std::string& file) {
+  const auto refuse = [&](const std::string& why) {
+    throw InputError("", "", value,
+                     fmt::format("cannot be put in the place of @{}@ in {}: {}", name, file, why));
+  };
+  if (has_control_characters(value)) refuse("it has a line break or another control character");
+  if (is_plain(value)) return value;
+  if (before.starts_with("#SBATCH")) {
+    if (value.find('\\') != std::string::npos) refuse("after a backslash Slurm replaces no %a");
+    return sbatch_word(value);
+  }
+  if (before.starts_with("#")) {
+    refuse(
+        "how other lines than #SBATCH that begin with # are quoted is not known; letters, digits and "
+        "_@+=:,./- are safe");
+  }
+  if (is_between_quotes(before)) refuse("it stands between quotes; without them peclet puts its own");
+  return shell_word(value);
+}
+
 }  // namespace
 
 BatchTemplate batch_template(const std::string& system, const fs::path& folder) {
@@ -71,8 +113,7 @@ std::string fill_in(const std::string& text, const std::map<std::string, std::st
   std::size_t from = 0;
   for (;;) {
     const std::size_t begin = text.find('@', from);
-    const std::size_t end =
-        begin == std::string::npos ? begin : text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_", begin + 1);
+    const std::size_t end = begin == std::string::npos ? begin : text.find_first_not_of(letters, begin + 1);
     if (begin == std::string::npos || end == std::string::npos) return filled + text.substr(from);
     filled += text.substr(from, begin - from);
     const std::string name = text.substr(begin + 1, end - begin - 1);
@@ -83,7 +124,8 @@ std::string fill_in(const std::string& text, const std::map<std::string, std::st
     }
     const auto value = values.find(name);
     if (value == values.end()) throw InputError(file, "", '@' + name + '@', "is no placeholder");
-    filled += value->second;
+    const std::size_t line_begin = text.rfind('\n', begin) + 1;  // npos + 1 is 0
+    filled += quoted_for(text.substr(line_begin, begin - line_begin), name, value->second, file);
     from = end + 1;
   }
 }
@@ -97,10 +139,24 @@ Submission submit_job(const fs::path& folder, const std::string& name,
                       const std::vector<std::string>& options) {
   std::vector<std::string> words{"sh", (folder / "submit.sh").string(), name, (folder / "job.sh").string()};
   words.insert(words.end(), options.begin(), options.end());
-  const CommandAnswer answer = run_command(words, patience);
-  const std::string job = one_line(answer.output);
-  if (answer.succeeded() && !job.empty()) return {job, ""};
-  return {"", answer.succeeded() ? "it does not say the job's number: " + answer.output : answer.complaint()};
+  CommandAnswer answer;
+  try {
+    answer = run_command(words, patience);
+  } catch (const std::system_error& error) {  // not even the shell could be started
+    return JobRefused{error.what()};
+  }
+  if (answer.succeeded()) {
+    const std::string job = one_line(answer.output);
+    if (!job.empty()) return JobTaken{job};
+    return JobUnknown{"it does not say the job's number: " + answer.output};
+  }
+  if (answer.timed_out || !answer.ending.status || *answer.ending.status == exit_nobody_knows) {
+    return JobUnknown{answer.complaint()};
+  }
+  std::string why;
+  const std::optional<QueryAnswer> known = query_job(folder, name, why);
+  if (known && !known->jobs.empty()) return JobTaken{fmt::format("{}", fmt::join(known->jobs, ", "))};
+  return JobRefused{answer.complaint()};
 }
 
 std::optional<QueryAnswer> query_job(const fs::path& folder, const std::string& name, std::string& why) {

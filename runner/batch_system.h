@@ -3,8 +3,10 @@
 //
 //   job.sh       becomes the bundle's job script; @NAME@, @LAST@ (index of the last task), @TASKS@,
 //   @THREADS@,
-//                @PECLET@ (the program), @MANIFEST@ and @FOLDER@ (the bundle's) are replaced
-//   submit.sh    NAME JOB_SCRIPT [OPTION...]: submits it, prints the job's number
+//                @PECLET@ (the program), @MANIFEST@ and @FOLDER@ (the bundle's) are replaced, quoted for
+//                where they stand
+//   submit.sh    NAME JOB_SCRIPT [OPTION...]: submits it, prints the job's number. Exit code 75 when nobody
+//                knows whether the job was taken, any other but 0 when it was not
 //   query.sh     NAME: prints one line per task, JOB INDEX waiting|running|ended; exit code 0 only when the
 //                answer is complete
 //   cancel.sh    NAME: ends the jobs of that name
@@ -18,6 +20,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace peclet::runner {
@@ -28,7 +31,10 @@ using BatchTemplate = std::map<std::string, std::string>;  // text by file name
 // is missing.
 BatchTemplate batch_template(const std::string& system, const std::filesystem::path& folder);
 
-// Throws InputError for a name between @ that is not in `values`.
+// Puts `values` in the place of their names between @, each quoted for where it stands: for the shell, or in
+// a line `#SBATCH ...` for sbatch. In any other line that begins with #, which may be a directive of another
+// batch system, and between quotes, a value must be plain. Throws InputError for what cannot be quoted there
+// (nowhere can control characters), and for a name that is not in `values`.
 std::string fill_in(const std::string& text, const std::map<std::string, std::string>& values,
                     const std::string& file);
 
@@ -42,11 +48,18 @@ struct QueryAnswer {
   bool alive(int task) const;
 };
 
-struct Submission {
-  std::string job;        // "" when it is not known whether the job was taken
-  std::string complaint;  // then
+struct JobTaken {
+  std::string job;  // its number
 };
+struct JobRefused {  // there is no such job, nor will there be
+  std::string complaint;
+};
+struct JobUnknown {  // the answer was lost, and the job may be there
+  std::string complaint;
+};
+using Submission = std::variant<JobTaken, JobRefused, JobUnknown>;
 
+// A submit command that fails after all its work is found out by asking for the job's name.
 Submission submit_job(const std::filesystem::path& folder, const std::string& name,
                       const std::vector<std::string>& options);
 // Nothing when nobody knows; `why` says so. That is no news about any task.

@@ -59,6 +59,7 @@ class BatchTask {
     fs::create_directories(CampaignDirectory(folder_.task(index_)).logs());
     publish_results(folder_, manifest_, index_);
     for (const int place : manifest_.tasks.at(static_cast<std::size_t>(index_))) {
+      if (fs::exists(folder_.forgotten())) break;  // its seeds are somebody else's by now
       if (!fs::exists(folder_.ended(place))) run_seed(place);
     }
     fs::remove(folder_.trouble(index_));

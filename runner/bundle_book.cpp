@@ -42,16 +42,34 @@ void BundleBook::close(std::int64_t bundle) {
       .run();
 }
 
-std::vector<BundleRecord> BundleBook::open_bundles() const {
-  Statement query(
-      connection_,
-      "SELECT bundle_id, name, shared, job, tasks FROM bundle WHERE closed_at IS NULL ORDER BY bundle_id");
+void BundleBook::forget(std::int64_t bundle) {
+  Statement(connection_,
+            "UPDATE bundle_seed SET outcome = 'forgotten' WHERE bundle_id = ? AND outcome IS NULL")
+      .bind(bundle)
+      .run();
+  close(bundle);
+}
+
+std::vector<BundleRecord> BundleBook::open_bundles() const { return bundles_where("closed_at IS NULL"); }
+
+std::vector<BundleRecord> BundleBook::forgotten_bundles() const {
+  return bundles_where("bundle_id IN (SELECT bundle_id FROM bundle_seed WHERE outcome = 'forgotten')");
+}
+
+std::vector<BundleRecord> BundleBook::bundles_where(const std::string& condition) const {
+  Statement query(connection_, "SELECT bundle_id, name, shared, job, tasks FROM bundle WHERE " + condition +
+                                   " ORDER BY bundle_id");
   std::vector<BundleRecord> bundles;
   while (query.step()) {
     bundles.push_back(
         {query.integer(0), query.text(1), query.text(2), query.text(3), static_cast<int>(query.integer(4))});
   }
   return bundles;
+}
+
+bool BundleBook::has(const std::string& name) const {
+  Statement query(connection_, "SELECT 1 FROM bundle WHERE name = ?");
+  return query.bind(name).step();
 }
 
 std::vector<BundleSeedRecord> BundleBook::seeds_out(std::int64_t bundle) const {
@@ -78,11 +96,14 @@ std::vector<int> BundleBook::seeds_out_of_point(std::int64_t point) const {
 }
 
 std::vector<HandedOver> BundleBook::handed_over() const {
-  Statement query(connection_,
-                  "SELECT name, coalesce(job, ''), count(*) FROM bundle JOIN bundle_seed USING (bundle_id) "
-                  "WHERE outcome IS NULL GROUP BY bundle_id ORDER BY bundle_id");
+  Statement query(
+      connection_,
+      "SELECT name, coalesce(job, ''), shared, count(*) FROM bundle JOIN bundle_seed USING (bundle_id) "
+      "WHERE outcome IS NULL GROUP BY bundle_id ORDER BY bundle_id");
   std::vector<HandedOver> bundles;
-  while (query.step()) bundles.push_back({query.text(0), query.text(1), static_cast<int>(query.integer(2))});
+  while (query.step()) {
+    bundles.push_back({query.text(0), query.text(1), query.text(2), static_cast<int>(query.integer(3))});
+  }
   return bundles;
 }
 
@@ -97,6 +118,11 @@ int BundleBook::count() const { return static_cast<int>(connection_.integer("SEL
 
 std::string BundleBook::last_shared() const {
   return connection_.text("SELECT shared FROM bundle ORDER BY bundle_id DESC LIMIT 1");
+}
+
+bool BundleBook::are_out_in(const std::string& folder) const {
+  Statement query(connection_, "SELECT 1 FROM bundle WHERE shared = ? AND closed_at IS NULL");
+  return query.bind(folder).step();
 }
 
 }  // namespace peclet::runner

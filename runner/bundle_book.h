@@ -30,6 +30,7 @@ struct BundleRecord {
 
 struct HandedOver {  // for people
   std::string bundle, job;
+  std::string shared;
   int seeds = 0;  // that are still out
 };
 
@@ -42,9 +43,14 @@ class BundleBook {
   void submitted(std::int64_t bundle, const std::string& job);
   void seed_ended(std::int64_t bundle, int place, const char* outcome);
   void close(std::int64_t bundle);
+  // Its seeds are nobody's any more, and it is closed; it stays in forgotten_bundles().
+  void forget(std::int64_t bundle);
 
   // Bundles of which tasks or seeds may still be out, by age.
   std::vector<BundleRecord> open_bundles() const;
+  // Bundles that were given up while seeds of them were out: their tasks may live and leave results yet.
+  std::vector<BundleRecord> forgotten_bundles() const;
+  bool has(const std::string& name) const;
   // Seeds of a bundle without an outcome, by place.
   std::vector<BundleSeedRecord> seeds_out(std::int64_t bundle) const;
   // The seeds of a point that are out, in all bundles.
@@ -55,8 +61,12 @@ class BundleBook {
   int count() const;
   // The folder that was shared last; "" when nothing was ever handed over.
   std::string last_shared() const;
+  // Seeds are out in this folder.
+  bool are_out_in(const std::string& folder) const;
 
  private:
+  std::vector<BundleRecord> bundles_where(const std::string& condition) const;
+
   Connection& connection_;
 };
 

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <system_error>
 
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
@@ -89,6 +90,36 @@ void BundleFolder::create(int tasks) const {
   }
   fs::create_directories(root_ / "ended");
   for (int index = 0; index < tasks; ++index) fs::create_directories(task(index));
+}
+
+bool is_there(const BundleFolder& folder, std::string& why) {
+  for (const fs::path& path : {folder.shared().root(), folder.root(), folder.manifest()}) {
+    std::error_code error;
+    if (fs::exists(path, error)) continue;
+    why = fmt::format("{}: {}", path.string(), error ? error.message() : "is not there");
+    return false;
+  }
+  return true;
+}
+
+std::string handed_over_advice(const std::vector<HandedOver>& bundles, const std::string& words) {
+  int seeds = 0;
+  std::string lost;
+  for (const HandedOver& bundle : bundles) {
+    seeds += bundle.seeds;
+    std::string why;
+    if (!is_there(BundleFolder(bundle.shared, bundle.bundle), why)) lost += " --forget " + bundle.bundle;
+  }
+  if (seeds == 0) return "";
+  std::string text = fmt::format(
+      "\n{} seeds are handed over: `peclet ingest {}` takes in what has been done, and with --cancel takes "
+      "them back\n",
+      seeds, words);
+  if (!lost.empty()) {
+    text += fmt::format("where their folder is gone for good, `peclet ingest {}{}` queues them again\n",
+                        words, lost);
+  }
+  return text;
 }
 
 std::string result_name(const BundledSeed& seed) {

@@ -8,7 +8,8 @@
 //                       tasks/I/running.json the seed in the hands of task I, or drained by it; written by it
 //                       tasks/I/trouble.json why task I could do nothing at all
 //                       tasks/I/*.result     results that are not in the spool yet
-//                       logs/                what tasks and engines printed
+//                       forgotten            the owner has given the bundle up: no task begins a seed any
+//                       more logs/                what tasks and engines printed
 //
 // Every file is written whole (temporary file, fsync, rename) by one process at a time.
 #pragma once
@@ -21,6 +22,7 @@
 
 #include "contract/json.h"
 #include "runner/blame.h"
+#include "runner/bundle_book.h"
 #include "runner/campaign_directory.h"
 
 namespace peclet::runner {
@@ -70,6 +72,7 @@ class BundleFolder {
   const std::filesystem::path& root() const { return root_; }
   std::filesystem::path manifest() const { return root_ / "manifest.json"; }
   std::filesystem::path script(const std::string& name) const { return root_ / name; }
+  std::filesystem::path forgotten() const { return root_ / "forgotten"; }
   std::filesystem::path logs() const { return root_ / "logs"; }
   std::filesystem::path ended(int place) const { return root_ / "ended" / (std::to_string(place) + ".json"); }
   std::filesystem::path task(int index) const { return root_ / "tasks" / std::to_string(index); }
@@ -92,6 +95,13 @@ std::optional<PlacedReport> read_report(const std::filesystem::path& path);
 
 // How the names of a seed's results begin, in the task's folder and in the spool.
 std::string result_name(const BundledSeed& seed);
+
+// Whether the bundle's manifest can be seen from here; `why` says why not. A folder that cannot be reached (a
+// file system that is not mounted, or no longer answers) is no error, but an answer.
+bool is_there(const BundleFolder& folder, std::string& why);
+
+// What a person may do about seeds that are out; `words` are the campaign's on the command line.
+std::string handed_over_advice(const std::vector<HandedOver>& bundles, const std::string& words);
 
 // Moves the results that a task has left in its own folder into the spool, under names of their own, and
 // notes them as ended. Files that are no result go to spool/rejected.

@@ -21,14 +21,25 @@ std::string mark_of(const CampaignDirectory& directory) {
   return sha256(std::string(host.data()) + ':' + directory.root().string()).substr(0, 6);
 }
 
-// For a shell: in single quotes.
-std::string quoted(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
+BatchTemplate filled_in(const BatchTemplate& scripts, const BundleFolder& folder, const std::string& name,
+                        int tasks, int threads, const std::string& program) {
+  const std::map<std::string, std::string> values{{"NAME", name},
+                                                  {"LAST", std::to_string(tasks - 1)},
+                                                  {"TASKS", std::to_string(tasks)},
+                                                  {"THREADS", std::to_string(threads)},
+                                                  {"PECLET", program},
+                                                  {"MANIFEST", folder.manifest().string()},
+                                                  {"FOLDER", folder.root().string()}};
+  BatchTemplate filled = scripts;
+  filled.at("job.sh") = fill_in(scripts.at("job.sh"), values, "job.sh");
+  return filled;
 }
 
 }  // namespace
+
+void check_template(const BatchTemplate& scripts, const fs::path& shared, const std::string& program) {
+  filled_in(scripts, BundleFolder(shared, "name"), "name", 1, 1, program);
+}
 
 Bundles::Bundles(Database& database, Ledger& ledger, const Campaign& campaign, CampaignDirectory directory,
                  RunListener& listener)
@@ -40,16 +51,27 @@ Bundles::Bundles(Database& database, Ledger& ledger, const Campaign& campaign, C
       book_(database.connection()),
       queue_(database) {}
 
-int Bundles::hand_over(const BundleSettings& settings) {
+std::string Bundles::hand_over(const BundleSettings& settings) {
+  // What is not mounted now must not be made anew below it.
+  if (!fs::is_directory(settings.shared) && book_.are_out_in(settings.shared.string())) {
+    tell_once(
+        settings.shared.string(),
+        fmt::format("{}: is not there, and nothing is handed over until it is", settings.shared.string()));
+    return "";
+  }
+  told_.erase(settings.shared.string());
   const std::vector<SeedId> seeds = ledger_.draw(settings.ahead);
   const std::size_t most =
       static_cast<std::size_t>(settings.seeds_per_task) * static_cast<std::size_t>(settings.largest_array);
   for (std::size_t from = 0; from < seeds.size(); from += most) {
     const std::size_t end = std::min(seeds.size(), from + most);
-    make(settings, {seeds.begin() + static_cast<std::ptrdiff_t>(from),
-                    seeds.begin() + static_cast<std::ptrdiff_t>(end)});
+    const auto begin = seeds.begin() + static_cast<std::ptrdiff_t>(from);
+    const std::string refusal = make(settings, {begin, seeds.begin() + static_cast<std::ptrdiff_t>(end)});
+    if (refusal.empty()) continue;
+    for (std::size_t left = end; left < seeds.size(); ++left) ledger_.take_back(seeds[left]);
+    return refusal;
   }
-  return static_cast<int>(seeds.size());
+  return "";
 }
 
 std::string Bundles::describe(const BundleSettings& settings) {
@@ -103,23 +125,16 @@ void Bundles::write(const BundleFolder& folder, const Manifest& manifest, const 
     const fs::path there = folder.shared().checkpoint(seed.point, seed.seed);
     if (fs::exists(here) && !fs::exists(there)) write_durably(there, read_file(here));
   }
-  const std::map<std::string, std::string> values{{"NAME", manifest.name},
-                                                  {"LAST", std::to_string(tasks - 1)},
-                                                  {"TASKS", std::to_string(tasks)},
-                                                  {"THREADS", std::to_string(manifest.threads)},
-                                                  {"PECLET", quoted(settings.program)},
-                                                  {"MANIFEST", quoted(folder.manifest().string())},
-                                                  {"FOLDER", folder.root().string()}};
-  for (const auto& [name, text] : settings.scripts) {
-    write_durably(folder.script(name), name == "job.sh" ? fill_in(text, values, name) : text);
-  }
+  const BatchTemplate scripts =
+      filled_in(settings.scripts, folder, manifest.name, tasks, manifest.threads, settings.program);
+  for (const auto& [name, text] : scripts) write_durably(folder.script(name), text);
   write_durably(folder.script("options.json"), Json(settings.options).dump() + '\n');
   write_durably(folder.manifest(), manifest_json(manifest).dump(1) + '\n');
 }
 
 // The files first, then the rows, then the job: whatever is cut off when, a row without a job is found by the
 // job's name, and a folder without a row was never submitted.
-void Bundles::make(const BundleSettings& settings, const std::vector<SeedId>& seeds) {
+std::string Bundles::make(const BundleSettings& settings, const std::vector<SeedId>& seeds) {
   Manifest manifest = manifest_of(settings, seeds);
   manifest.name = free_name(settings.shared);
   write(BundleFolder(settings.shared, manifest.name), manifest, settings);
@@ -141,63 +156,44 @@ void Bundles::make(const BundleSettings& settings, const std::vector<SeedId>& se
   queue_.event("handed-over", std::nullopt, std::nullopt,
                fmt::format("{} seeds in {} tasks as {}", rows.size(), bundle.tasks, bundle.name));
   booking.commit();
-  submit(bundle, settings.options);
+  return submit(bundle, settings.options);
 }
 
-void Bundles::submit(const BundleRecord& bundle, const std::vector<std::string>& options) {
+std::string Bundles::submit(const BundleRecord& bundle, const std::vector<std::string>& options) {
   const BundleFolder folder(bundle.shared, bundle.name);
   const Submission answer = submit_job(folder.root(), bundle.name, options);
-  if (answer.job.empty()) {
-    listener_.warn(
-        fmt::format("{}: the submission failed ({}); before it is made again, the batch system is asked for "
-                    "a job of this name",
-                    bundle.name, answer.complaint));
-    return;
+  if (const auto* refused = std::get_if<JobRefused>(&answer)) {
+    withdraw(bundle);
+    return fmt::format("the batch system took no job, so no seed of {} is handed over: {}", bundle.name,
+                       refused->complaint);
   }
+  if (const auto* unknown = std::get_if<JobUnknown>(&answer)) {
+    listener_.warn(
+        fmt::format("{}: whether the batch system has taken the job is unknown ({}); it is asked for a job "
+                    "of this name before "
+                    "another is submitted",
+                    bundle.name, unknown->complaint));
+    return "";
+  }
+  const std::string& job = std::get<JobTaken>(answer).job;
   Transaction booking(database_.connection());
-  book_.submitted(bundle.id, answer.job);
+  book_.submitted(bundle.id, job);
   booking.commit();
   listener_.note(fmt::format("{}: {} seeds in {} tasks are handed over as job {}", bundle.name,
-                             book_.seeds_out(bundle.id).size(), bundle.tasks, answer.job));
+                             book_.seeds_out(bundle.id).size(), bundle.tasks, job));
+  return "";
 }
 
-void Bundles::submit_unconfirmed() {
+std::string Bundles::submit_unconfirmed() {
+  std::string refusal;
   for (const BundleRecord& bundle : book_.open_bundles()) {
     if (!was_never_submitted(bundle)) continue;
     const BundleFolder folder(bundle.shared, bundle.name);
-    submit(bundle, read_json(folder.script("options.json")).get<std::vector<std::string>>());
+    const std::string answer =
+        submit(bundle, read_json(folder.script("options.json")).get<std::vector<std::string>>());
+    if (!answer.empty()) refusal = answer;
   }
-}
-
-// Asked of the batch system again, just before something is done about it: an answer that came too late for
-// settle() would otherwise be overlooked.
-bool Bundles::was_never_submitted(const BundleRecord& bundle) const {
-  if (!bundle.job.empty()) return false;
-  std::string why;
-  const std::optional<QueryAnswer> known =
-      query_job(BundleFolder(bundle.shared, bundle.name).root(), bundle.name, why);
-  return known && known->jobs.empty();
-}
-
-void Bundles::cancel() {
-  for (const BundleRecord& bundle : book_.open_bundles()) {
-    std::string why;
-    if (was_never_submitted(bundle)) {
-      withdraw(bundle);
-    } else if (!cancel_job(BundleFolder(bundle.shared, bundle.name).root(), bundle.name, why)) {
-      listener_.warn(fmt::format("{}: could not be cancelled: {}", bundle.name, why));
-    }
-  }
-}
-
-void Bundles::withdraw(const BundleRecord& bundle) {
-  Transaction booking(database_.connection());
-  for (const BundleSeedRecord& seed : book_.seeds_out(bundle.id)) {
-    if (const std::optional<SeedId> id = ledger_.identify(seed.point, seed.seed)) ledger_.take_back(*id);
-    book_.seed_ended(bundle.id, seed.place, "returned");
-  }
-  book_.close(bundle.id);
-  booking.commit();
+  return refusal;
 }
 
 }  // namespace peclet::runner

@@ -1,6 +1,8 @@
 // Bundles: what has become of the seeds of jobs that have been submitted.
 #include <fmt/format.h>
 
+#include <system_error>
+
 #include "contract/input_error.h"
 #include "runner/bundles.h"
 
@@ -28,17 +30,33 @@ std::string trouble_of(const BundleFolder& folder, int task) {
 
 Bundles::Settled Bundles::settle() {
   Settled settled;
+  fence_forgotten();
   for (const BundleRecord& bundle : book_.open_bundles()) {
     ++settled.open;
-    if (fs::exists(BundleFolder(bundle.shared, bundle.name).manifest())) {
+    std::string why;
+    if (is_there(BundleFolder(bundle.shared, bundle.name), why)) {
       settle_bundle(bundle, settled);
-    } else {
-      ++settled.unknown;
-      listener_.warn(fmt::format("{}: {} is not there now; nothing is concluded from that", bundle.name,
-                                 BundleFolder(bundle.shared, bundle.name).root().string()));
+      continue;
     }
+    ++settled.unknown;
+    ++settled.unreachable;
+    std::error_code unreachable;
+    if (!fs::is_directory(CampaignDirectory(bundle.shared).spool(), unreachable))
+      continue;  // the ledger says so
+    tell_once(
+        bundle.name,
+        fmt::format("{}; {} seeds of this bundle are out. `peclet ingest --forget {}` queues them again", why,
+                    book_.seeds_out(bundle.id).size(), bundle.name));
   }
+  if (settled.unreachable > 0) ledger_.ingest_spool();  // what there is elsewhere
   return settled;
+}
+
+// Turns of --follow would fill a log with it.
+void Bundles::tell_once(const std::string& about, const std::string& message) {
+  std::string& last = told_[about];
+  if (last != message) listener_.warn(message);
+  last = message;
 }
 
 void Bundles::settle_bundle(const BundleRecord& known, Settled& settled) {
@@ -50,9 +68,9 @@ void Bundles::settle_bundle(const BundleRecord& known, Settled& settled) {
   const std::optional<QueryAnswer> answer = query_job(folder.root(), bundle.name, why);
   if (!answer) {
     ++settled.unknown;
-    listener_.warn(
-        fmt::format("{}: what has become of its tasks is unknown ({}); nothing is concluded from that",
-                    bundle.name, why));
+    tell_once(bundle.name,
+              fmt::format("{}: what has become of its tasks is unknown ({}); nothing is concluded from that",
+                          bundle.name, why));
   } else if (bundle.job.empty() && (!answer->jobs.empty() || has_left_traces(folder, bundle))) {
     bundle.job =
         answer->jobs.empty() ? "of unknown number" : fmt::format("{}", fmt::join(answer->jobs, ", "));
@@ -61,12 +79,13 @@ void Bundles::settle_bundle(const BundleRecord& known, Settled& settled) {
     booking.commit();
     listener_.note(fmt::format("{}: found by its name as job {}", bundle.name, bundle.job));
   }
-  const bool is_there = answer && !bundle.job.empty();
+  if (answer) told_.erase(bundle.name);
+  const bool is_known = answer && !bundle.job.empty();
   if (bundle.job.empty()) ++settled.unconfirmed;
-  for (int task = 0; is_there && task < bundle.tasks; ++task) {
+  for (int task = 0; is_known && task < bundle.tasks; ++task) {
     if (!answer->alive(task)) publish_results(folder, manifest, task);
   }
-  book(bundle, folder, manifest, is_there ? &*answer : nullptr, settled);
+  book(bundle, folder, manifest, is_known ? &*answer : nullptr, settled);
 }
 
 void Bundles::book(const BundleRecord& bundle, const BundleFolder& folder, const Manifest& manifest,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -27,9 +28,16 @@ struct HandOverOptions {
   bool force = false;  // use a network file system for the database all the same
 };
 
+// The batch system has said no. what() has its message.
+class SubmissionRefused : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 // Hands open seeds over once, or with `follow` settles and hands over until every point is decided. The
 // result is the exit code: as of run_campaign() with `follow`, else 0. Throws as run_campaign(); EngineError
-// when tasks cannot use their engine.
+// when tasks cannot use their engine; SubmissionRefused when the batch system takes no job and, with
+// `follow`, none of an earlier one is left to wait for.
 int hand_over_campaign(const HandOverOptions& options);
 
 struct IngestOptions {
@@ -38,10 +46,12 @@ struct IngestOptions {
   bool cancel = false;  // take everything back
   bool quiet = false;
   bool force = false;
+  std::vector<std::string> forget{};  // bundles whose seeds are taken back without an answer
 };
 
 // Takes in what nodes have done, and says how the bundles stand. Exit code 0, also when the batch system does
-// not answer.
+// not answer; 1 when the folder of seeds that are out is not there. Throws InputError for the name of no
+// bundle.
 int ingest_campaign(const IngestOptions& options);
 
 }  // namespace peclet::runner

@@ -2,138 +2,25 @@
 """slurm_drill.py BIN [--quick] [--only CASE] [--keep FOLDER]
 
 Runs campaigns through a real Slurm (slurmctld, slurmd and munged of this machine's packages, started here) while tasks are
-killed, preempted and warned, the controller is restarted or away, submissions lose their answers and the owner is killed.
+killed, preempted and warned, the controller is restarted or away, submissions are refused, lose their answers or are forgotten,
+and the owner is killed.
 After each case the canonical export must be, byte for byte, that of the same campaign run by `peclet run` without Slurm;
 no realisation may be lost or counted twice. Prints a table and leaves with 1 when anything differs. --quick: some of the
 cases; --only: one of them (time_limit, which waits for a minute, is run only so); --keep: leave everything in that folder.
 """
 import argparse
 import contextlib
-import json
 import os
 import random
-import shutil
 import signal
-import sqlite3
 import subprocess
 import sys
 import tempfile
 import time
 
 from drill.campaign import REAL
+from slurm_campaign import CAMPAIGN, Campaign, script_of_the_page, template_of
 from slurm_cluster import CPUS, Cluster
-
-# Seeds of about a second, saved several times on their way; a few looks a point.
-ENVIRONMENT = {"PECLET_FAKE_STEPS": "40", "PECLET_FAKE_STEP_MS": "25"}
-CAMPAIGN = {
-    "name": "drill",
-    "scene": {"fluid": {"viscosity": 1}, "peclet": 1},
-    "sweep": [{"set": "/peclet", "values": [1, 2]}],
-    "target": {"observable": "relative_viscosity", "relative_tolerance": 0.055},
-    "realisations": {"minimum": 8, "maximum": 40},
-}
-
-
-class Campaign:
-    """A campaign in a folder of its own, run locally or through Slurm."""
-
-    def __init__(self, binaries, folder, document=None, environment=None):
-        self.peclet = os.path.join(binaries, "peclet")
-        self.folder = folder
-        os.makedirs(folder)
-        document = dict(document or CAMPAIGN)
-        engine = "peclet-engine" if document.get("scene") == REAL["scene"] else "fake_engine"
-        document["engine"] = [os.path.join(binaries, engine), "serve"]
-        with open(os.path.join(folder, "drill.json"), "w") as f:
-            json.dump(document, f)
-        self.environment = {**os.environ, **ENVIRONMENT, **(environment or {})}
-        self.shared = os.path.join(folder, "shared")
-        self.hold = os.path.join(folder, "hold")
-        self.processes = []
-
-    def holds(self, seed=0):
-        """This and later seeds of the fake engine stand still half-way from now on, and their tasks run, until lets_go()."""
-        with open(self.hold, "w"):
-            pass
-        self.environment.update(PECLET_FAKE_HOLD=self.hold, PECLET_FAKE_HOLD_SEED=str(seed))
-
-    def lets_go(self):
-        os.remove(self.hold)
-
-    def start(self, *words):
-        log = open(os.path.join(self.folder, "log"), "a")
-        self.processes.append(subprocess.Popen([self.peclet, *words], cwd=self.folder, env=self.environment, stdout=log,
-                                               stderr=log))
-        return self.processes[-1]
-
-    def stop(self):
-        """Ends what a failed case has left."""
-        for process in self.processes:
-            process.kill()
-            process.wait()
-
-    def do(self, *words, code=0):
-        process = self.start(*words)
-        answer = process.wait(300)
-        assert code is None or answer == code, f"{words}: exit code {answer}, not {code}\n{self.log()}"
-        return answer
-
-    def run_locally(self, code=0):
-        self.do("run", "drill.json", "--workers", str(CPUS), "--checkpoint", "0.1", code=code)
-        return self
-
-    def hand_over(self, *words):
-        return ("hand-over", "slurm", "drill.json", "--shared", self.shared, "--checkpoint", "0.1", *words)
-
-    def follow(self, *words):
-        return self.hand_over("--follow", "--interval", "0.3", *words)
-
-    def log(self):
-        with open(os.path.join(self.folder, "log")) as f:
-            return f.read()
-
-    def export(self):
-        return subprocess.run([self.peclet, "export", "drill.json", "--canonical"], cwd=self.folder, capture_output=True,
-                              check=True).stdout
-
-    def ask(self, query):
-        with contextlib.closing(sqlite3.connect(f"file:{self.folder}/drill.peclet/campaign.db?mode=ro", uri=True)) as db:
-            return db.execute(query).fetchone()[0]
-
-    def spooled(self):
-        spool = os.path.join(self.shared, "spool")
-        return [name for name in os.listdir(spool) if name.endswith(".json")] if os.path.isdir(spool) else []
-
-    def ended(self):
-        try:
-            return self.ask("SELECT count(*) FROM realisation WHERE state = 'done'")
-        except sqlite3.Error:
-            return 0
-
-    def lost(self):
-        """Seeds of the looks that have no result; and files, bundles and seeds that were left lying."""
-        wanted = self.ask("SELECT sum(seeds) FROM estimates")
-        closed = self.ask("SELECT count(*) FROM realisation JOIN point USING (point_id) JOIN estimates USING (hash)"
-                          " WHERE seed < seeds AND state IN ('done', 'failed', 'quarantined')")
-        left = self.ask("SELECT count(*) FROM bundle_seed WHERE outcome IS NULL")
-        spool = os.path.join(self.shared, "spool")
-        files = [name for name in os.listdir(spool) if name != "rejected"] if os.path.isdir(spool) else []
-        return wanted - closed + left + len(files)
-
-    def double(self):
-        """Results that a seed has beyond its first, counted or offered with another content."""
-        return int(self.ask("SELECT count(*) - count(DISTINCT point_id || ' ' || seed) FROM result")
-                + self.ask("SELECT total(suspect) FROM point")
-                + self.ask("SELECT count(*) FROM event WHERE kind IN ('suspect', 'rejected', 'mixed-engine')"))
-
-    def again(self):
-        """Seeds that were run to their end a second time, which costs time and changes nothing."""
-        return self.ask("SELECT coalesce(sum(n - 1), 0) FROM (SELECT count(*) AS n FROM attempt WHERE outcome = 'result'"
-                        " GROUP BY point_id, seed)")
-
-    def blamed(self):
-        return self.ask("SELECT total(blamed) FROM attempt")
-
 
 class Drill:
     def __init__(self, binaries, folder, cluster):
@@ -189,8 +76,7 @@ class Drill:
     def preempted(self, campaign):
         owner = campaign.start(*campaign.follow())
         self.running(campaign, CPUS)
-        self.cluster.say("sbatch", "--partition=urgent", f"--cpus-per-task={CPUS - 1}", "--job-name=urgent", "--output=/dev/null",
-                         "--wrap", "sleep 2")
+        self.cluster.say(*URGENT)
         self.cluster.wait_until(lambda: self.cluster.restarts() > 0, "a preemption")
         restarts = self.cluster.restarts()
         assert owner.wait(300) == 0, campaign.log()
@@ -257,7 +143,7 @@ class Drill:
         return f"of {out} seeds {taken} taken in without a controller, the others left alone"
 
     def answer_lost(self, campaign):
-        template = template_of(campaign, 'sbatch --parsable "$@" "$script" >> "$HOME_OF_DRILL/numbers"; exit 1')
+        template = template_of(campaign, 'sbatch --parsable "$@" "$script" >> "$HOME_OF_DRILL/numbers"; exit 75')
         campaign.holds()
         campaign.do(*campaign.hand_over("--template", template))
         assert campaign.ask("SELECT count(*) FROM bundle WHERE job IS NULL") == 1, campaign.log()
@@ -268,13 +154,76 @@ class Drill:
         assert submitted == 1, f"submitted {submitted} times"
         campaign.lets_go()
         campaign.do(*campaign.follow())
-        return "sbatch took the job and failed: found by its name, submitted once"
+        return "sbatch took the job and nobody heard of it: found by its name, submitted once"
 
-    def submission_failed(self, campaign):
-        template = template_of(campaign, 'if mkdir "$HOME_OF_DRILL/failed"; then exit 1; fi\nsbatch --parsable "$@" "$script"')
+    def submission_lost(self, campaign):
+        template = template_of(campaign, 'if mkdir "$HOME_OF_DRILL/failed"; then exit 75; fi\nsbatch --parsable "$@" "$script"')
         campaign.do(*campaign.follow("--template", template))
-        assert campaign.log().count("the submission failed") == 1, campaign.log()
-        return "sbatch failed without a job: asked for by name, submitted again"
+        assert campaign.log().count("whether the batch system has taken the job is unknown") == 1, campaign.log()
+        return "nobody heard of the submission, and there is no job: asked for by name, submitted again"
+
+    def refused(self, campaign):
+        campaign.do(*campaign.hand_over("--option=--partition=nosuch"), code=1)
+        assert "nvalid partition" in campaign.log(), campaign.log()
+        self.cluster.stop("slurmctld")
+        campaign.do(*campaign.hand_over(), code=1)
+        assert "Unable to contact slurm controller" in campaign.log(), campaign.log()
+        self.cluster.start_controller()
+        self.cluster.wait_for_controller()
+        assert campaign.ask("SELECT count(*) FROM bundle_seed WHERE outcome IS NULL") == 0
+        campaign.run_locally()
+        return "sbatch refused, and without a controller: exit code 1, nothing out, all run by `peclet run`"
+
+    def odd_folder(self, campaign):
+        campaign.shared = os.path.join(campaign.folder, "a b %j 'c' \"d\" #e $HOME")
+        campaign.holds()
+        campaign.do(*campaign.hand_over())
+        self.running(campaign)
+        logs = os.path.join(campaign.shared, "bundles", campaign.ask("SELECT name FROM bundle"), "logs")
+        printed = sorted(os.listdir(logs))
+        assert printed and printed[0].startswith("task-"), (logs, printed)
+        campaign.lets_go()
+        campaign.do(*campaign.follow())
+        return f"a shared folder called {os.path.basename(campaign.shared)}"
+
+    def forgotten(self, campaign):
+        campaign.holds()
+        campaign.do(*campaign.hand_over())
+        self.running(campaign)
+        self.cluster.stop("slurmctld")
+        campaign.do("ingest", "drill.json", "--forget", campaign.ask("SELECT name FROM bundle"))
+        assert campaign.ask("SELECT count(*) FROM bundle_seed WHERE outcome IS NULL") == 0
+        campaign.holds_no_more()
+        campaign.run_locally()
+        campaign.lets_go()
+        self.cluster.wait_until(campaign.spooled, "late results")
+        self.cluster.start_controller()
+        self.cluster.wait_for_controller()
+        self.cluster.wait_until(lambda: not self.cluster.tasks("RUNNING,PENDING,COMPLETING"), "the late tasks to leave")
+        late = len(campaign.spooled())
+        campaign.do("ingest", "drill.json")
+        return f"forgotten while its tasks ran and nobody answered; {late} late results, none counted twice"
+
+    def one_job(self, campaign):
+        """The script of docs/clusters.md, warned as at its time limit, and preempted."""
+        saved = os.path.join(campaign.folder, "saved")
+        script = os.path.join(campaign.folder, "one_job.sh")
+        with open(script, "w") as f:
+            f.write(script_of_the_page(campaign, saved))
+        bin_folder = os.path.dirname(campaign.peclet)
+        subprocess.run(["sbatch", "--parsable", script], cwd=campaign.folder, check=True, capture_output=True,
+                       env={**campaign.environment, "PATH": bin_folder + ":" + os.environ["PATH"]})
+        interruptions = (("scancel", "--batch", "--signal=USR1", "--me"), URGENT)
+        for count, interruption in enumerate(interruptions, 1):
+            self.cluster.wait_until(lambda: self.cluster.say("squeue", "-h", "--me", "--states=RUNNING", "-o", "%j") == "friction",
+                                    "the job")
+            time.sleep(1.5)
+            self.cluster.say(*interruption)
+            self.cluster.wait_until(lambda: self.cluster.restarts() >= count, "the job to be queued again", 120)
+        self.cluster.wait_until(lambda: not self.cluster.say("squeue", "-h", "--me"), "the last job", 240)
+        campaign.do("restore", saved, "drill.json")
+        attempts = campaign.ask("SELECT count(*) FROM attempt WHERE outcome = 'drained'")
+        return f"one job, the database on its node: warned, preempted, queued again; {attempts} seeds went on from checkpoints"
 
     def owner_killed(self, campaign):
         kills = 0
@@ -330,21 +279,14 @@ def kill_one(what, folder):
     return 0
 
 
-def template_of(campaign, submission):
-    """The Slurm template with another way to submit."""
-    source = os.path.join(os.path.dirname(__file__), "..", "..", "templates", "slurm")
-    template = os.path.join(campaign.folder, "template")
-    shutil.copytree(source, template)
-    with open(os.path.join(template, "submit.sh"), "w") as f:
-        f.write(f"script=$2\nshift 2\nHOME_OF_DRILL='{campaign.folder}'\n{submission}\n")
-    return template
-
-
 FAULTS = {"PECLET_FAKE_FAULTS": "crash:3 exit:4x1 overlap:5 kill:2x2"}
-QUICK = ("arrays", "killed_task", "controller_away", "answer_lost")
-CASES = QUICK + ("killed_engine", "preempted", "warned", "controller_restarted", "submission_failed", "owner_killed",
-                 "taken_back", "failing_engine", "real_engine")
+QUICK = ("arrays", "killed_task", "controller_away", "answer_lost", "refused", "odd_folder", "one_job")
+CASES = QUICK + ("killed_engine", "preempted", "warned", "controller_restarted", "submission_lost", "owner_killed",
+                 "taken_back", "forgotten", "failing_engine", "real_engine")
 SLOW = ("time_limit",)  # Slurm's shortest limit is a minute
+# Takes the node from others.
+URGENT = ("sbatch", "--partition=urgent", f"--cpus-per-task={CPUS - 1}", "--job-name=urgent", "--output=/dev/null", "--wrap",
+          "sleep 2")
 LONG_SEEDS = {**CAMPAIGN, "target": {"relative_tolerance": 0.9}, "realisations": {"minimum": 4, "maximum": 4}}
 LONGER = {"environment": {"PECLET_FAKE_STEP_MS": "75"}}  # the same results
 SETTINGS = {"preempted": LONGER,

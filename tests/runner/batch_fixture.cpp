@@ -46,12 +46,16 @@ BatchFixture::BatchFixture() {
   fs::create_directories(options.template_folder);
   const std::string here = "cd '" + folder().string() + "'\n";
   write(options.template_folder / "job.sh", "@PECLET@ task @MANIFEST@ 0..@LAST@\n");
-  write(options.template_folder / "submit.sh", here +
-                                                   "kind=$(cat submissions)\n"
-                                                   "[ \"$kind\" = failed ] && exit 1\n"
-                                                   "echo \"$1\" >> jobs\n"
-                                                   "[ \"$kind\" = lost ] && exit 1\n"
-                                                   "wc -l < jobs\n");
+  write(options.template_folder / "submit.sh",
+        here +
+            "kind=$(cat submissions)\n"
+            "[ \"$kind\" = unheard ] && exit 75\n"
+            "[ \"$kind\" = refused ] && { echo no such partition >&2; exit 1; }\n"
+            "[ \"$kind\" = one ] && [ -s jobs ] && exit 1\n"
+            "echo \"$1\" >> jobs\n"
+            "[ \"$kind\" = lost ] && exit 75\n"
+            "[ \"$kind\" = late ] && exit 1\n"
+            "wc -l < jobs\n");
   write(options.template_folder / "query.sh", here +
                                                   "[ -e silent ] && exit 1\n"
                                                   "job=$(grep -n \"^$1\\$\" jobs | cut -d: -f1)\n"
@@ -89,9 +93,11 @@ int BatchFixture::submitted() const {
   return static_cast<int>(std::count(jobs.begin(), jobs.end(), '\n'));
 }
 
-fs::path BatchFixture::bundle(int number) const {
-  return shared() / "bundles" / text(fmt::format("SELECT name FROM bundle WHERE bundle_id = {}", number));
+std::string BatchFixture::name(int bundle) const {
+  return text(fmt::format("SELECT name FROM bundle WHERE bundle_id = {}", bundle));
 }
+
+fs::path BatchFixture::bundle(int number) const { return shared() / "bundles" / name(number); }
 
 int BatchFixture::run_task(int number, int index) const {
   return runner::run_task({bundle(number) / "manifest.json", index});

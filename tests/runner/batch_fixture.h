@@ -19,8 +19,9 @@ class BatchFixture : public testing::Test {
   // For the fake engine, until the end of the test.
   void set(const std::string& variable, const std::string& value);
 
-  // What the scripts do: submissions are taken ("ok"), taken but not confirmed ("lost") or not taken
-  // ("failed"); queries are answered or not.
+  // What the scripts do with submissions: take them ("ok"), only the first ("one") or none ("refused"); fail
+  // on the way after or before they were taken ("lost", "unheard"), or with all work done ("late"). Queries
+  // are answered or not.
   void submissions(const std::string& kind) const;
   void queries(bool answered) const;
   // What a query says of the tasks of every job that was taken: lines of INDEX STATE.
@@ -29,11 +30,16 @@ class BatchFixture : public testing::Test {
   int submitted() const;
 
   int hand_over() const { return hand_over_campaign(options); }
+  int forget(int number) const {
+    return ingest_campaign({options.campaign, {}, false, true, false, {name(number)}});
+  }
+  int cancel() const { return ingest_campaign({options.campaign, {}, true, true, false}); }
   int ingest() const { return ingest_campaign({options.campaign, {}, false, true, false}); }
   // Runs tasks of the bundle of this number (from 1) here, as a node would.
   int run_task(int bundle, int index) const;
   int run_locally() const;
 
+  std::string name(int bundle) const;
   std::filesystem::path bundle(int number) const;
   std::filesystem::path shared() const { return options.shared; }
   std::filesystem::path folder() const { return folder_.path(); }

@@ -1,0 +1,147 @@
+"""A campaign of the Slurm drill: run locally or through Slurm, and counted afterwards."""
+import contextlib
+import json
+import os
+import shutil
+import sqlite3
+import subprocess
+
+from drill.campaign import REAL
+from slurm_cluster import CPUS
+
+# Seeds of about a second, saved several times on their way; a few looks a point.
+ENVIRONMENT = {"PECLET_FAKE_STEPS": "40", "PECLET_FAKE_STEP_MS": "25"}
+CAMPAIGN = {
+    "name": "drill",
+    "scene": {"fluid": {"viscosity": 1}, "peclet": 1},
+    "sweep": [{"set": "/peclet", "values": [1, 2]}],
+    "target": {"observable": "relative_viscosity", "relative_tolerance": 0.055},
+    "realisations": {"minimum": 8, "maximum": 40},
+}
+
+
+class Campaign:
+    """A campaign in a folder of its own, run locally or through Slurm."""
+
+    def __init__(self, binaries, folder, document=None, environment=None):
+        self.peclet = os.path.join(binaries, "peclet")
+        self.folder = folder
+        os.makedirs(folder)
+        document = dict(document or CAMPAIGN)
+        engine = "peclet-engine" if document.get("scene") == REAL["scene"] else "fake_engine"
+        document["engine"] = [os.path.join(binaries, engine), "serve"]
+        with open(os.path.join(folder, "drill.json"), "w") as f:
+            json.dump(document, f)
+        self.environment = {**os.environ, **ENVIRONMENT, **(environment or {})}
+        self.shared = os.path.join(folder, "shared")
+        self.hold = os.path.join(folder, "hold")
+        self.processes = []
+
+    def holds(self, seed=0):
+        """This and later seeds of the fake engine stand still half-way from now on, and their tasks run, until lets_go()."""
+        with open(self.hold, "w"):
+            pass
+        self.environment.update(PECLET_FAKE_HOLD=self.hold, PECLET_FAKE_HOLD_SEED=str(seed))
+
+    def holds_no_more(self):
+        """What is started from now on does not stand still; tasks that do go on doing so."""
+        for name in ("PECLET_FAKE_HOLD", "PECLET_FAKE_HOLD_SEED"):
+            del self.environment[name]
+
+    def lets_go(self):
+        os.remove(self.hold)
+
+    def start(self, *words):
+        log = open(os.path.join(self.folder, "log"), "a")
+        self.processes.append(subprocess.Popen([self.peclet, *words], cwd=self.folder, env=self.environment, stdout=log,
+                                               stderr=log))
+        return self.processes[-1]
+
+    def stop(self):
+        """Ends what a failed case has left."""
+        for process in self.processes:
+            process.kill()
+            process.wait()
+
+    def do(self, *words, code=0):
+        process = self.start(*words)
+        answer = process.wait(300)
+        assert code is None or answer == code, f"{words}: exit code {answer}, not {code}\n{self.log()}"
+        return answer
+
+    def run_locally(self, code=0):
+        self.do("run", "drill.json", "--workers", str(CPUS), "--checkpoint", "0.1", code=code)
+        return self
+
+    def hand_over(self, *words):
+        return ("hand-over", "slurm", "drill.json", "--shared", self.shared, "--checkpoint", "0.1", *words)
+
+    def follow(self, *words):
+        return self.hand_over("--follow", "--interval", "0.3", *words)
+
+    def log(self):
+        with open(os.path.join(self.folder, "log")) as f:
+            return f.read()
+
+    def export(self):
+        return subprocess.run([self.peclet, "export", "drill.json", "--canonical"], cwd=self.folder, capture_output=True,
+                              check=True).stdout
+
+    def ask(self, query):
+        with contextlib.closing(sqlite3.connect(f"file:{self.folder}/drill.peclet/campaign.db?mode=ro", uri=True)) as db:
+            return db.execute(query).fetchone()[0]
+
+    def spooled(self):
+        spool = os.path.join(self.shared, "spool")
+        return [name for name in os.listdir(spool) if name.endswith(".json")] if os.path.isdir(spool) else []
+
+    def ended(self):
+        try:
+            return self.ask("SELECT count(*) FROM realisation WHERE state = 'done'")
+        except sqlite3.Error:
+            return 0
+
+    def lost(self):
+        """Seeds of the looks that have no result; and files, bundles and seeds that were left lying."""
+        wanted = self.ask("SELECT sum(seeds) FROM estimates")
+        closed = self.ask("SELECT count(*) FROM realisation JOIN point USING (point_id) JOIN estimates USING (hash)"
+                          " WHERE seed < seeds AND state IN ('done', 'failed', 'quarantined')")
+        left = self.ask("SELECT count(*) FROM bundle_seed WHERE outcome IS NULL")
+        spool = os.path.join(self.shared, "spool")
+        files = [name for name in os.listdir(spool) if name != "rejected"] if os.path.isdir(spool) else []
+        return wanted - closed + left + len(files)
+
+    def double(self):
+        """Results that a seed has beyond its first, counted or offered with another content."""
+        return int(self.ask("SELECT count(*) - count(DISTINCT point_id || ' ' || seed) FROM result")
+                + self.ask("SELECT total(suspect) FROM point")
+                + self.ask("SELECT count(*) FROM event WHERE kind IN ('suspect', 'rejected', 'mixed-engine')"))
+
+    def again(self):
+        """Seeds that were run to their end a second time, which costs time and changes nothing."""
+        return self.ask("SELECT coalesce(sum(n - 1), 0) FROM (SELECT count(*) AS n FROM attempt WHERE outcome = 'result'"
+                        " GROUP BY point_id, seed)")
+
+    def blamed(self):
+        return self.ask("SELECT total(blamed) FROM attempt")
+
+
+def template_of(campaign, submission):
+    """The Slurm template with another way to submit."""
+    source = os.path.join(os.path.dirname(__file__), "..", "..", "templates", "slurm")
+    template = os.path.join(campaign.folder, "template")
+    shutil.copytree(source, template)
+    with open(os.path.join(template, "submit.sh"), "w") as f:
+        f.write(f"script=$2\nshift 2\nHOME_OF_DRILL='{campaign.folder}'\n{submission}\n")
+    return template
+
+
+def script_of_the_page(campaign, saved):
+    """As it stands there, but for whose campaign it is."""
+    with open(os.path.join(os.path.dirname(__file__), "..", "..", "docs", "clusters.md")) as f:
+        script = f.read().split("```bash\n")[1].split("```")[0]
+    for line, mine in (("campaign=$HOME/suspensions/friction.json\n", f"campaign='{campaign.folder}/drill.json'\n"),
+                       ("saved=$HOME/suspensions/friction.saved ", f"saved='{saved}' ")):
+        assert script.count(line) == 1, line
+        script = script.replace(line, mine)
+    return script
