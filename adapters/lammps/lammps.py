@@ -20,6 +20,11 @@ class LammpsError(Exception):
     """LAMMPS said ERROR, or did not do what a script has to do."""
 
 
+FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
+# A launcher that is asked to leave ends its ranks and removes its files.
+LAUNCHER_PATIENCE = 5
+
+
 class KilledFromOutside(Exception):
     """Somebody has ended the process, which says nothing about the simulation."""
 
@@ -79,15 +84,22 @@ class Thermo:
 
 
 class Lammps:
-    """A running `lmp -in script` in `folder`. Use it in a with block, which ends it."""
+    """A running `lmp -in script` in `folder`, or what `launcher` (words) makes of it. Use it in a with block, which ends it."""
 
-    def __init__(self, program, script, folder, variables):
+    def __init__(self, program, launcher, script, folder, variables):
         # stdbuf: without it progress would come in pieces of 4 KiB.
         command = ["stdbuf", "-oL", program, "-in", script, "-log", "none"]
+        environment = ENVIRONMENT
+        self.is_launched = bool(launcher)
+        if launcher:
+            # Ranks are children of the launcher and would outlive one that is killed; so the kernel kills them with it.
+            command = [*launcher, "setpriv", "--pdeathsig", "KILL", *command]
+            # What a killed launcher leaves goes with the folder.
+            environment = {**ENVIRONMENT, "TMPDIR": folder}
         for name, value in variables.items():
             command += ["-var", name, str(value)]
         parent = os.getpid()
-        self.process = subprocess.Popen(command, cwd=folder, env=ENVIRONMENT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+        self.process = subprocess.Popen(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                         stderr=subprocess.STDOUT, preexec_fn=lambda: die_with(parent))
         self.thermo = Thermo()
         self.unfinished_line = b""
@@ -96,6 +108,12 @@ class Lammps:
         return self
 
     def __exit__(self, *_):
+        if self.is_launched and self.process.poll() is None:
+            self.process.terminate()
+            try:
+                self.process.wait(LAUNCHER_PATIENCE)
+            except subprocess.TimeoutExpired:
+                pass
         self.process.kill()
         self.process.wait()
         self.process.stdout.close()
@@ -114,12 +132,14 @@ class Lammps:
     def finish(self, steps):
         """Once it has stopped printing: its thermo output, if it ran so many steps. Throws LammpsError, KilledFromOutside."""
         status = self.process.wait()
-        if -status in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
-            raise KilledFromOutside(-status)
+        # A launcher leaves as a shell does when one of its ranks was killed: with 128 + the signal.
+        killer = status - 128 if self.is_launched and status > 128 else -status
+        if killer in FROM_OUTSIDE and not self.thermo.error:
+            raise KilledFromOutside(killer)
         if status != 0 or self.thermo.error:
             last = "\n".join(self.thermo.last_lines)
             print(f"lmp ended with {status}:\n{last}", flush=True)
-            raise LammpsError(self.thermo.error or f"lmp ended with status {status}: {self.thermo.last_lines[-1:]}")
+            raise LammpsError(self.thermo.error or f"lmp ended with status {status}: {list(self.thermo.last_lines)[-1:]}")
         heading = self.thermo.heading
         if self.thermo.atoms is None or "Step" not in heading or heading[0].startswith("-"):
             raise LammpsError("the script has no run whose thermo output has a column Step and one line per sample "

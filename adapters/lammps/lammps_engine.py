@@ -1,14 +1,16 @@
 #!/usr/bin/python3
-"""lammps_engine.py SCRIPT [FILE ...] [--lmp PROGRAM]
+"""lammps_engine.py SCRIPT [FILE ...] [--lmp PROGRAM] [--launcher COMMAND]
 
 LAMMPS as the engine of a campaign: started by peclet, with whom it speaks over descriptor 0. SCRIPT is a LAMMPS input; each FILE
 is something that it reads (a data file, a molecule, an include) and finds under its name without folders. README.md beside this
-file says what a script has to do. Editing any of these files makes another engine, whose results peclet does not mix with others.
+file says what a script has to do. Editing any of these files (comments of SCRIPT apart) makes another engine, whose results peclet
+does not mix with others.
 """
 import argparse
 import hashlib
 import json
 import os
+import shlex
 import shutil
 import signal
 import sys
@@ -42,6 +44,12 @@ class Engine:
         self.lmp = shutil.which(arguments.lmp)
         if self.lmp is None:
             sys.exit(f"lammps_engine.py: there is no program {arguments.lmp}; Debian's is in the package lammps")
+        try:
+            self.launcher = shlex.split(arguments.launcher)
+        except ValueError as error:
+            sys.exit(f"lammps_engine.py: --launcher {arguments.launcher}: {error}")
+        if self.launcher and shutil.which(self.launcher[0]) is None:
+            sys.exit(f"lammps_engine.py: --launcher {arguments.launcher}: there is no program {self.launcher[0]}")
         self.files = [os.path.abspath(path) for path in (arguments.script, *arguments.files)]
         for path in self.files:
             if not os.path.isfile(path):
@@ -52,7 +60,7 @@ class Engine:
             self.channel = Channel(0)
         except OSError:
             sys.exit("lammps_engine.py: is started by peclet, as the engine of a campaign; --help says more")
-        self.identity = engine_identity(self.lmp, self.files)
+        self.identity = engine_identity(self.lmp, self.launcher, self.files[0], self.files[1:])
 
     def serve(self):
         self.channel.send({"type": "hello", "protocol": 1, "program": "lammps", "engine": self.identity})
@@ -65,8 +73,9 @@ class Engine:
             elif message["type"] in ("drain", "stop"):
                 return
 
-    def script_in(self, folder):
-        return os.path.join(folder, os.path.basename(self.files[0]))
+    def start(self, folder, variables):
+        script = os.path.join(folder, os.path.basename(self.files[0]))
+        return lammps.Lammps(self.lmp, self.launcher, script, folder, variables)
 
     def validate(self, document):
         try:
@@ -94,7 +103,7 @@ class Engine:
         last = len(scene.chunks()) - 1
         for number, before in ((0, "none"), (last, BEFORE)):
             variables = variables_of(scene, number, 1, before, AFTER, steps=0)
-            with lammps.Lammps(self.lmp, self.script_in(folder), folder, variables) as process:
+            with self.start(folder, variables) as process:
                 goes_on = True
                 while goes_on:
                     if time.monotonic() > deadline:
@@ -161,7 +170,7 @@ class Engine:
         chunk, done = realisation.chunks[realisation.number], realisation.steps()
         total = sum(each.steps for each in realisation.chunks)
         told, told_step = 0.0, -1
-        with lammps.Lammps(self.lmp, self.script_in(folder), folder, realisation.next_variables()) as process:
+        with self.start(folder, realisation.next_variables()) as process:
             goes_on = True
             while goes_on:
                 goes_on, spoken_to = process.listen(self.channel, realisation.job["progress_seconds"])
@@ -180,6 +189,7 @@ def main():
     parser.add_argument("script")
     parser.add_argument("files", nargs="*")
     parser.add_argument("--lmp", default="lmp", help="the LAMMPS program (default: lmp)")
+    parser.add_argument("--launcher", default="", help="what starts it with MPI, such as 'mpirun -np 2' (default: nothing)")
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # a death like those of other signals, instead of an exception
     remove_left_folders()
     try:

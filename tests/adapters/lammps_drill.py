@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""lammps_drill.py BIN [--kills 6] [--seed 1]
+"""lammps_drill.py BIN [--kills 6] [--seed 1] [--launcher COMMAND]
 
 Runs a small ensemble of the dumbbells of results/lammps-ensemble undisturbed with one worker, then with two while peclet, a worker
 or a LAMMPS process is killed with SIGKILL at random moments. The canonical exports must be the same bytes, no kill may be blamed
-on the engine, and neither a LAMMPS process nor its folder may be left behind.
+on the engine, and neither a LAMMPS process nor its folder may be left behind. With a launcher (mpirun -np 2) ranks are struck too,
+and a SIGTERM to the adapter.
 """
 import argparse
 import json
@@ -52,12 +53,13 @@ def processes_in(folder):
 
 
 class Drill:
-    def __init__(self, peclet, folder, workers, seeds):
+    def __init__(self, peclet, folder, workers, seeds, launcher):
         self.peclet, self.folder, self.workers = peclet, folder, workers
         self.scratch = os.path.join(folder, "scratch")
         os.makedirs(self.scratch)
         with open(os.path.join(folder, "drill.json"), "w") as f:
-            json.dump({**CAMPAIGN, "realisations": {"minimum": seeds, "maximum": seeds}}, f)
+            json.dump({**CAMPAIGN, "realisations": {"minimum": seeds, "maximum": seeds},
+                       "engine": CAMPAIGN["engine"] + (["--launcher", launcher] if launcher else [])}, f)
 
     def start(self):
         log = open(os.path.join(self.folder, "log"), "a")
@@ -95,7 +97,8 @@ def candidates(drill, process, whom):
     """peclet while it has given out seeds, the workers that have them, or the LAMMPS processes of these."""
     workers = drill.workers_at_work(process)
     return {"peclet": [process.pid] if workers else [], "worker": workers,
-            "lmp": [child for worker in workers for child in children(worker)]}[whom]
+            "term": workers, "lmp": [child for worker in workers for child in children(worker)],
+            "rank": [rank for worker in workers for child in children(worker) for rank in children(child)]}[whom]
 
 
 def strike(drill, process, whom, chance, longest_delay):
@@ -109,7 +112,7 @@ def strike(drill, process, whom, chance, longest_delay):
     if process.poll() is not None or not victims:
         return False
     try:
-        os.kill(chance.choice(victims), signal.SIGKILL)
+        os.kill(chance.choice(victims), signal.SIGTERM if whom == "term" else signal.SIGKILL)
     except ProcessLookupError:
         return False
     return True
@@ -120,12 +123,13 @@ def main():
     parser.add_argument("bin")
     parser.add_argument("--kills", type=int, default=6)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--launcher", default="")
     arguments = parser.parse_args()
     peclet = os.path.abspath(os.path.join(arguments.bin, "peclet"))
     chance = random.Random(arguments.seed)
     seeds = max(5, arguments.kills)  # so that the campaign outlasts them
     with tempfile.TemporaryDirectory() as folder:
-        undisturbed = Drill(peclet, os.path.join(folder, "undisturbed"), 1, seeds)
+        undisturbed = Drill(peclet, os.path.join(folder, "undisturbed"), 1, seeds, arguments.launcher)
         started = time.monotonic()
         code = undisturbed.start().wait()
         needed = time.monotonic() - started
@@ -134,8 +138,8 @@ def main():
             print(open(os.path.join(undisturbed.folder, "log")).read())
             return 1
 
-        drill = Drill(peclet, os.path.join(folder, "drill"), 2, seeds)
-        whose = ["lmp", "worker", "peclet"]
+        drill = Drill(peclet, os.path.join(folder, "drill"), 2, seeds, arguments.launcher)
+        whose = ["lmp", "worker", "peclet"] + (["rank", "term"] if arguments.launcher else [])
         kills = dict.fromkeys(whose, 0)
         process = drill.start()
         while sum(kills.values()) < arguments.kills:

@@ -2,6 +2,8 @@
 """Claims about the parts of adapters/lammps that need no LAMMPS: python3 -m unittest, or this file."""
 import json
 import os
+import signal
+import subprocess
 import sys
 import tempfile
 import types
@@ -10,6 +12,8 @@ import unittest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../adapters/lammps"))
 import lammps  # noqa: E402
 import scratch  # noqa: E402
+from identity import engine_identity  # noqa: E402
+from input_script import commands  # noqa: E402
 from realisation import Realisation, ending_of, lammps_seed  # noqa: E402
 from scene import Chunk, Refused, read_scene  # noqa: E402
 
@@ -106,7 +110,7 @@ class ThermoOutput(unittest.TestCase):
     def test_several_lines_per_sample_are_refused(self):
         multi = OUTPUT.replace("   Step          Temp", "---------------- Step 50 ----- CPU = 0.0 (sec)")
         for text in (multi, OUTPUT.replace("Step ", "Stop "), ""):
-            ended = types.SimpleNamespace(process=types.SimpleNamespace(wait=lambda: 0), thermo=heard(text))
+            ended = types.SimpleNamespace(process=types.SimpleNamespace(wait=lambda: 0), thermo=heard(text), is_launched=False)
             with self.assertRaisesRegex(lammps.LammpsError, "one line per sample"):
                 lammps.Lammps.finish(ended, 100)
 
@@ -120,6 +124,77 @@ class ThermoOutput(unittest.TestCase):
                             ("ERROR on proc 0: Non-numeric box dimensions - simulation unstable (src/domain.cpp:285)", "non-finite"),
                             ("ERROR: Unknown command: fxi (src/input.cpp:232)", None)):
             self.assertEqual(ending_of(lammps.LammpsError(heard(said).error)), cause)
+
+
+# What each line is for LAMMPS is printed by it; `hidden` must never be.
+SCRIPT = b"""# a comment
+variable a index 1   # of the run
+
+print "one # is no comment"   # but this is
+print 'nor "is # this'
+print "two&
+-in-one   &
+  line"
+# a comment goes on too &
+print hidden
+   # indented, with ""\" inside, which is odd, so
+print hidden
+# until here ""\"
+print ""\"three
+lines # of text
+""\" # and a comment
+print "${a} &"   # a comment hides its own end &
+ hidden
+print last"""
+
+
+class Scripts(unittest.TestCase):
+    def said(self, script):
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "in"), "wb") as file:
+                file.write(script)
+            return subprocess.run(["lmp", "-in", "in", "-log", "none", "-echo", "none"], cwd=folder, env=lammps.ENVIRONMENT,
+                                  capture_output=True, stdin=subprocess.DEVNULL).stdout.split(b"Total wall time")[0]
+
+    def test_lammps_does_the_same_without_what_is_left_out(self):
+        said = self.said(SCRIPT)
+        self.assertIn(b"last", said)
+        self.assertNotIn(b"hidden", said)
+        self.assertEqual(self.said(commands(SCRIPT)), said)
+        for left_out in (b"comment", b"\n\n", b"hidden"):
+            self.assertNotIn(left_out, commands(SCRIPT).replace(b"no comment", b""))
+
+    def test_another_comment_is_the_same_engine_and_another_word_is_not(self):
+        def identity(script, launcher=()):
+            with tempfile.TemporaryDirectory() as folder:
+                path = os.path.join(folder, "in.script")
+                with open(path, "wb") as file:
+                    file.write(script)
+                return engine_identity("/usr/bin/lmp", list(launcher), path, [])
+        original = identity(SCRIPT)
+        for same in (SCRIPT.replace(b"of the run", b"of every run"), b"\n# new\n" + SCRIPT + b"\n\n", SCRIPT.replace(b"\n", b"\r\n")):
+            self.assertEqual(identity(same) == original, b'three\r\n' not in same, same)
+        for other in (SCRIPT.replace(b"one #", b"two #"), SCRIPT.replace(b"of text", b"of texts"), SCRIPT.replace(b"index 1 ", b"index 2 "),
+                      SCRIPT.replace(b"too &", b"too"), SCRIPT + b"\nprint more"):
+            self.assertNotEqual(identity(other), original, other)
+        self.assertNotEqual(identity(SCRIPT, ("mpirun", "-np", "2")), original)
+
+
+class Endings(unittest.TestCase):
+    def end(self, status, is_launched, text=OUTPUT):
+        lammps.Lammps.finish(types.SimpleNamespace(process=types.SimpleNamespace(wait=lambda: status), thermo=heard(text),
+                                                   is_launched=is_launched), 100)
+
+    def test_a_kill_is_nobodys_fault_whether_it_hits_lmp_or_a_rank_of_it(self):
+        for status, is_launched in ((-signal.SIGKILL, False), (-signal.SIGTERM, True), (128 + signal.SIGKILL, True)):
+            with self.assertRaises(lammps.KilledFromOutside):
+                self.end(status, is_launched)
+
+    def test_what_lammps_says_itself_is_no_kill(self):
+        for status, is_launched, text in ((128 + signal.SIGKILL, False, OUTPUT), (128 + signal.SIGSEGV, True, OUTPUT),
+                                          (128 + signal.SIGTERM, True, OUTPUT + "ERROR: Lost atoms\n"), (1, True, OUTPUT)):
+            with self.assertRaises(lammps.LammpsError):
+                self.end(status, is_launched, text)
 
 
 class Samples(unittest.TestCase):
