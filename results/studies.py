@@ -107,6 +107,10 @@ def main(folder, title, measure, quick_measure):
     arguments = parser.parse_args()
     if arguments.times < 1:
         parser.error("--times: must be at least 1")
+    if not arguments.quick and not os.access(folder, os.W_OK):
+        # Said before hours of work, not after them.
+        parser.error(f"{folder}: a whole study writes its table there, and may not; copy the folder above it, and name the copy: "
+                     "peclet study --results COPY")
     with tempfile.TemporaryDirectory() as temporary:
         program = Program(arguments.binaries, arguments.folder or temporary)
         program.long, program.times = arguments.long, arguments.times

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "contract/input_error.h"
+#include "contract/input_file.h"
 #include "runner/campaign_file.h"
 #include "runner/sweep.h"
 
@@ -12,19 +13,23 @@ namespace {
 // With fewer, intervals of a rule with several looks hold the mean less often than 94 % (results/coverage).
 constexpr int smallest_minimum = 8;
 
+// What goes into headings and names of files.
+constexpr std::size_t longest_name = 100;
+
 }  // namespace
 
 void check_campaign_name(const std::string& name, const std::string& file) {
   constexpr const char* allowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
-  if (name.empty() || name.find_first_not_of(allowed) != std::string::npos) {
-    throw InputError(file, "/name", shortened(name),
-                     "must be letters, digits, dots, underscores and hyphens");
+  if (name.empty() || name.size() > longest_name || name.find_first_not_of(allowed) != std::string::npos) {
+    throw InputError(
+        file, "/name", shortened(name),
+        fmt::format("must be 1 to {} letters, digits, dots, underscores and hyphens", longest_name));
   }
 }
 
 Campaign read_campaign(const std::filesystem::path& path) {
   require_campaign_file(path);
-  return parse_campaign(read_json(path), path.string());
+  return parse_campaign(read_json_input(path), path.string());
 }
 
 Campaign parse_campaign(const Json& written, const std::string& file) {

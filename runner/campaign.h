@@ -23,6 +23,11 @@ struct Target {
   std::string observable;     // a number in the result's "mean"
   double relative_tolerance;  // half-width of the interval over |mean|
   double confidence;          // of the two-sided interval
+
+  // Of the rule by which looks decide. The first one took every look within the tolerance for converged;
+  // looks that were made by it are read by it.
+  static constexpr int first_rule = 1, newest_rule = 2;
+  int rule = newest_rule;
 };
 
 struct Campaign {
@@ -34,6 +39,9 @@ struct Campaign {
   int maximum_realisations;
   std::vector<std::string> engine;  // program and arguments
 };
+
+// The largest maximum that a campaign can have: seeds are below it.
+constexpr int most_realisations = 1'000'000;
 
 const KeyTable& campaign_keys();
 

@@ -12,6 +12,14 @@ std::filesystem::path campaign_file_of(const std::filesystem::path& given);
 // Throws InputError when there is no such file, or a folder, and says which file may have been meant.
 void require_campaign_file(const std::filesystem::path& given);
 
+// The folder at which relative paths of a campaign start and in which its engine runs: the file's, or the
+// present one where a pipe has been given.
+std::filesystem::path home_of(const std::filesystem::path& campaign_file);
+
+// What names the campaign in a command that a person is to type, quoted for the shell where it must be:
+// "flow-curve.json", and "flow-curve.json --directory FOLDER" where a folder has been chosen.
+std::string words_for(const std::filesystem::path& campaign_file, const std::filesystem::path& chosen);
+
 // "; did you mean FILE?" for a name like that of a campaign file or folder beside it, or nothing.
 std::string similar_name(const std::filesystem::path& given);
 

@@ -4,13 +4,11 @@
 namespace peclet::runner {
 namespace {
 
-constexpr double most_realisations = 1'000'000;
-
 std::vector<Key> keys() {
   return {
       {.pointer = "/name",
        .kind = KeyKind::string,
-       .meaning = "What people call it: letters, digits, dot, underscore and hyphen.",
+       .meaning = "What people call it: at most 100 letters, digits, dots, underscores and hyphens.",
        .required = true},
       {.pointer = "/scene",
        .kind = KeyKind::object,
@@ -71,8 +69,10 @@ std::vector<Key> keys() {
        .maximum = most_realisations},
       {.pointer = "/engine",
        .kind = KeyKind::array,
-       .meaning = "Program and arguments. Without a slash it is looked for beside peclet, then on PATH; a "
-                  "relative path starts at the campaign file, in whose folder it runs.",
+       .meaning =
+           "Program and arguments. Without a slash it is looked for beside peclet, then on PATH, "
+           "then among peclet's own adapters (lammps_engine.py); a relative path starts at the campaign "
+           "file, in whose folder it runs.",
        .default_value = Json::array({"peclet-engine", "serve"}),
        .minimum_items = 1},
       {.pointer = "/engine/*", .kind = KeyKind::string, .meaning = "A word of the command."},

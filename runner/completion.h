@@ -11,6 +11,7 @@ namespace peclet::runner {
 struct CompletionOptions {
   std::string shell;             // bash, zsh or fish
   std::filesystem::path output;  // "": standard output
+  bool quiet = false;            // does not say where it is
 };
 
 // A script for `eval`, or for a file in the shell's own folder of completions. Verbs, options, choices, and

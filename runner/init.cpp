@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include "contract/durable_file.h"
+#include "contract/guarded_file.h"
 #include "contract/input_error.h"
+#include "contract/output_file.h"
 #include "runner/campaign.h"
+#include "runner/campaign_file.h"
 
 namespace peclet::runner {
 namespace {
@@ -49,15 +52,16 @@ std::string init_campaign(const InitOptions& options) {
   }
   const std::string name = file.stem().string();
   check_campaign_name(name, file.string());
-  if (std::filesystem::exists(file)) {
+  if (!kind_of(file).empty()) {  // also a link to nothing
     throw InputError(file.string(), "", "", "is there already, and is left alone");
   }
+  check_output(file);
   write_durably(file, fmt::format(fmt::runtime(text), name));
   return fmt::format(
       "{0} is written: 100 spheres, three Péclet numbers, to 5 %\n"
-      "  peclet validate {0}\n"
-      "  peclet run {0}\n",
-      file.string());
+      "  peclet validate {1}\n"
+      "  peclet run {1}\n",
+      file.string(), words_for(file, ""));
 }
 
 }  // namespace peclet::runner

@@ -6,7 +6,7 @@
 #include <exception>
 #include <system_error>
 
-#include "contract/durable_file.h"
+#include "contract/output_file.h"
 #include "runner/exit_code.h"
 #include "runner/open_campaign.h"
 #include "runner/options.h"
@@ -44,7 +44,8 @@ int perform(const StatusOptions& options) {
   CampaignStatus status = read_status(open.database);
   status.owner = current_owner(open.directory);
   print(options.json ? status_json(status).dump(2) + '\n' : status_table(status) + workers_text(status));
-  if (const std::string note = difference_from_file(options.campaign, status.campaign); !note.empty()) {
+  if (const std::string note = difference_from_file(options.campaign, options.directory, status.campaign);
+      !note.empty()) {
     say(fmt::format("note: {}\n", note));
   }
   return options.check ? standing(status) : 0;
@@ -59,13 +60,14 @@ int perform(const ExplainOptions& options) {
   return 0;
 }
 
-// Into the file, whole or not at all, or to standard output.
-int deliver(const std::string& text, const std::filesystem::path& output) {
+// Where --output says, or to standard output.
+int deliver(const std::string& text, const std::filesystem::path& output, bool quiet) {
   if (output.empty()) {
     print(text, " (the campaign is as it was; --output FILE writes a file whole or not at all)");
-  } else {
-    peclet::write_durably(output, text);
+    return 0;
   }
+  peclet::write_output(output, text);
+  if (!quiet) say(fmt::format("peclet: {} is written, {} bytes\n", output.string(), text.size()));
   return 0;
 }
 
@@ -73,12 +75,19 @@ int perform(const ExportOptions& options) {
   OpenCampaign open = open_campaign(options.campaign, options.directory);
   return deliver(options.format == ExportFormat::csv ? export_csv(open.database, options.canonical)
                                                      : export_json(open.database, options.canonical),
-                 options.output);
+                 options.output, options.quiet);
+}
+
+int perform(const ResultsOptions& options) {
+  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  for_each_result_line(open.database, options.point, options.seed,
+                       [](const std::string& line) { print(line + '\n'); });
+  return 0;
 }
 
 int perform(const ReportOptions& options) {
   OpenCampaign open = open_campaign(options.campaign, options.directory);
-  return deliver(report_html(open.database), options.output);
+  return deliver(report_html(open.database), options.output, options.quiet);
 }
 
 int perform(const Reply& reply) {
@@ -117,13 +126,13 @@ int perform(const DoctorOptions& options) {
 int perform(const StudyOptions& options) { return perform_study(options); }
 
 int perform(const CompletionOptions& options) {
-  return deliver(completion(command_tree(), options.shell), options.output);
+  return deliver(completion(command_tree(), options.shell), options.output, options.quiet);
 }
 
 int perform(const ManualOptions& options) {
-  if (options.folder.empty()) return deliver(manual_page(command_tree(), options.verb), "");
+  if (options.folder.empty()) return deliver(manual_page(command_tree(), options.verb), "", true);
   for (const auto& [name, page] : manual_pages(command_tree())) {
-    peclet::write_durably(options.folder / name, page);
+    peclet::write_output(options.folder / name, page);
   }
   return 0;
 }
@@ -136,7 +145,7 @@ int main(int argc, char** argv) {
     if (!command.verb) return command.exit_code;
     return std::visit([](const auto& options) { return perform(options); }, *command.verb);
   } catch (const std::exception& error) {
-    say(fmt::format("peclet: {}\n", error.what()));
+    say(fmt::format("peclet: {}\n", message_of(error)));
     return exit_code_of(error);
   }
 }

@@ -9,9 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "contract/nearest_name.h"
+#include "contract/input_error.h"
 #include "contract/provenance.h"
 #include "runner/parser_tree.h"
+#include "runner/usage_fault.h"
 #include "runner/verb_pages.h"
 #include "runner/verb_set.h"
 
@@ -29,7 +30,7 @@ std::string version_text() {
 std::string exit_code_lines() {
   std::string text = "Exit codes:\n";
   for (const auto& [code, meaning] : exit_codes()) text += fmt::format("  {:>2}  {}\n", code, meaning);
-  return text + "`peclet VERB --help` says more about a verb, `peclet manual VERB | man -l -` all there is.";
+  return text + "`peclet help VERB` says more about a verb, `peclet manual VERB | man -l -` all there is.";
 }
 
 // The command line as it was typed, and what to say where it has a fault.
@@ -49,20 +50,18 @@ class Reader {
     add_other_verbs(verbs_);
   }
 
-  CommandLine read(int argc, char** argv) {
+  CommandLine read(const std::vector<std::string>& words) {
     try {
-      verbs_.app().parse(argc, argv);
+      std::vector<std::string> reversed(words.rbegin(), words.rend());  // as the parser wants them
+      verbs_.app().parse(reversed);
     } catch (const CLI::ParseError& end) {
-      if (argc > 1 && !is_verb_or_option(argv[1])) {
-        fmt::print(stderr, "peclet: {}: there is no such verb; `peclet --help` lists them{}\n", argv[1],
-                   suggestion(argv[1], verb_names()));
-        return {std::nullopt, exit_usage};
-      }
-      if (const std::string unknown = unknown_option(argc, argv); !unknown.empty()) {
-        fmt::print(stderr, "peclet {}\n", unknown);
-        return {std::nullopt, exit_usage};
-      }
-      return {std::nullopt, verbs_.app().exit(end) == 0 ? 0 : exit_usage};
+      const bool is_known =
+          words.empty() || words.front().starts_with("-") || verb_called(verbs_.app(), words) != nullptr;
+      if (end.get_exit_code() == 0 && is_known)
+        return {std::nullopt, verbs_.app().exit(end)};  // help or version
+      return complain(usage_fault(verbs_.app(), words, end));
+    } catch (const InputError& fault) {
+      return complain(fmt::format("{}: {}", words.front(), fault.what()));
     }
     return {verbs_.named(), 0};
   }
@@ -70,41 +69,9 @@ class Reader {
   CommandTree tree() const { return describe(verbs_.app(), verbs_.examples()); }
 
  private:
-  // Null: there is none of that name.
-  const CLI::App* verb_called(const std::string& word) {
-    const auto has_name = [&](const CLI::App* verb) { return verb->get_name() == word; };
-    const std::vector<CLI::App*> found = verbs_.app().get_subcommands(has_name);
-    return found.empty() ? nullptr : found.front();
-  }
-
-  bool is_verb_or_option(const std::string& word) {
-    return word.starts_with("-") || verb_called(word) != nullptr;
-  }
-
-  std::vector<std::string> verb_names() {
-    std::vector<std::string> names;
-    for (const CLI::App* verb : verbs_.app().get_subcommands([](const CLI::App*) { return true; }))
-      names.push_back(verb->get_name());
-    return names;
-  }
-
-  // "run: --wrokers: there is no such option ...", or nothing when the fault is another one.
-  std::string unknown_option(int argc, char** argv) {
-    const CLI::App* const verb = argc > 1 ? verb_called(argv[1]) : nullptr;
-    if (verb == nullptr) return "";
-    std::vector<std::string> names;
-    for (const CLI::Option* option : verb->get_options()) {
-      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    }
-    for (int place = 2; place < argc; ++place) {
-      const std::string word = argv[place];
-      const std::string name = word.substr(0, word.find('='));
-      if (!name.starts_with("--") || name == "--") continue;
-      if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-      return fmt::format("{0}: {1}: there is no such option; `peclet {0} --help` lists them{2}",
-                         verb->get_name(), name, suggestion(name, names));
-    }
-    return "";
+  static CommandLine complain(const std::string& fault) {
+    fmt::print(stderr, "peclet: {}\n", fault);
+    return {std::nullopt, exit_usage};
   }
 
   VerbSet verbs_;
@@ -112,7 +79,14 @@ class Reader {
 
 }  // namespace
 
-CommandLine read_command_line(int argc, char** argv) { return Reader().read(argc, argv); }
+CommandLine read_command_line(int argc, char** argv) {
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (!words.empty() && words.front() == "help") {  // `peclet help run` is `peclet run --help`
+    words.erase(words.begin());
+    words.insert(words.begin() + std::min<std::ptrdiff_t>(1, std::ssize(words)), "--help");
+  }
+  return Reader().read(words);
+}
 
 CommandTree command_tree() { return Reader().tree(); }
 

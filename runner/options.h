@@ -18,6 +18,7 @@
 #include "runner/plan.h"
 #include "runner/report.h"
 #include "runner/restore.h"
+#include "runner/results.h"
 #include "runner/retry.h"
 #include "runner/run.h"
 #include "runner/set.h"
@@ -28,10 +29,11 @@
 
 namespace peclet::runner {
 
-using Verb = std::variant<InitOptions, ValidateOptions, PlanOptions, RunOptions, StatusOptions, WatchOptions,
-                          ExplainOptions, ExportOptions, ReportOptions, BackupOptions, RestoreOptions,
-                          DoctorOptions, HandOverOptions, IngestOptions, TaskOptions, SetOptions,
-                          CancelOptions, RetryOptions, CompletionOptions, ManualOptions, StudyOptions>;
+using Verb =
+    std::variant<InitOptions, ValidateOptions, PlanOptions, RunOptions, StatusOptions, WatchOptions,
+                 ExplainOptions, ExportOptions, ResultsOptions, ReportOptions, BackupOptions, RestoreOptions,
+                 DoctorOptions, HandOverOptions, IngestOptions, TaskOptions, SetOptions, CancelOptions,
+                 RetryOptions, CompletionOptions, ManualOptions, StudyOptions>;
 
 struct CommandLine {
   std::optional<Verb> verb;  // nothing: there is nothing left to do but to leave with

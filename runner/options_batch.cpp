@@ -21,14 +21,12 @@ void add_hand_over(VerbSet& verbs) {
                    "Folder that this machine and the nodes see in the same place; that of the last time "
                    "unless given")
       ->type_name(value_name::folder);
-  verb->add_option("--seeds-per-task", options->seeds_per_task, "Seeds that one task runs, one after another")
-      ->check(CLI::Range(1, 100'000))
+  add_number(verb, "--seeds-per-task", options->seeds_per_task, whole_number(1, 100'000),
+             "Seeds that one task runs, one after another")
       ->capture_default_str();
-  verb->add_option("--largest-array", options->largest_array,
-                   "Tasks of one job at most; what the batch system allows unless given")
-      ->check(CLI::Range(1, 1'000'000));
-  verb->add_option("--threads", options->threads, "Threads of each engine")
-      ->check(CLI::Range(1, 4096))
+  add_number(verb, "--largest-array", options->largest_array, whole_number(1, 1'000'000),
+             "Tasks of one job at most; what the batch system allows unless given");
+  add_number(verb, "--threads", options->threads, whole_number(1, 4096), "Threads of each engine")
       ->capture_default_str();
   verb->add_option("--option", options->options, "Word for the submit command (sbatch)")->type_name("WORD");
   verb->add_option("--template", options->template_folder,
@@ -58,6 +56,13 @@ void add_ingest(VerbSet& verbs) {
   add_file(verb, options->campaign);
   add_directory(verb, options->directory);
   verb->add_flag("--cancel", options->cancel, "End the jobs and take their seeds back");
+  verb->add_option(
+          "--forget", options->forget,
+          "Queue the seeds of this bundle again though nobody answers for it; results that come all the "
+          "same count once")
+      ->type_name("BUNDLE")
+      ->allow_extra_args(false)  // a campaign's file may follow
+      ->excludes("--cancel");
   verb->add_flag("--quiet", options->quiet, "No notes on stderr");
   verb->add_flag("--force", options->force, "Use a network file system for the database all the same");
   verbs.choose(verb, options);
@@ -70,9 +75,7 @@ void add_task(VerbSet& verbs) {
   verb->add_option("manifest", options->manifest, "The bundle's manifest.json")
       ->required()
       ->type_name(value_name::campaign_file);
-  verb->add_option("index", options->index, "Number of the task, from 0")
-      ->required()
-      ->check(CLI::NonNegativeNumber);
+  add_number(verb, "index", options->index, whole_number(0, 1e9), "Number of the task, from 0")->required();
   verbs.choose(verb, options);
 }
 

@@ -7,9 +7,9 @@ namespace peclet::runner {
 namespace {
 
 void add_patience(CLI::App* verb, double& seconds) {
-  verb->add_option("--wait", seconds, "Seconds to wait for the process that runs the campaign; 0: not at all")
+  add_number(verb, "--wait", seconds, number_from(0),
+             "Seconds to wait for the process that runs the campaign; 0: not at all")
       ->type_name("SECONDS")
-      ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
 }
 
@@ -20,15 +20,18 @@ void add_set(VerbSet& verbs) {
                 "peclet set flow-curve.json --tolerance 0.03 --maximum 2000");
   add_file(verb, options->campaign);
   add_directory(verb, options->directory);
-  verb->add_option("--tolerance", options->tolerance, "/target/relative_tolerance; 5 % is written 0.05");
-  verb->add_option("--confidence", options->confidence, "/target/confidence");
-  verb->add_option("--minimum", options->minimum, "/realisations/minimum: seeds before the first look");
-  verb->add_option("--maximum", options->maximum,
-                   "/realisations/maximum: seeds after which a point is capped");
+  add_number(verb, "--tolerance", options->tolerance, *campaign_keys().find("/target/relative_tolerance"),
+             "/target/relative_tolerance; 5 % is written 0.05");
+  add_number(verb, "--confidence", options->confidence, *campaign_keys().find("/target/confidence"),
+             "/target/confidence");
+  add_number(verb, "--minimum", options->minimum, *campaign_keys().find("/realisations/minimum"),
+             "/realisations/minimum: seeds before the first look");
+  add_number(verb, "--maximum", options->maximum, *campaign_keys().find("/realisations/maximum"),
+             "/realisations/maximum: seeds after which a point is capped");
   verb->add_option("--point", options->points, "Point that is to have the priority; may be repeated")
       ->allow_extra_args(false);
-  verb->add_option("--priority", options->priority, "Points of a higher one are served first; 0 unless set")
-      ->check(CLI::Range(-1'000'000, 1'000'000));
+  add_number(verb, "--priority", options->priority, whole_number(-1'000'000, 1'000'000),
+             "Points of a higher one are served first; 0 unless set");
   add_patience(verb, options->patience);
   verbs.choose(verb, options);
 }
@@ -38,7 +41,8 @@ void add_cancel(VerbSet& verbs) {
   CLI::App* const verb = verbs.add("cancel", "Give points no more seeds, also while the campaign runs",
                                    "peclet cancel flow-curve.json peclet=10");
   add_file_or_folder(verb, options->campaign);
-  verb->add_option("point", options->points, "Labels of points, or 4 or more digits of their hashes")
+  verb->add_option("point", options->points,
+                   "Labels of points, their values alone, or 4 or more digits of their hashes")
       ->required();
   add_directory(verb, options->directory);
   verb->add_flag("--undo", options->undo, "Take them up again");
@@ -51,13 +55,13 @@ void add_retry(VerbSet& verbs) {
   CLI::App* const verb = verbs.add("retry", "Queue seeds again that were given up, with a clean record",
                                    "peclet retry flow-curve.json peclet=10 --seed 17");
   add_file_or_folder(verb, options->campaign);
-  verb->add_option("point", options->points,
-                   "Labels of points, or 4 or more digits of their hashes; all unless given");
+  verb->add_option(
+      "point", options->points,
+      "Labels of points, their values alone, or 4 or more digits of their hashes; all unless given");
   add_directory(verb, options->directory);
-  verb->add_option("--seed", options->seeds,
-                   "Of the one point that is named; may be repeated; all unless given")
-      ->allow_extra_args(false)
-      ->check(CLI::NonNegativeNumber);
+  add_number(verb, "--seed", options->seeds, whole_number(0, 2'147'483'647),
+             "Of the one point that is named; may be repeated; all unless given")
+      ->allow_extra_args(false);
   add_patience(verb, options->patience);
   verbs.choose(verb, options);
 }

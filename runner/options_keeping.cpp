@@ -12,8 +12,8 @@ void add_backup(VerbSet& verbs) {
                                    "peclet backup flow-curve.json /mnt/usb/flow-curve --checkpoints");
   add_file_or_folder(verb, options->campaign);
   verb->add_option("target", options->target,
-                   "Folder for backup.db; the backup there before becomes backup.previous.db; the campaign's "
-                   "own backup/ unless given")
+                   "Folder for backup.db, made in one that must be there; the backup there before becomes "
+                   "backup.previous.db; the campaign's own backup/ unless given")
       ->type_name(value_name::folder);
   add_directory(verb, options->directory);
   verb->add_flag("--checkpoints", options->checkpoints,

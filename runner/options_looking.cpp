@@ -26,9 +26,8 @@ void add_watch(VerbSet& verbs) {
       verbs.add("watch", "Show the status in a terminal, kept up to date", "peclet watch flow-curve.json");
   add_file_or_folder(verb, options->campaign);
   add_directory(verb, options->directory);
-  verb->add_option("--interval", options->interval_seconds, "Seconds between looks")
+  add_number(verb, "--interval", options->interval_seconds, number_from(0.1, 86'400), "Seconds between looks")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.1, 86'400.0))
       ->capture_default_str();
   verbs.choose(verb, options);
 }
@@ -39,7 +38,7 @@ void add_explain(VerbSet& verbs) {
                                    "peclet explain flow-curve.json peclet=10");
   add_file_or_folder(verb, options->campaign);
   verb->add_option("point", options->point,
-                   "Label of a point, or 4 or more digits of its hash; all unless given")
+                   "Label of a point, its values alone, or 4 or more digits of its hash; all unless given")
       ->type_name("POINT");
   add_directory(verb, options->directory);
   verb->add_flag("--json", options->json, "For programs");
@@ -63,6 +62,22 @@ void add_export(VerbSet& verbs) {
   verb->add_option("--output", options->output,
                    "File to write, whole or not at all; standard output unless given")
       ->type_name(value_name::file);
+  verb->add_flag("--quiet", options->quiet, "Do not say on stderr where it was written");
+  verbs.choose(verb, options);
+}
+
+void add_results(VerbSet& verbs) {
+  const auto options = std::make_shared<ResultsOptions>();
+  CLI::App* const verb = verbs.add("results", "Print every stored result whole, one JSON object a line",
+                                   "peclet results flow-curve.json peclet=10 > runs.jsonl");
+  add_file_or_folder(verb, options->campaign);
+  verb->add_option("point", options->point,
+                   "Label of a point, or 4 or more digits of its hash; all unless given")
+      ->type_name("POINT");
+  add_directory(verb, options->directory);
+  verb->add_option("--seed", options->seed, "Of this seed only")
+      ->type_name("SEED")
+      ->check(CLI::NonNegativeNumber);
   verbs.choose(verb, options);
 }
 
@@ -76,6 +91,7 @@ void add_report(VerbSet& verbs) {
   verb->add_option("--output", options->output,
                    "File to write, whole or not at all; standard output unless given")
       ->type_name(value_name::file);
+  verb->add_flag("--quiet", options->quiet, "Do not say on stderr where it was written");
   verbs.choose(verb, options);
 }
 
@@ -86,6 +102,7 @@ void add_looking_verbs(VerbSet& verbs) {
   add_watch(verbs);
   add_explain(verbs);
   add_export(verbs);
+  add_results(verbs);
   add_report(verbs);
 }
 

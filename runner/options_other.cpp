@@ -19,11 +19,9 @@ void add_study(VerbSet& verbs) {
                  "Also the points that take hours, where the study has such; best with --folder")
       ->needs(name)
       ->excludes("--quick");
-  verb->add_option(
-          "--times", options->times,
-          "So many times as many seeds, for error bars smaller by the root of it; best with --folder")
+  add_number(verb, "--times", options->times, whole_number(1, 1000),
+             "So many times as many seeds, for error bars smaller by the root of it; best with --folder")
       ->type_name("NUMBER")
-      ->check(CLI::Range(1, 1000))
       ->needs(name)
       ->excludes("--quick");
   verb->add_flag("--json", options->json, "The list, for programs")->excludes(name);
@@ -34,7 +32,7 @@ void add_study(VerbSet& verbs) {
       ->type_name(value_name::folder)
       ->needs(name);
   verb->add_option("--results", options->results,
-                   "Folder of the studies; that of the source tree unless given")
+                   "Folder of the studies; those that came with peclet unless given")
       ->type_name(value_name::folder);
   verbs.choose(verb, options);
 }
@@ -51,6 +49,7 @@ void add_completion(VerbSet& verbs) {
   verb->add_option("--output", options->output,
                    "File to write, whole or not at all; standard output unless given")
       ->type_name(value_name::file);
+  verb->add_flag("--quiet", options->quiet, "Do not say on stderr where it was written");
   verbs.choose(verb, options);
 }
 

@@ -7,10 +7,10 @@ namespace peclet::runner {
 namespace {
 
 void add_team(CLI::App* verb, RunOptions& run) {
-  verb->add_option("--workers", run.workers, "Engine processes; cores / threads unless given")
-      ->check(CLI::Range(1, 100'000));
-  verb->add_option("--threads", run.threads, "Threads of each; 1, or cores / workers, unless given")
-      ->check(CLI::Range(1, 4096));
+  add_number(verb, "--workers", run.workers, whole_number(1, 100'000),
+             "Engine processes; cores / threads unless given");
+  add_number(verb, "--threads", run.threads, whole_number(1, 4096),
+             "Threads of each; 1, or cores / workers, unless given");
 }
 
 void add_init(VerbSet& verbs) {
@@ -39,9 +39,9 @@ void add_plan(VerbSet& verbs) {
       "peclet plan flow-curve.json --pilot 4 --workers 8");
   add_file(verb, options->run.campaign);
   add_directory(verb, options->run.directory);
-  verb->add_option("--pilot", options->pilot,
-                   "Run the first seeds of every point, 4 unless given, which count later as any others; "
-                   "predict from them, and store that for `status` to judge")
+  add_number(verb, "--pilot", options->pilot, whole_number(2, 1'000'000),
+             "Run the first seeds of every point, 4 unless given, which count later as any others; "
+             "predict from them, and store that for `status` to judge")
       ->expected(0, 1)
       ->default_str("4");
   add_team(verb, options->run);
@@ -59,13 +59,12 @@ void add_run(VerbSet& verbs) {
   add_file(verb, options->campaign);
   add_directory(verb, options->directory);
   add_team(verb, *options);
-  verb->add_option("--time-limit", options->time_limit, "Seconds after which workers checkpoint and stop")
-      ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--budget", options->budget_hours,
-                   "Hours of processor time that this run may spend, where they lower the summed relative "
-                   "error most")
-      ->check(CLI::PositiveNumber);
+  add_number(verb, "--time-limit", options->time_limit, number_above(0),
+             "Seconds after which workers checkpoint and stop")
+      ->type_name("SECONDS");
+  add_number(verb, "--budget", options->budget_hours, number_above(0),
+             "Hours of processor time that this run may spend, where they lower the summed relative "
+             "error most");
   add_seconds(verb, "--lease", options->lease_seconds,
               "Seconds without a new step after which a worker counts as hung");
   add_seconds(verb, "--checkpoint", options->checkpoint_seconds,

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "contract/input_error.h"
+#include "runner/own_files.h"
 #include "runner/text_table.h"
 
 namespace peclet::runner {
@@ -20,20 +21,16 @@ namespace fs = std::filesystem;
 constexpr const char* interpreter = "/usr/bin/python3";
 constexpr const char* driver_name = "study.py";
 
-fs::path own_program() { return fs::read_symlink("/proc/self/exe"); }
-
-// The folder `results` in one of the folders above the program: it is built inside of the source tree.
 fs::path results_folder(const fs::path& chosen) {
   if (!chosen.empty()) {
     if (fs::is_directory(chosen)) return chosen;
     throw InputError("", "--results", chosen.string(), "must be a folder with studies");
   }
-  for (fs::path folder = own_program().parent_path(); folder != folder.root_path();
-       folder = folder.parent_path()) {
-    if (fs::exists(folder / "results" / "studies.py")) return folder / "results";
-  }
+  if (const std::optional<fs::path> marker = own_file("results/studies.py")) return marker->parent_path();
   throw InputError("", "--results", "missing",
-                   "must name the folder `results` of the source: this program is not in its tree");
+                   fmt::format("must name the folder `results` of the source or of an installation: there is "
+                               "none in {}, and no build tree around this program",
+                               (own_folder().parent_path() / "share" / "peclet").string()));
 }
 
 StudySummary read_study(const fs::path& folder) {
@@ -67,7 +64,7 @@ void print(const std::string& text) {
 // This process becomes the study's driver: signals and exit code are its own.
 [[noreturn]] void become_driver(const StudyOptions& options, const fs::path& results) {
   std::vector<std::string> words = {interpreter, (results / options.name / driver_name).string(),
-                                    own_program().parent_path().string()};
+                                    own_folder().string()};
   if (!options.folder.empty()) words.push_back(fs::absolute(options.folder).string());
   if (options.quick) words.emplace_back("--quick");
   if (options.with_long) words.emplace_back("--long");

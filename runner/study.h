@@ -22,7 +22,7 @@ struct StudyOptions {
   bool with_long = false;         // also the points that take hours
   int times = 1;                  // as many seeds
   bool json = false;              // the list, for programs
-  std::filesystem::path results;  // folder of the studies; that of the source tree unless given
+  std::filesystem::path results;  // folder of the studies; the program's own unless given
   std::filesystem::path folder;   // of the study's campaigns; a temporary one unless given
 };
 

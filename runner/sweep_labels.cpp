@@ -4,6 +4,8 @@
 
 #include <map>
 
+#include "contract/printable.h"
+
 namespace peclet::runner {
 namespace {
 
@@ -11,11 +13,14 @@ std::string last_step(const std::string& pointer) { return pointer.substr(pointe
 
 bool is_number(const std::string& step) { return step.find_first_not_of("0123456789") == std::string::npos; }
 
-// A value that is too long to be read in a table is called by its place among the values, from 1.
+constexpr std::size_t longest_name = 100;
+
+// A value that is too long to be read in a table, or that a terminal would obey, is called by its place among
+// the values, from 1.
 std::string value_text(const Json& value, std::size_t row) {
   constexpr std::size_t longest = 24;
   const std::string text = value.is_string() ? value.get<std::string>() : canonical_json(value);
-  return text.size() <= longest ? text : fmt::format("#{}", row + 1);
+  return text.size() <= longest && printable(text) == text ? text : fmt::format("#{}", row + 1);
 }
 
 }  // namespace
@@ -29,7 +34,7 @@ SweepLabels::SweepLabels(const std::vector<SweepEntry>& sweep) : sweep_(sweep) {
     std::vector<std::string>& names = names_.emplace_back();
     for (const std::string& pointer : entry.pointers) {
       const std::string step = last_step(pointer);
-      names.push_back(uses[step] == 1 && !is_number(step) ? step : pointer);
+      names.push_back(printable(uses[step] == 1 && !is_number(step) ? step : pointer, longest_name));
     }
   }
 }

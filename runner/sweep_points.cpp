@@ -38,6 +38,28 @@ std::vector<std::string> steps_of(const std::string& pointer) {
   return steps;
 }
 
+// About the bytes of memory that a document takes: its text, and each of its values.
+std::size_t weight_of(const Json& document) {
+  constexpr std::size_t of_a_value = 50;
+  if (!document.is_structured()) {
+    return of_a_value + (document.is_string() ? document.get_ref<const std::string&>().size() : 0);
+  }
+  std::size_t weight = of_a_value;
+  for (const auto& [key, value] : document.items()) {
+    weight += weight_of(value) + (document.is_object() ? key.size() : 0);
+  }
+  return weight;
+}
+
+// Each point has a scene of its own. 100 000 ordinary ones are far from this.
+void refuse_heavy_scenes(const Json& scene, std::size_t points, const std::string& file) {
+  constexpr std::size_t most = 2'000'000'000;
+  if (points <= 1 || weight_of(scene) <= most / points) return;
+  throw InputError(
+      file, "/scene", fmt::format("{} points of about {} bytes", points, weight_of(scene)),
+      fmt::format("must be small enough for scenes of all points together to take {} bytes", most));
+}
+
 // Which row of each entry makes up a point.
 using GridIndex = std::vector<std::size_t>;
 
@@ -117,6 +139,7 @@ std::vector<StatePoint> sweep_points(const Json& scene, const std::vector<SweepE
                                      const std::string& name, const std::string& file) {
   const SweepLabels labels(sweep);
   const std::size_t count = count_points(sweep, file);
+  refuse_heavy_scenes(scene, count, file);
   std::vector<StatePoint> points;
   std::map<std::string, std::size_t> known;
   for (std::size_t number = 0; number < count; ++number) {

@@ -46,13 +46,15 @@ Change it to what you want to know; `peclet validate` says what is wrong with it
        page(R"(
 Reads the campaign and asks its engine about the scene of every point: the groups that follow from it,
 the time step, and warnings. The first fault is named with its place in the file, its value and what is
-allowed.
+allowed, a target that no result would have included. The file may be a pipe.
 )",
-            {{"peclet validate flow-curve.json --json | jq '.points[].timestep'", "the time steps alone"}},
+            {{"peclet validate <(my-generator)", "what a program writes"},
+             {"peclet validate flow-curve.json --json | jq '.points[].timestep'", "the time steps alone"}},
             {0, 1, 2})},
       {"plan", page(R"(
 The work is counted in particle-steps, and in processor time where realisations have been run before:
-from the fewest seeds that a point may take to the most.
+from the fewest seeds that a point may take to the most. Where none has, one of the point in the middle is
+tried for two seconds, in a temporary folder, and the table says that its times are a guess.
 )",
                     {}, {0, 1, 2, 5, 6, 75})},
       {"run",
@@ -78,10 +80,14 @@ and the verdict of every point. It only reads, and may be used at any time.
             {0, 1, 2, 3, 4, 6})},
       {"watch", page(R"(
 Ends when every point is decided, with the exit code that `status --check` would have, or at Ctrl-C,
-which does nothing to the campaign. Off a terminal it prints the table whenever it changes.
+which does nothing to the campaign. A campaign that has not been run yet is waited for. Off a terminal it
+prints the table whenever it changes.
 )",
                      {}, {0, 1, 2, 3, 4, 6})},
       {"explain", page(R"(
+A point is named by its label (peclet=10 volume_fraction=0.5), by its values alone as in a row of the
+tables ("10 0.5"), or by the beginning of its hash.
+
 Lists the looks at a point, a bootstrap interval beside Student's, lost seeds with what their engines
 said last, whether the window is long enough, and what would bring the point further.
 )",
@@ -90,8 +96,20 @@ said last, whether the window is long enough, and what would bring the point fur
        page(R"(
 The canonical form holds what depends on campaign, seeds and engine alone, so that two runs of one
 campaign can be compared byte by byte, however many workers they had and whatever killed them.
+--output replaces a file whole, follows a link, writes to a device, a FIFO or /dev/stdout, and says on
+standard error where it wrote, unless --quiet.
 )",
             {{"peclet export flow-curve.json --canonical | sha256sum", "one number for all results"}},
+            {0, 1, 2, 6})},
+      {"results",
+       page(R"(
+The database holds results deflated; this prints them as their engines wrote them, with blocks, costs and where
+they come from, and with the point and whether its last look counts the seed ("deciding"). One that is surplus
+must not enter a mean: which seeds end first depends on the machine. Also while the campaign runs.
+)",
+            {{"peclet results flow-curve.json | jq -c 'select(.deciding) | .result.mean.relative_viscosity'",
+              "the values of all points, for R, Julia and others: schema/README.md"},
+             {"peclet results flow-curve.json peclet=10 --seed 3 | jq .result", "one realisation"}},
             {0, 1, 2, 6})},
       {"report", page(R"(
 The page holds what was asked, the table of estimates with their intervals, a chart over the swept
@@ -104,14 +122,23 @@ alone: the same one gives the same bytes.
 Turns the seeds that the next looks need into job arrays. The database stays on this machine; nodes see
 the folder --shared and the two programs. Without --follow it hands over once, and `peclet ingest` takes
 in what has been done. The answer is the same, byte for byte, as that of `peclet run`.
+
+When the batch system refuses a job, its seeds stay here and the exit code is 1. When it is not known whether it has
+taken one, the seeds are out until a job of that name has been looked for.
 )",
                          {}, {0, 1, 2, 3, 5, 6, 75})},
       {"ingest",
        page(R"(
 Takes results, failures and preempted tasks in from the folder that is shared with the nodes, and hands
 nothing over.
+
+Seeds of which nobody knows anything (their folder is gone, the batch system does not answer) stay out, because
+they may be running. --forget gives a bundle of them up by the name that `peclet ingest` prints. The exit code is 1
+while the folder of seeds that are out is not there.
 )",
-            {{"peclet ingest flow-curve.json --cancel", "end the jobs; `peclet run` can have their seeds"}},
+            {{"peclet ingest flow-curve.json --cancel", "end the jobs; `peclet run` can have their seeds"},
+             {"peclet ingest flow-curve.json --forget flow-curve-1a2b3c-0001",
+              "its folder is gone, and so are its jobs"}},
             {0, 1, 2, 5, 6})},
       {"task", page(R"(
 Runs the seeds of the task one after another, those apart that have ended already. SIGTERM, SIGINT and
@@ -149,7 +176,9 @@ its quick form half a minute.
             {0, 1, 2})},
       {"backup", page(R"(
 `peclet run` makes such backups by itself; this makes one now, or elsewhere. The copy is checked before
-it takes the place of the one before.
+it takes the place of the one before. Of the folder's path only the last part is made: where a disk is
+not mounted, there is an error and no copy on another disk. A copy that turns out to be on the campaign's
+own file system is said to be.
 )",
                       {}, {0, 1, 2, 6})},
       {"restore", page(R"(
@@ -157,7 +186,9 @@ What was there is kept aside. The campaign then goes on with `peclet run` to the
 )",
                        {}, {0, 1, 2, 5, 6})},
       {"doctor", page(R"(
-Says what is wrong, how bad it is and what cures it. Without --repair nothing is changed.
+Says what is wrong, how bad it is and what cures it. Without --repair nothing is changed. With it, among
+other things, checkpoints of seeds that no point needs any more are removed: they cost their time again
+should the tolerance be tightened.
 )",
                       {}, {0, 1, 2, 5, 6})},
       {"completion",
@@ -189,7 +220,7 @@ const std::map<int, std::string>& exit_codes() {
       {0, "done; of a run: every point converged"},
       {1, "error"},
       {2, "usage, or faulty input; nothing has been written"},
-      {3, "finished, but some points are capped, failed, cancelled or lost seeds"},
+      {3, "finished, but some points are capped or near the maximum, failed, cancelled or lost seeds"},
       {4, "not finished yet; of set, cancel and retry: asked for, and not carried out yet"},
       {5, "another process owns the campaign"},
       {6, "integrity: the database is damaged, or a seed gave two different results"},

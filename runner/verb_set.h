@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "contract/key_table.h"
 #include "runner/options.h"
 
 namespace peclet::runner {
@@ -53,5 +54,24 @@ void add_directory(CLI::App* verb, std::filesystem::path& path);
 void add_accept_engine(CLI::App* verb, std::string& name);
 // A time > 0, which has a default.
 void add_seconds(CLI::App* verb, const char* name, double& seconds, const char* meaning);
+
+// What a number may be. Without a maximum of its own it is bounded by 1e9, so that times can be counted in
+// nanoseconds: 31 years of seconds.
+Key whole_number(double minimum, double maximum);
+Key number_above(double minimum);
+Key number_from(double minimum, double maximum = 1e9);
+
+// The only reader of numbers of the command line: finite, in range, all of the word.
+// `value` is an int or a double, one of these that may be absent, or a list of them.
+// The parser throws InputError at the option's name for anything else.
+void check_number(CLI::Option* option, const Key& allowed);
+
+template <typename Value>
+CLI::Option* add_number(CLI::App* verb, const char* name, Value& value, const Key& allowed,
+                        const char* meaning) {
+  CLI::Option* const option = verb->add_option(name, value, meaning);
+  check_number(option, allowed);
+  return option;
+}
 
 }  // namespace peclet::runner

@@ -1,6 +1,7 @@
 // The program itself: exit codes, one clear message for each fault, and nothing written by those who only
 // look.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <array>
@@ -39,7 +40,7 @@ class CommandLine : public testing::Test {
 
   Answer peclet(const std::string& arguments) const {
     const std::string command =
-        "cd '" + folder_.path().string() + "' && " PECLET_PROGRAM " " + arguments + " 2>&1";
+        "cd '" + folder_.path().string() + "' || exit; " PECLET_PROGRAM " " + arguments + " 2>&1";
     FILE* const pipe = popen(command.c_str(), "r");
     Answer answer;
     std::array<char, 4096> chunk{};
@@ -59,6 +60,13 @@ class CommandLine : public testing::Test {
  private:
   TemporaryFolder folder_;
 };
+
+TEST_F(CommandLine, AFileMayFollowTheNameOfABundle) {
+  write();
+  const Answer answer = peclet("ingest --forget a --forget b small.json");
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_NE(answer.text.find("--forget a: is no bundle"), std::string::npos) << answer.text;
+}
 
 TEST_F(CommandLine, FaultsOfUsageAreExitCodeTwo) {
   write();
@@ -131,11 +139,135 @@ TEST_F(CommandLine, AnObservableThatTheEngineDoesNotMeasureIsRefusedBeforeAnythi
   for (const char* const verb : {"validate", "plan", "run"}) {
     const Answer answer = peclet(std::string(verb) + " small.json");
     EXPECT_EQ(answer.code, 2);
-    EXPECT_EQ(answer.text,
-              "peclet: small.json: /target/observable: relative_vicosity: must be a number that the results "
-              "will have: relative_viscosity\n");
+    EXPECT_EQ(
+        answer.text,
+        "peclet: small.json: /target/observable: relative_vicosity: must be a number that the results of "
+        "the point peclet=1 will have: relative_viscosity; did you mean relative_viscosity?\n");
   }
   EXPECT_EQ(files(), 1);
+}
+
+TEST_F(CommandLine, ANumberThatIsNoneOrOutOfRangeIsNamedWithItsOptionAndWhatIsAllowed) {
+  write();
+  for (const auto& [option, allowed] :
+       {std::pair{"run small.json --lease", "must be a number > 0 and <= 1000000000"},
+        {"run small.json --backup", "must be a number > 0 and <= 1000000000"},
+        {"run small.json --time-limit", "must be a number > 0 and <= 1000000000"},
+        {"run small.json --budget", "must be a number > 0 and <= 1000000000"},
+        {"run small.json --workers", "must be an integer >= 1 and <= 100000"},
+        {"set small.json --tolerance", "must be a number > 0 and < 1"},
+        {"set small.json --wait", "must be a number >= 0 and <= 1000000000"},
+        {"retry small.json --seed", "must be an integer >= 0 and <= 2147483647"}}) {
+    for (const char* const value : {"nan", "inf", "-1", "1e10", "1e999", "x", "1x", "0x1", "'1 2'"}) {
+      const Answer answer = peclet(std::string(option) + "=" + value);
+      EXPECT_EQ(answer.code, 2) << option << value;
+      EXPECT_TRUE(answer.text.ends_with(std::string(": ") + allowed + "\n") ||
+                  answer.text.find(std::string(": ") + allowed + "; ") != std::string::npos)
+          << answer.text;
+    }
+  }
+  EXPECT_EQ(peclet("run small.json --lease=nan").text,
+            "peclet: run: --lease: nan: must be a number > 0 and <= 1000000000\n");
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(CommandLine, WholeNumbersMayBeSpeltInAnyWayThatIsWhole) {
+  write();
+  // A number that is read as octal, or not at all, would be refused or run with another count.
+  EXPECT_EQ(peclet("set small.json --maximum 05e1").code, 0);
+  EXPECT_EQ(Json::parse(read_file(file()))["realisations"]["maximum"], 50);
+  EXPECT_EQ(peclet("set small.json --maximum 060").code, 0);
+  EXPECT_EQ(Json::parse(read_file(file()))["realisations"]["maximum"], 60);
+}
+
+TEST_F(CommandLine, FaultsOfUsageAreOneLineThatNamesTheVerb) {
+  write();
+  const std::pair<const char*, const char*> faults[] = {
+      {"", "peclet: a verb is missing; `peclet --help` lists them\n"},
+      {"stauts small.json",
+       "peclet: stauts: there is no such verb; `peclet --help` lists them; did you mean status?\n"},
+      {"cancel small.json",
+       "peclet: cancel: point: is missing: Labels of points, their values alone, or 4 or more digits of "
+       "their "
+       "hashes; `peclet cancel --help` says more\n"},
+      {"run small.json --wrokers 2",
+       "peclet: run: --wrokers: there is no such option; `peclet run --help` lists them; did you mean "
+       "--workers?\n"},
+      {"run small.json --lease",
+       "peclet: run: --lease: must have one value; `peclet run --help` says more\n"},
+      {"export small.json --csv --json",
+       "peclet: export: --json: cannot stand beside --csv; `peclet export --help` says more\n"},
+      {"study --quick", "peclet: study: --quick: needs study; `peclet study --help` says more\n"},
+      {"validate small.json more.json",
+       "peclet: validate: more.json: is one word too many; `peclet validate --help` says more\n"},
+      {"help nonsense", "peclet: nonsense: there is no such verb; `peclet --help` lists them\n"}};
+  for (const auto& [arguments, message] : faults) {
+    const Answer answer = peclet(arguments);
+    EXPECT_EQ(answer.code, 2) << arguments;
+    EXPECT_EQ(answer.text, message) << arguments;
+  }
+}
+
+TEST_F(CommandLine, HelpMayBeAskedForInFrontOfTheVerb) {
+  EXPECT_EQ(peclet("help").text, peclet("--help").text);
+  EXPECT_EQ(peclet("help explain").text, peclet("explain --help").text);
+  EXPECT_EQ(peclet("help explain").code, 0);
+}
+
+TEST_F(CommandLine, ACampaignMayComeThroughAPipeButIsNotRunFromOne) {
+  write();
+  ASSERT_EQ(mkfifo((file().parent_path() / "pipe").c_str(), 0600), 0);
+  const std::string fed = "pipe 2>&1 & timeout 60 cat small.json > pipe; wait $!";
+  const Answer valid = peclet("validate " + fed);
+  EXPECT_EQ(valid.code, 0) << valid.text;
+  EXPECT_EQ(valid.text, peclet("validate small.json").text);
+  const Answer run = peclet("run " + fed);
+  EXPECT_EQ(run.code, 2);
+  EXPECT_NE(run.text.find("name its folder with --directory"), std::string::npos) << run.text;
+  EXPECT_EQ(files(), 2);
+}
+
+TEST_F(CommandLine, ANameThatNoFileCanHaveIsAFaultOfUsage) {
+  fs::create_symlink("loop.json", file().parent_path() / "loop.json");
+  for (const char* const verb : {"validate", "run", "status", "export", "set", "doctor"}) {
+    const Answer loop = peclet(std::string(verb) + " loop.json");
+    EXPECT_EQ(loop.code, 2) << verb;
+    EXPECT_NE(loop.text.find("loop.json"), std::string::npos) << loop.text;
+    const Answer name = peclet(std::string(verb) + ' ' + std::string(5000, 'n'));
+    EXPECT_EQ(name.code, 2) << verb;
+    EXPECT_LT(name.text.size(), 500U);
+  }
+}
+
+TEST_F(CommandLine, AnEngineThatIsAcceptedByAWrongNameIsRefusedBeforeAnythingIsWritten) {
+  write();
+  for (const char* const verb : {"run small.json", "hand-over slurm small.json --shared ."}) {
+    const Answer answer = peclet(std::string(verb) + " --accept-engine no-such-engine");
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_TRUE(
+        answer.text.starts_with("peclet: --accept-engine: no-such-engine: must be the version, or 6 or more"))
+        << answer.text;
+    EXPECT_EQ(files(), 1) << verb;
+  }
+}
+
+TEST_F(CommandLine, TheNextStepNamesTheFolderThatWasChosenAndIsQuotedForTheShell) {
+  write();
+  EXPECT_EQ(peclet("set small.json --directory 'my runs' --maximum 50").text,
+            "small.json is changed; it has not been run yet: peclet run small.json --directory 'my runs'\n");
+  EXPECT_NE(peclet("status small.json --directory elsewhere")
+                .text.find("`peclet run small.json --directory elsewhere`"),
+            std::string::npos);
+  ASSERT_EQ(peclet("run small.json --directory 'my runs' --quiet --workers 1").code, 0);
+  campaign["target"]["relative_tolerance"] = 0.1;
+  write();
+  EXPECT_NE(peclet("status small.json --directory 'my runs'")
+                .text.find(
+                    "`peclet set small.json --directory 'my runs'` or `peclet run small.json --directory 'my "
+                    "runs'` takes it over"),
+            std::string::npos);
+  const Answer cancelled = peclet("cancel small.json 1 --directory 'my runs'");
+  EXPECT_EQ(cancelled.code, 0) << cancelled.text;
 }
 
 TEST_F(CommandLine, AnEngineThatIsNotThereIsNamed) {

@@ -1,14 +1,18 @@
 #!/usr/bin/python3
 """How studies answer published statements, and whether their pages say what was found."""
+import contextlib
+import io
 import json
 import math
 import os
 import re
 import sys
 import unittest
+import unittest.mock
 
 RESULTS = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "results")
 sys.path.insert(0, RESULTS)
+import studies  # noqa: E402
 from campaigns import student_quantile  # noqa: E402
 from studies import Statement, verdict  # noqa: E402
 
@@ -124,6 +128,16 @@ class Pages(unittest.TestCase):
                             self.assertLessEqual(abs(printed - entry[key]), half * 1.001 + abs(entry[key]) * 5e-5)
                     bounds = [float(number) for number in re.findall("-?[0-9.]+", row[-2].replace("−", "-"))]
                     self.assertEqual([f"{b:.4g}" for b in bounds], [f"{entry[key]:.4g}" for key in ("low", "high") if entry[key] is not None])
+
+
+class Folders(unittest.TestCase):
+    def test_a_study_that_may_not_write_what_it_finds_says_so_before_it_computes(self):
+        said = io.StringIO()
+        with unittest.mock.patch("sys.argv", ["study.py", "/nowhere"]), unittest.mock.patch("os.access", return_value=False), \
+                contextlib.redirect_stderr(said), self.assertRaises(SystemExit) as ending:
+            studies.main("/installed/results/some-study", "Some study", self.fail, self.fail)
+        self.assertEqual(ending.exception.code, 2)
+        self.assertIn("/installed/results/some-study", said.getvalue())
 
 
 if __name__ == "__main__":
