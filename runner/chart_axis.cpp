@@ -2,14 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace peclet::runner {
 namespace {
 
 constexpr double margin = 0.05;  // of the length, on either side
-constexpr double least_ratio_of_logarithmic = 20;
-constexpr std::size_t most_ticks = 9;
+// Below, a logarithmic axis has too few round numbers.
+constexpr double least_ratio_of_logarithmic = 5;
+constexpr std::size_t fewest_ticks = 3;
 
 // "0.01", "2000", "5·10⁶".
 std::string number_text(double value) {
@@ -23,10 +25,32 @@ std::string number_text(double value) {
   return text;
 }
 
+// The part of the whole that the widest gap between neighbours takes. Requires numbers in order, not all
+// equal.
+double widest_gap(const std::vector<double>& numbers) {
+  double widest = 0;
+  for (std::size_t i = 1; i < numbers.size(); ++i) widest = std::max(widest, numbers[i] - numbers[i - 1]);
+  return widest / (numbers.back() - numbers.front());
+}
+
 }  // namespace
 
-ChartAxis::ChartAxis(double low, double high, double begin, double end)
-    : logarithmic_(low > 0 && high > least_ratio_of_logarithmic * low),
+ChartAxis::Scale fitting_scale(std::vector<double> numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  if (numbers.empty() || numbers.front() <= 0 ||
+      numbers.back() < least_ratio_of_logarithmic * numbers.front()) {
+    return ChartAxis::Scale::linear;
+  }
+  std::vector<double> logarithms;
+  logarithms.reserve(numbers.size());
+  for (const double number : numbers) logarithms.push_back(std::log(number));
+  return widest_gap(logarithms) < widest_gap(numbers) ? ChartAxis::Scale::logarithmic
+                                                      : ChartAxis::Scale::linear;
+}
+
+ChartAxis::ChartAxis(Scale scale, double low, double high, double begin, double end, std::size_t most_ticks)
+    : logarithmic_(scale == Scale::logarithmic),
+      most_ticks_(most_ticks),
       low_(logarithmic_ ? std::log10(low) : low),
       high_(logarithmic_ ? std::log10(high) : high),
       begin_(begin),
@@ -55,7 +79,7 @@ std::vector<ChartAxis::Tick> ChartAxis::linear_ticks() const {
       const double step = multiple * scale;
       const auto first = static_cast<long long>(std::ceil(low_ / step));
       const auto last = static_cast<long long>(std::floor(high_ / step));
-      if (last - first >= static_cast<long long>(most_ticks)) continue;
+      if (last - first >= static_cast<long long>(most_ticks_)) continue;
       std::vector<Tick> ticks;
       for (long long i = first; i <= last; ++i) {
         const double value = static_cast<double>(i) * step;
@@ -80,13 +104,14 @@ std::vector<ChartAxis::Tick> ChartAxis::powers(int stride, const std::vector<int
 }
 
 std::vector<ChartAxis::Tick> ChartAxis::logarithmic_ticks() const {
-  for (const std::vector<int>& multiples : {std::vector<int>{1, 2, 5}, {1}}) {
+  for (const std::vector<int>& multiples :
+       {std::vector<int>{1, 2, 5}, {1}, {1, 2, 3, 4, 5, 6, 7, 8, 9}, {1, 2, 3, 5, 7}}) {
     std::vector<Tick> ticks = powers(1, multiples);
-    if (ticks.size() <= most_ticks) return ticks;
+    if (ticks.size() >= fewest_ticks && ticks.size() <= most_ticks_) return ticks;
   }
-  for (int stride = 2;; ++stride) {
+  for (int stride = 1;; ++stride) {
     std::vector<Tick> ticks = powers(stride, {1});
-    if (ticks.size() <= most_ticks) return ticks;
+    if (ticks.size() <= most_ticks_) return ticks;
   }
 }
 

@@ -13,14 +13,16 @@ class ChartAxis {
     std::string text;
   };
 
-  // From the smallest number `low` to the largest `high`, with a margin on both sides, drawn from `begin` to
-  // `end`. Logarithmic when the numbers are positive and span more than a factor of 20.
-  ChartAxis(double low, double high, double begin, double end);
+  enum class Scale { linear, logarithmic };
 
-  bool is_logarithmic() const { return logarithmic_; }
+  // From the smallest number `low` to the largest `high`, with a margin on both sides, drawn from `begin` to
+  // `end`. Requires positive numbers where it is logarithmic, and three ticks at least.
+  ChartAxis(Scale scale, double low, double high, double begin, double end, std::size_t most_ticks = 9);
+
   double place(double value) const;
-  // Three to nine round numbers within the axis, in order: 1, 2 or 5 times a power of ten apart. On a
-  // logarithmic one powers of ten, and twice and five times these where there would be too few.
+  // Round numbers within the axis, in order, two at least: 1, 2 or 5 times a power of ten apart. On a
+  // logarithmic one powers of ten, with twice and five times these, or all multiples, where there would be
+  // too few.
   std::vector<Tick> ticks() const;
 
  private:
@@ -30,8 +32,13 @@ class ChartAxis {
   std::vector<Tick> powers(int stride, const std::vector<int>& multiples) const;
 
   bool logarithmic_;
+  std::size_t most_ticks_;
   double low_, high_;  // of what is drawn: the logarithms to base ten on a logarithmic axis
   double begin_, end_;
 };
+
+// Logarithmic for positive numbers that lie more evenly on such an axis, over a factor of five or more: a
+// viscosity that diverges, Péclet numbers of 1, 10, 100; not volume fractions of 0.1, 0.2 ... 0.6.
+ChartAxis::Scale fitting_scale(std::vector<double> numbers);
 
 }  // namespace peclet::runner

@@ -37,6 +37,36 @@ std::string seeds_for(const Look& look, const Target& target) {
                               : "more";
 }
 
+// A share of a mean that may be zero is no measure of accuracy: whatever number of seeds it led to would be
+// of the mean's own noise.
+bool may_be_zero(const Look& look) { return relative_width(look) >= 1; }
+
+std::string advice_when_capped(const Look& look, const Target& target) {
+  if (may_be_zero(look)) {
+    return "another /target/observable: the interval contains zero, and as long as it does no "
+           "/target/relative_tolerance below 100 % can be met, whatever the number of seeds";
+  }
+  return fmt::format(
+      "a larger /realisations/maximum ({} seeds) or /target/relative_tolerance (`peclet set`), and run again",
+      seeds_for(look, target));
+}
+
+// Why the look did not decide although its interval is narrow enough.
+std::string luck_text(const Look& look, const Target& target) {
+  if (!(relative_width(look) <= target.relative_tolerance)) return "";
+  return "; the last look is within the tolerance, but perhaps by luck: were the spread as large as its "
+         "seeds "
+         "allow, the maximum would not do";
+}
+
+std::string earlier_look_text(const PointSummary& point) {
+  if (point.earlier_look == 0) return "";
+  return fmt::format(
+      ": the first look that is; it decides as if the target had always been this one, and leaves out later "
+      "seeds; all {} with a value give {} (± standard error)",
+      point.so_far.count, with_error(point.so_far.mean, point.so_far.standard_error));
+}
+
 std::string reason(const PointSummary& point, const Target& target) {
   const std::string tolerance = tolerance_text(target);
   if (!point.decided) {
@@ -48,8 +78,14 @@ std::string reason(const PointSummary& point, const Target& target) {
   switch (look.verdict) {
     case Verdict::converged:
     case Verdict::converged_with_losses:
-      return fmt::format("{} seeds give {}, within the tolerance of {}", look.seeds,
-                         percent(relative_width(look)), tolerance);
+      return fmt::format("{} seeds give {}, within the tolerance of {}{}", look.seeds,
+                         percent(relative_width(look)), tolerance, earlier_look_text(point));
+    case Verdict::converged_near_maximum:
+      return fmt::format(
+          "all {} seeds that are allowed are just about enough for the tolerance of {}, perhaps by luck: "
+          "they "
+          "are sure of {} only",
+          look.seeds, tolerance, percent(relative_width(look)));
     case Verdict::capped:
       return fmt::format("all {} seeds that are allowed give {}, not within the tolerance of {}", look.seeds,
                          percent(relative_width(look)), tolerance);
@@ -69,8 +105,13 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
   if (point.point.cancelled && !point.decided) return "nothing; `peclet cancel --undo` takes it up again";
   if (!point.decided) {
     if (point.looks.empty()) return fmt::format("the first look, at {} seeds", point.wanted);
-    return fmt::format("the look at {} seeds; {} are expected to be enough", point.wanted,
-                       expected_seeds(point.looks, target.target, target.minimum, target.maximum));
+    return fmt::format(
+        "the look at {} seeds; {}{}", point.wanted,
+        may_be_zero(point.looks.back())
+            ? "how many will be enough cannot be told while the interval contains zero"
+            : fmt::format("{} are expected to be enough",
+                          expected_seeds(point.looks, target.target, target.minimum, target.maximum)),
+        luck_text(point.looks.back(), target.target));
   }
   const Look& look = point.looks.back();
   switch (look.verdict) {
@@ -81,11 +122,11 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
       return fmt::format(
           "see why seeds are lost: the mean leaves them out (states in {}){}", directory.failures().string(),
           point.counts.quarantined > 0 ? "; `peclet retry` runs those again that were given up" : "");
+    case Verdict::converged_near_maximum:
+      return fmt::format("a larger /realisations/maximum ({} seeds; `peclet set`), and run again",
+                         seeds_for(look, target.target));
     case Verdict::capped:
-      return fmt::format(
-          "a larger /realisations/maximum ({} seeds) or /target/relative_tolerance (`peclet set`), and run "
-          "again",
-          seeds_for(look, target.target));
+      return advice_when_capped(look, target.target);
     case Verdict::failed:
       return fmt::format("change the scene: states are in {}, logs in {}", directory.failures().string(),
                          directory.logs().string());

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -149,11 +150,14 @@ Json heading(Database& database, const CampaignRecord& campaign, bool canonical)
   return json;
 }
 
+// NaN: does not exist, or is beyond what a number can be.
+bool is_same(double one, double other) { return one == other || (std::isnan(one) && std::isnan(other)); }
+
 bool agrees(const Look& stored, const Look& replayed) {
   return stored.seeds == replayed.seeds && stored.lost == replayed.lost &&
          stored.verdict == replayed.verdict && stored.estimate.count == replayed.estimate.count &&
-         (stored.estimate.count == 0 || (stored.estimate.mean == replayed.estimate.mean &&
-                                         stored.controlled.mean == replayed.controlled.mean));
+         (stored.estimate.count == 0 || (is_same(stored.estimate.mean, replayed.estimate.mean) &&
+                                         is_same(stored.controlled.mean, replayed.controlled.mean)));
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ struct ExportOptions {
   ExportFormat format = ExportFormat::json;
   bool canonical = false;
   std::filesystem::path output;  // "": standard output
+  bool quiet = false;            // does not say where it is
 };
 
 // Documents as schema/README.md describes them. Throw IntegrityError when stored looks are not what the

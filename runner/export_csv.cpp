@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <set>
+#include <string_view>
 
 #include "runner/database_summary.h"
 #include "runner/export.h"
@@ -16,6 +17,13 @@ std::string quoted(const std::string& text) {
   std::string field = "\"";
   for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
   return field + '"';
+}
+
+// A spreadsheet takes a cell that begins so for a formula and would run it; behind an apostrophe it is text.
+std::string text_field(const std::string& text) {
+  const bool is_formula =
+      !text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos;
+  return is_formula ? "'" + text : text;
 }
 
 std::string number(double value) { return std::isfinite(value) ? canonical_json(value) : ""; }
@@ -32,12 +40,12 @@ std::vector<std::string> look_fields(const std::optional<Look>& look) {
           fmt::format("{}", look->seeds),
           fmt::format("{}", look->lost),
           fmt::format("{}", look->estimate.count),
-          number(look->estimate.mean),
-          number(look->estimate.standard_error),
-          number(look->half_width),
           number(look->controlled.mean),
           number(look->controlled.standard_error),
-          number(look->controlled_half_width)};
+          number(look->controlled_half_width),
+          number(look->estimate.mean),
+          number(look->estimate.standard_error),
+          number(look->half_width)};
 }
 
 std::vector<std::string> full_fields(const PointSummary& point) {
@@ -62,18 +70,18 @@ std::string export_csv(Database& database, bool canonical) {
   std::vector<std::string> titles{"label", "hash"};
   titles.insert(titles.end(), settings.begin(), settings.end());
   append(titles, {"verdict", "seeds", "lost", "count", "mean", "standard_error", "half_width",
-                  "controlled_mean", "controlled_standard_error", "controlled_half_width"});
+                  "uncontrolled_mean", "uncontrolled_standard_error", "uncontrolled_half_width"});
   if (!canonical) {
     append(titles,
            {"so_far_count", "so_far_mean", "so_far_standard_error", "surplus", "cpu_seconds", "suspect"});
   }
   std::string text = line(titles);
   for (const PointSummary& point : points) {
-    std::vector<std::string> fields{point.point.label, point.point.hash};
+    std::vector<std::string> fields{text_field(point.point.label), point.point.hash};
     for (const std::string& pointer : settings) {
       const Json value = point.point.settings.value(pointer, Json());
       fields.push_back(value.is_null()     ? ""
-                       : value.is_string() ? value.get<std::string>()
+                       : value.is_string() ? text_field(value.get<std::string>())
                                            : canonical_json(value));
     }
     append(fields, look_fields(checked_look(database, point.point, target)));

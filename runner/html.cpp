@@ -43,11 +43,23 @@ void HtmlTable::add_row(std::vector<std::string> cells) {
   rows_.push_back(std::move(cells));
 }
 
+namespace {
+
+// A title may go on in a further line after an underscore: numbers below it are narrower.
+std::string breakable(const std::string& title) {
+  std::string text;
+  for (const char c : escaped(title)) text += c == '_' ? std::string("_<wbr>") : std::string(1, c);
+  return text;
+}
+
+}  // namespace
+
 std::string HtmlTable::row(const char* element, const std::vector<std::string>& cells) const {
   std::string line = "<tr>";
   for (std::size_t i = 0; i < cells.size(); ++i) {
     line += std::string("<") + element + (aligns_[i] == Align::left ? " class=\"text\">" : ">") +
-            escaped(cells[i]) + "</" + element + ">";
+            (element == std::string_view("th") ? breakable(cells[i]) : escaped(cells[i])) + "</" + element +
+            ">";
   }
   return line + "</tr>\n";
 }

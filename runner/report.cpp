@@ -41,7 +41,12 @@ svg text { fill: var(--ink); font: 13px system-ui, sans-serif; } svg text.title 
 .grid { stroke: var(--rule); stroke-width: .6; } .frame { fill: none; stroke: var(--faint); }
 .bar { stroke-width: 1.4; } .guide { fill: none; stroke-width: 1; opacity: .45; }
 .hollow { fill: var(--page); stroke-width: 1.8; } .mark { width: .9em; height: .9em; vertical-align: -.05em; }
-.legend span { margin-right: 1.2rem; white-space: nowrap; }
+.legend span { margin-right: 1.2rem; display: inline-block; }
+.provisional { opacity: .6; } .provisional .bar { stroke-dasharray: 3 2; } .for-narrow { display: none; }
+@media (max-width: 38rem) { body { padding: 1rem; } .for-narrow { display: inline; } .for-wide { display: none; }
+  dl, dl.scene { display: block; } dd { margin: 0 0 .3rem 1rem; }
+  table { font-size: .9rem; } th, td { padding-right: .6rem; } th { white-space: normal; }
+  td.text:last-child { white-space: nowrap; } }
 @media print { :root { color-scheme: light; --page: #ffffff; --ink: #000000; --faint: #444444;
   --rule: #bbbbbb; --panel: #ffffff; --0: #0072b2; --1: #c44e00; --2: #00805c; --3: #a8487f; --4: #b07700;
   --5: #3a8fc0; --6: #6b6b00; --7: #000000; } body { font-size: 10pt; max-width: none; padding: 0; }

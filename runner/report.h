@@ -15,6 +15,7 @@ struct ReportOptions {
   std::filesystem::path campaign;  // file or folder
   std::filesystem::path directory;
   std::filesystem::path output;  // "": standard output
+  bool quiet = false;            // does not say where it is
 };
 
 // Throws IntegrityError when stored looks are not what the stored results say.

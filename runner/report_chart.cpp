@@ -75,17 +75,21 @@ class Sweep {
   std::size_t rows_;
 };
 
-bool has_interval(const PointSummary& point) {
-  return !point.looks.empty() && std::isfinite(point.looks.back().controlled.mean) &&
-         std::isfinite(point.looks.back().controlled_half_width);
-}
-
-ChartPoint chart_point(const PointSummary& point, double x) {
+// The interval of the last look; before the first one, the mean of the seeds that have ended, and its error.
+std::optional<ChartPoint> chart_point(const PointSummary& point, double x) {
+  using Kind = ChartPoint::Kind;
+  const auto made = [&](double mean, double error, Kind kind) {
+    return ChartPoint{x, mean, error, kind,
+                      fmt::format("{}: {}", point.point.label, with_error(mean, error))};
+  };
+  if (point.looks.empty()) {
+    if (point.so_far.count < 2) return std::nullopt;
+    return made(point.so_far.mean, point.so_far.standard_error, Kind::provisional);
+  }
   const Look& look = point.looks.back();
-  const bool converged = look.verdict == Verdict::converged || look.verdict == Verdict::converged_with_losses;
-  return {
-      x, look.controlled.mean, look.controlled_half_width, converged,
-      fmt::format("{}: {}", point.point.label, with_error(look.controlled.mean, look.controlled_half_width))};
+  if (!std::isfinite(look.controlled.mean) || !std::isfinite(look.controlled_half_width)) return std::nullopt;
+  return made(look.controlled.mean, look.controlled_half_width,
+              is_converged(look.verdict) ? Kind::decided : Kind::undecided);
 }
 
 std::string series_name(const Sweep& sweep, std::size_t row, const std::vector<std::size_t>& columns) {
@@ -112,7 +116,8 @@ ReportChart report_chart(const std::vector<PointSummary>& points, const std::str
   Chart chart{sweep.title(*variable), observable, {}};
   std::size_t absent = 0;
   for (std::size_t row = 0; row < points.size(); ++row) {
-    if (!has_interval(points[row])) {
+    std::optional<ChartPoint> drawn = chart_point(points[row], *number(sweep.cell(row, *variable)));
+    if (!drawn) {
       ++absent;
       continue;
     }
@@ -120,9 +125,10 @@ ReportChart report_chart(const std::vector<PointSummary>& points, const std::str
     auto series = std::find_if(chart.series.begin(), chart.series.end(),
                                [&](const ChartSeries& known) { return known.name == name; });
     if (series == chart.series.end()) series = chart.series.insert(series, {name, {}});
-    series->points.push_back(chart_point(points[row], *number(sweep.cell(row, *variable))));
+    series->points.push_back(std::move(*drawn));
   }
-  if (chart.series.empty()) return {std::nullopt, "There is no chart yet, because no point has an interval."};
+  if (chart.series.empty())
+    return {std::nullopt, "There is no chart yet, because no point has two seeds that have ended."};
   if (chart.series.size() > most_series) {
     return {std::nullopt,
             fmt::format("There is no chart, because it would need {} curves.", chart.series.size())};
@@ -133,7 +139,7 @@ ReportChart report_chart(const std::vector<PointSummary>& points, const std::str
   }
   ReportChart made{std::move(chart), ""};
   if (absent > 0) {
-    made.note = fmt::format("{} point{} without an interval {} not drawn.", absent, absent == 1 ? "" : "s",
+    made.note = fmt::format("{} point{} without an error {} not drawn.", absent, absent == 1 ? "" : "s",
                             absent == 1 ? "is" : "are");
   }
   return made;

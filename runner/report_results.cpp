@@ -19,8 +19,17 @@ std::string paragraph(const std::string& text) {
   return text.empty() ? "" : "<p class=\"faint\">" + escaped(text) + "</p>\n";
 }
 
+// Seeds have ended, and none has been looked at.
+bool is_provisional(const PointSummary& point) { return point.looks.empty() && point.so_far.count > 0; }
+
 std::vector<std::string> estimates(const PointSummary& point, bool with_control) {
-  if (point.looks.empty()) return std::vector<std::string>(with_control ? 3 : 2, "-");
+  if (point.looks.empty()) {
+    std::vector<std::string> cells(with_control ? 3 : 2, "-");
+    if (is_provisional(point)) {
+      cells.front() = with_error(point.so_far.mean, point.so_far.standard_error) + " so far";
+    }
+    return cells;
+  }
   const Look& look = point.looks.back();
   std::vector<std::string> cells{with_error(look.controlled.mean, look.controlled_half_width),
                                  percent(relative_width(look))};
@@ -63,29 +72,40 @@ HtmlTable points_table(const CampaignStatus& status) {
 }
 
 std::string caption(const CampaignStatus& status) {
+  const bool any_provisional = std::any_of(status.points.begin(), status.points.end(), is_provisional);
   return fmt::format(
       "Seeds: those that have ended, of those that the deciding look takes (of an open point, the next "
       "look). The value is the mean over the seeds of the last look, ± the half-width of its {:g} % "
-      "interval; relative is the half-width over the mean.{}",
+      "interval; relative is the half-width over the mean.{}{}",
       100 * status.campaign.target.target.confidence,
       any_control(status) ? " Both are with the control variate, a quantity of known mean zero that "
                             "takes away scatter; uncontrolled is the same without it."
-                          : "");
+                          : "",
+      any_provisional ? " So far: provisional, the mean ± standard error of the seeds that happen to have "
+                        "ended, at a point that has not been looked at."
+                      : "");
 }
 
 std::string legend(const Chart& chart) {
   std::string text;
   if (chart.series.size() > 1) {
     for (std::size_t i = 0; i < chart.series.size(); ++i) {
-      text += "<span>" + svg_mark(i, true) + ' ' + escaped(chart.series[i].name) + "</span>";
+      text +=
+          "<span>" + svg_mark(i, ChartPoint::Kind::decided) + ' ' + escaped(chart.series[i].name) + "</span>";
     }
   }
-  const bool any_hollow =
-      std::any_of(chart.series.begin(), chart.series.end(), [](const ChartSeries& series) {
-        return std::any_of(series.points.begin(), series.points.end(),
-                           [](const ChartPoint& point) { return !point.solid; });
-      });
-  if (any_hollow) text += "<span>" + svg_mark(0, false) + " not converged</span>";
+  const auto any = [&](ChartPoint::Kind kind) {
+    return std::any_of(chart.series.begin(), chart.series.end(), [kind](const ChartSeries& series) {
+      return std::any_of(series.points.begin(), series.points.end(),
+                         [kind](const ChartPoint& point) { return point.kind == kind; });
+    });
+  };
+  using Kind = ChartPoint::Kind;
+  if (any(Kind::undecided)) text += "<span>" + svg_mark(0, Kind::undecided) + " not converged</span>";
+  if (any(Kind::provisional)) {
+    text += "<span class=\"provisional\">" + svg_mark(0, Kind::provisional) +
+            " provisional: mean ± standard error so far</span>";
+  }
   return text.empty() ? "" : "<div class=\"legend\">" + text + "</div>\n";
 }
 
@@ -93,7 +113,8 @@ std::string figure(const CampaignStatus& status) {
   const ReportChart report = report_chart(status.points, status.campaign.target.target.observable);
   if (!report.chart) return paragraph(report.note);
   const double confidence = status.campaign.target.target.confidence;
-  return "<figure>\n" + svg(*report.chart) + legend(*report.chart) +
+  return "<figure>\n" + svg(*report.chart, ChartForm::wide) + svg(*report.chart, ChartForm::narrow) +
+         legend(*report.chart) +
          fmt::format("<figcaption>Bars are the {:g} % intervals; lines only guide the eye. {}</figcaption>\n",
                      100 * confidence, escaped(report.note)) +
          "</figure>\n";
@@ -116,6 +137,9 @@ std::string meaning(const std::string& mark) {
       {"converged-with-losses",
        "the interval is within the tolerance, but the mean leaves out the seeds that were lost; if they were "
        "lost because of what they would have given, it is biased"},
+      {"converged-near-maximum",
+       "the interval is about as wide as the tolerance, but the seeds that are allowed are too few to tell "
+       "whether by luck: the one that is given is wider, and holds the mean as often as it says"},
       {"capped", "all seeds that are allowed have ended, and the interval is still wider than the tolerance"},
       {"failed", "too many seeds were lost to give an interval"},
       {"open", "not decided yet: the numbers are provisional"},
@@ -126,6 +150,10 @@ std::string meaning(const std::string& mark) {
       {"skewed",
        "some values are far from the rest on one side, and the interval holds the mean less often than it "
        "says"},
+      {"earlier-look",
+       "the target was tighter before: the first look within the present one decides, as if there had been "
+       "no "
+       "other, and leaves out seeds that ended later"},
       {"suspect", "a seed gave two different results; no number of this point can be trusted"},
       {"timestep", "seeds whose time step made too much energy or changes the stress"},
       {"solver", "seeds whose implicit steps were solved too inaccurately"},

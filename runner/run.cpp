@@ -11,6 +11,8 @@
 #include <thread>
 
 #include "runner/budget.h"
+#include "runner/bundle_files.h"
+#include "runner/campaign_file.h"
 #include "runner/dispatcher.h"
 #include "runner/event_stream.h"
 #include "runner/exit_code.h"
@@ -54,8 +56,7 @@ struct Opened {
         ledger(database, claimed.campaign, claimed.directory, listener, retries),
         requests(database, ledger, claimed.directory, listener) {
     requests.carry_out();
-    if (!options.accept_engine.empty())
-      accept_engine(ledger, claimed.engine, options.accept_engine, listener);
+    if (!options.accept_engine.empty()) accept_engine(ledger, claimed.engine, listener);
   }
 
   Database database;
@@ -64,14 +65,7 @@ struct Opened {
   SummedError before;  // the run
 };
 
-// As they were given, for a command that is to be repeated.
-std::string words_for(const RunOptions& options) {
-  std::string words = options.campaign.string();
-  if (!options.directory.empty()) words += " --directory " + options.directory.string();
-  return words;
-}
-
-// Waits while the disk is too full to begin. Nothing: a signal came first.
+// Waits while the disk is too full to begin. Nothing: a signal came first, or there never will be room.
 std::unique_ptr<Opened> open_when_there_is_room(const ClaimedCampaign& claimed, const RunOptions& options,
                                                 RunListener& listener, StopSignals& signals) {
   for (bool first = true;; first = false) {
@@ -81,6 +75,11 @@ std::unique_ptr<Opened> open_when_there_is_room(const ClaimedCampaign& claimed, 
       return opened;
     } catch (const std::exception& error) {
       if (!means_no_room(error)) throw;
+      const CampaignDirectory& directory = claimed.directory;
+      if (const std::string why = why_in_vain(directory.root(), directory.root(), 0); !why.empty()) {
+        listener.warn(why);
+        return nullptr;
+      }
       if (first) {
         const std::string shortage = shortage_text(claimed.directory.root(), 0);
         listener.happened(ShortageBegan{shortage});
@@ -139,9 +138,10 @@ void tell_of_failure(RunLog& log, bool had_begun, const std::exception& error) {
 }
 
 std::string how_to_go_on(const RunOptions& options, const CampaignStatus& status) {
-  if (!status.handed_over.empty()) return "";  // `peclet ingest` does, as has been said
+  if (!status.handed_over.empty())
+    return handed_over_advice(status.handed_over, words_for(options.campaign, options.directory));
   return fmt::format("\nstopped; all that was done is kept, and `peclet run {}` goes on from there\n",
-                     words_for(options));
+                     words_for(options.campaign, options.directory));
 }
 
 Bounds bounds_of(const RunOptions& options, const ClaimedCampaign& claimed, std::optional<int> ceiling) {
@@ -156,7 +156,7 @@ Bounds bounds_of(const RunOptions& options, const ClaimedCampaign& claimed, std:
 using Conclusion = std::function<void(const ClaimedCampaign&, Opened&, int code)>;
 
 int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion& conclude) {
-  const ClaimedCampaign claimed(options.campaign, options.directory, options.force);
+  const ClaimedCampaign claimed(options.campaign, options.directory, options.force, options.accept_engine);
   StopSignals signals;
   std::unique_ptr<Opened> opened;
   int code = exit_stopped;
@@ -174,7 +174,9 @@ int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion&
         code = dispatch(*opened, options, claimed, log, signals);
       }
     } catch (const OtherEngine& error) {
-      const OtherEngine advised(error.what() + acceptance_hint("run " + words_for(options), claimed.engine));
+      const OtherEngine advised(
+          error.what() +
+          acceptance_hint("run " + words_for(options.campaign, options.directory), claimed.engine));
       tell_of_failure(log, opened != nullptr, advised);
       throw advised;
     } catch (const std::exception& error) {
@@ -200,7 +202,8 @@ Team team(const RunOptions& options) {
 
 int run_campaign(const RunOptions& options) {
   return run(options, std::nullopt, [&](const ClaimedCampaign&, Opened& opened, int code) {
-    const CampaignStatus status = read_status(opened.database);
+    CampaignStatus status = read_status(opened.database);
+    status.owner = getpid();
     std::string text = status_table(status);
     if (options.budget_hours) {
       text += budget_text(opened.ledger.spent_seconds(), seconds_per_hour * *options.budget_hours,

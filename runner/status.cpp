@@ -110,18 +110,19 @@ std::vector<std::string> reservations(const PointSummary& point) {
   std::vector<std::string> found;
   if (!point.looks.empty() && point.looks.back().transient) found.emplace_back("transient");
   if (point.decided && is_skewed(point.looks.back(), point.confidence)) found.emplace_back("skewed");
+  if (point.earlier_look > 0) found.emplace_back("earlier-look");
   for (const auto& [code, count] : point.flags) found.push_back(fmt::format("{} flagged {}", count, code));
   if (point.point.suspect) found.emplace_back("suspect");
   return found;
 }
 
 Json look_json(const Look& look) {
-  Json json = estimate_json(look.estimate);
+  Json json = estimate_json(look.controlled);
   json["seeds"] = look.seeds;
   json["lost"] = look.lost;
-  json["half_width"] = number(look.half_width);
-  json["controlled"] = estimate_json(look.controlled);
-  json["controlled"]["half_width"] = number(look.controlled_half_width);
+  json["half_width"] = number(look.controlled_half_width);
+  json["uncontrolled"] = estimate_json(look.estimate);
+  json["uncontrolled"]["half_width"] = number(look.half_width);
   json["skewness"] = number(look.skewness);
   json["transient"] = look.transient;
   json["verdict"] = to_string(look.verdict);

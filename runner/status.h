@@ -10,6 +10,7 @@
 #include "contract/json.h"
 #include "runner/bundle_book.h"
 #include "runner/database_summary.h"
+#include "runner/folded_text.h"
 
 namespace peclet::runner {
 
@@ -45,17 +46,20 @@ std::string standing_word(const PointSummary& point);
 // "converged", "converged-with-losses(2)", "capped, 2 lost", "failed, 10 lost", "open"; "open, suspect";
 // "cancelled".
 std::string verdict_text(const PointSummary& point);
-// What speaks against its estimate: "transient", "skewed", "2 flagged timestep", "suspect".
+// What speaks against its estimate: "transient", "skewed", "2 flagged timestep", "suspect"; and
+// "earlier-look" where a target that was loosened is met by an earlier look than there are seeds for.
 std::vector<std::string> reservations(const PointSummary& point);
 
-// The table and its totals, as `peclet run` prints them at the end.
-std::string status_table(Database& database);
-std::string status_table(const CampaignStatus& status);
+// The table and its totals; as the process that owns the campaign prints them at the end. In few columns of a
+// terminal it does without what matters least; the verdict is always whole.
+std::string status_table(Database& database, std::int64_t owner);
+std::string status_table(const CampaignStatus& status, std::size_t width = unlimited_width);
 // Who runs it and how far the workers are; nothing when the campaign is decided and nobody runs it.
-std::string workers_text(const CampaignStatus& status);
+std::string workers_text(const CampaignStatus& status, std::size_t width = unlimited_width);
 Json status_json(const CampaignStatus& status);
 
-// An estimate with its half-width; numbers that do not exist are null.
+// The estimate that decides with its half-width, and the one without the control variate; numbers that do not
+// exist are null.
 Json look_json(const Look& look);
 
 }  // namespace peclet::runner

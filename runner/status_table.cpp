@@ -1,5 +1,6 @@
 // How `status` looks to a person.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -42,12 +43,45 @@ std::string heading(const CampaignStatus& status) {
                      100 * target.target.confidence, target.minimum, target.maximum);
 }
 
-std::string legend(const CampaignStatus& status, bool with_control) {
-  return fmt::format(
-      "so far: mean ± standard error of all seeds that have ended; look: mean ± half-width of the\n"
-      "{:g} % interval at the last look{}\n",
-      100 * status.campaign.target.target.confidence,
-      with_control ? "; both with the control variate; uncontrolled: the look without it" : "");
+// Columns as a narrow terminal does without them; which point and which verdict are always there.
+namespace importance {
+constexpr int uncontrolled = 1, so_far = 2, seeds = 3, look = 4;
+}
+
+// Of the columns that are shown.
+std::string legend(const CampaignStatus& status, bool with_control, const std::vector<std::string>& left_out,
+                   std::size_t width) {
+  // Where both lines of it fit, it is broken so that neither is much longer.
+  const char* const blank = width >= 100 ? "\n" : " ";
+  const auto shows = [&](const char* title) {
+    return std::find(left_out.begin(), left_out.end(), title) == left_out.end();
+  };
+  std::vector<std::string> parts;
+  if (shows("so far")) parts.emplace_back("so far: mean ± standard error of all seeds that have ended");
+  if (shows("look")) {
+    parts.push_back(fmt::format("look: mean ± half-width of the{}{:g} % interval at the last look", blank,
+                                100 * status.campaign.target.target.confidence));
+  }
+  if (with_control && parts.size() == 2) parts.emplace_back("both with the control variate");
+  if (with_control && parts.size() == 1) parts.back() += ", with the control variate";
+  if (with_control && shows("uncontrolled")) parts.emplace_back("uncontrolled: the look without it");
+  std::string text = fmt::format("{}\n", fmt::join(parts, "; "));
+  if (!left_out.empty()) text += fmt::format("too narrow for: {}\n", fmt::join(left_out, ", "));
+  return folded(text, width);
+}
+
+// A loosened target is met by the look by which it would have been met from the beginning: whoever could
+// choose the look afterwards could choose the answer.
+std::string earlier_looks_text(const CampaignStatus& status) {
+  std::string text;
+  for (const PointSummary& point : status.points) {
+    if (point.earlier_look == 0) continue;
+    text += fmt::format(
+        "{}: the look at {} seeds decides, the first within the present target; all {} that "
+        "have ended are in \"so far\"\n",
+        point.point.label, point.looks.back().seeds, point.counts.terminal());
+  }
+  return text;
 }
 
 // "3 capped, 2 open"
@@ -100,7 +134,10 @@ std::string seed_totals(const CampaignStatus& status) {
   std::string text = fmt::format("{} seeds ended", ended);
   if (lost > 0) text += fmt::format(", {} of them lost ({})", lost, listed(losses));
   if (surplus > 0) text += fmt::format(", {} surplus", surplus);
-  if (running > 0) text += fmt::format("; {} running", running);
+  if (running > 0) {
+    text +=
+        fmt::format("; {} {}", running, status.owner ? "running" : "were running when the run was killed");
+  }
   text += handed_over_text(status);
   return text + fmt::format("; processor time {}\n", duration_text(cpu_seconds));
 }
@@ -120,15 +157,17 @@ std::string point_totals(const CampaignStatus& status) {
                      listed(verdicts));
 }
 
-std::string status_table(const CampaignStatus& status) {
+std::string status_table(const CampaignStatus& status, std::size_t width) {
   const bool with_control = any_control(status);
   std::vector<std::string> labels;
   for (const PointSummary& point : status.points) labels.push_back(point.point.label);
   const PointColumns points(labels);
   TextTable table;
   points.add_to(table);
-  for (const char* const title : {"seeds", "so far", "look"}) table.add_column(title);
-  if (with_control) table.add_column("uncontrolled");
+  table.add_column("seeds", TextTable::Align::right, importance::seeds);
+  table.add_column("so far", TextTable::Align::right, importance::so_far);
+  table.add_column("look", TextTable::Align::right, importance::look);
+  if (with_control) table.add_column("uncontrolled", TextTable::Align::right, importance::uncontrolled);
   table.add_column("verdict", TextTable::Align::left);
   for (std::size_t i = 0; i < labels.size(); ++i) {
     std::vector<std::string> row = points.cells(i);
@@ -136,13 +175,19 @@ std::string status_table(const CampaignStatus& status) {
     row.insert(row.end(), rest.begin(), rest.end());
     table.add_row(std::move(row));
   }
-  return heading(status) + table.text() + '\n' + legend(status, with_control) + '\n' + point_totals(status) +
-         '\n' + seed_totals(status) + kept_apart_text(status) + predictions_text(status.points);
+  const std::string totals = point_totals(status) + '\n' + seed_totals(status) + earlier_looks_text(status) +
+                             kept_apart_text(status) + predictions_text(status.points);
+  return folded(heading(status), width) + table.text_within(width) + '\n' +
+         legend(status, with_control, table.left_out(width), width) + '\n' + folded(totals, width);
 }
 
-std::string status_table(Database& database) { return status_table(read_status(database)); }
+std::string status_table(Database& database, std::int64_t owner) {
+  CampaignStatus status = read_status(database);
+  status.owner = owner;
+  return status_table(status);
+}
 
-std::string workers_text(const CampaignStatus& status) {
+std::string workers_text(const CampaignStatus& status, std::size_t width) {
   constexpr std::size_t most_lines = 16;
   if (!status.owner) {
     if (standing(status) != 4) return "";
@@ -150,10 +195,11 @@ std::string workers_text(const CampaignStatus& status) {
                                       : "\nnobody takes results in now; `peclet ingest` does\n";
   }
   TextTable table;
-  for (const char* const title : {"worker", "point and seed", "phase", "done", "strain"}) {
-    const bool is_text = std::string(title) == "point and seed" || std::string(title) == "phase";
-    table.add_column(title, is_text ? TextTable::Align::left : TextTable::Align::right);
-  }
+  table.add_column("worker", TextTable::Align::right, 2);
+  table.add_column("point and seed", TextTable::Align::left);
+  table.add_column("phase", TextTable::Align::left, 3);
+  table.add_column("done", TextTable::Align::right, 4);
+  table.add_column("strain", TextTable::Align::right, 1);
   std::size_t workers = 0;
   for (const PointSummary& point : status.points) {
     for (const LeaseRecord& lease : point.leases) {
@@ -166,7 +212,7 @@ std::string workers_text(const CampaignStatus& status) {
     }
   }
   std::string text = fmt::format("\nprocess {} runs it\n", *status.owner);
-  if (workers > 0) text += table.text();
+  if (workers > 0) text += table.text_within(width);
   if (workers > most_lines) text += fmt::format("and {} more\n", workers - most_lines);
   return text;
 }

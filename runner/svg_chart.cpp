@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "runner/chart_axis.h"
 #include "runner/html.h"
@@ -11,9 +12,23 @@
 namespace peclet::runner {
 namespace {
 
-constexpr double width = 720, height = 400;
-constexpr double left = 72, right = width - 14, top = 12, bottom = height - 52;
 constexpr double radius = 4.5;  // of marks
+
+// Where the frame is, and how many numbers fit below it.
+struct Canvas {
+  const char* style;
+  double width, height;
+  std::size_t most_ticks;
+  double left = 72, top = 12;
+  double right() const { return width - 14; }
+  double bottom() const { return height - 52; }
+};
+
+Canvas canvas_of(ChartForm form) {
+  return form == ChartForm::wide ? Canvas{"for-wide", 720, 400, 9} : Canvas{"for-narrow", 360, 300, 5};
+}
+
+const char* style_of(ChartPoint::Kind kind) { return kind == ChartPoint::Kind::decided ? "solid" : "hollow"; }
 
 // From the smallest to the largest number of one direction.
 struct Range {
@@ -30,8 +45,8 @@ std::string line(double x1, double y1, double x2, double y2, const char* style) 
 }
 
 // Circle, square, diamond and triangle in turn.
-std::string mark(std::size_t series, double x, double y, bool solid) {
-  const char* const style = solid ? "solid" : "hollow";
+std::string mark(std::size_t series, double x, double y, ChartPoint::Kind kind) {
+  const char* const style = style_of(kind);
   const double r = radius;
   switch (series % 4) {
     case 0:
@@ -48,7 +63,8 @@ std::string mark(std::size_t series, double x, double y, bool solid) {
   }
 }
 
-std::string frame(const Chart& chart, const ChartAxis& x, const ChartAxis& y) {
+std::string frame(const Chart& chart, const Canvas& canvas, const ChartAxis& x, const ChartAxis& y) {
+  const double left = canvas.left, right = canvas.right(), top = canvas.top, bottom = canvas.bottom();
   std::string text;
   for (const ChartAxis::Tick& tick : x.ticks()) {
     const double place = x.place(tick.value);
@@ -66,7 +82,7 @@ std::string frame(const Chart& chart, const ChartAxis& x, const ChartAxis& y) {
                       right - left, bottom - top);
   const double middle = (left + right) / 2, centre = (top + bottom) / 2;
   text += fmt::format("<text class=\"title\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n",
-                      middle, height - 10, escaped(chart.x_title));
+                      middle, canvas.height - 10, escaped(chart.x_title));
   text += fmt::format(
       "<text class=\"title\" transform=\"translate(16 {:.1f}) rotate(-90)\" "
       "text-anchor=\"middle\">{}</text>\n",
@@ -90,34 +106,44 @@ std::string drawn(const ChartSeries& series, std::size_t index, const ChartAxis&
   }
   if (series.points.size() > 1) text += "<path class=\"guide\" d=\"" + path + "\"/>\n";
   for (const ChartPoint& point : series.points) {
-    text += "<g><title>" + escaped(point.title) + "</title>\n" + error_bar(point, x, y) +
-            mark(index, x.place(point.x), y.place(point.y), point.solid) + "</g>\n";
+    const bool provisional = point.kind == ChartPoint::Kind::provisional;
+    text += std::string(provisional ? "<g class=\"provisional\">" : "<g>") + "<title>" +
+            escaped(point.title) + "</title>\n" + error_bar(point, x, y) +
+            mark(index, x.place(point.x), y.place(point.y), point.kind) + "</g>\n";
   }
   return text + "</g>\n";
 }
 
 }  // namespace
 
-std::string svg(const Chart& chart) {
+std::string svg(const Chart& chart, ChartForm form) {
   Range across, up;
+  std::vector<double> places, ends;
   for (const ChartSeries& series : chart.series) {
     for (const ChartPoint& point : series.points) {
       across.include(point.x);
-      up.include(point.y - point.error);
-      up.include(point.y + point.error);
+      places.push_back(point.x);
+      for (const double end : {point.y - point.error, point.y + point.error}) {
+        up.include(end);
+        ends.push_back(end);
+      }
     }
   }
-  const ChartAxis x(across.low, across.high, left, right), y(up.low, up.high, bottom, top);
-  std::string text = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{} over {}\">\n",
-                                 width, height, escaped(chart.y_title), escaped(chart.x_title));
-  text += frame(chart, x, y);
+  const Canvas canvas = canvas_of(form);
+  const ChartAxis x(fitting_scale(places), across.low, across.high, canvas.left, canvas.right(),
+                    canvas.most_ticks);
+  const ChartAxis y(fitting_scale(ends), up.low, up.high, canvas.bottom(), canvas.top);
+  std::string text =
+      fmt::format("<svg class=\"{}\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{} over {}\">\n",
+                  canvas.style, canvas.width, canvas.height, escaped(chart.y_title), escaped(chart.x_title));
+  text += frame(chart, canvas, x, y);
   for (std::size_t i = 0; i < chart.series.size(); ++i) text += drawn(chart.series[i], i, x, y);
   return text + "</svg>\n";
 }
 
-std::string svg_mark(std::size_t series, bool solid) {
+std::string svg_mark(std::size_t series, ChartPoint::Kind kind) {
   return fmt::format("<svg class=\"mark series-{}\" viewBox=\"0 0 14 14\">{}</svg>", series,
-                     mark(series, 7, 7, solid));
+                     mark(series, 7, 7, kind));
 }
 
 }  // namespace peclet::runner

@@ -12,8 +12,9 @@ namespace peclet::runner {
 struct ChartPoint {
   double x = 0, y = 0;
   double error = 0;  // half-length of its bar
-  bool solid = true;
-  std::string title;  // shown by browsers over the mark
+  enum class Kind { decided, undecided, provisional };
+  Kind kind = Kind::decided;  // full mark; hollow; hollow and faint, with a bar of dashes
+  std::string title;          // shown by browsers over the mark
 };
 
 struct ChartSeries {
@@ -28,10 +29,14 @@ struct Chart {
 
 constexpr std::size_t most_series = 8;
 
+// Text keeps its size where a chart is shrunk to a telephone only if that is drawn for it: a page has both
+// forms, and shows one.
+enum class ChartForm { wide, narrow };
+
 // Requires finite numbers, one point at least, and no more than `most_series`.
-std::string svg(const Chart& chart);
+std::string svg(const Chart& chart, ChartForm form = ChartForm::wide);
 
 // The mark of the i-th series alone, as small as text.
-std::string svg_mark(std::size_t series, bool solid);
+std::string svg_mark(std::size_t series, ChartPoint::Kind kind);
 
 }  // namespace peclet::runner

@@ -9,6 +9,9 @@
 #include <cstdio>
 #include <vector>
 
+#include "runner/being_set_up.h"
+#include "runner/campaign.h"
+#include "runner/folded_text.h"
 #include "runner/open_campaign.h"
 #include "runner/status.h"
 #include "runner/stop_signals.h"
@@ -35,11 +38,20 @@ struct Sight {
 };
 
 // A reader of its own each time: one that stayed open would hold back the owner's write-ahead log.
-Sight look(const WatchOptions& options) {
+Sight look(const WatchOptions& options, std::size_t width) {
   OpenCampaign open = open_campaign(options.campaign, options.directory);
   CampaignStatus status = read_status(open.database);
   status.owner = current_owner(open.directory);
-  return {status_table(status) + workers_text(status), standing(status)};
+  return {status_table(status, width) + workers_text(status, width), standing(status)};
+}
+
+// Throws InputError for a campaign with a fault, because `run` would refuse it.
+Sight look_for_beginning(const WatchOptions& options, std::size_t width) {
+  const std::string text =
+      fmt::format("{}: nothing has been run yet; waiting for `peclet run {}{}`\n",
+                  read_campaign(options.campaign).name, options.campaign.string(),
+                  options.directory.empty() ? "" : " --directory " + options.directory.string());
+  return {folded(text, width), exit_unfinished};
 }
 
 bool is_continuation(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
@@ -66,8 +78,16 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-void show(const std::string& text) {
-  const Size size = terminal_size();
+Sight sight_of(const WatchOptions& options, std::size_t width) {
+  if (awaits_its_first_run(options.campaign, options.directory)) return look_for_beginning(options, width);
+  try {
+    return look(options, width);
+  } catch (const BeingSetUp&) {
+    return {folded(options.campaign.string() + ": is only just being set up\n", width), exit_unfinished};
+  }
+}
+
+void show(const std::string& text, const Size& size) {
   // Home, then line by line with what was there before erased, then everything below: no flicker.
   std::string screen = "\x1b[H";
   const std::string visible = fitted(text, size.rows - 1, size.columns);
@@ -102,9 +122,11 @@ int watch_campaign(const WatchOptions& options) {
   const std::chrono::milliseconds interval(static_cast<int>(1000 * options.interval_seconds));
   std::string before;
   for (;;) {
-    const Sight sight = look(options);
+    const Size size = terminal_size();
+    const std::size_t width = terminal ? static_cast<std::size_t>(size.columns) : unlimited_width;
+    const Sight sight = sight_of(options, width);
     if (terminal) {
-      show(sight.text);
+      show(sight.text, size);
     } else if (sight.text != before) {
       fmt::print("{}{}", before.empty() ? "" : "\n", sight.text);
       std::fflush(stdout);

@@ -15,8 +15,8 @@ struct WatchOptions {
 
 // Shows the status until every point is decided or somebody presses Ctrl-C; a campaign that nobody runs is
 // shown all the same, because its owner may come back. Off a terminal each state is printed once, whole, when
-// it has changed. The exit code is that of `status --check`. Throws as open_campaign() when there is no such
-// campaign.
+// it has changed. A campaign file that nothing has been run of yet is waited for. The exit code is that of
+// `status --check`. Throws as open_campaign() when there is no such campaign.
 int watch_campaign(const WatchOptions& options);
 
 // As much of the text as a terminal shows without scrolling or folding: the first `rows` lines, each at most

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "runner/chart_axis.h"
 #include "runner/html.h"
@@ -10,55 +11,75 @@
 namespace peclet::runner {
 namespace {
 
-TEST(ChartAxis, IsLogarithmicBeyondAFactorOfTwentyOfPositiveNumbers) {
-  EXPECT_FALSE(ChartAxis(1, 20, 0, 100).is_logarithmic());
-  EXPECT_TRUE(ChartAxis(1, 20.1, 0, 100).is_logarithmic());
-  EXPECT_FALSE(ChartAxis(0, 1000, 0, 100).is_logarithmic());
-  EXPECT_FALSE(ChartAxis(-1, 1000, 0, 100).is_logarithmic());
+using Scale = ChartAxis::Scale;
+
+TEST(ChartAxis, IsLogarithmicWhereNumbersLieMoreEvenlyThen) {
+  EXPECT_EQ(fitting_scale({2.2, 2.9, 4.1, 7.0, 21}), Scale::logarithmic);  // a viscosity towards jamming
+  EXPECT_EQ(fitting_scale({1000, 1, 10, 100}), Scale::logarithmic);
+  EXPECT_EQ(fitting_scale({0.1, 0.2, 0.3, 0.4, 0.5, 0.6}), Scale::linear);
+  EXPECT_EQ(fitting_scale({0.01, 1, 2, 3, 4}), Scale::linear);
+  EXPECT_EQ(fitting_scale({5.7, 7.2, 7.8}), Scale::linear);  // less than a factor of five
+}
+
+TEST(ChartAxis, IsLinearWhereThereAreNoLogarithms) {
+  EXPECT_EQ(fitting_scale({0, 1, 10, 100, 1000}), Scale::linear);
+  EXPECT_EQ(fitting_scale({-1, 1, 10, 100, 1000}), Scale::linear);
+  EXPECT_EQ(fitting_scale({3}), Scale::linear);
+  EXPECT_EQ(fitting_scale({}), Scale::linear);
 }
 
 TEST(ChartAxis, LeavesTheSameMarginOnBothSides) {
-  for (const auto& [low, high] : {std::pair{2.0, 6.0}, std::pair{0.1, 1000.0}}) {
-    const ChartAxis axis(low, high, 100, 700);
+  for (const auto& [low, high, scale] :
+       {std::tuple{2.0, 6.0, Scale::linear}, std::tuple{0.1, 1000.0, Scale::logarithmic}}) {
+    const ChartAxis axis(scale, low, high, 100, 700);
     EXPECT_GT(axis.place(low), 100);
     EXPECT_NEAR(axis.place(low) - 100, 700 - axis.place(high), 1e-9);
   }
 }
 
 TEST(ChartAxis, EqualDifferencesOrRatiosAreEquallyLong) {
-  const ChartAxis linear(2, 6, 400, 0), logarithmic(0.1, 1000, 0, 400);
+  const ChartAxis linear(Scale::linear, 2, 6, 400, 0), logarithmic(Scale::logarithmic, 0.1, 1000, 0, 400);
   EXPECT_NEAR(linear.place(3) - linear.place(2), linear.place(6) - linear.place(5), 1e-9);
   EXPECT_LT(linear.place(6), linear.place(2));  // drawn upwards
   EXPECT_NEAR(logarithmic.place(1) - logarithmic.place(0.1), logarithmic.place(1000) - logarithmic.place(100),
               1e-9);
 }
 
-TEST(ChartAxis, HasThreeToNineTicksWithinItselfWhateverItsRange) {
+// With five at most, as a telephone shows them, some ranges have two only.
+TEST(ChartAxis, HasAFewTicksWithinItselfWhateverItsRange) {
   for (const double low : {1e-9, 0.1, 0.3, 1.0, 7.7, 9.99, 1e6}) {
-    for (const double ratio : {1.0, 1.0001, 1.5, 3.0, 19.0, 21.0, 60.0, 1e3, 1e5, 1e9, 1e12, 1e15}) {
-      const ChartAxis axis(low, ratio * low, 0, 100);
-      const std::vector<ChartAxis::Tick> ticks = axis.ticks();
-      EXPECT_GE(ticks.size(), 3U) << low << " x " << ratio;
-      EXPECT_LE(ticks.size(), 9U) << low << " x " << ratio;
-      for (const ChartAxis::Tick& tick : ticks) {
-        EXPECT_GE(axis.place(tick.value), 0);
-        EXPECT_LE(axis.place(tick.value), 100);
+    for (const double ratio :
+         {1.0, 1.0001, 1.5, 3.0, 5.0, 9.5, 19.0, 21.0, 60.0, 1e3, 1e5, 1e9, 1e12, 1e15}) {
+      for (const Scale scale : {Scale::linear, Scale::logarithmic}) {
+        if (scale == Scale::logarithmic && ratio < 5) continue;
+        for (const std::size_t most : {9U, 5U}) {
+          const ChartAxis axis(scale, low, ratio * low, 0, 100, most);
+          const std::vector<ChartAxis::Tick> ticks = axis.ticks();
+          EXPECT_GE(ticks.size(), most == 9 ? 3U : 2U) << low << " x " << ratio;
+          EXPECT_LE(ticks.size(), most) << low << " x " << ratio;
+          for (const ChartAxis::Tick& tick : ticks) {
+            EXPECT_GE(axis.place(tick.value), 0);
+            EXPECT_LE(axis.place(tick.value), 100);
+          }
+        }
       }
     }
   }
 }
 
 TEST(ChartAxis, TicksAreRoundNumbers) {
-  const auto texts = [](const ChartAxis& axis) {
+  const auto texts = [](Scale scale, double low, double high) {
     std::string all;
-    for (const ChartAxis::Tick& tick : axis.ticks()) all += tick.text + ' ';
+    for (const ChartAxis::Tick& tick : ChartAxis(scale, low, high, 0, 1).ticks()) all += tick.text + ' ';
     return all;
   };
-  EXPECT_EQ(texts(ChartAxis(0, 1, 0, 1)), "0 0.2 0.4 0.6 0.8 1 ");
-  EXPECT_EQ(texts(ChartAxis(-1, 1, 0, 1)), "-1 -0.5 0 0.5 1 ");
-  EXPECT_EQ(texts(ChartAxis(0.1, 10000, 0, 1)), "0.1 1 10 100 1000 10000 ");
-  EXPECT_EQ(texts(ChartAxis(1e-5, 1e6, 0, 1)), "10⁻⁴ 0.01 1 100 10000 10⁶ ");
-  EXPECT_EQ(texts(ChartAxis(2e6, 4e6, 0, 1)), "2·10⁶ 2.5·10⁶ 3·10⁶ 3.5·10⁶ 4·10⁶ ");
+  EXPECT_EQ(texts(Scale::linear, 0, 1), "0 0.2 0.4 0.6 0.8 1 ");
+  EXPECT_EQ(texts(Scale::linear, -1, 1), "-1 -0.5 0 0.5 1 ");
+  EXPECT_EQ(texts(Scale::linear, 2e6, 4e6), "2·10⁶ 2.5·10⁶ 3·10⁶ 3.5·10⁶ 4·10⁶ ");
+  EXPECT_EQ(texts(Scale::logarithmic, 0.1, 10000), "0.1 1 10 100 1000 10000 ");
+  EXPECT_EQ(texts(Scale::logarithmic, 1e-5, 1e6), "10⁻⁴ 0.01 1 100 10000 10⁶ ");
+  EXPECT_EQ(texts(Scale::logarithmic, 2.2, 21), "2 5 10 20 ");
+  EXPECT_EQ(texts(Scale::logarithmic, 12, 60), "20 30 40 50 60 ");
 }
 
 PointSummary point(const std::string& label, double mean, double half_width, Verdict verdict) {
@@ -106,10 +127,26 @@ TEST(ReportChart, MarksAreFullOnlyForConvergedPointsAndBarsAreTheInterval) {
   ASSERT_TRUE(report.chart);
   const std::vector<ChartPoint>& points = report.chart->series.at(0).points;
   for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_EQ(points[i].solid, i < 2);
+    EXPECT_EQ(points[i].kind, i < 2 ? ChartPoint::Kind::decided : ChartPoint::Kind::undecided);
     EXPECT_EQ(points[i].y, 10.0 + static_cast<double>(i));
     EXPECT_EQ(points[i].error, 1.0 + static_cast<double>(i));
   }
+}
+
+TEST(ReportChart, BeforeTheFirstLookThereIsTheMeanSoFar) {
+  PointSummary young = converged("pe=2"), single = converged("pe=3");
+  young.looks.clear();
+  young.so_far = {3, 11.5, 0.25};
+  single.looks.clear();
+  single.so_far = {1, 11.5, NAN};
+  const ReportChart report = report_chart({converged("pe=1"), young, single}, "viscosity");
+  ASSERT_TRUE(report.chart);
+  const std::vector<ChartPoint>& points = report.chart->series.at(0).points;
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_EQ(points[1].kind, ChartPoint::Kind::provisional);
+  EXPECT_EQ(points[1].y, 11.5);
+  EXPECT_EQ(points[1].error, 0.25);
+  EXPECT_EQ(report.note, "1 point without an error is not drawn.");
 }
 
 TEST(ReportChart, SaysWhyItIsNotThereAndWhatItLeavesOut) {
@@ -124,7 +161,7 @@ TEST(ReportChart, SaysWhyItIsNotThereAndWhatItLeavesOut) {
       report_chart({converged("pe=1"), unseen, point("pe=3", NAN, NAN, Verdict::failed)}, "viscosity");
   ASSERT_TRUE(gap.chart);
   EXPECT_EQ(gap.chart->series.at(0).points.size(), 1U);
-  EXPECT_EQ(gap.note, "2 points without an interval are not drawn.");
+  EXPECT_EQ(gap.note, "2 points without an error are not drawn.");
 
   std::vector<PointSummary> many;
   for (int form = 0; form < 9; ++form) {
@@ -134,8 +171,15 @@ TEST(ReportChart, SaysWhyItIsNotThereAndWhatItLeavesOut) {
   EXPECT_EQ(report_chart(many, "viscosity").note, "There is no chart, because it would need 9 curves.");
 }
 
+TEST(SvgChart, TheNarrowFormIsDrawnForTheSizeThatItHasThere) {
+  const Chart chart{"x", "y", {{"", {{1, 2, 0.5, ChartPoint::Kind::decided, ""}, {2, 3, 0.5, {}, ""}}}}};
+  // A telephone of 390 pixels leaves the page some 358 of them: text of 13 px stays as large as it is.
+  EXPECT_NE(svg(chart, ChartForm::narrow).find("viewBox=\"0 0 360 300\""), std::string::npos);
+  EXPECT_NE(svg(chart).find("viewBox=\"0 0 720 400\""), std::string::npos);
+}
+
 TEST(SvgChart, NamesOfUsersAreEscaped) {
-  const Chart chart{"<x>", "\"y\"", {{"a & b", {{1, 2, 0.5, true, "<t>"}}}}};
+  const Chart chart{"<x>", "\"y\"", {{"a & b", {{1, 2, 0.5, ChartPoint::Kind::decided, "<t>"}}}}};
   const std::string text = svg(chart);
   EXPECT_NE(text.find("<title>&lt;t&gt;</title>"), std::string::npos);
   EXPECT_NE(text.find("&lt;x&gt;"), std::string::npos);

@@ -58,6 +58,21 @@ TEST(Explain, ACappedPointIsToldHowManySeedsItWouldTake) {
   EXPECT_TRUE(says(text, "/realisations/maximum (about 26 seeds)")) << text;
 }
 
+// Values +- 10 around 0.25: any number of seeds for a share of such a mean would be an accident.
+TEST(Explain, AMeanThatMayBeZeroIsNotAdvisedToTakeMillionsOfSeeds) {
+  StoredCampaign campaign(1, 8, 8), open(1, 8, 20);
+  for (int seed = 0; seed < 8; ++seed) {
+    campaign.complete(0, seed, seed % 2 == 0 ? -10 : 10);
+    open.complete(0, seed, seed % 2 == 0 ? -10 : 10);
+  }
+  const std::string text = explain(campaign.database(), campaign.directory(), "");
+  EXPECT_TRUE(says(text, "the interval contains zero, and as long as it does no /target/relative_tolerance"))
+      << text;
+  EXPECT_FALSE(says(text, "/realisations/maximum")) << text;
+  const std::string ahead = explain(open.database(), open.directory(), "");
+  EXPECT_TRUE(says(ahead, "cannot be told while the interval contains zero")) << ahead;
+}
+
 TEST(Explain, AWindowThatBeginsTooEarlyIsATransient) {
   StoredCampaign campaign(2, 8, 20);
   for (int seed = 0; seed < 8; ++seed) {
@@ -125,6 +140,26 @@ TEST(Explain, APointIsNamedByItsLabelOrTheBeginningOfItsHash) {
     EXPECT_THROW(explain(campaign.database(), campaign.directory(), name), InputError) << name;
   }
   EXPECT_THROW(explain(campaign.database(), campaign.directory(), hash.substr(0, 3)), InputError);
+}
+
+TEST(Explain, APointIsNamedByItsValuesAloneAsInTheRowOfATable) {
+  StoredCampaign campaign(3, 4, 20);
+  const auto name = [&](int place, const std::string& label) {
+    campaign.database().connection().execute("UPDATE point SET label = '" + label +
+                                             "' WHERE place = " + std::to_string(place));
+  };
+  name(0, "peclet=1 volume_fraction=0.5");
+  name(1, "peclet=10 volume_fraction=0.5");
+  name(2, "peclet=10");
+  EXPECT_TRUE(explain(campaign.database(), campaign.directory(), "10 0.5")
+                  .starts_with("peclet=10 volume_fraction=0.5"));
+  EXPECT_TRUE(explain(campaign.database(), campaign.directory(), "10").starts_with("peclet=10  ("));
+  for (const char* const text : {"0.5", "10 0", "10  0.5", "volume_fraction=0.5"}) {
+    EXPECT_THROW(explain(campaign.database(), campaign.directory(), text), InputError) << text;
+  }
+  name(2, "rate=1 volume_fraction=0.5");
+  EXPECT_THROW(explain(campaign.database(), campaign.directory(), "1 0.5"), InputError)
+      << "two points have these";
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // What `export` holds, and that its canonical form holds nothing that depends on how a run went.
 #include "runner/export.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -123,19 +124,68 @@ TEST(Export, AChangedNumberInTheDatabaseIsAnIntegrityFault) {
   EXPECT_THROW(export_csv(campaign.database(), true), IntegrityError);
 }
 
+// plain_result() has a control variate of 0.25: what status shows is 10.25, and so is the first mean of every
+// form.
+TEST(Export, TheEstimateThatDecidesIsTheMeanEverywhere) {
+  StoredCampaign campaign(1, 4, 20);
+  fill(campaign, 0, {0, 1, 2, 3});
+  Database& database = campaign.database();
+  const Look look = database.looks(database.points().at(0).id).back().look;
+  ASSERT_NEAR(look.controlled.mean, 10.25, 1e-12);
+  ASSERT_NEAR(look.estimate.mean, 10, 1e-12);
+  const auto view = [&](const char* column) {
+    return database.connection().integer(std::string("SELECT round(1000 * ") + column + ") FROM estimates");
+  };
+  EXPECT_EQ(view("mean"), 10250);
+  EXPECT_EQ(view("uncontrolled_mean"), 10000);
+  const std::string csv = export_csv(database, true);
+  const std::string row = csv.substr(csv.find('\n') + 1);
+  const std::string wanted =
+      fmt::format(",converged,4,0,4,{},{},{},{},{},{}\n", canonical_json(look.controlled.mean),
+                  canonical_json(look.controlled.standard_error), canonical_json(look.controlled_half_width),
+                  canonical_json(look.estimate.mean), canonical_json(look.estimate.standard_error),
+                  canonical_json(look.half_width));
+  EXPECT_TRUE(row.ends_with(wanted)) << row << wanted;
+  const Json json = exported(campaign, true)["points"][0]["look"];
+  EXPECT_EQ(json["mean"], look.controlled.mean);
+  EXPECT_EQ(json["half_width"], look.controlled_half_width);
+  EXPECT_EQ(json["uncontrolled"]["mean"], look.estimate.mean);
+}
+
 TEST(Export, CsvHasARowPerPointWithEmptyFieldsForWhatDoesNotExist) {
   StoredCampaign campaign(2, 4, 20);
   fill(campaign, 0, {0, 1, 2, 3});
   campaign.database().connection().execute("UPDATE point SET label = 'a, \"b\"' WHERE place = 1");
   const std::string csv = export_csv(campaign.database(), true);
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
-            "label,hash,/point,verdict,seeds,lost,count,mean,standard_error,half_width,controlled_mean,"
-            "controlled_standard_error,controlled_half_width");
+            "label,hash,/point,verdict,seeds,lost,count,mean,standard_error,half_width,uncontrolled_mean,"
+            "uncontrolled_standard_error,uncontrolled_half_width");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
   EXPECT_NE(csv.find("\npoint=0,"), std::string::npos);
   EXPECT_NE(csv.find(",0,converged,4,0,4,"), std::string::npos) << csv;
   EXPECT_NE(csv.find("\n\"a, \"\"b\"\"\","), std::string::npos) << csv;
   EXPECT_TRUE(csv.ends_with(",1,,,,,,,,,,\n")) << csv;
+}
+
+TEST(Export, NoTextOfACsvIsAFormulaOfASpreadsheet) {
+  StoredCampaign campaign(1, 4, 20);
+  for (const auto& [text, cell] : {std::pair{"=1+1", "'=1+1"},
+                                   {"+1", "'+1"},
+                                   {"-x", "'-x"},
+                                   {"@SUM(A1)", "'@SUM(A1)"},
+                                   {"\tx", "'\tx"},
+                                   {"\rx", "\"'\rx\""},
+                                   {"x=1", "x=1"},
+                                   {"a-b", "a-b"}}) {
+    campaign.database().connection().execute("UPDATE point SET label = '" + std::string(text) +
+                                             "', settings = json_object('/point', '" + text + "')");
+    const std::string csv = export_csv(campaign.database(), true), row = csv.substr(csv.find('\n') + 1);
+    EXPECT_TRUE(row.starts_with(std::string(cell) + ',')) << row;
+    EXPECT_NE(row.find(',' + std::string(cell) + ','), std::string::npos) << row;
+  }
+  // A number below zero stays one.
+  campaign.database().connection().execute("UPDATE point SET settings = json_object('/point', -1.5)");
+  EXPECT_NE(export_csv(campaign.database(), true).find(",-1.5,"), std::string::npos);
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 // The page that a colleague gets.
 #include "runner/report.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "contract/sha256.h"
 #include "runner/export.h"
+#include "runner/utc_time.h"
 #include "tests/runner/stored_campaign.h"
 
 namespace peclet::runner {
@@ -19,7 +21,7 @@ std::string badly_nested(const std::string& html) {
     const std::size_t end = html.find('>', at);
     const std::string tag = html.substr(at + 1, end - at - 1);
     const std::string name = tag.substr(0, tag.find_first_of(" \n"));
-    if (name == "!DOCTYPE" || name == "meta" || tag.ends_with('/')) continue;
+    if (name == "!DOCTYPE" || name == "meta" || name == "wbr" || tag.ends_with('/')) continue;
     if (!name.starts_with('/')) {
       open.push_back(name);
     } else if (open.empty() || '/' + open.back() != name) {
@@ -50,9 +52,28 @@ TEST_F(Report, HasTheEstimateWithItsIntervalAndVerdict) {
   EXPECT_TRUE(says(text, "<td class=\"text\">capped</td>")) << text;
   EXPECT_TRUE(says(text, "<td class=\"text\">open</td>")) << text;
   EXPECT_TRUE(says(text, "relative_viscosity to 5 % at 95 % confidence, with 4 to 4")) << text;
-  EXPECT_TRUE(says(text, "1 point without an interval is not drawn.")) << text;
+  EXPECT_TRUE(says(text, "1 point without an error is not drawn.")) << text;
   EXPECT_TRUE(says(text, "<dt>capped</dt>")) << text;
   EXPECT_FALSE(says(text, "Lost seeds")) << text;
+}
+
+TEST_F(Report, OfACampaignHalfDoneHasWhatIsKnownSoFarAndSaysSo) {
+  complete_widely(0);
+  EXPECT_FALSE(says(page(), "so far")) << page();
+  campaign_.complete(1, 0, 9);
+  campaign_.complete(1, 2, 11);
+  // With the control of 0.25: mean 10.25, standard error |11 - 9| / 2.
+  const std::string text = page();
+  EXPECT_TRUE(says(text, "<td>2/4</td><td>10.2 ± 1.0 so far</td><td>-</td>")) << text;
+  EXPECT_TRUE(says(text, "So far: provisional")) << text;
+  EXPECT_TRUE(says(text, "class=\"provisional\"")) << text;
+}
+
+TEST_F(Report, IsReadableOnATelephone) {
+  complete_widely(0);
+  const std::string text = page();
+  EXPECT_TRUE(says(text, "<th>relative_<wbr>viscosity</th>")) << text;
+  EXPECT_TRUE(says(text, "<svg class=\"for-wide\"") && says(text, "<svg class=\"for-narrow\"")) << text;
 }
 
 TEST_F(Report, ListsLostSeedsByCauseAndWhatTheyMean) {
@@ -88,7 +109,7 @@ TEST_F(Report, IsOnePieceThatNeedsNoOtherFile) {
   complete_widely(1);
   const std::string text = page();
   EXPECT_EQ(badly_nested(text), "") << text;
-  EXPECT_TRUE(says(text, "<svg viewBox")) << text;
+  EXPECT_TRUE(says(text, "<svg class")) << text;
   for (const char* const outside : {"http", "src=", "href=", "url(", "@import", "<script"}) {
     EXPECT_FALSE(says(text, outside)) << outside;
   }
@@ -96,9 +117,18 @@ TEST_F(Report, IsOnePieceThatNeedsNoOtherFile) {
 
 TEST_F(Report, DependsOnTheDatabaseAlone) {
   complete_widely(0);
+  for (const char* const aged : {"campaign SET created_at", "campaign SET updated_at", "look SET made_at",
+                                 "attempt SET started_at", "attempt SET ended_at", "event SET at"}) {
+    campaign_.database().connection().execute(fmt::format("UPDATE {} = '2001-02-03T04:05:06Z'", aged));
+  }
   const std::string before = page();
-  Database reader = Database::open_reader(campaign_.directory().database());
+  // Elsewhere, and with nothing in it that was read off a clock now.
+  const TemporaryFolder elsewhere;
+  campaign_.database().connection().execute(
+      fmt::format("VACUUM INTO '{}'", (elsewhere.path() / "copy.db").string()));
+  Database reader = Database::open_reader(elsewhere.path() / "copy.db");
   EXPECT_EQ(report_html(reader), before);
+  EXPECT_FALSE(says(before, utc_now().substr(0, 10))) << before;
 }
 
 TEST_F(Report, IsRefusedWhenALookIsNotWhatTheResultsSay) {

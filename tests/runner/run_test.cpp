@@ -183,7 +183,7 @@ TEST(Run, ATimeLimitStopsAndCanBeResumed) {
 TEST(Run, ALostConnectionStopsAsCtrlCDoes) {
   CampaignOnDisk campaign;
   auto* const before = std::signal(SIGHUP, SIG_DFL);  // whatever these tests were started with
-  campaign.start({{"PECLET_FAKE_STEP_MS", "50"}});
+  campaign.start(campaign.held_from(7));
   std::signal(SIGHUP, before);
   campaign.wait_for_results(0);
   campaign.signal(SIGHUP);
@@ -193,8 +193,16 @@ TEST(Run, ALostConnectionStopsAsCtrlCDoes) {
 
 TEST(StopSignals, OneThatCameTooLateDoesNotKillWhoIsLeaving) {
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
-    const StopSignals signals;
-    std::raise(number);  // kills the tests unless it is taken
+    EXPECT_EXIT(
+        {
+          {
+            const StopSignals signals;
+            std::raise(number);  // kills unless it is taken
+          }
+          std::_Exit(0);
+        },
+        testing::ExitedWithCode(0), "")
+        << number;
   }
 }
 
@@ -233,7 +241,7 @@ TEST(Run, ResultsOfScenesThatLeftTheSweepAreKeptAndCountAgain) {
 
 TEST(Run, ASecondOwnerIsRefused) {
   CampaignOnDisk campaign;
-  campaign.start({{"PECLET_FAKE_STEP_MS", "50"}});
+  campaign.start(campaign.held_from(7));
   campaign.wait_for_results(0);
   CampaignOnDisk second;
   second.options.directory = campaign.directory().root();

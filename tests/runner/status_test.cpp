@@ -6,10 +6,13 @@
 #include <cmath>
 #include <ctime>
 
+#include "runner/explain.h"
 #include "tests/runner/stored_campaign.h"
 
 namespace peclet::runner {
 namespace {
+
+bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 // 9, 10, 11, 10: mean 10, sample variance 2/3, standard error sqrt(2/3/4) = 0.408.
 void four_values(StoredCampaign& campaign, int point, double unit) {
@@ -35,6 +38,17 @@ TEST(Status, AnOpenPointShowsTheSeedsOfItsNextLookAndAProvisionalMean) {
   EXPECT_NE(table.find("1 point: 1 open\n4 seeds ended; processor time 8 s"), std::string::npos) << table;
 }
 
+TEST(Status, SeedsOfARunThatWasKilledAreNotCalledRunning) {
+  StoredCampaign campaign(1, 4, 20);
+  four_values(campaign, 0, 1);
+  CampaignStatus status = read_status(campaign.database());
+  status.points[0].counts.running = 2;
+  EXPECT_NE(status_table(status).find("4 seeds ended; 2 were running when the run was killed; "),
+            std::string::npos);
+  status.owner = 4711;
+  EXPECT_NE(status_table(status).find("4 seeds ended; 2 running; "), std::string::npos);
+}
+
 TEST(Status, APointThatWasCancelledIsNeitherOpenNorASuccess) {
   StoredCampaign campaign(2, 4, 20);
   four_values(campaign, 0, 0.1);
@@ -55,6 +69,37 @@ TEST(Status, ACancelledPointThatHadConvergedIsASuccess) {
   const CampaignStatus status = read_status(campaign.database());
   EXPECT_EQ(standing(status), 0);
   EXPECT_EQ(verdict_text(status.points.at(0)), "converged, cancelled");
+}
+
+// Of eight values 10.25 +- 1: half-width 2.76 / sqrt(7) at 95.9 %, 10 %; the eighth to tenth change little.
+TEST(Status, ALoosenedToleranceSaysThatAnEarlierLookDecides) {
+  StoredCampaign campaign(1, 8, 20);
+  for (int seed = 0; seed < 13; ++seed) campaign.complete(0, seed, seed % 2 == 0 ? 9 : 11);
+  EXPECT_EQ(read_status(campaign.database()).points.at(0).looks.back().seeds, 13);
+  EXPECT_FALSE(says(status_table(read_status(campaign.database())), "earlier-look"));
+  campaign.set_tolerance(0.5);
+  const CampaignStatus status = read_status(campaign.database());
+  ASSERT_EQ(status.points.at(0).looks.back().seeds, 8);
+  EXPECT_EQ(verdict_text(status.points.at(0)), "converged, earlier-look");
+  EXPECT_TRUE(says(status_table(status),
+                   "point=0: the look at 8 seeds decides, the first within the present target; all 13 that "
+                   "have ended are in \"so far\"\n"))
+      << status_table(status);
+  EXPECT_TRUE(
+      says(explain(campaign.database(), campaign.directory(), ""),
+           "it decides as if the target had always been this one, and leaves out later seeds; all 13"));
+}
+
+// Ten values 10.25 +- 0.5 at 95 % with a maximum of 10: half-width 2.262 * 0.5 / 3 = 0.377, 3.7 %; the spread
+// may be sqrt(9 / chi2(9)) = 1.65 times as large (p = 5 %), for which 10 seeds would not do.
+TEST(Status, APointThatTheMaximumIsTooNearToIsNotCalledConverged) {
+  StoredCampaign campaign(1, 10, 10);
+  for (int seed = 0; seed < 10; ++seed) campaign.complete(0, seed, seed % 2 == 0 ? 9.5 : 10.5);
+  const CampaignStatus status = read_status(campaign.database());
+  EXPECT_EQ(standing(status), 3);
+  EXPECT_EQ(verdict_text(status.points.at(0)), "converged-near-maximum");
+  EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), ""), "perhaps by luck"));
+  EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), ""), "a larger /realisations/maximum"));
 }
 
 TEST(Status, APointWithoutSeedsHasNoNumbers) {
@@ -135,7 +180,7 @@ TEST(Status, SeedsThatWarnOfTheirResultsAreCountedWithTheVerdict) {
 TEST(Status, TheEstimateWithoutTheControlVariateStandsBesideTheOneThatDecides) {
   StoredCampaign campaign(1, 4, 20);
   four_values(campaign, 0, 0.1);
-  const std::string table = status_table(campaign.database());
+  const std::string table = status_table(read_status(campaign.database()));
   EXPECT_NE(table.find("10.25 ± 0.15 (1.5 %)  10.00 ± 0.15  converged"), std::string::npos) << table;
 }
 
@@ -148,7 +193,7 @@ TEST(Status, OfSixteenThousandRealisationsTakesBelowAThirdOfASecond) {
       "content_sha256) SELECT point_id, seed, 'done', 'completed', 10 + seed % 7, 1, hash, hash FROM seeds, "
       "point");
   const std::clock_t start = std::clock();  // processor time: of what else the machine does this says nothing
-  const std::string table = status_table(campaign.database());
+  const std::string table = status_table(read_status(campaign.database()));
   const std::clock_t spent = std::clock() - start;
   EXPECT_NE(table.find("16000 seeds ended"), std::string::npos);
   EXPECT_LT(static_cast<double>(spent) / CLOCKS_PER_SEC, 0.3);
