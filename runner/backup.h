@@ -44,11 +44,13 @@ struct Backup {
   std::uintmax_t bytes = 0;
   double seconds = 0;
   int spool_files = 0, checkpoints = 0;  // copied beside it
+  bool beside_campaign = false;          // although it was to be elsewhere, it is on the same file system
 };
 
-// Adds a generation to `folder`, which is made when there is none. Throws InputError when the folder holds
-// backups of another campaign, IntegrityError when the database is damaged, DatabaseError, std::system_error;
-// the generations that were there are then still there.
+// Adds a generation to `folder`, which is made when there is none, in a folder that must be there. Throws
+// InputError when that is not there or the folder holds backups of another campaign, IntegrityError when the
+// database is damaged, DatabaseError, std::system_error; the generations that were there are then still
+// there.
 Backup make_backup(const CampaignDirectory& directory, const std::filesystem::path& folder, bool checkpoints);
 
 // The verb: what was done, for people or as JSON.

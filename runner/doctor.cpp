@@ -7,7 +7,7 @@
 #include <chrono>
 #include <memory>
 
-#include "contract/input_error.h"
+#include "contract/guarded_file.h"
 #include "runner/database_copy.h"
 #include "runner/open_campaign.h"
 #include "runner/restore.h"
@@ -45,7 +45,9 @@ void examine_database(const Patient& patient, Findings& findings) {
     examine_states(database, patient, findings);
     examine_files(database, patient, findings);
     examine_backups(database, patient, findings);
+    examine_hand_over(database, patient, findings);
     examine_clock(database, patient, findings);
+    examine_log(patient, findings);
     examine_disk(database, patient, findings);
   } catch (const IntegrityError& error) {
     damaged(error.what());
@@ -114,7 +116,7 @@ Diagnosis examine_campaign(const DoctorOptions& options) {
   const Patient patient{directory, lock ? std::nullopt : current_owner(directory),
                         fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))};
   Findings findings;
-  if (fs::exists(directory.database())) {
+  if (!kind_of(directory.database()).empty()) {
     examine_database(patient, findings);
   } else {
     findings.push_back({"database-gone", Severity::integrity, "there is no " + directory.database().string(),

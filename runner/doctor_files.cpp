@@ -6,8 +6,10 @@
 #include <map>
 #include <utility>
 
+#include "contract/guarded_file.h"
 #include "runner/backup.h"
 #include "runner/doctor.h"
+#include "runner/plain_text.h"
 #include "runner/request.h"
 #include "runner/spool.h"
 
@@ -27,7 +29,7 @@ constexpr double old_backup_hours = 24;
 
 std::vector<fs::path> files_in(const fs::path& folder) {
   std::vector<fs::path> files;
-  if (!fs::is_directory(folder)) return files;
+  if (kind_of(folder) != "a folder") return files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
@@ -37,23 +39,49 @@ std::string listed(const std::vector<fs::path>& files) {
   constexpr std::size_t most = 3;
   std::string text;
   for (std::size_t i = 0; i < std::min(most, files.size()); ++i) {
-    text += (i == 0 ? "" : ", ") + files[i].filename().string();
+    text += (i == 0 ? "" : ", ") + plain_name(files[i]);
   }
   return files.size() > most ? fmt::format("{} and {} more", text, files.size() - most) : text;
+}
+
+double megabytes(const std::vector<fs::path>& files) {
+  double bytes = 0;
+  for (const fs::path& file : files) {
+    std::error_code gone;
+    const std::uintmax_t size = fs::file_size(file, gone);
+    if (!gone) bytes += static_cast<double>(size);
+  }
+  return 1e-6 * bytes;
 }
 
 void remove_all_of(const std::vector<fs::path>& files) {
   for (const fs::path& file : files) fs::remove(file);
 }
 
-// Whether a seed has ended, by the name of its checkpoint.
-std::map<std::string, bool> checkpoint_names(Database& database, const CampaignDirectory& directory) {
-  std::map<std::string, bool> names;
+enum class Need {
+  open,     // its seed may be wanted
+  surplus,  // its seed lies beyond the look that has decided the point
+  none      // its seed has ended
+};
+
+// The seeds below the look all have ended, unless one is to be run again.
+bool is_surplus(const RealisationRecord& record, const std::vector<LookRecord>& looks) {
+  return !looks.empty() && looks.back().look.verdict != Verdict::more &&
+         record.seed >= looks.back().look.seeds;
+}
+
+// What each checkpoint is good for, by its name.
+std::map<std::string, Need> checkpoint_names(Database& database, const CampaignDirectory& directory) {
+  std::map<std::string, Need> names;
   for (const auto& points : {database.points(), database.inactive_points()}) {
     for (const PointRecord& point : points) {
       if (point.kept_apart) continue;  // a checkpoint of its scene is of the engine that is used now
+      const std::vector<LookRecord> looks = database.looks(point.id);
       for (const RealisationRecord& record : database.realisations(point.id)) {
-        names[directory.checkpoint(point.hash, record.seed).filename().string()] = !record.cause.empty();
+        const Need need = !record.cause.empty()       ? Need::none
+                          : is_surplus(record, looks) ? Need::surplus
+                                                      : Need::open;
+        names[directory.checkpoint(point.hash, record.seed).filename().string()] = need;
       }
     }
   }
@@ -61,13 +89,14 @@ std::map<std::string, bool> checkpoint_names(Database& database, const CampaignD
 }
 
 void examine_checkpoints(Database& database, const Patient& patient, Findings& findings) {
-  const std::map<std::string, bool> names = checkpoint_names(database, patient.directory);
-  std::vector<fs::path> ended, rejected, strays;
+  const std::map<std::string, Need> names = checkpoint_names(database, patient.directory);
+  std::vector<fs::path> ended, surplus, rejected, strays;
   for (const fs::path& file : files_in(patient.directory.checkpoints())) {
     const auto seed = names.find(file.filename().string());
     if (seed != names.end()) {
-      if (seed->second) ended.push_back(file);
-    } else if (file.extension() == ".rejected") {
+      if (seed->second == Need::none) ended.push_back(file);
+      if (seed->second == Need::surplus) surplus.push_back(file);
+    } else if (file.filename().string().find(".checkpoint.rejected") != std::string::npos) {
       rejected.push_back(file);
     } else if (file.extension() != ".tmp") {
       strays.push_back(file);
@@ -80,6 +109,16 @@ void examine_checkpoints(Database& database, const Patient& patient, Findings& f
          fmt::format("{} checkpoints are of seeds that have ended: {}", ended.size(), listed(ended)),
          "`peclet run` and `peclet doctor --repair` remove them",
          [ended](Database&) { remove_all_of(ended); }});
+  }
+  if (!surplus.empty() && !patient.owner) {
+    findings.push_back(
+        {"checkpoint-surplus", Severity::note,
+         fmt::format("{} checkpoints ({:.1f} MB) are of seeds that their points, which are decided, did not "
+                     "need: {}",
+                     surplus.size(), megabytes(surplus), listed(surplus)),
+         "`peclet doctor --repair` removes them; kept, they save these seeds' time should a tolerance be "
+         "tightened",
+         [surplus](Database&) { remove_all_of(surplus); }});
   }
   if (!rejected.empty()) {
     findings.push_back({"checkpoint-rejected", Severity::note,
@@ -172,7 +211,8 @@ void examine_backups(Database& database, const Patient& patient, Findings& findi
         {code, Severity::warning, message, "`peclet backup` and `peclet doctor --repair` make one",
          [directory = patient.directory](Database&) { make_backup(directory, directory.backup(), false); }});
   };
-  if (!fs::exists(newest)) return find("no-backup", fmt::format("there is no backup of {} results", results));
+  if (kind_of(newest).empty())
+    return find("no-backup", fmt::format("there is no backup of {} results", results));
   try {
     const Contents contents = examine(newest);
     Statement age(database.connection(), "SELECT (julianday(?) - julianday(?)) * 24");
@@ -182,6 +222,9 @@ void examine_backups(Database& database, const Patient& patient, Findings& findi
       find("old-backup", fmt::format("the last backup is {:.0f} hours old and lacks {} results", hours,
                                      results - contents.results));
     }
+  } catch (const UnsuitableFile& error) {
+    findings.push_back({"backup-damaged", Severity::warning, error.what(),
+                        "move it away; `peclet backup` makes another one"});
   } catch (const IntegrityError& error) {
     find("backup-damaged", fmt::format("the last backup is damaged: {}", error.what()));
   }

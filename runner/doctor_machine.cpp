@@ -1,6 +1,8 @@
 // Is the machine fit for the campaign: processes, clock, disk?
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/statvfs.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
@@ -10,6 +12,7 @@
 #include <utility>
 
 #include "runner/doctor.h"
+#include "runner/plain_text.h"
 
 namespace peclet::runner {
 namespace {
@@ -35,6 +38,32 @@ std::string command_of(const fs::path& process) {
   std::replace(words.begin(), words.end(), '\0', ' ');
   while (words.ends_with(' ')) words.pop_back();
   return words;
+}
+
+// "process 4711 (peclet watch), which is stopped": those that have the database open, the owner and this
+// process apart.
+std::vector<std::string> readers_of(const fs::path& database, const std::string& owner) {
+  std::error_code error;
+  const fs::path file = fs::canonical(database, error);
+  std::vector<std::string> readers;
+  for (const fs::directory_entry& process : fs::directory_iterator("/proc")) {
+    const std::string number = process.path().filename().string();
+    if (number.find_first_not_of("0123456789") != std::string::npos) continue;
+    if (number == owner || number == std::to_string(getpid())) continue;
+    for (fs::directory_iterator open(process.path() / "fd", error), end; !error && open != end;
+         open.increment(error)) {
+      std::error_code gone;
+      if (fs::read_symlink(open->path(), gone) != file) continue;
+      // The state follows the name, which is in parentheses.
+      const std::string about = content(process.path() / "stat");
+      const std::size_t name_end = about.rfind(')');
+      const bool is_stopped = name_end != std::string::npos && about.substr(name_end, 4) == ") T ";
+      readers.push_back(fmt::format("process {} ({}){}", number, plain(command_of(process.path()), 80),
+                                    is_stopped ? ", which is stopped" : ""));
+      break;
+    }
+  }
+  return readers;
 }
 
 struct Expected {
@@ -116,6 +145,27 @@ void examine_clock(Database& database, const Patient& patient, Findings& finding
                         fmt::format("{} events and attempts are later than now, {}", future, patient.now),
                         harmless});
   }
+}
+
+// While somebody reads an earlier state of the database, SQLite cannot begin its log anew; everything that is
+// written goes on top of it.
+void examine_log(const Patient& patient, Findings& findings) {
+  constexpr std::uintmax_t large = 32 << 20;  // twice what a checkpoint in time lets it become
+  std::error_code absent;
+  const std::uintmax_t size = fs::file_size(patient.directory.database().string() + "-wal", absent);
+  if (absent || size < large) return;
+  const std::string owner = patient.owner ? std::to_string(*patient.owner) : "";
+  const std::vector<std::string> readers = readers_of(patient.directory.database(), owner);
+  findings.push_back(
+      {"log-large", Severity::warning,
+       fmt::format(
+           "the database's write-ahead log has {:.0f} MB: somebody reads an earlier state and does not "
+           "come to an end{}{}",
+           1e-6 * static_cast<double>(size), readers.empty() ? "" : "; it is open in ",
+           fmt::join(readers, ", ")),
+       readers.empty()
+           ? "the owner's next commits make it small again"
+           : "let that process go on (kill -CONT) or end it; the log then becomes small by itself"});
 }
 
 void examine_disk(Database& database, const Patient& patient, Findings& findings) {

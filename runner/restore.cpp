@@ -5,13 +5,15 @@
 #include <optional>
 #include <vector>
 
-#include "contract/durable_file.h"
-#include "contract/input_error.h"
+#include "contract/guarded_file.h"
+#include "contract/output_file.h"
 #include "runner/backup.h"
 #include "runner/campaign.h"
+#include "runner/campaign_file.h"
 #include "runner/database_copy.h"
 #include "runner/integrity_error.h"
 #include "runner/queue.h"
+#include "runner/quoting.h"
 #include "runner/spool.h"
 
 namespace peclet::runner {
@@ -27,11 +29,13 @@ struct Source {
 
 // The newest sound one. A damaged generation is a reason to look at the one before it, not to give up.
 Source find_backup(const fs::path& given) {
-  std::vector<fs::path> candidates{given};
+  std::error_code absent;
+  const fs::path target = fs::canonical(given, absent);  // a person may name a link to it
+  std::vector<fs::path> candidates{absent ? given : target};
   if (fs::is_directory(given)) candidates = {newest_backup(given), previous_backup(given)};
   Source source;
   for (const fs::path& file : candidates) {
-    if (!fs::exists(file)) continue;
+    if (kind_of(file).empty()) continue;
     try {
       source.contents = examine(file);
       source.file = file;
@@ -46,12 +50,14 @@ Source find_backup(const fs::path& given) {
 
 // What the present database holds; nothing when it is absent or damaged, and then `damage` says how.
 std::optional<Contents> examine_present(const fs::path& database, std::string& damage) {
-  if (!fs::exists(database)) return std::nullopt;
+  if (kind_of(database).empty()) return std::nullopt;
   try {
     return examine(database);
   } catch (const IntegrityError& error) {
     damage = error.what();
   } catch (const DatabaseError& error) {
+    damage = error.what();
+  } catch (const UnsuitableFile& error) {  // it is kept aside as it is
     damage = error.what();
   }
   return std::nullopt;
@@ -78,25 +84,20 @@ fs::path keep_aside(const CampaignDirectory& directory) {
   fs::path folder;
   for (const char* const suffix : {"", "-wal", "-shm", "-journal"}) {
     const fs::path file = directory.database().string() + suffix;
-    if (!fs::exists(file)) continue;
-    for (int number = 1; folder.empty(); ++number) {
-      const fs::path free = directory.aside() / std::to_string(number);
-      if (fs::exists(free)) continue;
-      fs::create_directories(free);
-      folder = free;
-    }
+    if (kind_of(file).empty()) continue;
+    if (folder.empty()) folder = make_folder_aside(directory);
     fs::rename(file, folder / file.filename());
   }
   return folder;
 }
 
 int bring(const fs::path& from, const fs::path& to) {
-  if (!fs::is_directory(from)) return 0;
+  if (kind_of(from) != "a folder") return 0;
   int brought = 0;
-  for (const fs::directory_entry& entry : fs::directory_iterator(from)) {
-    const fs::path target = to / entry.path().filename();
-    if (!entry.is_regular_file() || entry.path().extension() == ".tmp" || fs::exists(target)) continue;
-    write_durably(target, read_file(entry.path()));
+  for (const fs::path& file : whole_files(from)) {
+    const fs::path target = to / file.filename();
+    if (!kind_of(target).empty()) continue;
+    copy_regular(file, target, largest_copied_file);
     ++brought;
   }
   return brought;
@@ -110,20 +111,18 @@ struct Place {
 
 Place place_of(const RestoreOptions& options) {
   if (options.campaign.extension() == ".json") {
-    const std::string chosen =
-        options.directory.empty() ? "" : fmt::format(" --directory {}", options.directory.string());
     return {campaign_directory(options.campaign, options.directory), options.campaign,
-            options.campaign.string() + chosen};
+            words_for(options.campaign, options.directory)};
   }
   fs::path root = fs::absolute(options.campaign).lexically_normal();
   if (!root.has_filename()) root = root.parent_path();  // a slash at the end
   if (root.extension() == ".peclet") {
     fs::path file = root;
     file.replace_extension(".json");
-    return {CampaignDirectory(root), file, file.string()};
+    return {CampaignDirectory(root), file, words_for(file, "")};
   }
   const fs::path file = root / "campaign.json";
-  return {CampaignDirectory(root), file, fmt::format("{} --directory {}", file.string(), root.string())};
+  return {CampaignDirectory(root), file, words_for(file, root)};
 }
 
 void record(const CampaignDirectory& directory, const Source& source) {
@@ -137,7 +136,7 @@ void record(const CampaignDirectory& directory, const Source& source) {
 // damaged: that becomes the one before.
 bool leave_newer_backup_behind(const CampaignDirectory& directory, const Source& source) {
   const fs::path newest = newest_backup(directory.backup());
-  if (!fs::exists(newest) || fs::equivalent(newest, source.file)) return false;
+  if (kind_of(newest).empty() || fs::equivalent(newest, source.file)) return false;
   try {
     if (examine(newest).attempts <= source.contents.attempts) return false;
   } catch (
@@ -149,7 +148,7 @@ bool leave_newer_backup_behind(const CampaignDirectory& directory, const Source&
 
 std::string write_campaign_file(const fs::path& file, const Json& document) {
   if (!fs::exists(file)) {
-    write_durably(file, document.dump(2) + "\n");
+    write_output(file, document.dump(2) + "\n");
     return fmt::format("{} was written as the campaign was last run\n", file.string());
   }
   try {
@@ -199,6 +198,7 @@ std::string restore_campaign(const RestoreOptions& options) {
 }
 
 void refuse_lost_database(const CampaignDirectory& directory) {
+  require_regular(directory.database());
   std::error_code absent;
   const std::uintmax_t size = fs::file_size(directory.database(), absent);
   const std::string hint = restore_hint(directory);
@@ -220,9 +220,9 @@ std::string hint_if_damaged(const CampaignDirectory& directory) {
 
 std::string restore_hint(const CampaignDirectory& directory) {
   const fs::path folder = directory.backup();
-  if (!fs::exists(newest_backup(folder)) && !fs::exists(previous_backup(folder))) return "";
-  return fmt::format("; put the last one back with `peclet restore {} {}`", folder.string(),
-                     directory.root().string());
+  if (kind_of(newest_backup(folder)).empty() && kind_of(previous_backup(folder)).empty()) return "";
+  return fmt::format("; put the last one back with `peclet restore {} {}`", shell_word(folder.string()),
+                     shell_word(directory.root().string()));
 }
 
 }  // namespace peclet::runner

@@ -23,7 +23,7 @@ struct RestoreOptions {
 std::string restore_campaign(const RestoreOptions& options);
 
 // Throws IntegrityError when the database of a campaign that has backups is gone or empty: starting afresh
-// would in time replace them.
+// would in time replace them. Throws UnsuitableFile when something else bears its name.
 void refuse_lost_database(const CampaignDirectory& directory);
 
 // What to do about a damaged database: the command that puts the last backup back, or "" when there is none.
