@@ -4,7 +4,8 @@
 Fills the file system of a campaign's database, spool, checkpoints, logs, and of all of them together, each in turn and
 while the campaign runs with real engines. Nothing may be lost: the run must say once what is full, give out no further
 seed, go on by itself when there is room, and export the same bytes as an undisturbed one. A run that is stopped while its
-disk is full must leave with exit code 75 and go on afterwards.
+disk is full must leave with exit code 75 and go on afterwards. A file system that is too small for the campaign ends it with
+exit code 75 and one message, and it goes on where it is moved.
 
 The file systems are small tmpfs. Mounting them takes root, or an unprivileged user namespace (unshare -Urm), which the
 script makes for itself; where the kernel grants neither, it fails and says so.
@@ -32,6 +33,7 @@ CASES = {  # what is full: the folder whose file system is filled, and which fol
     "checkpoints": ("checkpoints", ("checkpoints",)),
     "logs": ("logs", ("logs",)),
 }
+SMALL = ("400k", "1m", "2m", "3m")  # the database alone, without results, takes half a megabyte
 
 
 class Drill:
@@ -179,10 +181,32 @@ def judge(disk, name, code, reference):
     return code == 0 and same and done == stored and blamed == 0 and sound
 
 
+def too_small(peclet, folder, size, reference):
+    """The campaign's file system is too small for it: it ends by itself, says so, and goes on elsewhere to the same bytes."""
+    drill = Drill(peclet, folder)
+    root = os.path.join(folder, "drill.peclet")
+    mount(root, size)
+    try:
+        code = drill.start().wait(300)
+        with open(os.path.join(folder, "log")) as f:
+            log = f.read()
+        said = log.count("for which nobody can make room")
+        moved = os.path.join(folder, "larger.peclet")
+        subprocess.run(["cp", "-a", root, moved], check=True)
+    finally:
+        subprocess.run(["umount", "--lazy", root], check=True)
+    os.rmdir(root)
+    os.rename(moved, root)
+    again = drill.start().wait(300)
+    same = drill.export() == reference
+    print(f"a file system of {size}: exit code {code}, said {said} times; in a larger one: exit code {again}, same bytes {same}", flush=True)
+    return (code == 75 and said == 1 or code == 0) and again == 0 and same
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bin")
-    parser.add_argument("--only", choices=CASES)
+    parser.add_argument("--only", choices=[*CASES, "small"])
     arguments = parser.parse_args()
     in_own_namespace()
     peclet = os.path.abspath(os.path.join(arguments.bin, "peclet"))
@@ -191,7 +215,10 @@ def main():
         undisturbed = Drill(peclet, os.path.join(folder, "undisturbed"))
         assert undisturbed.start().wait() == 0
         reference = undisturbed.export()
-        for case in [arguments.only] if arguments.only else CASES:
+        if arguments.only in (None, "small"):
+            for size in SMALL:
+                passed &= too_small(peclet, os.path.join(folder, size), size, reference)
+        for case in [case for case in CASES if arguments.only in (None, case)]:
             with FullDisk(peclet, os.path.join(folder, case), case) as disk:
                 passed &= judge(disk, f"{case} full", starve(disk, case).wait(), reference)
         if not arguments.only or arguments.only == "everything":

@@ -54,7 +54,7 @@ def edited(night):
     """The scene changed when half of the campaign is done"""
     run = running(night, 4, 40)
     night.types("sed -i 's/\"viscosity\": 1/\"viscosity\": 2/' night.json && peclet status night.json", 0,
-                ["has changed since it was last run", "`peclet set night.json` or `peclet run` takes it over"])
+                ["has changed since it was last run", "`peclet set night.json` or `peclet run night.json` takes it over"])
     night.stops(run)
     night.waits(run, 75, ["workers checkpoint and stop"])
     night.lets_go()
@@ -70,7 +70,7 @@ def edited(night):
 def engine_missing(night):
     """The engine is not on PATH, or may not be executed"""
     night.write(dict(CAMPAIGN, engine=["my_engine"]))
-    night.types("peclet run night.json", 2, ["/engine/0: my_engine", "beside peclet or on PATH"])
+    night.types("peclet run night.json", 2, ["/engine/0: my_engine", "beside peclet, on PATH, or one of peclet's adapters"])
     night.write(dict(CAMPAIGN, engine=["./my_engine"]))
     night.types(f"cp {night.programs}/fake_engine my_engine && chmod -x my_engine && peclet run night.json", 2,
                 ["my_engine", "may not be executed", "chmod +x"])
