@@ -62,6 +62,8 @@ def debian(arguments):
     with contextlib.ExitStack() as stack:
         path = arguments.root or stack.enter_context(tempfile.TemporaryDirectory(prefix="release-drill-"))
         path = os.path.abspath(path)
+        os.makedirs(path, exist_ok=True)
+        os.chmod(path, 0o755)  # the user's root folder: a temporary folder is closed to others
         if not os.path.exists(os.path.join(path, "etc/debian_version")):
             subprocess.run(["debootstrap", "--variant=minbase", arguments.suite, path, arguments.mirror], check=True, stdout=subprocess.DEVNULL)
         # The programs ask /proc where they are.
