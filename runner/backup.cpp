@@ -8,9 +8,10 @@
 
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
+#include "contract/integrity_error.h"
+#include "runner/backup_files.h"
 #include "runner/database_copy.h"
 #include "runner/folder_lock.h"
-#include "runner/integrity_error.h"
 #include "runner/open_campaign.h"
 #include "runner/quoting.h"
 #include "runner/spool.h"
@@ -20,10 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What of a campaign never changes: when it was set up, and the first point that it ever had.
-constexpr const char* origin_query =
-    "SELECT created_at || ' ' || (SELECT hash FROM point ORDER BY point_id LIMIT 1) FROM campaign";
-
 // Which campaign a database is of, to be compared and to be read; both "" when it cannot tell any more.
 struct Owner {
   std::string origin, name;
@@ -32,8 +29,7 @@ struct Owner {
 Owner campaign_in(const fs::path& path) {
   try {
     Connection database(path.string(), Connection::Access::read_only, 10'000);
-    return {database.text(origin_query),
-            database.text("SELECT name || ', created at ' || created_at FROM campaign")};
+    return {origin_of(database), database.text("SELECT name || ', created at ' || created_at FROM campaign")};
   } catch (const IntegrityError&) {
     return {};
   }
@@ -133,33 +129,6 @@ std::string as_text(const Backup& backup, const CampaignDirectory& directory, bo
 }
 
 }  // namespace
-
-fs::path newest_backup(const fs::path& folder) { return folder / "backup.db"; }
-
-fs::path previous_backup(const fs::path& folder) { return folder / "backup.previous.db"; }
-
-Contents examine(const fs::path& path) {
-  Connection database(path.string(), Connection::Access::read_only, 10'000);
-  if (!is_campaign_database(database)) {
-    throw IntegrityError(path.string() + ": is no database of a peclet campaign");
-  }
-  if (const std::string found = damage(database); !found.empty()) {
-    throw IntegrityError(fmt::format("{}: is damaged: {}", path.string(), found));
-  }
-  if (database.integer("SELECT count(*) FROM campaign") == 0) {
-    throw IntegrityError(path.string() + ": no campaign has been set up in it");
-  }
-  Contents contents;
-  contents.name = database.text("SELECT name FROM campaign");
-  contents.created_at = database.text("SELECT created_at FROM campaign");
-  contents.origin = database.text(origin_query);
-  contents.document = Json::parse(database.text("SELECT document FROM campaign"));
-  contents.results = database.integer("SELECT count(*) FROM result");
-  contents.attempts = database.integer("SELECT coalesce(max(attempt_id), 0) FROM attempt");
-  contents.backed_up_at = database.text(
-      "SELECT at FROM event WHERE event_id = (SELECT max(event_id) FROM event) AND kind = 'backup'");
-  return contents;
-}
 
 Backup make_backup(const CampaignDirectory& directory, const fs::path& folder, bool checkpoints) {
   const auto started = std::chrono::steady_clock::now();

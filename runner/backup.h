@@ -9,8 +9,8 @@
 #include <string>
 
 #include "contract/json.h"
+#include "runner/backup_files.h"
 #include "runner/campaign_directory.h"
-#include "runner/sqlite.h"
 
 namespace peclet::runner {
 
@@ -21,22 +21,6 @@ struct BackupOptions {
   bool checkpoints = false;      // copy checkpoints and spool, too
   bool json = false;
 };
-
-std::filesystem::path newest_backup(const std::filesystem::path& folder);
-std::filesystem::path previous_backup(const std::filesystem::path& folder);
-
-// What a database holds, of whatever version its tables are.
-struct Contents {
-  std::string name, created_at;  // of the campaign
-  std::string origin;            // tells campaigns apart, whatever they are called since
-  Json document;
-  std::int64_t results = 0, attempts = 0;
-  std::string backed_up_at;  // of a backup; empty otherwise
-  bool same_campaign(const Contents& other) const { return origin == other.origin; }
-};
-
-// Checks a whole database and says what it holds. Throws IntegrityError, DatabaseError.
-Contents examine(const std::filesystem::path& database);
 
 struct Backup {
   std::filesystem::path file;

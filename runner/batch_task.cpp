@@ -11,10 +11,14 @@
 #include <utility>
 
 #include "contract/durable_file.h"
+#include "contract/exit_codes.h"
 #include "contract/input_error.h"
+#include "contract/integrity_error.h"
+#include "runner/attempt_report.h"
 #include "runner/bundle_files.h"
 #include "runner/dispatcher.h"
-#include "runner/integrity_error.h"
+#include "runner/engine_error.h"
+#include "runner/host_name.h"
 #include "runner/room.h"
 #include "runner/spool.h"
 #include "runner/utc_time.h"
@@ -26,7 +30,6 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr int exit_done = 0, exit_stopped = 75;
 constexpr std::chrono::milliseconds longest_wait{500};
 // A turn that took longer was not this process's to use: it or the machine stood still.
 constexpr std::chrono::seconds longest_turn{5};
@@ -34,11 +37,6 @@ constexpr std::chrono::seconds hello_patience{60};
 constexpr int the_worker = 0;
 
 struct Stopped {};
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
-}
 
 // Runs of a task on two nodes (a node that was thought to be dead comes back) write under different names.
 std::string name_of_this_run() {
@@ -97,7 +95,7 @@ class BatchTask {
   // Of the seed in hand.
   int place_ = 0;
   Job job_;
-  NodeReport report_;
+  AttemptReport report_;
   int phase_ = 0;
   bool busy_ = false, drained_ = false;
   Clock::time_point noted_{}, heard_{};
@@ -282,9 +280,9 @@ int run_task(const TaskOptions& options) {
   StopSignals signals(SIGUSR1);
   try {
     BatchTask(std::move(manifest), folder, options.index, signals).run();
-    return exit_done;
+    return ExitCode::done;
   } catch (const Stopped&) {
-    return exit_stopped;
+    return ExitCode::stopped;
   } catch (const std::runtime_error& error) {
     // It says nothing about any seed; the owner must hear of it all the same.
     write_durably(folder.trouble(options.index),

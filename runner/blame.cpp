@@ -5,7 +5,7 @@
 #include <csignal>
 #include <utility>
 
-#include "runner/integrity_error.h"
+#include "contract/integrity_error.h"
 
 namespace peclet::runner {
 namespace {

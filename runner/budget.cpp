@@ -4,12 +4,11 @@
 
 #include <cmath>
 
+#include "runner/duration_text.h"
 #include "runner/number_text.h"
 
 namespace peclet::runner {
 namespace {
-
-constexpr double seconds_per_hour = 3600;
 
 std::string sum_text(const SummedError& error) {
   if (error.unknown == 0) return rough(error.sum);

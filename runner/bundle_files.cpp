@@ -8,6 +8,7 @@
 
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
+#include "runner/attempt_report.h"
 #include "runner/spool.h"
 
 namespace peclet::runner {
@@ -126,7 +127,7 @@ std::string result_name(const BundledSeed& seed) {
   return fmt::format("{}-{:06}-", seed.point.substr(0, 16), seed.seed);
 }
 
-void write_report(const fs::path& path, int place, const NodeReport& report) {
+void write_report(const fs::path& path, int place, const AttemptReport& report) {
   const Json document{{"schema_version", 1},
                       {"place", place},
                       {"outcome", to_string(report.outcome)},
@@ -147,7 +148,7 @@ std::optional<PlacedReport> read_report(const fs::path& path) {
   try {
     PlacedReport placed;
     document.at("place").get_to(placed.place);
-    NodeReport& report = placed.report;
+    AttemptReport& report = placed.report;
     report.outcome = attempt_outcome(document.at("outcome").get<std::string>());
     document.at("step").get_to(report.step);
     report.ending = {optional_number(document.at("exit_status")), optional_number(document.at("signal"))};
@@ -175,7 +176,7 @@ void publish_results(const BundleFolder& folder, const Manifest& manifest, int t
       }
       // First the note, then the move: a task that is run again finds one of the two and runs nothing twice.
       if (!fs::exists(folder.ended(*place))) {
-        NodeReport report;
+        AttemptReport report;
         report.outcome = AttemptOutcome::result;
         report.engine = result.document.at("engine");
         write_report(folder.ended(*place), *place, report);

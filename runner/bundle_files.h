@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "contract/json.h"
-#include "runner/blame.h"
+#include "runner/attempt_report.h"
 #include "runner/bundle_book.h"
 #include "runner/campaign_directory.h"
 
@@ -49,16 +49,6 @@ Json manifest_json(const Manifest& manifest);
 // Throws InputError for a file that is absent or no manifest.
 Manifest read_manifest(const std::filesystem::path& path);
 
-// How an attempt at a seed went on a node.
-struct NodeReport {
-  AttemptOutcome outcome = AttemptOutcome::running;
-  std::int64_t step = 0;
-  ExitStatus ending{};
-  std::string message{}, host{}, started_at{};
-  std::int64_t process = 0;
-  Json engine{};  // provenance
-};
-
 // Names below a bundle's folder.
 class BundleFolder {
  public:
@@ -85,10 +75,10 @@ class BundleFolder {
   std::filesystem::path root_;
 };
 
-void write_report(const std::filesystem::path& path, int place, const NodeReport& report);
+void write_report(const std::filesystem::path& path, int place, const AttemptReport& report);
 struct PlacedReport {
   int place = 0;
-  NodeReport report;
+  AttemptReport report;
 };
 // Nothing when there is none. Throws InputError for a file that is no report.
 std::optional<PlacedReport> read_report(const std::filesystem::path& path);

@@ -8,6 +8,7 @@
 #include "contract/durable_file.h"
 #include "contract/sha256.h"
 #include "runner/bundles.h"
+#include "runner/host_name.h"
 
 namespace peclet::runner {
 namespace {
@@ -16,9 +17,7 @@ namespace fs = std::filesystem;
 
 // Of the campaign's folder on this machine: campaigns of one name do not share a job's name.
 std::string mark_of(const CampaignDirectory& directory) {
-  std::array<char, 256> host{};
-  gethostname(host.data(), host.size() - 1);
-  return sha256(std::string(host.data()) + ':' + directory.root().string()).substr(0, 6);
+  return sha256(host_name() + ':' + directory.root().string()).substr(0, 6);
 }
 
 BatchTemplate filled_in(const BatchTemplate& scripts, const BundleFolder& folder, const std::string& name,

@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "contract/input_error.h"
+#include "runner/attempt_report.h"
 #include "runner/bundles.h"
 
 namespace peclet::runner {
@@ -113,7 +114,7 @@ void Bundles::book(const BundleRecord& bundle, const BundleFolder& folder, const
       }
       continue;
     }
-    const NodeReport& report = reports[i]->report;
+    const AttemptReport& report = reports[i]->report;
     if (id) {
       ledger_.end_handed_over(*id, seed.task, report, folder.shared().checkpoint(named.point, named.seed));
     }
@@ -144,7 +145,7 @@ void Bundles::return_seed(const BundleRecord& bundle, const BundleFolder& folder
   if (id && cut_off && cut_off->place == seed.place && cut_off->report.outcome == AttemptOutcome::running) {
     // Its task was ended in the middle of it, without time to say so: that is nobody's blame, but it is
     // counted.
-    NodeReport report = cut_off->report;
+    AttemptReport report = cut_off->report;
     report.outcome = AttemptOutcome::killed;
     report.message = "its task ended without a word";
     ledger_.end_handed_over(*id, seed.task, report,

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/engine_process.h"
+#include "runner/exit_status.h"
 
 namespace peclet::runner {
 

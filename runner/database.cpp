@@ -29,14 +29,6 @@ constexpr std::array<std::pair<SeedState, const char*>, 5> state_names{
      {SeedState::failed, "failed"},
      {SeedState::quarantined, "quarantined"}}};
 
-constexpr std::array<std::pair<Verdict, const char*>, 6> verdict_names{
-    {{Verdict::more, "more"},
-     {Verdict::converged, "converged"},
-     {Verdict::converged_with_losses, "converged-with-losses"},
-     {Verdict::converged_near_maximum, "converged-near-maximum"},
-     {Verdict::capped, "capped"},
-     {Verdict::failed, "failed"}}};
-
 template <typename Names, typename Value>
 const char* name_of(const Names& names, Value value) {
   for (const auto& [known, name] : names) {
@@ -109,10 +101,6 @@ bool is_campaign_database(Connection& connection) {
 const char* to_string(SeedState state) { return name_of(state_names, state); }
 
 SeedState seed_state(const std::string& text) { return value_of<SeedState>(state_names, text); }
-
-const char* to_string(Verdict verdict) { return name_of(verdict_names, verdict); }
-
-Verdict verdict(const std::string& text) { return value_of<Verdict>(verdict_names, text); }
 
 Database::Database(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}
 

@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
+#include "contract/integrity_error.h"
 #include "contract/json.h"
 #include "runner/campaign.h"
 #include "runner/cohorts.h"
-#include "runner/integrity_error.h"
 #include "runner/sqlite.h"
 
 namespace peclet::runner {
@@ -23,9 +23,6 @@ namespace peclet::runner {
 enum class SeedState { queued, running, done, failed, quarantined };
 const char* to_string(SeedState state);
 SeedState seed_state(const std::string& text);
-
-const char* to_string(Verdict verdict);  // "converged-with-losses"
-Verdict verdict(const std::string& text);
 
 struct PointRecord {
   std::int64_t id = 0;

@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "contract/durable_file.h"
+#include "contract/integrity_error.h"
 #include "runner/database_tables.h"
-#include "runner/integrity_error.h"
 
 namespace peclet::runner {
 namespace {

@@ -14,6 +14,12 @@ constexpr const char* point_columns =
     "SELECT point_id, place, hash, scene, settings, label, engine_identity, suspect, priority, "
     "cancelled, kept_apart FROM point ";
 
+Verdict stored_verdict(const std::string& word) {
+  const std::optional<Verdict> known = verdict_of(word);
+  if (!known) throw IntegrityError("the database holds an unknown verdict: " + word);
+  return *known;
+}
+
 std::vector<PointRecord> read_points(Connection& connection, const std::string& which) {
   Statement query(connection, point_columns + which);
   std::vector<PointRecord> points;
@@ -65,7 +71,7 @@ std::vector<LookRecord> read_looks(Connection& connection, std::int64_t point) {
     look.controlled_half_width = query.real(12);
     look.estimate = {count, query.real(13), query.real(14)};
     look.half_width = query.real(15);
-    look.verdict = verdict(query.text(16));
+    look.verdict = stored_verdict(query.text(16));
     record.made_at = query.text(17);
     look.skewness = query.real(18);
     look.transient = query.integer(19) != 0;

@@ -6,8 +6,8 @@
 #include <set>
 #include <string>
 
+#include "contract/integrity_error.h"
 #include "runner/campaign_sql.h"
-#include "runner/integrity_error.h"
 #include "runner/plain_text.h"
 
 namespace peclet::runner {

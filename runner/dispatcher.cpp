@@ -8,6 +8,8 @@
 #include <utility>
 #include <variant>
 
+#include "runner/engine_error.h"
+
 namespace peclet::runner {
 namespace {
 

@@ -13,7 +13,6 @@
 #include <chrono>
 #include <functional>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,12 +22,6 @@
 #include "runner/worker_pool.h"
 
 namespace peclet::runner {
-
-// An engine that does not start, or does not live until it is given work. Exit code 1.
-class EngineError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 struct DispatchSettings {
   int threads = 1;  // of each worker

@@ -7,9 +7,12 @@
 #include <chrono>
 #include <memory>
 
+#include "contract/exit_codes.h"
 #include "contract/guarded_file.h"
+#include "runner/backup_files.h"
 #include "runner/database_copy.h"
 #include "runner/open_campaign.h"
+#include "runner/owner_lock.h"
 #include "runner/restore.h"
 
 namespace peclet::runner {
@@ -71,8 +74,8 @@ int exit_code(const Findings& findings) {
   for (const Finding& finding : findings) {
     if (!finding.repaired) worst = std::max(worst, finding.severity);
   }
-  if (worst == Severity::integrity) return 6;
-  return worst == Severity::warning ? 1 : 0;
+  if (worst == Severity::integrity) return ExitCode::integrity;
+  return worst == Severity::warning ? ExitCode::error : ExitCode::done;
 }
 
 std::string as_text(const Patient& patient, const Findings& findings) {

@@ -4,10 +4,10 @@
 #include <utility>
 
 #include "contract/durable_file.h"
+#include "contract/integrity_error.h"
+#include "runner/checked_look.h"
 #include "runner/cohorts.h"
 #include "runner/doctor.h"
-#include "runner/export.h"
-#include "runner/integrity_error.h"
 #include "runner/queue.h"
 #include "runner/realisation_result.h"
 #include "runner/result_text.h"

@@ -8,6 +8,7 @@
 
 #include "contract/guarded_file.h"
 #include "runner/backup.h"
+#include "runner/backup_files.h"
 #include "runner/doctor.h"
 #include "runner/plain_text.h"
 #include "runner/request.h"

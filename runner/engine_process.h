@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runner/campaign.h"
+#include "runner/exit_status.h"
 
 namespace peclet::runner {
 
@@ -27,17 +28,6 @@ struct EngineCommand {
 // folder, so that names among its arguments mean the same wherever peclet is started. Throws InputError at
 // /engine/0 of `campaign_file`.
 EngineCommand resolve_engine(const Campaign& campaign, const std::filesystem::path& campaign_file);
-
-// How a process ended.
-struct ExitStatus {
-  std::optional<int> status;  // of exit()
-  std::optional<int> signal;  // that killed it
-};
-
-// "exit status 3", "signal 11 (Segmentation fault)"
-std::string to_string(const ExitStatus& ending);
-// Of what waitpid(2) says about a process that has ended.
-ExitStatus exit_status(int wait_status);
 
 // Movable owner of the process and of our end of its socket.
 class EngineProcess {

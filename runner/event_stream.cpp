@@ -11,7 +11,7 @@
 #include <cstring>
 #include <utility>
 
-#include "runner/status.h"
+#include "runner/look_json.h"
 #include "runner/utc_time.h"
 
 namespace peclet::runner {

@@ -3,10 +3,12 @@
 #include <filesystem>
 #include <system_error>
 
+#include "contract/exit_codes.h"
 #include "contract/input_error.h"
+#include "contract/integrity_error.h"
 #include "contract/printable.h"
 #include "runner/campaign_directory.h"
-#include "runner/integrity_error.h"
+#include "runner/owner_lock.h"
 
 namespace peclet::runner {
 namespace {
@@ -21,10 +23,10 @@ bool is_impossible_name(const std::exception& error) {
 }  // namespace
 
 int exit_code_of(const std::exception& error) {
-  if (dynamic_cast<const InputError*>(&error) != nullptr || is_impossible_name(error)) return 2;
-  if (dynamic_cast<const OwnedByAnother*>(&error) != nullptr) return 5;
-  if (dynamic_cast<const IntegrityError*>(&error) != nullptr) return 6;
-  return 1;
+  if (dynamic_cast<const InputError*>(&error) != nullptr || is_impossible_name(error)) return ExitCode::usage;
+  if (dynamic_cast<const OwnedByAnother*>(&error) != nullptr) return ExitCode::owned;
+  if (dynamic_cast<const IntegrityError*>(&error) != nullptr) return ExitCode::integrity;
+  return ExitCode::error;
 }
 
 std::string message_of(const std::exception& error) {

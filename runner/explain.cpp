@@ -9,6 +9,7 @@
 #include "runner/explain_attempts.h"
 #include "runner/explain_estimate.h"
 #include "runner/forecast.h"
+#include "runner/look_json.h"
 #include "runner/number_text.h"
 #include "runner/point_name.h"
 #include "runner/prediction_text.h"

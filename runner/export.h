@@ -30,7 +30,4 @@ struct ExportOptions {
 std::string export_json(Database& database, bool canonical);
 std::string export_csv(Database& database, bool canonical);
 
-// The last look at a point for the present target, checked by replaying it; nothing before the first.
-std::optional<Look> checked_look(Database& database, const PointRecord& point, const TargetRecord& target);
-
 }  // namespace peclet::runner

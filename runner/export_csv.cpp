@@ -5,6 +5,7 @@
 #include <set>
 #include <string_view>
 
+#include "runner/checked_look.h"
 #include "runner/database_summary.h"
 #include "runner/export.h"
 

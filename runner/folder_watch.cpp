@@ -8,8 +8,9 @@
 
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
+#include "contract/integrity_error.h"
 #include "runner/database_copy.h"
-#include "runner/integrity_error.h"
+#include "runner/owner_lock.h"
 #include "runner/quoting.h"
 
 namespace peclet::runner {

@@ -7,6 +7,7 @@
 
 #include "runner/campaign_directory.h"
 #include "runner/database.h"
+#include "runner/owner_lock.h"
 #include "runner/run_listener.h"
 
 namespace peclet::runner {

@@ -6,9 +6,12 @@
 #include <optional>
 #include <thread>
 
+#include "contract/exit_codes.h"
 #include "contract/input_error.h"
+#include "runner/backup_files.h"
 #include "runner/open_campaign.h"
 #include "runner/owned_campaign.h"
+#include "runner/owner_lock.h"
 #include "runner/progress.h"
 #include "runner/requests.h"
 #include "runner/restore.h"
@@ -20,7 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr int exit_not_finished = 4;
 constexpr std::chrono::milliseconds between_looks{100};
 
 // Nobody runs the campaign: what waits is carried out here. False: somebody was faster.
@@ -62,7 +64,7 @@ std::string next_step(const CampaignDirectory& directory, Database& database, co
     return fmt::format("process {} goes on with it; `peclet status {}` shows how far it is\n", *owner, words);
   }
   const CampaignStatus status = read_status(database);
-  if (standing(status) != exit_not_finished) return "no point is open: there is nothing to run\n";
+  if (standing(status) != ExitCode::unfinished) return "no point is open: there is nothing to run\n";
   return fmt::format("go on with: peclet run {}\n", words);
 }
 
@@ -88,7 +90,7 @@ Reply await_reply(const CampaignDirectory& directory, const Request& request, co
   if (patience <= 0) return {fmt::format("{} will come to it\n", owner)};
   return {fmt::format("{} has not come to it in {:g} s, but will: see `peclet status {}`\n", owner, patience,
                       words),
-          exit_not_finished};
+          ExitCode::unfinished};
 }
 
 }  // namespace peclet::runner

@@ -10,10 +10,12 @@
 #include <system_error>
 #include <thread>
 
+#include "contract/exit_codes.h"
 #include "contract/input_error.h"
 #include "runner/bundles.h"
 #include "runner/campaign_file.h"
 #include "runner/dispatcher.h"
+#include "runner/engine_error.h"
 #include "runner/owned_campaign.h"
 #include "runner/progress.h"
 #include "runner/quoting.h"
@@ -34,7 +36,6 @@ constexpr int usual_largest_array = 1000;
 constexpr int most_lifeless_turns = 3;
 // After the last point is decided, for tasks that were cancelled.
 constexpr std::chrono::seconds leaving_patience{60};
-constexpr int exit_error = 1;
 
 std::string own_program() { return fs::read_symlink("/proc/self/exe").string(); }
 
@@ -263,7 +264,7 @@ int hand_over_campaign(const HandOverOptions& options) {
       return 0;
     }
     finished = Follower(ledger, bundles, requests, progress, options).run(settings);
-    code = exit_code(owned.database, ledger.scheduler(), finished);
+    code = ending(read_status(owned.database), finished);
   }
   std::fputs(status_table(owned.database, getpid()).c_str(), stdout);
   return code;
@@ -288,7 +289,7 @@ int ingest_campaign(const IngestOptions& options) {
   for (const std::string& name : options.forget) bundles.forget(name);
   if (!options.forget.empty()) settled = bundles.settle();
   std::fputs((standing_text(owned.database) + advice(owned.database, options)).c_str(), stdout);
-  return settled.unreachable > 0 ? exit_error : 0;
+  return settled.unreachable > 0 ? ExitCode::error : 0;
 }
 
 }  // namespace peclet::runner

@@ -84,7 +84,7 @@ class Ledger {
   // The seed has ended, with a result or without.
   bool has_ended(SeedId id);
   // Books how an attempt at a seed that was handed over ended on a node: as end_attempt().
-  void end_handed_over(SeedId id, int task, const NodeReport& report,
+  void end_handed_over(SeedId id, int task, const AttemptReport& report,
                        const std::filesystem::path& checkpoint);
   // A seed that was handed over comes back without an attempt.
   void take_back(SeedId id);

@@ -6,8 +6,8 @@
 #include <map>
 #include <system_error>
 
+#include "runner/attempt_report.h"
 #include "runner/bundle_book.h"
-#include "runner/bundle_files.h"
 #include "runner/ledger.h"
 
 namespace peclet::runner {
@@ -89,7 +89,7 @@ std::optional<SeedId> Ledger::identify(std::int64_t point_id, int seed) const {
 
 bool Ledger::has_ended(SeedId id) { return queue_.has_ended(point(id.point).id, id.seed); }
 
-void Ledger::end_handed_over(SeedId id, int task, const NodeReport& report,
+void Ledger::end_handed_over(SeedId id, int task, const AttemptReport& report,
                              const std::filesystem::path& checkpoint) {
   const PointRecord& about = point(id.point);
   queue_.attempt_elsewhere(about.id, id.seed, task, report);

@@ -10,6 +10,8 @@
 #include "runner/exit_code.h"
 #include "runner/open_campaign.h"
 #include "runner/options.h"
+#include "runner/owner_lock.h"
+#include "runner/plan_campaign.h"
 
 namespace {
 

@@ -5,9 +5,9 @@
 #include <filesystem>
 
 #include "contract/durable_file.h"
+#include "contract/integrity_error.h"
 #include "runner/campaign_sql.h"
 #include "runner/database_copy.h"
-#include "runner/integrity_error.h"
 #include "runner/realisation_result.h"
 
 namespace peclet::runner {

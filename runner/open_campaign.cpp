@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "contract/guarded_file.h"
+#include "runner/backup_files.h"
 #include "runner/campaign_file.h"
-#include "runner/restore.h"
 
 namespace peclet::runner {
 namespace {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/exit_codes.h"
 #include "contract/input_error.h"
 #include "contract/provenance.h"
 #include "runner/parser_tree.h"
@@ -18,8 +19,6 @@
 
 namespace peclet::runner {
 namespace {
-
-constexpr int exit_usage = 2;
 
 std::string version_text() {
   const Json& origin = provenance();
@@ -71,7 +70,7 @@ class Reader {
  private:
   static CommandLine complain(const std::string& fault) {
     fmt::print(stderr, "peclet: {}\n", fault);
-    return {std::nullopt, exit_usage};
+    return {std::nullopt, ExitCode::usage};
   }
 
   VerbSet verbs_;

@@ -15,7 +15,7 @@
 #include "runner/hand_over.h"
 #include "runner/init.h"
 #include "runner/manual.h"
-#include "runner/plan.h"
+#include "runner/plan_campaign.h"
 #include "runner/report.h"
 #include "runner/restore.h"
 #include "runner/results.h"

@@ -1,6 +1,7 @@
 // Verbs that set a campaign up and run it.
 #include <memory>
 
+#include "runner/plan_campaign.h"
 #include "runner/verb_set.h"
 
 namespace peclet::runner {

@@ -6,19 +6,15 @@
 #include <utility>
 
 #include "contract/guarded_file.h"
-#include "runner/backup.h"
+#include "runner/backup_files.h"
 #include "runner/queue.h"
 #include "runner/quoting.h"
 #include "runner/realisation_result.h"
 #include "runner/renamed_file.h"
-#include "runner/restore.h"
 #include "runner/spool.h"
 
 namespace peclet::runner {
 namespace {
-
-constexpr int exit_converged = 0;
-constexpr int exit_unconverged = 3;
 
 constexpr std::size_t fewest_digits = 6;  // of a hash that names an engine
 
@@ -155,19 +151,6 @@ std::string acceptance_hint(const std::string& verb_and_file, const Json& engine
       "points "
       "that are still to be run have is then kept apart, and they begin again",
       verb_and_file, engine.at("binary_sha256").get<std::string>().substr(0, 12));
-}
-
-int exit_code(Database& database, const Scheduler& scheduler, bool finished) {
-  const std::vector<PointRecord> points = database.points();
-  if (std::any_of(points.begin(), points.end(), [](const PointRecord& point) { return point.suspect; })) {
-    return exit_integrity;
-  }
-  if (!finished) return exit_stopped;
-  for (int place = 0; place < scheduler.points(); ++place) {
-    const std::vector<Look>& looks = scheduler.looks(place);  // none of a point that was cancelled early
-    if (looks.empty() || looks.back().verdict != Verdict::converged) return exit_unconverged;
-  }
-  return exit_converged;
 }
 
 }  // namespace peclet::runner

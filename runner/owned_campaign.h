@@ -9,6 +9,7 @@
 #include "runner/database.h"
 #include "runner/engine_process.h"
 #include "runner/ledger.h"
+#include "runner/owner_lock.h"
 #include "runner/run_listener.h"
 #include "runner/scene_check.h"
 #include "runner/scheduler.h"
@@ -17,9 +18,6 @@ namespace peclet::runner {
 
 // A seed may fail so often beyond the first time.
 constexpr int retries = 2;
-
-constexpr int exit_integrity = 6;
-constexpr int exit_stopped = 75;
 
 // Checked and locked: nobody else may write it now.
 struct ClaimedCampaign {
@@ -56,8 +54,5 @@ void accept_engine(Ledger& ledger, const Json& engine, RunListener& listener);
 // What accepts the engine that an OtherEngine was thrown for: "; accept it with `peclet run FILE
 // --accept-engine 1a2b3c4d5e6f`: ...".
 std::string acceptance_hint(const std::string& verb_and_file, const Json& engine);
-
-// How a campaign stands whose points are decided (`finished`) or not: 0, 3, 6 or 75, as `peclet run` leaves.
-int exit_code(Database& database, const Scheduler& scheduler, bool finished);
 
 }  // namespace peclet::runner

@@ -1,4 +1,5 @@
-// The half of campaign_directory.h that says who may write a campaign.
+#include "runner/owner_lock.h"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
@@ -19,7 +20,6 @@
 #include "contract/descriptor.h"
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
-#include "runner/campaign_directory.h"
 #include "runner/quoting.h"
 
 namespace peclet::runner {

@@ -1,4 +1,4 @@
-// The verb `peclet plan`: what a campaign may cost, and with a pilot what it will.
+// What a campaign may cost, and with a pilot what it will.
 #pragma once
 
 #include <ctime>
@@ -11,15 +11,8 @@
 #include "contract/json.h"
 #include "runner/campaign.h"
 #include "runner/prediction.h"
-#include "runner/run.h"
 
 namespace peclet::runner {
-
-struct PlanOptions {
-  RunOptions run;            // of the pilot; its workers are those that the campaign is planned for
-  std::optional<int> pilot;  // seeds of each point to run first; none: nothing is run and nothing written
-  bool json = false;
-};
 
 // What realisations of a point that have ended took, on the average.
 struct MeasuredCost {
@@ -83,11 +76,5 @@ Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_ste
 
 std::string plan_text(const Plan& plan);
 Json plan_json(const Plan& plan);
-
-// Asks the engine how long the realisations are, and the database, if there is one, what they cost; where it
-// does not know, the engine tries a realisation of the point with the median work for two seconds. With a
-// pilot runs it first and stores its predictions. Prints the plan; returns 0, or as run_pilot(). Throws as
-// run_campaign().
-int plan_campaign(const PlanOptions& options);
 
 }  // namespace peclet::runner

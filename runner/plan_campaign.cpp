@@ -1,4 +1,5 @@
-// The verb `peclet plan`: the pilot is run, the plan made of what the database has, and told.
+#include "runner/plan_campaign.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -5,17 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runner/duration_text.h"
 #include "runner/number_text.h"
 #include "runner/plan.h"
 #include "runner/point_columns.h"
-#include "runner/progress.h"
 #include "runner/status.h"
 #include "runner/text_table.h"
 
 namespace peclet::runner {
 namespace {
-
-constexpr double seconds_per_hour = 3600;
 
 double hours(const PointPlan& point, int seeds) { return point.cost.cpu_seconds * seeds / seconds_per_hour; }
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "runner/progress.h"
+#include "runner/duration_text.h"
 
 namespace peclet::runner {
 namespace {

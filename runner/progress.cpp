@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "runner/duration_text.h"
 #include "runner/number_text.h"
 
 namespace peclet::runner {
@@ -17,7 +18,6 @@ namespace {
 
 // Off a terminal somebody reads a file: one line in so many seconds is enough.
 constexpr double seconds_between_lines = 30;
-constexpr long long minutes_of_a_day = 1440;
 
 bool colour_wanted() {
   const char* const no_colour = std::getenv("NO_COLOR");
@@ -37,16 +37,6 @@ std::size_t terminal_width() {
 
 }  // namespace
 
-std::string duration_text(double seconds) {
-  const auto whole = std::llround(seconds);
-  if (whole < 90) return fmt::format("{} s", whole);
-  const auto minutes = std::llround(seconds / 60);
-  if (minutes < 60) return fmt::format("{} min", minutes);
-  if (minutes < minutes_of_a_day) return fmt::format("{} h {} min", minutes / 60, minutes % 60);
-  const auto hours = std::llround(seconds / 3600);
-  return fmt::format("{} d {} h", hours / 24, hours % 24);
-}
-
 std::string progress_line(const RunReport& report) {
   std::string line = fmt::format("points {}/{} converged", report.converged, report.points);
   if (report.decided > report.converged) line += fmt::format(", {} not", report.decided - report.converged);
@@ -58,8 +48,8 @@ std::string progress_line(const RunReport& report) {
                         duration_text(report.to_go->low), duration_text(report.to_go->high));
   }
   if (report.budget_seconds) {
-    line += fmt::format(" | budget {} of {} h", rough(report.spent_seconds / 3600),
-                        rough(*report.budget_seconds / 3600));
+    line += fmt::format(" | budget {} of {} h", rough(report.spent_seconds / seconds_per_hour),
+                        rough(*report.budget_seconds / seconds_per_hour));
   }
   if (report.workers > 0) line += fmt::format(" | workers {}/{}", report.busy, report.workers);
   return line;

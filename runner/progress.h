@@ -11,9 +11,6 @@
 
 namespace peclet::runner {
 
-// "45 s", "12 min", "3 h 20 min", "2 d 4 h"
-std::string duration_text(double seconds);
-
 // "points 2/6 converged, 1 otherwise decided | seeds 143/210 | 12.3/min | 12 min to go (10 to 18 min)"
 std::string progress_line(const RunReport& report);
 

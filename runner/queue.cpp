@@ -6,17 +6,13 @@
 #include <array>
 #include <cmath>
 
-#include "runner/bundle_files.h"
+#include "runner/attempt_report.h"
+#include "runner/host_name.h"
 #include "runner/result_text.h"
 #include "runner/utc_time.h"
 
 namespace peclet::runner {
 namespace {
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
-}
 
 template <typename Number>
 std::optional<Number> number_at(const Json& document, const char* pointer) {
@@ -86,7 +82,7 @@ std::int64_t Queue::begin_attempt(std::int64_t point, int seed, int worker, std:
   return attempt;
 }
 
-void Queue::attempt_elsewhere(std::int64_t point, int seed, int task, const NodeReport& report) {
+void Queue::attempt_elsewhere(std::int64_t point, int seed, int task, const AttemptReport& report) {
   Statement(
       connection_,
       "INSERT INTO attempt (point_id, seed, worker, process, host, engine_id, started_at, ended_at, outcome, "

@@ -16,7 +16,7 @@
 
 namespace peclet::runner {
 
-struct NodeReport;  // bundle_files.h
+struct AttemptReport;  // attempt_report.h
 
 struct AttemptEnd {
   AttemptOutcome outcome = AttemptOutcome::result;
@@ -57,7 +57,7 @@ class Queue {
                              std::int64_t engine);
   // An attempt that a batch system's node made, and that has ended; the seed's state is the caller's to
   // change.
-  void attempt_elsewhere(std::int64_t point, int seed, int task, const NodeReport& report);
+  void attempt_elsewhere(std::int64_t point, int seed, int task, const AttemptReport& report);
   void renew_lease(std::int64_t attempt, const char* phase, std::int64_t step, std::int64_t steps,
                    double strain);
   void end_attempt(std::int64_t attempt, const AttemptEnd& end);

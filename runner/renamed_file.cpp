@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "contract/input_error.h"
+#include "contract/integrity_error.h"
 #include "runner/database.h"
-#include "runner/integrity_error.h"
 #include "runner/quoting.h"
 
 namespace peclet::runner {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <map>
 
+#include "runner/duration_text.h"
 #include "runner/html.h"
 #include "runner/number_text.h"
 #include "runner/point_columns.h"
-#include "runner/progress.h"
 #include "runner/report_chart.h"
 #include "runner/report_sections.h"
 

@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "contract/guarded_file.h"
+#include "contract/integrity_error.h"
 #include "contract/output_file.h"
 #include "runner/backup.h"
+#include "runner/backup_files.h"
 #include "runner/campaign.h"
 #include "runner/campaign_file.h"
 #include "runner/database_copy.h"
-#include "runner/integrity_error.h"
+#include "runner/owner_lock.h"
 #include "runner/queue.h"
 #include "runner/quoting.h"
 #include "runner/spool.h"
@@ -195,34 +197,6 @@ std::string restore_campaign(const RestoreOptions& options) {
   if (!aside.empty()) text += fmt::format("the database that was there is kept in {}\n", aside.string());
   text += write_campaign_file(place.file, source.contents.document);
   return text + fmt::format("go on with: peclet run {}\n", place.run_arguments);
-}
-
-void refuse_lost_database(const CampaignDirectory& directory) {
-  require_regular(directory.database());
-  std::error_code absent;
-  const std::uintmax_t size = fs::file_size(directory.database(), absent);
-  const std::string hint = restore_hint(directory);
-  if (hint.empty() || (!absent && size > 0)) return;
-  throw IntegrityError(
-      fmt::format("{}: is {}, but there are backups of it{}, or move {} away to start afresh",
-                  directory.database().string(), absent ? "gone" : "empty", hint, directory.root().string()));
-}
-
-// A sound database may be refused for another reason, and there a backup would not help.
-std::string hint_if_damaged(const CampaignDirectory& directory) {
-  try {
-    examine(directory.database());
-    return "";
-  } catch (const IntegrityError&) {
-    return restore_hint(directory);
-  }
-}
-
-std::string restore_hint(const CampaignDirectory& directory) {
-  const fs::path folder = directory.backup();
-  if (kind_of(newest_backup(folder)).empty() && kind_of(previous_backup(folder)).empty()) return "";
-  return fmt::format("; put the last one back with `peclet restore {} {}`", shell_word(folder.string()),
-                     shell_word(directory.root().string()));
 }
 
 }  // namespace peclet::runner

@@ -22,13 +22,4 @@ struct RestoreOptions {
 // sound.
 std::string restore_campaign(const RestoreOptions& options);
 
-// Throws IntegrityError when the database of a campaign that has backups is gone or empty: starting afresh
-// would in time replace them. Throws UnsuitableFile when something else bears its name.
-void refuse_lost_database(const CampaignDirectory& directory);
-
-// What to do about a damaged database: the command that puts the last backup back, or "" when there is none.
-std::string restore_hint(const CampaignDirectory& directory);
-// The same, but "" also when the whole database was examined and found sound.
-std::string hint_if_damaged(const CampaignDirectory& directory);
-
 }  // namespace peclet::runner

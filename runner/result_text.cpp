@@ -7,7 +7,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "runner/integrity_error.h"
+#include "contract/integrity_error.h"
 #include "runner/result_shape.h"
 
 namespace peclet::runner {

@@ -11,7 +11,6 @@
 #include <system_error>
 
 #include "contract/durable_file.h"
-#include "runner/sqlite.h"
 
 namespace peclet::runner {
 namespace {
@@ -52,12 +51,6 @@ bool has_room(const fs::path& folder, std::uint64_t bytes) {
   close(descriptor);
   unlink(trial.c_str());
   return !peclet::means_no_room(error);
-}
-
-bool means_no_room(const std::exception& error) {
-  if (const auto* database = dynamic_cast<const DatabaseError*>(&error)) return database->no_room();
-  const auto* system = dynamic_cast<const std::system_error*>(&error);
-  return system != nullptr && peclet::means_no_room(system->code().value());
 }
 
 std::string shortage_text(const fs::path& folder, std::uint64_t bytes) {

@@ -13,9 +13,6 @@ namespace peclet::runner {
 // statvfs. True also when it cannot be tried for another reason than want of room.
 bool has_room(const std::filesystem::path& folder, std::uint64_t bytes);
 
-// Whether an exception says that there was no room to write something.
-bool means_no_room(const std::exception& error);
-
 // "/data/friction.peclet/spool is full: 0.0 MB are free there, 1.1 MB are needed"
 std::string shortage_text(const std::filesystem::path& folder, std::uint64_t bytes);
 

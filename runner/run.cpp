@@ -10,10 +10,12 @@
 #include <string>
 #include <thread>
 
+#include "contract/exit_codes.h"
 #include "runner/budget.h"
 #include "runner/bundle_files.h"
 #include "runner/campaign_file.h"
 #include "runner/dispatcher.h"
+#include "runner/duration_text.h"
 #include "runner/event_stream.h"
 #include "runner/exit_code.h"
 #include "runner/folder_watch.h"
@@ -22,13 +24,12 @@
 #include "runner/requests.h"
 #include "runner/room.h"
 #include "runner/run_log.h"
+#include "runner/sqlite.h"
 #include "runner/status.h"
 #include "runner/worker_process.h"
 
 namespace peclet::runner {
 namespace {
-
-constexpr double seconds_per_hour = 3600;
 
 // More workers than seeds that may still run have nothing to do.
 Team useful_team(const RunOptions& options, const Campaign& campaign) {
@@ -126,9 +127,9 @@ int dispatch(Opened& opened, const RunOptions& options, const ClaimedCampaign& c
                          claimed.command.program.string()));
   ProcessPool pool(size.workers, claimed.command, directory, signals);
   Dispatcher dispatcher(opened.database, opened.ledger, pool, log, settings, steady_clock::now);
-  const Dispatcher::Ending ending = dispatcher.run();
+  const bool finished = dispatcher.run() == Dispatcher::Ending::finished;
   backup.finish();
-  return exit_code(opened.database, opened.ledger.scheduler(), ending == Dispatcher::Ending::finished);
+  return ending(read_status(opened.database), finished);
 }
 
 // What failed before it had begun is no part of the campaign's history: nothing is written.
@@ -159,7 +160,7 @@ int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion&
   const ClaimedCampaign claimed(options.campaign, options.directory, options.force, options.accept_engine);
   StopSignals signals;
   std::unique_ptr<Opened> opened;
-  int code = exit_stopped;
+  int code = ExitCode::stopped;
   {
     Progress progress(Progress::style_of_stderr(options.quiet));
     std::optional<EventStream> events;
@@ -209,7 +210,7 @@ int run_campaign(const RunOptions& options) {
       text += budget_text(opened.ledger.spent_seconds(), seconds_per_hour * *options.budget_hours,
                           opened.before, summed_error(opened.ledger.scheduler()));
     }
-    if (code == exit_stopped) text += how_to_go_on(options, status);
+    if (code == ExitCode::stopped) text += how_to_go_on(options, status);
     std::fputs(text.c_str(), stdout);
   });
 }
@@ -217,10 +218,10 @@ int run_campaign(const RunOptions& options) {
 int run_pilot(const RunOptions& options, int seeds,
               const std::function<void(const ClaimedCampaign&, Database&)>& conclude) {
   const int code = run(options, seeds, [&](const ClaimedCampaign& claimed, Opened& opened, int ended_with) {
-    if (ended_with != exit_stopped) conclude(claimed, opened.database);
+    if (ended_with != ExitCode::stopped) conclude(claimed, opened.database);
   });
   // That points are not decided yet is what a pilot is for.
-  return code == exit_integrity || code == exit_stopped ? code : 0;
+  return code == ExitCode::integrity || code == ExitCode::stopped ? code : 0;
 }
 
 }  // namespace peclet::runner

@@ -11,7 +11,7 @@
 
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
-#include "runner/integrity_error.h"
+#include "contract/integrity_error.h"
 
 namespace peclet::runner {
 namespace {
@@ -54,7 +54,13 @@ std::string without_links_above(const std::filesystem::path& path) {
 bool DatabaseError::no_room() const {
   const int primary = code_ & 0xff;
   if (primary == SQLITE_FULL) return true;
-  return (primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN) && means_no_room(system_error_);
+  return (primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN) && peclet::means_no_room(system_error_);
+}
+
+bool means_no_room(const std::exception& error) {
+  if (const auto* database = dynamic_cast<const DatabaseError*>(&error)) return database->no_room();
+  const auto* system = dynamic_cast<const std::system_error*>(&error);
+  return system != nullptr && peclet::means_no_room(system->code().value());
 }
 
 bool DatabaseError::refuses_values() const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -30,6 +31,9 @@ class DatabaseError : public std::runtime_error {
  private:
   int code_, system_error_;
 };
+
+// Whether an exception says that there was no room to write something.
+bool means_no_room(const std::exception& error);
 
 class Connection {
  public:

@@ -5,18 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contract/exit_codes.h"
+#include "runner/look_json.h"
 #include "runner/prediction_text.h"
 
 namespace peclet::runner {
 namespace {
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json estimate_json(const Estimate& estimate) {
-  return {{"count", estimate.count},
-          {"mean", number(estimate.mean)},
-          {"standard_error", number(estimate.standard_error)}};
-}
 
 Json lease_json(const LeaseRecord& lease) {
   return {
@@ -79,13 +73,21 @@ CampaignStatus read_status(Database& database) {
 
 int standing(const CampaignStatus& status) {
   const auto any = [&](auto is) { return std::any_of(status.points.begin(), status.points.end(), is); };
-  if (any([](const PointSummary& point) { return point.point.suspect; })) return 6;
-  if (any([](const PointSummary& point) { return point.open(); })) return 4;
+  if (any([](const PointSummary& point) { return point.point.suspect; })) return ExitCode::integrity;
+  if (any([](const PointSummary& point) { return point.open(); })) return ExitCode::unfinished;
   // A point that was cancelled early may have no look.
   const auto converged = [](const PointSummary& point) {
     return point.decided && point.looks.back().verdict == Verdict::converged;
   };
-  return std::all_of(status.points.begin(), status.points.end(), converged) ? 0 : 3;
+  return std::all_of(status.points.begin(), status.points.end(), converged) ? ExitCode::done
+                                                                            : ExitCode::unconverged;
+}
+
+int ending(const CampaignStatus& status, bool finished) {
+  const int code = standing(status);
+  if (code == ExitCode::integrity) return code;
+  if (!finished) return ExitCode::stopped;
+  return code == ExitCode::unfinished ? ExitCode::unconverged : code;
 }
 
 std::string standing_word(const PointSummary& point) {
@@ -114,19 +116,6 @@ std::vector<std::string> reservations(const PointSummary& point) {
   for (const auto& [code, count] : point.flags) found.push_back(fmt::format("{} flagged {}", count, code));
   if (point.point.suspect) found.emplace_back("suspect");
   return found;
-}
-
-Json look_json(const Look& look) {
-  Json json = estimate_json(look.controlled);
-  json["seeds"] = look.seeds;
-  json["lost"] = look.lost;
-  json["half_width"] = number(look.controlled_half_width);
-  json["uncontrolled"] = estimate_json(look.estimate);
-  json["uncontrolled"]["half_width"] = number(look.half_width);
-  json["skewness"] = number(look.skewness);
-  json["transient"] = look.transient;
-  json["verdict"] = to_string(look.verdict);
-  return json;
 }
 
 Json status_json(const CampaignStatus& status) {

@@ -33,6 +33,8 @@ CampaignStatus read_status(Database& database);
 // 0 every point converged; 3 decided, but some capped, failed, cancelled or with losses; 4 not finished; 6
 // some point is suspect: a seed gave two different results.
 int standing(const CampaignStatus& status);
+// The exit code of a process that has run it: standing(), or 75 when it did not finish what it was to do.
+int ending(const CampaignStatus& status, bool finished);
 
 // Whether the last look of some point has a control variate.
 bool any_control(const CampaignStatus& status);
@@ -57,9 +59,5 @@ std::string status_table(const CampaignStatus& status, std::size_t width = unlim
 // Who runs it and how far the workers are; nothing when the campaign is decided and nobody runs it.
 std::string workers_text(const CampaignStatus& status, std::size_t width = unlimited_width);
 Json status_json(const CampaignStatus& status);
-
-// The estimate that decides with its half-width, and the one without the control variate; numbers that do not
-// exist are null.
-Json look_json(const Look& look);
 
 }  // namespace peclet::runner

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runner/duration_text.h"
 #include "runner/number_text.h"
 #include "runner/point_columns.h"
 #include "runner/prediction_text.h"
-#include "runner/progress.h"
 #include "runner/status.h"
 #include "runner/text_table.h"
 

@@ -1,6 +1,7 @@
 #include "runner/stop_rule.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -14,11 +15,33 @@ constexpr double before_last = 0.02, at_last = 0.05;
 // their spread is all but unknown, and what it might be at most is no measure.
 constexpr int fewest_degrees = 7;
 
+constexpr std::array<std::pair<Verdict, const char*>, 6> verdict_names{
+    {{Verdict::more, "more"},
+     {Verdict::converged, "converged"},
+     {Verdict::converged_with_losses, "converged-with-losses"},
+     {Verdict::converged_near_maximum, "converged-near-maximum"},
+     {Verdict::capped, "capped"},
+     {Verdict::failed, "failed"}}};
+
 double excess(int values, double probability) {
   return variance_excess(std::max(values - 1, fewest_degrees), probability);
 }
 
 }  // namespace
+
+const char* to_string(Verdict verdict) {
+  for (const auto& [known, name] : verdict_names) {
+    if (known == verdict) return name;
+  }
+  return "?";
+}
+
+std::optional<Verdict> verdict_of(std::string_view word) {
+  for (const auto& [known, name] : verdict_names) {
+    if (name == word) return known;
+  }
+  return std::nullopt;
+}
 
 bool is_converged(Verdict verdict) {
   return verdict == Verdict::converged || verdict == Verdict::converged_with_losses;

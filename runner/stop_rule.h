@@ -17,6 +17,8 @@
 #pragma once
 
 #include <map>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "runner/campaign.h"
@@ -32,6 +34,11 @@ enum class Verdict {
   capped,                  // the maximum is reached without convergence
   failed                   // fewer than two values at the maximum or every seed of the first cohort lost
 };
+
+// "converged-with-losses"
+const char* to_string(Verdict verdict);
+// Nothing for a word that is no verdict.
+std::optional<Verdict> verdict_of(std::string_view word);
 
 // With losses or without.
 bool is_converged(Verdict verdict);

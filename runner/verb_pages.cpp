@@ -3,6 +3,8 @@
 #include <sstream>
 #include <utility>
 
+#include "contract/exit_codes.h"
+
 namespace peclet::runner {
 namespace {
 
@@ -217,14 +219,17 @@ const VerbPage& verb_page(const std::string& verb) {
 
 const std::map<int, std::string>& exit_codes() {
   static const std::map<int, std::string> codes{
-      {0, "done; of a run: every point converged"},
-      {1, "error"},
-      {2, "usage, or faulty input; nothing has been written"},
-      {3, "finished, but some points are capped or near the maximum, failed, cancelled or lost seeds"},
-      {4, "not finished yet; of set, cancel and retry: asked for, and not carried out yet"},
-      {5, "another process owns the campaign"},
-      {6, "integrity: the database is damaged, or a seed gave two different results"},
-      {75, "stopped by a signal or a time limit, or at the end of its budget; the same command goes on"}};
+      {ExitCode::done, "done; of a run: every point converged"},
+      {ExitCode::error, "error"},
+      {ExitCode::usage, "usage, or faulty input; nothing has been written"},
+      {ExitCode::unconverged,
+       "finished, but some points are capped or near the maximum, failed, cancelled or lost seeds"},
+      {ExitCode::unfinished,
+       "not finished yet; of set, cancel and retry: asked for, and not carried out yet"},
+      {ExitCode::owned, "another process owns the campaign"},
+      {ExitCode::integrity, "integrity: the database is damaged, or a seed gave two different results"},
+      {ExitCode::stopped,
+       "stopped by a signal or a time limit, or at the end of its budget; the same command goes on"}};
   return codes;
 }
 

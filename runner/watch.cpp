@@ -9,17 +9,17 @@
 #include <cstdio>
 #include <vector>
 
+#include "contract/exit_codes.h"
 #include "runner/being_set_up.h"
 #include "runner/campaign.h"
 #include "runner/folded_text.h"
 #include "runner/open_campaign.h"
+#include "runner/owner_lock.h"
 #include "runner/status.h"
 #include "runner/stop_signals.h"
 
 namespace peclet::runner {
 namespace {
-
-constexpr int exit_unfinished = 4;
 
 struct Size {
   int rows = 24, columns = 80;
@@ -51,7 +51,7 @@ Sight look_for_beginning(const WatchOptions& options, std::size_t width) {
       fmt::format("{}: nothing has been run yet; waiting for `peclet run {}{}`\n",
                   read_campaign(options.campaign).name, options.campaign.string(),
                   options.directory.empty() ? "" : " --directory " + options.directory.string());
-  return {folded(text, width), exit_unfinished};
+  return {folded(text, width), ExitCode::unfinished};
 }
 
 bool is_continuation(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
@@ -83,7 +83,7 @@ Sight sight_of(const WatchOptions& options, std::size_t width) {
   try {
     return look(options, width);
   } catch (const BeingSetUp&) {
-    return {folded(options.campaign.string() + ": is only just being set up\n", width), exit_unfinished};
+    return {folded(options.campaign.string() + ": is only just being set up\n", width), ExitCode::unfinished};
   }
 }
 
@@ -132,7 +132,7 @@ int watch_campaign(const WatchOptions& options) {
       std::fflush(stdout);
       before = sight.text;
     }
-    if (sight.standing != exit_unfinished || signals.wait(interval)) return sight.standing;
+    if (sight.standing != ExitCode::unfinished || signals.wait(interval)) return sight.standing;
   }
 }
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "contract/json.h"
-#include "runner/engine_process.h"
+#include "runner/exit_status.h"
 
 namespace peclet::runner {
 

@@ -10,7 +10,9 @@
 
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
+#include "runner/backup_files.h"
 #include "runner/export.h"
+#include "runner/owner_lock.h"
 #include "runner/restore.h"
 #include "runner/spool.h"
 #include "tests/runner/campaign_process.h"

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "runner/database_summary.h"
+#include "runner/duration_text.h"
 #include "tests/runner/campaign_process.h"
 
 namespace peclet::runner {

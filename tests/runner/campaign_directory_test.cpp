@@ -8,6 +8,7 @@
 
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
+#include "runner/owner_lock.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {

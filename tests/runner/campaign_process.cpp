@@ -13,6 +13,7 @@
 
 #include "contract/durable_file.h"
 #include "runner/exit_code.h"
+#include "runner/plan_campaign.h"
 
 namespace peclet::runner {
 namespace {

@@ -3,6 +3,7 @@
 
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
+#include "runner/engine_error.h"
 #include "runner/spool.h"
 #include "tests/runner/dispatcher_fixture.h"
 

@@ -12,8 +12,10 @@
 
 #include "contract/durable_file.h"
 #include "runner/backup.h"
+#include "runner/backup_files.h"
 #include "runner/engine_process.h"
 #include "runner/export.h"
+#include "runner/owner_lock.h"
 #include "tests/runner/campaign_process.h"
 
 namespace peclet::runner {

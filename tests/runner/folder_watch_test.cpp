@@ -7,6 +7,8 @@
 #include <filesystem>
 
 #include "runner/backup.h"
+#include "runner/backup_files.h"
+#include "runner/owner_lock.h"
 #include "runner/restore.h"
 #include "tests/runner/campaign_process.h"
 #include "tests/runner/stored_campaign.h"

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "runner/duration_text.h"
 #include "runner/progress.h"
 
 namespace peclet::runner {

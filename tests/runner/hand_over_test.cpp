@@ -14,10 +14,12 @@
 
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
+#include "contract/integrity_error.h"
 #include "runner/bundle_files.h"
 #include "runner/cancel.h"
 #include "runner/dispatcher.h"
-#include "runner/integrity_error.h"
+#include "runner/engine_error.h"
+#include "runner/owner_lock.h"
 #include "tests/runner/batch_fixture.h"
 
 namespace peclet::runner {

@@ -7,6 +7,7 @@
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
 #include "runner/campaign_sql.h"
+#include "runner/checked_look.h"
 #include "runner/export.h"
 #include "runner/queue.h"
 #include "tests/runner/runner_fixture.h"

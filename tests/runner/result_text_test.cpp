@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runner/integrity_error.h"
+#include "contract/integrity_error.h"
 #include "runner/queue.h"
 #include "tests/runner/runner_fixture.h"
 

@@ -10,6 +10,7 @@
 #include "contract/sha256.h"
 #include "runner/cancel.h"
 #include "runner/export.h"
+#include "runner/owner_lock.h"
 #include "runner/retry.h"
 #include "runner/set.h"
 #include "runner/status.h"

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-namespace peclet::runner {
+namespace peclet {
 
 // Programs print what() and leave with exit code 6.
 class IntegrityError : public std::runtime_error {
@@ -11,4 +11,4 @@ class IntegrityError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-}  // namespace peclet::runner
+}  // namespace peclet
