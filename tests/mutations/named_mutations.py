@@ -98,7 +98,7 @@ NAMED = [
      "inefficiency += correlation", "engine_tests:StatisticalInefficiency.SumsTheCorrelationUpToItsFirstZero"),
     ("diffusion in a flow from two axes as if from three", "engine/observables/mean_squared_displacement.cpp",
      "1.5 * (own.y + own.z)",
-     "(own.y + own.z)", "engine_tests:Flight.UnderShearLeavesOutTheDirectionOfTheFlow"),
+     "(own.y + own.z)", "engine_tests:Flight.UnderShearHasTheSlopeOfTwoAxesForThree"),
     ("friction mobilised without its coefficient", "engine/observables/contact_network.cpp",
      "(contact_.friction * contact_.normal_stiffness * overlap)",
      "(contact_.normal_stiffness * overlap)", "engine_tests:ContactNetwork.CountsContactsAndTheirMobilisation"),

@@ -149,6 +149,17 @@ TEST_F(Flight, UnderShearLeavesOutTheDirectionOfTheFlow) {
   EXPECT_EQ(mean["all"]["y"][0], 0.5 * timestep * timestep * 4);
 }
 
+// Relative to the centre, the squares across the flow are (1 + 0) t^2, and count for three axes: D = 3/2 of
+// theirs.
+TEST_F(Flight, UnderShearHasTheSlopeOfTwoAxesForThree) {
+  System system = loose_spheres(2, /*shear_rate=*/0.3);
+  const auto observable = observable_of(scene_with("mean_squared_displacement", {}, 0.3), system, 64);
+  fly(*observable, system, 64);
+  const double shorter = 14 * timestep, free = 2 / (std::numbers::pi * 0.1);
+  const double expected = 1.5 * 3 * shorter / free;
+  EXPECT_NEAR(mean_of(*observable)["self_diffusion"].get<double>(), expected, 1e-9 * expected);
+}
+
 TEST_F(Flight, MayBeSampledSeldom) {
   System system = loose_spheres(2);
   const auto observable =
