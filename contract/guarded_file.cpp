@@ -117,7 +117,7 @@ void require_own_folder(const fs::path& path, bool may_be_link, uid_t self) {
 // of a network, too, through libraries that a statically linked program cannot load.
 std::string user_name(uid_t user) {
   std::ifstream users("/etc/passwd");
-  const std::string number = std::to_string(user);
+  std::string number = std::to_string(user);
   for (std::string line; std::getline(users, line);) {
     std::istringstream fields(line);
     std::string name, password, id;

@@ -108,8 +108,12 @@ class Validation {
     }
     for (const Key* key : keys) {
       const std::string name(name_of(*key));
-      if (object.contains(name)) continue;
       const std::string below = pointer + '/' + name;
+      if (object.contains(name)) {
+        refuse_both(object, *key, below);
+        continue;
+      }
+      if (has_alternative(keys, object, name)) continue;
       if (key->required) throw InputError(file_, below, "missing", allowed_values(*key));
       if (key->default_value.is_null()) continue;
       object[name] = key->default_value;
@@ -124,6 +128,19 @@ class Validation {
     for (std::size_t i = 0; i < array.size(); ++i) {
       check_value(array[i], *element, fmt::format("{}/{}", pointer, i));
     }
+  }
+
+  static bool has_alternative(const std::vector<const Key*>& keys, const Json& object,
+                              const std::string& name) {
+    return std::any_of(keys.begin(), keys.end(), [&](const Key* key) {
+      return key->instead_of == name && object.contains(name_of(*key));
+    });
+  }
+
+  void refuse_both(const Json& object, const Key& key, const std::string& pointer) const {
+    if (key.instead_of.empty() || !object.contains(key.instead_of)) return;
+    throw InputError(file_, pointer, shortened(object[std::string(name_of(key))]),
+                     fmt::format("must not be given beside {}", key.instead_of));
   }
 
   [[noreturn]] void refuse_unknown(const std::vector<const Key*>& keys, const std::string& name,

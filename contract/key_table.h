@@ -19,8 +19,9 @@ struct Key {
   std::string pointer;
   KeyKind kind = KeyKind::object;
   std::string meaning;
-  std::string unit = {};         // "" where the key has none
-  bool required = false;         // whenever the object that holds it is present
+  std::string unit = {};        // "" where the key has none
+  bool required = false;        // whenever the object that holds it is present
+  std::string instead_of = {};  // the name of a required key of the same object: exactly one of both is given
   Json default_value = nullptr;  // null: no default, the key stays absent
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "contract/key_table.h"
@@ -40,6 +41,17 @@ void add_range(const Key& key, Json& schema) {
   if (std::isfinite(key.maximum)) {
     schema[key.below_maximum ? "exclusiveMaximum" : "maximum"] = bound(key.maximum);
   }
+}
+
+std::string last_part(const std::string& pointer) { return pointer.substr(pointer.rfind('/') + 1); }
+
+// The key of the same object that may be given instead of this one; null when there is none.
+const Key* alternative_to(const KeyTable& table, const Key& key) {
+  const std::vector<const Key*> beside = table.below(key.pointer.substr(0, key.pointer.rfind('/')));
+  const auto found = std::find_if(beside.begin(), beside.end(), [&](const Key* other) {
+    return other->instead_of == last_part(key.pointer);
+  });
+  return found == beside.end() ? nullptr : *found;
 }
 
 void add_members(const KeyTable& table, const std::string& pointer, Json& schema);
@@ -92,9 +104,13 @@ void add_members(const KeyTable& table, const std::string& pointer, Json& schema
   if (keys.empty()) return;  // holds anything
   schema["additionalProperties"] = false;
   for (const Key* key : keys) {
-    const std::string name = key->pointer.substr(key->pointer.rfind('/') + 1);
+    const std::string name = last_part(key->pointer);
     schema["properties"][name] = schema_of(table, *key);
-    if (key->required) schema["required"].push_back(name);
+    if (const Key* const other = alternative_to(table, *key)) {
+      schema["oneOf"] = {{{"required", {name}}}, {{"required", {last_part(other->pointer)}}}};
+    } else if (key->required) {
+      schema["required"].push_back(name);
+    }
   }
 }
 
@@ -145,6 +161,10 @@ std::string KeyTable::markdown() const {
   std::string page = "| key | meaning | unit | default | allowed |\n|---|---|---|---|---|\n";
   for (const Key& key : keys_) {
     std::string fallback = key.required ? "required" : "";
+    if (!key.instead_of.empty()) fallback = fmt::format("instead of `{}`", key.instead_of);
+    if (const Key* const other = alternative_to(*this, key)) {
+      fallback += fmt::format(", or `{}`", last_part(other->pointer));
+    }
     if (!key.default_value.is_null()) fallback = fmt::format("`{}`", key.default_value.dump());
     std::string allowed = allowed_values(key);
     if (allowed.starts_with("must be ")) allowed = allowed.substr(std::string_view("must be ").size());

@@ -11,12 +11,12 @@ PRAGMA user_version = 5;
 CREATE TABLE target (
   target_id          INTEGER PRIMARY KEY,
   observable         TEXT    NOT NULL,
-  relative_tolerance REAL    NOT NULL,
+  criterion          TEXT    NOT NULL CHECK (json_valid(criterion)),  -- {"relative_tolerance":0.05}
   confidence         REAL    NOT NULL,
   minimum            INTEGER NOT NULL,
   maximum            INTEGER NOT NULL,
   rule               INTEGER NOT NULL,  -- by which looks decide: 1 before version 5 of the tables
-  UNIQUE (observable, relative_tolerance, confidence, minimum, maximum, rule)
+  UNIQUE (observable, criterion, confidence, minimum, maximum, rule)
 ) STRICT;
 
 -- The campaign as last run: exactly one row.

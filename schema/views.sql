@@ -24,8 +24,9 @@ WHERE p.place IS NOT NULL ORDER BY p.place, r.seed;
 
 -- The last look at each point for the campaign's present target.
 CREATE VIEW estimates AS
-SELECT p.place, p.label, p.hash, t.observable, t.relative_tolerance, t.confidence, l.seeds, l.lost, l.count, l.mean,
-       l.standard_error, l.half_width, l.uncontrolled_mean, l.uncontrolled_standard_error, l.uncontrolled_half_width,
+SELECT p.place, p.label, p.hash, t.observable, json_extract(t.criterion, '$.relative_tolerance') AS relative_tolerance,
+       json_extract(t.criterion, '$.absolute_tolerance') AS absolute_tolerance, t.confidence, l.seeds, l.lost, l.count,
+       l.mean, l.standard_error, l.half_width, l.uncontrolled_mean, l.uncontrolled_standard_error, l.uncontrolled_half_width,
        l.skewness, l.transient, l.verdict
 FROM look l
 JOIN campaign c USING (target_id)

@@ -40,7 +40,7 @@ Campaign parse_campaign(const Json& written, const std::string& file) {
   check_campaign_name(campaign.name, file);
 
   const Json& target = document["target"];
-  campaign.target = {target["observable"].get<std::string>(), target["relative_tolerance"].get<double>(),
+  campaign.target = {target["observable"].get<std::string>(), tolerance_of(target),
                      target["confidence"].get<double>()};
   campaign.minimum_realisations = document["realisations"]["minimum"].get<int>();
   campaign.maximum_realisations = document["realisations"]["maximum"].get<int>();

@@ -7,6 +7,7 @@
 
 #include "contract/json.h"
 #include "contract/key_table.h"
+#include "runner/campaign/tolerance.h"
 
 namespace peclet::runner {
 
@@ -20,9 +21,9 @@ struct StatePoint {
 };
 
 struct Target {
-  std::string observable;     // a number in the result's "mean"
-  double relative_tolerance;  // half-width of the interval over |mean|
-  double confidence;          // of the two-sided interval
+  std::string observable;  // a number in the result's "mean"
+  Tolerance tolerance;     // of the interval's half-width
+  double confidence;       // of the two-sided interval
 
   // Of the rule by which looks decide. The first one took every look within the tolerance for converged;
   // looks that were made by it are read by it.

@@ -22,6 +22,9 @@ void add_set(VerbSet& verbs) {
   add_directory(verb, options->directory);
   add_number(verb, "--tolerance", options->tolerance, *campaign_keys().find("/target/relative_tolerance"),
              "/target/relative_tolerance; 5 % is written 0.05");
+  add_number(verb, "--absolute-tolerance", options->absolute_tolerance,
+             *campaign_keys().find("/target/absolute_tolerance"),
+             "/target/absolute_tolerance, where the campaign has that");
   add_number(verb, "--confidence", options->confidence, *campaign_keys().find("/target/confidence"),
              "/target/confidence");
   add_number(verb, "--minimum", options->minimum, *campaign_keys().find("/realisations/minimum"),

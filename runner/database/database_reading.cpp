@@ -6,6 +6,7 @@
 
 #include "runner/database/database.h"
 #include "runner/database/result_text.h"
+#include "runner/text/plain_text.h"
 
 namespace peclet::runner {
 namespace {
@@ -13,6 +14,14 @@ namespace {
 constexpr const char* point_columns =
     "SELECT point_id, place, hash, scene, settings, label, engine_identity, suspect, priority, "
     "cancelled, kept_apart FROM point ";
+
+Tolerance stored_tolerance(const std::string& criterion) {
+  try {
+    return tolerance_of(Json::parse(criterion));
+  } catch (const std::exception&) {
+    throw IntegrityError("the database holds a target that is none: " + plain(criterion));
+  }
+}
 
 Verdict stored_verdict(const std::string& word) {
   const std::optional<Verdict> known = verdict_of(word);
@@ -44,7 +53,7 @@ std::vector<PointRecord> read_points(Connection& connection, const std::string& 
 TargetRecord read_target(const Statement& query, int column) {
   TargetRecord record;
   record.id = query.integer(column);
-  record.target = {query.text(column + 1), query.real(column + 2), query.real(column + 3)};
+  record.target = {query.text(column + 1), stored_tolerance(query.text(column + 2)), query.real(column + 3)};
   record.minimum = static_cast<int>(query.integer(column + 4));
   record.maximum = static_cast<int>(query.integer(column + 5));
   record.target.rule = static_cast<int>(query.integer(column + 6));
@@ -54,7 +63,7 @@ TargetRecord read_target(const Statement& query, int column) {
 std::vector<LookRecord> read_looks(Connection& connection, std::int64_t point) {
   Statement query(
       connection,
-      "SELECT target_id, observable, relative_tolerance, confidence, minimum, maximum, rule, seeds, lost, "
+      "SELECT target_id, observable, criterion, confidence, minimum, maximum, rule, seeds, lost, "
       "count, mean, standard_error, half_width, uncontrolled_mean, uncontrolled_standard_error,"
       " uncontrolled_half_width, verdict, made_at, skewness, transient FROM look JOIN target USING "
       "(target_id) WHERE point_id = ? AND target_id = (SELECT target_id FROM campaign) ORDER BY seeds");
@@ -105,10 +114,9 @@ constexpr const char* result_columns =
 }  // namespace
 
 CampaignRecord Database::campaign() {
-  Statement query(
-      *connection_,
-      "SELECT target_id, observable, relative_tolerance, confidence, minimum, maximum, rule, name, "
-      "document, created_at, updated_at FROM campaign JOIN target USING (target_id)");
+  Statement query(*connection_,
+                  "SELECT target_id, observable, criterion, confidence, minimum, maximum, rule, name, "
+                  "document, created_at, updated_at FROM campaign JOIN target USING (target_id)");
   if (!query.step()) throw IntegrityError(connection_->path() + ": holds no campaign");
   CampaignRecord record;
   record.target = read_target(query, 0);

@@ -9,10 +9,10 @@ namespace peclet::runner {
 namespace {
 
 std::string describe(const Campaign& campaign) {
-  return fmt::format("{}: {} points, {} to {:g} % at {:g} confidence, {} to {} seeds", campaign.name,
-                     campaign.points.size(), campaign.target.observable,
-                     100 * campaign.target.relative_tolerance, campaign.target.confidence,
-                     campaign.minimum_realisations, campaign.maximum_realisations);
+  return fmt::format("{}: {} points, {} to {} at {:g} confidence, {} to {} seeds", campaign.name,
+                     campaign.points.size(), campaign.target.observable, to_string(campaign.target.tolerance),
+                     campaign.target.confidence, campaign.minimum_realisations,
+                     campaign.maximum_realisations);
 }
 
 }  // namespace
@@ -47,15 +47,15 @@ void Queue::take_over(const Campaign& campaign) {
 std::int64_t Queue::adopt_target(const Campaign& campaign) {
   const Target& target = campaign.target;
   const char* const parts[] = {
-      "INSERT OR IGNORE INTO target (observable, relative_tolerance, confidence, minimum, maximum, "
+      "INSERT OR IGNORE INTO target (observable, criterion, confidence, minimum, maximum, "
       "rule) VALUES (?, ?, ?, ?, ?, ?)",
-      "SELECT target_id FROM target WHERE observable = ? AND relative_tolerance = ? AND confidence = ? AND "
+      "SELECT target_id FROM target WHERE observable = ? AND criterion = ? AND confidence = ? AND "
       "minimum = ? AND maximum = ? AND rule = ?"};
   std::int64_t id = 0;
   for (const char* const sql : parts) {
     Statement statement(connection_, sql);
     statement.bind(target.observable)
-        .bind(target.relative_tolerance)
+        .bind(canonical_json(to_json(target.tolerance)))
         .bind(target.confidence)
         .bind(campaign.minimum_realisations)
         .bind(campaign.maximum_realisations)

@@ -41,7 +41,7 @@ std::string describe_changes(Database& database, const Campaign& campaign) {
   const Target& after = campaign.target;
   std::vector<std::string> changes;
   compare(changes, "observable", before.observable, after.observable);
-  compare(changes, "tolerance", percent(before.relative_tolerance), percent(after.relative_tolerance));
+  compare(changes, "tolerance", to_string(before.tolerance), to_string(after.tolerance));
   compare(changes, "confidence", percent(before.confidence), percent(after.confidence));
   compare(changes, "minimum", std::to_string(known.target.minimum),
           std::to_string(campaign.minimum_realisations));

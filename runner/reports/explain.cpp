@@ -27,34 +27,37 @@ std::vector<PointSummary> selected(std::vector<PointSummary> points, const std::
   return {std::move(points[find_point(records, name)])};
 }
 
-std::string tolerance_text(const Target& target) {
-  return fmt::format("{:g} %", 100 * target.relative_tolerance);
+// The half-width as the tolerance measures it.
+std::string width_text(const Look& look, const Target& target) {
+  return target.tolerance.is_relative() ? percent(relative_width(look)) : rough(look.controlled_half_width);
 }
 
 // Seeds that the tolerance would take, as the half-width falls with 1 / sqrt(n).
 std::string seeds_for(const Look& look, const Target& target) {
-  const double ratio = relative_width(look) / target.relative_tolerance;
+  const double ratio = target.tolerance.share(look.controlled_half_width, look.controlled.mean);
   return std::isfinite(ratio) ? fmt::format("about {}", rough(std::ceil(look.seeds * ratio * ratio)))
                               : "more";
 }
 
 // A share of a mean that may be zero is no measure of accuracy: whatever number of seeds it led to would be
 // of the mean's own noise.
-bool may_be_zero(const Look& look) { return relative_width(look) >= 1; }
+bool may_be_zero(const Look& look, const Target& target) {
+  return target.tolerance.is_relative() && relative_width(look) >= 1;
+}
 
 std::string advice_when_capped(const Look& look, const Target& target) {
-  if (may_be_zero(look)) {
-    return "another /target/observable: the interval contains zero, and as long as it does no "
-           "/target/relative_tolerance below 100 % can be met, whatever the number of seeds";
+  if (may_be_zero(look, target)) {
+    return "/target/absolute_tolerance, or another /target/observable: the interval contains zero, and as "
+           "long "
+           "as it does no /target/relative_tolerance below 100 % can be met, whatever the number of seeds";
   }
-  return fmt::format(
-      "a larger /realisations/maximum ({} seeds) or /target/relative_tolerance (`peclet set`), and run again",
-      seeds_for(look, target));
+  return fmt::format("a larger /realisations/maximum ({} seeds) or /target/{} (`peclet set`), and run again",
+                     seeds_for(look, target), key_of(target.tolerance));
 }
 
 // Why the look did not decide although its interval is narrow enough.
 std::string luck_text(const Look& look, const Target& target) {
-  if (!(relative_width(look) <= target.relative_tolerance)) return "";
+  if (!(target.tolerance.share(look.controlled_half_width, look.controlled.mean) <= 1)) return "";
   return "; the last look is within the tolerance, but perhaps by luck: were the spread as large as its "
          "seeds "
          "allow, the maximum would not do";
@@ -69,7 +72,7 @@ std::string earlier_look_text(const PointSummary& point) {
 }
 
 std::string reason(const PointSummary& point, const Target& target) {
-  const std::string tolerance = tolerance_text(target);
+  const std::string tolerance = to_string(target.tolerance);
   if (!point.decided) {
     return fmt::format(
         "{} of the {} seeds of the next look have ended, {}", point.wanted_ended, point.wanted,
@@ -80,16 +83,16 @@ std::string reason(const PointSummary& point, const Target& target) {
     case Verdict::converged:
     case Verdict::converged_with_losses:
       return fmt::format("{} seeds give {}, within the tolerance of {}{}", look.seeds,
-                         percent(relative_width(look)), tolerance, earlier_look_text(point));
+                         width_text(look, target), tolerance, earlier_look_text(point));
     case Verdict::converged_near_maximum:
       return fmt::format(
           "all {} seeds that are allowed are just about enough for the tolerance of {}, perhaps by luck: "
           "they "
           "are sure of {} only",
-          look.seeds, tolerance, percent(relative_width(look)));
+          look.seeds, tolerance, width_text(look, target));
     case Verdict::capped:
       return fmt::format("all {} seeds that are allowed give {}, not within the tolerance of {}", look.seeds,
-                         percent(relative_width(look)), tolerance);
+                         width_text(look, target), tolerance);
     case Verdict::failed:
       return fmt::format("{} of {} seeds are lost", look.lost, look.seeds);
     case Verdict::more:
@@ -108,7 +111,7 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
     if (point.looks.empty()) return fmt::format("the first look, at {} seeds", point.wanted);
     return fmt::format(
         "the look at {} seeds; {}{}", point.wanted,
-        may_be_zero(point.looks.back())
+        may_be_zero(point.looks.back(), target.target)
             ? "how many will be enough cannot be told while the interval contains zero"
             : fmt::format("{} are expected to be enough",
                           expected_seeds(point.looks, target.target, target.minimum, target.maximum)),
@@ -141,7 +144,8 @@ std::string looks_table(const std::vector<Look>& looks, const Target& target) {
   if (looks.empty()) return "  no look yet\n";
   const bool with_control = std::any_of(looks.begin(), looks.end(), has_control);
   TextTable table;
-  for (const char* const title : {"seeds", "lost", "mean ± half-width", "relative", "tolerance"}) {
+  for (const char* const title : {"seeds", "lost", "mean ± half-width",
+                                  target.tolerance.is_relative() ? "relative" : "half-width", "tolerance"}) {
     table.add_column(title);
   }
   if (with_control) table.add_column("uncontrolled");
@@ -149,7 +153,7 @@ std::string looks_table(const std::vector<Look>& looks, const Target& target) {
   for (const Look& look : looks) {
     std::vector<std::string> row{fmt::format("{}", look.seeds), fmt::format("{}", look.lost),
                                  with_error(look.controlled.mean, look.controlled_half_width),
-                                 percent(relative_width(look)), tolerance_text(target)};
+                                 width_text(look, target), to_string(target.tolerance)};
     if (with_control) row.push_back(with_error(look.estimate.mean, look.half_width));
     row.emplace_back(to_string(look.verdict));
     table.add_row(std::move(row));

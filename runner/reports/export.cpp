@@ -138,7 +138,7 @@ Json heading(Database& database, const CampaignRecord& campaign, bool canonical)
                {"campaign", campaign.name},
                {"target",
                 {{"observable", target.target.observable},
-                 {"relative_tolerance", target.target.relative_tolerance},
+                 {key_of(target.target.tolerance), target.target.tolerance.value},
                  {"confidence", target.target.confidence}}},
                {"realisations", {{"minimum", target.minimum}, {"maximum", target.maximum}}},
                {"points", nullptr}};

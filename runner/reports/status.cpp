@@ -126,7 +126,7 @@ Json status_json(const CampaignStatus& status) {
           {"campaign", status.campaign.name},
           {"target",
            {{"observable", target.target.observable},
-            {"relative_tolerance", target.target.relative_tolerance},
+            {key_of(target.target.tolerance), target.target.tolerance.value},
             {"confidence", target.target.confidence}}},
           {"realisations", {{"minimum", target.minimum}, {"maximum", target.maximum}}},
           {"owner", status.owner ? Json(*status.owner) : Json(nullptr)},

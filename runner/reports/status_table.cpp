@@ -15,13 +15,14 @@
 namespace peclet::runner {
 namespace {
 
-std::string interval(const Look& look) {
+// With its share of the mean, where the tolerance is one.
+std::string interval(const Look& look, const Tolerance& tolerance) {
   if (!std::isfinite(look.controlled_half_width)) return "-";
-  return fmt::format("{} ({})", with_error(look.controlled.mean, look.controlled_half_width),
-                     percent(relative_width(look)));
+  const std::string text = with_error(look.controlled.mean, look.controlled_half_width);
+  return tolerance.is_relative() ? fmt::format("{} ({})", text, percent(relative_width(look))) : text;
 }
 
-std::vector<std::string> cells(const PointSummary& point, bool with_control) {
+std::vector<std::string> cells(const PointSummary& point, bool with_control, const Tolerance& tolerance) {
   std::vector<std::string> cells{fmt::format("{}/{}", point.wanted_ended, point.wanted),
                                  with_error(point.so_far.mean, point.so_far.standard_error)};
   if (point.looks.empty()) {
@@ -29,7 +30,7 @@ std::vector<std::string> cells(const PointSummary& point, bool with_control) {
     if (with_control) cells.emplace_back("-");
   } else {
     const Look& look = point.looks.back();
-    cells.push_back(interval(look));
+    cells.push_back(interval(look, tolerance));
     if (with_control) cells.push_back(with_error(look.estimate.mean, look.half_width));
   }
   cells.push_back(verdict_text(point));
@@ -38,8 +39,8 @@ std::vector<std::string> cells(const PointSummary& point, bool with_control) {
 
 std::string heading(const CampaignStatus& status) {
   const TargetRecord& target = status.campaign.target;
-  return fmt::format("{}: {} to {:g} % at {:g} % confidence, {} to {} seeds a point\n\n",
-                     status.campaign.name, target.target.observable, 100 * target.target.relative_tolerance,
+  return fmt::format("{}: {} to {} at {:g} % confidence, {} to {} seeds a point\n\n", status.campaign.name,
+                     target.target.observable, to_string(target.target.tolerance),
                      100 * target.target.confidence, target.minimum, target.maximum);
 }
 
@@ -171,7 +172,8 @@ std::string status_table(const CampaignStatus& status, std::size_t width) {
   table.add_column("verdict", TextTable::Align::left);
   for (std::size_t i = 0; i < labels.size(); ++i) {
     std::vector<std::string> row = points.cells(i);
-    const std::vector<std::string> rest = cells(status.points[i], with_control);
+    const std::vector<std::string> rest =
+        cells(status.points[i], with_control, status.campaign.target.target.tolerance);
     row.insert(row.end(), rest.begin(), rest.end());
     table.add_row(std::move(row));
   }

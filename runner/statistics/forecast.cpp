@@ -28,10 +28,10 @@ struct SeedRange {
 };
 
 // Student's factor and the standard error both fall with the seeds.
-double width_at(const PointForecast& point, StopRule& rule, int values, double factor) {
+double share_at(const PointForecast& point, StopRule& rule, int values, double factor) {
   const double share = static_cast<double>(values) / point.so_far.count;
   const double error = point.so_far.standard_error * std::sqrt(factor / share);
-  return rule.half_width({values, point.so_far.mean, error}) / std::abs(point.so_far.mean);
+  return rule.share({values, point.so_far.mean, error});
 }
 
 // The first look that decides, of those that take more seeds than have ended, if the variance is `factor`
@@ -41,7 +41,7 @@ int stop_of(const PointForecast& point, StopRule& rule, double factor) {
   const auto stops = [&](int seeds) {
     const double share = static_cast<double>(seeds) / point.ended;
     const auto values = static_cast<int>(std::lround(point.so_far.count * share));
-    return rule.stops(seeds, values, width_at(point, rule, values, factor));
+    return rule.stops(seeds, values, share_at(point, rule, values, factor));
   };
   const auto later = std::upper_bound(schedule.begin(), schedule.end(), point.ended);
   const auto enough = std::find_if(later, schedule.end(), stops);
@@ -50,7 +50,7 @@ int stop_of(const PointForecast& point, StopRule& rule, double factor) {
 
 SeedRange seeds_of(const PointForecast& point, StopRule& rule) {
   const int minimum = rule.schedule().front(), maximum = rule.schedule().back();
-  if (point.so_far.count < 2 || point.so_far.mean == 0) return {minimum, minimum, maximum};
+  if (point.so_far.count < 2 || !rule.has_measure(point.so_far.mean)) return {minimum, minimum, maximum};
   constexpr double outside = 0.1;
   const int degrees = point.so_far.count - 1;
   return {stop_of(point, rule, 1), stop_of(point, rule, variance_excess(degrees, 1 - outside)),
@@ -86,7 +86,7 @@ int expected_seeds(const std::vector<Look>& looks, const Target& target, int min
   PointForecast point;
   point.ended = looks.back().seeds;
   point.so_far = looks.back().controlled;
-  if (point.so_far.count < 2 || point.so_far.mean == 0) return maximum;
+  if (point.so_far.count < 2 || !rule.has_measure(point.so_far.mean)) return maximum;
   return stop_of(point, rule, factor);
 }
 

@@ -134,7 +134,7 @@ Prediction predict(const std::vector<std::optional<Outcome>>& outcomes, const Ta
     return prediction;
   }
   const Estimate known = estimate(pilot.values);
-  if (2 * known.standard_error >= std::abs(known.mean)) {
+  if (target.tolerance.is_relative() && 2 * known.standard_error >= std::abs(known.mean)) {
     prediction.obstacle = Obstacle::near_zero;
     return prediction;
   }

@@ -127,7 +127,7 @@ double Scheduler::expected_fall(const Point& point) const {
   constexpr double of_unknown = 1e6;
   if (point.looks.empty()) return of_unknown;
   const Look& last = point.looks.back();
-  const double width = relative_width(last);
+  const double width = target_.tolerance.share(last.controlled_half_width, last.controlled.mean);
   if (!std::isfinite(width)) return 1;
   // Student's factor counts: it falls from 4 to 10 seeds by as much as the square root's.
   const double confidence = adjusted_confidence(target_.confidence, minimum_, maximum_);

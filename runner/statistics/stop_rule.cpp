@@ -76,52 +76,60 @@ double StopRule::half_width(const Estimate& estimate) {
   return factor * estimate.standard_error;
 }
 
-double StopRule::needed(int seeds, int values, double width, Strictness strictness) {
+double StopRule::share(const Estimate& estimate) {
+  return target_.tolerance.share(half_width(estimate), estimate.mean);
+}
+
+double StopRule::needed(int seeds, int values, double share, Strictness strictness) {
   const auto key = std::pair(values, strictness);
   auto known = may_exceed_.find(key);
   if (known == may_exceed_.end()) {
     known = may_exceed_.emplace(key, excess(values, strictness == Strictness::last ? at_last : before_last))
                 .first;
   }
-  const double ratio = width * (1 + width) / target_.relative_tolerance;
+  const double ratio = share * mean_factor(share);
   return seeds * ratio * ratio * known->second;
 }
 
-bool StopRule::converges(int seeds, int values, double width) {
-  // Not so an interval that does not exist, and one around a mean of 0.
-  if (values < 2 || !(width <= target_.relative_tolerance)) return false;
-  if (target_.rule == Target::first_rule) return true;
-  const Strictness strictness = seeds < maximum_ ? Strictness::before_last : Strictness::last;
-  return needed(seeds, values, width, strictness) <= maximum_;
+double StopRule::mean_factor(double share) const {
+  return target_.tolerance.is_relative() ? 1 + share * target_.tolerance.value : 1;
 }
 
-bool StopRule::stops(int seeds, int values, double width) {
-  return seeds >= maximum_ || converges(seeds, values, width);
+bool StopRule::converges(int seeds, int values, double share) {
+  // Not so an interval that does not exist, and a share of a mean of 0.
+  if (values < 2 || !(share <= 1)) return false;
+  if (target_.rule == Target::first_rule) return true;
+  const Strictness strictness = seeds < maximum_ ? Strictness::before_last : Strictness::last;
+  return needed(seeds, values, share, strictness) <= maximum_;
+}
+
+bool StopRule::stops(int seeds, int values, double share) {
+  return seeds >= maximum_ || converges(seeds, values, share);
 }
 
 StopRule::Judgement StopRule::judge(int seeds, const Estimate& estimate) {
   const double own = half_width(estimate);
-  const double width = own / std::abs(estimate.mean);
-  if (converges(seeds, estimate.count, width)) {
+  const double share = target_.tolerance.share(own, estimate.mean);
+  if (converges(seeds, estimate.count, share)) {
     const Strictness strictness = seeds < maximum_ ? Strictness::before_last : Strictness::last;
     const bool is_near = target_.rule != Target::first_rule &&
-                         needed(seeds, estimate.count, width, strictness) > maximum_ / 3.0;
+                         needed(seeds, estimate.count, share, strictness) > maximum_ / 3.0;
     return {estimate.count == seeds ? Verdict::converged : Verdict::converged_with_losses,
-            is_near ? std::max(own, target_.relative_tolerance * std::abs(estimate.mean)) : own};
+            is_near ? std::max(own, target_.tolerance.half_width(estimate.mean)) : own};
   }
   // Where not one of the first seeds lives, more of them are waste.
   if (seeds == minimum_ && estimate.count == 0) return {Verdict::failed, own};
   if (seeds < maximum_) return {Verdict::more, own};
   if (estimate.count < 2) return {Verdict::failed, own};
-  // Not so around a mean of 0, whose width has no end.
-  const bool is_within = std::isfinite(width) && width <= target_.relative_tolerance * (1 + width);
+  // Not so around a mean of 0, whose relative width has no end.
+  const bool is_within = std::isfinite(share) && share <= mean_factor(share);
   if (target_.rule == Target::first_rule || !is_within) return {Verdict::capped, own};
-  return {Verdict::converged_near_maximum, widened(estimate, width)};
+  return {Verdict::converged_near_maximum, widened(estimate, share)};
 }
 
-double StopRule::widened(const Estimate& estimate, double width) {
+double StopRule::widened(const Estimate& estimate, double share) {
   const double factor = std::sqrt(excess(estimate.count, before_last));
-  return std::max(target_.relative_tolerance, width * (1 + width) * factor) * std::abs(estimate.mean);
+  return std::max(1.0, share * mean_factor(share) * factor) * target_.tolerance.half_width(estimate.mean);
 }
 
 }  // namespace peclet::runner

@@ -14,6 +14,8 @@
 // but no more than that is near the maximum, also if it is the mean that came out too small (w <= e (1 + w)):
 // its interval is wider than the tolerance by the same f,
 //   max(e, w (1 + w) sqrt(f)) |mean|,   p = 0.02.
+// An absolute tolerance takes the same rule with w and e in the observable's unit, and 1 in the place of
+// |mean| and of 1 + w.
 #pragma once
 
 #include <map>
@@ -67,18 +69,24 @@ class StopRule {
 
   // Student's half-width at the adjusted level; NaN for fewer than two values.
   double half_width(const Estimate& estimate);
-  // Whether a look at so many seeds, `values` of them with a value, decides when the relative half-width
-  // comes out as `width`.
-  bool stops(int seeds, int values, double width);
+  // The same over the half-width that is good enough.
+  double share(const Estimate& estimate);
+  // Whether any half-width is good enough around this mean: not so a share of 0.
+  bool has_measure(double mean) const { return target_.tolerance.half_width(mean) > 0; }
+  // Whether a look at so many seeds, `values` of them with a value, decides when the half-width comes out as
+  // this share of the tolerance.
+  bool stops(int seeds, int values, double share);
 
   const std::vector<int>& schedule() const { return schedule_; }
 
  private:
   enum class Strictness { before_last, last };
   // Upper limit of the seeds that the tolerance takes.
-  double needed(int seeds, int values, double width, Strictness strictness);
-  bool converges(int seeds, int values, double width);
-  double widened(const Estimate& estimate, double width);
+  double needed(int seeds, int values, double share, Strictness strictness);
+  // 1 + w, for the mean of which a relative tolerance is a share; 1 for an absolute one.
+  double mean_factor(double share) const;
+  bool converges(int seeds, int values, double share);
+  double widened(const Estimate& estimate, double share);
 
   Target target_;
   int minimum_, maximum_;

@@ -52,8 +52,7 @@ std::map<std::string, PointHistory> history(Database& database, const Campaign& 
 // may change both.
 bool is_of(Database& database, const Campaign& campaign) {
   const Target& target = database.campaign().target.target;
-  if (target.observable != campaign.target.observable ||
-      target.relative_tolerance != campaign.target.relative_tolerance ||
+  if (target.observable != campaign.target.observable || !(target.tolerance == campaign.target.tolerance) ||
       target.confidence != campaign.target.confidence) {
     return false;
   }

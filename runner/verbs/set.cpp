@@ -30,6 +30,8 @@ struct Edit {
 std::vector<Edit> edits_of(const SetOptions& options) {
   std::vector<Edit> edits;
   if (options.tolerance) edits.push_back({"target", "relative_tolerance", *options.tolerance});
+  if (options.absolute_tolerance)
+    edits.push_back({"target", "absolute_tolerance", *options.absolute_tolerance});
   if (options.confidence) edits.push_back({"target", "confidence", *options.confidence});
   if (options.minimum) edits.push_back({"realisations", "minimum", *options.minimum});
   if (options.maximum) edits.push_back({"realisations", "maximum", *options.maximum});

@@ -13,9 +13,9 @@ namespace peclet::runner {
 struct SetOptions {
   std::filesystem::path campaign;
   std::filesystem::path directory;
-  std::optional<double> tolerance, confidence;  // of /target
-  std::optional<int> minimum, maximum;          // of /realisations
-  std::vector<std::string> points;              // whose priority is set
+  std::optional<double> tolerance, absolute_tolerance, confidence;  // of /target
+  std::optional<int> minimum, maximum;                              // of /realisations
+  std::vector<std::string> points;                                  // whose priority is set
   std::optional<int> priority;
   double patience = usual_patience;
 };

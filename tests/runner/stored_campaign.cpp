@@ -27,7 +27,7 @@ void StoredCampaign::look(int point) {
 }
 
 void StoredCampaign::set_tolerance(double tolerance) {
-  campaign_.target.relative_tolerance = tolerance;
+  campaign_.target.tolerance = tolerance;
   queue_.adopt(campaign_);
   Transaction booking(database_.connection());
   for (int point = 0; point < static_cast<int>(campaign_.points.size()); ++point) look(point);

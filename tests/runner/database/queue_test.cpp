@@ -149,7 +149,7 @@ TEST_F(Queues, LooksOfAnOlderTargetStayInTheHistory) {
   EXPECT_TRUE(database_.looks(1).empty());
   queue_.adopt(plain_campaign(2, 4, 40, 0.05));
   ASSERT_EQ(database_.looks(1).size(), 1U);
-  EXPECT_EQ(database_.looks(1)[0].target.target.relative_tolerance, 0.05);
+  EXPECT_EQ(database_.looks(1)[0].target.target.tolerance, Tolerance(0.05));
 }
 
 TEST_F(Queues, AnotherObservableIsTakenFromTheResultsThatAreThere) {

@@ -168,6 +168,27 @@ TEST(Cohorts, TheLastLookIsConvergedNearMaximumOrCapped) {
   EXPECT_NEAR(last(0.71).controlled_half_width, 2.262 * 0.71 / 3, 1e-3);
 }
 
+// Values 0 +- s, of which a share of the mean says nothing; h = 2.354 s / 3, 10 (h / 0.5)^2 3.554 seeds.
+TEST(Cohorts, AnAbsoluteToleranceNeedsNoMean) {
+  const Target half{"first_normal_stress_difference", Tolerance::absolute(0.5), 0.95};
+  const Outcomes outcomes = alternating(10, 0, 0.6);
+  EXPECT_EQ(replay_looks(outcomes, five_percent, 10, 32).at(0).verdict, Verdict::more);
+  EXPECT_EQ(replay_looks(outcomes, half, 10, 31).at(0).verdict, Verdict::more);  // 31.5 are needed
+  const Look look = replay_looks(outcomes, half, 10, 32).at(0);
+  EXPECT_EQ(look.verdict, Verdict::converged);
+  EXPECT_NEAR(look.controlled_half_width, 0.5, 1e-12);  // no narrower so near the maximum
+  EXPECT_NEAR(look.half_width, 0.4708, 1e-4);
+  // The last look, h = 2.262 s / 3: up to 0.5 / sqrt(2.707), s = 0.403, and up to 0.5, s = 0.663.
+  const auto last = [&](double spread) {
+    return replay_looks(alternating(10, 0, spread), half, 10, 10).at(0);
+  };
+  EXPECT_EQ(last(0.40).verdict, Verdict::converged);
+  EXPECT_EQ(last(0.41).verdict, Verdict::converged_near_maximum);
+  EXPECT_NEAR(last(0.41).controlled_half_width, 2.262 * 0.41 / 3 * std::sqrt(3.554), 1e-3);
+  EXPECT_EQ(last(0.65).verdict, Verdict::converged_near_maximum);
+  EXPECT_EQ(last(0.67).verdict, Verdict::capped);
+}
+
 TEST(Cohorts, TheFirstRuleTookEveryLookWithinTheToleranceForConverged) {
   Target target = five_percent;
   target.rule = Target::first_rule;

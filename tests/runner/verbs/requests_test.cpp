@@ -101,7 +101,7 @@ TEST_F(CarryingOut, ANewTargetReopensWhatItDoesNotSatisfy) {
   write();
   EXPECT_EQ(ask(file_as_it_is()), "set: tolerance 5 % -> 0.1 %; maximum 40 -> 90");
   EXPECT_FALSE(ledger_->scheduler().decided(0));
-  EXPECT_EQ(database_.campaign().target.target.relative_tolerance, 0.001);
+  EXPECT_EQ(database_.campaign().target.target.tolerance, Tolerance(0.001));
   // The look after that of 8 seeds: all of its seeds are in the queue.
   EXPECT_EQ(count("realisation WHERE state = 'queued' AND point_id = 1"), 2);
 }

@@ -171,8 +171,10 @@ TEST(Set, OfTwoAtOnceNeitherIsLost) {
   campaign.document["realisations"]["maximum"] = 500;
   EXPECT_EQ(read_json(campaign.options.campaign), campaign.document);
   EXPECT_EQ(campaign.count("SELECT maximum FROM campaign JOIN target USING (target_id)"), 500);
-  EXPECT_EQ(campaign.count("SELECT relative_tolerance = 0.04 FROM campaign JOIN target USING (target_id)"),
-            1);
+  EXPECT_EQ(
+      campaign.count(
+          "SELECT criterion = '{\"relative_tolerance\":0.04}' FROM campaign JOIN target USING (target_id)"),
+      1);
 }
 
 TEST(Set, APriorityMakesTheLaterPointGoFirst) {
