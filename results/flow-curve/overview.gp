@@ -1,7 +1,7 @@
 # Draws overview.png, three flow curves with 95 % error bars, from table.csv: gnuplot results/flow-curve/overview.gp
 here = ARG0[1:strstrt(ARG0, 'overview.gp') - 1]
 table = here . 'table.csv'
-set terminal pngcairo size 1000, 560 font 'Sans,15' linewidth 1.5
+set terminal pngcairo size 1000, 460 font 'Sans,15' linewidth 1.5
 set output here . 'overview.png'
 set datafile separator comma
 set datafile missing NaN
