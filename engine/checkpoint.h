@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "contract/integrity_error.h"
 #include "engine/simulation.h"
 
 namespace peclet::engine {
@@ -28,9 +29,9 @@ struct CheckpointIdentity {
 };
 
 // The file is no checkpoint, of another version, torn, altered, or of another scene, seed or binary.
-class CheckpointError : public std::runtime_error {
+class CheckpointError : public IntegrityError {
  public:
-  using std::runtime_error::runtime_error;
+  using IntegrityError::IntegrityError;
 };
 
 struct Spent {

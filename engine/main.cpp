@@ -7,9 +7,11 @@
 #include <exception>
 #include <limits>
 
+#include "contract/exit_codes.h"
 #include "contract/frames.h"
 #include "contract/input_error.h"
 #include "contract/input_file.h"
+#include "contract/integrity_error.h"
 #include "contract/output_file.h"
 #include "contract/provenance.h"
 #include "engine/benchmark/benchmark.h"
@@ -23,9 +25,6 @@ namespace {
 
 using namespace peclet;
 using namespace peclet::engine;
-
-// What `peclet run` means by them, too.
-constexpr int success = 0, failure = 1, bad_input = 2, broke_off = 3, bad_state = 6, stopped = 75;
 
 volatile std::sig_atomic_t stop_requested = 0;
 
@@ -81,7 +80,7 @@ int run(const RunOptions& options) {
   const std::optional<Json> finished = run_job(job, events);
   if (!finished) {
     fmt::print(stderr, "peclet-engine: stopped; the same command goes on from {}\n", options.checkpoint);
-    return stopped;
+    return ExitCode::stopped;
   }
   const Json& result = *finished;
   if (options.output.empty()) {
@@ -98,7 +97,7 @@ int run(const RunOptions& options) {
   } else if (!options.quiet) {
     fmt::print(stderr, "{}", summary(result, options.output.empty() ? "standard output" : options.output));
   }
-  return completed ? success : broke_off;
+  return completed ? ExitCode::done : ExitCode::unconverged;
 }
 
 int forces(const std::string& path) {
@@ -108,7 +107,7 @@ int forces(const std::string& path) {
   } catch (const std::invalid_argument& error) {
     throw InputError(path, "/state/box/lengths", "", error.what());
   }
-  return success;
+  return ExitCode::done;
 }
 
 }  // namespace
@@ -145,7 +144,7 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     // Help and the version end here, too.
-    return app.exit(error) == 0 ? success : bad_input;
+    return app.exit(error) == 0 ? ExitCode::done : ExitCode::usage;
   }
 
   try {
@@ -163,16 +162,16 @@ int main(int argc, char** argv) {
     }
   } catch (const InputError& error) {
     fmt::print(stderr, "peclet-engine: {}\n", error.what());
-    return bad_input;
+    return ExitCode::usage;
   } catch (const FrameError& error) {
     fmt::print(stderr, "peclet-engine: {}\n", error.what());
-    return bad_input;
-  } catch (const CheckpointError& error) {
+    return ExitCode::usage;
+  } catch (const IntegrityError& error) {
     fmt::print(stderr, "peclet-engine: {}\n", error.what());
-    return bad_state;
+    return ExitCode::integrity;
   } catch (const std::exception& error) {
     fmt::print(stderr, "peclet-engine: {}\n", error.what());
-    return failure;
+    return ExitCode::error;
   }
-  return failure;
+  return ExitCode::error;
 }

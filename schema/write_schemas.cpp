@@ -10,7 +10,7 @@
 #include "contract/key_table.h"
 #include "engine/configuration.h"
 #include "engine/scene.h"
-#include "runner/campaign.h"
+#include "runner/campaign/campaign.h"
 
 namespace {
 

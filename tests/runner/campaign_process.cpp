@@ -12,7 +12,8 @@
 #include <thread>
 
 #include "contract/durable_file.h"
-#include "runner/exit_code.h"
+#include "runner/verbs/exit_code.h"
+#include "runner/verbs/plan_campaign.h"
 
 namespace peclet::runner {
 namespace {

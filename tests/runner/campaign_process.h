@@ -11,8 +11,8 @@
 #include <string>
 
 #include "contract/json.h"
-#include "runner/database.h"
-#include "runner/plan.h"
+#include "runner/database/database.h"
+#include "runner/verbs/run.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "contract/json.h"
-#include "runner/campaign.h"
-#include "runner/campaign_directory.h"
-#include "runner/run_listener.h"
+#include "runner/campaign/campaign.h"
+#include "runner/events/run_listener.h"
+#include "runner/folder/campaign_directory.h"
 
 namespace peclet::runner {
 

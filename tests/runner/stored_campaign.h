@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "runner/database.h"
-#include "runner/queue.h"
+#include "runner/database/database.h"
+#include "runner/database/queue.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {

@@ -1,0 +1,89 @@
+// The table of a campaign's keys: what schema/campaign.schema.json and the manual are printed from.
+#include "runner/campaign/campaign.h"
+
+namespace peclet::runner {
+namespace {
+
+std::vector<Key> keys() {
+  return {
+      {.pointer = "/name",
+       .kind = KeyKind::string,
+       .meaning = "What people call it: at most 100 letters, digits, dots, underscores and hyphens.",
+       .required = true},
+      {.pointer = "/scene",
+       .kind = KeyKind::object,
+       .meaning = "The scene that all points share; the engine is its judge.",
+       .required = true},
+      {.pointer = "/sweep",
+       .kind = KeyKind::array,
+       .meaning = "What differs between the points. Several entries make a grid; the last varies fastest.",
+       .default_value = Json::array()},
+      {.pointer = "/sweep/*", .kind = KeyKind::object, .meaning = "One direction of the grid."},
+      {.pointer = "/sweep/*/set",
+       .kind = KeyKind::any,
+       .meaning = "JSON pointer into the scene, or an array of pointers that are set in step.",
+       .required = true},
+      {.pointer = "/sweep/*/values",
+       .kind = KeyKind::array,
+       .meaning = "One per point; with several pointers each is an array with a value for every pointer.",
+       .required = true,
+       .minimum_items = 1},
+      {.pointer = "/target", .kind = KeyKind::object, .meaning = "When a point is done.", .required = true},
+      {.pointer = "/target/observable",
+       .kind = KeyKind::string,
+       .meaning = "A number in the result's mean.",
+       .default_value = "relative_viscosity"},
+      {.pointer = "/target/relative_tolerance",
+       .kind = KeyKind::number,
+       .meaning = "Half-width of the confidence interval over |mean| that is good enough; 0.05 is 5 %.",
+       .required = true,
+       .minimum = 0,
+       .maximum = 1,
+       .above_minimum = true,
+       .below_maximum = true},
+      {.pointer = "/target/confidence",
+       .kind = KeyKind::number,
+       .meaning = "Of the two-sided interval (Student's t).",
+       .default_value = 0.95,
+       .minimum = 0.5,
+       .maximum = 1,
+       .above_minimum = true,
+       .below_maximum = true},
+      {.pointer = "/realisations",
+       .kind = KeyKind::object,
+       .meaning = "How many seeds a point may take.",
+       .required = true},
+      {.pointer = "/realisations/minimum",
+       .kind = KeyKind::integer,
+       .meaning =
+           "Seeds before the first look: 8 or more, because the spread of fewer is itself too uncertain to "
+           "stop by; 2 or more where it equals maximum, so that there is only one look.",
+       .required = true,
+       .minimum = 2,
+       .maximum = most_realisations},
+      {.pointer = "/realisations/maximum",
+       .kind = KeyKind::integer,
+       .meaning = "Seeds after which a point is capped; not below the minimum.",
+       .required = true,
+       .minimum = 2,
+       .maximum = most_realisations},
+      {.pointer = "/engine",
+       .kind = KeyKind::array,
+       .meaning =
+           "Program and arguments. Without a slash it is looked for beside peclet, then on PATH, "
+           "then among peclet's own adapters (lammps_engine.py); a relative path starts at the campaign "
+           "file, in whose folder it runs.",
+       .default_value = Json::array({"peclet-engine", "serve"}),
+       .minimum_items = 1},
+      {.pointer = "/engine/*", .kind = KeyKind::string, .meaning = "A word of the command."},
+  };
+}
+
+}  // namespace
+
+const KeyTable& campaign_keys() {
+  static const KeyTable table("A campaign of peclet", keys());
+  return table;
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,167 @@
+#include "runner/care/backup.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <system_error>
+
+#include "contract/durable_file.h"
+#include "contract/guarded_file.h"
+#include "contract/integrity_error.h"
+#include "runner/database/backup_files.h"
+#include "runner/database/database_copy.h"
+#include "runner/folder/folder_lock.h"
+#include "runner/folder/spool.h"
+#include "runner/owner/open_campaign.h"
+#include "runner/text/quoting.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Which campaign a database is of, to be compared and to be read; both "" when it cannot tell any more.
+struct Owner {
+  std::string origin, name;
+};
+
+Owner campaign_in(const fs::path& path) {
+  try {
+    Connection database(path.string(), Connection::Access::read_only, 10'000);
+    return {origin_of(database), database.text("SELECT name || ', created at ' || created_at FROM campaign")};
+  } catch (const IntegrityError&) {
+    return {};
+  }
+}
+
+void refuse_unsuitable_folder(const CampaignDirectory& directory, const fs::path& folder) {
+  // A path that leads through a disk that is not mounted would be made on the one above it, unnoticed.
+  if (!fs::is_directory(folder.parent_path())) {
+    throw InputError(folder.string(), "", "",
+                     fmt::format("there is no folder {}: mount its disk, or make it (of a backup's path only "
+                                 "the last folder is made)",
+                                 folder.parent_path().string()));
+  }
+  if (folder == directory.backup()) require_own_folder(folder);
+  if (fs::exists(folder) && !fs::is_directory(folder)) {
+    throw InputError(folder.string(), "", "", "must be a folder for backups");
+  }
+  if (!kind_of(CampaignDirectory(folder).lock()).empty()) {
+    throw InputError(folder.string(), "", "", "is the folder of a campaign; backups need one of their own");
+  }
+  if (kind_of(newest_backup(folder)).empty()) return;
+  // Damage is found when the copy is made; here only those are told apart that can still be read.
+  const Owner here = campaign_in(directory.database());
+  const Owner there = campaign_in(newest_backup(folder));
+  if (here.origin.empty() || there.origin.empty() || there.origin == here.origin) return;
+  throw InputError(folder.string(), "", there.name,
+                   "holds backups of another campaign; choose another folder");
+}
+
+// A file may go while we look: its result was committed, and then it is in the database.
+bool copy_file_that_may_go(const fs::path& from, const fs::path& folder) {
+  try {
+    copy_regular(from, folder / from.filename(), largest_copied_file);
+    return true;
+  } catch (const std::system_error& error) {
+    if (error.code() == std::errc::no_such_file_or_directory) return false;
+    throw;
+  }
+}
+
+int copy_files(const fs::path& from, const fs::path& to) {
+  if (kind_of(from) != "a folder") return 0;
+  if (kind_of(to) == "a link") fs::remove(to);  // it would lead the copies elsewhere
+  fs::create_directories(to);
+  int copied = 0;
+  for (const fs::path& file : whole_files(from)) {
+    if (copy_file_that_may_go(file, to)) ++copied;
+  }
+  return copied;
+}
+
+// So that whoever restores the copy can say when and where it was made.
+void sign(Connection& copy, const CampaignDirectory& directory) {
+  Statement(copy,
+            "INSERT INTO event (at, kind, message) VALUES (strftime('%Y-%m-%dT%H:%M:%SZ'), 'backup', ?)")
+      .bind("copied from " + directory.database().string())
+      .run();
+}
+
+dev_t device_of(const fs::path& path) {
+  struct stat about {};
+  if (stat(path.c_str(), &about) != 0) fail_to("cannot examine", path);
+  return about.st_dev;
+}
+
+fs::path without_slash(const fs::path& path) {
+  const fs::path folder = fs::absolute(path).lexically_normal();
+  return folder.has_filename() ? folder : folder.parent_path();
+}
+
+Json as_json(const Backup& backup) {
+  return {{"schema_version", 1},
+          {"file", backup.file.string()},
+          {"results", backup.results},
+          {"bytes", backup.bytes},
+          {"seconds", backup.seconds},
+          {"spool_files", backup.spool_files},
+          {"checkpoints", backup.checkpoints}};
+}
+
+std::string as_text(const Backup& backup, const CampaignDirectory& directory, bool checkpoints) {
+  std::string text = fmt::format("{}: {} results, {:.1f} MB, checked, in {:.1f} s\n", backup.file.string(),
+                                 backup.results, 1e-6 * static_cast<double>(backup.bytes), backup.seconds);
+  text += "in it: the campaign as last run and every committed result, attempt, look and event\n";
+  if (checkpoints) {
+    text += fmt::format("beside it: {} checkpoints and {} results on their way\n", backup.checkpoints,
+                        backup.spool_files);
+  }
+  if (backup.beside_campaign) {
+    text += "on the same file system as the campaign: what destroys one may destroy both\n";
+  }
+  text += fmt::format("not in it: {}states of blow-ups, logs, the engine\n",
+                      checkpoints ? "" : "checkpoints and spool (--checkpoints), ");
+  return text + fmt::format("go on from it with: peclet restore {} {}\n",
+                            shell_word(backup.file.parent_path().string()),
+                            shell_word(directory.root().filename().string()));
+}
+
+}  // namespace
+
+Backup make_backup(const CampaignDirectory& directory, const fs::path& folder, bool checkpoints) {
+  const auto started = std::chrono::steady_clock::now();
+  refuse_unsuitable_folder(directory, folder);
+  fs::create_directory(folder);
+  const FolderLock lock(folder);  // `peclet backup` and the campaign's own backups may meet
+  remove_unfinished_files(folder);
+  Backup backup;
+  if (checkpoints) {
+    // Before the database: a result that is committed in between is in both, and counts once.
+    backup.spool_files = copy_files(directory.spool(), folder / "spool");
+    backup.checkpoints = copy_files(directory.checkpoints(), folder / "checkpoints");
+  }
+  const fs::path next = folder / "backup.next.db";
+  copy_database(directory.database(), next, [&](Connection& copy) {
+    sign(copy, directory);
+    backup.results = copy.integer("SELECT count(*) FROM result");
+  });
+  backup.file = newest_backup(folder);
+  if (!kind_of(backup.file).empty()) fs::rename(backup.file, previous_backup(folder));
+  rename_durably(next, backup.file);
+  backup.bytes = fs::file_size(backup.file);
+  backup.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  return backup;
+}
+
+std::string backup_campaign(const BackupOptions& options) {
+  const OpenCampaign open = open_campaign(options.campaign, options.directory);
+  const bool is_elsewhere = !options.target.empty();
+  const fs::path folder = is_elsewhere ? without_slash(options.target) : open.directory.backup();
+  Backup backup = make_backup(open.directory, folder, options.checkpoints);
+  backup.beside_campaign = is_elsewhere && device_of(folder) == device_of(open.directory.root());
+  return options.json ? as_json(backup).dump(2) + '\n' : as_text(backup, open.directory, options.checkpoints);
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,229 @@
+// Does what is stored agree with itself?
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "contract/durable_file.h"
+#include "contract/integrity_error.h"
+#include "runner/care/doctor.h"
+#include "runner/database/checked_look.h"
+#include "runner/database/queue.h"
+#include "runner/database/result_text.h"
+#include "runner/folder/realisation_result.h"
+#include "runner/statistics/cohorts.h"
+
+namespace peclet::runner {
+namespace {
+
+// The text of a stored result, or its bytes where they have none.
+std::string readable(const Statement& stored) {
+  try {
+    return result_text(stored, 0, 1);
+  } catch (const IntegrityError&) {
+    return stored.text(0);
+  }
+}
+
+// The seed runs again, and gives the same result if its engine is the same; what was stored is kept for
+// people.
+void run_again(Database& owner, const CampaignDirectory& directory, std::int64_t point, int seed) {
+  Connection& connection = owner.connection();
+  Statement stored(
+      connection,
+      "SELECT document, text FROM result LEFT JOIN dictionary USING (point_id) WHERE point_id = ? "
+      "AND seed = ?");
+  stored.bind(point).bind(seed);
+  if (stored.step()) {
+    write_durably(directory.rejected() / fmt::format("point-{}-seed-{}-altered.json", point, seed),
+                  readable(stored));
+    stored.step();
+  }
+  Transaction booking(connection);
+  for (const char* const sql : {"DELETE FROM result WHERE point_id = ? AND seed = ?",
+                                "UPDATE realisation SET state = 'queued', cause = NULL, value = NULL, "
+                                "control = NULL, content_sha256 = NULL, "
+                                "final_state_sha256 = NULL WHERE point_id = ? AND seed = ?"}) {
+    Statement(connection, sql).bind(point).bind(seed).run();
+  }
+  Queue(owner).event("repaired", point, seed,
+                     "its stored result was not what its hash says: it is run again");
+  booking.commit();
+}
+
+// Seeds that no campaign can have: an earlier peclet took results of any number.
+constexpr const char* impossible = "seed >= ?";
+
+std::int64_t impossible_seeds(Connection& connection) {
+  Statement query(connection, fmt::format("SELECT count(*) FROM realisation WHERE {}", impossible));
+  query.bind(most_realisations).step();
+  return query.integer(0);
+}
+
+// What was stored is kept for people.
+void remove_impossible_seeds(Database& owner, const CampaignDirectory& directory) {
+  Connection& connection = owner.connection();
+  Transaction booking(connection);
+  Statement stored(connection,
+                   fmt::format("SELECT document, text, point_id, seed FROM result LEFT JOIN dictionary USING "
+                               "(point_id) WHERE {}",
+                               impossible));
+  stored.bind(most_realisations);
+  while (stored.step()) {
+    write_durably(directory.rejected() /
+                      fmt::format("point-{}-seed-{}-impossible.json", stored.integer(2), stored.integer(3)),
+                  readable(stored));
+  }
+  for (const char* const table : {"result", "lease", "attempt", "bundle_seed", "realisation"}) {
+    Statement(connection, fmt::format("DELETE FROM {} WHERE {}", table, impossible))
+        .bind(most_realisations)
+        .run();
+  }
+  Queue(owner).event("repaired", std::nullopt, std::nullopt,
+                     "seeds that no campaign can have are removed; their results are in spool/rejected/");
+  booking.commit();
+}
+
+// What is wrong with the result of a seed that has ended: "" when nothing is.
+std::string fault_of(Database& database, const PointRecord& point, const RealisationRecord& record,
+                     const std::string& observable) {
+  try {
+    const std::optional<Json> document = database.result(point.id, record.seed);
+    if (!document) return "has ended, but there is no result of it";
+    const RealisationResult result = parse_result(document->dump());
+    if (result.point != point.hash || result.seed != record.seed) return "has the result of another seed";
+    if (result.content_sha256 != record.content_sha256) return "has a result that does not have its hash";
+    if (engine_identity(result.document.at("engine")) != point.engine_identity)
+      return "has a result of another engine";
+    const Observed observed = observe(result.document, observable);
+    if (result.completed() && (observed.value != record.value || observed.control != record.control)) {
+      return "has another value than its result";
+    }
+    return "";
+  } catch (const ResultError& error) {
+    return fmt::format("has a result that is none: {}", error.what());
+  } catch (const IntegrityError& error) {
+    return fmt::format("has a result that cannot be read: {}", error.what());
+  }
+}
+
+// Results of the point that were deflated with another dictionary than the one that is there: nobody can read
+// them.
+int unreadable_results(Connection& connection, std::int64_t point) {
+  Statement stored(
+      connection,
+      "SELECT document, text FROM result LEFT JOIN dictionary USING (point_id) WHERE point_id = ?");
+  stored.bind(point);
+  int unreadable = 0;
+  while (stored.step()) {
+    if (stored.is_blob(0) && !lean_on(stored.text(0), stored.text(1))) ++unreadable;
+  }
+  return unreadable;
+}
+
+std::vector<PointRecord> all_points(Database& database) {
+  std::vector<PointRecord> points = database.points();
+  for (PointRecord& point : database.inactive_points()) points.push_back(std::move(point));
+  return points;
+}
+
+}  // namespace
+
+void examine_results(Database& database, const Patient& patient, Findings& findings) {
+  const std::string observable = database.campaign().target.target.observable;
+  if (const std::int64_t count = impossible_seeds(database.connection()); count > 0) {
+    findings.push_back(
+        {"seed-impossible", Severity::integrity,
+         fmt::format("{} results are of seeds from {} on, which no campaign can have; they do "
+                     "not count",
+                     count, most_realisations),
+         "`peclet doctor --repair` keeps what is stored in spool/rejected/ and removes them",
+         [directory = patient.directory](Database& owner) { remove_impossible_seeds(owner, directory); }});
+  }
+  for (const PointRecord& point : all_points(database)) {
+    if (const int count = unreadable_results(database.connection(), point.id); count > 0) {
+      findings.push_back({"dictionary-altered", Severity::integrity,
+                          fmt::format("{}: {} results cannot be read: the dictionary that they were deflated "
+                                      "with is not there",
+                                      point.label, count),
+                          "put a backup back with `peclet restore`"});
+      continue;
+    }
+    for (const RealisationRecord& record : database.realisations(point.id)) {
+      if (record.state != SeedState::done && record.state != SeedState::failed) continue;
+      if (record.seed < 0 || record.seed >= most_realisations) continue;  // have been found
+      const std::string fault = fault_of(database, point, record, observable);
+      if (fault.empty()) continue;
+      Finding finding{"result-altered", Severity::integrity,
+                      fmt::format("{} seed {}: {}", point.label, record.seed, fault),
+                      "put a backup back with `peclet restore`: the point is not in the sweep any more"};
+      if (point.place) {
+        finding.cure =
+            "`peclet doctor --repair` keeps what is stored in spool/rejected/ and queues the seed again";
+        finding.repair = [directory = patient.directory, id = point.id, seed = record.seed](Database& owner) {
+          run_again(owner, directory, id, seed);
+        };
+      }
+      findings.push_back(std::move(finding));
+    }
+  }
+}
+
+void examine_looks(Database& database, Findings& findings) {
+  const TargetRecord target = database.campaign().target;
+  for (const PointRecord& point : database.points()) {
+    if (point.suspect) {
+      findings.push_back(
+          {"suspect", Severity::integrity,
+           point.label + ": a seed gave two different results; the other one is in spool/rejected/",
+           "find out why the engine does not repeat itself, and run in another --directory"});
+    }
+    try {
+      checked_look(database, point, target);
+    } catch (const IntegrityError& error) {
+      findings.push_back({"look-differs", Severity::integrity, error.what(),
+                          "`peclet doctor --repair` looks again at the stored results",
+                          [id = point.id, target](Database& owner) {
+                            const std::vector<Look> looks = replay_looks(owner.outcomes(id), target.target,
+                                                                         target.minimum, target.maximum);
+                            Transaction booking(owner.connection());
+                            Queue queue(owner);
+                            queue.store_looks(id, looks);
+                            queue.event("repaired", id, std::nullopt, "looked again at the stored results");
+                            booking.commit();
+                          }});
+    }
+  }
+}
+
+void examine_states(Database& database, const Patient& patient, Findings& findings) {
+  Connection& connection = database.connection();
+  const std::int64_t unclaimed = connection.integer(
+      "SELECT count(*) FROM result JOIN realisation USING (point_id, seed) WHERE state NOT IN ('done', "
+      "'failed')");
+  if (unclaimed > 0) {
+    findings.push_back({"result-unclaimed", Severity::integrity,
+                        fmt::format("{} seeds have a result but have not ended", unclaimed),
+                        "put a backup back with `peclet restore`"});
+  }
+  const std::int64_t adrift = connection.integer(
+      "SELECT (SELECT count(*) FROM lease LEFT JOIN realisation USING (point_id, seed) WHERE state IS NOT "
+      "'running') + "
+      "(SELECT count(*) FROM realisation LEFT JOIN lease USING (point_id, seed) WHERE state = 'running' AND "
+      "attempt_id IS NULL)");
+  const std::int64_t running = connection.integer("SELECT count(*) FROM realisation WHERE state = 'running'");
+  const auto recover = [](Database& owner) { Queue(owner).recover(); };
+  if (adrift > 0) {
+    Finding finding{"lease-adrift", Severity::integrity,
+                    fmt::format("{} leases and running seeds do not belong together", adrift),
+                    "`peclet run` and `peclet doctor --repair` queue them again"};
+    if (!patient.owner) finding.repair = recover;
+    findings.push_back(std::move(finding));
+  } else if (running > 0 && !patient.owner) {
+    findings.push_back({"left-running", Severity::note,
+                        fmt::format("{} seeds are left running by an owner that died", running),
+                        "`peclet run` and `peclet doctor --repair` queue them again, without blame",
+                        recover});
+  }
+}
+
+}  // namespace peclet::runner

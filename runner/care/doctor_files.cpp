@@ -1,0 +1,234 @@
+// Do the files of a campaign belong to it, and are there backups?
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+#include "contract/guarded_file.h"
+#include "runner/care/backup.h"
+#include "runner/care/doctor.h"
+#include "runner/database/backup_files.h"
+#include "runner/folder/spool.h"
+#include "runner/owner/request.h"
+#include "runner/text/plain_text.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 13> known_names{
+    "campaign.db",   "campaign.db-wal", "campaign.db-shm", "campaign.db-journal",
+    "campaign.lock", "spool",           "checkpoints",     "failures",
+    "logs",          "backup",          "aside",           "campaign.json",
+    "requests"};
+
+// A campaign that works makes one every ten minutes.
+constexpr double old_backup_hours = 24;
+
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (kind_of(folder) != "a folder") return files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string listed(const std::vector<fs::path>& files) {
+  constexpr std::size_t most = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, files.size()); ++i) {
+    text += (i == 0 ? "" : ", ") + plain_name(files[i]);
+  }
+  return files.size() > most ? fmt::format("{} and {} more", text, files.size() - most) : text;
+}
+
+double megabytes(const std::vector<fs::path>& files) {
+  double bytes = 0;
+  for (const fs::path& file : files) {
+    std::error_code gone;
+    const std::uintmax_t size = fs::file_size(file, gone);
+    if (!gone) bytes += static_cast<double>(size);
+  }
+  return 1e-6 * bytes;
+}
+
+void remove_all_of(const std::vector<fs::path>& files) {
+  for (const fs::path& file : files) fs::remove(file);
+}
+
+enum class Need {
+  open,     // its seed may be wanted
+  surplus,  // its seed lies beyond the look that has decided the point
+  none      // its seed has ended
+};
+
+// The seeds below the look all have ended, unless one is to be run again.
+bool is_surplus(const RealisationRecord& record, const std::vector<LookRecord>& looks) {
+  return !looks.empty() && looks.back().look.verdict != Verdict::more &&
+         record.seed >= looks.back().look.seeds;
+}
+
+// What each checkpoint is good for, by its name.
+std::map<std::string, Need> checkpoint_names(Database& database, const CampaignDirectory& directory) {
+  std::map<std::string, Need> names;
+  for (const auto& points : {database.points(), database.inactive_points()}) {
+    for (const PointRecord& point : points) {
+      if (point.kept_apart) continue;  // a checkpoint of its scene is of the engine that is used now
+      const std::vector<LookRecord> looks = database.looks(point.id);
+      for (const RealisationRecord& record : database.realisations(point.id)) {
+        const Need need = !record.cause.empty()       ? Need::none
+                          : is_surplus(record, looks) ? Need::surplus
+                                                      : Need::open;
+        names[directory.checkpoint(point.hash, record.seed).filename().string()] = need;
+      }
+    }
+  }
+  return names;
+}
+
+void examine_checkpoints(Database& database, const Patient& patient, Findings& findings) {
+  const std::map<std::string, Need> names = checkpoint_names(database, patient.directory);
+  std::vector<fs::path> ended, surplus, rejected, strays;
+  for (const fs::path& file : files_in(patient.directory.checkpoints())) {
+    const auto seed = names.find(file.filename().string());
+    if (seed != names.end()) {
+      if (seed->second == Need::none) ended.push_back(file);
+      if (seed->second == Need::surplus) surplus.push_back(file);
+    } else if (file.filename().string().find(".checkpoint.rejected") != std::string::npos) {
+      rejected.push_back(file);
+    } else if (file.extension() != ".tmp") {
+      strays.push_back(file);
+    }
+  }
+  // A worker may be about to remove, or to leave, one while the campaign runs.
+  if (!ended.empty() && !patient.owner) {
+    findings.push_back(
+        {"checkpoint-left", Severity::note,
+         fmt::format("{} checkpoints are of seeds that have ended: {}", ended.size(), listed(ended)),
+         "`peclet run` and `peclet doctor --repair` remove them",
+         [ended](Database&) { remove_all_of(ended); }});
+  }
+  if (!surplus.empty() && !patient.owner) {
+    findings.push_back(
+        {"checkpoint-surplus", Severity::note,
+         fmt::format("{} checkpoints ({:.1f} MB) are of seeds that their points, which are decided, did not "
+                     "need: {}",
+                     surplus.size(), megabytes(surplus), listed(surplus)),
+         "`peclet doctor --repair` removes them; kept, they save these seeds' time should a tolerance be "
+         "tightened",
+         [surplus](Database&) { remove_all_of(surplus); }});
+  }
+  if (!rejected.empty()) {
+    findings.push_back({"checkpoint-rejected", Severity::note,
+                        fmt::format("{} checkpoints could not be used and were set aside: {}",
+                                    rejected.size(), listed(rejected)),
+                        "their seeds started again; `peclet doctor --repair` removes them",
+                        [rejected](Database&) { remove_all_of(rejected); }});
+  }
+  if (!strays.empty()) {
+    findings.push_back({"stray-checkpoint", Severity::note,
+                        fmt::format("{} files in checkpoints/ are of no seed of this campaign: {}",
+                                    strays.size(), listed(strays)),
+                        "move them away if nothing else needs them"});
+  }
+}
+
+void examine_spool(const Patient& patient, Findings& findings) {
+  const CampaignDirectory& directory = patient.directory;
+  if (!fs::is_directory(directory.spool())) return;
+  const std::vector<fs::path> waiting = spool_files(directory);
+  if (!waiting.empty() && !patient.owner) {
+    findings.push_back({"spool-waiting", Severity::note,
+                        fmt::format("{} results wait in spool/: {}", waiting.size(), listed(waiting)),
+                        "the next `peclet run` takes them in"});
+  }
+  const std::vector<fs::path> rejected = files_in(directory.rejected());
+  if (!rejected.empty()) {
+    findings.push_back({"rejected-results", Severity::warning,
+                        fmt::format("{} results were turned down: {}", rejected.size(), listed(rejected)),
+                        "the table `event` says why; remove them from spool/rejected/ when you know"});
+  }
+}
+
+void examine_requests(const Patient& patient, Findings& findings) {
+  const std::vector<fs::path> waiting = waiting_requests(patient.directory);
+  if (!waiting.empty() && !patient.owner) {
+    findings.push_back({"request-waiting", Severity::note,
+                        fmt::format("{} requests wait in requests/: {}", waiting.size(), listed(waiting)),
+                        "the next `peclet run` carries them out"});
+  }
+}
+
+void examine_unfinished(const Patient& patient, Findings& findings) {
+  std::vector<fs::path> folders, unfinished;
+  for (const fs::path& folder :
+       {patient.directory.root(), patient.directory.spool(), patient.directory.checkpoints(),
+        patient.directory.failures(), patient.directory.backup(), patient.directory.requests()}) {
+    if (!fs::is_directory(folder)) continue;
+    folders.push_back(folder);
+    for (const fs::path& file : unfinished_files(folder)) unfinished.push_back(file);
+  }
+  if (unfinished.empty()) return;
+  findings.push_back({"unfinished-file", Severity::note,
+                      fmt::format("{} files were left unfinished by processes that died: {}",
+                                  unfinished.size(), listed(unfinished)),
+                      "`peclet run` and `peclet doctor --repair` remove them", [folders](Database&) {
+                        for (const fs::path& folder : folders) remove_unfinished_files(folder);
+                      }});
+}
+
+void examine_strays(const Patient& patient, Findings& findings) {
+  std::vector<fs::path> strays;
+  for (const fs::path& file : files_in(patient.directory.root())) {
+    const std::string name = file.filename().string();
+    const bool known = std::find(known_names.begin(), known_names.end(), name) != known_names.end() ||
+                       name.starts_with("campaign.db.version-");  // from before a migration
+    if (!known && file.extension() != ".tmp") strays.push_back(file);
+  }
+  if (strays.empty()) return;
+  findings.push_back({"stray-file", Severity::note, "files that belong to nobody: " + listed(strays),
+                      "move them away if nothing else needs them"});
+}
+
+}  // namespace
+
+void examine_files(Database& database, const Patient& patient, Findings& findings) {
+  examine_spool(patient, findings);
+  examine_checkpoints(database, patient, findings);
+  examine_requests(patient, findings);
+  examine_unfinished(patient, findings);
+  examine_strays(patient, findings);
+}
+
+void examine_backups(Database& database, const Patient& patient, Findings& findings) {
+  const std::int64_t results = database.connection().integer("SELECT count(*) FROM result");
+  if (results == 0) return;
+  const fs::path newest = newest_backup(patient.directory.backup());
+  const auto find = [&](const std::string& code, const std::string& message) {
+    findings.push_back(
+        {code, Severity::warning, message, "`peclet backup` and `peclet doctor --repair` make one",
+         [directory = patient.directory](Database&) { make_backup(directory, directory.backup(), false); }});
+  };
+  if (kind_of(newest).empty())
+    return find("no-backup", fmt::format("there is no backup of {} results", results));
+  try {
+    const Contents contents = examine(newest);
+    Statement age(database.connection(), "SELECT (julianday(?) - julianday(?)) * 24");
+    age.bind(patient.now).bind(contents.backed_up_at).step();
+    const double hours = age.real(0);
+    if (contents.results < results && hours > old_backup_hours) {
+      find("old-backup", fmt::format("the last backup is {:.0f} hours old and lacks {} results", hours,
+                                     results - contents.results));
+    }
+  } catch (const UnsuitableFile& error) {
+    findings.push_back({"backup-damaged", Severity::warning, error.what(),
+                        "move it away; `peclet backup` makes another one"});
+  } catch (const IntegrityError& error) {
+    find("backup-damaged", fmt::format("the last backup is damaged: {}", error.what()));
+  }
+}
+
+}  // namespace peclet::runner

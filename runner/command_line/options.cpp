@@ -1,0 +1,92 @@
+#include "runner/command_line/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "contract/exit_codes.h"
+#include "contract/input_error.h"
+#include "contract/provenance.h"
+#include "runner/command_line/parser_tree.h"
+#include "runner/command_line/usage_fault.h"
+#include "runner/command_line/verb_pages.h"
+#include "runner/command_line/verb_set.h"
+
+namespace peclet::runner {
+namespace {
+
+std::string version_text() {
+  const Json& origin = provenance();
+  return fmt::format("peclet {} (commit {}{})", version(), origin.value("git_commit", "unknown"),
+                     origin.value("git_dirty", Json()) == true ? ", with changes" : "");
+}
+
+std::string exit_code_lines() {
+  std::string text = "Exit codes:\n";
+  for (const auto& [code, meaning] : exit_codes()) text += fmt::format("  {:>2}  {}\n", code, meaning);
+  return text + "`peclet help VERB` says more about a verb, `peclet manual VERB | man -l -` all there is.";
+}
+
+// The command line as it was typed, and what to say where it has a fault.
+class Reader {
+ public:
+  Reader() {
+    CLI::App& app = verbs_.app();
+    app.require_subcommand(1);
+    app.set_version_flag("--version", std::function<std::string()>(version_text));  // reads the program file
+    app.footer(exit_code_lines());
+    app.formatter(std::make_shared<HelpFormatter>());
+    add_running_verbs(verbs_);
+    add_looking_verbs(verbs_);
+    add_changing_verbs(verbs_);
+    add_batch_verbs(verbs_);
+    add_keeping_verbs(verbs_);
+    add_other_verbs(verbs_);
+  }
+
+  CommandLine read(const std::vector<std::string>& words) {
+    try {
+      std::vector<std::string> reversed(words.rbegin(), words.rend());  // as the parser wants them
+      verbs_.app().parse(reversed);
+    } catch (const CLI::ParseError& end) {
+      const bool is_known =
+          words.empty() || words.front().starts_with("-") || verb_called(verbs_.app(), words) != nullptr;
+      if (end.get_exit_code() == 0 && is_known)
+        return {std::nullopt, verbs_.app().exit(end)};  // help or version
+      return complain(usage_fault(verbs_.app(), words, end));
+    } catch (const InputError& fault) {
+      return complain(fmt::format("{}: {}", words.front(), fault.what()));
+    }
+    return {verbs_.named(), 0};
+  }
+
+  CommandTree tree() const { return describe(verbs_.app(), verbs_.examples()); }
+
+ private:
+  static CommandLine complain(const std::string& fault) {
+    fmt::print(stderr, "peclet: {}\n", fault);
+    return {std::nullopt, ExitCode::usage};
+  }
+
+  VerbSet verbs_;
+};
+
+}  // namespace
+
+CommandLine read_command_line(int argc, char** argv) {
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (!words.empty() && words.front() == "help") {  // `peclet help run` is `peclet run --help`
+    words.erase(words.begin());
+    words.insert(words.begin() + std::min<std::ptrdiff_t>(1, std::ssize(words)), "--help");
+  }
+  return Reader().read(words);
+}
+
+CommandTree command_tree() { return Reader().tree(); }
+
+}  // namespace peclet::runner

@@ -1,0 +1,105 @@
+#include "runner/command_line/usage_fault.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <string_view>
+
+#include "contract/nearest_name.h"
+#include "contract/printable.h"
+
+namespace peclet::runner {
+namespace {
+
+constexpr std::size_t longest_word = 60, longest_reason = 300;
+
+std::vector<std::string> verb_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* verb : app.get_subcommands(std::function<bool(const CLI::App*)>()))
+    names.push_back(verb->get_name());
+  return names;
+}
+
+std::vector<std::string> option_names(const CLI::App& verb) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : verb.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+// The first word that looks like an option and is none of the verb's; "" when there is none.
+std::string unknown_option(const std::vector<std::string>& words, const std::vector<std::string>& names) {
+  for (const std::string& word : words) {
+    const std::string name = word.substr(0, word.find('='));
+    if (name == "--") return "";  // what follows is taken as it is
+    if (name.starts_with("--") && std::find(names.begin(), names.end(), name) == names.end()) return name;
+  }
+  return "";
+}
+
+// What precedes `mark`: the parser begins with the name of the option.
+std::string before(const std::string& said, std::string_view mark) { return said.substr(0, said.find(mark)); }
+
+std::string after(const std::string& said, std::string_view mark) {
+  const std::size_t found = said.find(mark);
+  return found == std::string::npos ? said : said.substr(found + mark.size());
+}
+
+std::string missing(const CLI::App& verb, const std::string& name) {
+  for (const CLI::Option* option : verb.get_options()) {
+    if (option->get_name() == name) return fmt::format("{}: is missing: {}", name, option->get_description());
+  }
+  return name + ": is missing";
+}
+
+std::string superfluous(const std::string& word) {
+  return word.starts_with("-") ? word + ": there is no such option" : word + ": is one word too many";
+}
+
+// The parser's classes of faults in our words; what it says itself where it says what is allowed.
+std::string reason(const CLI::App& verb, const CLI::ParseError& fault) {
+  const std::string said = fault.what();
+  if (dynamic_cast<const CLI::RequiredError*>(&fault) != nullptr)
+    return missing(verb, before(said, " is required"));
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&fault) != nullptr)
+    return before(before(said, ":"), " was given") + ": must have one value";
+  if (dynamic_cast<const CLI::ExtrasError*>(&fault) != nullptr) return superfluous(after(said, "expected: "));
+  if (dynamic_cast<const CLI::ExcludesError*>(&fault) != nullptr)
+    return fmt::format("{}: cannot stand beside {}", before(said, " excludes "), after(said, " excludes "));
+  if (dynamic_cast<const CLI::RequiresError*>(&fault) != nullptr)
+    return fmt::format("{}: needs {}", before(said, " requires "), after(said, " requires "));
+  if (dynamic_cast<const CLI::ConversionError*>(&fault) != nullptr)
+    return before(after(said, "Could not convert: "), " = ") + ": has a value that it cannot have";
+  return said;
+}
+
+}  // namespace
+
+const CLI::App* verb_called(const CLI::App& app, const std::vector<std::string>& words) {
+  if (words.empty()) return nullptr;
+  const auto has_name = [&](const CLI::App* verb) { return verb->get_name() == words.front(); };
+  const std::vector<const CLI::App*> found = app.get_subcommands(has_name);
+  return found.empty() ? nullptr : found.front();
+}
+
+std::string usage_fault(const CLI::App& app, const std::vector<std::string>& words,
+                        const CLI::ParseError& fault) {
+  const CLI::App* const verb = verb_called(app, words);
+  if (verb == nullptr) {
+    if (words.empty()) return "a verb is missing; `peclet --help` lists them";
+    return fmt::format(
+        "{}: there is no such {}; `peclet --help` lists them{}", printable(words.front(), longest_word),
+        words.front().starts_with("-") ? "option" : "verb", suggestion(words.front(), verb_names(app)));
+  }
+  const std::vector<std::string> names = option_names(*verb);
+  if (const std::string unknown = unknown_option(words, names); !unknown.empty()) {
+    return fmt::format("{0}: {1}: there is no such option; `peclet {0} --help` lists them{2}",
+                       verb->get_name(), printable(unknown, longest_word), suggestion(unknown, names));
+  }
+  return fmt::format("{0}: {1}; `peclet {0} --help` says more", verb->get_name(),
+                     printable(reason(*verb, fault), longest_reason));
+}
+
+}  // namespace peclet::runner

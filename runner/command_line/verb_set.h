@@ -1,0 +1,77 @@
+// What the functions that add verbs to the command line share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "contract/key_table.h"
+#include "runner/command_line/options.h"
+
+namespace peclet::runner {
+
+// The parser, and the verb that was named once it has parsed.
+class VerbSet {
+ public:
+  VerbSet() = default;
+  VerbSet(const VerbSet&) = delete;
+  VerbSet& operator=(const VerbSet&) = delete;
+
+  CLI::App& app() { return app_; }
+  const CLI::App& app() const { return app_; }
+  const std::map<std::string, std::string>& examples() const { return examples_; }  // by verb
+  const std::optional<Verb>& named() const { return named_; }
+
+  CLI::App* add(const char* name, const char* description, const char* example);
+
+  // `options`, into which the parser writes, become the command when the verb is the one that was named.
+  template <typename Options>
+  void choose(CLI::App* verb, const std::shared_ptr<Options>& options) {
+    verb->callback([this, options] { named_ = *options; });
+  }
+
+ private:
+  CLI::App app_{"Campaigns of dense-suspension simulations: from a scene to converged averages", "peclet"};
+  std::optional<Verb> named_;
+  std::map<std::string, std::string> examples_;
+};
+
+// One function a verb, in the file of its group. In the order in which help lists them.
+void add_running_verbs(VerbSet& verbs);
+void add_looking_verbs(VerbSet& verbs);
+void add_changing_verbs(VerbSet& verbs);
+void add_batch_verbs(VerbSet& verbs);
+void add_keeping_verbs(VerbSet& verbs);
+void add_other_verbs(VerbSet& verbs);
+
+// Options that several verbs have.
+void add_file(CLI::App* verb, std::filesystem::path& path);
+void add_file_or_folder(CLI::App* verb, std::filesystem::path& path);
+void add_directory(CLI::App* verb, std::filesystem::path& path);
+void add_accept_engine(CLI::App* verb, std::string& name);
+// A time > 0, which has a default.
+void add_seconds(CLI::App* verb, const char* name, double& seconds, const char* meaning);
+
+// What a number may be. Without a maximum of its own it is bounded by 1e9, so that times can be counted in
+// nanoseconds: 31 years of seconds.
+Key whole_number(double minimum, double maximum);
+Key number_above(double minimum);
+Key number_from(double minimum, double maximum = 1e9);
+
+// The only reader of numbers of the command line: finite, in range, all of the word.
+// `value` is an int or a double, one of these that may be absent, or a list of them.
+// The parser throws InputError at the option's name for anything else.
+void check_number(CLI::Option* option, const Key& allowed);
+
+template <typename Value>
+CLI::Option* add_number(CLI::App* verb, const char* name, Value& value, const Key& allowed,
+                        const char* meaning) {
+  CLI::Option* const option = verb->add_option(name, value, meaning);
+  check_number(option, allowed);
+  return option;
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,40 @@
+#include "runner/database/checked_look.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <vector>
+
+namespace peclet::runner {
+
+namespace {
+
+// NaN: does not exist, or is beyond what a number can be.
+bool is_same(double one, double other) { return one == other || (std::isnan(one) && std::isnan(other)); }
+
+bool agrees(const Look& stored, const Look& replayed) {
+  return stored.seeds == replayed.seeds && stored.lost == replayed.lost &&
+         stored.verdict == replayed.verdict && stored.estimate.count == replayed.estimate.count &&
+         (stored.estimate.count == 0 || (is_same(stored.estimate.mean, replayed.estimate.mean) &&
+                                         is_same(stored.controlled.mean, replayed.controlled.mean)));
+}
+
+}  // namespace
+
+std::optional<Look> checked_look(Database& database, const PointRecord& point, const TargetRecord& target) {
+  const std::vector<LookRecord> stored = database.looks(point.id);
+  const std::vector<Look> replayed =
+      replay_looks(database.outcomes(point.id), target.target, target.minimum, target.maximum);
+  // An owner that was killed between a result and its look leaves fewer looks than there could be.
+  for (std::size_t i = 0; i < stored.size(); ++i) {
+    if (i < replayed.size() && agrees(stored[i].look, replayed[i])) continue;
+    throw IntegrityError(
+        fmt::format("{}: the stored look at {} seeds of {} is not what the stored results say; "
+                    "if an earlier version made it, `peclet run` looks again",
+                    database.connection().path(), stored[i].look.seeds, point.label));
+  }
+  if (stored.empty()) return std::nullopt;
+  return stored.back().look;
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,151 @@
+#include "runner/database/database.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "contract/guarded_file.h"
+#include "runner/database/campaign_sql.h"
+#include "runner/database/database_tables.h"
+#include "runner/database/migration.h"
+#include "runner/folder/being_set_up.h"
+
+namespace peclet::runner {
+namespace {
+
+// As in schema/campaign.sql.
+constexpr std::int64_t our_application = 1346587724;
+constexpr std::int64_t newest_version = 5;
+
+constexpr std::array<std::pair<SeedState, const char*>, 5> state_names{
+    {{SeedState::queued, "queued"},
+     {SeedState::running, "running"},
+     {SeedState::done, "done"},
+     {SeedState::failed, "failed"},
+     {SeedState::quarantined, "quarantined"}}};
+
+template <typename Names, typename Value>
+const char* name_of(const Names& names, Value value) {
+  for (const auto& [known, name] : names) {
+    if (known == value) return name;
+  }
+  return "?";
+}
+
+template <typename Value, typename Names>
+Value value_of(const Names& names, const std::string& text) {
+  for (const auto& [known, name] : names) {
+    if (name == text) return known;
+  }
+  throw IntegrityError("the database holds an unknown state: " + text);
+}
+
+// An owner that died between creating the file and filling it leaves nothing in it.
+bool is_empty(Connection& connection) {
+  return connection.integer("PRAGMA application_id") == 0 &&
+         connection.integer("SELECT count(*) FROM sqlite_schema") == 0;
+}
+
+// The tables are made before the campaign is written into them.
+bool holds_anything(Connection& connection) {
+  return connection.integer("SELECT EXISTS (SELECT 1 FROM campaign) OR EXISTS (SELECT 1 FROM point)") != 0;
+}
+
+std::int64_t version_of(Connection& connection) { return connection.integer("PRAGMA user_version"); }
+
+void check_kind(Connection& connection) {
+  if (!is_campaign_database(connection)) {
+    throw IntegrityError(connection.path() + ": is a database, but not one of a peclet campaign");
+  }
+  const std::int64_t version = version_of(connection);
+  if (version > newest_version) {
+    throw IntegrityError(fmt::format(
+        "{}: was written by a newer peclet (version {} of its tables; this program knows versions up to "
+        "{}); use that peclet or a newer one",
+        connection.path(), version, newest_version));
+  }
+  if (version < 1) {
+    throw IntegrityError(
+        fmt::format("{}: has tables of version {}, which never existed", connection.path(), version));
+  }
+  check_tables(connection, version == newest_version);
+}
+
+void create_tables(Connection& connection) {
+  Transaction creation(connection);
+  connection.execute(campaign_sql);
+  connection.execute(views_sql);
+  creation.commit();
+  connection.empty_log();  // what is to become larger later has its place now
+}
+
+// A log of some 4 MB, and less on a small disk: a full one whose log takes most of it has no room to bring
+// the log into the database either, and nobody could ever go on.
+int pages_of_log(const std::filesystem::path& database) {
+  constexpr std::uintmax_t page = 16384, part = 8, least = 8, most = 250;
+  const std::uintmax_t available = std::filesystem::space(database.parent_path()).available;
+  return static_cast<int>(std::clamp(available / (part * page), least, most));
+}
+
+}  // namespace
+
+bool is_campaign_database(Connection& connection) {
+  return connection.integer("PRAGMA application_id") == our_application;
+}
+
+const char* to_string(SeedState state) { return name_of(state_names, state); }
+
+SeedState seed_state(const std::string& text) { return value_of<SeedState>(state_names, text); }
+
+Database::Database(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}
+
+Database Database::open_owner(const std::filesystem::path& path) {
+  // Readers never hold a lock that blocks the writer in WAL mode; only a checkpoint may have to wait.
+  Database database(std::make_unique<Connection>(path.string(), Connection::Access::create, 10'000));
+  Connection& connection = database.connection();
+  const bool fresh = is_empty(connection);
+  if (!fresh) check_kind(connection);
+  // Results take some 2 kB, of which pages of 4 kB would hold one each. Ignored where there are tables.
+  connection.execute("PRAGMA page_size = 16384");
+  connection.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
+  connection.execute(fmt::format("PRAGMA wal_autocheckpoint = {}", pages_of_log(path)));
+  // Beside a reader that does not come to an end the log grows; when that one is gone, the file shrinks
+  // again.
+  connection.execute("PRAGMA journal_size_limit = 8388608");
+  if (connection.text("PRAGMA journal_mode") != "wal") {
+    throw DatabaseError(connection.path() + ": cannot keep a write-ahead log on this file system", 0);
+  }
+  if (fresh) {
+    create_tables(connection);
+  } else if (const std::string verdict = connection.text("PRAGMA quick_check(1)"); verdict != "ok") {
+    throw IntegrityError(fmt::format("{}: is damaged: {}", connection.path(), verdict));
+  } else if (version_of(connection) < newest_version) {
+    migrate(connection, version_of(connection));
+  }
+  return database;
+}
+
+Database Database::open_reader(const std::filesystem::path& path) {
+  if (kind_of(path).empty()) {
+    throw InputError(path.string(), "", "",
+                     "no such database; has the campaign been started with `peclet run`?");
+  }
+  Database database(std::make_unique<Connection>(path.string(), Connection::Access::read_only, 5'000));
+  database.snapshot_ = std::make_unique<Transaction>(database.connection(), Transaction::Kind::snapshot);
+  if (is_empty(database.connection())) throw BeingSetUp(path.string());
+  check_kind(database.connection());
+  if (version_of(database.connection()) < newest_version) {
+    throw InputError(
+        path.string(), "", "",
+        "was last written by an older peclet; `peclet run` brings it up to date, after a backup");
+  }
+  if (!holds_anything(database.connection())) throw BeingSetUp(path.string());
+  return database;
+}
+
+}  // namespace peclet::runner

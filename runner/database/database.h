@@ -1,0 +1,169 @@
+// The campaign's database: opening it safely, and reading it.
+//
+// One process writes (it holds campaign.lock and opens with open_owner); any number of others read with
+// open_reader. Writing is in queue.h. The tables are those of schema/campaign.sql.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "contract/integrity_error.h"
+#include "contract/json.h"
+#include "runner/campaign/campaign.h"
+#include "runner/database/sqlite.h"
+#include "runner/statistics/cohorts.h"
+
+namespace peclet::runner {
+
+enum class SeedState { queued, running, done, failed, quarantined };
+const char* to_string(SeedState state);
+SeedState seed_state(const std::string& text);
+
+struct PointRecord {
+  std::int64_t id = 0;
+  std::optional<int> place;  // in the sweep; none: no longer part of it
+  std::string hash;
+  Json scene;
+  Json settings;
+  std::string label;
+  std::string engine_identity;  // "" before the first result, unless it was accepted by name
+  bool suspect = false;         // a seed gave two different results
+  int priority = 0;             // points of a higher one are served first
+  bool cancelled = false;       // gets no more seeds
+  bool kept_apart = false;      // its engine was replaced by name; another row is the scene's
+};
+
+// A seed with the columns that were taken from its result. Numbers that do not exist are absent.
+struct RealisationRecord {
+  int seed = 0;
+  SeedState state = SeedState::queued;
+  std::string cause;              // "completed", "overlap", ..., "crashed"; empty while queued or running
+  std::optional<double> value;    // of the target's observable
+  std::optional<double> control;  // of the control variate
+  std::optional<double> statistical_inefficiency, largest_overlap, cpu_seconds, wall_seconds;
+  std::string final_state_sha256, content_sha256;
+  std::optional<std::int64_t> engine;
+};
+
+struct StateCounts {
+  int queued = 0, running = 0, done = 0, failed = 0, quarantined = 0;
+  double cpu_seconds = 0;  // of done and failed together
+  int terminal() const { return done + failed + quarantined; }
+};
+
+struct AttemptRecord {
+  int seed = 0;
+  int worker = 0;
+  std::int64_t process = 0;
+  std::string host, started_at, ended_at;  // ended_at empty: still running
+  std::string outcome;                     // the list is in schema/campaign.sql
+  bool blamed = false;
+  bool pardoned = false;  // from before a retry: no longer counts
+  std::int64_t step = 0;
+  std::optional<std::int64_t> exit_status, signal;
+  std::string message;
+};
+
+struct LeaseRecord {
+  int seed = 0;
+  int worker = 0;
+  std::string phase;
+  std::int64_t step = 0, steps = 0;
+  double strain = 0;
+  std::string renewed_at;
+};
+
+struct TargetRecord {
+  std::int64_t id = 0;
+  Target target;
+  int minimum = 0, maximum = 0;
+};
+
+struct LookRecord {
+  TargetRecord target;
+  Look look;
+  std::string made_at;
+};
+
+struct EventRecord {
+  std::string at, kind;
+  std::optional<std::int64_t> point;
+  std::optional<int> seed;
+  std::string message;
+};
+
+struct EngineRecord {
+  std::int64_t id = 0;
+  std::string identity;
+  Json provenance;
+};
+
+// Results of a scene that are no part of the campaign any more.
+struct KeptApart {
+  std::string engine;  // identity
+  int results = 0;
+};
+
+struct CampaignRecord {
+  std::string name;
+  Json document;
+  TargetRecord target;  // the present one
+  std::string created_at, updated_at;
+};
+
+// Whether a file that SQLite can open is a campaign's database, of whatever version.
+bool is_campaign_database(Connection& connection);
+
+class Database {
+ public:
+  // Opens or creates the database for its owner. Requires the campaign's lock.
+  // Throws IntegrityError for a file that is no campaign database, is damaged or is of a newer version, and
+  // DatabaseError.
+  static Database open_owner(const std::filesystem::path& path);
+  // Opens it for reading. All that one Database reads is one snapshot, taken at the first read.
+  // Throws as above; InputError when there is no such file.
+  static Database open_reader(const std::filesystem::path& path);
+
+  CampaignRecord campaign();
+  // The points that the sweep contains, in its order.
+  std::vector<PointRecord> points();
+  // Points of earlier versions of the sweep, and those that are kept apart, in order of their first
+  // appearance.
+  std::vector<PointRecord> inactive_points();
+
+  // All functions below take PointRecord::id. Lists are in order of the seeds (then of time).
+  StateCounts counts(std::int64_t point);
+  std::vector<RealisationRecord> realisations(std::int64_t point);
+  // Index is the seed; as long as the largest seed asks for that a campaign can have. The input of
+  // replay_looks().
+  std::vector<std::optional<Outcome>> outcomes(std::int64_t point);
+  // The whole result with its "engine"; nothing for a seed without one.
+  std::optional<Json> result(std::int64_t point, int seed);
+  // The results of the seeds below `end`, one at a time.
+  void for_each_result(std::int64_t point, int end, const std::function<void(int seed, const Json&)>& visit);
+  std::vector<AttemptRecord> attempts(std::int64_t point);
+  std::vector<LeaseRecord> leases(std::int64_t point);
+  // Looks for the present target, by number of seeds.
+  std::vector<LookRecord> looks(std::int64_t point);
+  // The most recent `limit` events, oldest first.
+  std::vector<EventRecord> events(int limit);
+  // What became of a request; nothing while it waits.
+  std::optional<EventRecord> event_of(const std::string& request);
+  std::vector<EngineRecord> engines();
+  // What other engines did for the scene of that hash before another one was accepted.
+  std::vector<KeptApart> kept_apart(const std::string& hash);
+
+  Connection& connection() { return *connection_; }
+
+ private:
+  explicit Database(std::unique_ptr<Connection> connection);
+  std::unique_ptr<Connection> connection_;
+  std::unique_ptr<Transaction> snapshot_;  // of a reader
+};
+
+}  // namespace peclet::runner

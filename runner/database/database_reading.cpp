@@ -1,0 +1,298 @@
+// The read-only half of database.h: rows into records.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "runner/database/database.h"
+#include "runner/database/result_text.h"
+
+namespace peclet::runner {
+namespace {
+
+constexpr const char* point_columns =
+    "SELECT point_id, place, hash, scene, settings, label, engine_identity, suspect, priority, "
+    "cancelled, kept_apart FROM point ";
+
+Verdict stored_verdict(const std::string& word) {
+  const std::optional<Verdict> known = verdict_of(word);
+  if (!known) throw IntegrityError("the database holds an unknown verdict: " + word);
+  return *known;
+}
+
+std::vector<PointRecord> read_points(Connection& connection, const std::string& which) {
+  Statement query(connection, point_columns + which);
+  std::vector<PointRecord> points;
+  while (query.step()) {
+    PointRecord point;
+    point.id = query.integer(0);
+    if (!query.is_null(1)) point.place = static_cast<int>(query.integer(1));
+    point.hash = query.text(2);
+    point.scene = Json::parse(query.text(3));
+    point.settings = Json::parse(query.text(4));
+    point.label = query.text(5);
+    point.engine_identity = query.text(6);
+    point.suspect = query.integer(7) != 0;
+    point.priority = static_cast<int>(query.integer(8));
+    point.cancelled = query.integer(9) != 0;
+    point.kept_apart = query.integer(10) != 0;
+    points.push_back(std::move(point));
+  }
+  return points;
+}
+
+TargetRecord read_target(const Statement& query, int column) {
+  TargetRecord record;
+  record.id = query.integer(column);
+  record.target = {query.text(column + 1), query.real(column + 2), query.real(column + 3)};
+  record.minimum = static_cast<int>(query.integer(column + 4));
+  record.maximum = static_cast<int>(query.integer(column + 5));
+  record.target.rule = static_cast<int>(query.integer(column + 6));
+  return record;
+}
+
+std::vector<LookRecord> read_looks(Connection& connection, std::int64_t point) {
+  Statement query(
+      connection,
+      "SELECT target_id, observable, relative_tolerance, confidence, minimum, maximum, rule, seeds, lost, "
+      "count, mean, standard_error, half_width, uncontrolled_mean, uncontrolled_standard_error,"
+      " uncontrolled_half_width, verdict, made_at, skewness, transient FROM look JOIN target USING "
+      "(target_id) WHERE point_id = ? AND target_id = (SELECT target_id FROM campaign) ORDER BY seeds");
+  query.bind(point);
+  std::vector<LookRecord> looks;
+  while (query.step()) {
+    LookRecord record;
+    record.target = read_target(query, 0);
+    Look& look = record.look;
+    look.seeds = static_cast<int>(query.integer(7));
+    look.lost = static_cast<int>(query.integer(8));
+    const int count = static_cast<int>(query.integer(9));
+    look.controlled = {count, query.real(10), query.real(11)};
+    look.controlled_half_width = query.real(12);
+    look.estimate = {count, query.real(13), query.real(14)};
+    look.half_width = query.real(15);
+    look.verdict = stored_verdict(query.text(16));
+    record.made_at = query.text(17);
+    look.skewness = query.real(18);
+    look.transient = query.integer(19) != 0;
+    looks.push_back(std::move(record));
+  }
+  return looks;
+}
+
+// Of a query of result_columns.
+Json read_result(const Statement& query) {
+  try {
+    Json result = Json::parse(result_text(query, 1, 2));
+    result["engine"] = Json::parse(query.text(3));
+    return result;
+  } catch (const IntegrityError& error) {
+    throw IntegrityError(
+        fmt::format("the stored result of seed {} {}; see `peclet doctor`", query.integer(0), error.what()));
+  }
+}
+
+EventRecord read_event(const Statement& query) {
+  EventRecord record{query.text(0), query.text(1), query.optional_integer(2), std::nullopt, query.text(4)};
+  if (!query.is_null(3)) record.seed = static_cast<int>(query.integer(3));
+  return record;
+}
+
+constexpr const char* result_columns =
+    "SELECT seed, document, text, provenance FROM result JOIN realisation USING (point_id, seed) JOIN engine "
+    "USING (engine_id) LEFT JOIN dictionary USING (point_id) WHERE point_id = ? ";
+
+}  // namespace
+
+CampaignRecord Database::campaign() {
+  Statement query(
+      *connection_,
+      "SELECT target_id, observable, relative_tolerance, confidence, minimum, maximum, rule, name, "
+      "document, created_at, updated_at FROM campaign JOIN target USING (target_id)");
+  if (!query.step()) throw IntegrityError(connection_->path() + ": holds no campaign");
+  CampaignRecord record;
+  record.target = read_target(query, 0);
+  record.name = query.text(7);
+  record.document = Json::parse(query.text(8));
+  record.created_at = query.text(9);
+  record.updated_at = query.text(10);
+  return record;
+}
+
+std::vector<PointRecord> Database::points() {
+  return read_points(*connection_, "WHERE place IS NOT NULL ORDER BY place");
+}
+
+std::vector<PointRecord> Database::inactive_points() {
+  return read_points(*connection_, "WHERE place IS NULL ORDER BY point_id");
+}
+
+StateCounts Database::counts(std::int64_t point) {
+  Statement query(*connection_,
+                  "SELECT state, count(*), total(cpu_seconds) FROM realisation WHERE point_id = ? "
+                  "GROUP BY state");
+  query.bind(point);
+  StateCounts counts;
+  while (query.step()) {
+    const int count = static_cast<int>(query.integer(1));
+    counts.cpu_seconds += query.real(2);
+    switch (seed_state(query.text(0))) {
+      case SeedState::queued:
+        counts.queued = count;
+        break;
+      case SeedState::running:
+        counts.running = count;
+        break;
+      case SeedState::done:
+        counts.done = count;
+        break;
+      case SeedState::failed:
+        counts.failed = count;
+        break;
+      case SeedState::quarantined:
+        counts.quarantined = count;
+        break;
+    }
+  }
+  return counts;
+}
+
+std::vector<RealisationRecord> Database::realisations(std::int64_t point) {
+  Statement query(
+      *connection_,
+      "SELECT seed, state, cause, value, control, statistical_inefficiency, largest_overlap, cpu_seconds,"
+      " wall_seconds, final_state_sha256, content_sha256, engine_id FROM realisation WHERE point_id = ? "
+      "ORDER BY seed");
+  query.bind(point);
+  std::vector<RealisationRecord> realisations;
+  while (query.step()) {
+    RealisationRecord record;
+    record.seed = static_cast<int>(query.integer(0));
+    record.state = seed_state(query.text(1));
+    record.cause = query.text(2);
+    record.value = query.optional_real(3);
+    record.control = query.optional_real(4);
+    record.statistical_inefficiency = query.optional_real(5);
+    record.largest_overlap = query.optional_real(6);
+    record.cpu_seconds = query.optional_real(7);
+    record.wall_seconds = query.optional_real(8);
+    record.final_state_sha256 = query.text(9);
+    record.content_sha256 = query.text(10);
+    record.engine = query.optional_integer(11);
+    realisations.push_back(std::move(record));
+  }
+  return realisations;
+}
+
+std::vector<std::optional<Outcome>> Database::outcomes(std::int64_t point) {
+  Statement query(*connection_,
+                  "SELECT seed, state, value, control, first_quarter, first_half FROM realisation WHERE "
+                  "point_id = ? AND seed < ? AND state IN ('done', 'failed', 'quarantined') ORDER BY seed");
+  query.bind(point).bind(most_realisations);
+  std::vector<std::optional<Outcome>> outcomes;
+  while (query.step()) {
+    outcomes.resize(static_cast<std::size_t>(query.integer(0)) + 1);
+    outcomes.back() = Outcome{};  // lost, unless there is a value
+    if (const std::optional<double> value = query.optional_real(2)) {
+      outcomes.back() = Outcome{Outcome::Kind::value, *value, query.optional_real(3).value_or(0),
+                                query.real(4), query.real(5)};
+    }
+  }
+  return outcomes;
+}
+
+std::optional<Json> Database::result(std::int64_t point, int seed) {
+  Statement query(*connection_, std::string(result_columns) + "AND seed = ?");
+  query.bind(point).bind(seed);
+  if (!query.step()) return std::nullopt;
+  return read_result(query);
+}
+
+void Database::for_each_result(std::int64_t point, int end,
+                               const std::function<void(int seed, const Json&)>& visit) {
+  Statement query(*connection_, std::string(result_columns) + "AND seed < ? ORDER BY seed");
+  query.bind(point).bind(end);
+  while (query.step()) {
+    visit(static_cast<int>(query.integer(0)), read_result(query));
+  }
+}
+
+std::vector<AttemptRecord> Database::attempts(std::int64_t point) {
+  Statement query(
+      *connection_,
+      "SELECT seed, worker, process, host, started_at, ended_at, outcome, blamed, step, exit_status, signal,"
+      " message, pardoned FROM attempt WHERE point_id = ? ORDER BY seed, attempt_id");
+  query.bind(point);
+  std::vector<AttemptRecord> attempts;
+  while (query.step()) {
+    AttemptRecord record;
+    record.seed = static_cast<int>(query.integer(0));
+    record.worker = static_cast<int>(query.integer(1));
+    record.process = query.integer(2);
+    record.host = query.text(3);
+    record.started_at = query.text(4);
+    record.ended_at = query.text(5);
+    record.outcome = query.text(6);
+    record.blamed = query.integer(7) != 0;
+    record.step = query.integer(8);
+    record.exit_status = query.optional_integer(9);
+    record.signal = query.optional_integer(10);
+    record.message = query.text(11);
+    record.pardoned = query.integer(12) != 0;
+    attempts.push_back(std::move(record));
+  }
+  return attempts;
+}
+
+std::vector<LeaseRecord> Database::leases(std::int64_t point) {
+  Statement query(*connection_,
+                  "SELECT seed, worker, phase, step, steps, strain, renewed_at FROM lease "
+                  "WHERE point_id = ? ORDER BY seed");
+  query.bind(point);
+  std::vector<LeaseRecord> leases;
+  while (query.step()) {
+    leases.push_back({static_cast<int>(query.integer(0)), static_cast<int>(query.integer(1)), query.text(2),
+                      query.integer(3), query.integer(4), query.real(5), query.text(6)});
+  }
+  return leases;
+}
+
+std::vector<LookRecord> Database::looks(std::int64_t point) { return read_looks(*connection_, point); }
+
+std::vector<EventRecord> Database::events(int limit) {
+  Statement query(*connection_,
+                  "SELECT at, kind, point_id, seed, message FROM (SELECT * FROM event ORDER BY event_id "
+                  "DESC LIMIT ?) ORDER BY event_id");
+  query.bind(limit);
+  std::vector<EventRecord> events;
+  while (query.step()) events.push_back(read_event(query));
+  return events;
+}
+
+std::optional<EventRecord> Database::event_of(const std::string& request) {
+  Statement query(*connection_, "SELECT at, kind, point_id, seed, message FROM event WHERE request = ?");
+  query.bind(request);
+  if (!query.step()) return std::nullopt;
+  return read_event(query);
+}
+
+std::vector<EngineRecord> Database::engines() {
+  Statement query(*connection_, "SELECT engine_id, identity, provenance FROM engine ORDER BY engine_id");
+  std::vector<EngineRecord> engines;
+  while (query.step()) engines.push_back({query.integer(0), query.text(1), Json::parse(query.text(2))});
+  return engines;
+}
+
+std::vector<KeptApart> Database::kept_apart(const std::string& hash) {
+  Statement query(
+      *connection_,
+      "SELECT engine_identity, count(content_sha256) FROM point LEFT JOIN realisation USING (point_id) "
+      "WHERE hash = ? AND kept_apart = 1 GROUP BY point_id HAVING count(content_sha256) > 0 ORDER BY "
+      "point_id");
+  query.bind(hash);
+  std::vector<KeptApart> kept;
+  while (query.step()) kept.push_back({query.text(0), static_cast<int>(query.integer(1))});
+  return kept;
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,142 @@
+#include "runner/database/database_summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace peclet::runner {
+namespace {
+
+struct Aggregate {
+  StateCounts counts;
+  Estimate so_far{0, std::nan(""), std::nan("")};
+  std::vector<int> ended;       // seeds, in order
+  std::vector<double> seconds;  // of processor time that each of these took
+  double squares = 0;           // of the differences from the mean
+
+  void count(SeedState state, int seed, double cpu_seconds) {
+    switch (state) {
+      case SeedState::queued:
+        ++counts.queued;
+        return;
+      case SeedState::running:
+        ++counts.running;
+        return;
+      case SeedState::done:
+        ++counts.done;
+        break;
+      case SeedState::failed:
+        ++counts.failed;
+        break;
+      case SeedState::quarantined:
+        ++counts.quarantined;
+        break;
+    }
+    ended.push_back(seed);
+    seconds.push_back(cpu_seconds);
+    counts.cpu_seconds += cpu_seconds;
+  }
+  // Welford's update, so that the spread does not drown in a large mean.
+  void add(double value) {
+    const double before = so_far.count == 0 ? 0 : so_far.mean;
+    so_far.mean = before + (value - before) / ++so_far.count;
+    squares += (value - before) * (value - so_far.mean);
+    if (so_far.count >= 2) so_far.standard_error = std::sqrt(squares / (so_far.count - 1) / so_far.count);
+  }
+  double seconds_of_first(int count) const {
+    return std::accumulate(seconds.begin(), seconds.begin() + count, 0.0);
+  }
+  int ended_below(int seed) const {
+    return static_cast<int>(std::lower_bound(ended.begin(), ended.end(), seed) - ended.begin());
+  }
+};
+
+// One pass over the seeds in the order in which they are stored: of a large campaign it is what takes the
+// time.
+std::map<std::int64_t, Aggregate> read_aggregates(Connection& connection) {
+  Statement query(connection,
+                  "SELECT point_id, seed, state, value + coalesce(control, 0), cpu_seconds FROM realisation "
+                  "ORDER BY point_id, seed");
+  std::map<std::int64_t, Aggregate> aggregates;
+  while (query.step()) {
+    Aggregate& aggregate = aggregates[query.integer(0)];
+    aggregate.count(seed_state(query.text(2)), static_cast<int>(query.integer(1)),
+                    query.optional_real(4).value_or(0));
+    if (!query.is_null(3)) aggregate.add(query.real(3));
+  }
+  return aggregates;
+}
+
+using CountsByPoint = std::map<std::int64_t, std::map<std::string, int>>;
+
+// Of rows of point, name and count.
+CountsByPoint counts_by_point(Connection& connection, const char* sql) {
+  Statement query(connection, sql);
+  CountsByPoint counts;
+  while (query.step()) counts[query.integer(0)][query.text(1)] = static_cast<int>(query.integer(2));
+  return counts;
+}
+
+CountsByPoint read_losses(Connection& connection) {
+  return counts_by_point(connection,
+                         "SELECT point_id, cause, count(*) FROM realisation WHERE state IN ('failed',"
+                         " 'quarantined') GROUP BY point_id, cause");
+}
+
+CountsByPoint read_flags(Connection& connection) {
+  return counts_by_point(connection,
+                         "SELECT point_id, message, count(DISTINCT seed) FROM event WHERE kind = 'flag'"
+                         " GROUP BY point_id, message");
+}
+
+// Of looks for targets that the campaign had before, by point.
+std::map<std::int64_t, int> read_largest_earlier_looks(Connection& connection) {
+  Statement query(connection,
+                  "SELECT point_id, max(seeds) FROM look WHERE target_id != (SELECT target_id FROM campaign) "
+                  "GROUP BY point_id");
+  std::map<std::int64_t, int> largest;
+  while (query.step()) largest[query.integer(0)] = static_cast<int>(query.integer(1));
+  return largest;
+}
+
+}  // namespace
+
+std::vector<PointSummary> summarise_points(Database& database, const TargetRecord& target) {
+  Connection& connection = database.connection();
+  std::map<std::int64_t, Aggregate> aggregates = read_aggregates(connection);
+  CountsByPoint losses = read_losses(connection);
+  CountsByPoint flags = read_flags(connection);
+  const bool any_apart = connection.integer("SELECT count(*) FROM point WHERE kept_apart = 1") > 0;
+  std::map<std::int64_t, int> earlier = read_largest_earlier_looks(connection);
+  const std::map<std::int64_t, StoredPrediction> predictions = stored_predictions(connection);
+  const std::vector<int> schedule = look_schedule(target.minimum, target.maximum);
+
+  std::vector<PointSummary> summaries;
+  for (PointRecord& point : database.points()) {
+    PointSummary summary;
+    const Aggregate& aggregate = aggregates[point.id];
+    summary.confidence = target.target.confidence;
+    summary.counts = aggregate.counts;
+    summary.so_far = aggregate.so_far;
+    summary.losses = std::move(losses[point.id]);
+    summary.flags = std::move(flags[point.id]);
+    for (LookRecord& record : database.looks(point.id)) summary.looks.push_back(record.look);
+    summary.decided = !summary.looks.empty() && summary.looks.back().verdict != Verdict::more;
+    const int seen = summary.looks.empty() ? 0 : summary.looks.back().seeds;
+    if (summary.decided && earlier[point.id] > seen) summary.earlier_look = earlier[point.id];
+    summary.wanted = summary.decided ? seen : *std::upper_bound(schedule.begin(), schedule.end() - 1, seen);
+    if (const auto known = predictions.find(point.id); known != predictions.end()) {
+      summary.prediction = known->second;
+    }
+    summary.wanted_ended = aggregate.ended_below(summary.wanted);
+    summary.wanted_cpu_seconds = aggregate.seconds_of_first(summary.wanted_ended);
+    if (summary.counts.running > 0) summary.leases = database.leases(point.id);
+    if (any_apart) summary.kept_apart = database.kept_apart(point.hash);
+    summary.point = std::move(point);
+    summaries.push_back(std::move(summary));
+  }
+  return summaries;
+}
+
+}  // namespace peclet::runner

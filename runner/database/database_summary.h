@@ -1,0 +1,41 @@
+// All that `status` shows of a point, from aggregates: no result is read, however many there are.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "runner/database/database.h"
+#include "runner/database/prediction_book.h"
+
+namespace peclet::runner {
+
+struct PointSummary {
+  PointRecord point;
+  StateCounts counts;
+  // Of value + control, over all seeds that have ended with a value, in whatever order they came.
+  Estimate so_far;
+  std::map<std::string, int> losses;  // seeds by cause
+  std::map<std::string, int> flags;   // completed seeds by what they say against themselves
+  std::vector<Look> looks;            // for the present target
+  int earlier_look = 0;  // seeds of the largest look for an earlier target, if it is beyond the deciding one
+  double confidence = 0.95;  // of its intervals
+  bool decided = false;
+  std::vector<KeptApart> kept_apart{};  // results of other engines
+  int wanted = 0;                 // seeds of the next look; of a decided point those of the deciding one
+  int wanted_ended = 0;           // of these, how many have ended
+  double wanted_cpu_seconds = 0;  // that these took
+  std::optional<StoredPrediction> prediction{};
+  std::vector<LeaseRecord> leases;
+
+  // Neither decided nor cancelled.
+  bool open() const { return !decided && !point.cancelled; }
+  int lost() const { return counts.failed + counts.quarantined; }
+  // Seeds of a decided point that have ended beyond the deciding look.
+  int surplus() const { return decided ? counts.terminal() - wanted_ended : 0; }
+};
+
+// The points of the sweep, in its order.
+std::vector<PointSummary> summarise_points(Database& database, const TargetRecord& target);
+
+}  // namespace peclet::runner

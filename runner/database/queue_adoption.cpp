@@ -1,0 +1,115 @@
+// Queue::adopt(): what a campaign file means for a database that may have seen earlier versions of it.
+#include <fmt/format.h>
+
+#include "contract/input_error.h"
+#include "runner/database/queue.h"
+#include "runner/database/result_text.h"
+
+namespace peclet::runner {
+namespace {
+
+std::string describe(const Campaign& campaign) {
+  return fmt::format("{}: {} points, {} to {:g} % at {:g} confidence, {} to {} seeds", campaign.name,
+                     campaign.points.size(), campaign.target.observable,
+                     100 * campaign.target.relative_tolerance, campaign.target.confidence,
+                     campaign.minimum_realisations, campaign.maximum_realisations);
+}
+
+}  // namespace
+
+void Queue::adopt(const Campaign& campaign) {
+  Transaction adoption(connection_);
+  take_over(campaign);
+  adoption.commit();
+}
+
+void Queue::take_over(const Campaign& campaign) {
+  const std::string before =
+      connection_.text("SELECT observable FROM campaign JOIN target USING (target_id)");
+  const std::int64_t target = adopt_target(campaign);
+  adopt_points(campaign);
+  if (!before.empty() && before != campaign.target.observable) observe_again(campaign);
+
+  const std::string document = campaign.document.dump();
+  const bool unchanged = connection_.text("SELECT document FROM campaign") == document;
+  Statement(connection_,
+            "INSERT INTO campaign (campaign_id, name, document, target_id, created_at, updated_at) "
+            "VALUES (1, ?1, ?2, ?3, strftime('%Y-%m-%dT%H:%M:%SZ'), strftime('%Y-%m-%dT%H:%M:%SZ')) "
+            "ON CONFLICT DO UPDATE SET name = ?1, document = ?2, target_id = ?3, updated_at = "
+            "strftime('%Y-%m-%dT%H:%M:%SZ')")
+      .bind(campaign.name)
+      .bind(document)
+      .bind(target)
+      .run();
+  if (!unchanged) event("campaign", std::nullopt, std::nullopt, describe(campaign));
+}
+
+std::int64_t Queue::adopt_target(const Campaign& campaign) {
+  const Target& target = campaign.target;
+  const char* const parts[] = {
+      "INSERT OR IGNORE INTO target (observable, relative_tolerance, confidence, minimum, maximum, "
+      "rule) VALUES (?, ?, ?, ?, ?, ?)",
+      "SELECT target_id FROM target WHERE observable = ? AND relative_tolerance = ? AND confidence = ? AND "
+      "minimum = ? AND maximum = ? AND rule = ?"};
+  std::int64_t id = 0;
+  for (const char* const sql : parts) {
+    Statement statement(connection_, sql);
+    statement.bind(target.observable)
+        .bind(target.relative_tolerance)
+        .bind(target.confidence)
+        .bind(campaign.minimum_realisations)
+        .bind(campaign.maximum_realisations)
+        .bind(target.rule);
+    if (statement.step()) id = statement.integer(0);
+  }
+  return id;
+}
+
+void Queue::adopt_points(const Campaign& campaign) {
+  connection_.execute("UPDATE point SET place = NULL");
+  Statement place(
+      connection_,
+      "INSERT INTO point (hash, scene, settings, label, place) VALUES (?1, ?2, ?3, ?4, ?5) "
+      "ON CONFLICT (hash) WHERE kept_apart = 0 DO UPDATE SET settings = ?3, label = ?4, place = ?5");
+  int number = 0;
+  for (const StatePoint& point : campaign.points) {
+    place.bind(point.hash)
+        .bind(canonical_json(point.scene))
+        .bind(canonical_json(point.settings))
+        .bind(point.label)
+        .bind(number++)
+        .run();
+  }
+}
+
+// Another observable: its value is taken from the results that are there.
+void Queue::observe_again(const Campaign& campaign) {
+  Statement done(
+      connection_,
+      "SELECT point_id, seed, document, dictionary.text, place FROM result JOIN realisation USING (point_id, "
+      "seed) JOIN point USING (point_id) LEFT JOIN dictionary USING (point_id) WHERE state = 'done' OR cause "
+      "= ?");
+  done.bind(no_value);
+  Statement change(connection_,
+                   "UPDATE realisation SET state = ?, cause = ?, value = ?, control = ?, first_quarter = ?, "
+                   "first_half = ? WHERE point_id = ? AND seed = ?");
+  while (done.step()) {
+    const Json document = Json::parse(result_text(done, 2, 3));
+    const Observed observed = observe(document, campaign.target.observable);
+    if (!done.is_null(4) && !has_observable(document.at("mean"), campaign.target.observable)) {
+      throw InputError(campaign.name, "/target/observable", campaign.target.observable,
+                       "must be a number that the results have: " + names_of_numbers(document.at("mean")));
+    }
+    change.bind(to_string(observed.value ? SeedState::done : SeedState::failed))
+        .bind(observed.value ? "completed" : no_value)
+        .bind(observed.value)
+        .bind(observed.control)
+        .bind(observed.first_quarter)
+        .bind(observed.first_half)
+        .bind(done.integer(0))
+        .bind(done.integer(1))
+        .run();
+  }
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,41 @@
+// What a seed's history of attempts means for it: try again, or give it up.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "runner/engines/exit_status.h"
+
+namespace peclet::runner {
+
+// How an attempt ended. The engine's own doing counts against the seed: crashed (a fatal signal of its own,
+// any exit that nobody asked for), hung (no new step during a lease), garbled (said what is no message or no
+// result), refused (said that it cannot run the job). What others did costs nothing: drained, killed (from
+// outside), abandoned (its owner died).
+enum class AttemptOutcome { running, result, crashed, hung, garbled, refused, drained, killed, abandoned };
+const char* to_string(AttemptOutcome outcome);
+AttemptOutcome attempt_outcome(const std::string& text);
+bool is_blamed(AttemptOutcome outcome);
+
+// Of a process that ended in the middle of a job without being asked to.
+AttemptOutcome outcome_of(const ExitStatus& ending);
+
+struct PastAttempt {
+  AttemptOutcome outcome;
+  std::int64_t step;  // the last one it reported
+};
+
+struct Sentence {
+  bool quarantine = false;
+  std::string cause{};  // of the quarantine
+  bool discard_checkpoint =
+      false;  // start from the beginning the next time: the checkpoint may be what is wrong
+};
+
+// `attempts` in order of time, the one that has just ended last. A seed may be blamed `retries` times beyond
+// the first. Kills from outside cost nothing, but 20 in a row without a new step between them (the kernel's
+// answer to a realisation that does not fit into memory looks like that) end it all the same.
+Sentence judge(std::span<const PastAttempt> attempts, int retries);
+
+}  // namespace peclet::runner

@@ -1,0 +1,115 @@
+#include "runner/engines/cost_trial.h"
+
+#include <chrono>
+#include <cstdlib>
+#include <string>
+#include <system_error>
+#include <variant>
+
+#include "runner/engines/stop_signals.h"
+#include "runner/engines/worker_process.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+// A folder that looks like a campaign's to the engine.
+class TrialFolder {
+ public:
+  TrialFolder() {
+    std::string name = (fs::temp_directory_path() / "peclet-trial-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      throw std::system_error(errno, std::generic_category(), name);
+    }
+    path_ = name;
+    create_folders(CampaignDirectory(path_));
+  }
+  ~TrialFolder() {
+    std::error_code ignored;  // what is left of it lies where temporary files are
+    fs::remove_all(path_, ignored);
+  }
+  TrialFolder(const TrialFolder&) = delete;
+  TrialFolder& operator=(const TrialFolder&) = delete;
+  CampaignDirectory directory() const { return CampaignDirectory(path_); }
+
+ private:
+  fs::path path_;
+};
+
+class Trial {
+ public:
+  explicit Trial(const Json& scene) : scene_(scene) {}
+
+  // False: it is over.
+  bool hear(const WorkerEvent& event, WorkerPool& pool, const CampaignDirectory& directory) {
+    if (std::holds_alternative<Hello>(event)) {
+      pool.assign(0, job(directory));
+      begun_ = Clock::now();
+      return true;
+    }
+    if (const auto* progressed = std::get_if<Progressed>(&event)) return hear(*progressed);
+    if (std::holds_alternative<ResultSpooled>(event)) seconds_ = since_begun();
+    return false;
+  }
+  bool is_late() const { return since_begun() > longest; }
+  std::optional<double> seconds() const { return seconds_; }
+
+ private:
+  static constexpr double long_enough = 2, longest = 10;
+
+  bool hear(const Progressed& progressed) {
+    // Packing has steps of its own.
+    if (progressed.step == 0 || progressed.steps == 0 || progressed.phase == 0) return true;
+    if (!first_) {
+      first_ = progressed.step;
+      first_after_ = since_begun();
+      return true;
+    }
+    const double measured = since_begun() - first_after_;
+    const auto steps = static_cast<double>(progressed.step - *first_);
+    if (steps <= 0) return true;
+    seconds_ = first_after_ + measured / steps * static_cast<double>(progressed.steps - *first_);
+    return since_begun() < long_enough;
+  }
+  double since_begun() const { return std::chrono::duration<double>(Clock::now() - begun_).count(); }
+
+  Job job(const CampaignDirectory& directory) const {
+    Job job;
+    job.attempt = 1;
+    job.point = "trial";
+    job.scene = scene_;
+    job.checkpoint = directory.checkpoint(job.point, 0);
+    job.spool = directory.spool_file(job.point, 0, 1);
+    job.failures = directory.failures();
+    job.progress_seconds = 0.2;
+    return job;
+  }
+
+  const Json& scene_;
+  Clock::time_point begun_ = Clock::now();
+  std::optional<std::int64_t> first_;
+  double first_after_ = 0;
+  std::optional<double> seconds_;
+};
+
+}  // namespace
+
+std::optional<double> try_cost(const Json& scene, const EngineCommand& command) {
+  const TrialFolder folder;
+  StopSignals signals;
+  ProcessPool pool(1, command, folder.directory(), signals);
+  Trial trial(scene);
+  pool.start(0);
+  bool goes_on = true;
+  while (goes_on && !trial.is_late()) {
+    for (const WorkerEvent& event : pool.wait(std::chrono::milliseconds(100))) {
+      goes_on = goes_on && trial.hear(event, pool, folder.directory());
+    }
+  }
+  pool.kill(0);
+  return trial.seconds();
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,18 @@
+// What a realisation may cost, from two seconds of it, where nothing is known yet.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "runner/campaign/campaign.h"
+#include "runner/engines/engine_process.h"
+
+namespace peclet::runner {
+
+// Seconds of a worker for one realisation of the scene: the engine runs seed 0 in a folder of its own that is
+// removed again, and is killed when it has said after two seconds how far it is. So it is a guess, from the
+// beginning of one realisation. Nothing when the engine does not get that far within ten seconds, or cannot
+// run the scene.
+std::optional<double> try_cost(const Json& scene, const EngineCommand& command);
+
+}  // namespace peclet::runner

@@ -1,0 +1,71 @@
+// One running engine: a child process whose standard input is one end of a socket pair.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/campaign/campaign.h"
+#include "runner/engines/exit_status.h"
+
+namespace peclet::runner {
+
+struct EngineCommand {
+  std::filesystem::path program;
+  std::vector<std::string> arguments;  // without the program
+  std::filesystem::path folder;        // in which it runs
+  // Signals that the engine never hears, because whoever sends them to all processes of a job means its
+  // owner, which then asks the engine by frames.
+  std::vector<int> blocked_signals{};
+  std::vector<std::string> environment{};  // "NAME=value", beside that of this process
+};
+
+// Finds campaign.engine[0]: absolute, or with a slash relative to the campaign file's folder; else beside the
+// running program, else on PATH, else among the program's own adapters. It runs in the campaign file's
+// folder, so that names among its arguments mean the same wherever peclet is started. Throws InputError at
+// /engine/0 of `campaign_file`.
+EngineCommand resolve_engine(const Campaign& campaign, const std::filesystem::path& campaign_file);
+
+// Movable owner of the process and of our end of its socket.
+class EngineProcess {
+ public:
+  // Starts the engine in a process group of its own, so that a Ctrl-C at the terminal reaches only its owner.
+  // What it prints goes into a pipe, to be read with printed(), or is appended to `log`. Our end of the
+  // socket is close-on-exec, so an owner's death is the end of file that tells the engine to checkpoint and
+  // leave. Throws std::system_error.
+  explicit EngineProcess(const EngineCommand& command);
+  EngineProcess(const EngineCommand& command, const std::filesystem::path& log);
+  // Closes the socket, waits briefly for the engine to leave by itself, then kills it.
+  ~EngineProcess();
+  EngineProcess(EngineProcess&& other) noexcept;
+  EngineProcess& operator=(EngineProcess&&) = delete;
+
+  int descriptor() const { return descriptor_; }
+  pid_t process() const { return process_; }
+
+  // What it has printed since, at most some hundred kilobytes at a time; never waits.
+  std::string printed();
+
+  // Closes our end of the socket: the engine checkpoints and leaves.
+  void hang_up();
+  // SIGKILL. The ending is still to be reaped.
+  void kill() const;
+  // Whether it is stopped now (SIGSTOP and the like).
+  bool is_stopped() const;
+  // How it ended, once it has. Requires that it has not said so before: afterwards the process no longer
+  // exists.
+  std::optional<ExitStatus> reap();
+
+ private:
+  void start(const EngineCommand& command, int output);
+  void leave_or_be_killed();
+
+  int descriptor_ = -1;
+  int output_ = -1;     // our end of the pipe
+  pid_t process_ = -1;  // -1: reaped
+};
+
+}  // namespace peclet::runner

@@ -1,0 +1,262 @@
+#include "runner/engines/scene_check.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <thread>
+
+#include "contract/frames.h"
+#include "contract/input_error.h"
+#include "contract/nearest_name.h"
+#include "contract/printable.h"
+#include "runner/engines/blame.h"
+#include "runner/folder/result_shape.h"
+#include "runner/text/plain_text.h"
+
+namespace peclet::runner {
+namespace {
+
+constexpr std::chrono::minutes patience{1};
+// How often what it prints meanwhile is looked at.
+constexpr std::chrono::milliseconds glance{20};
+
+// Somebody may kill the engine that is asked; that says nothing about the scenes.
+constexpr int most_tries = 10;
+struct KilledFromOutside {};
+
+// What an engine prints while it is asked, in memory: nothing may be written before the scenes are known to
+// be sound.
+class Printed {
+ public:
+  Printed() : descriptor_(memfd_create("peclet engine", MFD_CLOEXEC)) {
+    if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "memfd_create");
+  }
+  ~Printed() { close(descriptor_); }
+  Printed(const Printed&) = delete;
+  Printed& operator=(const Printed&) = delete;
+
+  // A name that the child can open too, until it becomes the engine.
+  std::string path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
+
+  // An engine that prints without end must not take all memory: its first words go.
+  void keep_short() const {
+    struct stat about {};
+    constexpr off_t longest = 1 << 20;
+    if (fstat(descriptor_, &about) == 0 && about.st_size > longest && ftruncate(descriptor_, 0) != 0) {
+      throw std::system_error(errno, std::generic_category(), "ftruncate");
+    }
+  }
+
+  std::string last_lines() const {
+    constexpr std::size_t most_lines = 5, longest_line = 80;
+    std::string lines;
+    std::size_t count = 0;
+    const std::string text = end();
+    for (std::string_view rest = text; !rest.empty() && count < most_lines; ++count) {
+      while (rest.ends_with('\n')) rest.remove_suffix(1);
+      const std::size_t before = rest.rfind('\n');
+      const std::size_t begin = before == std::string_view::npos ? 0 : before + 1;
+      lines = plain(rest.substr(begin), longest_line) + (lines.empty() ? "" : "\n") + lines;
+      rest = rest.substr(0, begin);
+    }
+    return lines;
+  }
+
+ private:
+  std::string end() const {
+    std::string text(4096, '\0');
+    struct stat about {};
+    if (fstat(descriptor_, &about) != 0) return "";
+    const off_t begin = std::max<off_t>(0, about.st_size - static_cast<off_t>(text.size()));
+    const ssize_t count = pread(descriptor_, text.data(), text.size(), begin);
+    text.resize(count < 0 ? 0 : static_cast<std::size_t>(count));
+    return text;
+  }
+
+  int descriptor_;
+};
+
+// One engine that is asked questions.
+class Conversation {
+ public:
+  explicit Conversation(const EngineCommand& command)
+      : command_(command),
+        process_(command, printed_.path()),
+        channel_(process_.descriptor(), largest_answer) {
+    const Json hello = receive();
+    if (hello.at("type") != "hello" || hello.at("protocol") != 1) {
+      unsuitable("does not say hello in protocol 1");
+    }
+    identity_ = hello.at("engine");
+    try {
+      engine_identity(identity_);
+    } catch (const ResultError& error) {
+      unsuitable(fmt::format("does not say what it is: {}", error.what()));
+    }
+  }
+
+  Json ask(const Json& question) {
+    try {
+      channel_.send(question);
+    } catch (const std::system_error&) {
+      gone();
+    }
+    return receive();
+  }
+
+  const Json& identity() const { return identity_; }
+
+ private:
+  Json receive() {
+    Json message;
+    try {
+      const auto end = std::chrono::steady_clock::now() + patience;
+      while (std::chrono::steady_clock::now() < end) {
+        const FrameChannel::Status status = channel_.receive(message, glance);
+        if (status == FrameChannel::Status::message) return message;
+        if (status == FrameChannel::Status::closed) gone();
+        printed_.keep_short();
+      }
+      unsuitable("does not answer");
+    } catch (const FrameError& error) {
+      unsuitable(plain(error.what()));
+    } catch (const std::system_error&) {
+      gone();
+    }
+    return message;
+  }
+
+  [[noreturn]] void gone() {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(2);
+    while (std::chrono::steady_clock::now() < end) {
+      if (const std::optional<ExitStatus> ending = process_.reap()) {
+        if (outcome_of(*ending) == AttemptOutcome::killed) throw KilledFromOutside{};
+        unsuitable("left without an answer, with " + to_string(*ending));
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    unsuitable("hung up without an answer");
+  }
+
+  [[noreturn]] void unsuitable(const std::string& why) const {
+    const std::string printed = printed_.last_lines();
+    throw std::runtime_error(fmt::format("{}: {}; is it an engine that speaks peclet's frames?{}",
+                                         command_.program.string(), why,
+                                         printed.empty() ? "" : " It printed:\n" + printed));
+  }
+
+  EngineCommand command_;
+  Printed printed_;
+  EngineProcess process_;
+  FrameChannel channel_;
+  Json identity_;
+};
+
+// " of the point peclet=10"; nothing where it is the only one.
+std::string of_point(const Campaign& campaign, const StatePoint& point) {
+  return campaign.points.size() == 1 ? "" : " of the point " + printable(point.label, 60);
+}
+
+// An engine that says what it will measure spares us the first seed of a misspelt observable.
+void check_observable(const Json& answer, const Campaign& campaign, const StatePoint& point,
+                      const std::filesystem::path& campaign_file) {
+  if (!answer.contains("observables")) return;
+  const auto names = answer.at("observables").get<std::vector<std::string>>();
+  const std::string& wanted = campaign.target.observable;
+  if (std::find(names.begin(), names.end(), wanted) != names.end()) return;
+  throw InputError(campaign_file.string(), "/target/observable", wanted,
+                   fmt::format("must be a number that the results{} will have: {}{}",
+                               of_point(campaign, point), fmt::join(names, ", "), suggestion(wanted, names)));
+}
+
+double number_in(const Json& message, const char* key) {
+  const double number = message.at(key).get<double>();
+  if (!(number >= 0 && number <= largest_number)) {
+    throw FrameError(fmt::format("\"{}\" must be a number from 0 to {:g}", key, largest_number));
+  }
+  return number;
+}
+
+SceneAnswer read_answer(const Json& message, const Json& identity) {
+  constexpr std::size_t longest_warning = 1000;
+  SceneAnswer answer;
+  if (!message.at("timestep").is_null()) answer.timestep = number_in(message, "timestep");
+  answer.steps = number_in(message, "steps");
+  const double particles = number_in(message, "particles");
+  if (particles > std::numeric_limits<std::int32_t>::max()) throw FrameError("\"particles\" is too large");
+  answer.particles = static_cast<std::int64_t>(particles);
+  answer.derived = message.at("derived");
+  for (const auto& [name, value] : answer.derived.items()) {
+    if (plain(name) != name || !(value.is_number() || value.is_null())) {
+      throw FrameError("\"derived\" must hold numbers by name");
+    }
+  }
+  for (const Json& warning : message.at("warnings")) {
+    answer.warnings.push_back(plain(warning.at("message").get<std::string>(), longest_warning));
+  }
+  answer.identity = identity;
+  return answer;
+}
+
+std::vector<SceneAnswer> ask_once(const Campaign& campaign, const std::filesystem::path& campaign_file,
+                                  const EngineCommand& command) {
+  Conversation engine(command);
+  std::vector<SceneAnswer> answers;
+  for (const StatePoint& point : campaign.points) {
+    const Json answer =
+        engine.ask({{"type", "validate"}, {"request", answers.size()}, {"scene", point.scene}});
+    if (answer.at("type") == "refused") {
+      const std::string where =
+          point.label.empty() ? "" : fmt::format(" (in the point {})", printable(point.label, 60));
+      throw InputError("", answer.at("pointer").get<std::string>(), answer.at("value").get<std::string>(),
+                       answer.at("allowed").get<std::string>() + where)
+          .within(campaign_file.string(), "/scene");
+    }
+    if (answer.at("type") != "validated") throw FrameError("neither \"validated\" nor \"refused\"");
+    check_observable(answer, campaign, point, campaign_file);
+    answers.push_back(read_answer(answer, engine.identity()));
+  }
+  return answers;
+}
+
+}  // namespace
+
+std::vector<SceneAnswer> check_scenes(const Campaign& campaign, const std::filesystem::path& campaign_file,
+                                      const EngineCommand& command) {
+  for (int tries = 1; tries < most_tries; ++tries) {
+    try {
+      return ask_once(campaign, campaign_file, command);
+    } catch (const KilledFromOutside&) {
+      continue;
+    } catch (const FrameError& error) {
+      throw std::runtime_error(
+          fmt::format("{}: gives an answer of the wrong form: {}", command.program.string(), error.what()));
+    } catch (const Json::exception& error) {
+      throw std::runtime_error(fmt::format("{}: gives an answer of the wrong form: {}",
+                                           command.program.string(), plain(error.what())));
+    }
+  }
+  throw std::runtime_error(command.program.string() + ": is killed again and again before it can answer");
+}
+
+std::vector<double> particle_steps(const std::vector<SceneAnswer>& answers) {
+  std::vector<double> work;
+  for (const SceneAnswer& answer : answers) {
+    work.push_back(answer.steps * static_cast<double>(answer.particles));
+    if (!(work.back() > 0)) return {};
+  }
+  return work;
+}
+
+}  // namespace peclet::runner

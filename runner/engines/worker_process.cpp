@@ -1,0 +1,290 @@
+#include "runner/engines/worker_process.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <csignal>
+#include <system_error>
+#include <utility>
+
+#include "contract/input_error.h"
+#include "runner/folder/result_shape.h"
+#include "runner/text/plain_text.h"
+
+namespace peclet::runner {
+namespace {
+
+using Time = std::chrono::steady_clock;
+
+// An engine that has closed its socket is on its way out; one that is not gone after this is killed.
+constexpr std::chrono::seconds leaving_patience{2};
+// How soon to look again for the ending of a process that has closed its socket.
+constexpr std::chrono::milliseconds reaping_interval{2};
+
+// What an engine prints is taken from its pipe this often, so one that prints without end waits for us most
+// of the time, and its logs stay small.
+constexpr std::chrono::milliseconds log_interval{100};
+constexpr std::uint64_t largest_log = 1 << 20;
+constexpr int older_logs = 2;
+
+constexpr std::array<const char*, 3> phases{"packing", "equilibration", "production"};
+
+// The most bytes that an engine may say it needs for one file: the state of 10^8 particles.
+constexpr double most_bytes = double{std::uint64_t{1} << 36};
+// Every double below it is whole or not.
+constexpr double most_steps = double{std::int64_t{1} << 53};
+
+// A whole number of a message, at least 0 and below `end`.
+std::int64_t count_in(const Json& message, const char* key, double end) {
+  const Json& value = message.at(key);
+  const double number = value.is_number() ? value.get<double>() : -1;
+  if (!(number >= 0 && number < end) || std::trunc(number) != number) {
+    throw FrameError(
+        fmt::format("\"{}\" of a message must be a whole number, at least 0 and below {:g}", key, end));
+  }
+  return value.get<std::int64_t>();
+}
+
+std::int64_t job_in(const Json& message) { return count_in(message, "job", most_steps); }
+
+double strain_in(const Json& message) {
+  const double strain = message.at("strain").get<double>();
+  if (!(std::abs(strain) <= largest_number)) throw FrameError("\"strain\" of a message is out of range");
+  return strain;
+}
+
+int phase_number(const std::string& name) {
+  const auto found = std::find(phases.begin(), phases.end(), name);
+  if (found == phases.end()) throw FrameError("unknown phase: " + name);
+  return static_cast<int>(found - phases.begin());
+}
+
+Json job_frame(const Job& job) {
+  return {{"type", "job"},
+          {"job", job.attempt},
+          {"point", job.point},
+          {"seed", job.seed},
+          {"scene", job.scene},
+          {"threads", job.threads},
+          {"checkpoint", job.checkpoint.string()},
+          {"checkpoint_seconds", job.checkpoint_seconds},
+          {"progress_seconds", job.progress_seconds},
+          {"spool", job.spool.string()},
+          {"failures", job.failures.string()}};
+}
+
+// Throws FrameError or Json::exception for a message that a worker does not send.
+WorkerEvent as_event(int worker, const Json& message) {
+  const std::string& type = message.at("type").get_ref<const std::string&>();
+  if (type == "hello") {
+    if (message.at("protocol") != 1)
+      throw FrameError("protocol " + message.at("protocol").dump() + ", not 1");
+    if (!message.at("engine").is_object()) throw FrameError("hello without an engine");
+    return Hello{worker, message.at("engine"), message.value("ahead", false)};
+  }
+  if (type == "progress") {
+    return Progressed{worker,
+                      job_in(message),
+                      phase_number(message.at("phase").get<std::string>()),
+                      count_in(message, "step", most_steps),
+                      count_in(message, "steps", most_steps),
+                      strain_in(message)};
+  }
+  if (type == "result") {
+    return ResultSpooled{worker, job_in(message), message.at("spool").get<std::string>(),
+                         message.at("sha256").get<std::string>()};
+  }
+  if (type == "failed") {
+    return JobFailed{worker, job_in(message), plain(message.at("message").get<std::string>())};
+  }
+  if (type == "drained") {
+    return Drained{worker, job_in(message), count_in(message, "step", most_steps)};
+  }
+  if (type == "no-room") {
+    return ShortOfRoom{worker, job_in(message), message.at("path").get<std::string>(),
+                       static_cast<std::uint64_t>(count_in(message, "bytes", most_bytes))};
+  }
+  throw FrameError("unexpected message: " + type);
+}
+
+}  // namespace
+
+const char* phase_name(int phase) { return phases.at(static_cast<std::size_t>(phase)); }
+
+void allow_open_files(int workers) {
+  // A socket, a pipe and a log each; the database, its copies and what else there is.
+  constexpr rlim_t of_worker = 3, others = 64;
+  const rlim_t needed = of_worker * static_cast<rlim_t>(workers) + others;
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0)
+    throw std::system_error(errno, std::generic_category(), "getrlimit");
+  if (limit.rlim_cur >= needed) return;
+  if (limit.rlim_max < needed) {
+    throw InputError(
+        "", "--workers", std::to_string(workers),
+        fmt::format("needs {} open files, and `ulimit -Hn` allows {}: at most {} workers", needed,
+                    limit.rlim_max, limit.rlim_max > others ? (limit.rlim_max - others) / of_worker : 0));
+  }
+  limit.rlim_cur = needed;
+  if (setrlimit(RLIMIT_NOFILE, &limit) != 0)
+    throw std::system_error(errno, std::generic_category(), "setrlimit");
+}
+
+ProcessPool::ProcessPool(int workers, EngineCommand command, CampaignDirectory directory,
+                         StopSignals& signals)
+    : command_(std::move(command)), directory_(std::move(directory)), signals_(signals) {
+  workers_.resize(static_cast<std::size_t>(workers));
+  for (int worker = 0; worker < workers; ++worker) {
+    logs_.push_back(std::make_unique<RotatingFile>(directory_.worker_log(worker), largest_log, older_logs));
+  }
+  // `peclet doctor` finds by these the workers that outlived their owner.
+  command_.environment.push_back("PECLET_CAMPAIGN=" + directory_.root().string());
+  command_.environment.push_back(fmt::format("PECLET_OWNER={}", getpid()));
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+ProcessPool::~ProcessPool() {
+  for (const std::unique_ptr<Worker>& worker : workers_) {
+    if (worker) worker->process.hang_up();
+  }
+}
+
+void ProcessPool::start(int worker) {
+  workers_.at(static_cast<std::size_t>(worker)) = std::make_unique<Worker>(Worker{EngineProcess(command_)});
+}
+
+std::int64_t ProcessPool::process(int worker) const {
+  const std::unique_ptr<Worker>& running = workers_.at(static_cast<std::size_t>(worker));
+  return running ? running->process.process() : 0;
+}
+
+void ProcessPool::assign(int worker, const Job& job) { send(worker, job_frame(job)); }
+
+void ProcessPool::drain(int worker) { send(worker, {{"type", "drain"}}); }
+
+void ProcessPool::kill(int worker) {
+  if (const auto& running = workers_.at(static_cast<std::size_t>(worker))) running->process.kill();
+}
+
+bool ProcessPool::is_stopped(int worker) const {
+  const std::unique_ptr<Worker>& running = workers_.at(static_cast<std::size_t>(worker));
+  return running && running->process.is_stopped();
+}
+
+void ProcessPool::send(int number, const Json& message) {
+  const auto& worker = workers_.at(static_cast<std::size_t>(number));
+  if (!worker || worker->deaf) return;
+  worker->unsent += encode_frame(message);
+  flush(*worker);
+}
+
+void ProcessPool::flush(Worker& worker) {
+  while (!worker.unsent.empty()) {
+    const ssize_t sent = ::send(worker.process.descriptor(), worker.unsent.data(), worker.unsent.size(),
+                                MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return;
+    if (sent < 0) {  // it has gone; the end of the stream and its ending are about to say so
+      worker.unsent.clear();
+      return;
+    }
+    worker.unsent.erase(0, static_cast<std::size_t>(sent));
+  }
+}
+
+std::vector<WorkerEvent> ProcessPool::wait(std::chrono::milliseconds patience) {
+  std::vector<pollfd> watched{{signals_.descriptor(), POLLIN, 0}};
+  std::vector<int> numbers{-1};
+  for (int number = 0; number < size(); ++number) {
+    const auto& worker = workers_[static_cast<std::size_t>(number)];
+    if (!worker) continue;
+    if (worker->deaf) {
+      patience = std::min(patience, reaping_interval);
+      continue;
+    }
+    const short what = static_cast<short>(worker->unsent.empty() ? POLLIN : POLLIN | POLLOUT);
+    watched.push_back({worker->process.descriptor(), what, 0});
+    numbers.push_back(number);
+  }
+  const int ready = poll(watched.data(), watched.size(), static_cast<int>(patience.count()));
+  if (ready < 0 && errno != EINTR) throw std::system_error(errno, std::generic_category(), "poll");
+
+  std::vector<WorkerEvent> events;
+  if (ready > 0) {
+    while (signals_.take()) events.emplace_back(StopSignal{});
+    for (std::size_t i = 1; i < watched.size(); ++i) {
+      if ((watched[i].revents & POLLOUT) != 0) flush(*workers_[static_cast<std::size_t>(numbers[i])]);
+      if ((watched[i].revents & ~POLLOUT) != 0) receive(numbers[i], events);
+    }
+  }
+  keep_what_is_printed();
+  for (int number = 0; number < size(); ++number) reap(number, events);
+  return events;
+}
+
+void ProcessPool::keep_what_is_printed() {
+  if (Time::now() - logs_kept_ < log_interval) return;
+  logs_kept_ = Time::now();
+  for (std::size_t number = 0; number < workers_.size(); ++number) {
+    if (!workers_[number]) continue;
+    const std::string text = workers_[number]->process.printed();
+    if (!text.empty()) logs_[number]->append(text);
+  }
+}
+
+// Takes everything that has come (a socket holds less than this), so that leases are judged by the latest
+// news; a worker that floods us does not keep us from the others.
+void ProcessPool::receive(int number, std::vector<WorkerEvent>& events) {
+  Worker& worker = *workers_[static_cast<std::size_t>(number)];
+  std::array<char, 65536> bytes;
+  for (int reads = 0; reads < 64 && !worker.deaf; ++reads) {
+    const ssize_t count = recv(worker.process.descriptor(), bytes.data(), bytes.size(), MSG_DONTWAIT);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return;
+    if (count <= 0) {
+      worker.deaf = true;
+      worker.grace = Time::now() + leaving_patience;
+      return;
+    }
+    worker.decoder.feed(bytes.data(), static_cast<std::size_t>(count));
+    hear(number, events);
+  }
+}
+
+void ProcessPool::hear(int number, std::vector<WorkerEvent>& events) {
+  Worker& worker = *workers_[static_cast<std::size_t>(number)];
+  try {
+    while (const std::optional<Json> message = worker.decoder.next())
+      events.push_back(as_event(number, *message));
+    return;
+  } catch (const FrameError& error) {
+    events.emplace_back(Garbled{number, plain(error.what())});
+  } catch (const Json::exception& error) {
+    events.emplace_back(Garbled{number, plain(error.what())});
+  }
+  worker.process.kill();
+  worker.deaf = true;
+}
+
+void ProcessPool::reap(int number, std::vector<WorkerEvent>& events) {
+  std::unique_ptr<Worker>& worker = workers_[static_cast<std::size_t>(number)];
+  if (!worker || !worker->deaf) return;
+  if (const std::optional<ExitStatus> ending = worker->process.reap()) {
+    events.emplace_back(Exited{number, *ending});
+    // Its last words say why.
+    const std::string text = worker->process.printed();
+    if (!text.empty()) logs_[static_cast<std::size_t>(number)]->append(text);
+    worker.reset();
+  } else if (worker->grace && Time::now() > *worker->grace) {
+    worker->process.kill();
+  }
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,96 @@
+#include "runner/folder/campaign_directory.h"
+
+#include <fmt/format.h>
+#include <sys/vfs.h>
+
+#include <array>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "contract/guarded_file.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Sixteen hexadecimal digits tell the points of a campaign apart and keep names readable.
+std::string stem(const std::string& hash, int seed) {
+  return fmt::format("{}-{:06}", hash.substr(0, 16), seed);
+}
+
+// statfs(2) magic numbers of file systems whose locks or fsync cannot be trusted between machines.
+constexpr std::array<std::pair<unsigned long, const char*>, 9> network_kinds{{{0x6969, "NFS"},
+                                                                              {0x517b, "SMB"},
+                                                                              {0xff534d42, "CIFS"},
+                                                                              {0xfe534d42, "SMB2"},
+                                                                              {0x00c36400, "Ceph"},
+                                                                              {0x0bd00bd0, "Lustre"},
+                                                                              {0x47504653, "GPFS"},
+                                                                              {0x19830326, "BeeGFS"},
+                                                                              {0x5346414f, "AFS"}}};
+
+}  // namespace
+
+fs::path CampaignDirectory::checkpoint(const std::string& hash, int seed) const {
+  return checkpoints() / (stem(hash, seed) + ".checkpoint");
+}
+
+fs::path CampaignDirectory::spool_file(const std::string& hash, int seed, std::int64_t attempt) const {
+  return spool() / fmt::format("{}-{}.json", stem(hash, seed), attempt);
+}
+
+fs::path CampaignDirectory::worker_log(int worker) const {
+  return logs() / fmt::format("worker-{}.log", worker);
+}
+
+CampaignDirectory campaign_directory(const fs::path& campaign_file, const fs::path& chosen) {
+  if (!chosen.empty()) return CampaignDirectory(fs::absolute(chosen).lexically_normal());
+  fs::path folder = fs::absolute(campaign_file).lexically_normal();
+  folder.replace_extension(".peclet");
+  return CampaignDirectory(folder);
+}
+
+void create_folders(const CampaignDirectory& directory) {
+  for (const fs::path& folder :
+       {directory.root(), directory.rejected(), directory.checkpoints(), directory.failures(),
+        directory.logs(), directory.backup(), directory.requests()}) {
+    fs::create_directories(folder);
+  }
+}
+
+void require_own_folders(const CampaignDirectory& directory) {
+  require_own_folder(directory.root(), true);
+  for (const fs::path& folder :
+       {directory.spool(), directory.rejected(), directory.checkpoints(), directory.failures(),
+        directory.logs(), directory.backup(), directory.requests(), directory.aside()}) {
+    require_own_folder(folder);
+  }
+}
+
+fs::path make_folder_aside(const CampaignDirectory& directory) {
+  require_own_folder(directory.aside());
+  fs::create_directories(directory.aside());
+  for (int number = 1;; ++number) {
+    const fs::path folder = directory.aside() / std::to_string(number);
+    if (kind_of(folder).empty() && fs::create_directory(folder)) return folder;
+  }
+}
+
+std::optional<std::string> network_file_system(const fs::path& path) {
+  fs::path existing = fs::absolute(path);
+  while (!fs::exists(existing) && existing.has_relative_path()) existing = existing.parent_path();
+  struct statfs about {};
+  if (statfs(existing.c_str(), &about) != 0) {
+    throw std::system_error(errno, std::generic_category(), existing.string());
+  }
+  // The field is signed or not, 32 or 64 bits wide, depending on the machine.
+  const unsigned long magic = static_cast<unsigned long>(about.f_type) & 0xffffffffUL;
+  for (const auto& [number, name] : network_kinds) {
+    if (number == magic) return name;
+  }
+  return std::nullopt;
+}
+
+}  // namespace peclet::runner

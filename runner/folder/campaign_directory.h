@@ -1,0 +1,60 @@
+// The folder of a campaign: where its files are.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace peclet::runner {
+
+// Names of everything below the folder; nothing here touches the disk.
+class CampaignDirectory {
+ public:
+  explicit CampaignDirectory(std::filesystem::path root) : root_(std::move(root)) {}
+
+  const std::filesystem::path& root() const { return root_; }
+  std::filesystem::path database() const { return root_ / "campaign.db"; }
+  std::filesystem::path lock() const { return root_ / "campaign.lock"; }
+  std::filesystem::path spool() const { return root_ / "spool"; }
+  std::filesystem::path rejected() const { return spool() / "rejected"; }
+  std::filesystem::path checkpoints() const { return root_ / "checkpoints"; }
+  std::filesystem::path failures() const { return root_ / "failures"; }
+  std::filesystem::path logs() const { return root_ / "logs"; }
+  std::filesystem::path backup() const { return root_ / "backup"; }
+  // What people ask of the campaign, until its owner has carried it out.
+  std::filesystem::path requests() const { return root_ / "requests"; }
+  // What was in the way is kept here: of `peclet restore`, or of a run.
+  std::filesystem::path aside() const { return root_ / "aside"; }
+  std::filesystem::path run_log() const { return logs() / "peclet.log"; }
+
+  // Of one seed, whoever runs it: the next attempt resumes what the last one left.
+  std::filesystem::path checkpoint(const std::string& hash, int seed) const;
+  // Of one attempt: a worker that outlived its owner never writes where a later attempt does.
+  std::filesystem::path spool_file(const std::string& hash, int seed, std::int64_t attempt) const;
+  std::filesystem::path worker_log(int worker) const;
+
+ private:
+  std::filesystem::path root_;
+};
+
+// `chosen`, or when that is empty "<stem>.peclet" beside the campaign file; an absolute path.
+CampaignDirectory campaign_directory(const std::filesystem::path& campaign_file,
+                                     const std::filesystem::path& chosen);
+
+// Makes the folder and those below it. Throws std::filesystem::filesystem_error.
+void create_folders(const CampaignDirectory& directory);
+
+// A campaign works only in folders that nobody else can make lead elsewhere: those below its own must be
+// folders, not links, and all must belong to the user of this process or to root. The campaign's folder
+// itself is the one that its user has named, and may be a link. Throws UnsuitableFile naming the folder.
+void require_own_folders(const CampaignDirectory& directory);
+
+// A new folder in aside/, for what is in the way.
+std::filesystem::path make_folder_aside(const CampaignDirectory& directory);
+
+// The kind of network file system that `path` (or the nearest folder above it that exists) is on, if it is on
+// one.
+std::optional<std::string> network_file_system(const std::filesystem::path& path);
+
+}  // namespace peclet::runner

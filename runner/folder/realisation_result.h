@@ -1,0 +1,54 @@
+// The result of one realisation as an engine wrote it: checked, and what the runner takes from it.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "contract/json.h"
+#include "runner/folder/result_shape.h"
+
+namespace peclet::runner {
+
+struct RealisationResult {
+  Json document;  // whole
+  std::string point;
+  int seed = 0;
+  std::string cause;           // of the ending: "completed", "overlap", ...
+  std::string content_sha256;  // of what repetitions must share
+  bool completed() const { return cause == "completed"; }
+};
+
+// Throws ResultError naming what is wrong.
+RealisationResult parse_result(std::string_view text);
+
+struct Observed {
+  std::optional<double> value;    // of the observable; none after a blow-up, or where it does not exist
+  std::optional<double> control;  // variate of mean zero that belongs to it
+  // value + control over the first quarter and the first half of the window; none without such blocks
+  std::optional<double> first_quarter{}, first_half{};
+};
+
+// What a completed realisation says against itself: the codes of its warnings, those apart that its scene has
+// by itself ("inertia-..."), which `validate` shows.
+std::set<std::string> flags_of(const RealisationResult& result);
+
+// The cause of a completed realisation that has no number for the campaign's observable: it is lost to its
+// point as one that blew up is.
+inline constexpr const char* no_value = "no-value";
+
+// Whether the means have the observable, if only as null, which says that it does not exist for this
+// realisation.
+bool has_observable(const Json& mean, const std::string& observable);
+
+// "pressure, relative_viscosity": what a campaign may aim at.
+std::string names_of_numbers(const Json& mean);
+
+// The pairwise Brownian stress is the control variate of the relative viscosities and of nothing else.
+Observed observe(const Json& result, const std::string& observable);
+
+// How the realisation counts for a campaign that has seen this in it.
+std::string cause_of(const RealisationResult& result, const Observed& observed);
+
+}  // namespace peclet::runner

@@ -1,0 +1,240 @@
+#include "runner/folder/result_shape.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <initializer_list>
+
+#include "runner/campaign/campaign.h"
+#include "runner/text/plain_text.h"
+
+namespace peclet::runner {
+namespace {
+
+constexpr std::size_t longest_word = 64;
+constexpr std::size_t longest_name = 120;                          // of a version or an instruction set
+constexpr std::int64_t largest_count = std::int64_t{1} << 53;      // every double below it is whole or not
+constexpr const char* lower_case = "abcdefghijklmnopqrstuvwxyz-";  // of a cause
+constexpr const char* lower_or_digit = "abcdefghijklmnopqrstuvwxyz0123456789-";
+
+[[noreturn]] void refuse(const std::string& pointer, std::string_view allowed) {
+  throw ResultError(fmt::format("{}: {}", plain(pointer, longest_name), allowed));
+}
+
+// A place in the document and what is there.
+struct Place {
+  const Json& value;
+  std::string pointer;
+
+  // Nothing is refused that is absent.
+  template <typename Judge>
+  void with(const std::string& key, const Judge& judge) const {
+    const auto found = value.find(key);
+    if (found != value.end()) judge(Place{*found, pointer + '/' + key});
+  }
+  Place at(const std::string& key) const {
+    if (!value.is_object()) refuse(pointer, "must be an object");
+    const auto found = value.find(key);
+    if (found == value.end()) refuse(pointer + '/' + key, "is missing");
+    return {*found, pointer + '/' + key};
+  }
+};
+
+void must_be_object(const Place& place) {
+  if (!place.value.is_object()) refuse(place.pointer, "must be an object");
+}
+
+// How large it may be is judged for all numbers together.
+void must_be_number(const Place& place) {
+  if (!place.value.is_number()) refuse(place.pointer, "must be a number");
+}
+
+void must_be_number_or_null(const Place& place) {
+  if (!place.value.is_null() && !place.value.is_number()) refuse(place.pointer, "must be a number or null");
+}
+
+void must_be_seconds(const Place& place) {
+  must_be_number(place);
+  if (place.value.get<double>() < 0) refuse(place.pointer, "must be a number >= 0");
+}
+
+void must_be_count(const Place& place, std::int64_t end) {
+  const double number = place.value.is_number() ? place.value.get<double>() : -1;
+  if (!(number >= 0 && number < static_cast<double>(end)) || std::trunc(number) != number) {
+    refuse(place.pointer, fmt::format("must be a whole number, at least 0 and below {}", end));
+  }
+}
+
+void must_be_step(const Place& place) { must_be_count(place, largest_count); }
+
+void must_be_text_or_null(const Place& place) {
+  if (!place.value.is_null() && !place.value.is_string()) refuse(place.pointer, "must be text or null");
+}
+
+const std::string& text_at(const Place& place) {
+  if (!place.value.is_string()) refuse(place.pointer, "must be text");
+  return place.value.get_ref<const std::string&>();
+}
+
+void must_be_text(const Place& place) { text_at(place); }
+
+// Each engine has its own words for how a realisation can go wrong, and for what it warns of.
+const std::string& word_at(const Place& place, const char* letters) {
+  const std::string& word = text_at(place);
+  const bool is_word = !word.empty() && word.size() <= longest_word && word.front() != '-' &&
+                       word.find_first_not_of(letters) == std::string::npos;
+  if (!is_word) {
+    refuse(place.pointer,
+           fmt::format("must be a word of at most {} of the characters {}", longest_word, letters));
+  }
+  return word;
+}
+
+void must_be_hash(const Place& place) {
+  const std::string& text = text_at(place);
+  if (text.size() != 64 || text.find_first_not_of("0123456789abcdef") != std::string::npos) {
+    refuse(place.pointer, "must be a SHA-256 in lower-case hexadecimal");
+  }
+}
+
+void must_be_name(const Place& place) {
+  const std::string& name = text_at(place);
+  if (name.empty() || plain(name, longest_name) != name) {
+    refuse(place.pointer,
+           fmt::format("must be a name of at most {} bytes without control characters", longest_name));
+  }
+}
+
+void must_be_warning(const Place& place) {
+  must_be_object(place);
+  word_at(place.at("code"), lower_or_digit);
+  must_be_text(place.at("message"));
+}
+
+void check_warnings(const Place& warnings) {
+  if (!warnings.value.is_array()) refuse(warnings.pointer, "must be a list");
+  for (std::size_t i = 0; i < warnings.value.size(); ++i) {
+    must_be_warning({warnings.value[i], fmt::format("{}/{}", warnings.pointer, i)});
+  }
+}
+
+void check_members(const Place& object, void (*judge)(const Place&)) {
+  must_be_object(object);
+  for (const auto& [key, value] : object.value.items()) judge({value, object.pointer + '/' + key});
+}
+
+// What a mean consists of is the engine's business; the runner takes numbers from it by name, and shows the
+// names.
+void check_mean(const Place& mean) {
+  for (const auto& [name, value] : mean.value.items()) {
+    const bool may_be = value.is_number() || value.is_null() || value.is_structured();
+    if (!may_be) refuse(mean.pointer + '/' + name, "must be a number, null, a list or an object");
+    if (plain(name, longest_name) != name) {
+      refuse(mean.pointer + '/' + name,
+             fmt::format("must have a name of at most {} bytes without control characters", longest_name));
+    }
+  }
+  mean.with("control_variates", [](const Place& variates) {
+    must_be_object(variates);
+    variates.with("brownian_pairwise", must_be_number_or_null);
+  });
+}
+
+void check_ending(const Place& document) {
+  const Place ending = document.at("ending");
+  must_be_object(ending);
+  const bool completed = word_at(ending.at("cause"), lower_case) == "completed";
+  must_be_step(ending.at("step"));
+  ending.with("message", must_be_text);
+  ending.with("state", must_be_text_or_null);
+  // A realisation that could not be packed has no final state.
+  const Place state = document.at("final_state_sha256");
+  if (completed || !state.value.is_null()) must_be_hash(state);
+  for (const char* const part : {"mean", "blocks"}) {
+    const Place about = document.at(part);
+    if (completed ? !about.value.is_object() : !about.value.is_null()) {
+      refuse(about.pointer, completed ? "must be an object" : "must be null after this ending");
+    }
+  }
+  if (completed) check_mean(document.at("mean"));
+}
+
+// The pointer of a number that is too large, or ""; the reader has refused those that are not finite.
+std::string too_large(const Json& value, const std::string& pointer) {
+  if (value.is_number_float() && !(std::abs(value.get<double>()) <= largest_number)) return pointer;
+  if (!value.is_structured()) return "";
+  for (const auto& [key, member] : value.items()) {
+    if (member.is_primitive() && !member.is_number_float()) continue;
+    if (std::string found = too_large(member, pointer + '/' + key); !found.empty()) return found;
+  }
+  return "";
+}
+
+}  // namespace
+
+ResultError::ResultError(const std::string& message) : std::runtime_error(plain(message)) {}
+
+std::string excess_of(std::string_view text) {
+  if (text.size() > largest_result) {
+    return fmt::format("it has {} bytes, more than {}", text.size(), largest_result);
+  }
+  std::size_t values = 1, structures = 0;
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted && c == '\\') ++i;
+    if (c == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (c == ',') ++values;
+    if (c == '[' || c == '{' || c == ':') ++structures;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth > deepest_result) return fmt::format("it is nested more than {} deep", deepest_result);
+  }
+  if (structures > most_structures) {
+    return fmt::format("it has more than {} lists, objects and keys", most_structures);
+  }
+  return values > most_values ? fmt::format("it has more than {} values", most_values) : "";
+}
+
+void check_shape(const Json& document) {
+  const Place whole{document, ""};
+  if (!document.is_object()) throw ResultError("must be an object");
+  if (whole.at("schema_version").value != 1) refuse("/schema_version", "must be 1");
+  must_be_hash(whole.at("point"));
+  must_be_count(whole.at("seed"), most_realisations);
+  check_ending(whole);
+  for (const char* const which : {"cpu_seconds", "wall_seconds"}) must_be_seconds(whole.at("cost").at(which));
+  whole.with("steps", [](const Place& steps) { check_members(steps, must_be_step); });
+  for (const char* const part : {"strain", "time", "derived"}) {
+    whole.with(part, [](const Place& members) { check_members(members, must_be_number_or_null); });
+  }
+  for (const char* const key : {"timestep", "statistical_inefficiency", "largest_overlap"}) {
+    whole.with(key, must_be_number_or_null);
+  }
+  whole.with("method", must_be_text_or_null);
+  whole.with("units", must_be_text);
+  whole.with("warnings", check_warnings);
+  whole.with("gate", [](const Place& gate) {
+    if (!gate.value.is_null()) must_be_object(gate);
+  });
+  engine_identity(whole.at("engine").value);
+  if (const std::string pointer = too_large(document, ""); !pointer.empty()) {
+    refuse(pointer, fmt::format("must be a number between -{0:g} and {0:g}", largest_number));
+  }
+}
+
+std::string engine_identity(const Json& engine) {
+  const Place place{engine, "/engine"};
+  const Place version = place.at("version"), set = place.at("instruction_set");
+  const Place hash = place.at("binary_sha256");
+  must_be_name(version);
+  must_be_name(set);
+  must_be_hash(hash);
+  return fmt::format("{} ({}) sha256 {}", text_at(version), text_at(set), text_at(hash));
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,55 @@
+#include "runner/owner/campaign_changes.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+namespace peclet::runner {
+namespace {
+
+void compare(std::vector<std::string>& changes, const char* what, const std::string& before,
+             const std::string& after) {
+  if (before != after) changes.push_back(fmt::format("{} {} -> {}", what, before, after));
+}
+
+std::string percent(double share) { return fmt::format("{:.6g} %", 100 * share); }
+
+std::string counted(std::ptrdiff_t count, const char* what) {
+  return fmt::format("{} point{} {}", count, count == 1 ? "" : "s", what);
+}
+
+void compare_points(std::vector<std::string>& changes, Database& database, const Campaign& campaign) {
+  std::set<std::string> before, after;
+  for (const PointRecord& point : database.points()) before.insert(point.hash);
+  for (const StatePoint& point : campaign.points) after.insert(point.hash);
+  const auto missing_in = [](const std::set<std::string>& those, const std::set<std::string>& these) {
+    return std::count_if(these.begin(), these.end(),
+                         [&](const std::string& hash) { return !those.contains(hash); });
+  };
+  if (const auto added = missing_in(before, after); added > 0) changes.push_back(counted(added, "added"));
+  if (const auto left = missing_in(after, before); left > 0) changes.push_back(counted(left, "left out"));
+}
+
+}  // namespace
+
+std::string describe_changes(Database& database, const Campaign& campaign) {
+  const CampaignRecord known = database.campaign();
+  const Target& before = known.target.target;
+  const Target& after = campaign.target;
+  std::vector<std::string> changes;
+  compare(changes, "observable", before.observable, after.observable);
+  compare(changes, "tolerance", percent(before.relative_tolerance), percent(after.relative_tolerance));
+  compare(changes, "confidence", percent(before.confidence), percent(after.confidence));
+  compare(changes, "minimum", std::to_string(known.target.minimum),
+          std::to_string(campaign.minimum_realisations));
+  compare(changes, "maximum", std::to_string(known.target.maximum),
+          std::to_string(campaign.maximum_realisations));
+  compare_points(changes, database, campaign);
+  if (!changes.empty()) return fmt::format("{}", fmt::join(changes, "; "));
+  return known.document == campaign.document ? "nothing differs" : "the file, in nothing that decides";
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,110 @@
+// What workers have in hand: the seed that each one runs, and perhaps one that waits for its end.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "runner/folder/spool.h"
+#include "runner/owner/dispatcher.h"
+
+namespace peclet::runner {
+namespace {
+
+// Mean seconds of jobs that it is worth having another one wait for. A commit takes some hundredth of a
+// second, for which a worker with longer jobs need not have one; and a seed behind a long one would make the
+// decision of its point wait, while workers become idle that could run it.
+constexpr double longest_brisk_job = 1;
+
+}  // namespace
+
+// Idle workers first: a seed waits for none that could begin it.
+void Dispatcher::give_out_seeds() {
+  if (stopping_ != Stopping::no || shortage_.lasts() || ledger_.scheduler().finished()) return;
+  for (int number = 0; number < pool_.size(); ++number) {
+    Worker& worker = at(number);
+    if (worker.stage != Stage::idle || worker.recalled) continue;
+    worker.assignment = next_assignment(number);
+    if (!worker.assignment) return;
+    worker.stage = Stage::busy;
+    worker.since = worker.assignment->renewed = awake_;
+  }
+  for (int number = 0; number < pool_.size(); ++number) {
+    Worker& worker = at(number);
+    if (!takes_one_more(worker)) continue;
+    worker.waiting = next_assignment(number);
+    if (!worker.waiting) return;
+  }
+}
+
+// Books the next seed as this worker's, to be sent after the commit; nothing when there is none.
+std::optional<Dispatcher::Assignment> Dispatcher::next_assignment(int number) {
+  std::optional<Grant> grant = ledger_.give_out(number, pool_.process(number), at(number).engine);
+  if (!grant) return std::nullopt;
+  grant->job.threads = settings_.threads;
+  grant->job.checkpoint_seconds = settings_.checkpoint_seconds;
+  // Several reports fit into a lease.
+  grant->job.progress_seconds = std::min(1.0, settings_.lease.count() / 5);
+  to_send_.emplace_back(number, grant->job);
+  grant->job.scene = nullptr;  // sent once; the rest is copied at every turn
+  Assignment about{std::move(*grant)};
+  about.given = about.begun = clock_();
+  return about;
+}
+
+bool Dispatcher::takes_one_more(const Worker& worker) const {
+  if (worker.stage != Stage::busy || !worker.takes_ahead || worker.waiting) return false;
+  if (worker.condemned || worker.recalled) return false;
+  const std::optional<double> seconds = ledger_.wall_seconds(worker.assignment->grant);
+  return seconds && *seconds < longest_brisk_job;
+}
+
+bool Dispatcher::has_job(int worker, std::int64_t job) {
+  const Worker& about = at(worker);
+  if (about.condemned) return false;
+  if (about.assignment && about.assignment->grant.job.attempt == job) return true;
+  if (about.finished_job == job) return false;  // said once too often, which does no harm
+  condemn(worker, AttemptOutcome::garbled, fmt::format("spoke of job {}, which it does not have", job));
+  return false;
+}
+
+void Dispatcher::go_on(int number) {
+  Worker& worker = at(number);
+  worker.finished_job = worker.assignment->grant.job.attempt;
+  worker.assignment = std::exchange(worker.waiting, std::nullopt);
+  worker.stage = worker.assignment ? Stage::busy : Stage::idle;
+  worker.since = awake_;
+  if (!worker.assignment) return;
+  worker.assignment->begun = clock_();
+  worker.assignment->renewed = awake_;
+}
+
+double Dispatcher::processor_seconds_since(Time time) const {
+  return settings_.threads * std::chrono::duration<double>(clock_() - time).count();
+}
+
+void Dispatcher::end_assignment(int number, const AttemptEnd& end) {
+  const Assignment& about = *at(number).assignment;
+  AttemptEnd complete = end;
+  complete.step = about.step;
+  complete.held_seconds = processor_seconds_since(about.begun);
+  ledger_.end_attempt(about.grant, complete);
+  go_on(number);
+}
+
+// A result may be durable although nobody could announce it any more; one that was turned down stays so.
+bool Dispatcher::left_result(int number, const Assignment& about) {
+  std::string why;
+  if (at(number).condemned == AttemptOutcome::garbled || !is_there(about.grant.job.spool) ||
+      !ledger_.take_result(about.grant, "", about.step, processor_seconds_since(about.given), why)) {
+    return false;
+  }
+  ++now_.results;
+  return true;
+}
+
+void Dispatcher::give_back(const Assignment& waiting) {
+  ledger_.end_attempt(waiting.grant, {AttemptOutcome::drained, 0, {}, "waited behind another job"});
+}
+
+}  // namespace peclet::runner

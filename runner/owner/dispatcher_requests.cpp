@@ -1,0 +1,39 @@
+// The dispatcher's part in what people ask for while it runs.
+#include "runner/owner/dispatcher.h"
+
+namespace peclet::runner {
+namespace {
+
+constexpr std::chrono::seconds request_interval{1};
+
+}  // namespace
+
+// While workers stop, requests wait for the next owner. While there is no room, they wait as everything does.
+void Dispatcher::hear_requests() {
+  if (stopping_ != Stopping::no || shortage_.lasts() || clock_() - requests_heard_ < request_interval) return;
+  requests_heard_ = clock_();
+  try {
+    if (settings_.requests()) mark_running_seeds();
+    request_waits_ = false;
+  } catch (const DatabaseError& error) {
+    if (!error.no_room()) throw;
+    mark_running_seeds();
+    request_waits_ = true;
+    begin_shortage(std::filesystem::path(database_.connection().path()).parent_path(), 1 << 20);
+  }
+}
+
+void Dispatcher::mark_running_seeds() {
+  for (int number = 0; number < pool_.size(); ++number) {
+    Worker& worker = at(number);
+    bool wanted = true;
+    for (std::optional<Assignment>* const about : {&worker.assignment, &worker.waiting}) {
+      if (*about && !ledger_.keep_running((*about)->grant)) wanted = false;
+    }
+    if (wanted || worker.recalled) continue;
+    worker.recalled = true;
+    pool_.drain(number);
+  }
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,42 @@
+// Notices what somebody else does to a campaign's folder while it runs: deletes it, moves it away, or parts
+// of it.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+
+#include "runner/database/database.h"
+#include "runner/events/run_listener.h"
+#include "runner/folder/campaign_directory.h"
+#include "runner/folder/owner_lock.h"
+
+namespace peclet::runner {
+
+// The files that the owner has open live on without their names until it ends, and all that was committed
+// with them: so a database whose name is gone is copied before that. Requires folder and database to be
+// whole.
+class FolderWatch {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  // References must outlive the watch.
+  FolderWatch(const CampaignDirectory& directory, const OwnerLock& lock, Database& database,
+              RunListener& listener);
+
+  // Looks about once a second. Makes folders below anew, and says so. Throws IntegrityError when folder or
+  // database are no longer where they were: it says what was saved where, and how to go on.
+  void attend(Time now);
+
+ private:
+  void refuse_move() const;
+  void refuse_deletion() const;
+  void mend_folders() const;
+
+  const CampaignDirectory& directory_;
+  const OwnerLock& lock_;
+  Database& database_;
+  RunListener& listener_;
+  Time last_{};
+};
+
+}  // namespace peclet::runner

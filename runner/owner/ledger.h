@@ -1,0 +1,193 @@
+// What has become of every seed: the scheduler's picture, the database and the spool, kept in step.
+//
+// The writing functions run inside a Transaction of the caller; what must happen to files only after its
+// commit is kept until after_commit(). So whatever is killed when, database and spool together know every
+// result, once.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "runner/database/queue.h"
+#include "runner/engines/worker_pool.h"
+#include "runner/events/run_listener.h"
+#include "runner/folder/campaign_directory.h"
+#include "runner/folder/file_removal.h"
+#include "runner/statistics/scheduler.h"
+
+namespace peclet::runner {
+
+constexpr int nowhere = -1;
+
+// A seed that has been given to a worker.
+struct Grant {
+  SeedId id;  // its place is `nowhere` when the point has left the sweep since
+  std::int64_t point_id = 0;
+  Job job;
+};
+
+// Points with results of one engine are to be run with another. what() names both.
+class OtherEngine : public IntegrityError {
+ public:
+  using IntegrityError::IntegrityError;
+};
+
+// What bounds a run beside the campaign itself.
+struct Bounds {
+  std::optional<int> ceiling{};            // only so many seeds of each point
+  std::optional<double> budget_seconds{};  // processor time
+  std::map<std::string, double> work{};    // of a realisation, in any unit, by the point's hash
+};
+
+class Ledger {
+ public:
+  // Requires that the database has adopted the campaign. Takes in what earlier runs left in the spool, then
+  // puts the seeds of a dead owner back. All references must outlive the ledger.
+  Ledger(Database& database, const Campaign& campaign, CampaignDirectory directory, RunListener& listener,
+         int retries);
+
+  // From now on. With a budget seeds go where they lower the summed relative error most, without one to the
+  // point that will take longest.
+  void set_bounds(Bounds bounds);
+
+  // Takes in every spool file that is there, also of the folders shared with a batch system; in transactions
+  // of its own. Then the files of all results that are durable are gone.
+  void ingest_spool();
+
+  // The next seed to be run within the bounds. Of a budget is left what was not spent and what the seeds that
+  // are out are not expected to cost.
+  std::optional<SeedId> next() const;
+  // Books that seed as given to a worker; nothing when there is none to run now.
+  std::optional<Grant> give_out(int worker, std::int64_t process, std::int64_t engine);
+  // Books a result that a worker has announced (`sha256`) or left behind (""), after `held_seconds` as in
+  // AttemptEnd. False: it is none and has been turned down; `why` says so, and the attempt has not ended.
+  bool take_result(const Grant& grant, const std::string& sha256, std::int64_t step, double held_seconds,
+                   std::string& why);
+  // Mean wall time of the results of the seed's point; nothing when there are none.
+  std::optional<double> wall_seconds(const Grant& grant) const;
+  // Books any other end of an attempt: the seed is queued again, or given up.
+  void end_attempt(const Grant& grant, const AttemptEnd& end);
+  void renew_lease(const Grant& grant, int phase, std::int64_t step, std::int64_t steps, double strain);
+
+  // The seeds that the next looks need and nobody runs, with `ahead` those of the looks after them, too. They
+  // are out from now on; the caller hands them over.
+  std::vector<SeedId> draw(bool ahead);
+  // Nothing for a point that has left the sweep.
+  std::optional<SeedId> identify(std::int64_t point_id, int seed) const;
+  // The seed has ended, with a result or without.
+  bool has_ended(SeedId id);
+  // Books how an attempt at a seed that was handed over ended on a node: as end_attempt().
+  void end_handed_over(SeedId id, int task, const AttemptReport& report,
+                       const std::filesystem::path& checkpoint);
+  // A seed that was handed over comes back without an attempt.
+  void take_back(SeedId id);
+
+  // The engine's row. Throws OtherEngine when a point that is still to be run has results of another engine,
+  // IntegrityError when this run has started with another one.
+  std::int64_t admit_engine(const Json& engine);
+  // Keeps the results of other engines apart at every point that is still to be run, in a transaction of its
+  // own. Returns how many points these were.
+  int accept_engine(const std::string& identity);
+  bool has_engine() const { return !identity_.empty(); }
+
+  // The campaign is another one from now on. Throws InputError when finished realisations lack its
+  // observable.
+  void take_over(const Campaign& campaign);
+  // Somebody else has written to the database within the transaction: takes the picture from it again, and
+  // stores the looks and seeds that follow. Throws OtherEngine as admit_engine(). The seeds that workers have
+  // are then to be marked with keep_running().
+  void refresh();
+  // The transaction failed: forgets what was to follow it, and takes the picture from the database again, in
+  // which the seeds that workers have are then to be marked with keep_running().
+  void roll_back();
+  // Finds the place of the seed's point. False: the seed is not wanted any more, because its point was
+  // cancelled or left the sweep, or the maximum is smaller now.
+  bool keep_running(Grant& grant);
+
+  // Moves files that are no results and discards checkpoints, begins to remove the files of results that are
+  // durable now, and tells what happened. Throws InputError when results lack the observable.
+  void after_commit();
+
+  const Campaign& campaign() const { return campaign_; }
+  const PointRecord& point(int place) const { return points_.at(static_cast<std::size_t>(place)); }
+  const Scheduler& scheduler() const { return *scheduler_; }
+  // Processor time that this run's attempts took: that of results, and of others the time times the threads.
+  // A result that began in an earlier run counts with what it took in this one.
+  double spent_seconds() const { return spent_seconds_; }
+  // Points, seeds and time to go with so many workers; the rest of the report is the caller's.
+  RunReport report(int workers) const;
+  // "peclet=10 seed 3", for people
+  std::string name(SeedId id) const;
+
+ private:
+  void load();
+  void read();
+  void read_points();
+  void book_looks();
+  bool is_to_be_run(const PointRecord& about) const;
+  void refuse_other_engine(const std::string& identity) const;
+  // Whether the seed has a part in the looks.
+  bool takes_part(SeedId id) const { return id.point != nowhere && id.seed < campaign_.maximum_realisations; }
+  void leave(const Grant& grant);
+  std::string name_of(const Grant& grant) const;
+  PointName told_name(int place) const;
+  PointName told_name(const Grant& grant) const;
+  void apply_bounds();
+  void tell_cost(int place);
+  void add_cost(int place, std::optional<double> wall_seconds, std::optional<double> cpu_seconds);
+  void leave_to_batch_system(int place);
+  void ingest_spool_of(const CampaignDirectory& directory);
+  void ingest(const std::filesystem::path& spool);
+  class Taking;
+  using Reading = std::function<RealisationResult()>;
+  using Booking = std::function<void(const RealisationResult&)>;
+  // Reads a result and books it, wholly or not at all. Returns why it is turned down; "" when it is not.
+  std::string take_whole(const std::filesystem::path& spool, const Reading& read, const Booking& book);
+  Stored take(const RealisationResult& result, const std::filesystem::path& spool);
+  void book_outcome(SeedId id, const Outcome& outcome);
+  void store_looks(int place, std::size_t known);
+  void turn_down(const std::filesystem::path& spool, const std::string& why);
+
+  Database& database_;
+  Queue queue_;
+  Campaign campaign_;
+  std::optional<Campaign> former_;  // until the transaction that changed it is committed
+  CampaignDirectory directory_;
+  RunListener& listener_;
+  int retries_;
+  std::vector<PointRecord> points_;
+  std::map<std::string, int> places_;  // of the points, by hash
+  struct Costs {
+    Cost wall, processor;
+  };
+  std::vector<Costs> costs_;
+  std::vector<int> running_;  // seeds of each point that workers have
+  Bounds bounds_;
+  double spent_seconds_ = 0, committed_seconds_ = 0;
+  std::optional<Scheduler> scheduler_;
+  std::string identity_;  // of this run's engine
+  std::string lacking_;   // what results have instead of the target's observable
+
+  // After the commit: what the next attempt must not find, what is left of seeds that have ended, results
+  // that are none; and what people and programs hear.
+  struct Note {
+    std::string text;
+  };
+  struct Warning {
+    std::string text;
+  };
+  std::vector<std::filesystem::path> to_discard_, to_remove_, to_reject_;
+  int turned_down_ = 0;  // of the spool files that are looked at together
+  std::vector<std::variant<RunEvent, Note, Warning>> to_tell_;
+  FileRemoval removal_;
+  std::set<std::string> away_;  // shared folders that are not there, as has been said
+};
+
+}  // namespace peclet::runner

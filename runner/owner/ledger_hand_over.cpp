@@ -1,0 +1,117 @@
+// The ledger's part in seeds that a batch system runs.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <system_error>
+
+#include "runner/database/bundle_book.h"
+#include "runner/engines/attempt_report.h"
+#include "runner/owner/ledger.h"
+
+namespace peclet::runner {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Out {
+  std::size_t seeds = 0;
+  std::vector<std::string> bundles;
+};
+
+// "a-0001, a-0002 and 3 more"
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 3;
+  const std::string text = fmt::format(
+      "{}", fmt::join(names.begin(),
+                      names.begin() + static_cast<std::ptrdiff_t>(std::min(most, names.size())), ", "));
+  return names.size() > most ? fmt::format("{} and {} more", text, names.size() - most) : text;
+}
+
+}  // namespace
+
+void Ledger::ingest_spool() {
+  removal_.finish();  // of what has been taken already
+  ingest_spool_of(directory_);
+  const BundleBook book(database_.connection());
+  std::map<std::string, Out> shared;
+  for (const BundleRecord& bundle : book.open_bundles()) {
+    Out& out = shared[bundle.shared];
+    out.seeds += book.seeds_out(bundle.id).size();
+    out.bundles.push_back(bundle.name);
+  }
+  // Tasks of a bundle that was given up may have left results since.
+  for (const BundleRecord& bundle : book.forgotten_bundles()) shared[bundle.shared];
+  for (const auto& [folder, out] : shared) {
+    const CampaignDirectory there(folder);
+    std::error_code unreachable;
+    if (fs::is_directory(there.spool(), unreachable)) {
+      away_.erase(folder);
+      ingest_spool_of(there);
+    } else if (out.seeds > 0 && away_.insert(folder).second) {
+      listener_.warn(
+          fmt::format("{}: {}, and {} seeds are out in it ({}). Put it back, and `peclet ingest` takes in "
+                      "what it holds; if it is "
+                      "gone for good, `peclet ingest --forget {}` queues seeds again",
+                      folder, unreachable ? unreachable.message() : "is not there", out.seeds,
+                      listed(out.bundles), out.bundles.front()));
+    }
+  }
+  removal_.finish();
+}
+
+void Ledger::leave_to_batch_system(int place) {
+  const BundleBook book(database_.connection());
+  for (const int seed : book.seeds_out_of_point(point(place).id)) {
+    // A seed beyond the maximum (it was larger once) has no part in the looks.
+    if (seed < campaign_.maximum_realisations && !has_ended({place, seed})) scheduler_->begin({place, seed});
+  }
+}
+
+std::vector<SeedId> Ledger::draw(bool ahead) {
+  std::vector<SeedId> drawn;
+  while (const std::optional<SeedId> id = scheduler_->next()) {
+    if (!ahead && id->seed >= scheduler_->wanted(id->point)) break;
+    scheduler_->begin(*id);
+    drawn.push_back(*id);
+  }
+  return drawn;
+}
+
+std::optional<SeedId> Ledger::identify(std::int64_t point_id, int seed) const {
+  const auto known = std::find_if(points_.begin(), points_.end(),
+                                  [&](const PointRecord& about) { return about.id == point_id; });
+  if (known == points_.end()) return std::nullopt;
+  return SeedId{*known->place, seed};
+}
+
+bool Ledger::has_ended(SeedId id) { return queue_.has_ended(point(id.point).id, id.seed); }
+
+void Ledger::end_handed_over(SeedId id, int task, const AttemptReport& report,
+                             const std::filesystem::path& checkpoint) {
+  const PointRecord& about = point(id.point);
+  queue_.attempt_elsewhere(about.id, id.seed, task, report);
+  if (has_ended(id)) return;
+  const Sentence sentence = judge(queue_.history(about.id, id.seed), retries_);
+  if (sentence.discard_checkpoint) to_discard_.push_back(checkpoint);
+  if (is_blamed(report.outcome)) {
+    to_tell_.emplace_back(
+        Warning{fmt::format("{} on {}: {}{}{}; {}", name(id), report.host, to_string(report.outcome),
+                            report.message.empty() ? "" : ": ", report.message,
+                            sentence.quarantine ? "it is given up" : "it is tried again")});
+  }
+  if (!sentence.quarantine) {
+    take_back(id);
+    return;
+  }
+  queue_.quarantine(about.id, id.seed, sentence.cause);
+  book_outcome(id, Outcome{});
+}
+
+void Ledger::take_back(SeedId id) {
+  if (id.seed < campaign_.maximum_realisations && !has_ended(id)) scheduler_->give_back(id);
+}
+
+}  // namespace peclet::runner

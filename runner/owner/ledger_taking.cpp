@@ -1,0 +1,232 @@
+// How the ledger takes a result in: wholly or not at all.
+//
+// A result comes from outside, and what is done with it touches six tables, the scheduler's picture and what
+// is to happen after the commit. Whatever fails on the way, nothing of it may stay: what was half stored
+// would be counted.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "runner/folder/spool.h"
+#include "runner/owner/ledger.h"
+#include "runner/text/plain_text.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t files_at_a_time = 64;
+constexpr int most_told = 10;
+
+// The folder whose spool a file lies in: the campaign's own, or one that is shared with a batch system.
+CampaignDirectory home_of(const fs::path& spool_file) {
+  return CampaignDirectory(spool_file.parent_path().parent_path());
+}
+
+Outcome outcome_of(const Observed& observed) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (!observed.value) return {};
+  return {Outcome::Kind::value, *observed.value, observed.control.value_or(0),
+          observed.first_quarter.value_or(none), observed.first_half.value_or(none)};
+}
+
+std::optional<double> cost_of(const RealisationResult& result, const char* which) {
+  const Json& seconds = result.document.at("cost").at(which);
+  return seconds.is_number() ? std::optional(seconds.get<double>()) : std::nullopt;
+}
+
+// Whether it is the result's own fault; what fails for want of room or of a sound disk is not.
+bool is_of_the_result(const std::exception& error) {
+  if (const auto* const database = dynamic_cast<const DatabaseError*>(&error)) {
+    return database->refuses_values();
+  }
+  return dynamic_cast<const ResultError*>(&error) != nullptr ||
+         dynamic_cast<const Json::exception*>(&error) != nullptr ||
+         dynamic_cast<const std::logic_error*>(&error) != nullptr;
+}
+
+}  // namespace
+
+// What taking a result changes, in the database and here; taken back unless it is kept.
+class Ledger::Taking {
+ public:
+  Taking(Ledger& ledger, const std::string& point)
+      : ledger_(ledger),
+        changes_(ledger.database_.connection()),
+        to_discard_(ledger.to_discard_.size()),
+        to_remove_(ledger.to_remove_.size()),
+        to_reject_(ledger.to_reject_.size()),
+        to_tell_(ledger.to_tell_.size()),
+        spent_seconds_(ledger.spent_seconds_),
+        lacking_(ledger.lacking_) {
+    const auto known = ledger.places_.find(point);
+    if (known == ledger.places_.end() || !ledger.scheduler_) return;
+    const auto place = static_cast<std::size_t>(known->second);
+    picture_ = Picture{known->second, ledger.scheduler_->kept(known->second), ledger.costs_[place],
+                       ledger.running_[place]};
+  }
+  ~Taking() {
+    if (kept_) return;
+    ledger_.to_discard_.resize(to_discard_);
+    ledger_.to_remove_.resize(to_remove_);
+    ledger_.to_reject_.resize(to_reject_);
+    ledger_.to_tell_.erase(ledger_.to_tell_.begin() + static_cast<std::ptrdiff_t>(to_tell_),
+                           ledger_.to_tell_.end());
+    ledger_.spent_seconds_ = spent_seconds_;
+    ledger_.lacking_ = std::move(lacking_);
+    if (!picture_) return;
+    const auto place = static_cast<std::size_t>(picture_->place);
+    ledger_.scheduler_->put_back(picture_->place, std::move(picture_->point));
+    ledger_.costs_[place] = picture_->costs;
+    ledger_.running_[place] = picture_->running;
+  }
+  Taking(const Taking&) = delete;
+  Taking& operator=(const Taking&) = delete;
+
+  void keep() {
+    changes_.keep();
+    kept_ = true;
+  }
+
+ private:
+  struct Picture {
+    int place;
+    Scheduler::Point point;
+    Costs costs;
+    int running;
+  };
+
+  Ledger& ledger_;
+  Savepoint changes_;
+  std::size_t to_discard_, to_remove_, to_reject_, to_tell_;
+  double spent_seconds_;
+  std::string lacking_;
+  std::optional<Picture> picture_;
+  bool kept_ = false;
+};
+
+std::string Ledger::take_whole(const fs::path& spool, const Reading& read, const Booking& book) {
+  std::string why;
+  try {
+    const RealisationResult result = read();
+    Taking taking(*this, result.point);
+    book(result);
+    taking.keep();
+    return "";
+  } catch (const std::exception& error) {
+    if (!is_of_the_result(error)) throw;
+    why = plain(error.what());
+  }
+  turn_down(spool, why);
+  return why;
+}
+
+Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
+  const Stored stored = queue_.store(result, campaign_.target.observable);
+  switch (stored) {
+    case Stored::stored_apart:
+      to_remove_.push_back(spool);
+      return stored;
+    case Stored::stored:
+    case Stored::duplicate:
+      to_remove_.push_back(spool);
+      to_remove_.push_back(directory_.checkpoint(result.point, result.seed));
+      if (const fs::path there = home_of(spool).checkpoint(result.point, result.seed);
+          there != to_remove_.back()) {
+        to_remove_.push_back(there);
+      }
+      break;
+    case Stored::conflict:
+      turn_down(spool, "another run of the same seed gave another result");
+      return stored;
+    case Stored::mixed_engine:
+      turn_down(spool, "its point has results of another engine");
+      return stored;
+    case Stored::unknown_point:
+      turn_down(spool, "it belongs to no point of this campaign");
+      return stored;
+  }
+  const auto place = places_.find(result.point);
+  if (stored == Stored::duplicate || place == places_.end()) return stored;
+  const Observed observed = observe(result.document, campaign_.target.observable);
+  const std::string cause = cause_of(result, observed);
+  if (result.completed() && !has_observable(result.document["mean"], campaign_.target.observable)) {
+    lacking_ = names_of_numbers(result.document["mean"]);
+    if (lacking_.empty()) lacking_ = "none";
+  }
+  to_tell_.push_back(SeedEnded{told_name(place->second), result.seed, cause, observed.value,
+                               cost_of(result, "cpu_seconds")});
+  if (!scheduler_) return stored;  // load() finds it
+  add_cost(place->second, cost_of(result, "wall_seconds"), cost_of(result, "cpu_seconds"));
+  tell_cost(place->second);
+  if (!observed.value) {
+    to_tell_.emplace_back(Note{fmt::format("{}: ended with {}", name({place->second, result.seed}), cause)});
+  }
+  book_outcome({place->second, result.seed}, outcome_of(observed));
+  return stored;
+}
+
+void Ledger::turn_down(const fs::path& spool, const std::string& why) {
+  const std::string message = fmt::format("{} is not taken: {}", plain_name(spool), why);
+  queue_.event("rejected", std::nullopt, std::nullopt, message);
+  // Of a crowd nobody reads every name.
+  if (++turned_down_ <= most_told)
+    to_tell_.emplace_back(
+        Warning{fmt::format("{}; it is kept in {}", message, home_of(spool).rejected().string())});
+  if (is_there(spool)) to_reject_.push_back(spool);
+}
+
+void Ledger::ingest_spool_of(const CampaignDirectory& directory) {
+  turned_down_ = 0;
+  // Some at a time, because each commit waits for the disk: a crash in between finds the rest where it was.
+  const std::vector<fs::path> files = spool_files(directory);
+  for (std::size_t next = 0; next < files.size();) {
+    const std::size_t end = std::min(files.size(), next + files_at_a_time);
+    Transaction booking(database_.connection());
+    for (; next < end; ++next) ingest(files[next]);
+    booking.commit();
+    after_commit();
+  }
+  if (const int told = std::exchange(turned_down_, 0); told > most_told) {
+    listener_.warn(fmt::format("{} more files in {} are not taken: the table `event` says why",
+                               told - most_told, directory.spool().string()));
+  }
+}
+
+void Ledger::ingest(const fs::path& file) {
+  const auto read = [&file] {
+    RealisationResult result = read_spool_file(file, "");
+    // An engine that answers with another seed's result may die before it is found out.
+    if (is_named_for_another(file, result)) throw ResultError("it is named for another point or seed");
+    return result;
+  };
+  take_whole(file, read, [&](const RealisationResult& result) { take(result, file); });
+}
+
+bool Ledger::take_result(const Grant& grant, const std::string& sha256, std::int64_t step,
+                         double held_seconds, std::string& why) {
+  turned_down_ = 0;
+  const auto read = [&] {
+    RealisationResult result = read_spool_file(grant.job.spool, sha256);
+    if (result.point != grant.job.point || result.seed != grant.job.seed) {
+      throw ResultError("it is of another point or seed than the job");
+    }
+    if (engine_identity(result.document.at("engine")) != identity_) {
+      throw ResultError("it names another engine than the worker's hello");
+    }
+    return result;
+  };
+  why = take_whole(grant.job.spool, read, [&](const RealisationResult& result) {
+    take(result, grant.job.spool);
+    spent_seconds_ += std::min(held_seconds, cost_of(result, "cpu_seconds").value_or(held_seconds));
+    leave(grant);
+    queue_.end_attempt(grant.job.attempt, {AttemptOutcome::result, step});
+  });
+  return why.empty();
+}
+
+}  // namespace peclet::runner

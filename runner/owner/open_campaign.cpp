@@ -1,0 +1,67 @@
+#include "runner/owner/open_campaign.h"
+
+#include <fmt/format.h>
+
+#include "contract/guarded_file.h"
+#include "runner/campaign/campaign_file.h"
+#include "runner/database/backup_files.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has_been_run(const CampaignDirectory& directory) {
+  return !kind_of(directory.database()).empty() || !restore_hint(directory).empty();
+}
+
+}  // namespace
+
+bool awaits_its_first_run(const fs::path& given, const fs::path& chosen) {
+  return fs::is_regular_file(given) && !has_been_run(campaign_directory(given, chosen));
+}
+
+CampaignDirectory find_campaign(const fs::path& given, const fs::path& chosen) {
+  const bool is_folder = fs::is_directory(given);
+  CampaignDirectory directory = is_folder ? CampaignDirectory(fs::absolute(given).lexically_normal())
+                                          : campaign_directory(given, chosen);
+  if (has_been_run(directory)) return directory;
+  if (is_folder) {
+    throw InputError(given.string(), "", "",
+                     "no campaign has been run in this folder; give the campaign file or its .peclet folder");
+  }
+  if (!fs::exists(given))
+    throw InputError(given.string(), "", "", "no such file or folder" + similar_name(given));
+  throw InputError(
+      given.string(), "", "",
+      fmt::format("has not been run yet (there is no {}); start it with `peclet run {}`, or name its folder "
+                  "with --directory if that is elsewhere",
+                  directory.database().string(), words_for(given, chosen)));
+}
+
+OpenCampaign open_campaign(const fs::path& given, const fs::path& chosen) {
+  CampaignDirectory directory = find_campaign(given, chosen);
+  refuse_lost_database(directory);
+  try {
+    Database database = Database::open_reader(directory.database());
+    return {std::move(directory), std::move(database)};
+  } catch (const IntegrityError& error) {
+    throw IntegrityError(error.what() + hint_if_damaged(directory));
+  }
+}
+
+std::string difference_from_file(const fs::path& given, const fs::path& chosen,
+                                 const CampaignRecord& campaign) {
+  if (!fs::is_regular_file(given)) return "";
+  try {
+    if (read_campaign(given).document == campaign.document) return "";
+    return fmt::format(
+        "{0} has changed since it was last run; `peclet set {1}` or `peclet run {1}` takes it over",
+        given.string(), words_for(given, chosen));
+  } catch (const InputError& error) {
+    return fmt::format("the campaign file has changed since it was last run and has a fault: {}",
+                       error.what());
+  }
+}
+
+}  // namespace peclet::runner

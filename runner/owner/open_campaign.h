@@ -1,0 +1,31 @@
+// Finding and opening a campaign that has been run, for those who only look at it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "runner/database/database.h"
+#include "runner/folder/campaign_directory.h"
+
+namespace peclet::runner {
+
+struct OpenCampaign {
+  CampaignDirectory directory;
+  Database database;  // a reader's
+};
+
+// The folder of a campaign that has been run. Also when its database is gone, but not its backups.
+CampaignDirectory find_campaign(const std::filesystem::path& given, const std::filesystem::path& chosen);
+
+// Whether `given` is a file, of which there may be a campaign once it is run.
+bool awaits_its_first_run(const std::filesystem::path& given, const std::filesystem::path& chosen);
+
+// `given` is a campaign's folder, or its file (whose folder is `chosen`, or beside it when that is empty).
+// Throws InputError when there is no campaign there that has been run, IntegrityError, DatabaseError.
+OpenCampaign open_campaign(const std::filesystem::path& given, const std::filesystem::path& chosen);
+
+// What a person should know when the campaign file is no longer what was run: a sentence, or nothing.
+std::string difference_from_file(const std::filesystem::path& given, const std::filesystem::path& chosen,
+                                 const CampaignRecord& campaign);
+
+}  // namespace peclet::runner

@@ -1,0 +1,58 @@
+// A campaign in the hands of the process that may write it.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "runner/database/database.h"
+#include "runner/engines/engine_process.h"
+#include "runner/engines/scene_check.h"
+#include "runner/events/run_listener.h"
+#include "runner/folder/campaign_directory.h"
+#include "runner/folder/owner_lock.h"
+#include "runner/owner/ledger.h"
+#include "runner/statistics/scheduler.h"
+
+namespace peclet::runner {
+
+// A seed may fail so often beyond the first time.
+constexpr int retries = 2;
+
+// Checked and locked: nobody else may write it now.
+struct ClaimedCampaign {
+  Campaign campaign;
+  EngineCommand command;
+  std::vector<SceneAnswer> scenes;  // of its points
+  Json engine;                      // provenance of the engine here
+  CampaignDirectory directory;
+  OwnerLock lock;
+
+  // Checks the campaign file and its scenes, makes the folder and takes the lock. `directory` as in
+  // campaign_directory(); `force`: on a network file system, too; `accepted_engine`: a name of the engine
+  // here, its version or 6 or more leading digits of its binary's hash, or nothing. Throws InputError before
+  // anything is written, OwnedByAnother.
+  ClaimedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen, bool force,
+                  const std::string& accepted_engine = "");
+};
+
+// Opens or creates the database and makes it that of the campaign file, after what a dead owner left
+// unfinished has been removed. `tell`: what a person should know about it. Throws IntegrityError, which says
+// how to restore it from a backup where there is one, InputError, DatabaseError.
+Database open_for_owner(
+    const ClaimedCampaign& claimed, const std::function<void(const std::string&)>& tell = [](const auto&) {});
+
+struct OwnedCampaign : ClaimedCampaign {
+  Database database;  // has adopted the campaign
+  OwnedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen, bool force,
+                const std::string& accepted_engine = "");
+};
+
+// Keeps the results of other engines than this one apart at the points that are still to be run.
+void accept_engine(Ledger& ledger, const Json& engine, RunListener& listener);
+
+// What accepts the engine that an OtherEngine was thrown for: "; accept it with `peclet run FILE
+// --accept-engine 1a2b3c4d5e6f`: ...".
+std::string acceptance_hint(const std::string& verb_and_file, const Json& engine);
+
+}  // namespace peclet::runner

@@ -1,0 +1,146 @@
+#include "runner/owner/requests.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "contract/guarded_file.h"
+#include "contract/sha256.h"
+#include "runner/owner/campaign_changes.h"
+#include "runner/owner/point_name.h"
+#include "runner/owner/retry_plan.h"
+#include "runner/text/plain_text.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+
+// One that is larger is not taken over while the campaign runs; `peclet run` reads it.
+constexpr std::uint64_t largest_campaign_file = 64 << 20;
+
+std::vector<PointRecord> named(const std::vector<PointRecord>& points,
+                               const std::vector<std::string>& names) {
+  std::set<std::size_t> found;
+  for (const std::string& name : names) found.insert(find_point(points, name));
+  std::vector<PointRecord> chosen;
+  chosen.reserve(found.size());
+  for (const std::size_t i : found) chosen.push_back(points[i]);
+  return chosen;
+}
+
+std::string labels(const std::vector<PointRecord>& points) {
+  constexpr std::size_t most = 12;
+  std::vector<std::string> labels;
+  for (std::size_t i = 0; i < std::min(most, points.size()); ++i) labels.push_back(points[i].label);
+  if (points.size() > most) labels.push_back(fmt::format("and {} more", points.size() - most));
+  return fmt::format("{}", fmt::join(labels, ", "));
+}
+
+std::optional<std::int64_t> only(const std::vector<PointRecord>& points) {
+  return points.size() == 1 ? std::optional(points.front().id) : std::nullopt;
+}
+
+}  // namespace
+
+bool Requests::carry_out() {
+  bool any = false;
+  for (const fs::path& file : waiting_requests(directory_)) {
+    if (left_alone_.contains(file)) continue;
+    try {
+      const Request request = read_request(file);
+      if (!queue_.has_answered(request.name)) {
+        carry_out(request);
+        any = true;
+      }
+      fs::remove(file);
+    } catch (const RequestError& error) {
+      const std::optional<fs::path> aside = set_request_aside(file);
+      if (!aside) left_alone_.insert(file);
+      const std::string now = aside ? "set aside as " + plain_name(*aside) : "left alone";
+      listener_.warn(fmt::format("requests/{}: is no request: {}; it is {}", plain_name(file),
+                                 plain(error.what()), now));
+    } catch (const DatabaseError&) {
+      ledger_.roll_back();
+      throw;
+    }
+  }
+  return any;
+}
+
+void Requests::carry_out(const Request& request) {
+  std::string why;
+  try {
+    Transaction booking(database_.connection());
+    Done done = std::visit([&](const auto& wish) { return apply(wish); }, request.wish);
+    ledger_.refresh();
+    queue_.event(done.kind, done.point, std::nullopt, done.message, request.name);
+    booking.commit();
+    ledger_.after_commit();
+    listener_.note(fmt::format("{}: {}", done.kind, done.message));
+    return;
+  } catch (const InputError& error) {
+    why = error.what();
+  } catch (const OtherEngine& error) {
+    why = fmt::format("{}: stop the run first, then `peclet run` says how to accept it", error.what());
+  }
+  ledger_.roll_back();
+  refuse(request, why);
+}
+
+void Requests::refuse(const Request& request, const std::string& why) {
+  Transaction booking(database_.connection());
+  queue_.event("refused", std::nullopt, std::nullopt, why, request.name);
+  booking.commit();
+  listener_.note("a request is refused: " + why);
+}
+
+Requests::Done Requests::apply(const TakeOver& wish) {
+  std::string text;
+  try {
+    text = read_regular(wish.file, largest_campaign_file);
+  } catch (const std::system_error& error) {
+    throw InputError(wish.file.string(), "", "", error.what());
+  }
+  // Whoever changed it since asks for that to be taken over, or is yet to do so: what was checked is no more.
+  if (sha256(text) != wish.sha256) {
+    return {"set", fmt::format("left to what {} says since; `peclet set` or `peclet run` takes that over",
+                               wish.file.string())};
+  }
+  const Campaign campaign = parse_campaign(parse_json(text, wish.file.string()), wish.file.string());
+  if (ledger_.has_engine() && campaign.engine != ledger_.campaign().engine) {
+    throw InputError(wish.file.string(), "/engine", Json(campaign.engine).dump(),
+                     "cannot be changed while the campaign runs: stop it, and start it again");
+  }
+  const std::string changes = describe_changes(database_, campaign);
+  ledger_.take_over(campaign);
+  return {"set", changes};
+}
+
+Requests::Done Requests::apply(const Prioritise& wish) {
+  const std::vector<PointRecord> points = named(database_.points(), wish.points);
+  for (const PointRecord& point : points) queue_.set_priority(point.id, wish.priority);
+  return {"set", fmt::format("priority {}: {}", wish.priority, labels(points)), only(points)};
+}
+
+Requests::Done Requests::apply(const Cancel& wish) {
+  const std::vector<PointRecord> points = named(database_.points(), wish.points);
+  for (const PointRecord& point : points) queue_.set_cancelled(point.id, !wish.undo);
+  return {"cancel", fmt::format("{}: {}", wish.undo ? "taken up again" : "no more seeds", labels(points)),
+          only(points)};
+}
+
+Requests::Done Requests::apply(const Retry& wish) {
+  const std::vector<PointRecord> all = database_.points();
+  const std::vector<PointRecord> points = wish.points.empty() ? all : named(all, wish.points);
+  const RetryPlan plan = plan_retry(database_, points, wish.seeds);
+  for (const auto& [point, seeds] : plan.seeds) {
+    for (const int seed : seeds) queue_.retry(point, seed);
+  }
+  return {"retry", plan.message, only(points)};
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,24 @@
+// The verb `peclet explain`: why a point is where it is, and what would bring it further.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "runner/database/database.h"
+#include "runner/folder/campaign_directory.h"
+
+namespace peclet::runner {
+
+struct ExplainOptions {
+  std::filesystem::path campaign;  // file or folder
+  std::filesystem::path directory;
+  std::string point;  // label, or at least 4 digits of the hash; "": all points
+  bool json = false;
+};
+
+// Throws InputError for a name that no point, or more than one, has.
+std::string explain(Database& database, const CampaignDirectory& directory, const std::string& point);
+// The same as schema/README.md describes it.
+Json explain_json(Database& database, const CampaignDirectory& directory, const std::string& point);
+
+}  // namespace peclet::runner

@@ -1,0 +1,16 @@
+// What `peclet explain` says of lost seeds and of attempts that came to nothing.
+#pragma once
+
+#include <string>
+
+#include "runner/database/database.h"
+
+namespace peclet::runner {
+
+// "  lost: 2 overlap (seeds 3, 17)" in a line for every cause; nothing when no seed is lost.
+std::string losses_text(Database& database, std::int64_t point);
+
+// How many attempts ended how, and the latest ones that count against their seed.
+std::string attempts_text(Database& database, std::int64_t point);
+
+}  // namespace peclet::runner

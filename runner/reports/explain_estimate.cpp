@@ -1,0 +1,144 @@
+#include "runner/reports/explain_estimate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "runner/statistics/bootstrap.h"
+#include "runner/statistics/window_advice.h"
+#include "runner/text/number_text.h"
+
+namespace peclet::runner {
+namespace {
+
+// The values of the last look that completed, in order of their seeds.
+std::vector<Outcome> completed(Database& database, const PointSummary& point) {
+  const std::vector<std::optional<Outcome>> outcomes = database.outcomes(point.point.id);
+  const auto seeds = std::min(outcomes.size(), static_cast<std::size_t>(point.looks.back().seeds));
+  std::vector<Outcome> found;
+  for (std::size_t seed = 0; seed < seeds; ++seed) {
+    if (outcomes[seed] && outcomes[seed]->kind == Outcome::Kind::value) found.push_back(*outcomes[seed]);
+  }
+  return found;
+}
+
+std::vector<double> controlled(const std::vector<Outcome>& outcomes) {
+  std::vector<double> values;
+  values.reserve(outcomes.size());
+  for (const Outcome& outcome : outcomes) values.push_back(outcome.value + outcome.control);
+  return values;
+}
+
+std::string interval_text(const Look& look, const std::vector<Outcome>& outcomes,
+                          const TargetRecord& target) {
+  const double confidence = adjusted_confidence(target.target.confidence, target.minimum, target.maximum);
+  std::string text;
+  if (const std::optional<Interval> interval = bootstrap_t(controlled(outcomes), confidence)) {
+    text = fmt::format("  interval: Student {} .. {}, bootstrap-t {} .. {}; skewness {}\n",
+                       rough(look.controlled.mean - look.controlled_half_width),
+                       rough(look.controlled.mean + look.controlled_half_width), rough(interval->low),
+                       rough(interval->high), rough(look.skewness));
+  }
+  if (is_skewed(look, target.target.confidence)) {
+    text +=
+        "  skewed: some values are far from the rest on one side, and Student's interval holds the mean less "
+        "often\n"
+        "    than it says; trust the bootstrap interval more, and ask for a smaller tolerance or a larger "
+        "minimum\n";
+  }
+  return text;
+}
+
+std::string transient_text(const Look& look, const std::vector<Outcome>& outcomes) {
+  if (!look.transient) return "";
+  std::vector<double> quarters, halves;
+  for (const Outcome& outcome : outcomes) {
+    if (!std::isfinite(outcome.first_half)) continue;
+    quarters.push_back(outcome.first_quarter - outcome.value - outcome.control);
+    halves.push_back(outcome.first_half - outcome.value - outcome.control);
+  }
+  const Estimate quarter = estimate(quarters), half = estimate(halves);
+  return fmt::format(
+      "  transient: the first quarter of the windows differs from the whole by {}, the first half by {} (± "
+      "standard "
+      "error):\n    the window begins too early, which more seeds never mend; lengthen "
+      "/scene/duration/equilibration\n",
+      with_error(quarter.mean, quarter.standard_error), with_error(half.mean, half.standard_error));
+}
+
+// beta of value + beta * control that would have the least variance, and what the fixed 1 gives.
+std::string control_text(const std::vector<Outcome>& outcomes) {
+  double value = 0, control = 0;
+  const auto count = static_cast<double>(outcomes.size());
+  for (const Outcome& outcome : outcomes) {
+    value += outcome.value / count;
+    control += outcome.control / count;
+  }
+  double vv = 0, vc = 0, cc = 0;
+  for (const Outcome& outcome : outcomes) {
+    vv += (outcome.value - value) * (outcome.value - value);
+    vc += (outcome.value - value) * (outcome.control - control);
+    cc += (outcome.control - control) * (outcome.control - control);
+  }
+  if (cc == 0 || vv == 0 || count < 3) return "";
+  const double best = -vc / cc;
+  const double error = std::sqrt(std::max(0.0, vv - vc * vc / cc) / (count - 2) / cc);
+  return fmt::format(
+      "  control variate: variance {} of that without it; its coefficient is 1, the best for these seeds "
+      "{}\n",
+      rough((vv + 2 * vc + cc) / vv), with_error(best, error));
+}
+
+struct Costs {
+  double equilibration = 0, production = 0;
+};
+
+Costs steps(Database& database, const PointSummary& point) {
+  Statement query(database.connection(),
+                  "SELECT avg(equilibration_steps), avg(production_steps) FROM "
+                  "realisation WHERE point_id = ? AND state = 'done'");
+  query.bind(point.point.id).step();
+  return {query.real(0), query.real(1)};
+}
+
+std::string window_text(Database& database, const PointSummary& point, const std::vector<Outcome>& outcomes) {
+  std::vector<WindowHalves> halves;
+  for (const Outcome& outcome : outcomes) {
+    if (!std::isfinite(outcome.first_half)) continue;
+    halves.push_back({outcome.first_half, 2 * (outcome.value + outcome.control) - outcome.first_half});
+  }
+  const Costs cost = steps(database, point);
+  const std::optional<WindowAdvice> advice = advise_window(halves, cost.equilibration, cost.production);
+  if (!advice) return "";
+  // What is advised must be true at the end of the correlation's interval that speaks most against it.
+  std::string conclusion = "its length is about right, as far as these seeds can tell";
+  if (advice->half_as_long * (1 + advice->correlation) / (1 + advice->low) < 0.9) {
+    conclusion = "shorter windows and more seeds are cheaper";
+  }
+  if (advice->twice_as_long_at_best * (1 + std::max(advice->high, 0.0)) < 0.9) {
+    conclusion = "longer windows are cheaper than more seeds";
+  }
+  return fmt::format(
+      "  window: {}; its halves correlate by {:.2f} ({:.2f} .. {:.2f}), equilibration is {:.0f} % of a "
+      "realisation;\n"
+      "    for the same error half the window takes {:.2f} times the processor time, twice the window {:.2f} "
+      "to {:.2f}\n",
+      conclusion, advice->correlation, advice->low, advice->high,
+      100 * cost.equilibration / (cost.equilibration + cost.production), advice->half_as_long,
+      advice->twice_as_long_at_best, advice->twice_as_long_at_worst);
+}
+
+}  // namespace
+
+std::string estimate_text(Database& database, const PointSummary& point, const TargetRecord& target) {
+  if (point.looks.empty()) return "";
+  const Look& look = point.looks.back();
+  const std::vector<Outcome> outcomes = completed(database, point);
+  return interval_text(look, outcomes, target) + transient_text(look, outcomes) + control_text(outcomes) +
+         window_text(database, point, outcomes);
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,220 @@
+// How `status` looks to a person.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runner/reports/prediction_text.h"
+#include "runner/reports/status.h"
+#include "runner/text/duration_text.h"
+#include "runner/text/number_text.h"
+#include "runner/text/point_columns.h"
+#include "runner/text/text_table.h"
+
+namespace peclet::runner {
+namespace {
+
+std::string interval(const Look& look) {
+  if (!std::isfinite(look.controlled_half_width)) return "-";
+  return fmt::format("{} ({})", with_error(look.controlled.mean, look.controlled_half_width),
+                     percent(relative_width(look)));
+}
+
+std::vector<std::string> cells(const PointSummary& point, bool with_control) {
+  std::vector<std::string> cells{fmt::format("{}/{}", point.wanted_ended, point.wanted),
+                                 with_error(point.so_far.mean, point.so_far.standard_error)};
+  if (point.looks.empty()) {
+    cells.emplace_back("-");
+    if (with_control) cells.emplace_back("-");
+  } else {
+    const Look& look = point.looks.back();
+    cells.push_back(interval(look));
+    if (with_control) cells.push_back(with_error(look.estimate.mean, look.half_width));
+  }
+  cells.push_back(verdict_text(point));
+  return cells;
+}
+
+std::string heading(const CampaignStatus& status) {
+  const TargetRecord& target = status.campaign.target;
+  return fmt::format("{}: {} to {:g} % at {:g} % confidence, {} to {} seeds a point\n\n",
+                     status.campaign.name, target.target.observable, 100 * target.target.relative_tolerance,
+                     100 * target.target.confidence, target.minimum, target.maximum);
+}
+
+// Columns as a narrow terminal does without them; which point and which verdict are always there.
+namespace importance {
+constexpr int uncontrolled = 1, so_far = 2, seeds = 3, look = 4;
+}
+
+// Of the columns that are shown.
+std::string legend(const CampaignStatus& status, bool with_control, const std::vector<std::string>& left_out,
+                   std::size_t width) {
+  // Where both lines of it fit, it is broken so that neither is much longer.
+  const char* const blank = width >= 100 ? "\n" : " ";
+  const auto shows = [&](const char* title) {
+    return std::find(left_out.begin(), left_out.end(), title) == left_out.end();
+  };
+  std::vector<std::string> parts;
+  if (shows("so far")) parts.emplace_back("so far: mean ± standard error of all seeds that have ended");
+  if (shows("look")) {
+    parts.push_back(fmt::format("look: mean ± half-width of the{}{:g} % interval at the last look", blank,
+                                100 * status.campaign.target.target.confidence));
+  }
+  if (with_control && parts.size() == 2) parts.emplace_back("both with the control variate");
+  if (with_control && parts.size() == 1) parts.back() += ", with the control variate";
+  if (with_control && shows("uncontrolled")) parts.emplace_back("uncontrolled: the look without it");
+  std::string text = fmt::format("{}\n", fmt::join(parts, "; "));
+  if (!left_out.empty()) text += fmt::format("too narrow for: {}\n", fmt::join(left_out, ", "));
+  return folded(text, width);
+}
+
+// A loosened target is met by the look by which it would have been met from the beginning: whoever could
+// choose the look afterwards could choose the answer.
+std::string earlier_looks_text(const CampaignStatus& status) {
+  std::string text;
+  for (const PointSummary& point : status.points) {
+    if (point.earlier_look == 0) continue;
+    text += fmt::format(
+        "{}: the look at {} seeds decides, the first within the present target; all {} that "
+        "have ended are in \"so far\"\n",
+        point.point.label, point.looks.back().seeds, point.counts.terminal());
+  }
+  return text;
+}
+
+// "3 capped, 2 open"
+std::string listed(const std::map<std::string, int>& counts) {
+  std::string text;
+  for (const auto& [name, count] : counts)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name);
+  return text;
+}
+
+// "; 40 handed over (jobs 12, 17)"
+std::string handed_over_text(const CampaignStatus& status) {
+  constexpr std::size_t most_jobs = 4;
+  int seeds = 0;
+  std::string jobs;
+  for (std::size_t i = 0; i < status.handed_over.size(); ++i) {
+    const HandedOver& bundle = status.handed_over[i];
+    seeds += bundle.seeds;
+    if (i < most_jobs) jobs += (i > 0 ? ", " : "") + (bundle.job.empty() ? "not confirmed" : bundle.job);
+  }
+  if (seeds == 0) return "";
+  const std::size_t more = status.handed_over.size() - std::min(most_jobs, status.handed_over.size());
+  if (more > 0) jobs += fmt::format(" and {} more", more);
+  return fmt::format("; {} handed over (job{} {})", seeds, status.handed_over.size() == 1 ? "" : "s", jobs);
+}
+
+std::string kept_apart_text(const CampaignStatus& status) {
+  std::string text;
+  for (const PointSummary& point : status.points) {
+    for (const KeptApart& kept : point.kept_apart) {
+      text += fmt::format("{}: {} results of engine {} are kept apart\n", point.point.label, kept.results,
+                          kept.engine);
+    }
+  }
+  return text;
+}
+
+std::string seed_totals(const CampaignStatus& status) {
+  int ended = 0, running = 0, surplus = 0, lost = 0;
+  double cpu_seconds = 0;
+  std::map<std::string, int> losses;
+  for (const PointSummary& point : status.points) {
+    ended += point.counts.terminal();
+    running += point.counts.running;
+    surplus += point.surplus();
+    lost += point.lost();
+    cpu_seconds += point.counts.cpu_seconds;
+    for (const auto& [cause, count] : point.losses) losses[cause] += count;
+  }
+  std::string text = fmt::format("{} seeds ended", ended);
+  if (lost > 0) text += fmt::format(", {} of them lost ({})", lost, listed(losses));
+  if (surplus > 0) text += fmt::format(", {} surplus", surplus);
+  if (running > 0) {
+    text +=
+        fmt::format("; {} {}", running, status.owner ? "running" : "were running when the run was killed");
+  }
+  text += handed_over_text(status);
+  return text + fmt::format("; processor time {}\n", duration_text(cpu_seconds));
+}
+
+}  // namespace
+
+bool any_control(const CampaignStatus& status) {
+  return std::any_of(status.points.begin(), status.points.end(), [](const PointSummary& point) {
+    return !point.looks.empty() && has_control(point.looks.back());
+  });
+}
+
+std::string point_totals(const CampaignStatus& status) {
+  std::map<std::string, int> verdicts;
+  for (const PointSummary& point : status.points) ++verdicts[standing_word(point)];
+  return fmt::format("{} point{}: {}", status.points.size(), status.points.size() == 1 ? "" : "s",
+                     listed(verdicts));
+}
+
+std::string status_table(const CampaignStatus& status, std::size_t width) {
+  const bool with_control = any_control(status);
+  std::vector<std::string> labels;
+  for (const PointSummary& point : status.points) labels.push_back(point.point.label);
+  const PointColumns points(labels);
+  TextTable table;
+  points.add_to(table);
+  table.add_column("seeds", TextTable::Align::right, importance::seeds);
+  table.add_column("so far", TextTable::Align::right, importance::so_far);
+  table.add_column("look", TextTable::Align::right, importance::look);
+  if (with_control) table.add_column("uncontrolled", TextTable::Align::right, importance::uncontrolled);
+  table.add_column("verdict", TextTable::Align::left);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    std::vector<std::string> row = points.cells(i);
+    const std::vector<std::string> rest = cells(status.points[i], with_control);
+    row.insert(row.end(), rest.begin(), rest.end());
+    table.add_row(std::move(row));
+  }
+  const std::string totals = point_totals(status) + '\n' + seed_totals(status) + earlier_looks_text(status) +
+                             kept_apart_text(status) + predictions_text(status.points);
+  return folded(heading(status), width) + table.text_within(width) + '\n' +
+         legend(status, with_control, table.left_out(width), width) + '\n' + folded(totals, width);
+}
+
+std::string status_table(Database& database, std::int64_t owner) {
+  CampaignStatus status = read_status(database);
+  status.owner = owner;
+  return status_table(status);
+}
+
+std::string workers_text(const CampaignStatus& status, std::size_t width) {
+  constexpr std::size_t most_lines = 16;
+  if (!status.owner) {
+    if (standing(status) != 4) return "";
+    return status.handed_over.empty() ? "\nnobody runs it now; `peclet run` goes on\n"
+                                      : "\nnobody takes results in now; `peclet ingest` does\n";
+  }
+  TextTable table;
+  table.add_column("worker", TextTable::Align::right, 2);
+  table.add_column("point and seed", TextTable::Align::left);
+  table.add_column("phase", TextTable::Align::left, 3);
+  table.add_column("done", TextTable::Align::right, 4);
+  table.add_column("strain", TextTable::Align::right, 1);
+  std::size_t workers = 0;
+  for (const PointSummary& point : status.points) {
+    for (const LeaseRecord& lease : point.leases) {
+      if (++workers > most_lines) continue;
+      const double done =
+          lease.steps > 0 ? static_cast<double>(lease.step) / static_cast<double>(lease.steps) : std::nan("");
+      table.add_row({fmt::format("{}", lease.worker),
+                     fmt::format("{} seed {}", point.point.label, lease.seed), lease.phase,
+                     std::isnan(done) ? "-" : fmt::format("{:.0f} %", 100 * done), rough(lease.strain)});
+    }
+  }
+  std::string text = fmt::format("\nprocess {} runs it\n", *status.owner);
+  if (workers > 0) text += table.text_within(width);
+  if (workers > most_lines) text += fmt::format("and {} more\n", workers - most_lines);
+  return text;
+}
+
+}  // namespace peclet::runner

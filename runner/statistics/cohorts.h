@@ -1,0 +1,61 @@
+// The stop rule: closed cohorts in seed order, looked at after fixed numbers of seeds.
+//
+// A cohort of n is the seeds 0 .. n-1, each in a terminal state. Because the looks are at fixed n and a look
+// only happens when its cohort is closed, the decision depends on no timing: one worker or sixty-four, killed
+// and resumed or not, give the same looks, the same deciding look and the same mean.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "runner/statistics/stop_rule.h"
+
+namespace peclet::runner {
+
+// How a seed ended; a seed that is queued or runs has no outcome yet.
+struct Outcome {
+  enum class Kind { value, lost };  // lost: the engine's verdict (blow-up, jam), or quarantined after crashes
+  Kind kind = Kind::lost;
+  double value = 0;
+  double control = 0;  // control variate of mean zero; 0 where there is none
+  // value + control over the first quarter and the first half of the window; NaN where they are not known
+  double first_quarter = std::numeric_limits<double>::quiet_NaN();
+  double first_half = std::numeric_limits<double>::quiet_NaN();
+};
+
+// One look at a closed cohort. The controlled estimate decides: of value + control, the control variate with
+// the coefficient -1 that was fixed before any value was seen, so that it is as unbiased as the plain one and
+// its interval as honest. Without a control variate both are the same.
+struct Look {
+  int seeds = 0;  // n
+  int lost = 0;
+  Estimate estimate;                 // of the observable
+  double half_width = 0;             // Student-t, at the level of adjusted_confidence()
+  Estimate controlled;               // of value + control
+  double controlled_half_width = 0;  // the rule's: see stop_rule.h
+  double skewness = std::numeric_limits<double>::quiet_NaN();  // of value + control
+  bool transient = false;  // the beginning of the window differs from its end: see transient.h
+  Verdict verdict = Verdict::more;
+};
+
+// Whether the values are so skewed that Student's interval holds the mean visibly less often than it says:
+// the skewness is beyond what a normal population of this size shows, and the loss of coverage that belongs
+// to it,
+//   2 phi(z) z (z^4 + 2 z^2 - 3) g^2 / (18 n)    (P. Hall, The Bootstrap and Edgeworth Expansion, 1992, 2.6),
+// is more than 0.01; z is the two-sided normal quantile of the confidence, g the skewness, n the count.
+bool is_skewed(const Look& look, double confidence);
+
+// Half-width over |mean| of the estimate that decides; NaN where there is no interval.
+double relative_width(const Look& look);
+
+// Whether there is a control variate: without one (no Brownian motion, another engine) the controlled
+// estimate only repeats the other.
+bool has_control(const Look& look);
+
+// All looks that the outcomes allow, in order, ending with the first that decides (any verdict but more).
+// outcomes[s] is that of seed s. A pure function: replaying it is how a stored look is checked.
+std::vector<Look> replay_looks(const std::vector<std::optional<Outcome>>& outcomes, const Target& target,
+                               int minimum, int maximum);
+
+}  // namespace peclet::runner

@@ -1,0 +1,136 @@
+#include "runner/statistics/forecast.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace peclet::runner {
+namespace {
+
+// Of a cost that was seen once or twice nobody knows the scatter.
+constexpr int fewest_costs = 3;
+constexpr double unknown_scatter = 0.5;  // over the mean
+
+struct Spread {
+  double mean = 0, deviation = 0, error = 0;
+};
+
+Spread spread(const Cost& cost) {
+  const double mean = cost.sum / cost.count;
+  double deviation = unknown_scatter * mean;
+  if (cost.count >= fewest_costs) {
+    deviation = std::sqrt(std::max(0.0, (cost.sum_of_squares - mean * cost.sum) / (cost.count - 1)));
+  }
+  return {mean, deviation, deviation / std::sqrt(cost.count)};
+}
+
+struct SeedRange {
+  int likely = 0, low = 0, high = 0;
+};
+
+// Student's factor and the standard error both fall with the seeds.
+double width_at(const PointForecast& point, StopRule& rule, int values, double factor) {
+  const double share = static_cast<double>(values) / point.so_far.count;
+  const double error = point.so_far.standard_error * std::sqrt(factor / share);
+  return rule.half_width({values, point.so_far.mean, error}) / std::abs(point.so_far.mean);
+}
+
+// The first look that decides, of those that take more seeds than have ended, if the variance is `factor`
+// times the sample's.
+int stop_of(const PointForecast& point, StopRule& rule, double factor) {
+  const std::vector<int>& schedule = rule.schedule();
+  const auto stops = [&](int seeds) {
+    const double share = static_cast<double>(seeds) / point.ended;
+    const auto values = static_cast<int>(std::lround(point.so_far.count * share));
+    return rule.stops(seeds, values, width_at(point, rule, values, factor));
+  };
+  const auto later = std::upper_bound(schedule.begin(), schedule.end(), point.ended);
+  const auto enough = std::find_if(later, schedule.end(), stops);
+  return enough == schedule.end() ? schedule.back() : *enough;
+}
+
+SeedRange seeds_of(const PointForecast& point, StopRule& rule) {
+  const int minimum = rule.schedule().front(), maximum = rule.schedule().back();
+  if (point.so_far.count < 2 || point.so_far.mean == 0) return {minimum, minimum, maximum};
+  constexpr double outside = 0.1;
+  const int degrees = point.so_far.count - 1;
+  return {stop_of(point, rule, 1), stop_of(point, rule, variance_excess(degrees, 1 - outside)),
+          stop_of(point, rule, variance_excess(degrees, outside))};
+}
+
+// Rounds of all workers until the point has so many seeds: a look waits for all its seeds. Of the first one
+// `done` is over where seeds run.
+double rounds_of(const PointForecast& point, const std::vector<int>& schedule, int seeds, int workers,
+                 double done) {
+  double rounds = 0;
+  int known = point.ended;
+  for (const int look : schedule) {
+    if (look <= known || look > seeds) continue;
+    rounds += std::ceil(static_cast<double>(look - known) / workers);
+    known = look;
+  }
+  return rounds - (point.running > 0 ? done : 0);
+}
+
+}  // namespace
+
+void Cost::add(double seconds) {
+  ++count;
+  sum += seconds;
+  sum_of_squares += seconds * seconds;
+}
+
+int expected_seeds(const std::vector<Look>& looks, const Target& target, int minimum, int maximum,
+                   double factor) {
+  StopRule rule(target, minimum, maximum);
+  if (looks.empty()) return rule.schedule().front();
+  PointForecast point;
+  point.ended = looks.back().seeds;
+  point.so_far = looks.back().controlled;
+  if (point.so_far.count < 2 || point.so_far.mean == 0) return maximum;
+  return stop_of(point, rule, factor);
+}
+
+std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, const Target& target,
+                                   int minimum, int maximum, int workers) {
+  // A point without any cost yet is taken to cost what the others do.
+  Cost all;
+  for (const PointForecast& point : points) {
+    all.count += point.cost.count;
+    all.sum += point.cost.sum;
+    all.sum_of_squares += point.cost.sum_of_squares;
+  }
+  if (all.count == 0) return std::nullopt;
+
+  StopRule rule(target, minimum, maximum);
+  TimeToGo chains, work;
+  double above = 0, below = 0;  // squares of what the work may differ by
+  bool any = false;
+  for (const PointForecast& point : points) {
+    if (point.decided) continue;
+    any = true;
+    const Spread cost = spread(point.cost.count > 0 ? point.cost : all);
+    const SeedRange seeds = seeds_of(point, rule);
+    // Half of what runs is done, in the mean.
+    const auto to_come = [&](int stop) { return std::max(0.5, stop - point.ended - 0.5 * point.running); };
+    const double left = to_come(seeds.likely);
+    work.likely += left * cost.mean;
+    const double scatter = 4 * (left * cost.deviation * cost.deviation + std::pow(left * cost.error, 2));
+    above += scatter + std::pow((to_come(seeds.high) - left) * cost.mean, 2);
+    below += scatter + std::pow((left - to_come(seeds.low)) * cost.mean, 2);
+    const auto rounds = [&](int stop, double done) {
+      return rounds_of(point, rule.schedule(), stop, workers, done);
+    };
+    chains.likely = std::max(chains.likely, rounds(seeds.likely, 0.5) * cost.mean);
+    chains.low = std::max(chains.low, rounds(seeds.low, 0.9) * std::max(0.0, cost.mean - 2 * cost.error));
+    chains.high =
+        std::max(chains.high, rounds(seeds.high, 0) * (cost.mean + 2 * cost.error) + 2 * cost.deviation);
+  }
+  if (!any) return TimeToGo{};
+  work.low = std::max(0.0, work.likely - std::sqrt(below));
+  work.high = work.likely + std::sqrt(above);
+  return TimeToGo{std::max(work.likely / workers, chains.likely),
+                  std::max(work.low / workers, std::min(chains.low, chains.likely)) / machine_allowance,
+                  std::max(work.high / workers, chains.high) * machine_allowance};
+}
+
+}  // namespace peclet::runner

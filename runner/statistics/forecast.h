@@ -1,0 +1,54 @@
+// How long a campaign will still take, from what its points have cost and scattered so far. Pure.
+//
+// Of a point with v values the true variance is not known better than (v - 1) / chi^2(v - 1) times the
+// sample's: the stop rule, carried out with its 10 % and 90 % quantiles, gives the range of the seeds to
+// come. With it go the scatter of the costs and the error of their mean, each point's on its own, so that
+// their squares add up. What all points have in common is the machine: other work, heat and clock rates
+// change its speed, which nothing in the past tells. Both ends of a range leave room for that, see
+// machine_allowance. results/planning has how often the ranges hold the truth.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "runner/statistics/cohorts.h"
+
+namespace peclet::runner {
+
+// By what the mean speed of a machine in the time to come may differ from that so far, either way. Chosen so
+// that ranges hold the time to go 93 to 98 % of the time where the speed wanders between 1 and 1/2
+// (results/planning).
+constexpr double machine_allowance = 1.3;
+
+// What realisations of a point cost, in seconds of a worker.
+struct Cost {
+  int count = 0;
+  double sum = 0, sum_of_squares = 0;
+  void add(double seconds);
+};
+
+struct PointForecast {
+  Cost cost;
+  Estimate so_far;  // of the values that have ended
+  int ended = 0;    // seeds, lost ones included
+  int running = 0;  // seeds that workers have
+  bool decided = false;
+};
+
+// Seconds until every point is decided; low and high hold it some 95 % of the time.
+struct TimeToGo {
+  double likely = 0, low = 0, high = 0;
+};
+
+// Seeds at which the point may be expected to stop by the stop rule, if its spread is what it was at the last
+// look. `factor` scales the variance.
+int expected_seeds(const std::vector<Look>& looks, const Target& target, int minimum, int maximum,
+                   double factor = 1);
+
+// The longer of what the work takes that is shared by the workers, and of the looks of a point, which come
+// one after another and wait for all of their seeds. Nothing while no realisation of any undecided point has
+// ended.
+std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, const Target& target,
+                                   int minimum, int maximum, int workers);
+
+}  // namespace peclet::runner

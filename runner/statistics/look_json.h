@@ -1,0 +1,18 @@
+// Estimates and looks as JSON, the same wherever they are printed.
+#pragma once
+
+#include "contract/json.h"
+#include "runner/statistics/cohorts.h"
+
+namespace peclet::runner {
+
+// Null for a number that does not exist.
+Json number_json(double value);
+
+Json estimate_json(const Estimate& estimate);
+
+// The estimate that decides with its half-width, and the one without the control variate; numbers that do not
+// exist are null.
+Json look_json(const Look& look);
+
+}  // namespace peclet::runner

@@ -1,0 +1,199 @@
+#include "runner/statistics/prediction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace peclet::runner {
+namespace {
+
+constexpr double outside = 0.025;  // share of the futures on either side of the range
+// Points have the streams 0, 1 ...; what they have in common is independent of each of them.
+constexpr std::uint64_t common_stream = std::numeric_limits<std::uint64_t>::max();
+
+// Values seen so far in one future: count, mean and sum of the squared deviations from it.
+struct Sample {
+  int count = 0;
+  double mean = 0, squares = 0;
+
+  // Two samples become one (Chan, Golub and LeVeque's update).
+  void add(const Sample& other) {
+    if (other.count == 0) return;
+    const double difference = other.mean - mean;
+    const int total = count + other.count;
+    squares += other.squares + difference * difference * count * other.count / total;
+    mean += difference * other.count / total;
+    count = total;
+  }
+  Estimate estimate() const { return {count, mean, std::sqrt(squares / (count - 1) / count)}; }
+};
+
+// What a point's first seeds say.
+struct Pilot {
+  int seeds = 0;
+  std::vector<double> values{};  // of those that were not lost
+
+  int lost() const { return seeds - static_cast<int>(values.size()); }
+  Sample sample() const {
+    const Estimate known = estimate(values);
+    const double count = known.count;
+    return {known.count, known.mean, known.standard_error * known.standard_error * count * (count - 1)};
+  }
+};
+
+Pilot pilot_of(const std::vector<std::optional<Outcome>>& outcomes, int maximum) {
+  Pilot pilot;
+  for (const std::optional<Outcome>& outcome : outcomes) {
+    if (!outcome || pilot.seeds == maximum) break;
+    ++pilot.seeds;
+    if (outcome->kind == Outcome::Kind::value) pilot.values.push_back(outcome->value + outcome->control);
+  }
+  return pilot;
+}
+
+class Futures {
+ public:
+  Futures(const Pilot& pilot, const Target& target, int minimum, int maximum, std::uint64_t stream)
+      : random_(stream),
+        known_(pilot.sample()),
+        seeds_(pilot.seeds),
+        rule_(target, minimum, maximum),
+        first_(static_cast<std::size_t>(
+            std::upper_bound(rule_.schedule().begin(), rule_.schedule().end(), seeds_) -
+            rule_.schedule().begin())) {}
+
+  // By what the variance may be off.
+  double own_factor() {
+    const int degrees = known_.count - 1;
+    return degrees / chi_squared(degrees);
+  }
+
+  // Place of the deciding look in the schedule; without convergence the schedule's size.
+  int draw(double factor) {
+    const double deviation = std::sqrt(factor * known_.squares / (known_.count - 1));
+    const double mean = known_.mean + deviation / std::sqrt(known_.count) * normal_(random_);
+    Sample sample = known_;
+    int seeds = seeds_;
+    const std::vector<int>& schedule = rule_.schedule();
+    for (std::size_t place = first_; place < schedule.size(); ++place) {
+      sample.add(draw_values(survivors(schedule[place] - seeds), mean, deviation));
+      seeds = schedule[place];
+      if (is_converged(rule_.judge(seeds, sample.estimate()).verdict)) return static_cast<int>(place);
+    }
+    return static_cast<int>(schedule.size());
+  }
+
+ private:
+  double chi_squared(int degrees) {
+    return std::chi_squared_distribution<double>(static_cast<double>(degrees))(random_);
+  }
+
+  int survivors(int seeds) {
+    if (known_.count == seeds_) return seeds;
+    return std::binomial_distribution<int>(seeds, static_cast<double>(known_.count) / seeds_)(random_);
+  }
+
+  // The mean of normal values and the sum of their squared deviations are independent.
+  Sample draw_values(int count, double mean, double deviation) {
+    if (count == 0) return {};
+    const double own_mean = mean + deviation / std::sqrt(count) * normal_(random_);
+    return {count, own_mean, count > 1 ? deviation * deviation * chi_squared(count - 1) : 0};
+  }
+
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+  Sample known_;
+  int seeds_;
+  StopRule rule_;
+  std::size_t first_;
+};
+
+std::size_t rank_of(double probability, std::size_t count) {
+  return std::min(count - 1, static_cast<std::size_t>(probability * static_cast<double>(count)));
+}
+
+template <typename Number>
+Expected<Number> middle_of(const std::vector<Number>& sorted) {
+  const std::size_t below = rank_of(outside, sorted.size());
+  return {sorted[rank_of(0.5, sorted.size())], sorted[below], sorted[sorted.size() - 1 - below]};
+}
+
+}  // namespace
+
+Prediction predict(const std::vector<std::optional<Outcome>>& outcomes, const Target& target, int minimum,
+                   int maximum, std::uint64_t stream) {
+  const Pilot pilot = pilot_of(outcomes, maximum);
+  Prediction prediction;
+  prediction.pilot = pilot.seeds;
+  prediction.lost = pilot.lost();
+  if (pilot.values.size() < 2) {
+    prediction.obstacle = pilot.seeds < 2 ? Obstacle::too_few : Obstacle::lost;
+    return prediction;
+  }
+  const Estimate known = estimate(pilot.values);
+  if (2 * known.standard_error >= std::abs(known.mean)) {
+    prediction.obstacle = Obstacle::near_zero;
+    return prediction;
+  }
+  const std::vector<int> schedule = look_schedule(minimum, maximum);
+  Futures drawn(pilot, target, minimum, maximum, stream);
+  std::vector<int> seeds;
+  for (int future = 0; future < futures; ++future) {
+    const int place = drawn.draw(drawn.own_factor());
+    const bool capped = place == std::ssize(schedule);
+    seeds.push_back(capped ? maximum : schedule[static_cast<std::size_t>(place)]);
+    prediction.capped += capped ? 1.0 / futures : 0;
+  }
+  std::sort(seeds.begin(), seeds.end());
+  prediction.seeds = middle_of(seeds);
+  return prediction;
+}
+
+std::vector<double> common_factors(const std::vector<Share>& shares) {
+  double sum = 0, squares = 0;
+  for (const Share& share : shares) {
+    sum += share.cost;
+    squares += share.cost * share.cost / (share.values - 1);
+  }
+  const double degrees = sum * sum / squares;
+  if (!(degrees > 0)) return std::vector<double>(futures, 1.0);  // nothing is open
+  std::mt19937_64 random(common_stream);
+  std::chi_squared_distribution<double> chi_squared(degrees);
+  std::vector<double> factors(futures);
+  for (double& factor : factors) factor = degrees / chi_squared(random);
+  return factors;
+}
+
+std::vector<int> places_of_looks(const std::vector<std::optional<Outcome>>& outcomes, const Target& target,
+                                 int minimum, int maximum, std::uint64_t stream,
+                                 const std::vector<double>& factors) {
+  Futures drawn(pilot_of(outcomes, maximum), target, minimum, maximum, stream);
+  std::vector<int> places;
+  places.reserve(factors.size());
+  for (const double factor : factors) places.push_back(drawn.draw(factor));
+  return places;
+}
+
+std::string obstacle_text(const Prediction& prediction) {
+  switch (prediction.obstacle) {
+    case Obstacle::none:
+      break;
+    case Obstacle::too_few:
+      return "fewer than two seeds have ended";
+    case Obstacle::lost:
+      return fmt::format("{} of {} seeds are lost", prediction.lost, prediction.pilot);
+    case Obstacle::near_zero:
+      return fmt::format("the mean of {} seeds may be zero", prediction.pilot - prediction.lost);
+  }
+  return "";
+}
+
+Expected<double> middle(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return middle_of(values);
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,224 @@
+#include "runner/statistics/scheduler.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <compare>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "runner/statistics/forecast.h"
+
+namespace peclet::runner {
+namespace {
+
+bool decides(const std::vector<Look>& looks) {
+  return !looks.empty() && looks.back().verdict != Verdict::more;
+}
+
+}  // namespace
+
+Scheduler::Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, Target target, int minimum,
+                     int maximum)
+    : target_(std::move(target)),
+      minimum_(minimum),
+      maximum_(maximum),
+      ceiling_(maximum),
+      schedule_(look_schedule(minimum, maximum)) {
+  for (std::vector<std::optional<Outcome>>& known : outcomes) {
+    Point point;
+    point.outcomes = std::move(known);
+    // Seeds beyond the maximum (it was larger once) are kept by the database and have no part in the looks.
+    point.outcomes.resize(static_cast<std::size_t>(maximum_));
+    for (const std::optional<Outcome>& outcome : point.outcomes) {
+      point.phases.push_back(outcome ? Phase::ended : Phase::waiting);
+      if (!outcome) continue;
+      ++point.begun;
+      ++point.all_ended;
+      count_in(point, *outcome);
+    }
+    look_at(point);
+    points_.push_back(std::move(point));
+  }
+}
+
+void Scheduler::look_at(Point& point) {
+  while (point.closed < maximum_ && point.outcomes[static_cast<std::size_t>(point.closed)]) ++point.closed;
+  point.looks = replay_looks(point.outcomes, target_, minimum_, maximum_);
+  point.expected = expected_seeds(point.looks, target_, minimum_, maximum_);
+  point.fall = decides(point.looks) ? 0 : expected_fall(point);
+}
+
+// Welford's update.
+void Scheduler::count_in(Point& point, const Outcome& outcome) {
+  if (outcome.kind == Outcome::Kind::lost) return;
+  const double value = outcome.value + outcome.control, before = point.mean;
+  point.mean += (value - before) / ++point.values;
+  point.squares += (value - before) * (value - point.mean);
+}
+
+Estimate Scheduler::so_far(int point) const {
+  const Point& about = point_at(point);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  if (about.values == 0) return {0, none, none};
+  const double count = about.values;
+  return {about.values, about.mean, about.values < 2 ? none : std::sqrt(about.squares / (count - 1) / count)};
+}
+
+bool Scheduler::decided(int point) const { return decides(point_at(point).looks); }
+
+bool Scheduler::finished() const {
+  return std::none_of(points_.begin(), points_.end(), [this](const Point& point) { return is_open(point); });
+}
+
+int Scheduler::look_ahead(const Point& point, int steps) const {
+  const std::size_t index = point.looks.size() + static_cast<std::size_t>(steps);
+  return schedule_[std::min(index, schedule_.size() - 1)];
+}
+
+int Scheduler::wanted(int point) const {
+  const Point& about = point_at(point);
+  return decides(about.looks) ? about.looks.back().seeds : std::min(look_ahead(about, 0), ceiling_);
+}
+
+int Scheduler::ended(int point) const {
+  const std::vector<Phase>& phases = point_at(point).phases;
+  return static_cast<int>(std::count(phases.begin(), phases.begin() + wanted(point), Phase::ended));
+}
+
+bool Scheduler::is_open(const Point& point) const {
+  return !point.cancelled && !decides(point.looks) && point.closed < ceiling_;
+}
+
+std::optional<SeedId> Scheduler::next() const {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  if (const std::optional<SeedId> needed = most_urgent(0, unlimited)) return needed;
+  return most_urgent(1, unlimited);
+}
+
+std::optional<SeedId> Scheduler::next_within(double seconds) const {
+  return seconds > 0 ? most_urgent(0, seconds) : std::nullopt;
+}
+
+std::optional<double> Scheduler::seconds_per_work() const {
+  double seconds = 0, work = 0;
+  for (const Point& point : points_) {
+    if (!point.seconds) continue;
+    seconds += *point.seconds;
+    work += point.work;
+  }
+  if (seconds == 0) return std::nullopt;
+  return seconds / work;
+}
+
+double Scheduler::expected_seconds(const std::vector<int>& running) const {
+  const double scale = seconds_per_work().value_or(0);  // a look at all points, once
+  double seconds = 0;
+  for (int number = 0; number < points(); ++number) {
+    const Point& about = point_at(number);
+    seconds += running[static_cast<std::size_t>(number)] * about.seconds.value_or(about.work * scale);
+  }
+  return seconds;
+}
+
+double Scheduler::expected_fall(const Point& point) const {
+  // Before the first look nothing is known, and nothing tells more.
+  constexpr double of_unknown = 1e6;
+  if (point.looks.empty()) return of_unknown;
+  const Look& last = point.looks.back();
+  const double width = relative_width(last);
+  if (!std::isfinite(width)) return 1;
+  // Student's factor counts: it falls from 4 to 10 seeds by as much as the square root's.
+  const double confidence = adjusted_confidence(target_.confidence, minimum_, maximum_);
+  const double share = static_cast<double>(look_ahead(point, 0)) / last.seeds;
+  const int count = last.controlled.count, later = static_cast<int>(std::lround(count * share));
+  return width * (1 - student_quantile(later - 1, confidence) * std::sqrt(count) /
+                          (student_quantile(count - 1, confidence) * std::sqrt(later)));
+}
+
+Scheduler::Rank Scheduler::rank(const Point& point, double seconds) const {
+  if (allocation_ == Allocation::steepest_first) {
+    return {0, point.fall / (std::max(1, waiting(point)) * seconds)};
+  }
+  if (point.begun < seeds_of_pass) return {seeds_of_pass - point.begun, -seconds};
+  // A point may have begun more seeds than it was expected to need: it is not done for all that.
+  return {0, std::max(1, std::min(point.expected, ceiling_) - point.begun) * seconds};
+}
+
+int Scheduler::waiting(const Point& point) const {
+  const auto begin = point.phases.begin() + point.closed;
+  const auto end = std::max(begin, point.phases.begin() + std::min(look_ahead(point, 0), ceiling_));
+  return static_cast<int>(std::count(begin, end, Phase::waiting));
+}
+
+std::optional<int> Scheduler::waiting_seed(const Point& point, int steps) const {
+  const auto begin = point.phases.begin() + point.closed;
+  const auto end = std::max(begin, point.phases.begin() + std::min(look_ahead(point, steps), ceiling_));
+  const auto found = std::find(begin, end, Phase::waiting);
+  if (found == end) return std::nullopt;
+  return static_cast<int>(found - point.phases.begin());
+}
+
+std::optional<SeedId> Scheduler::most_urgent(int steps, double budget) const {
+  constexpr double shortest = 1e-9;  // a clock may have read nothing
+  const std::optional<double> known = seconds_per_work();
+  const double scale = known.value_or(1);
+  std::optional<SeedId> best;
+  std::tuple<int, bool, Rank> best_rank;
+  for (int number = 0; number < points(); ++number) {
+    const Point& point = point_at(number);
+    if (!is_open(point)) continue;
+    const double seconds = std::max(shortest, point.seconds.value_or(point.work * scale));
+    if (known && seconds > budget) continue;
+    const bool is_whole = !known || seconds * waiting(point) <= budget;
+    const std::tuple<int, bool, Rank> own{point.priority, is_whole, rank(point, seconds)};
+    if (best && own <= best_rank) continue;
+    if (const std::optional<int> seed = waiting_seed(point, steps)) {
+      best = SeedId{number, *seed};
+      best_rank = own;
+    }
+  }
+  return best;
+}
+
+void Scheduler::begin(SeedId id) {
+  Point& point = point_at(id.point);
+  Phase& phase = point.phases.at(static_cast<std::size_t>(id.seed));
+  assert(phase == Phase::waiting);
+  phase = Phase::out;
+  ++point.begun;
+}
+
+void Scheduler::give_back(SeedId id) {
+  Point& point = point_at(id.point);
+  Phase& phase = point.phases.at(static_cast<std::size_t>(id.seed));
+  assert(phase == Phase::out);
+  phase = Phase::waiting;
+  --point.begun;
+}
+
+bool Scheduler::end(SeedId id, const Outcome& outcome) {
+  if (id.seed >= maximum_) return false;
+  Point& point = point_at(id.point);
+  const auto seed = static_cast<std::size_t>(id.seed);
+  if (point.phases[seed] == Phase::waiting) ++point.begun;
+  point.phases[seed] = Phase::ended;
+  const bool again = point.outcomes[seed].has_value();
+  // A late result comes in place of a seed that was lost.
+  const bool had_value = again && point.outcomes[seed]->kind == Outcome::Kind::value;
+  if (!had_value) count_in(point, outcome);
+  point.all_ended += again ? 0 : 1;
+  point.outcomes[seed] = outcome;
+  if (again) {
+    look_at(point);
+    return true;
+  }
+  if (id.seed != point.closed || decides(point.looks)) return false;
+  while (point.closed < maximum_ && point.outcomes[static_cast<std::size_t>(point.closed)]) ++point.closed;
+  if (point.closed < look_ahead(point, 0)) return false;
+  look_at(point);
+  return true;
+}
+
+}  // namespace peclet::runner

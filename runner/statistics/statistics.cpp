@@ -1,0 +1,75 @@
+#include "runner/statistics/statistics.h"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <limits>
+
+namespace peclet::runner {
+namespace {
+
+// A power of two by which the values can be multiplied so that no sum, square or cube of them overflows or
+// vanishes; no digit of the usual ones is changed by that.
+double unit_of(std::span<const double> values) {
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  constexpr int most = std::numeric_limits<double>::max_exponent - 2;
+  return largest > 0 && std::isfinite(largest) ? std::ldexp(1, std::clamp(-std::ilogb(largest), -most, most))
+                                               : 1;
+}
+
+}  // namespace
+
+Estimate estimate(std::span<const double> values) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  Estimate result{static_cast<int>(values.size()), none, none};
+  if (values.empty()) return result;
+  const auto count = static_cast<double>(values.size());
+  const double unit = unit_of(values);
+
+  double sum = 0;
+  for (const double value : values) sum += unit * value;
+  const double first_mean = sum / count;
+  // The deviations' own sum takes back what rounding did to the first mean, so equal values have exactly
+  // their mean and no spread.
+  double correction = 0;
+  for (const double value : values) correction += unit * value - first_mean;
+  const double mean = first_mean + correction / count;
+  result.mean = mean / unit;
+  if (values.size() < 2) return result;
+
+  double squares = 0;
+  for (const double value : values) squares += (unit * value - mean) * (unit * value - mean);
+  result.standard_error = std::sqrt(squares / (count - 1) / count) / unit;
+  return result;
+}
+
+double skewness(std::span<const double> values) {
+  const double unit = unit_of(values), mean = unit * estimate(values).mean;
+  double squares = 0, cubes = 0;
+  for (const double value : values) {
+    const double deviation = unit * value - mean;
+    squares += deviation * deviation;
+    cubes += deviation * deviation * deviation;
+  }
+  if (values.size() < 3 || squares == 0) return std::numeric_limits<double>::quiet_NaN();
+  return cubes * std::sqrt(static_cast<double>(values.size())) / (squares * std::sqrt(squares));
+}
+
+double student_quantile(int degrees, double confidence) {
+  const boost::math::students_t distribution(degrees);
+  return boost::math::quantile(boost::math::complement(distribution, (1 - confidence) / 2));
+}
+
+double variance_excess(int degrees, double probability) {
+  const boost::math::chi_squared distribution(degrees);
+  return degrees / boost::math::quantile(distribution, probability);
+}
+
+double student_half_width(const Estimate& estimate, double confidence) {
+  if (estimate.count < 2) return std::numeric_limits<double>::quiet_NaN();
+  return student_quantile(estimate.count - 1, confidence) * estimate.standard_error;
+}
+
+}  // namespace peclet::runner

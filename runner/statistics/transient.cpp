@@ -1,0 +1,37 @@
+#include "runner/statistics/transient.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "runner/statistics/statistics.h"
+
+namespace peclet::runner {
+namespace {
+
+constexpr int fewest_seeds = 5;
+constexpr double confidence_of_each = 1 - 0.0005;
+
+// `scale` is the size of what was subtracted: a difference that rounding can make is none.
+bool differs_from_zero(const std::vector<double>& contrasts, double scale) {
+  const Estimate mean = estimate(contrasts);
+  if (mean.count < fewest_seeds) return false;
+  return std::abs(mean.mean) > student_half_width(mean, confidence_of_each) + 1e-9 * std::abs(scale);
+}
+
+}  // namespace
+
+bool has_transient(std::span<const std::optional<Outcome>> cohort) {
+  std::vector<double> quarters, halves;
+  double scale = 0;
+  for (const std::optional<Outcome>& outcome : cohort) {
+    if (!outcome || outcome->kind == Outcome::Kind::lost || !std::isfinite(outcome->first_half)) continue;
+    const double whole = outcome->value + outcome->control;
+    scale = std::max(scale, std::abs(whole));
+    quarters.push_back(outcome->first_quarter - whole);
+    halves.push_back(outcome->first_half - whole);
+  }
+  return differs_from_zero(quarters, scale) || differs_from_zero(halves, scale);
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,15 @@
+#include "runner/verbs/cancel.h"
+
+#include "runner/campaign/campaign_file.h"
+#include "runner/owner/open_campaign.h"
+
+namespace peclet::runner {
+
+Reply cancel_points(const CancelOptions& options) {
+  const CampaignDirectory directory = find_campaign(options.campaign, options.directory);
+  const Request request = write_request(directory, Cancel{options.points, options.undo});
+  return await_reply(directory, request, words_for(campaign_file_of(options.campaign), options.directory),
+                     options.patience);
+}
+
+}  // namespace peclet::runner

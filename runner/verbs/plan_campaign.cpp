@@ -1,0 +1,157 @@
+#include "runner/verbs/plan_campaign.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <system_error>
+
+#include "contract/input_error.h"
+#include "runner/campaign/campaign_file.h"
+#include "runner/database/database.h"
+#include "runner/database/prediction_book.h"
+#include "runner/engines/cost_trial.h"
+#include "runner/engines/scene_check.h"
+#include "runner/folder/campaign_directory.h"
+#include "runner/reports/plan.h"
+
+namespace peclet::runner {
+namespace {
+
+MeasuredCost cost_of(const std::vector<RealisationRecord>& realisations) {
+  MeasuredCost cost;
+  for (const RealisationRecord& record : realisations) {
+    // A seed that was given up took time too, but nobody counted it.
+    if (!record.cpu_seconds) continue;
+    ++cost.count;
+    cost.cpu_seconds += *record.cpu_seconds;
+    cost.wall_seconds += record.wall_seconds.value_or(*record.cpu_seconds);
+  }
+  if (cost.count == 0) return cost;
+  cost.cpu_seconds /= cost.count;
+  cost.wall_seconds /= cost.count;
+  return cost;
+}
+
+std::map<std::string, PointHistory> history(Database& database, const Campaign& campaign) {
+  const bool same_observable = database.campaign().target.target.observable == campaign.target.observable;
+  std::map<std::string, PointHistory> known;
+  for (const PointRecord& point : database.points()) {
+    PointHistory& of = known[point.hash];
+    of.cost = cost_of(database.realisations(point.id));
+    if (same_observable) of.outcomes = database.outcomes(point.id);
+  }
+  return known;
+}
+
+// Whether the database still is about the points and the target of this campaign: while a pilot runs, people
+// may change both.
+bool is_of(Database& database, const Campaign& campaign) {
+  const Target& target = database.campaign().target.target;
+  if (target.observable != campaign.target.observable ||
+      target.relative_tolerance != campaign.target.relative_tolerance ||
+      target.confidence != campaign.target.confidence) {
+    return false;
+  }
+  const std::vector<PointRecord> points = database.points();
+  return std::equal(points.begin(), points.end(), campaign.points.begin(), campaign.points.end(),
+                    [](const PointRecord& stored, const auto& point) { return stored.hash == point.hash; });
+}
+
+void store_predictions(const Plan& plan, Database& database) {
+  Transaction booking(database.connection());
+  const std::vector<PointRecord> points = database.points();
+  for (std::size_t place = 0; place < points.size(); ++place) {
+    const PointPlan& point = plan.points.at(place);
+    if (!point.is_predicted()) continue;
+    store_prediction(database.connection(), points[place].id, point.prediction, point.cost.cpu_seconds);
+  }
+  booking.commit();
+}
+
+void print(const Plan& plan, bool json) {
+  const std::string text = json ? plan_json(plan).dump(2) + '\n' : plan_text(plan);
+  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
+    throw std::system_error(errno, std::generic_category(), "standard output");
+  }
+}
+
+std::vector<double> work_of(const std::vector<SceneAnswer>& scenes) {
+  std::vector<double> work;
+  work.reserve(scenes.size());
+  for (const SceneAnswer& answer : scenes)
+    work.push_back(answer.steps * static_cast<double>(answer.particles));
+  return work;
+}
+
+// Of the point in the middle: the one from which the others are least far.
+std::optional<CostGuess> guess_cost(const Campaign& campaign, const std::vector<double>& work,
+                                    const EngineCommand& command) {
+  std::vector<std::size_t> order(work.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
+  std::nth_element(order.begin(), middle, order.end(),
+                   [&](std::size_t a, std::size_t b) { return work[a] < work[b]; });
+  const std::optional<double> seconds = try_cost(campaign.points.at(*middle).scene, command);
+  if (!seconds) return std::nullopt;
+  return CostGuess{*middle, *seconds};
+}
+
+bool any_cost(const std::map<std::string, PointHistory>& known) {
+  return std::any_of(known.begin(), known.end(),
+                     [](const auto& point) { return point.second.cost.count > 0; });
+}
+
+Plan plan_of(const Campaign& campaign, const std::vector<SceneAnswer>& scenes,
+             const std::map<std::string, PointHistory>& known, const RunOptions& options,
+             const std::optional<CostGuess>& guess = {}) {
+  Plan plan = make_plan(campaign, work_of(scenes), known, team(options).workers, guess);
+  plan.made_at = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  return plan;
+}
+
+}  // namespace
+
+int plan_campaign(const PlanOptions& options) {
+  const std::filesystem::path& file = options.run.campaign;
+  const Campaign campaign = read_campaign(file);
+  if (options.pilot && (*options.pilot < 2 || *options.pilot > campaign.minimum_realisations)) {
+    throw InputError("--pilot", "", fmt::format("{}", *options.pilot),
+                     fmt::format("must be an integer from 2 to /realisations/minimum of {}, {}",
+                                 file.string(), campaign.minimum_realisations));
+  }
+  if (options.pilot) {
+    return run_pilot(options.run, *options.pilot, [&](const ClaimedCampaign& claimed, Database& database) {
+      if (!is_of(database, claimed.campaign)) {
+        fmt::print(
+            stderr,
+            "peclet: {0}: the campaign was changed while the pilot ran: its results are stored, but no "
+            "prediction is; `peclet plan {1}` predicts from what is there\n",
+            file.string(), words_for(file, options.run.directory));
+        return;
+      }
+      const Plan plan =
+          plan_of(claimed.campaign, claimed.scenes, history(database, claimed.campaign), options.run);
+      store_predictions(plan, database);
+      print(plan, options.json);
+    });
+  }
+  const CampaignDirectory directory = campaign_directory(file, options.run.directory);
+  std::map<std::string, PointHistory> known;
+  if (std::filesystem::exists(directory.database())) {
+    Database database = Database::open_reader(directory.database());
+    known = history(database, campaign);
+  }
+  const EngineCommand command = resolve_engine(campaign, file);
+  const std::vector<SceneAnswer> scenes = check_scenes(campaign, file, command);
+  std::optional<CostGuess> guess;
+  if (!any_cost(known)) guess = guess_cost(campaign, work_of(scenes), command);
+  print(plan_of(campaign, scenes, known, options.run, guess), options.json);
+  return 0;
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,227 @@
+#include "runner/verbs/run.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "contract/exit_codes.h"
+#include "runner/batch/bundle_files.h"
+#include "runner/campaign/campaign_file.h"
+#include "runner/care/periodic_backup.h"
+#include "runner/database/sqlite.h"
+#include "runner/engines/worker_process.h"
+#include "runner/events/event_stream.h"
+#include "runner/events/progress.h"
+#include "runner/events/run_log.h"
+#include "runner/folder/room.h"
+#include "runner/owner/dispatcher.h"
+#include "runner/owner/folder_watch.h"
+#include "runner/owner/requests.h"
+#include "runner/reports/status.h"
+#include "runner/statistics/budget.h"
+#include "runner/text/duration_text.h"
+#include "runner/verbs/exit_code.h"
+
+namespace peclet::runner {
+namespace {
+
+// More workers than seeds that may still run have nothing to do.
+Team useful_team(const RunOptions& options, const Campaign& campaign) {
+  Team size = team(options);
+  const auto seeds = static_cast<std::int64_t>(campaign.points.size()) * campaign.maximum_realisations;
+  size.workers = static_cast<int>(std::min<std::int64_t>(seeds, size.workers));
+  return size;
+}
+
+// What a person should know who asked for more than the machine has.
+void judge_team(const Team& size, RunListener& listener) {
+  constexpr int tolerable = 4;
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  if (size.workers * std::int64_t{size.threads} <= std::int64_t{tolerable} * cores) return;
+  listener.warn(
+      fmt::format("{} workers of {} threads share {} cores: that is slower than --workers {}, and takes "
+                  "more memory",
+                  size.workers, size.threads, cores, std::max(1, cores / size.threads)));
+}
+
+// A run's database and picture, ready to be dispatched from: what an earlier owner left undone is done.
+struct Opened {
+  Opened(const ClaimedCampaign& claimed, const RunOptions& options, RunListener& listener)
+      : database(open_for_owner(claimed, [&](const std::string& text) { listener.note(text); })),
+        ledger(database, claimed.campaign, claimed.directory, listener, retries),
+        requests(database, ledger, claimed.directory, listener) {
+    requests.carry_out();
+    if (!options.accept_engine.empty()) accept_engine(ledger, claimed.engine, listener);
+  }
+
+  Database database;
+  Ledger ledger;
+  Requests requests;
+  SummedError before;  // the run
+};
+
+// Waits while the disk is too full to begin. Nothing: a signal came first, or there never will be room.
+std::unique_ptr<Opened> open_when_there_is_room(const ClaimedCampaign& claimed, const RunOptions& options,
+                                                RunListener& listener, StopSignals& signals) {
+  for (bool first = true;; first = false) {
+    try {
+      auto opened = std::make_unique<Opened>(claimed, options, listener);
+      if (!first) listener.happened(ShortageEnded{});
+      return opened;
+    } catch (const std::exception& error) {
+      if (!means_no_room(error)) throw;
+      const CampaignDirectory& directory = claimed.directory;
+      if (const std::string why = why_in_vain(directory.root(), directory.root(), 0); !why.empty()) {
+        listener.warn(why);
+        return nullptr;
+      }
+      if (first) {
+        const std::string shortage = shortage_text(claimed.directory.root(), 0);
+        listener.happened(ShortageBegan{shortage});
+        listener.warn(shortage + "; the campaign begins when there is room");
+      }
+    }
+    if (signals.wait(std::chrono::seconds(3))) return nullptr;
+  }
+}
+
+RunBegan beginning(const ClaimedCampaign& claimed, const RunOptions& options) {
+  const Team size = useful_team(options, claimed.campaign);
+  return {claimed.campaign.name,
+          claimed.directory.root(),
+          getpid(),
+          static_cast<int>(claimed.campaign.points.size()),
+          size.workers,
+          size.threads};
+}
+
+// The result is the exit code.
+int dispatch(Opened& opened, const RunOptions& options, const ClaimedCampaign& claimed, RunLog& log,
+             StopSignals& signals) {
+  using std::chrono::steady_clock;
+  const CampaignDirectory& directory = claimed.directory;
+  const Team size = useful_team(options, claimed.campaign);
+  judge_team(size, log);
+  allow_open_files(size.workers);
+  PeriodicBackup backup(directory, std::chrono::duration<double>(options.backup_seconds), log,
+                        steady_clock::now());
+  FolderWatch watch(directory, claimed.lock, opened.database, log);
+  DispatchSettings settings;
+  settings.threads = size.threads;
+  settings.lease = std::chrono::duration<double>(options.lease_seconds);
+  settings.checkpoint_seconds = options.checkpoint_seconds;
+  if (options.time_limit) settings.time_limit = std::chrono::duration<double>(*options.time_limit);
+  settings.chore = [&backup, &watch] {
+    watch.attend(steady_clock::now());
+    backup.attend(steady_clock::now());
+  };
+  settings.requests = [&opened] { return opened.requests.carry_out(); };
+  log.record(fmt::format("{} begins: process {}, {} workers of {} threads, engine {}",
+                         directory.root().string(), getpid(), size.workers, size.threads,
+                         claimed.command.program.string()));
+  ProcessPool pool(size.workers, claimed.command, directory, signals);
+  Dispatcher dispatcher(opened.database, opened.ledger, pool, log, settings, steady_clock::now);
+  const bool finished = dispatcher.run() == Dispatcher::Ending::finished;
+  backup.finish();
+  return ending(read_status(opened.database), finished);
+}
+
+// What failed before it had begun is no part of the campaign's history: nothing is written.
+void tell_of_failure(RunLog& log, bool had_begun, const std::exception& error) {
+  if (had_begun) log.record(fmt::format("ends with an error: {}", error.what()));
+  log.happened(RunEnded{exit_code_of(error), error.what()});
+}
+
+std::string how_to_go_on(const RunOptions& options, const CampaignStatus& status) {
+  if (!status.handed_over.empty())
+    return handed_over_advice(status.handed_over, words_for(options.campaign, options.directory));
+  return fmt::format("\nstopped; all that was done is kept, and `peclet run {}` goes on from there\n",
+                     words_for(options.campaign, options.directory));
+}
+
+Bounds bounds_of(const RunOptions& options, const ClaimedCampaign& claimed, std::optional<int> ceiling) {
+  Bounds bounds{ceiling, {}, {}};
+  const std::vector<double> work = particle_steps(claimed.scenes);
+  for (std::size_t i = 0; i < work.size(); ++i) bounds.work[claimed.campaign.points[i].hash] = work[i];
+  if (options.budget_hours) bounds.budget_seconds = seconds_per_hour * *options.budget_hours;
+  return bounds;
+}
+
+// What the person is told on standard output in the end.
+using Conclusion = std::function<void(const ClaimedCampaign&, Opened&, int code)>;
+
+int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion& conclude) {
+  const ClaimedCampaign claimed(options.campaign, options.directory, options.force, options.accept_engine);
+  StopSignals signals;
+  std::unique_ptr<Opened> opened;
+  int code = ExitCode::stopped;
+  {
+    Progress progress(Progress::style_of_stderr(options.quiet));
+    std::optional<EventStream> events;
+    if (options.jsonl) events.emplace(STDOUT_FILENO, progress);
+    RunLog log(claimed.directory.run_log(), events ? static_cast<RunListener&>(*events) : progress);
+    log.happened(beginning(claimed, options));
+    try {
+      opened = open_when_there_is_room(claimed, options, log, signals);
+      if (opened) {
+        opened->ledger.set_bounds(bounds_of(options, claimed, ceiling));
+        opened->before = summed_error(opened->ledger.scheduler());
+        code = dispatch(*opened, options, claimed, log, signals);
+      }
+    } catch (const OtherEngine& error) {
+      const OtherEngine advised(
+          error.what() +
+          acceptance_hint("run " + words_for(options.campaign, options.directory), claimed.engine));
+      tell_of_failure(log, opened != nullptr, advised);
+      throw advised;
+    } catch (const std::exception& error) {
+      tell_of_failure(log, opened != nullptr, error);
+      throw;
+    }
+    log.record(fmt::format("ends with exit code {}", code));
+    log.happened(RunEnded{code, ""});
+  }
+  if (opened && !options.jsonl) conclude(claimed, *opened, code);
+  return code;
+}
+
+}  // namespace
+
+Team team(const RunOptions& options) {
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  if (options.workers > 0 && options.threads > 0) return {options.workers, options.threads};
+  if (options.workers > 0) return {options.workers, std::max(1, cores / options.workers)};
+  const int threads = std::max(1, options.threads);
+  return {std::max(1, cores / threads), threads};
+}
+
+int run_campaign(const RunOptions& options) {
+  return run(options, std::nullopt, [&](const ClaimedCampaign&, Opened& opened, int code) {
+    CampaignStatus status = read_status(opened.database);
+    status.owner = getpid();
+    std::string text = status_table(status);
+    if (options.budget_hours) {
+      text += budget_text(opened.ledger.spent_seconds(), seconds_per_hour * *options.budget_hours,
+                          opened.before, summed_error(opened.ledger.scheduler()));
+    }
+    if (code == ExitCode::stopped) text += how_to_go_on(options, status);
+    std::fputs(text.c_str(), stdout);
+  });
+}
+
+int run_pilot(const RunOptions& options, int seeds,
+              const std::function<void(const ClaimedCampaign&, Database&)>& conclude) {
+  const int code = run(options, seeds, [&](const ClaimedCampaign& claimed, Opened& opened, int ended_with) {
+    if (ended_with != ExitCode::stopped) conclude(claimed, opened.database);
+  });
+  // That points are not decided yet is what a pilot is for.
+  return code == ExitCode::integrity || code == ExitCode::stopped ? code : 0;
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,113 @@
+#include "runner/verbs/validate.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <map>
+#include <set>
+#include <vector>
+
+#include "runner/engines/scene_check.h"
+#include "runner/text/number_text.h"
+#include "runner/text/point_columns.h"
+#include "runner/text/text_table.h"
+
+namespace peclet::runner {
+namespace {
+
+// Headings of the derived numbers that we know, in the order in which people look for them; an engine may
+// have others, which follow under their own names.
+const std::pair<const char*, const char*> known_numbers[] = {
+    {"peclet", "Pe"},        {"stokes", "St"},         {"relative_stiffness", "k_hat"},
+    {"contact_time", "τ_C"}, {"inertial_time", "τ_I"}, {"brownian_time", "τ_B"},
+    {"shear_time", "τ_S"}};
+
+struct Derived {
+  std::string key, heading;
+};
+
+// Those that exist in at least one point.
+std::vector<Derived> derived_columns(const std::vector<SceneAnswer>& answers) {
+  std::set<std::string> present;
+  for (const SceneAnswer& answer : answers) {
+    for (const auto& [key, value] : answer.derived.items()) {
+      if (value.is_number()) present.insert(key);
+    }
+  }
+  std::vector<Derived> columns;
+  for (const auto& [key, heading] : known_numbers) {
+    if (present.erase(key) > 0) columns.push_back({key, heading});
+  }
+  for (const std::string& key : present) columns.push_back({key, key});
+  return columns;
+}
+
+std::string cell(const Json& derived, const std::string& key) {
+  const auto found = derived.find(key);
+  return found != derived.end() && found->is_number() ? rough(found->get<double>()) : "-";
+}
+
+std::string points_table(const Campaign& campaign, const std::vector<SceneAnswer>& answers) {
+  const std::vector<Derived> columns = derived_columns(answers);
+  std::vector<std::string> labels;
+  for (const StatePoint& point : campaign.points) labels.push_back(point.label);
+  const PointColumns points(labels);
+  TextTable table;
+  points.add_to(table);
+  for (const Derived& column : columns) table.add_column(column.heading);
+  for (const char* const title : {"particles", "timestep", "steps"}) table.add_column(title);
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const SceneAnswer& answer = answers[i];
+    std::vector<std::string> cells = points.cells(i);
+    for (const Derived& column : columns) cells.push_back(cell(answer.derived, column.key));
+    cells.push_back(fmt::format("{}", answer.particles));
+    cells.push_back(answer.timestep ? rough(*answer.timestep) : "-");
+    cells.push_back(rough(answer.steps));
+    table.add_row(cells);
+  }
+  return table.text();
+}
+
+// Each warning once, with the points that it is about.
+std::string warnings_text(const Campaign& campaign, const std::vector<SceneAnswer>& answers) {
+  std::map<std::string, std::vector<std::string>> labels;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    for (const std::string& warning : answers[i].warnings)
+      labels[warning].push_back(campaign.points[i].label);
+  }
+  std::string text;
+  for (const auto& [warning, of_points] : labels) {
+    text += fmt::format("warning: {}: {}\n", fmt::join(of_points, ", "), warning);
+  }
+  return text.empty() ? text : '\n' + text;
+}
+
+Json answers_json(const Campaign& campaign, const std::vector<SceneAnswer>& answers) {
+  Json points = Json::array();
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    points.push_back({{"label", campaign.points[i].label},
+                      {"hash", campaign.points[i].hash},
+                      {"settings", campaign.points[i].settings},
+                      {"particles", answers[i].particles},
+                      {"timestep", answers[i].timestep ? Json(*answers[i].timestep) : Json(nullptr)},
+                      {"steps", answers[i].steps},
+                      {"derived", answers[i].derived},
+                      {"warnings", answers[i].warnings}});
+  }
+  return {{"schema_version", 1}, {"campaign", campaign.name}, {"points", points}};
+}
+
+}  // namespace
+
+std::string validate_campaign(const ValidateOptions& options) {
+  const Campaign campaign = read_campaign(options.campaign);
+  const std::vector<SceneAnswer> answers =
+      check_scenes(campaign, options.campaign, resolve_engine(campaign, options.campaign));
+  if (options.json) return answers_json(campaign, answers).dump(2) + '\n';
+  return fmt::format("{}: valid; {} point{}, {} to {} seeds each\n\n{}\ntimes in the scene's own units\n{}",
+                     campaign.name, campaign.points.size(), campaign.points.size() == 1 ? "" : "s",
+                     campaign.minimum_realisations, campaign.maximum_realisations,
+                     points_table(campaign, answers), warnings_text(campaign, answers));
+}
+
+}  // namespace peclet::runner

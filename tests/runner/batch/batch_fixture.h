@@ -1,0 +1,60 @@
+// A campaign with the fake engine, and a batch system that is four scripts and does what the test says.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "contract/json.h"
+#include "runner/database/database.h"
+#include "runner/verbs/hand_over.h"
+#include "tests/runner/runner_fixture.h"
+
+namespace peclet::runner {
+
+class BatchFixture : public testing::Test {
+ protected:
+  BatchFixture();
+  ~BatchFixture() override;
+
+  // For the fake engine, until the end of the test.
+  void set(const std::string& variable, const std::string& value);
+
+  // What the scripts do with submissions: take them ("ok"), only the first ("one") or none ("refused"); fail
+  // on the way after or before they were taken ("lost", "unheard"), or with all work done ("late"). Queries
+  // are answered or not.
+  void submissions(const std::string& kind) const;
+  void queries(bool answered) const;
+  // What a query says of the tasks of every job that was taken: lines of INDEX STATE.
+  void states(const std::string& lines) const;
+  // Jobs that were taken.
+  int submitted() const;
+
+  int hand_over() const { return hand_over_campaign(options); }
+  int forget(int number) const {
+    return ingest_campaign({options.campaign, {}, false, true, false, {name(number)}});
+  }
+  int cancel() const { return ingest_campaign({options.campaign, {}, true, true, false}); }
+  int ingest() const { return ingest_campaign({options.campaign, {}, false, true, false}); }
+  // Runs tasks of the bundle of this number (from 1) here, as a node would.
+  int run_task(int bundle, int index) const;
+  int run_locally() const;
+
+  std::string name(int bundle) const;
+  std::filesystem::path bundle(int number) const;
+  std::filesystem::path shared() const { return options.shared; }
+  std::filesystem::path folder() const { return folder_.path(); }
+  std::int64_t count(const std::string& sql) const;
+  std::int64_t seeds_out() const { return count("SELECT count(*) FROM bundle_seed WHERE outcome IS NULL"); }
+  std::string text(const std::string& sql) const;
+  // The canonical export; that of the same campaign run without a batch system.
+  std::string answer() const;
+  std::string local_answer() const;
+
+  HandOverOptions options;  // two points, five seeds each, two seeds a task, four checkpoints on the way
+
+ private:
+  TemporaryFolder folder_;
+  std::vector<std::string> variables_;
+};
+
+}  // namespace peclet::runner

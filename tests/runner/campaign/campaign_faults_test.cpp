@@ -1,0 +1,124 @@
+// Every fault of a campaign has one message: where, what, and what is allowed.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "contract/input_error.h"
+#include "runner/campaign/campaign.h"
+#include "tests/runner/runner_fixture.h"
+
+namespace peclet::runner {
+namespace {
+
+const char* const whole_campaign = R"({
+  "name": "flow-curve",
+  "scene": {"fluid": {"viscosity": 1}, "species": [{"radius": 1}, {"radius": 1.4}]},
+  "sweep": [{"set": "/peclet", "values": [1, 10]}],
+  "target": {"observable": "relative_viscosity", "relative_tolerance": 0.05},
+  "realisations": {"minimum": 10, "maximum": 100}})";
+
+// One edit of the campaign (RFC 7396: null removes), and the complaint about it.
+struct Fault {
+  const char* edit;
+  const char* pointer;
+  const char* value;    // a part of it
+  const char* allowed;  // a part of it
+};
+
+const Fault faults[] = {
+    {R"({"name": null})", "/name", "missing", "must be a string"},
+    {R"({"name": ""})", "/name", "\"\"", "letters, digits"},
+    {R"({"name": "a/b"})", "/name", "a/b", "letters, digits"},
+    {R"({"name": 7})", "/name", "7", "must be a string"},
+    {R"({"scene": null})", "/scene", "missing", "must be an object"},
+    {R"({"scene": "dense"})", "/scene", "dense", "must be an object"},
+    {R"({"seeds": 10})", "/seeds", "unknown key", "allowed keys: name, scene, sweep"},
+    {R"({"sweep": {"set": "/peclet"}})", "/sweep", "{", "must be an array"},
+    {R"({"sweep": [{"values": [1]}]})", "/sweep/0/set", "missing", ""},
+    {R"({"sweep": [{"set": "/peclet"}]})", "/sweep/0/values", "missing", "must be an array of 1 or more"},
+    {R"({"sweep": [{"set": "/peclet", "values": []}]})", "/sweep/0/values", "[]", "array of 1 or more"},
+    {R"({"sweep": [{"set": "peclet", "values": [1]}]})", "/sweep/0/set", "peclet", "JSON pointer"},
+    {R"({"sweep": [{"set": "", "values": [1]}]})", "/sweep/0/set", "\"\"", "JSON pointer"},
+    {R"({"sweep": [{"set": "/a~b", "values": [1]}]})", "/sweep/0/set", "/a~b", "JSON pointer"},
+    {R"({"sweep": [{"set": [], "values": [1]}]})", "/sweep/0/set", "[]", "JSON pointer"},
+    {R"({"sweep": [{"set": ["/a", 3], "values": [[1, 2]]}]})", "/sweep/0/set/1", "3", "JSON pointer"},
+    {R"({"sweep": [{"set": ["/a", "/b"], "values": [[1, 2], [3]]}]})", "/sweep/0/values/1", "[3]",
+     "array of 2, one for every pointer"},
+    {R"({"sweep": [{"set": ["/a", "/b"], "values": [1, 2]}]})", "/sweep/0/values/0", "1", "array of 2"},
+    {R"({"sweep": [{"set": "/peclet", "values": [1, 10, 1.0]}]})", "/sweep/0/values/2", "peclet=1",
+     "must differ from the other points: the scene is that of peclet=1, value 0"},
+    {R"({"sweep": [{"set": "/peclet", "values": [1]}, {"set": "/peclet", "values": [2]}]})", "/sweep/1/set",
+     "/peclet", "once only"},
+    {R"({"sweep": [{"set": "/fluid", "values": [{}]}, {"set": "/fluid/viscosity", "values": [2]}]})",
+     "/sweep/1/set", "/fluid/viscosity", "must not overlap with /fluid"},
+    {R"({"sweep": [{"set": "/species/2/radius", "values": [1]}]})", "/sweep/0/set", "/species/2/radius",
+     "there is no 2 in an array of 2"},
+    {R"({"sweep": [{"set": "/species/01/radius", "values": [1]}]})", "/sweep/0/set", "/species/01/radius",
+     "there is no 01"},
+    {R"({"sweep": [{"set": "/species/-", "values": [1]}]})", "/sweep/0/set", "/species/-", "there is no -"},
+    {R"({"sweep": [{"set": "/fluid/viscosity/x", "values": [1]}]})", "/sweep/0/set", "/fluid/viscosity/x",
+     "nothing can be below 1"},
+    {R"({"target": null})", "/target", "missing", "must be an object"},
+    {R"({"target": {"relative_tolerance": 5}})", "/target/relative_tolerance", "5",
+     "must be a number > 0 and < 1; 5 % is written 0.05"},
+    {R"({"target": {"relative_tolerance": 0}})", "/target/relative_tolerance", "0", "> 0 and < 1"},
+    {R"({"target": {"relative_tolerance": "5%"}})", "/target/relative_tolerance", "5%", "must be a number"},
+    {R"({"target": {"relative_tolerance": null}})", "/target/relative_tolerance", "missing",
+     "must be a number"},
+    {R"({"target": {"confidence": 95}})", "/target/confidence", "95", "> 0.5 and < 1"},
+    {R"({"target": {"observable": 1}})", "/target/observable", "1", "must be a string"},
+    {R"({"realisations": {"minimum": 1}})", "/realisations/minimum", "1", "integer >= 2 and <= 1000000"},
+    {R"({"realisations": {"minimum": 7}})", "/realisations/minimum", "7",
+     "must be an integer >= 8, or equal to maximum"},
+    {R"({"realisations": {"minimum": 10.5}})", "/realisations/minimum", "10.5", "must be an integer"},
+    {R"({"realisations": {"maximum": 9}})", "/realisations/maximum", "9", "integer >= minimum, 10"},
+    {R"({"realisations": {"maximum": 2000000}})", "/realisations/maximum", "2000000", "<= 1000000"},
+    {R"({"realisations": {"maximum": null}})", "/realisations/maximum", "missing", "must be an integer"},
+    {R"({"engine": "peclet-engine"})", "/engine", "peclet-engine", "must be an array"},
+    {R"({"engine": []})", "/engine", "[]", "array of 1 or more"},
+    {R"({"engine": ["peclet-engine", 1]})", "/engine/1", "1", "must be a string"},
+};
+
+std::filesystem::path write(const TemporaryFolder& folder, const std::string& text) {
+  std::filesystem::path path = folder.path() / "campaign.json";
+  std::ofstream(path) << text;
+  return path;
+}
+
+TEST(CampaignFaults, EachIsNamedWithPointerValueAndWhatIsAllowed) {
+  const TemporaryFolder folder;
+  for (const Fault& fault : faults) {
+    Json document = Json::parse(whole_campaign);
+    document.merge_patch(Json::parse(fault.edit));
+    const std::filesystem::path path = write(folder, document.dump());
+    try {
+      read_campaign(path);
+      ADD_FAILURE() << "accepted: " << fault.edit;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.file(), path.string()) << fault.edit;
+      EXPECT_EQ(error.pointer(), fault.pointer) << fault.edit;
+      EXPECT_NE(error.value().find(fault.value), std::string::npos) << error.what();
+      EXPECT_NE(error.allowed().find(fault.allowed), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(CampaignFaults, AGridBeyondAHundredThousandPointsIsRefused) {
+  const TemporaryFolder folder;
+  Json document = Json::parse(whole_campaign);
+  Json values = Json::array();
+  for (int i = 0; i < 400; ++i) values.push_back(i);
+  document["sweep"] = Json::array({{{"set", "/a"}, {"values", values}}, {{"set", "/b"}, {"values", values}}});
+  EXPECT_THROW(read_campaign(write(folder, document.dump())), InputError);
+}
+
+TEST(CampaignFaults, AFileThatIsAbsentOrNoJsonIsNamed) {
+  const TemporaryFolder folder;
+  for (const char* const text : {"", "{", "{} {}", R"({"name": "a", "name": "b"})", R"({"name": 1e999})"}) {
+    EXPECT_THROW(read_campaign(write(folder, text)), InputError) << text;
+  }
+  EXPECT_THROW(read_campaign(folder.path() / "absent.json"), InputError);
+}
+
+}  // namespace
+}  // namespace peclet::runner

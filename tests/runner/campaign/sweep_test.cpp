@@ -1,0 +1,89 @@
+// Which points a sweep makes, and what they are called.
+#include "runner/campaign/sweep.h"
+
+#include <gtest/gtest.h>
+
+#include "contract/sha256.h"
+
+namespace peclet::runner {
+namespace {
+
+const Json scene = Json::parse(
+    R"({"fluid": {"viscosity": 1}, "species": [{"radius": 1}, {"radius": 1.4}], "volume_fraction": 0.5})");
+
+std::vector<StatePoint> points(const char* sweep) {
+  return sweep_points(scene, read_sweep(Json::parse(sweep), "campaign.json"), "flow-curve", "campaign.json");
+}
+
+std::vector<std::string> labels(const char* sweep) {
+  std::vector<std::string> found;
+  for (const StatePoint& point : points(sweep)) found.push_back(point.label);
+  return found;
+}
+
+TEST(Sweep, AGridVariesItsLastEntryFastest) {
+  EXPECT_EQ(
+      labels(R"([{"set": "/peclet", "values": [1, 10]}, {"set": "/volume_fraction", "values": [0.4, 0.5]}])"),
+      (std::vector<std::string>{"peclet=1 volume_fraction=0.4", "peclet=1 volume_fraction=0.5",
+                                "peclet=10 volume_fraction=0.4", "peclet=10 volume_fraction=0.5"}));
+}
+
+TEST(Sweep, PointersOfOneEntryAreSetInStep) {
+  const std::vector<StatePoint> found =
+      points(R"([{"set": ["/peclet", "/volume_fraction"], "values": [[1, 0.4], [10, 0.3]]}])");
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[1].scene["peclet"], 10);
+  EXPECT_EQ(found[1].scene["volume_fraction"], 0.3);
+  EXPECT_EQ(found[1].settings, Json::parse(R"({"/peclet": 10, "/volume_fraction": 0.3})"));
+  EXPECT_EQ(found[1].label, "peclet=10 volume_fraction=0.3");
+}
+
+TEST(Sweep, MissingObjectsAreMadeAndElementsOfArraysAreFound) {
+  const std::vector<StatePoint> found =
+      points(R"([{"set": ["/limits/shear_rate", "/species/1/radius"], "values": [[0.009, 2]]}])");
+  EXPECT_EQ(found[0].scene["limits"], Json::parse(R"({"shear_rate": 0.009})"));
+  EXPECT_EQ(found[0].scene["species"], Json::parse(R"([{"radius": 1}, {"radius": 2}])"));
+}
+
+TEST(Sweep, EscapedKeysAreReadAsRfc6901Says) {
+  EXPECT_EQ(points(R"([{"set": "/a~1b/m~0n", "values": [3]}])")[0].scene["a/b"]["m~n"], 3);
+}
+
+TEST(Sweep, NothingButWhatIsSetDiffersFromTheScene) {
+  Json expected = scene;
+  expected["peclet"] = 5;
+  const StatePoint point = points(R"([{"set": "/peclet", "values": [5]}])")[0];
+  EXPECT_EQ(point.scene, expected);
+  EXPECT_EQ(point.hash, sha256(canonical_json(expected)));
+}
+
+// SHA-256 of
+// {"fluid":{"viscosity":1},"peclet":5,"species":[{"radius":1},{"radius":1.4}],"volume_fraction":0.5} as
+// coreutils' sha256sum gives it.
+TEST(Sweep, TheHashIsThatOfTheCanonicalText) {
+  EXPECT_EQ(points(R"([{"set": "/peclet", "values": [5.0]}])")[0].hash,
+            "0012771b251d2d6200575c815f2ea200fa8553d2a032df0bc5920602fdb96973");
+}
+
+TEST(Sweep, ACampaignWithoutOneHasOnePointOfItsOwnName) {
+  const std::vector<StatePoint> found = points("[]");
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].scene, scene);
+  EXPECT_EQ(found[0].settings, Json::object());
+  EXPECT_EQ(found[0].label, "flow-curve");
+}
+
+TEST(Sweep, EqualLastStepsAndBareIndicesAreLabelledWithTheWholePointer) {
+  EXPECT_EQ(labels(R"([{"set": ["/species/0/radius", "/species/1/radius"], "values": [[1, 2]]}])")[0],
+            "/species/0/radius=1 /species/1/radius=2");
+  EXPECT_EQ(labels(R"([{"set": "/species/0", "values": [{"radius": 3}]}])")[0], "/species/0={\"radius\":3}");
+}
+
+TEST(Sweep, LongValuesAreLabelledByTheirPlace) {
+  EXPECT_EQ(labels(R"([{"set": "/lubrication", "values": [
+                       {"form": "kim-karrila", "inner_gap": 0.001}, {"form": "kim-karrila", "inner_gap": 0.01}]}])"),
+            (std::vector<std::string>{"lubrication=#1", "lubrication=#2"}));
+}
+
+}  // namespace
+}  // namespace peclet::runner

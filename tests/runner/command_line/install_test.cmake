@@ -1,0 +1,69 @@
+# Installs the build into a folder of its own, moves the folder, and looks at what is there and whether it works.
+set(prefix ${BUILD}/install-test)
+file(REMOVE_RECURSE ${prefix} ${prefix}-moved)
+execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+file(RENAME ${prefix} ${prefix}-moved)
+set(prefix ${prefix}-moved)
+
+foreach(file
+    bin/peclet
+    bin/peclet-engine
+    share/doc/peclet/LICENSE
+    share/man/man1/peclet.1
+    share/man/man1/peclet-run.1
+    share/bash-completion/completions/peclet
+    share/zsh/site-functions/_peclet
+    share/fish/vendor_completions.d/peclet.fish
+    share/peclet/adapters/lammps/README.md
+    share/peclet/adapters/lammps/lammps_engine.py
+    share/peclet/results/demo/campaign.json
+    share/peclet/schema/result.schema.json
+    share/systemd/user/peclet@.service)
+  if(NOT EXISTS ${prefix}/${file})
+    message(SEND_ERROR "${file} is not installed")
+  endif()
+endforeach()
+
+# Links between the pages hold where they were installed, too.
+execute_process(COMMAND /usr/bin/python3 ${CMAKE_CURRENT_LIST_DIR}/../../pages/links.py ${prefix}/share/peclet
+  RESULT_VARIABLE code OUTPUT_VARIABLE said ERROR_VARIABLE said)
+if(NOT code EQUAL 0)
+  message(SEND_ERROR "the installed pages: ${code}\n${said}")
+endif()
+
+# The engine is found beside peclet, wherever that is: without it the new campaign would be refused.
+execute_process(COMMAND ${prefix}/bin/peclet init ${prefix}/campaign.json OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${prefix}/bin/peclet validate ${prefix}/campaign.json OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+
+# So are the studies that were installed, not those of the source.
+file(MAKE_DIRECTORY ${prefix}/share/peclet/results/only-installed)
+file(WRITE ${prefix}/share/peclet/results/only-installed/study.py "raise SystemExit(3)\n")
+execute_process(COMMAND ${prefix}/bin/peclet study --list OUTPUT_VARIABLE list COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${prefix}/bin/peclet study only-installed RESULT_VARIABLE code)
+if(NOT list MATCHES "only-installed +not yet" OR NOT list MATCHES "zero-shear" OR NOT code EQUAL 3)
+  message(SEND_ERROR "the installed studies are not found: ${code}\n${list}")
+endif()
+
+# And the adapter, by its name alone, from a folder that knows nothing of it.
+set(ensemble ${prefix}/ensemble)
+foreach(part dumbbells.in dumbbell.mol)
+  file(COPY ${prefix}/share/peclet/results/lammps-ensemble/${part} DESTINATION ${ensemble})
+endforeach()
+file(READ ${prefix}/share/peclet/results/lammps-ensemble/campaign.json campaign)
+string(JSON campaign SET "${campaign}" engine 0 "\"lammps_engine.py\"")
+file(WRITE ${ensemble}/campaign.json "${campaign}")
+execute_process(COMMAND ${prefix}/bin/peclet validate ${ensemble}/campaign.json RESULT_VARIABLE code
+  OUTPUT_VARIABLE said ERROR_VARIABLE said)
+if(NOT code EQUAL 0)
+  message(SEND_ERROR "the adapter is not found by its name: ${code}\n${said}")
+endif()
+
+# Pages and scripts are those of the program.
+foreach(verb run report)
+  execute_process(COMMAND ${prefix}/bin/peclet manual ${verb} OUTPUT_VARIABLE page COMMAND_ERROR_IS_FATAL ANY)
+  file(READ ${prefix}/share/man/man1/peclet-${verb}.1 installed)
+  if(NOT page STREQUAL installed)
+    message(SEND_ERROR "peclet-${verb}.1 is not what the program says")
+  endif()
+endforeach()
+file(REMOVE_RECURSE ${prefix})

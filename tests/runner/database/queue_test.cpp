@@ -1,0 +1,205 @@
+#include "runner/database/queue.h"
+
+#include <gtest/gtest.h>
+
+#include "contract/input_error.h"
+#include "runner/database/result_text.h"
+#include "tests/runner/runner_fixture.h"
+
+namespace peclet::runner {
+namespace {
+
+class Queues : public testing::Test {
+ protected:
+  Queues() { queue_.adopt(campaign_); }
+
+  Stored offer(const Json& result) { return queue_.store(parse_result(result.dump()), "relative_viscosity"); }
+  const std::string& hash(int point = 0) const {
+    return campaign_.points[static_cast<std::size_t>(point)].hash;
+  }
+  std::int64_t begin(int seed) {
+    return queue_.begin_attempt(1, seed, 0, 4711, queue_.engine(plain_engine()));
+  }
+
+  TemporaryFolder folder_;
+  Campaign campaign_ = plain_campaign(2, 4, 40, 0.05);
+  Database database_ = Database::open_owner(folder_.path() / "campaign.db");
+  Queue queue_{database_};
+};
+
+TEST_F(Queues, AResultIsStoredWholeAndInColumns) {
+  const Json result = plain_result(hash(), 3, 12.5);
+  EXPECT_EQ(offer(result), Stored::stored);
+  const RealisationRecord record = database_.realisations(1).at(0);
+  EXPECT_EQ(record.seed, 3);
+  EXPECT_EQ(record.state, SeedState::done);
+  EXPECT_EQ(record.value, 12.5);
+  EXPECT_EQ(record.control, 0.25);
+  EXPECT_EQ(record.cpu_seconds, 2.0);
+  EXPECT_EQ(database_.result(1, 3), result);
+  EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM realisations WHERE label = 'point=0'"), 1);
+}
+
+TEST_F(Queues, ABlowUpIsAnOutcomeAndNeverANumber) {
+  Json result = plain_result(hash(), 0, 12.5);
+  result["ending"]["cause"] = "overlap";
+  result["mean"] = result["blocks"] = nullptr;
+  EXPECT_EQ(offer(result), Stored::stored);
+  EXPECT_EQ(database_.realisations(1).at(0).state, SeedState::failed);
+  EXPECT_EQ(database_.realisations(1).at(0).value, std::nullopt);
+  EXPECT_EQ(database_.outcomes(1).at(0)->kind, Outcome::Kind::lost);
+}
+
+TEST_F(Queues, ADuplicateCountsOnce) {
+  Json result = plain_result(hash(), 3, 12.5);
+  offer(result);
+  result["cost"]["cpu_seconds"] = 77.0;
+  EXPECT_EQ(offer(result), Stored::duplicate);
+  EXPECT_EQ(database_.counts(1).done, 1);
+  EXPECT_EQ(database_.realisations(1).at(0).cpu_seconds, 2.0);
+}
+
+TEST_F(Queues, ADifferentResultOfTheSameSeedMakesThePointSuspect) {
+  offer(plain_result(hash(), 3, 12.5));
+  EXPECT_EQ(offer(plain_result(hash(), 3, 12.6)), Stored::conflict);
+  EXPECT_TRUE(database_.points().at(0).suspect);
+  EXPECT_FALSE(database_.points().at(1).suspect);
+  EXPECT_EQ(database_.realisations(1).at(0).value, 12.5);
+  EXPECT_EQ(database_.events(1).at(0).kind, "suspect");
+}
+
+TEST_F(Queues, OnePointNeverMixesTwoEngines) {
+  offer(plain_result(hash(), 0, 12.5, "old"));
+  EXPECT_EQ(offer(plain_result(hash(), 1, 12.5, "new")), Stored::mixed_engine);
+  EXPECT_EQ(offer(plain_result(hash(1), 1, 12.5, "new")), Stored::stored);
+  EXPECT_EQ(database_.counts(1).done, 1);
+}
+
+TEST_F(Queues, AResultOfAnUnknownPointIsNotTaken) {
+  EXPECT_EQ(offer(plain_result(std::string(64, 'f'), 0, 12.5)), Stored::unknown_point);
+}
+
+TEST_F(Queues, ProvenanceIsStoredOnce) {
+  for (int seed = 0; seed < 5; ++seed) offer(plain_result(hash(), seed, 12.5));
+  EXPECT_EQ(database_.engines().size(), 1U);
+  Statement stored(database_.connection(),
+                   "SELECT document, text FROM result JOIN dictionary USING (point_id)");
+  int results = 0;
+  for (; stored.step(); ++results) {
+    EXPECT_EQ(result_text(stored, 0, 1).find("binary_sha256"), std::string::npos);
+  }
+  EXPECT_EQ(results, 5);
+}
+
+TEST_F(Queues, SeedsOfADeadOwnerAreQueuedAgainWithoutBlame) {
+  begin(2);
+  begin(3);
+  EXPECT_EQ(queue_.recover(), 2);
+  EXPECT_EQ(database_.counts(1).queued, 2);
+  EXPECT_TRUE(database_.leases(1).empty());
+  EXPECT_EQ(database_.attempts(1).at(0).outcome, "abandoned");
+  EXPECT_FALSE(database_.attempts(1).at(0).blamed);
+  EXPECT_EQ(queue_.recover(), 0);
+}
+
+TEST_F(Queues, AttemptsKeepTheirCause) {
+  const std::int64_t attempt = begin(2);
+  EXPECT_EQ(database_.leases(1).at(0).phase, "starting");
+  queue_.renew_lease(attempt, "production", 50, 100, 0.5);
+  EXPECT_EQ(database_.leases(1).at(0).step, 50);
+  queue_.end_attempt(attempt, {AttemptOutcome::crashed, 57, {{}, 11}, "signal 11"});
+  queue_.requeue(1, 2);
+  EXPECT_TRUE(database_.leases(1).empty());
+  const AttemptRecord record = database_.attempts(1).at(0);
+  EXPECT_EQ(record.outcome, "crashed");
+  EXPECT_TRUE(record.blamed);
+  EXPECT_EQ(record.signal, 11);
+  EXPECT_EQ(record.exit_status, std::nullopt);
+  EXPECT_EQ(record.step, 57);
+  EXPECT_EQ(database_.counts(1).queued, 1);
+}
+
+TEST_F(Queues, ALateResultLiftsAQuarantine) {
+  begin(2);
+  queue_.quarantine(1, 2, "hung");
+  EXPECT_EQ(database_.outcomes(1).at(2)->kind, Outcome::Kind::lost);
+  EXPECT_EQ(offer(plain_result(hash(), 2, 12.5)), Stored::stored);
+  EXPECT_EQ(database_.outcomes(1).at(2)->kind, Outcome::Kind::value);
+}
+
+TEST_F(Queues, PointsThatLeaveTheSweepStayAndComeBack) {
+  offer(plain_result(hash(1), 0, 12.5));
+  queue_.adopt(plain_campaign(1, 4, 40, 0.05));
+  EXPECT_EQ(database_.points().size(), 1U);
+  ASSERT_EQ(database_.inactive_points().size(), 1U);
+  EXPECT_EQ(database_.inactive_points().at(0).hash, hash(1));
+  queue_.adopt(plain_campaign(3, 4, 40, 0.05));
+  ASSERT_EQ(database_.points().size(), 3U);
+  EXPECT_EQ(database_.counts(database_.points().at(1).id).done, 1);
+}
+
+TEST_F(Queues, LooksOfAnOlderTargetStayInTheHistory) {
+  Look look;
+  look.seeds = 4;
+  look.estimate = {4, 12, 0.1};
+  look.half_width = 0.3;
+  look.verdict = Verdict::converged;
+  queue_.store_looks(1, {look});
+  queue_.adopt(plain_campaign(2, 4, 40, 0.01));
+  EXPECT_TRUE(database_.looks(1).empty());
+  queue_.adopt(plain_campaign(2, 4, 40, 0.05));
+  ASSERT_EQ(database_.looks(1).size(), 1U);
+  EXPECT_EQ(database_.looks(1)[0].target.target.relative_tolerance, 0.05);
+}
+
+TEST_F(Queues, AnotherObservableIsTakenFromTheResultsThatAreThere) {
+  offer(plain_result(hash(), 0, 12.5));
+  Campaign other = campaign_;
+  other.target.observable = "pressure";
+  queue_.adopt(other);
+  EXPECT_EQ(database_.realisations(1).at(0).value, 25);
+  EXPECT_EQ(database_.realisations(1).at(0).control, std::nullopt);
+}
+
+TEST_F(Queues, ACompletedSeedWithoutTheNumberIsLostUntilAnotherObservableFindsIt) {
+  Json result = plain_result(hash(), 0, 12.5);
+  result["mean"]["relative_viscosity"] = nullptr;
+  EXPECT_EQ(offer(result), Stored::stored);
+  EXPECT_EQ(database_.realisations(1).at(0).state, SeedState::failed);
+  EXPECT_EQ(database_.realisations(1).at(0).cause, "no-value");
+  EXPECT_EQ(database_.outcomes(1).at(0)->kind, Outcome::Kind::lost);
+  Campaign other = campaign_;
+  other.target.observable = "pressure";
+  queue_.adopt(other);
+  EXPECT_EQ(database_.realisations(1).at(0).state, SeedState::done);
+  EXPECT_EQ(database_.realisations(1).at(0).cause, "completed");
+  EXPECT_EQ(database_.realisations(1).at(0).value, 25);
+  queue_.adopt(campaign_);
+  EXPECT_EQ(database_.realisations(1).at(0).state, SeedState::failed);
+}
+
+TEST_F(Queues, ResultsKeptApartNeedNotHaveAnotherObservable) {
+  Json bare = plain_result(hash(), 0, 12.5, "old");
+  bare["mean"].erase("pressure");
+  offer(bare);
+  queue_.keep_apart(database_.points().at(0), engine_identity(plain_engine("new")));
+  Campaign other = campaign_;
+  other.target.observable = "pressure";
+  queue_.adopt(other);
+  EXPECT_EQ(database_.campaign().target.target.observable, "pressure");
+}
+
+TEST_F(Queues, AnObservableThatResultsLackChangesNothing) {
+  offer(plain_result(hash(), 0, 12.5));
+  // The second is there, but no number.
+  for (const char* const name : {"colour", "control_variates"}) {
+    Campaign other = campaign_;
+    other.target.observable = name;
+    EXPECT_THROW(queue_.adopt(other), InputError) << name;
+    EXPECT_EQ(database_.campaign().target.target.observable, "relative_viscosity") << name;
+    EXPECT_EQ(database_.realisations(1).at(0).value, 12.5) << name;
+  }
+}
+
+}  // namespace
+}  // namespace peclet::runner

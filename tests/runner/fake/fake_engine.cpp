@@ -1,0 +1,363 @@
+// An engine without physics that speaks the frames: the runner's proof that it knows no engine from inside.
+//
+// A realisation is a chain of mixed 64-bit states, started by point and seed; its relative viscosity is a
+// normal variate made of the last state. So a result depends on every step, and resuming in the wrong place
+// would show.
+//
+//   PECLET_FAKE_STEPS (10), PECLET_FAKE_STEP_MS (0)     length of a realisation
+//   PECLET_FAKE_MEAN (10), PECLET_FAKE_DEVIATION (1)    of the relative viscosity
+//   PECLET_FAKE_PADDING (0)                             numbers that make its result longer
+//   PECLET_FAKE_TIMES                                   a file that gets a line a job, in nanoseconds of the
+//                                                       monotonic clock: when the job was taken up, and when
+//                                                       its result was durable and announced
+//   PECLET_FAKE_PRINTED (0)                             bytes that it prints at every step
+//   PECLET_FAKE_IDENTITY ("fake")                       what its binary is said to be
+//   PECLET_FAKE_DRIFT                                   set: results differ from those without it
+//   PECLET_FAKE_AHEAD                                   set: it takes a job ahead
+//   PECLET_FAKE_STEPLESS                                set: it says that it knows of no time step
+//   PECLET_FAKE_HOLD, PECLET_FAKE_HOLD_SEED (0)         a file: as long as it is there, this and later seeds
+//                                                       stand still at half of their steps, but hear the
+//                                                       owner
+//   PECLET_FAKE_FAULTS, PECLET_FAKE_CRASH_PROBABILITY   see fake_faults.h
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "contract/durable_file.h"
+#include "contract/frames.h"
+#include "contract/sha256.h"
+#include "tests/runner/fake/fake_faults.h"
+
+namespace peclet::fake {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+Json engine() {
+  const char* const name = std::getenv("PECLET_FAKE_IDENTITY");
+  return {{"version", "0.0.0"},       {"git_commit", "unknown"},
+          {"git_dirty", nullptr},     {"binary_sha256", sha256(name == nullptr ? "fake" : name)},
+          {"compiler", "none"},       {"flags", ""},
+          {"build_type", "none"},     {"cpu", "none"},
+          {"instruction_set", "none"}};
+}
+
+std::string text_setting(const char* name) {
+  const char* const text = std::getenv(name);
+  return text == nullptr ? "" : text;
+}
+
+struct State {
+  std::uint64_t value = 0;
+  int step = 0;
+};
+
+class Engine {
+ public:
+  int run() {
+    say_hello();
+    Json message;
+    while (!leave_ && next(message)) {
+      const std::string type = message.at("type");
+      if (type == "validate") validate(message);
+      if (type == "job") run_job(message);
+      if (type == "drain" || type == "stop") break;
+    }
+    return 0;
+  }
+
+ private:
+  void say_hello() {
+    Json hello{{"type", "hello"}, {"protocol", 1}, {"program", "fake-engine"}, {"engine", engine()}};
+    if (takes_ahead_) hello["ahead"] = true;
+    channel_.send(hello);
+  }
+
+  // False: the owner is gone.
+  bool next(Json& message) {
+    if (waiting_job_) {
+      message = *std::exchange(waiting_job_, std::nullopt);
+      return true;
+    }
+    return channel_.receive(message, milliseconds(-1)) == FrameChannel::Status::message;
+  }
+
+  // What the owner has to say while a job runs. A further job is kept, and the time goes on.
+  FrameChannel::Status hear(Json& message, milliseconds patience) {
+    const auto end = steady_clock::now() + patience;
+    for (;;) {
+      const auto left = std::chrono::ceil<milliseconds>(end - steady_clock::now());
+      const FrameChannel::Status status = channel_.receive(message, std::max(milliseconds(0), left));
+      if (status != FrameChannel::Status::message || message.at("type") != "job") return status;
+      if (!takes_ahead_ || waiting_job_) throw FrameError("one job too many");
+      waiting_job_ = message;
+    }
+  }
+
+  void validate(const Json& message) {
+    const Json::json_pointer viscosity("/fluid/viscosity");
+    const Json& scene = message.at("scene");
+    if (scene.contains(viscosity) && scene.at(viscosity).is_number() && scene.at(viscosity) <= 0) {
+      channel_.send({{"type", "refused"},
+                     {"request", message.at("request")},
+                     {"pointer", viscosity.to_string()},
+                     {"value", scene.at(viscosity).dump()},
+                     {"allowed", "must be a number > 0"}});
+      return;
+    }
+    const bool stepless = std::getenv("PECLET_FAKE_STEPLESS") != nullptr;
+    channel_.send({{"type", "validated"},
+                   {"observables", {"relative_viscosity"}},
+                   {"request", message.at("request")},
+                   {"timestep", stepless ? Json(nullptr) : Json(0.001)},
+                   {"steps", steps_},
+                   {"particles", 1},
+                   {"derived", Json::object()},
+                   {"warnings", Json::array()}});
+  }
+
+  void run_job(const Json& job) {
+    const auto begun = steady_clock::now();
+    const std::string point = job.at("point");
+    const int seed = job.at("seed");
+    const std::filesystem::path checkpoint(job.at("checkpoint").get<std::string>());
+    const Fault fault = fault_of(point, seed, count_try(job.at("failures").get<std::string>(), point, seed));
+    State state{mix(first_bits(point) ^ static_cast<std::uint64_t>(seed)), 0};
+    if (std::filesystem::exists(checkpoint)) {
+      const Json saved = Json::parse(read_file(checkpoint));
+      state = {saved.at("value").get<std::uint64_t>(), saved.at("step").get<int>()};
+    }
+    if (std::getenv("PECLET_FAKE_DRIFT") != nullptr) state.value = mix(state.value);
+    auto saved = begun, told = begun;
+    for (; state.step < steps_; ++state.step) {
+      if (state.step >= fault_step_) go_wrong(fault, job);
+      if (told_to_leave(job, state, checkpoint)) return;
+      state.value = mix(state.value + static_cast<std::uint64_t>(state.step));
+      std::fputs(printed_.c_str(), stderr);
+      const auto now = steady_clock::now();
+      if (std::chrono::duration<double>(now - told).count() >= job.at("progress_seconds").get<double>()) {
+        told = now;
+        progress(job, state.step + 1);
+      }
+      if (std::chrono::duration<double>(now - saved).count() >= job.at("checkpoint_seconds").get<double>()) {
+        saved = now;
+        save(job, {state.value, state.step + 1}, checkpoint);
+      }
+    }
+    finish(job, state, fault, begun);
+    note_times(begun);
+  }
+
+  void go_wrong(Fault fault, const Json& job) {
+    if (fault == Fault::crash) std::abort();
+    if (fault == Fault::exit) std::_Exit(3);
+    if (fault == Fault::kill) kill(getpid(), SIGKILL);
+    if (fault == Fault::garble && write(0, "this is no frame", 16) < 0) std::abort();
+    if (fault == Fault::rehello) say_hello();
+    if (fault == Fault::hang || fault == Fault::garble || fault == Fault::rehello) {
+      for (;;) {
+        std::this_thread::sleep_for(milliseconds(20));
+        if (fault == Fault::hang) progress(job, fault_step_);  // alive, but standing still
+      }
+    }
+  }
+
+  void progress(const Json& job, int step) {
+    channel_.send({{"type", "progress"},
+                   {"job", job.at("job")},
+                   {"phase", "production"},
+                   {"step", step},
+                   {"steps", steps_},
+                   {"strain", 0.1 * step}});
+  }
+
+  bool is_held(const Json& job, const State& state) const {
+    return !hold_.empty() && job.at("seed").get<int>() >= hold_seed_ && state.step >= half_ &&
+           std::filesystem::exists(hold_);
+  }
+
+  // Waits for one step's time, or as long as the job is held, and hears what the owner has to say meanwhile.
+  bool told_to_leave(const Json& job, const State& state, const std::filesystem::path& checkpoint) {
+    Json message;
+    FrameChannel::Status status = hear(message, step_time_);
+    while (status == FrameChannel::Status::nothing && is_held(job, state)) {
+      status = hear(message, milliseconds(5));
+    }
+    if (status == FrameChannel::Status::nothing) return false;
+    leave_ = true;
+    if (status == FrameChannel::Status::message && message.at("type") == "stop") return true;
+    save(job, state, checkpoint);
+    if (status == FrameChannel::Status::message) {
+      leave_ = false;
+      give_back(job, state);
+    }
+    return true;
+  }
+
+  // Idle again: another drain follows, on which it leaves, or a job.
+  void give_back(const Json& job, const State& state) {
+    waiting_job_.reset();
+    channel_.send({{"type", "drained"}, {"job", job.at("job")}, {"step", state.step}});
+  }
+
+  // Without room for it the work goes on, and the last checkpoint stays.
+  void save(const Json& job, const State& state, const std::filesystem::path& checkpoint) {
+    try {
+      write_durably(checkpoint, Json{{"value", state.value}, {"step", state.step}}.dump());
+    } catch (const NoRoomError& error) {
+      if (!leave_) say_no_room(job, error);
+    }
+  }
+
+  void say_no_room(const Json& job, const NoRoomError& error) {
+    channel_.send({{"type", "no-room"},
+                   {"job", job.at("job")},
+                   {"path", error.path().string()},
+                   {"bytes", error.bytes()}});
+  }
+
+  // Keeps the result until there is room for it. False: has to leave before.
+  bool spool(const Json& job, const std::string& text) {
+    for (;;) {
+      try {
+        write_durably(job.at("spool").get<std::string>(), text);
+        return true;
+      } catch (const NoRoomError& error) {
+        say_no_room(job, error);
+        Json message;
+        const FrameChannel::Status status = hear(message, milliseconds(200));
+        if (status == FrameChannel::Status::nothing) continue;
+        leave_ = status == FrameChannel::Status::closed || message.at("type") == "stop";
+        return false;
+      }
+    }
+  }
+
+  // What a job took, from outside of the owner.
+  static void note_times(steady_clock::time_point begun) {
+    const char* const path = std::getenv("PECLET_FAKE_TIMES");
+    if (path == nullptr) return;
+    const auto nanoseconds = [](steady_clock::time_point time) {
+      return std::to_string(std::chrono::nanoseconds(time.time_since_epoch()).count());
+    };
+    std::ofstream(path, std::ios::app) << nanoseconds(begun) + ' ' + nanoseconds(steady_clock::now()) + '\n';
+  }
+
+  void finish(const Json& job, const State& state, Fault fault, steady_clock::time_point begun) {
+    const double wall_seconds = std::chrono::duration<double>(steady_clock::now() - begun).count();
+    if (fault == Fault::refuse) {
+      channel_.send(
+          {{"type", "failed"}, {"job", job.at("job")}, {"message", "this engine does not want to"}});
+      return;
+    }
+    Json result = outcome(job, state, fault == Fault::overlap);
+    result["cost"] = {{"cpu_seconds", wall_seconds}, {"wall_seconds", wall_seconds}};
+    if (fault == Fault::swap) result["seed"] = job.at("seed").get<int>() + 1;
+    std::string text = result.dump();
+    // JSON has no such number; an engine that prints it all the same writes no JSON.
+    if (fault == Fault::nan)
+      text.replace(text.find("\"relative_viscosity\":"), 21, "\"relative_viscosity\":nan,\"x\":");
+    const Json frame{{"type", "result"},
+                     {"job", job.at("job")},
+                     {"spool", job.at("spool")},
+                     {"sha256", sha256(fault == Fault::lie ? "something else" : text)}};
+    if (fault == Fault::early) announce(frame, fault);
+    if (!spool(job, text)) {
+      if (!leave_) give_back(job, state);
+      return;
+    }
+    if (fault == Fault::mute) std::abort();
+    announce(frame, fault);
+    if (fault == Fault::twice) channel_.send(frame);
+    if (fault == Fault::late) progress(job, steps_);
+  }
+
+  void announce(const Json& frame, Fault fault) {
+    if (fault == Fault::truncate) {
+      const std::string bytes = encode_frame(frame);
+      if (write(0, bytes.data(), bytes.size() / 2) < 0) std::abort();
+      std::_Exit(0);
+    }
+    if (fault == Fault::oversize && write(0, "PCF1\x00\x00\x40\x06", 8) < 0) std::abort();
+    channel_.send(frame);
+  }
+
+  Json outcome(const Json& job, const State& state, bool blown_up) const {
+    // Box and Muller's normal variate of two uniform ones; the first never vanishes.
+    const double first = (static_cast<double>(mix(state.value) >> 11) + 1) * 0x1p-53;
+    const double second = static_cast<double>(mix(state.value + 1) >> 11) * 0x1p-53;
+    const double normal = std::sqrt(-2 * std::log(first)) * std::cos(2 * std::numbers::pi * second);
+    const double viscosity = setting("PECLET_FAKE_MEAN", 10) + setting("PECLET_FAKE_DEVIATION", 1) * normal;
+    Json result{
+        {"schema_version", 1},
+        {"point", job.at("point")},
+        {"seed", job.at("seed")},
+        {"ending", {{"cause", "completed"}, {"step", state.step}, {"message", ""}, {"state", nullptr}}},
+        {"method", "explicit"},
+        {"timestep", 0.001},
+        {"steps", {{"equilibration", 0}, {"production", state.step}}},
+        {"strain", {{"equilibration", 0}, {"production", 0.1 * state.step}}},
+        {"time", {{"equilibration", 0}, {"production", 0.001 * state.step}}},
+        {"derived", Json::object()},
+        {"warnings", Json::array()},
+        {"units", "scene"},
+        {"mean", {{"relative_viscosity", viscosity}, {"control_variates", {{"brownian_pairwise", nullptr}}}}},
+        {"blocks", {{"relative_viscosity", std::vector<double>(32, viscosity)}}},
+        {"statistical_inefficiency", 1},
+        {"largest_overlap", 0},
+        {"gate", nullptr},
+        {"final_state_sha256", sha256(std::to_string(state.value))},
+        {"engine", engine()}};
+    if (const auto padding = static_cast<std::size_t>(setting("PECLET_FAKE_PADDING", 0)); padding > 0) {
+      Json& numbers = result["blocks"]["padding"] = Json::array();
+      std::uint64_t noise = state.value;  // five digits, as a real engine's blocks have, and no two alike
+      for (std::size_t i = 0; i < padding; ++i) {
+        noise = mix(noise);
+        numbers.push_back(static_cast<double>(noise % 100'000) * 1e-5);
+      }
+    }
+    if (blown_up) {
+      result["ending"] = {
+          {"cause", "overlap"}, {"step", state.step}, {"message", "as asked"}, {"state", nullptr}};
+      result["mean"] = result["blocks"] = nullptr;
+    }
+    return result;
+  }
+
+  FrameChannel channel_{0};
+  int steps_ = static_cast<int>(setting("PECLET_FAKE_STEPS", 10));
+  int half_ = steps_ / 2;
+  int fault_step_ = static_cast<int>(setting("PECLET_FAKE_FAULT_STEP", half_));
+  milliseconds step_time_{static_cast<int>(setting("PECLET_FAKE_STEP_MS", 0))};
+  const std::filesystem::path hold_ = text_setting("PECLET_FAKE_HOLD");
+  const int hold_seed_ = static_cast<int>(setting("PECLET_FAKE_HOLD_SEED", 0));
+  const std::string printed_ = std::string(static_cast<std::size_t>(setting("PECLET_FAKE_PRINTED", 0)), 'x');
+  const bool takes_ahead_ = std::getenv("PECLET_FAKE_AHEAD") != nullptr;
+  std::optional<Json> waiting_job_;  // came while another one ran
+  bool leave_ = false;
+};
+
+}  // namespace
+}  // namespace peclet::fake
+
+int main() {
+  try {
+    return peclet::fake::Engine().run();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "fake engine: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,64 @@
+// Whom the dispatcher takes for hung, and whom not.
+#include <chrono>
+
+#include "tests/runner/owner/dispatcher_fixture.h"
+
+namespace peclet::runner {
+namespace {
+
+TEST_F(Dispatching, AWorkerThatTakesNoStepDuringALeaseIsHung) {
+  bool first = true;
+  pool_.script = [&, this] {
+    if (first && pool_.has_job(0)) {
+      // Alive and talking, but standing still.
+      pool_.say(Progressed{0, pool_.job(0).attempt, 2, 7, 100, 0.1});
+      pool_.now += std::chrono::milliseconds(900);
+      first = pool_.now.time_since_epoch() < std::chrono::seconds(200);
+      if (pool_.has_job(1))
+        pool_.say(Progressed{1, pool_.job(1).attempt, 2, pool_.now.time_since_epoch().count(), 100, 0.1});
+      return;
+    }
+    finish_all();
+  };
+  EXPECT_EQ(run(), Dispatcher::Ending::finished);
+  EXPECT_EQ(attempts_of(0).at(0).outcome, "hung");
+  EXPECT_TRUE(attempts_of(0).at(0).blamed);
+  EXPECT_EQ(attempts_of(0).at(0).step, 7);
+  EXPECT_EQ(attempts_of(0).at(1).outcome, "result");
+  EXPECT_EQ(attempts_of(1).size(), 1U);  // the one that took steps was left alone
+}
+
+TEST_F(Dispatching, AWorkerThatWasStoppedIsReplacedWithoutBlame) {
+  pool_.stopped = 0;
+  pool_.script = [&, this] {
+    if (pool_.now.time_since_epoch() > std::chrono::seconds(200)) return finish_all();
+    pool_.now += std::chrono::milliseconds(900);
+    if (!pool_.has_job(1)) return;
+    pool_.say(Progressed{1, pool_.job(1).attempt, 2, pool_.now.time_since_epoch().count(), 100, 0.1});
+  };
+  EXPECT_EQ(run(), Dispatcher::Ending::finished);
+  EXPECT_EQ(attempts_of(0).at(0).outcome, "killed");
+  EXPECT_EQ(attempts_of(0).at(1).outcome, "result");
+  EXPECT_EQ(database_.connection().integer("SELECT total(blamed) FROM attempt"), 0);
+}
+
+TEST_F(Dispatching, AnOwnerThatWasStoppedBlamesNobody) {
+  int stops = 0;
+  pool_.script = [&, this] {
+    if (stops < 5 && pool_.has_job(0) && pool_.has_job(1)) {
+      ++stops;
+      pool_.now += std::chrono::hours(1);  // stopped before it could hear anything
+      if (stops % 2 == 0) pool_.say(Progressed{0, pool_.job(0).attempt, 2, stops, 100, 0.1});
+      return;
+    }
+    finish_all();
+  };
+  EXPECT_EQ(run(), Dispatcher::Ending::finished);
+  EXPECT_EQ(stops, 5);
+  EXPECT_EQ(database_.connection().integer("SELECT total(blamed) FROM attempt"), 0);
+  EXPECT_EQ(attempts_of(0).size(), 1U);
+  EXPECT_EQ(attempts_of(1).size(), 1U);
+}
+
+}  // namespace
+}  // namespace peclet::runner

@@ -1,0 +1,70 @@
+// A worker pool without processes: the test says what its workers say.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "runner/engines/worker_pool.h"
+
+namespace peclet::runner {
+
+class ScriptedPool : public WorkerPool {
+ public:
+  explicit ScriptedPool(int workers) : workers_(static_cast<std::size_t>(workers)) {}
+
+  int size() const override { return static_cast<int>(workers_.size()); }
+  void start(int worker) override;
+  std::int64_t process(int worker) const override { return 1000 + worker; }
+  void assign(int worker, const Job& job) override;
+  void drain(int worker) override;
+  void kill(int worker) override;
+  bool is_stopped(int worker) const override { return stopped == worker; }
+  // The events that have been said since; asks `script` for more when there are none. Time passes by
+  // `patience` when there still are none.
+  std::vector<WorkerEvent> wait(std::chrono::milliseconds patience) override;
+
+  void say(WorkerEvent event) { said_.push_back(std::move(event)); }
+  // The worker spools a result for its job, says so and begins the job that waits.
+  void finish(int worker, double viscosity);
+  // Spools one without a word.
+  void spool(const Job& job, double viscosity) const;
+  // The worker's job has ended in another way.
+  void begin_next(int worker);
+  bool has_job(int worker) const { return at(worker).job.has_value(); }
+  const Job& job(int worker) const { return *at(worker).job; }
+  bool has_waiting(int worker) const { return at(worker).waiting.has_value(); }
+  const Job& waiting(int worker) const { return *at(worker).waiting; }
+  bool alive(int worker) const { return at(worker).alive; }
+
+  // Called whenever the dispatcher waits and nothing has been said.
+  std::function<void()> script;
+  // Said at the start of every process.
+  std::string identity = "engine";
+  bool says_hello = true;
+  bool takes_ahead = false;
+  double wall_seconds = 4;  // in its results
+  bool leaves_when_drained = true;
+  std::size_t result_size = 0;  // so many letters more than a plain result, others for each seed
+  int stopped = -1;             // the worker whose process is
+
+  std::chrono::steady_clock::time_point now{};  // the test's time
+  int starts = 0;
+  std::vector<Job> assigned;
+
+ private:
+  struct Worker {
+    bool alive = false;
+    std::optional<Job> job, waiting;
+  };
+  const Worker& at(int worker) const { return workers_.at(static_cast<std::size_t>(worker)); }
+  Worker& at(int worker) { return workers_.at(static_cast<std::size_t>(worker)); }
+
+  std::vector<Worker> workers_;
+  std::deque<WorkerEvent> said_;
+};
+
+}  // namespace peclet::runner

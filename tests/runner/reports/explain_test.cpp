@@ -1,0 +1,166 @@
+// Why points are where they are.
+#include "runner/reports/explain.h"
+
+#include <gtest/gtest.h>
+
+#include "contract/input_error.h"
+#include "runner/reports/status.h"
+#include "tests/runner/stored_campaign.h"
+
+namespace peclet::runner {
+namespace {
+
+bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST(Explain, LossesAreNamedByCauseAndSeedWithTheLastWords) {
+  StoredCampaign campaign(1, 6, 20);
+  for (int seed = 0; seed < 4; ++seed) campaign.complete(0, seed, 10 + 0.01 * seed);
+  campaign.blow_up(0, 4);
+  campaign.crash(0, 5);
+  const std::string text = explain(campaign.database(), campaign.directory(), "point=0");
+  EXPECT_TRUE(says(text, "lost: 1 crashed (seed 5)")) << text;
+  EXPECT_TRUE(says(text, "lost: 1 overlap (seed 4)")) << text;
+  EXPECT_TRUE(says(text, "attempts: 6 (1 crashed, 5 result)")) << text;
+  EXPECT_TRUE(says(text, "seed 5 crashed at step 42: signal 11 (Segmentation fault)")) << text;
+  EXPECT_TRUE(says(text, campaign.directory().failures().string())) << text;
+}
+
+TEST(Explain, ProgramsAreToldTheSame) {
+  StoredCampaign campaign(2, 6, 20);
+  for (int seed = 0; seed < 4; ++seed) campaign.complete(0, seed, 10 + 0.01 * seed);
+  campaign.blow_up(0, 4);
+  campaign.crash(0, 5);
+  const Json all = explain_json(campaign.database(), campaign.directory(), "");
+  ASSERT_EQ(all["points"].size(), 2U);
+  EXPECT_EQ(explain_json(campaign.database(), campaign.directory(), "point=0")["points"][0],
+            all["points"][0]);
+  const Json lossy = all["points"][0], open = all["points"][1];
+  EXPECT_EQ(lossy["verdict"], "converged-with-losses");
+  EXPECT_EQ(lossy["looks"].size(), 1U);
+  EXPECT_EQ(lossy["looks"][0]["seeds"], 6);
+  EXPECT_EQ(lossy["losses"], Json({{"crashed", {5}}, {"overlap", {4}}}));
+  EXPECT_EQ(lossy["blamed_attempts"], Json::array({{{"seed", 5},
+                                                    {"outcome", "crashed"},
+                                                    {"step", 42},
+                                                    {"message", "signal 11 (Segmentation fault)"}}}));
+  EXPECT_TRUE(open["verdict"].is_null());
+  EXPECT_EQ(open["reason"], "0 of the 6 seeds of the next look have ended, 0 run");
+  EXPECT_EQ(open["next"], "the first look, at 6 seeds");
+}
+
+TEST(Explain, ACappedPointIsToldHowManySeedsItWouldTake) {
+  StoredCampaign campaign(1, 4, 4);
+  const double values[] = {9, 10, 11, 10};
+  for (int seed = 0; seed < 4; ++seed) campaign.complete(0, seed, values[seed]);
+  const std::string text = explain(campaign.database(), campaign.directory(), "");
+  // Half-width 3.182 * 0.408 = 1.299 of 10 + 0.25; 4 * (0.1267 / 0.05)^2 = 25.7 seeds.
+  EXPECT_TRUE(says(text, "all 4 seeds that are allowed give 13 %, not within the tolerance of 5 %")) << text;
+  EXPECT_TRUE(says(text, "/realisations/maximum (about 26 seeds)")) << text;
+}
+
+// Values +- 10 around 0.25: any number of seeds for a share of such a mean would be an accident.
+TEST(Explain, AMeanThatMayBeZeroIsNotAdvisedToTakeMillionsOfSeeds) {
+  StoredCampaign campaign(1, 8, 8), open(1, 8, 20);
+  for (int seed = 0; seed < 8; ++seed) {
+    campaign.complete(0, seed, seed % 2 == 0 ? -10 : 10);
+    open.complete(0, seed, seed % 2 == 0 ? -10 : 10);
+  }
+  const std::string text = explain(campaign.database(), campaign.directory(), "");
+  EXPECT_TRUE(says(text, "the interval contains zero, and as long as it does no /target/relative_tolerance"))
+      << text;
+  EXPECT_FALSE(says(text, "/realisations/maximum")) << text;
+  const std::string ahead = explain(open.database(), open.directory(), "");
+  EXPECT_TRUE(says(ahead, "cannot be told while the interval contains zero")) << ahead;
+}
+
+TEST(Explain, AWindowThatBeginsTooEarlyIsATransient) {
+  StoredCampaign campaign(2, 8, 20);
+  for (int seed = 0; seed < 8; ++seed) {
+    const double scatter = seed % 2 == 0 ? 0.01 : -0.01;
+    campaign.complete_in_halves(0, seed, 10.2 + scatter, 10 - 2 * scatter);
+    campaign.complete_in_halves(1, seed, 10 + scatter, 10 - 2 * scatter);
+  }
+  const std::string drifting = explain(campaign.database(), campaign.directory(), "point=0");
+  EXPECT_TRUE(says(drifting, "converged, transient")) << drifting;
+  EXPECT_TRUE(says(drifting, "the first half by 0.1000 ± 0.0057"))
+      << drifting;  // 0.1 +- 1.5 * 0.01 / sqrt(7)
+  EXPECT_TRUE(says(drifting, "next: a longer /scene/duration/equilibration")) << drifting;
+  const std::string steady = explain(campaign.database(), campaign.directory(), "point=1");
+  EXPECT_FALSE(says(steady, "transient")) << steady;
+  EXPECT_TRUE(status_json(read_status(campaign.database()))["points"][0]["look"]["transient"]);
+}
+
+TEST(Explain, AnEstimateHasABootstrapIntervalAndAdviceOnItsWindow) {
+  StoredCampaign campaign(1, 16, 20);
+  for (int seed = 0; seed < 16; ++seed) {  // halves that know nothing of each other
+    campaign.complete_in_halves(0, seed, 10 + (seed % 2 == 0 ? 0.1 : -0.1), 10 + (seed % 4 < 2 ? 0.1 : -0.1));
+  }
+  const std::string text = explain(campaign.database(), campaign.directory(), "");
+  EXPECT_TRUE(says(text, "bootstrap-t ")) << text;
+  // plain_result() has 20 steps of equilibration and 80 of production: (20 + 40) / 100 * 2 and (20 + 160) /
+  // 100 / 2.
+  EXPECT_TRUE(says(text, "its halves correlate by 0.00")) << text;
+  EXPECT_TRUE(
+      says(text, "half the window takes 1.20 times the processor time, twice the window 0.90 to 0.90"))
+      << text;
+}
+
+TEST(Explain, AFewSeedsFarFromTheRestAreCalledSkewed) {
+  StoredCampaign campaign(1, 8, 8);
+  for (int seed = 0; seed < 8; ++seed) campaign.complete_in_halves(0, seed, 10, seed == 5 ? 11 : 10);
+  const std::string text = explain(campaign.database(), campaign.directory(), "");
+  EXPECT_TRUE(says(text, "converged, skewed")) << text;
+  EXPECT_TRUE(says(text, "trust the bootstrap interval more")) << text;
+}
+
+TEST(Explain, TheLookWithoutTheControlVariateIsShownOnlyWhereThereIsOne) {
+  StoredCampaign campaign(2, 4, 20);
+  for (int seed = 0; seed < 4; ++seed) {
+    campaign.complete(0, seed, 10 + 0.01 * seed);
+    campaign.complete_in_halves(1, seed, 10 + 0.01 * seed, 10 + 0.01 * seed);
+  }
+  EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), "point=0"), "uncontrolled"));
+  EXPECT_FALSE(says(explain(campaign.database(), campaign.directory(), "point=1"), "uncontrolled"));
+}
+
+TEST(Explain, AnOpenPointSaysWhatItWaitsFor) {
+  StoredCampaign campaign(2, 4, 20);
+  campaign.complete(1, 0, 10);
+  const std::string text = explain(campaign.database(), campaign.directory(), "point=1");
+  EXPECT_TRUE(says(text, "1 of the 4 seeds of the next look have ended, 0 run")) << text;
+  EXPECT_TRUE(says(text, "no look yet")) << text;
+  EXPECT_FALSE(says(text, "point=0")) << text;
+}
+
+TEST(Explain, APointIsNamedByItsLabelOrTheBeginningOfItsHash) {
+  StoredCampaign campaign(2, 4, 20);
+  const std::string hash = campaign.database().points()[1].hash;
+  EXPECT_TRUE(explain(campaign.database(), campaign.directory(), hash.substr(0, 4)).starts_with("point=1"));
+  for (const char* const name : {"point=2", "zzzz", "p"}) {
+    EXPECT_THROW(explain(campaign.database(), campaign.directory(), name), InputError) << name;
+  }
+  EXPECT_THROW(explain(campaign.database(), campaign.directory(), hash.substr(0, 3)), InputError);
+}
+
+TEST(Explain, APointIsNamedByItsValuesAloneAsInTheRowOfATable) {
+  StoredCampaign campaign(3, 4, 20);
+  const auto name = [&](int place, const std::string& label) {
+    campaign.database().connection().execute("UPDATE point SET label = '" + label +
+                                             "' WHERE place = " + std::to_string(place));
+  };
+  name(0, "peclet=1 volume_fraction=0.5");
+  name(1, "peclet=10 volume_fraction=0.5");
+  name(2, "peclet=10");
+  EXPECT_TRUE(explain(campaign.database(), campaign.directory(), "10 0.5")
+                  .starts_with("peclet=10 volume_fraction=0.5"));
+  EXPECT_TRUE(explain(campaign.database(), campaign.directory(), "10").starts_with("peclet=10  ("));
+  for (const char* const text : {"0.5", "10 0", "10  0.5", "volume_fraction=0.5"}) {
+    EXPECT_THROW(explain(campaign.database(), campaign.directory(), text), InputError) << text;
+  }
+  name(2, "rate=1 volume_fraction=0.5");
+  EXPECT_THROW(explain(campaign.database(), campaign.directory(), "1 0.5"), InputError)
+      << "two points have these";
+}
+
+}  // namespace
+}  // namespace peclet::runner

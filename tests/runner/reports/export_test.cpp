@@ -1,0 +1,192 @@
+// What `export` holds, and that its canonical form holds nothing that depends on how a run went.
+#include "runner/reports/export.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "tests/runner/stored_campaign.h"
+
+namespace peclet::runner {
+namespace {
+
+const double viscosities[] = {9.9, 10, 10.1, 10};
+
+void fill(StoredCampaign& campaign, int point, const std::vector<int>& order) {
+  for (const int seed : order) campaign.complete(point, seed, viscosities[seed]);
+}
+
+Json exported(StoredCampaign& campaign, bool canonical) {
+  return parse_json(export_json(campaign.database(), canonical), "export");
+}
+
+void collect_keys(const Json& value, std::set<std::string>& keys) {
+  if (value.is_object()) {
+    for (const auto& [key, member] : value.items()) {
+      keys.insert(key);
+      collect_keys(member, keys);
+    }
+  } else if (value.is_array()) {
+    for (const Json& element : value) collect_keys(element, keys);
+  }
+}
+
+TEST(Export, CanonicalBytesDoNotDependOnOrderAttemptsAndSurplus) {
+  StoredCampaign one(2, 4, 20), other(2, 4, 20);
+  fill(one, 0, {0, 1, 2, 3});
+  fill(one, 1, {0, 1, 2});
+  fill(other, 1, {2, 0, 1});
+  fill(other, 0, {3, 1});
+  other.complete(0, 6, 1000);
+  fill(other, 0, {2, 0});
+  EXPECT_NE(export_json(one.database(), false), export_json(other.database(), false));
+  EXPECT_EQ(export_json(one.database(), true), export_json(other.database(), true));
+  EXPECT_EQ(export_csv(one.database(), true), export_csv(other.database(), true));
+}
+
+TEST(Export, CanonicalFormKnowsNothingOfTimeMachinesAndAttempts) {
+  StoredCampaign campaign(1, 6, 20);
+  fill(campaign, 0, {0, 1, 2, 3});
+  campaign.blow_up(0, 4);
+  campaign.crash(0, 5);
+  campaign.complete(0, 7, 10);
+  std::set<std::string> canonical, full;
+  collect_keys(exported(campaign, true), canonical);
+  collect_keys(exported(campaign, false), full);
+  for (const char* const key :
+       {"cost", "cpu_seconds", "wall_seconds", "attempts", "worker", "host", "process", "started_at",
+        "ended_at", "state", "surplus", "engines", "document"}) {
+    EXPECT_FALSE(canonical.contains(key)) << key;
+    EXPECT_TRUE(full.contains(key)) << key;
+  }
+}
+
+TEST(Export, CanonicalSpellingIsCanonical) {
+  StoredCampaign campaign(2, 4, 20);
+  fill(campaign, 0, {0, 1, 2, 3});
+  std::string text = export_json(campaign.database(), true);
+  std::erase(text, '\n');  // points are kept on lines of their own
+  EXPECT_EQ(text, canonical_json(parse_json(text, "export")));
+}
+
+TEST(Export, EstimatesAreOverTheSeedsOfTheLook) {
+  StoredCampaign campaign(1, 4, 20);
+  fill(campaign, 0, {0, 1, 2, 3});
+  campaign.complete(0, 4, 1000);
+  const Json point = exported(campaign, true)["points"][0];
+  EXPECT_EQ(point["verdict"], "converged");
+  EXPECT_EQ(point["realisations"].size(), 4U);
+  // Sample variance (0.1^2 + 0.1^2) / 3; plain_result() has the pressure at twice the viscosity.
+  const double standard_error = std::sqrt(0.02 / 3 / 4);
+  const Json& viscosity = point["estimates"]["/relative_viscosity"];
+  EXPECT_EQ(viscosity["count"], 4);
+  EXPECT_NEAR(viscosity["mean"].get<double>(), 10, 1e-12);
+  EXPECT_NEAR(viscosity["standard_error"].get<double>(), standard_error, 1e-12);
+  EXPECT_NEAR(point["estimates"]["/pressure"]["mean"].get<double>(), 20, 1e-12);
+  EXPECT_NEAR(point["estimates"]["/pressure"]["standard_error"].get<double>(), 2 * standard_error, 1e-12);
+  EXPECT_EQ(point["estimates"]["/control_variates/brownian_pairwise"]["mean"], 0.25);
+  EXPECT_EQ(exported(campaign, false)["points"][0]["surplus"][0]["seed"], 4);
+}
+
+TEST(Export, LostSeedsAreThereWithTheirCauseAndWithoutNumbers) {
+  StoredCampaign campaign(1, 6, 20);
+  fill(campaign, 0, {0, 1, 2, 3});
+  campaign.blow_up(0, 4);
+  campaign.crash(0, 5);
+  const Json point = exported(campaign, true)["points"][0];
+  EXPECT_EQ(point["verdict"], "converged-with-losses");
+  ASSERT_EQ(point["realisations"].size(), 6U);
+  EXPECT_EQ(point["realisations"][4]["ending"]["cause"], "overlap");
+  EXPECT_TRUE(point["realisations"][4]["mean"].is_null());
+  EXPECT_EQ(point["realisations"][5]["ending"]["cause"], "crashed");
+  EXPECT_EQ(point["estimates"]["/relative_viscosity"]["count"], 4);
+}
+
+TEST(Export, APointBeforeItsFirstLookHasNoEstimates) {
+  StoredCampaign campaign(1, 4, 20);
+  fill(campaign, 0, {0, 1, 2});
+  const Json canonical = exported(campaign, true)["points"][0];
+  EXPECT_TRUE(canonical["look"].is_null());
+  EXPECT_TRUE(canonical["verdict"].is_null());
+  EXPECT_TRUE(canonical["realisations"].empty());
+  EXPECT_TRUE(canonical["estimates"].empty());
+  EXPECT_EQ(exported(campaign, false)["points"][0]["surplus"].size(), 3U);
+}
+
+TEST(Export, AChangedNumberInTheDatabaseIsAnIntegrityFault) {
+  StoredCampaign campaign(1, 4, 20);
+  fill(campaign, 0, {0, 1, 2, 3});
+  campaign.database().connection().execute("UPDATE realisation SET value = 10.5 WHERE seed = 2");
+  EXPECT_THROW(export_json(campaign.database(), true), IntegrityError);
+  EXPECT_THROW(export_csv(campaign.database(), true), IntegrityError);
+}
+
+// plain_result() has a control variate of 0.25: what status shows is 10.25, and so is the first mean of every
+// form.
+TEST(Export, TheEstimateThatDecidesIsTheMeanEverywhere) {
+  StoredCampaign campaign(1, 4, 20);
+  fill(campaign, 0, {0, 1, 2, 3});
+  Database& database = campaign.database();
+  const Look look = database.looks(database.points().at(0).id).back().look;
+  ASSERT_NEAR(look.controlled.mean, 10.25, 1e-12);
+  ASSERT_NEAR(look.estimate.mean, 10, 1e-12);
+  const auto view = [&](const char* column) {
+    return database.connection().integer(std::string("SELECT round(1000 * ") + column + ") FROM estimates");
+  };
+  EXPECT_EQ(view("mean"), 10250);
+  EXPECT_EQ(view("uncontrolled_mean"), 10000);
+  const std::string csv = export_csv(database, true);
+  const std::string row = csv.substr(csv.find('\n') + 1);
+  const std::string wanted =
+      fmt::format(",converged,4,0,4,{},{},{},{},{},{}\n", canonical_json(look.controlled.mean),
+                  canonical_json(look.controlled.standard_error), canonical_json(look.controlled_half_width),
+                  canonical_json(look.estimate.mean), canonical_json(look.estimate.standard_error),
+                  canonical_json(look.half_width));
+  EXPECT_TRUE(row.ends_with(wanted)) << row << wanted;
+  const Json json = exported(campaign, true)["points"][0]["look"];
+  EXPECT_EQ(json["mean"], look.controlled.mean);
+  EXPECT_EQ(json["half_width"], look.controlled_half_width);
+  EXPECT_EQ(json["uncontrolled"]["mean"], look.estimate.mean);
+}
+
+TEST(Export, CsvHasARowPerPointWithEmptyFieldsForWhatDoesNotExist) {
+  StoredCampaign campaign(2, 4, 20);
+  fill(campaign, 0, {0, 1, 2, 3});
+  campaign.database().connection().execute("UPDATE point SET label = 'a, \"b\"' WHERE place = 1");
+  const std::string csv = export_csv(campaign.database(), true);
+  EXPECT_EQ(csv.substr(0, csv.find('\n')),
+            "label,hash,/point,verdict,seeds,lost,count,mean,standard_error,half_width,uncontrolled_mean,"
+            "uncontrolled_standard_error,uncontrolled_half_width");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
+  EXPECT_NE(csv.find("\npoint=0,"), std::string::npos);
+  EXPECT_NE(csv.find(",0,converged,4,0,4,"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("\n\"a, \"\"b\"\"\","), std::string::npos) << csv;
+  EXPECT_TRUE(csv.ends_with(",1,,,,,,,,,,\n")) << csv;
+}
+
+TEST(Export, NoTextOfACsvIsAFormulaOfASpreadsheet) {
+  StoredCampaign campaign(1, 4, 20);
+  for (const auto& [text, cell] : {std::pair{"=1+1", "'=1+1"},
+                                   {"+1", "'+1"},
+                                   {"-x", "'-x"},
+                                   {"@SUM(A1)", "'@SUM(A1)"},
+                                   {"\tx", "'\tx"},
+                                   {"\rx", "\"'\rx\""},
+                                   {"x=1", "x=1"},
+                                   {"a-b", "a-b"}}) {
+    campaign.database().connection().execute("UPDATE point SET label = '" + std::string(text) +
+                                             "', settings = json_object('/point', '" + text + "')");
+    const std::string csv = export_csv(campaign.database(), true), row = csv.substr(csv.find('\n') + 1);
+    EXPECT_TRUE(row.starts_with(std::string(cell) + ',')) << row;
+    EXPECT_NE(row.find(',' + std::string(cell) + ','), std::string::npos) << row;
+  }
+  // A number below zero stays one.
+  campaign.database().connection().execute("UPDATE point SET settings = json_object('/point', -1.5)");
+  EXPECT_NE(export_csv(campaign.database(), true).find(",-1.5,"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace peclet::runner

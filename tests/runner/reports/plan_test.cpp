@@ -1,0 +1,111 @@
+// What a campaign may cost.
+#include "runner/reports/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/runner/runner_fixture.h"
+
+namespace peclet::runner {
+namespace {
+
+TEST(Plan, ACampaignWithoutASeedHasUnknownHours) {
+  const Plan plan = make_plan(plain_campaign(2, 10, 800, 0.05), {1e6, 2e6}, {}, 1);
+  EXPECT_TRUE(std::isnan(plan.points[0].cost.cpu_seconds));
+  const Json json = plan_json(plan);
+  EXPECT_TRUE(json["cpu_hours_minimum"].is_null());
+  EXPECT_TRUE(json["points"][0]["cpu_seconds_per_seed"].is_null());
+  EXPECT_EQ(json["points"][1]["particle_steps"], 2e6);
+  EXPECT_NE(plan_text(plan).find("not known before a seed has ended"), std::string::npos);
+}
+
+// 3 s for 1e6 particle-steps of the first point; 10 and 800 seeds of 3 + 6 s.
+TEST(Plan, AGuessIsCalledOne) {
+  const Plan plan = make_plan(plain_campaign(2, 10, 800, 0.05), {1e6, 2e6}, {}, 1, CostGuess{0, 3});
+  EXPECT_DOUBLE_EQ(plan.points[1].cost.cpu_seconds, 6);
+  const Json json = plan_json(plan);
+  EXPECT_EQ(json["guessed_from"], "point=0");
+  EXPECT_NEAR(json["cpu_hours_minimum"].get<double>(), 90 / 3600.0, 1e-12);
+  EXPECT_NE(plan_text(plan).find("~: a guess, from the first two seconds of one realisation of point=0"),
+            std::string::npos)
+      << plan_text(plan);
+  EXPECT_TRUE(make_plan(plain_campaign(2, 10, 800, 0.05), {1e6, 2e6},
+                        {{plain_campaign(2, 10, 800, 0.05).points[0].hash, {{1, 5}}}}, 1, CostGuess{0, 3})
+                  .guessed_from.empty())
+      << "what has been measured is no guess";
+}
+
+TEST(Plan, APointWithoutASeedCostsWhatTheOthersDoForEachParticleStep) {
+  const Campaign campaign = plain_campaign(3, 10, 100, 0.05);
+  // 4 seeds of 36 s for 1e6 particle-steps and one of 216 s for 2e6: 360 s for 6e6, 60 s for each million.
+  const Plan plan =
+      make_plan(campaign, {1e6, 2e6, 3e6},
+                {{campaign.points[0].hash, {{4, 36}}}, {campaign.points[1].hash, {{1, 216}}}}, 1);
+  EXPECT_EQ(plan.points[0].cost.cpu_seconds, 36);
+  EXPECT_EQ(plan.points[1].cost.cpu_seconds, 216);
+  EXPECT_NEAR(plan.points[2].cost.cpu_seconds, 180, 1e-9);
+  EXPECT_EQ(plan.points[2].cost.count, 0);
+  // (36 + 216 + 180) s = 0.12 h for a seed of each.
+  EXPECT_NEAR(plan_json(plan)["cpu_hours_minimum"].get<double>(), 1.2, 1e-9);
+  EXPECT_NEAR(plan_json(plan)["cpu_hours_maximum"].get<double>(), 12, 1e-9);
+}
+
+// Equal values: the minimum of 10 is enough, whatever comes.
+PointHistory four_equal_seeds(double cpu_seconds, double wall_seconds) {
+  return {{4, cpu_seconds, wall_seconds},
+          std::vector<std::optional<Outcome>>(4, Outcome{Outcome::Kind::value, 10})};
+}
+
+TEST(Plan, WhatIsToComeFollowsFromThePilot) {
+  const Campaign campaign = plain_campaign(3, 10, 100, 0.05);
+  const Plan plan = make_plan(campaign, {1, 1, 1},
+                              {{campaign.points[0].hash, four_equal_seeds(36, 18)},
+                               {campaign.points[1].hash, four_equal_seeds(200, 100)}},
+                              4);
+  EXPECT_EQ(plan.points[0].prediction.seeds.likely, 10);
+  EXPECT_EQ(plan.points[2].obstacle(), "fewer than two seeds have ended");
+  EXPECT_EQ(plan.totals.points, 2);
+  EXPECT_DOUBLE_EQ(plan.totals.cpu_seconds.likely, 10 * (36 + 200));
+  EXPECT_DOUBLE_EQ(plan.totals.cpu_seconds_to_come.upper, 6 * (36 + 200));
+  // Six seeds of 100 s on four workers take 200 s, more than a quarter of 6 * 118 s.
+  EXPECT_DOUBLE_EQ(plan.totals.wall_seconds_to_come.likely, 200);
+  const Json json = plan_json(plan);
+  EXPECT_EQ(json["points"][1]["prediction"]["seeds"]["upper"], 10);
+  EXPECT_TRUE(json["points"][2]["prediction"].is_null());
+  EXPECT_EQ(json["prediction"]["workers"], 4);
+  const std::string text = plan_text(plan);
+  EXPECT_NE(text.find("points without a prediction, 1, are not in these sums"), std::string::npos) << text;
+  EXPECT_NE(text.find("with 4 workers 3 min"), std::string::npos) << text;
+}
+
+TEST(Plan, WithOneWorkerEverythingIsOneChain) {
+  const Campaign campaign = plain_campaign(2, 10, 100, 0.05);
+  const Plan plan = make_plan(campaign, {1, 1},
+                              {{campaign.points[0].hash, four_equal_seeds(36, 18)},
+                               {campaign.points[1].hash, four_equal_seeds(200, 100)}},
+                              1);
+  EXPECT_DOUBLE_EQ(plan.totals.wall_seconds_to_come.likely, 6 * 118);
+}
+
+TEST(Plan, ADecidedPointHasNothingToCome) {
+  const Campaign campaign = plain_campaign(1, 4, 100, 0.05);
+  const Plan plan = make_plan(campaign, {1}, {{campaign.points[0].hash, four_equal_seeds(36, 18)}}, 1);
+  ASSERT_TRUE(plan.points[0].decided);
+  EXPECT_EQ(plan.totals.predicted, 0);
+  EXPECT_EQ(plan.totals.cpu_seconds_to_come.upper, 0);
+  EXPECT_EQ(plan_json(plan)["points"][0]["verdict"], "converged");
+}
+
+// Spreads so large that the mean may be zero.
+TEST(Plan, SaysWhereAMeanNearZeroForbidsAPrediction) {
+  const Campaign campaign = plain_campaign(1, 10, 100, 0.05);
+  PointHistory history = four_equal_seeds(36, 18);
+  history.outcomes[0]->value = history.outcomes[1]->value = -9;
+  const Plan plan = make_plan(campaign, {1}, {{campaign.points[0].hash, history}}, 1);
+  EXPECT_EQ(plan_json(plan)["points"][0]["obstacle"], "the mean of 4 seeds may be zero");
+  EXPECT_TRUE(plan_json(plan)["prediction"].is_null());
+}
+
+}  // namespace
+}  // namespace peclet::runner

@@ -1,0 +1,203 @@
+// What `status` says of points in every state.
+#include "runner/reports/status.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <ctime>
+
+#include "runner/reports/explain.h"
+#include "tests/runner/stored_campaign.h"
+
+namespace peclet::runner {
+namespace {
+
+bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+// 9, 10, 11, 10: mean 10, sample variance 2/3, standard error sqrt(2/3/4) = 0.408.
+void four_values(StoredCampaign& campaign, int point, double unit) {
+  const double values[] = {-1, 0, 1, 0};
+  for (int seed = 0; seed < 4; ++seed) campaign.complete(point, seed, 10 + unit * values[seed]);
+}
+
+TEST(Status, AnOpenPointShowsTheSeedsOfItsNextLookAndAProvisionalMean) {
+  StoredCampaign campaign(1, 4, 20);
+  four_values(campaign, 0, 1);  // half-width 3.777 * 0.408 = 15 %: goes on to 5 seeds
+  const CampaignStatus status = read_status(campaign.database());
+  const PointSummary& point = status.points.at(0);
+  EXPECT_FALSE(point.decided);
+  EXPECT_EQ(point.wanted, 5);
+  EXPECT_EQ(point.wanted_ended, 4);
+  EXPECT_EQ(point.so_far.count, 4);
+  EXPECT_DOUBLE_EQ(point.so_far.mean, 10.25);  // the control variate of plain_result() is 0.25
+  EXPECT_DOUBLE_EQ(point.so_far.standard_error, std::sqrt(2.0 / 3 / 4));
+  EXPECT_EQ(point.counts.cpu_seconds, 8);
+  EXPECT_EQ(standing(status), 4);
+  const std::string table = status_table(status);
+  EXPECT_NE(table.find("4/5  10.25 ± 0.41  10.2 ± 1.5 (15 %)"), std::string::npos) << table;
+  EXPECT_NE(table.find("1 point: 1 open\n4 seeds ended; processor time 8 s"), std::string::npos) << table;
+}
+
+TEST(Status, SeedsOfARunThatWasKilledAreNotCalledRunning) {
+  StoredCampaign campaign(1, 4, 20);
+  four_values(campaign, 0, 1);
+  CampaignStatus status = read_status(campaign.database());
+  status.points[0].counts.running = 2;
+  EXPECT_NE(status_table(status).find("4 seeds ended; 2 were running when the run was killed; "),
+            std::string::npos);
+  status.owner = 4711;
+  EXPECT_NE(status_table(status).find("4 seeds ended; 2 running; "), std::string::npos);
+}
+
+TEST(Status, APointThatWasCancelledIsNeitherOpenNorASuccess) {
+  StoredCampaign campaign(2, 4, 20);
+  four_values(campaign, 0, 0.1);
+  const std::int64_t second = campaign.database().points().at(1).id;
+  Queue(campaign.database()).set_cancelled(second, true);
+  const CampaignStatus status = read_status(campaign.database());
+  EXPECT_EQ(standing(status), 3);
+  EXPECT_EQ(verdict_text(status.points.at(1)), "cancelled");
+  EXPECT_TRUE(status_json(status)["points"][1]["cancelled"]);
+  EXPECT_TRUE(status_json(status)["points"][1]["verdict"].is_null());
+  EXPECT_NE(status_table(status).find("2 points: 1 cancelled, 1 converged"), std::string::npos);
+}
+
+TEST(Status, ACancelledPointThatHadConvergedIsASuccess) {
+  StoredCampaign campaign(1, 4, 20);
+  four_values(campaign, 0, 0.1);
+  Queue(campaign.database()).set_cancelled(1, true);
+  const CampaignStatus status = read_status(campaign.database());
+  EXPECT_EQ(standing(status), 0);
+  EXPECT_EQ(verdict_text(status.points.at(0)), "converged, cancelled");
+}
+
+// Of eight values 10.25 +- 1: half-width 2.76 / sqrt(7) at 95.9 %, 10 %; the eighth to tenth change little.
+TEST(Status, ALoosenedToleranceSaysThatAnEarlierLookDecides) {
+  StoredCampaign campaign(1, 8, 20);
+  for (int seed = 0; seed < 13; ++seed) campaign.complete(0, seed, seed % 2 == 0 ? 9 : 11);
+  EXPECT_EQ(read_status(campaign.database()).points.at(0).looks.back().seeds, 13);
+  EXPECT_FALSE(says(status_table(read_status(campaign.database())), "earlier-look"));
+  campaign.set_tolerance(0.5);
+  const CampaignStatus status = read_status(campaign.database());
+  ASSERT_EQ(status.points.at(0).looks.back().seeds, 8);
+  EXPECT_EQ(verdict_text(status.points.at(0)), "converged, earlier-look");
+  EXPECT_TRUE(says(status_table(status),
+                   "point=0: the look at 8 seeds decides, the first within the present target; all 13 that "
+                   "have ended are in \"so far\"\n"))
+      << status_table(status);
+  EXPECT_TRUE(
+      says(explain(campaign.database(), campaign.directory(), ""),
+           "it decides as if the target had always been this one, and leaves out later seeds; all 13"));
+}
+
+// Ten values 10.25 +- 0.5 at 95 % with a maximum of 10: half-width 2.262 * 0.5 / 3 = 0.377, 3.7 %; the spread
+// may be sqrt(9 / chi2(9)) = 1.65 times as large (p = 5 %), for which 10 seeds would not do.
+TEST(Status, APointThatTheMaximumIsTooNearToIsNotCalledConverged) {
+  StoredCampaign campaign(1, 10, 10);
+  for (int seed = 0; seed < 10; ++seed) campaign.complete(0, seed, seed % 2 == 0 ? 9.5 : 10.5);
+  const CampaignStatus status = read_status(campaign.database());
+  EXPECT_EQ(standing(status), 3);
+  EXPECT_EQ(verdict_text(status.points.at(0)), "converged-near-maximum");
+  EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), ""), "perhaps by luck"));
+  EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), ""), "a larger /realisations/maximum"));
+}
+
+TEST(Status, APointWithoutSeedsHasNoNumbers) {
+  StoredCampaign campaign(1, 4, 20);
+  const CampaignStatus status = read_status(campaign.database());
+  const Json point = status_json(status)["points"][0];
+  EXPECT_TRUE(point["look"].is_null());
+  EXPECT_TRUE(point["verdict"].is_null());
+  EXPECT_TRUE(point["so_far"]["mean"].is_null());
+  EXPECT_TRUE(point["so_far"]["standard_error"].is_null());
+  EXPECT_EQ(point["seeds"]["wanted"], 4);
+  EXPECT_NE(status_table(status).find("0/4"), std::string::npos);
+}
+
+TEST(Status, OneSeedHasAMeanButNoError) {
+  StoredCampaign campaign(1, 4, 20);
+  campaign.complete(0, 2, 10);
+  const CampaignStatus status = read_status(campaign.database());
+  const Json point = status_json(status)["points"][0];
+  EXPECT_EQ(point["so_far"]["mean"], 10.25);
+  EXPECT_TRUE(point["so_far"]["standard_error"].is_null());
+}
+
+TEST(Status, SeedsBeyondTheDecidingLookAreSurplus) {
+  StoredCampaign campaign(1, 4, 20);
+  four_values(campaign, 0, 0.1);
+  campaign.complete(0, 4, 1000);
+  campaign.complete(0, 6, 1000);
+  const CampaignStatus status = read_status(campaign.database());
+  EXPECT_EQ(status.points[0].surplus(), 2);
+  EXPECT_EQ(status.points[0].wanted_ended, 4);
+  EXPECT_EQ(standing(status), 0);
+  EXPECT_NE(status_table(status).find("6 seeds ended, 2 surplus"), std::string::npos) << status_table(status);
+}
+
+TEST(Status, LostSeedsAreCountedByCauseAndSaidWithTheVerdict) {
+  StoredCampaign campaign(2, 4, 20);
+  four_values(campaign, 0, 0.1);
+  four_values(campaign, 1, 0.1);
+  EXPECT_EQ(standing(read_status(campaign.database())), 0);
+
+  StoredCampaign lossy(1, 6, 20);
+  four_values(lossy, 0, 0.01);
+  lossy.blow_up(0, 4);
+  EXPECT_EQ(verdict_text(read_status(lossy.database()).points[0]), "open, 1 lost");
+  lossy.crash(0, 5);
+  const CampaignStatus status = read_status(lossy.database());
+  EXPECT_EQ(verdict_text(status.points[0]), "converged-with-losses(2)");
+  EXPECT_EQ(status.points[0].losses, (std::map<std::string, int>{{"crashed", 1}, {"overlap", 1}}));
+  EXPECT_EQ(standing(status), 3);
+}
+
+TEST(Status, ASuspectPointIsAnIntegrityFault) {
+  StoredCampaign campaign(1, 4, 20);
+  four_values(campaign, 0, 0.1);
+  campaign.repeat(0, 1, 10);
+  EXPECT_EQ(standing(read_status(campaign.database())), 0);
+  campaign.repeat(0, 1, 11);
+  const CampaignStatus status = read_status(campaign.database());
+  EXPECT_EQ(verdict_text(status.points[0]), "converged, suspect");
+  EXPECT_EQ(standing(status), 6);
+}
+
+TEST(Status, SeedsThatWarnOfTheirResultsAreCountedWithTheVerdict) {
+  StoredCampaign campaign(2, 4, 20);
+  const auto warning = [](const char* code) { return Json{{"code", code}, {"message", "why"}}; };
+  for (int seed = 0; seed < 4; ++seed) {
+    campaign.complete(0, seed, 10 + 0.01 * seed,
+                      Json::array({warning("inertia-shear"), warning("timestep")}));
+    campaign.complete(1, seed, 10 + 0.01 * seed, Json::array({warning("inertia-shear")}));
+  }
+  const CampaignStatus status = read_status(campaign.database());
+  EXPECT_EQ(verdict_text(status.points[0]), "converged, 4 flagged timestep");
+  EXPECT_EQ(verdict_text(status.points[1]), "converged");
+  EXPECT_EQ(status_json(status)["points"][0]["flags"], (Json{{"timestep", 4}}));
+}
+
+TEST(Status, TheEstimateWithoutTheControlVariateStandsBesideTheOneThatDecides) {
+  StoredCampaign campaign(1, 4, 20);
+  four_values(campaign, 0, 0.1);
+  const std::string table = status_table(read_status(campaign.database()));
+  EXPECT_NE(table.find("10.25 ± 0.15 (1.5 %)  10.00 ± 0.15  converged"), std::string::npos) << table;
+}
+
+// 20 points with 800 seeds each. A third of a second is what a person does not notice.
+TEST(Status, OfSixteenThousandRealisationsTakesBelowAThirdOfASecond) {
+  StoredCampaign campaign(20, 10, 800);
+  campaign.database().connection().execute(
+      "WITH RECURSIVE seeds(seed) AS (SELECT 0 UNION ALL SELECT seed + 1 FROM seeds WHERE seed < 799) "
+      "INSERT INTO realisation (point_id, seed, state, cause, value, cpu_seconds, final_state_sha256, "
+      "content_sha256) SELECT point_id, seed, 'done', 'completed', 10 + seed % 7, 1, hash, hash FROM seeds, "
+      "point");
+  const std::clock_t start = std::clock();  // processor time: of what else the machine does this says nothing
+  const std::string table = status_table(read_status(campaign.database()));
+  const std::clock_t spent = std::clock() - start;
+  EXPECT_NE(table.find("16000 seeds ended"), std::string::npos);
+  EXPECT_LT(static_cast<double>(spent) / CLOCKS_PER_SEC, 0.3);
+}
+
+}  // namespace
+}  // namespace peclet::runner

@@ -1,0 +1,215 @@
+// coverage_study [REPLICATIONS [FIRST_ROW]]: how often the intervals at which campaigns stop hold the true
+// mean, as a CSV table.
+//
+// Every row simulates that many points through the scheduler and the stop rule of `peclet run`, with workers
+// that take as long as the population says, three points at a time. Beside it stands what most scripts do:
+// look at what has come in whenever something comes in, and stop as soon as Student's interval is narrow
+// enough.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <queue>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "runner/statistics/scheduler.h"
+#include "runner/statistics/statistics.h"
+
+namespace peclet::runner {
+namespace {
+
+constexpr double confidence = 0.95;
+constexpr int points_at_a_time = 3;
+
+// Values of mean 1, and how long a realisation runs.
+struct Population {
+  std::string name;
+  bool lognormal = false;
+  bool slow_when_large = false;  // run time correlated with the value, 0.8
+};
+
+struct Case {
+  Population population;
+  int minimum = 8;
+  double tolerance = 0.05;
+  double needed = 20;  // seeds at which the true spread would just meet the tolerance
+  int workers = 1;
+  bool plain = false;  // every interval at the level of the confidence, for comparison
+};
+
+struct Realisation {
+  double value = 0, run_time = 0;
+};
+
+class Source {
+ public:
+  Source(const Case& about, unsigned start)
+      : random_(start),
+        population_(about.population),
+        spread_(about.tolerance * std::sqrt(about.needed) / 1.959964) {}
+
+  Realisation draw() {
+    const double z = normal_(random_);
+    const double logarithmic = std::sqrt(std::log1p(spread_ * spread_));
+    const double value =
+        population_.lognormal ? std::exp(logarithmic * z - logarithmic * logarithmic / 2) : 1 + spread_ * z;
+    const double own = normal_(random_);
+    // Lognormal run times whose logarithm has the standard deviation 0.5.
+    return {value, std::exp(0.5 * (population_.slow_when_large ? 0.8 * z + 0.6 * own : own))};
+  }
+
+ private:
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+  Population population_;
+  double spread_;
+};
+
+struct Tally {
+  int count = 0, covered = 0, converged = 0, skewed = 0;
+  double bias = 0, seeds = 0, looks = 0;
+
+  void add(const Estimate& mean, double half_width) {
+    ++count;
+    if (std::abs(mean.mean - 1) <= half_width) ++covered;
+    bias += (mean.mean - 1) / mean.standard_error;
+    seeds += mean.count;
+  }
+};
+
+// A clock of its own, so that the order in which realisations end is that of their run times.
+struct Running {
+  double end = 0;
+  SeedId id;
+  double value = 0;
+  friend bool operator>(const Running& a, const Running& b) { return a.end > b.end; }
+};
+using Clock = std::priority_queue<Running, std::vector<Running>, std::greater<>>;
+
+// Far away: maximum_study is about what a near one does.
+int most_seeds(const Case& about) {
+  return static_cast<int>(20 * std::max(about.needed, 1.0 * about.minimum));
+}
+
+void simulate_campaign(const Case& about, Source& source, Tally& tally) {
+  // What adjusted_confidence() makes the plain level again.
+  const double asked = about.plain ? 1 - (1 - confidence) / (1 - 1.4 / about.minimum) : confidence;
+  const Target target{"relative_viscosity", about.tolerance, asked};
+  Scheduler scheduler(std::vector<std::vector<std::optional<Outcome>>>(points_at_a_time), target,
+                      about.minimum, most_seeds(about));
+  Clock clock;
+  double now = 0;
+  while (!scheduler.finished()) {
+    while (static_cast<int>(clock.size()) < about.workers) {
+      const std::optional<SeedId> next = scheduler.next();
+      if (!next) break;
+      scheduler.begin(*next);
+      const Realisation drawn = source.draw();
+      clock.push({now + drawn.run_time, *next, drawn.value});
+    }
+    const Running ended = clock.top();
+    clock.pop();
+    now = ended.end;
+    scheduler.end(ended.id, {Outcome::Kind::value, ended.value});
+  }
+  for (int point = 0; point < points_at_a_time; ++point) {
+    const Look& last = scheduler.looks(point).back();
+    tally.add(last.controlled, last.controlled_half_width);
+    tally.looks += static_cast<double>(scheduler.looks(point).size());
+    if (last.verdict == Verdict::converged) ++tally.converged;
+    if (is_skewed(last, confidence)) ++tally.skewed;
+  }
+}
+
+// Whatever has ended, at every ending, with Student's plain interval.
+void simulate_naive(const Case& about, Source& source, Tally& tally) {
+  Clock clock;
+  std::vector<double> values;
+  double now = 0;
+  for (;;) {
+    while (static_cast<int>(clock.size()) < about.workers) {
+      const Realisation drawn = source.draw();
+      clock.push({now + drawn.run_time, {}, drawn.value});
+    }
+    now = clock.top().end;
+    values.push_back(clock.top().value);
+    clock.pop();
+    if (static_cast<int>(values.size()) < about.minimum) continue;
+    const Estimate mean = estimate(values);
+    const double half_width = student_half_width(mean, confidence);
+    if (half_width <= about.tolerance * std::abs(mean.mean) ||
+        static_cast<int>(values.size()) == most_seeds(about)) {
+      tally.add(mean, half_width);
+      return;
+    }
+  }
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  const Population normal{"normal"}, slow{"slow-when-large", false, true},
+      lognormal{"lognormal", true, false}, slow_lognormal{"slow-when-large lognormal", true, true};
+  for (const int minimum : {8, 10, 20, 40}) {
+    for (const double ratio : {0.1, 0.5, 1.0, 1.5, 2.0, 4.0, 10.0, 20.0}) {
+      all.push_back({normal, minimum, 0.05, ratio * minimum, 1});
+    }
+  }
+  for (const int workers : {1, 4, 16, 64}) {
+    for (const double needed : {10.0, 40.0, 160.0}) all.push_back({slow, 10, 0.05, needed, workers});
+  }
+  // Coefficient of variation 1.
+  for (const double tolerance : {0.1, 0.15, 0.2, 0.3}) {
+    for (const int minimum : {8, 20}) {
+      all.push_back({lognormal, minimum, tolerance, std::pow(1.959964 / tolerance, 2), 1});
+    }
+  }
+  for (const int workers : {4, 64}) all.push_back({slow_lognormal, 10, 0.1, std::pow(19.59964, 2), workers});
+  const Population plain{"normal plain"};
+  for (const int minimum : {5, 8, 10}) {
+    for (const double ratio : {0.1, 0.5, 1.0, 1.5, 2.0, 4.0, 10.0, 20.0}) {
+      all.push_back({plain, minimum, 0.05, ratio * minimum, 1, true});
+    }
+  }
+  return all;
+}
+
+void print_row(const Case& about, const Tally& rule, const Tally& naive) {
+  const auto share = [](int part, int whole) { return 100.0 * part / whole; };
+  const double covered = share(rule.covered, rule.count);
+  fmt::print("{},{},{:g},{:.4g},{},{},{:.2f},{:.2f},{:.3f},{:.1f},{:.1f},{:.1f},{:.1f},{:.2f},{:.3f}\n",
+             about.population.name, about.minimum, about.tolerance, about.needed, about.workers, rule.count,
+             covered, std::sqrt(covered * (100 - covered) / rule.count), rule.bias / rule.count,
+             rule.seeds / rule.count, rule.looks / rule.count, share(rule.converged, rule.count),
+             share(rule.skewed, rule.count), share(naive.covered, naive.count), naive.bias / naive.count);
+}
+
+}  // namespace
+}  // namespace peclet::runner
+
+int main(int argc, char** argv) {
+  using namespace peclet::runner;
+  const int replications = argc > 1 ? std::atoi(argv[1]) : 21'000;
+  const int first = argc > 2 ? std::atoi(argv[2]) : 0;
+  if (replications < 1 || first < 0) {
+    fmt::print(stderr, "coverage_study [REPLICATIONS [FIRST_ROW]]: integers, from 1 and from 0\n");
+    return 2;
+  }
+  fmt::print(
+      "population,minimum,tolerance,needed_seeds,workers,replications,covered_percent,covered_percent_error,"
+      "bias_standard_errors,seeds,looks,converged_percent,skewed_percent,naive_covered_percent,"
+      "naive_bias_standard_errors\n");
+  const std::vector<Case> all = cases();
+  for (std::size_t row = static_cast<std::size_t>(first); row < all.size(); ++row) {
+    const Case& about = all[row];
+    const auto start = static_cast<unsigned>(1 + 2 * row);
+    Source source(about, start), naive_source(about, start + 1);
+    Tally rule, naive;
+    while (rule.count < replications) simulate_campaign(about, source, rule);
+    while (naive.count < replications) simulate_naive(about, naive_source, naive);
+    print_row(about, rule, naive);
+  }
+  return 0;
+}

@@ -1,0 +1,145 @@
+#include "runner/statistics/forecast.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "runner/events/progress.h"
+#include "runner/text/duration_text.h"
+
+namespace peclet::runner {
+namespace {
+
+const Target ten_percent{"relative_viscosity", 0.1, 0.95};
+
+Look look(int seeds, double mean, double half_width) {
+  Look made;
+  made.seeds = seeds;
+  made.controlled = {seeds, mean, half_width / 2};
+  made.controlled_half_width = half_width;
+  return made;
+}
+
+TEST(Forecast, ExpectsTheMinimumBeforeTheFirstLook) {
+  EXPECT_EQ(expected_seeds({}, ten_percent, 10, 100), 10);
+}
+
+// Half-width 2 where 1 is tolerated: four times the seeds, at the first look that has them (of 10, 13, 17,
+// 22, 28, 35, 44), if the maximum is far.
+TEST(Forecast, FourTimesTheSeedsHalveTheInterval) {
+  EXPECT_EQ(expected_seeds({look(10, 10, 2)}, ten_percent, 10, 1000), 44);
+}
+
+TEST(Forecast, NeverExpectsMoreThanTheMaximumOrLessThanTheNextLook) {
+  EXPECT_EQ(expected_seeds({look(10, 10, 50)}, ten_percent, 10, 100), 100);
+  EXPECT_EQ(expected_seeds({look(10, 10, 1.001)}, ten_percent, 10, 1000), 13);
+}
+
+TEST(Forecast, SaysNothingBeforeAnythingHasEnded) {
+  EXPECT_EQ(time_to_go({PointForecast{}}, ten_percent, 10, 100, 2), std::nullopt);
+}
+
+PointForecast five_of_six_seconds() {
+  PointForecast point;
+  for (int i = 0; i < 5; ++i) point.cost.add(6);
+  point.ended = 5;
+  point.so_far = {5, 10, 0.01};
+  return point;
+}
+
+// Five more of 6 s by two workers, in three rounds; the machine's allowance either way, since costs and
+// number are sure.
+TEST(Forecast, EqualCostsShareTheWorkers) {
+  const std::optional<TimeToGo> left = time_to_go({five_of_six_seconds()}, ten_percent, 10, 100, 2);
+  ASSERT_TRUE(left);
+  EXPECT_DOUBLE_EQ(left->likely, 3 * 6);
+  EXPECT_DOUBLE_EQ(left->low, 3 * 6 / machine_allowance);
+  EXPECT_DOUBLE_EQ(left->high, 3 * 6 * machine_allowance);
+}
+
+TEST(Forecast, ScatteredCostsWidenTheRange) {
+  PointForecast scattered = five_of_six_seconds();
+  scattered.cost = {};
+  for (const double seconds : {2.0, 10.0, 6.0, 3.0, 9.0}) scattered.cost.add(seconds);
+  const std::optional<TimeToGo> sure = time_to_go({five_of_six_seconds()}, ten_percent, 10, 100, 1);
+  const std::optional<TimeToGo> left = time_to_go({scattered}, ten_percent, 10, 100, 1);
+  ASSERT_TRUE(left);
+  EXPECT_DOUBLE_EQ(left->likely, sure->likely);
+  EXPECT_LT(left->low, sure->low);
+  EXPECT_GT(left->high, sure->high);
+}
+
+// What runs is not done: a worker that has just been given the last seed needs the time of a seed.
+TEST(Forecast, SeedsThatRunAreStillToCome) {
+  PointForecast point = five_of_six_seconds();
+  point.ended = 9;
+  point.running = 1;
+  const std::optional<TimeToGo> left = time_to_go({point}, ten_percent, 10, 100, 4);
+  ASSERT_TRUE(left);
+  EXPECT_DOUBLE_EQ(left->likely, 3);
+  EXPECT_LE(left->low, 1);
+  EXPECT_GE(left->high, 6);
+}
+
+// Ten values with a half-width of some 16 % where 10 % are tolerated: 26 seeds are likely; the variance of
+// ten values may be 9 / 4.17 = 2.2 times as large, or 9 / 14.7 = 0.61 times.
+TEST(Forecast, TheNumberOfSeedsIsNotKnownBetterThanTheSpread) {
+  PointForecast point;
+  for (int i = 0; i < 10; ++i) point.cost.add(6);
+  point.ended = 10;
+  point.so_far = {10, 10, 0.7};
+  const std::optional<TimeToGo> left = time_to_go({point}, ten_percent, 10, 1000, 1);
+  ASSERT_TRUE(left);
+  EXPECT_GT(left->high / left->likely, 2 * machine_allowance);
+  EXPECT_GT(left->likely / left->low, 1.5 * machine_allowance);
+}
+
+TEST(Forecast, BeforeTwoValuesAnyNumberOfSeedsMayBeNeeded) {
+  PointForecast point;
+  point.cost.add(6);
+  point.ended = 1;
+  point.so_far = {1, 10, std::nan("")};
+  EXPECT_GE(time_to_go({point}, ten_percent, 10, 100, 1)->high, 99 * 6);
+}
+
+TEST(Forecast, DecidedPointsCostNothing) {
+  PointForecast decided;
+  decided.cost.add(1000);
+  decided.decided = true;
+  EXPECT_EQ(time_to_go({decided}, ten_percent, 10, 100, 1)->likely, 0);
+}
+
+TEST(Progress, SaysDurationsAsPeopleDo) {
+  EXPECT_EQ(duration_text(0), "0 s");
+  EXPECT_EQ(duration_text(45.4), "45 s");
+  EXPECT_EQ(duration_text(720), "12 min");
+  EXPECT_EQ(duration_text(12000), "3 h 20 min");
+  EXPECT_EQ(duration_text(187200), "2 d 4 h");
+}
+
+TEST(Progress, LineHoldsTheBudget) {
+  RunReport report;
+  report.spent_seconds = 1800;
+  report.budget_seconds = 7200;
+  EXPECT_EQ(progress_line(report), "points 0/0 converged | seeds 0/0 | budget 0.5 of 2 h");
+}
+
+TEST(Progress, LineHoldsPointsSeedsRateAndTimeToGo) {
+  RunReport report;
+  report.points = 6;
+  report.decided = 3;
+  report.converged = 2;
+  report.seeds_ended = 143;
+  report.seeds_wanted = 210;
+  report.results = 20;
+  report.elapsed = 120;
+  report.workers = 2;
+  report.busy = 1;
+  report.to_go = TimeToGo{720, 600, 1080};
+  EXPECT_EQ(
+      progress_line(report),
+      "points 2/6 converged, 1 not | seeds 143/210 | 10/min | 12 min to go (10 min to 18 min) | workers 1/2");
+}
+
+}  // namespace
+}  // namespace peclet::runner

@@ -1,0 +1,383 @@
+#include "runner/statistics/scheduler.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace peclet::runner {
+namespace {
+
+using Outcomes = std::vector<std::vector<std::optional<Outcome>>>;
+
+Outcome value(double number) { return {Outcome::Kind::value, number, 0}; }
+
+// Two values so far apart, or so near, that no reasonable interval could decide otherwise at 5 %.
+Outcome scattered(int seed) { return value(seed % 2 == 0 ? 1 : 19); }
+Outcome steady(int seed) { return value(seed % 2 == 0 ? 10 : 10.01); }
+
+const Target five_percent{"relative_viscosity", 0.05, 0.95};
+
+// Looks at 4, 5, 7, 9, 12 ... (each the ceiling of 1.25 times the last).
+Scheduler fresh(int points, int minimum = 4, int maximum = 40) {
+  return {Outcomes(static_cast<std::size_t>(points)), five_percent, minimum, maximum};
+}
+
+SeedId take(Scheduler& scheduler) {
+  const std::optional<SeedId> id = scheduler.next();
+  if (!id) throw std::logic_error("nothing to run");
+  scheduler.begin(*id);
+  return *id;
+}
+
+TEST(Scheduler, KnowsTheMeanOfWhatHasEndedInAnyOrder) {
+  Scheduler scheduler = fresh(1, 8);
+  EXPECT_EQ(scheduler.so_far(0).count, 0);
+  for (const int seed : {5, 0, 3}) scheduler.end({0, seed}, value(seed));
+  scheduler.end({0, 1}, Outcome{});
+  EXPECT_EQ(scheduler.so_far(0).count, 3);
+  EXPECT_DOUBLE_EQ(scheduler.so_far(0).mean, 8.0 / 3);
+  // Deviations 7/3, -8/3 and 1/3: variance 19/3, of the mean a third of it.
+  EXPECT_DOUBLE_EQ(scheduler.so_far(0).standard_error, std::sqrt(19.0) / 3);
+  EXPECT_EQ(scheduler.all_ended(0), 4);
+  scheduler.end({0, 1}, value(8.0 / 3));  // its late result
+  EXPECT_EQ(scheduler.so_far(0).count, 4);
+  EXPECT_EQ(scheduler.all_ended(0), 4);
+}
+
+TEST(Scheduler, PointsComeForwardTogetherInTheOrderOfTheSweep) {
+  Scheduler scheduler = fresh(3);
+  std::vector<SeedId> taken(7);
+  for (SeedId& id : taken) id = take(scheduler);
+  EXPECT_EQ(taken, (std::vector<SeedId>{{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {2, 1}, {0, 2}}));
+}
+
+TEST(Scheduler, ThePointFurthestBehindGoesFirst) {
+  Outcomes known(2);
+  for (int seed = 0; seed < 3; ++seed) known[0].push_back(steady(seed));
+  Scheduler scheduler(known, five_percent, 4, 40);
+  EXPECT_EQ(take(scheduler), (SeedId{1, 0}));
+  EXPECT_EQ(take(scheduler), (SeedId{1, 1}));
+  EXPECT_EQ(take(scheduler), (SeedId{1, 2}));
+  EXPECT_EQ(take(scheduler), (SeedId{0, 3}));
+}
+
+// Whatever the costs are: after 4 n seeds every one of n points has 4, after 4 n - k no point lacks more than
+// one of the round before; in each round they go by cost.
+TEST(Scheduler, FirstAllPointsGetSomeSeedsTheCheapestFirst) {
+  std::vector<double> costs{0.2, 3, 0.5, 100};
+  std::sort(costs.begin(), costs.end());
+  do {
+    Scheduler scheduler = fresh(4, 10);
+    for (int point = 0; point < 4; ++point) scheduler.set_cost(point, costs[static_cast<std::size_t>(point)]);
+    for (int seed = 0; seed < Scheduler::seeds_of_pass; ++seed) {
+      double last = 0;
+      for (int i = 0; i < 4; ++i) {
+        const SeedId id = take(scheduler);
+        EXPECT_EQ(id.seed, seed);
+        EXPECT_GT(costs[static_cast<std::size_t>(id.point)], last);
+        last = costs[static_cast<std::size_t>(id.point)];
+      }
+    }
+    EXPECT_EQ(costs[static_cast<std::size_t>(take(scheduler).point)], 100) << "then the longest";
+  } while (std::next_permutation(costs.begin(), costs.end()));
+}
+
+// Each needs 8 seeds and has 4 after the pass.
+TEST(Scheduler, ThePointWithMostCostToComeGoesFirst) {
+  Scheduler scheduler = fresh(3, 8);
+  for (int i = 0; i < 12; ++i) take(scheduler);
+  scheduler.set_cost(0, 1);
+  scheduler.set_cost(1, 3);  // 12 s, then 9, 6 and 3
+  scheduler.set_cost(2, 2);  // 8 s, then 6, 4 and 2
+  std::vector<int> taken;
+  for (int i = 0; i < 8; ++i) taken.push_back(take(scheduler).point);
+  EXPECT_EQ(taken, (std::vector<int>{1, 1, 2, 1, 2, 0, 2, 0}));
+}
+
+TEST(Scheduler, APointWithoutKnownCostIsTakenForAnAverageOne) {
+  Scheduler scheduler = fresh(3, 8);
+  for (int i = 0; i < 12; ++i) take(scheduler);
+  scheduler.set_cost(0, 1);
+  scheduler.set_cost(2, 4);
+  EXPECT_EQ(take(scheduler).point, 2);  // 16 s, then 12, 8; the second point 4 * 2.5 = 10 s
+  EXPECT_EQ(take(scheduler).point, 2);
+  EXPECT_EQ(take(scheduler).point, 1);
+}
+
+TEST(Scheduler, ThePointThatNeedsMoreSeedsGoesFirst) {
+  // Half-widths of some 50 % and of 6 %: the first needs the maximum, the second a few more seeds.
+  Outcomes known(2);
+  for (int seed = 0; seed < 4; ++seed) {
+    known[0].push_back(value(seed % 2 == 0 ? 9.7 : 10.3));
+    known[1].push_back(value(seed % 2 == 0 ? 7 : 13));
+  }
+  Scheduler scheduler(known, five_percent, 4, 40);
+  ASSERT_EQ(scheduler.looks(0).back().verdict, Verdict::more);
+  EXPECT_EQ(take(scheduler), (SeedId{1, 4}));
+  EXPECT_EQ(take(scheduler), (SeedId{0, 4})) << "seeds that are needed go before surplus ones";
+}
+
+TEST(Scheduler, UnderABudgetThePointWhoseErrorFallsFastestGoesFirst) {
+  // Relative widths of 6 and 60 % after 4 seeds: a seed of the second brings ten times as much, unless it
+  // costs twenty times as much.
+  Outcomes known(2);
+  for (int seed = 0; seed < 4; ++seed) {
+    known[0].push_back(value(seed % 2 == 0 ? 9.7 : 10.3));
+    known[1].push_back(value(seed % 2 == 0 ? 7 : 13));
+  }
+  for (const double seconds : {1.0, 20.0}) {
+    Scheduler scheduler(known, five_percent, 4, 40);
+    scheduler.set_allocation(Allocation::steepest_first);
+    scheduler.set_cost(0, 1);
+    scheduler.set_cost(1, seconds);
+    EXPECT_EQ(take(scheduler).point, seconds > 10 ? 0 : 1);
+  }
+}
+
+TEST(Scheduler, UnderABudgetPointsThatNobodyHasSeenGoFirst) {
+  Outcomes known(2);
+  for (int seed = 0; seed < 4; ++seed) known[0].push_back(value(seed % 2 == 0 ? 7 : 13));
+  Scheduler scheduler(known, five_percent, 4, 40);
+  scheduler.set_allocation(Allocation::steepest_first);
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(take(scheduler).point, 1);
+  EXPECT_EQ(take(scheduler).point, 0);
+}
+
+TEST(Scheduler, UnderABudgetALookOnceBegunIsSeenThrough) {
+  // Widths of 11 and 10 %, with 4 seeds each: the second is not begun before the first has its fifth.
+  Outcomes known(2);
+  for (int seed = 0; seed < 9; ++seed) {
+    known[0].push_back(value(seed % 2 == 0 ? 9 : 11));
+    known[1].push_back(value(seed % 2 == 0 ? 9.05 : 10.95));
+  }
+  Scheduler scheduler(known, five_percent, 4, 40);
+  scheduler.set_allocation(Allocation::steepest_first);
+  ASSERT_EQ(scheduler.wanted(0), 12);
+  for (int seed = 9; seed < 12; ++seed) EXPECT_EQ(take(scheduler), (SeedId{0, seed}));
+  EXPECT_EQ(take(scheduler), (SeedId{1, 9}));
+}
+
+TEST(Scheduler, UnderABudgetOnlySeedsGoThatItPaysFor) {
+  Scheduler scheduler = fresh(2);
+  scheduler.set_allocation(Allocation::steepest_first);
+  scheduler.set_cost(0, 10);
+  scheduler.set_cost(1, 3);
+  EXPECT_EQ(scheduler.next_within(100), (SeedId{1, 0})) << "of points nobody has seen the cheapest";
+  for (int seed = 0; seed < 4; ++seed) scheduler.begin({1, seed});
+  EXPECT_EQ(scheduler.next_within(10), (SeedId{0, 0}));
+  EXPECT_EQ(scheduler.next_within(9.9), std::nullopt);
+  for (int seed = 0; seed < 4; ++seed) scheduler.begin({0, seed});
+  EXPECT_EQ(scheduler.next_within(100), std::nullopt) << "nobody runs ahead";
+}
+
+TEST(Scheduler, UnderABudgetALookThatItPaysForAsAWholeGoesFirst) {
+  // Both at 9 seeds and wanting three more; the first is wider, but 20 s do not buy its look.
+  Outcomes known(2);
+  for (int seed = 0; seed < 9; ++seed) {
+    known[0].push_back(value(seed % 2 == 0 ? 5 : 15));
+    known[1].push_back(value(seed % 2 == 0 ? 9 : 11));
+  }
+  Scheduler scheduler(known, five_percent, 4, 40);
+  scheduler.set_allocation(Allocation::steepest_first);
+  scheduler.set_cost(0, 8);
+  scheduler.set_cost(1, 4);
+  EXPECT_EQ(scheduler.next_within(24), (SeedId{0, 9}));
+  EXPECT_EQ(scheduler.next_within(20), (SeedId{1, 9}));
+  EXPECT_EQ(scheduler.next_within(9), (SeedId{0, 9})) << "when it buys no look, seeds for later ones";
+}
+
+TEST(Scheduler, CostsThatAreNotKnownFollowFromTheWork) {
+  Scheduler scheduler = fresh(3);
+  for (int point = 0; point < 3; ++point) scheduler.set_work(point, std::pow(10, point));
+  EXPECT_EQ(scheduler.expected_seconds({1, 1, 1}), 0);
+  EXPECT_EQ(scheduler.next_within(1e-6), (SeedId{0, 0})) << "nobody knows yet that it is too dear";
+  EXPECT_EQ(scheduler.next_within(0), std::nullopt) << "but nothing is left";
+  scheduler.set_cost(1, 5);
+  EXPECT_DOUBLE_EQ(scheduler.expected_seconds({1, 0, 0}), 0.5);
+  EXPECT_DOUBLE_EQ(scheduler.expected_seconds({0, 0, 1}), 50);
+  EXPECT_DOUBLE_EQ(scheduler.expected_seconds({2, 1, 3}), 2 * 0.5 + 5 + 3 * 50);
+  EXPECT_EQ(scheduler.next_within(0.51), (SeedId{0, 0}));
+  EXPECT_EQ(scheduler.next_within(0.49), std::nullopt);
+}
+
+// A look at all points for each of them would be 4e10 looks, more than a test may take.
+TEST(Scheduler, WhatManyPointsHaveOutIsSeenAtOneLook) {
+  constexpr int many = 200'000;
+  Scheduler scheduler(Outcomes(many), five_percent, 4, 4);
+  for (int point = 0; point < many; ++point) scheduler.set_work(point, 1);
+  scheduler.set_cost(0, 3);
+  EXPECT_DOUBLE_EQ(scheduler.expected_seconds(std::vector<int>(many, 1)), 3.0 * many);
+}
+
+TEST(Scheduler, UnderACeilingOnlyTheFirstSeedsGo) {
+  Scheduler scheduler = fresh(2);
+  scheduler.set_ceiling(2);
+  for (const SeedId id : {SeedId{0, 0}, SeedId{1, 0}, SeedId{0, 1}, SeedId{1, 1}})
+    EXPECT_EQ(take(scheduler), id);
+  EXPECT_EQ(scheduler.next(), std::nullopt);
+  for (int seed = 0; seed < 2; ++seed) scheduler.end({0, seed}, steady(seed));
+  EXPECT_FALSE(scheduler.finished());
+  for (int seed = 0; seed < 2; ++seed) scheduler.end({1, seed}, steady(seed));
+  EXPECT_TRUE(scheduler.finished());
+  EXPECT_FALSE(scheduler.decided(0));
+}
+
+TEST(Scheduler, PriorityGoesBeforeCost) {
+  Scheduler scheduler = fresh(2);
+  scheduler.set_cost(0, 1);
+  scheduler.set_cost(1, 100);
+  scheduler.set_priority(0, 1);
+  for (int seed = 0; seed < 4; ++seed) EXPECT_EQ(take(scheduler), (SeedId{0, seed}));
+  EXPECT_EQ(take(scheduler), (SeedId{1, 0})) << "nobody waits for surplus seeds";
+}
+
+TEST(Scheduler, ACancelledPointGetsNoSeedsAndHoldsNothingUp) {
+  Scheduler scheduler = fresh(2);
+  for (int i = 0; i < 4; ++i) take(scheduler);
+  scheduler.set_cancelled(0, true);
+  EXPECT_EQ(take(scheduler).point, 1);
+  EXPECT_EQ(take(scheduler).point, 1);
+  for (int seed = 0; seed < 4; ++seed) scheduler.end({1, seed}, steady(seed));
+  EXPECT_TRUE(scheduler.finished());
+  scheduler.end({0, 0}, steady(0));  // what was out may still come in
+  scheduler.set_cancelled(0, false);
+  EXPECT_FALSE(scheduler.finished());
+  EXPECT_EQ(take(scheduler), (SeedId{0, 2}));
+}
+
+TEST(Scheduler, RunsAheadByOneLookWhenAllNeededSeedsAreOutAndNoFurther) {
+  Scheduler scheduler = fresh(1);
+  for (int seed = 0; seed < 5; ++seed) EXPECT_EQ(take(scheduler), (SeedId{0, seed}));
+  EXPECT_EQ(scheduler.next(), std::nullopt);
+}
+
+TEST(Scheduler, NeededSeedsGoBeforeSurplusOnes) {
+  Scheduler scheduler = fresh(2);
+  for (int i = 0; i < 8; ++i) EXPECT_LT(take(scheduler).seed, 4);
+  EXPECT_EQ(take(scheduler), (SeedId{0, 4}));
+}
+
+TEST(Scheduler, ASeedThatComesBackIsTheNextToGo) {
+  Scheduler scheduler = fresh(1);
+  for (int i = 0; i < 4; ++i) take(scheduler);
+  scheduler.give_back({0, 1});
+  EXPECT_EQ(take(scheduler), (SeedId{0, 1}));
+}
+
+TEST(Scheduler, LooksOnlyAtClosedCohorts) {
+  Scheduler scheduler = fresh(1);
+  for (int i = 0; i < 5; ++i) take(scheduler);
+  for (const int seed : {4, 3, 2, 1}) {
+    EXPECT_FALSE(scheduler.end({0, seed}, steady(seed)));
+    EXPECT_TRUE(scheduler.looks(0).empty());
+  }
+  EXPECT_TRUE(scheduler.end({0, 0}, steady(0)));
+  ASSERT_EQ(scheduler.looks(0).size(), 1U);
+  EXPECT_EQ(scheduler.looks(0)[0].seeds, 4);  // seed 4 is surplus
+  EXPECT_TRUE(scheduler.finished());
+}
+
+TEST(Scheduler, ADecidedPointGetsNoMoreSeeds) {
+  Scheduler scheduler = fresh(2);
+  for (int i = 0; i < 8; ++i) take(scheduler);
+  for (int seed = 0; seed < 4; ++seed) scheduler.end({0, seed}, steady(seed));
+  EXPECT_TRUE(scheduler.decided(0));
+  EXPECT_EQ(take(scheduler).point, 1);
+  EXPECT_EQ(scheduler.next(), std::nullopt);
+}
+
+TEST(Scheduler, AnUndecidedLookAsksForTheSeedsOfTheNextOne) {
+  Scheduler scheduler = fresh(1);
+  for (int seed = 0; seed < 4; ++seed) {
+    take(scheduler);
+    scheduler.end({0, seed}, scattered(seed));
+  }
+  EXPECT_EQ(scheduler.wanted(0), 5);
+  EXPECT_EQ(scheduler.ended(0), 4);
+  EXPECT_FALSE(scheduler.finished());
+}
+
+TEST(Scheduler, StopsAtTheMaximum) {
+  Scheduler scheduler = fresh(1, 4, 6);
+  for (int seed = 0; seed < 6; ++seed) {
+    take(scheduler);
+    scheduler.end({0, seed}, scattered(seed));
+  }
+  EXPECT_TRUE(scheduler.finished());
+  EXPECT_EQ(scheduler.looks(0).back().verdict, Verdict::capped);
+  EXPECT_EQ(scheduler.next(), std::nullopt);
+}
+
+TEST(Scheduler, ATighterToleranceReopensAPointAndRunsNothingTwice) {
+  Outcomes known(1);
+  for (int seed = 0; seed < 7; ++seed) known[0].push_back(steady(seed));
+  Scheduler loose(known, five_percent, 4, 40);
+  EXPECT_TRUE(loose.finished());
+  Scheduler tight(known, {"relative_viscosity", 1e-6, 0.95}, 4, 40);
+  EXPECT_FALSE(tight.finished());
+  EXPECT_EQ(tight.looks(0).size(), 3U);  // at 4, 5 and 7: surplus seeds are used
+  EXPECT_EQ(take(tight), (SeedId{0, 7}));
+}
+
+TEST(Scheduler, ALowerMaximumLeavesLaterSeedsOutOfTheLooks) {
+  Outcomes known(1);
+  for (int seed = 0; seed < 20; ++seed) known[0].push_back(scattered(seed));
+  const Scheduler scheduler(known, five_percent, 4, 9);
+  EXPECT_TRUE(scheduler.finished());
+  EXPECT_EQ(scheduler.looks(0).back().seeds, 9);
+}
+
+TEST(Scheduler, ALateResultOfALostSeedIsLookedAtAgain) {
+  Scheduler scheduler = fresh(1);
+  for (int seed = 0; seed < 4; ++seed) {
+    take(scheduler);
+    scheduler.end({0, seed}, seed == 2 ? Outcome{} : steady(seed));
+  }
+  EXPECT_EQ(scheduler.looks(0).back().verdict, Verdict::converged_with_losses);
+  EXPECT_TRUE(scheduler.end({0, 2}, steady(2)));
+  EXPECT_EQ(scheduler.looks(0).back().verdict, Verdict::converged);
+}
+
+// The promise of the whole runner, for the decision alone: workers in any number, ending in any order.
+TEST(Scheduler, LooksDoNotDependOnWorkersOrOrderOfArrival) {
+  const auto outcome = [](SeedId id) {
+    std::mt19937 generator(static_cast<unsigned>(1000 * id.point + id.seed));
+    if (generator() % 10 == 0) return Outcome{};
+    return value(10 + std::normal_distribution<double>(0, 1 + id.point)(generator));
+  };
+  std::vector<std::vector<Look>> expected;
+  for (unsigned trial = 0; trial < 40; ++trial) {
+    std::mt19937 generator(trial);
+    const std::size_t workers = trial == 0 ? 1 : 1 + generator() % 16;
+    Scheduler scheduler = fresh(3, 4, 60);
+    std::vector<SeedId> out;
+    while (!scheduler.finished()) {
+      while (out.size() < workers && scheduler.next()) out.push_back(take(scheduler));
+      ASSERT_FALSE(out.empty());
+      std::swap(out[generator() % out.size()], out.back());
+      if (generator() % 5 == 0) {
+        scheduler.give_back(out.back());
+      } else {
+        scheduler.end(out.back(), outcome(out.back()));
+      }
+      out.pop_back();
+    }
+    for (int point = 0; point < 3; ++point) {
+      const std::vector<Look>& looks = scheduler.looks(point);
+      if (trial == 0) {
+        expected.push_back(looks);
+        continue;
+      }
+      const std::vector<Look>& first = expected[static_cast<std::size_t>(point)];
+      ASSERT_EQ(looks.size(), first.size()) << "trial " << trial;
+      EXPECT_EQ(looks.back().seeds, first.back().seeds);
+      EXPECT_EQ(looks.back().verdict, first.back().verdict);
+      EXPECT_EQ(looks.back().estimate.mean, first.back().estimate.mean);  // the same bits
+    }
+  }
+}
+
+}  // namespace
+}  // namespace peclet::runner
