@@ -2,6 +2,7 @@
 """links.py [ROOT]: every relative link of every page below ROOT (the source) resolves, and pages keep to their lengths.
 
     links      the file is there; the anchor is that of one of its headings
+    `paths`    in code spans, from the folders of the source: the file is there (an installation has not all of them)
     README.md  at most 200 lines of at most 120 characters, tables and code included
     .md        at most ten lines of more than 140 characters outside tables and code
 
@@ -19,11 +20,13 @@ NOT_OURS = {".git", "build", "node_modules", "__pycache__"}
 FENCE = re.compile(r"\s*(```+|~~~+)")
 HEADING = re.compile(r"(#{1,6})\s+(.*?)\s*#*$")
 # [text](target "title"); the text may hold an image, the target a pair of parentheses.
-INLINE = re.compile(r"\[(?:[^\[\]]|\[[^\]]*\](?:\([^()]*\))?)*\]\(\s*<?([^()\s<>]*(?:\([^()]*\)[^()\s<>]*)*)>?(?:\s+[\"'][^\"']*[\"'])?\s*\)")
+INLINE = re.compile(r"\[(?:[^\[\]]|\[[^\]]*\](?:\([^()]*\))?)*\]"
+                    r"\(\s*<?([^()\s<>]*(?:\([^()]*\)[^()\s<>]*)*)>?(?:\s+[\"'][^\"']*[\"'])?\s*\)")
 IMAGE_IN_LINK = re.compile(r"!\[[^\[\]]*\]\(\s*<?([^()\s<>]+)>?\s*\)")
 REFERENCE = re.compile(r"^ {0,3}\[[^\]]+\]:\s*<?([^\s>]+)>?", re.MULTILINE)
 HTML = re.compile(r"<(?:a|img)\b[^>]*?(?:href|src)=[\"']([^\"']+)[\"']", re.IGNORECASE)
 EXPLICIT = re.compile(r"<a\b[^>]*?(?:id|name)=[\"']([^\"']+)[\"']", re.IGNORECASE)
+OWN_FILE = re.compile(r"(?:adapters|cmake|contract|docs|engine|results|runner|schema|templates|tests)/[\w./-]*\w\.[a-z]{1,5}")
 CODE_SPAN = re.compile(r"(`+)(?:(?!\n\n).)+?(?<!`)\1(?!`)", re.DOTALL)
 
 
@@ -34,7 +37,7 @@ def pages(root):
 
 
 def prose(text):
-    """Lines outside fenced and indented code, with their numbers; code spans are blanked, so that what they show is no link."""
+    """Lines outside fenced and indented code, with their numbers."""
     fence, blank_before = None, True
     for number, line in enumerate(text.split("\n"), 1):
         mark = FENCE.match(line)
@@ -67,11 +70,15 @@ def anchors(text):
     return found
 
 
-def links(text):
-    """(line, target); a link's text may go on in the next line."""
+def joined(text):
+    """The prose with blank lines in the place of code, so that links and spans may go on in the next line."""
     lines = dict(prose(text))
-    whole = "\n".join(lines.get(number, "") for number in range(1, max(lines, default=0) + 1))
-    whole = CODE_SPAN.sub(lambda span: re.sub(r"[^\n]", " ", span[0]), whole)
+    return "\n".join(lines.get(number, "") for number in range(1, max(lines, default=0) + 1))
+
+
+def links(text):
+    """(line, target) of every link."""
+    whole = CODE_SPAN.sub(lambda span: re.sub(r"[^\n]", " ", span[0]), joined(text))
     for pattern in (INLINE, IMAGE_IN_LINK, REFERENCE, HTML):
         for found in pattern.finditer(whole):
             yield whole.count("\n", 0, found.start()) + 1, found[1]
@@ -96,6 +103,14 @@ def link_faults(path, text):
             yield number, f"{target}: no heading of that page has this anchor"
 
 
+def path_faults(root, text):
+    whole = joined(text)
+    for span in CODE_SPAN.finditer(whole):
+        for word in span[0].strip("`").split():
+            if OWN_FILE.fullmatch(word) and not os.path.exists(os.path.join(root, word)):
+                yield whole.count("\n", 0, span.start()) + 1, f"{word}: there is no such file in the source"
+
+
 def readme_faults(text):
     lines = text.rstrip("\n").split("\n")
     if len(lines) > README_LINES:
@@ -113,10 +128,13 @@ def width_faults(text):
 
 
 def faults(root):
+    is_source = os.path.exists(os.path.join(root, "CMakeLists.txt"))
     for path in pages(root):
         text, name = read(path), os.path.relpath(path, root)
         of_readme = readme_faults(text) if name == "README.md" else ()
-        for number, fault in [*link_faults(path, text), *width_faults(text), *of_readme]:
+        # The changelog names files as they were then.
+        of_source = path_faults(root, text) if is_source and name != "CHANGELOG.md" else ()
+        for number, fault in [*link_faults(path, text), *of_source, *width_faults(text), *of_readme]:
             yield f"{name}:{number}: {fault}"
 
 
