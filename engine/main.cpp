@@ -15,11 +15,11 @@
 #include "contract/output_file.h"
 #include "contract/provenance.h"
 #include "engine/benchmark/benchmark.h"
-#include "engine/configuration.h"
-#include "engine/job.h"
-#include "engine/serve.h"
-#include "engine/summary.h"
-#include "engine/waiting_threads.h"
+#include "engine/evaluation/configuration.h"
+#include "engine/jobs/job.h"
+#include "engine/jobs/serve.h"
+#include "engine/output/summary.h"
+#include "engine/state/waiting_threads.h"
 
 namespace {
 

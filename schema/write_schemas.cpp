@@ -8,8 +8,8 @@
 
 #include "contract/durable_file.h"
 #include "contract/key_table.h"
-#include "engine/configuration.h"
-#include "engine/scene.h"
+#include "engine/evaluation/configuration.h"
+#include "engine/scene/scene.h"
 #include "runner/campaign/campaign.h"
 
 namespace {

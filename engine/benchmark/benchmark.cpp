@@ -14,7 +14,7 @@
 #include "engine/benchmark/machine.h"
 #include "engine/benchmark/operations.h"
 #include "engine/benchmark/tiling.h"
-#include "engine/simulation.h"
+#include "engine/realisation/simulation.h"
 
 namespace peclet::engine {
 namespace {

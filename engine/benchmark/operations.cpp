@@ -1,6 +1,6 @@
 #include "engine/benchmark/operations.h"
 
-#include "engine/kernels/pair_kernel.h"
+#include "engine/kernels/pairs/pair_kernel.h"
 
 namespace peclet::engine {
 

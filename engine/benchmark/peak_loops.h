@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "engine/kernels/single_access.h"
+#include "engine/kernels/lanes/single_access.h"
 
 namespace peclet::engine {
 

@@ -1,5 +1,5 @@
 #include "engine/benchmark/peak_loops.h"
-#include "engine/kernels/lane_access.h"
+#include "engine/kernels/lanes/lane_access.h"
 
 namespace peclet::engine {
 

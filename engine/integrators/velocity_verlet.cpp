@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "engine/integrators/spectral_bound.h"
-#include "engine/integrators/spurious_energy.h"
+#include "engine/stability/spectral_bound.h"
+#include "engine/stability/spurious_energy.h"
 #include "engine/state/for_each_range.h"
 
 namespace peclet::engine {

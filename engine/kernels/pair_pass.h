@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/kernels/instruction_set.h"
-#include "engine/kernels/pair_access.h"
+#include "engine/kernels/pairs/pair_access.h"
 #include "engine/random/keyed_random.h"
 #include "engine/state/contact_history.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/observables/observable.h"
-#include "engine/scene.h"
+#include "engine/scene/scene.h"
 
 namespace peclet::engine {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/kernels/pair_access.h"
+#include "engine/kernels/pairs/pair_access.h"
 
 namespace peclet::engine {
 namespace {

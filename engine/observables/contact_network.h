@@ -9,10 +9,10 @@
 #include <array>
 #include <vector>
 
-#include "engine/interactions.h"
-#include "engine/kernels/pair_kinds.h"
+#include "engine/kernels/pairs/pair_kinds.h"
 #include "engine/observables/observable.h"
-#include "engine/scene.h"
+#include "engine/scene/scene.h"
+#include "engine/terms/interactions.h"
 
 namespace peclet::engine {
 

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "engine/observables/observable.h"
-#include "engine/scene.h"
+#include "engine/scene/scene.h"
 
 namespace peclet::engine {
 

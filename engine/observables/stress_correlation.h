@@ -17,7 +17,7 @@
 #include "engine/observables/multiple_tau.h"
 #include "engine/observables/observable.h"
 #include "engine/observables/structure.h"
-#include "engine/scene.h"
+#include "engine/scene/scene.h"
 
 namespace peclet::engine {
 

@@ -1,7 +1,7 @@
 // What a configuration shows by itself; sampled, not accumulated at every step.
 #pragma once
 
-#include "engine/kernels/pair_kinds.h"
+#include "engine/kernels/pairs/pair_kinds.h"
 #include "engine/state/system.h"
 
 namespace peclet::engine {

@@ -35,7 +35,7 @@ class KeyedRandom {
   NoiseKey key(std::uint64_t step) const { return {seed_, purpose_, step}; }
 
   // Of a particle at a step. 21-bit uniforms: largest value 5.5, variance exact to 1e-6
-  // (tests/engine/keyed_random_test.cpp).
+  // (tests/engine/random/keyed_random_test.cpp).
   NormalPair normals(std::uint64_t step, std::uint32_t particle) const;
 
   // Of a pair at a step.

@@ -2,8 +2,8 @@
 // evaluate terms on.
 #pragma once
 
-#include "engine/configuration.h"
-#include "engine/kernels/terms.h"
+#include "engine/evaluation/configuration.h"
+#include "engine/kernels/pairs/terms.h"
 #include "engine/state/system.h"
 
 namespace peclet::engine {

@@ -45,7 +45,7 @@ MUTATIONS = [
     ("spheres carried round the wrong way", "engine/terms/drag.h", "{0, 0, -0.5 * shear_rate}", "{0, 0, 0.5 * shear_rate}"),
     ("drag of a slip sphere", "engine/terms/drag.h", "return 6 * std::numbers::pi * viscosity * radius;", "return 4 * std::numbers::pi * viscosity * radius;"),
     ("hollow spheres", "engine/state/particles.cpp", "particles.inertia.push_back(0.4 * mass", "particles.inertia.push_back(2.0 / 3 * mass"),
-    ("friction twice as strong", "engine/kernels/pair_terms.h",
+    ("friction twice as strong", "engine/kernels/pairs/pair_terms.h",
      "(contact.friction / contact.tangential_stiffness) * normal_force", "(2 * contact.friction / contact.tangential_stiffness) * normal_force"),
     ("contact spring that is not turned", "engine/terms/tangential_spring.h",
      "Vector3Of<Real> turned = across(spring, normal);", "Vector3Of<Real> turned = spring + Real{0.0} * across(spring, normal);"),

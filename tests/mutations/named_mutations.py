@@ -4,7 +4,7 @@ What is broken; file, text in it that occurs once, what takes its place; program
 """
 
 IMPLICIT = "engine/integrators/implicit.cpp"
-SIMULATION, RESULT = "engine/simulation.cpp", "engine/result.cpp"
+SIMULATION, RESULT = "engine/realisation/simulation.cpp", "engine/output/result.cpp"
 LINE = "engine_tests:NoisyStep.OfTwoSpheresOnALineIsThatOfItsEquations"
 
 NAMED = [
@@ -24,9 +24,9 @@ NAMED = [
     ("target of Newton's iterations ten times too loose", IMPLICIT,
      "const double target = tolerance_ * tolerance_ * motion;", "const double target = 100 * tolerance_ * tolerance_ * motion;",
      "engine_tests:Implicit.LeavesNoLargerResidualThanItsTolerance"),
-    ("packings that overlap by 1 %", "engine/state/packing.cpp", "if (!(closest > 1)) {", "if (!(closest > 0.99)) {",
+    ("packings that overlap by 1 %", "engine/start/packing.cpp", "if (!(closest > 1)) {", "if (!(closest > 0.99)) {",
      "engine_tests:Packing.AcceptsNoOverlapHoweverSmall"),
-    ("Brownian times with 6 pi", "engine/simulation.cpp",
+    ("Brownian times with 6 pi", "engine/realisation/simulation.cpp",
      "duration.brownian_times * physics.viscosity", "duration.brownian_times * 18.85 * physics.viscosity",
      "engine_tests:Schedule.ABrownianTimeIsEtaACubedOverTheThermalEnergy"),
     ("half steps that are whole ones", IMPLICIT,
@@ -105,28 +105,28 @@ NAMED = [
     ("temperature of spins with the mass", "engine/observables/structure.cpp",
      "rotational += particles.inertia[i]",
      "rotational += particles.mass[i]", "engine_tests:KineticTemperatures.AreThoseOfMotionRelativeToTheStreamingFlow"),
-    ("structural shell of the larger sphere not listed", "engine/kernels/pair_kinds.cpp",
+    ("structural shell of the larger sphere not listed", "engine/kernels/pairs/pair_kinds.cpp",
      "structural_shell * std::max(first, second)",
      "structural_shell * std::min(first, second)", "engine_tests:StructuralBrownianStress.SeesTheWholeShellOfTheLargerSphere"),
     ("images of contacts kept through a flip", "engine/state/system.cpp",
      "contact.image = ShearedBox::rebased(contact.image, flips);",
      "contact.image = ShearedBox::rebased(contact.image, 0);", "engine_tests:ContactHistory.SurvivesFlipsInEitherDirection"),
-    ("relaxation before the start with noise", "engine/integrators/relaxation.cpp",
+    ("relaxation before the start with noise", "engine/start/relaxation.cpp",
      "  still.thermal_energy = 0;\n",
      "", "engine_tests:Relaxation.LeavesAPackingWithoutForcesWhereItIs"),
-    ("relaxation before the start in a flow", "engine/integrators/relaxation.cpp",
+    ("relaxation before the start in a flow", "engine/start/relaxation.cpp",
      "  still.shear_rate = 0;\n",
      "", "engine_tests:Relaxation.LeavesAPackingWithoutForcesWhereItIs"),
-    ("implicit steps that leap out of the range of lubrication", "engine/integrators/stability.cpp",
+    ("implicit steps that leap out of the range of lubrication", "engine/stability/stability.cpp",
      "leaps = 5;",
      "leaps = 0.5;", "engine_tests:ImplicitTimestep.LetsNoLightSphereLeapIntoAnother"),
-    ("leaps without inertia", "engine/integrators/stability.cpp",
+    ("leaps without inertia", "engine/stability/stability.cpp",
      "const double inertia = mass + timestep * drag;",
      "const double inertia = 0 * mass + timestep * drag;", "engine_tests:ImplicitTimestep.IsBoundByLeapsOutOfTheRangeOfLubrication"),
     ("z of the image missing from the key of the noise", "engine/random/keyed_random.h",
      "(static_cast<std::uint64_t>(image.z) & mask) << 40", "(static_cast<std::uint64_t>(image.z) & 0) << 40",
      "engine_tests:KeyedRandom.EveryImageOfAPairHasItsOwnNoise"),
-    ("drag against the laboratory", "engine/kernels/one_body.h",
+    ("drag against the laboratory", "engine/kernels/bodies/one_body.h",
      "drag.translational * (streaming - velocity)",
      "drag.translational * (0.0 * streaming - velocity)", "engine_tests:ReferenceForces.EveryTermOfEveryMixtureEqualsTheIndependentEvaluation"),
     ("stresslet of bubbles", "engine/terms/drag.h",

@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "engine/simulation.h"
+#include "engine/realisation/simulation.h"
 #include "tests/physics/estimates.h"
 
 namespace {

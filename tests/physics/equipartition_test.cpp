@@ -6,8 +6,8 @@
 // comparisons, were the seeds drawn anew.
 #include <gtest/gtest.h>
 
-#include "engine/integrators/stability.h"
-#include "engine/state/packing.h"
+#include "engine/stability/stability.h"
+#include "engine/start/packing.h"
 #include "tests/physics/estimates.h"
 #include "tests/physics/laboratory.h"
 

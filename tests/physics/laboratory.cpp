@@ -1,6 +1,6 @@
 #include "tests/physics/laboratory.h"
 
-#include "engine/state/packing.h"
+#include "engine/start/packing.h"
 
 namespace peclet::engine {
 namespace {

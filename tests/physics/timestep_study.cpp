@@ -10,7 +10,7 @@
 #include <cstdlib>
 
 #include "engine/integrators/velocity_verlet.h"
-#include "engine/state/packing.h"
+#include "engine/start/packing.h"
 
 namespace {
 
@@ -23,7 +23,7 @@ constexpr double steps_to_try[] = {reference_step, 1e-4, 2e-4, 3e-4, 3.2e-4, 3.4
 constexpr double equilibration_strain = 1, window_strain = 0.3;
 constexpr double settling_strain = 0.02;  // of a window, in which runs adjust to their step; not measured
 
-// Those of a realisation (engine/simulation.cpp, default guards).
+// Those of a realisation (engine/realisation/simulation.cpp, default guards).
 constexpr long stability_check_interval = 5000, energy_sampling_interval = 500;
 constexpr double largest_overlap = 0.05, largest_displacement = 0.05;
 

@@ -1,0 +1,245 @@
+// The answer to `peclet-engine forces`: the kernels of the time loop, term by term.
+#include <map>
+#include <string_view>
+#include <tuple>
+
+#include "engine/evaluation/configuration.h"
+#include "engine/kernels/force_field.h"
+#include "engine/kernels/pairs/pair_access.h"
+#include "engine/terms/drag.h"
+
+namespace peclet::engine {
+namespace {
+
+using PairName = std::tuple<std::uint32_t, std::uint32_t, LatticeShift>;
+
+Json to_json(const Vector3& v) { return {v.x, v.y, v.z}; }
+
+Json to_json(const VectorField& field) {
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    rows.push_back(to_json(field[i]));
+  }
+  return rows;
+}
+
+Json to_json(const SymmetricTensor& t) {
+  return {{t.xx, t.xy, t.xz}, {t.xy, t.yy, t.yz}, {t.xz, t.yz, t.zz}};
+}
+
+// Forces, torques and stress of each term that occurs.
+class ByTerm {
+ public:
+  explicit ByTerm(const Configuration& configuration) : configuration_(configuration) {}
+
+  void add_single(const char* term, std::size_t i, const Vector3& force, const Vector3& torque) {
+    Sums& sums = of(term);
+    sums.force.set(i, sums.force[i] + force);
+    sums.torque.set(i, sums.torque[i] + torque);
+  }
+
+  void add_stress(const char* term, const SymmetricTensor& stress) { of(term).stress += stress; }
+
+  Json json() const {
+    Json answer = {{"force", Json::object()}, {"torque", Json::object()}, {"stress", Json::object()}};
+    for (const auto& [term, sums] : sums_) {
+      answer["force"][term] = to_json(sums.force);
+      answer["torque"][term] = to_json(sums.torque);
+      answer["stress"][term] = to_json(sums.stress);
+    }
+    return answer;
+  }
+
+ private:
+  struct Sums {
+    VectorField force, torque;
+    SymmetricTensor stress;
+  };
+
+  Sums& of(const char* term) {
+    const std::size_t count = configuration_.particles.count();
+    return sums_.try_emplace(term, Sums{VectorField(count), VectorField(count), {}}).first->second;
+  }
+
+  const Configuration& configuration_;
+  std::map<std::string, Sums> sums_;
+};
+
+// A term is what the pairs do with it less what they do without it.
+struct TermRecipe {
+  const char* name;
+  Terms with, without;
+};
+
+std::vector<TermRecipe> recipes_of(const Terms& terms) {
+  std::vector<TermRecipe> recipes;
+  const Terms touching = {.contact = true}, sliding = {.contact = true, .friction = true};
+  const auto add = [&](bool present, const char* name, const Terms& with, const Terms& without) {
+    if (present) {
+      recipes.push_back({name, with, without});
+    }
+  };
+  add(terms.lubrication, "lubrication", {.lubrication = true}, {});
+  add(terms.noise, "brownian_lubrication", {.lubrication = true, .noise = true}, {.lubrication = true});
+  add(terms.contact, "contact_normal", touching, {});
+  add(terms.damping, "contact_damping", {.contact = true, .damping = true}, touching);
+  add(terms.friction, "friction", sliding, touching);
+  add(terms.rolling, "rolling", {.contact = true, .friction = true, .rolling = true}, sliding);
+  add(terms.repulsion, "repulsion", {.repulsion = true}, {});
+  return recipes;
+}
+
+class Evaluation {
+ public:
+  explicit Evaluation(const Configuration& configuration)
+      : configuration_(configuration),
+        terms_(required_terms(configuration.physics)),
+        set_(chosen_instruction_set()),
+        by_term_(configuration) {
+    const ParticleState& particles = configuration.particles;
+    const std::vector<double> sizes = distinct_radii(particles.radius);
+    kinds_ = make_pair_kinds(configuration.physics, sizes);
+    list_ = NeighbourList(range_table(kinds_, sizes.size()), 0);
+    list_.build(particles, configuration.box);
+    std::vector<HeldContact> held = configuration.springs;
+    sort_contacts(held);
+    springs_ = placed_contacts(list_, particles, held, spring_kinds(terms_));
+    noise_.resize(list_.pairs().size());
+    if (configuration.noise) {
+      find_noise(*configuration.noise);
+    }
+  }
+
+  Json run() {
+    for (const TermRecipe& recipe : recipes_of(terms_)) {
+      add_pairs(recipe);
+    }
+    add_one_body();
+    add_uniform_flow();
+    Json answer = by_term_.json();
+    answer["springs"] = configuration_.advance ? advanced_springs() : Json::array();
+    return answer;
+  }
+
+ private:
+  struct Loads {
+    VectorField force, torque;
+    PairSums sums;
+  };
+
+  void find_noise(const GivenNoise& noise) {
+    std::map<PairName, NormalPair> given;
+    for (const GivenPairNoise& pair : noise.pairs) {
+      given[{pair.first, pair.second, pair.image}] = pair.normals;
+    }
+    for (std::size_t p = 0; p < noise_.size(); ++p) {
+      const auto found = given.find(name_of(list_.pairs()[p]));
+      noise_[p] = found == given.end() ? NormalPair{} : found->second;
+    }
+  }
+
+  PairName name_of(const Pair& pair) const { return {pair.first, pair.second, list_.images()[pair.image]}; }
+
+  Loads evaluate(const Terms& terms, double spring_timestep, SpringField& springs) const {
+    const std::size_t count = configuration_.particles.count();
+    Loads loads = {VectorField(count), VectorField(count), {}};
+    PairParameters parameters =
+        pair_parameters(configuration_.physics, configuration_.noise ? configuration_.noise->timestep : 0);
+    parameters.spring_timestep = spring_timestep;
+    const PairPassInput input = {
+        .particles = configuration_.particles,
+        .list = list_,
+        .box = configuration_.box,
+        .kinds = kinds_,
+        .parameters = parameters,
+        .noise = {},
+        .given_noise = &noise_,
+    };
+    if (!list_.pairs().empty()) {
+      loads.sums = PairPass(terms, set_).evaluate(input, springs, loads.force, loads.torque);
+    }
+    return loads;
+  }
+
+  void add_pairs(const TermRecipe& recipe) {
+    SpringField springs = springs_, untouched = springs_;
+    const Loads with = evaluate(recipe.with, 0, springs), without = evaluate(recipe.without, 0, untouched);
+    for (std::size_t i = 0; i < configuration_.particles.count(); ++i) {
+      by_term_.add_single(recipe.name, i, with.force[i] - without.force[i],
+                          with.torque[i] - without.torque[i]);
+    }
+    for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
+      if (recipe.name == std::string_view(engine::name_of(static_cast<StressTerm>(t)))) {
+        by_term_.add_stress(recipe.name, (1 / configuration_.box.volume()) * with.sums.stress[t]);
+      }
+    }
+  }
+
+  Json advanced_springs() const {
+    Json advanced = Json::array();
+    if (!terms_.friction) {
+      return advanced;
+    }
+    SpringField springs = springs_;
+    evaluate(terms_, *configuration_.advance, springs);
+    const std::vector<ImageFrame> frames = image_frames(list_, configuration_.box);
+    for (std::size_t p = 0; p < list_.pairs().size(); ++p) {
+      const Pair& pair = list_.pairs()[p];
+      const PairGeometry shape =
+          geometry(separation(configuration_.particles, pair, frames[pair.image]), kinds_[pair.kind]);
+      if (!(shape.overlap() > 0)) {
+        continue;
+      }
+      const LatticeShift image = list_.images()[pair.image];
+      advanced.push_back({{"i", pair.first},
+                          {"j", pair.second},
+                          {"image", {image.x, image.y, image.z}},
+                          {"tangential", to_json(springs[p].tangential)},
+                          {"rolling", to_json(springs[p].rolling)}});
+    }
+    return advanced;
+  }
+
+  void add_one_body() {
+    System system;
+    system.particles = configuration_.particles;
+    const std::size_t count = system.particles.count();
+    const ForceField field(configuration_.physics, system.particles,
+                           configuration_.noise ? configuration_.noise->timestep : 0, /*seed=*/0,
+                           /*threads=*/1, set_);
+    VectorField force(count), torque(count), noise_force(count), noise_torque(count);
+    field.one_body().set_drag(field.one_body_input(system, force, torque), 0, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      by_term_.add_single("drag", i, force[i], torque[i]);
+      if (configuration_.noise) {
+        const NormalPair normals = {configuration_.noise->force[i], configuration_.noise->torque[i]};
+        field.add_drag_noise(system, i, normals, noise_force, noise_torque);
+        by_term_.add_single("brownian_drag", i, noise_force[i], noise_torque[i]);
+      }
+    }
+  }
+
+  void add_uniform_flow() {
+    const Physics& physics = configuration_.physics;
+    const SymmetricTensor solvent = solvent_stress(physics.viscosity, physics.shear_rate);
+    by_term_.add_stress("solvent", solvent);
+    by_term_.add_stress(
+        "stresslet",
+        stresslet(solid_volume(configuration_.particles) / configuration_.box.volume(), solvent));
+  }
+
+  const Configuration& configuration_;
+  Terms terms_;
+  InstructionSet set_;
+  ByTerm by_term_;
+  std::vector<PairKind> kinds_;
+  NeighbourList list_;
+  SpringField springs_;
+  std::vector<NormalPair> noise_;  // of each pair
+};
+
+}  // namespace
+
+Json evaluate_configuration(const Configuration& configuration) { return Evaluation(configuration).run(); }
+
+}  // namespace peclet::engine

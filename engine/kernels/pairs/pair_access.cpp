@@ -1,0 +1,13 @@
+#include "engine/kernels/pairs/pair_access.h"
+
+namespace peclet::engine {
+
+std::vector<ImageFrame> image_frames(const NeighbourList& list, const ShearedBox& box) {
+  std::vector<ImageFrame> frames;
+  for (const LatticeShift image : list.images()) {
+    frames.push_back({box.displacement(image), box.velocity_offset(image)});
+  }
+  return frames;
+}
+
+}  // namespace peclet::engine

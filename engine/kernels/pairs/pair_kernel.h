@@ -1,0 +1,330 @@
+// The loop over pairs: compiled for each recipe, once with double and once with the lanes of each instruction
+// set.
+//
+// Included by one file for each instruction set, compiled with its flags. What is here and in the headers
+// that it includes are templates on the number and plain data: nothing that another file could share with it.
+#pragma once
+
+#include "engine/kernels/lanes/single_access.h"
+#include "engine/kernels/pairs/pair_kernels.h"
+#include "engine/kernels/pairs/pair_terms.h"
+
+namespace peclet::engine {
+
+// Sums of lanes; pairs are added in the order of the list, lane by lane.
+template <class Real>
+struct LaneSumsOf {
+  SymmetricTensorOf<Real> stress[count_of_stress_terms];
+  Real largest_overlap{};
+  std::uint64_t contacts = 0;
+  unsigned not_finite = 0;
+};
+
+// Up to eight pairs of one run: noise is drawn for all of them together, when the first one needs it.
+struct EightPairs {
+  std::uint32_t begin, end;
+  bool drawn = false;
+  NormalBlock normals;
+};
+
+// Up to as many pairs of one run as a number holds. `mirrored`: of a run whose first particles are away.
+template <class Real, Terms terms, bool mirrored>
+class PairGroup {
+ public:
+  PECLET_ALWAYS_INLINE PairGroup(const PairKernelInput& in, const PairRun& run, EightPairs& eight,
+                                 std::uint32_t begin, int count)
+      : in_(in), run_(run), kind_(in.kinds[run.kind]), eight_(eight), begin_(begin), count_(count) {
+    for (int k = 0; k < width_of<Real>; ++k) {
+      // Lanes without a pair repeat the first one; they are left out of everything.
+      const Pair& pair = in.pairs[begin + static_cast<std::uint32_t>(k < count ? k : 0)];
+      first_[k] = pair.first;
+      second_[k] = pair.second;
+      image_[k] = pair.image;
+    }
+  }
+
+  PECLET_ALWAYS_INLINE void add(const PairKernelOutput& out, LaneSumsOf<Real>& sums) {
+    Vector3Of<Real> r =
+        gather_rows(in_.position, second_, Real{}) - gather_rows(in_.position, first_, Real{});
+    Real image_velocity{};
+    if (run_.imaged) {
+      r += gather_rows(in_.images, image_, Real{});
+      for (int k = 0; k < width_of<Real>; ++k) {
+        set_lane(image_velocity, k, in_.images[4 * std::size_t{image_[k]} + 3]);
+      }
+    }
+    const auto listed = listed_lanes(count_, Real{});
+    const Real squared = dot(r, r);
+    sums.not_finite |= bits(listed & !(squared < Real{__builtin_inf()}));
+    const auto near = listed & (squared <= Real{kind_.range * kind_.range});
+    if (!any(near)) {
+      forget_springs();
+      leave_nothing(out);
+      return;
+    }
+    // Lanes that are not near compute with a distance at which every term is zero.
+    PairGeometryOf<Real> shape;
+    shape.separation = where(near, r);
+    shape.distance = select(near, square_root(squared), Real{2 * kind_.range});
+    shape.normal = (1.0 / shape.distance) * shape.separation;
+    shape.sum_of_radii = kind_.sum_of_radii;
+    PairMotionOf<Real> motion;
+    motion.velocity = gather_rows(in_.velocity, second_, Real{}) - gather_rows(in_.velocity, first_, Real{});
+    motion.velocity.x += image_velocity;
+    motion.spin_first = gather_rows(in_.spin, first_, Real{});
+    motion.spin_second = gather_rows(in_.spin, second_, Real{});
+
+    PairSpringsOf<Real> springs = load_springs();
+    const TermLoadsOf<Real> loads =
+        pair_terms<terms>(in_.parameters, kind_, shape, motion, springs, [this] { return normals(); });
+    store_springs(springs);
+    add_sums(shape, loads, sums);
+    leave(total(loads), out);
+  }
+
+ private:
+  PECLET_ALWAYS_INLINE static PairLoadOf<Real> total(const TermLoadsOf<Real>& loads) {
+    PairLoadOf<Real> sum = loads.lubrication;
+    if constexpr (terms.noise) {
+      sum += loads.noise;
+    }
+    if constexpr (terms.repulsion) {
+      sum.force += loads.repulsion;
+    }
+    if constexpr (terms.contact) {
+      sum.force += loads.contact_normal;
+    }
+    if constexpr (terms.damping) {
+      sum.force += loads.contact_damping;
+    }
+    if constexpr (terms.friction) {
+      sum += loads.friction;
+    }
+    if constexpr (terms.rolling) {
+      sum.torque_first += loads.rolling.torque_first;
+      sum.torque_second += loads.rolling.torque_second;
+    }
+    return sum;
+  }
+
+  PECLET_ALWAYS_INLINE void add_sums(const PairGeometryOf<Real>& shape, const TermLoadsOf<Real>& loads,
+                                     LaneSumsOf<Real>& sums) {
+    const auto add = [&](StressTerm term, const Vector3Of<Real>& force) {
+      sums.stress[static_cast<std::size_t>(term)] += symmetric_dyad(shape.separation, force);
+    };
+    if constexpr (terms.lubrication) {
+      add(StressTerm::lubrication, loads.lubrication.force);
+    }
+    if constexpr (terms.noise) {
+      add(StressTerm::brownian_lubrication, loads.noise.force);
+    }
+    if constexpr (terms.repulsion) {
+      add(StressTerm::repulsion, loads.repulsion);
+    }
+    if constexpr (terms.contact) {
+      const unsigned touching = bits(loads.overlap > Real{});
+      if (touching == 0) {
+        return;
+      }
+      sums.contacts += static_cast<std::uint64_t>(__builtin_popcount(touching));
+      sums.largest_overlap = larger(sums.largest_overlap, (1 / kind_.smaller_radius) * loads.overlap);
+      add(StressTerm::contact_normal, loads.contact_normal);
+      if constexpr (terms.damping) {
+        add(StressTerm::contact_damping, loads.contact_damping);
+      }
+      if constexpr (terms.friction) {
+        add(StressTerm::friction, loads.friction.force);
+      }
+    }
+  }
+
+  // Adds the loads to the rows of the particles, pair after pair.
+  PECLET_ALWAYS_INLINE void leave(const PairLoadOf<Real>& load, const PairKernelOutput& out) const {
+    const RowsOf<Real> force = scattered(load.force), torque_first = scattered(load.torque_first),
+                       torque_second = scattered(load.torque_second);
+    for (int k = 0; k < width_of<Real>; ++k) {
+      if (k == count_) {
+        break;
+      }
+      if constexpr (mirrored) {
+        const std::size_t j = second_[k] - out.first_particle;
+        row(out.force, j) -= force.row[k];
+        row(out.torque, j) += torque_second.row[k];
+        const std::size_t c = run_.crossing + (begin_ - run_.begin) + static_cast<std::uint32_t>(k);
+        row(out.crossing, 2 * c) = force.row[k];
+        row(out.crossing, 2 * c + 1) = torque_first.row[k];
+        continue;
+      }
+      const std::size_t i = first_[k] - out.first_particle;
+      row(out.force, i) += force.row[k];
+      row(out.torque, i) += torque_first.row[k];
+      if (run_.crossing == within_block) {
+        const std::size_t j = second_[k] - out.first_particle;
+        row(out.force, j) -= force.row[k];
+        row(out.torque, j) += torque_second.row[k];
+      } else {
+        const std::size_t c = run_.crossing + (begin_ - run_.begin) + static_cast<std::uint32_t>(k);
+        row(out.crossing, 2 * c) = -force.row[k];
+        row(out.crossing, 2 * c + 1) = torque_second.row[k];
+      }
+    }
+  }
+
+  // The rows of crossing pairs are written at every evaluation: nobody clears them.
+  PECLET_ALWAYS_INLINE void leave_nothing(const PairKernelOutput& out) const {
+    if (run_.crossing == within_block) {
+      return;
+    }
+    for (int k = 0; k < count_; ++k) {
+      const std::size_t c = run_.crossing + (begin_ - run_.begin) + static_cast<std::uint32_t>(k);
+      row(out.crossing, 2 * c) = Row{};
+      row(out.crossing, 2 * c + 1) = Row{};
+    }
+  }
+
+  // NOLINTNEXTLINE(readability-non-const-parameter): who receives the row writes to it
+  PECLET_ALWAYS_INLINE static Row& row(double* rows, std::size_t number) {
+    return *reinterpret_cast<Row*>(rows + 4 * number);
+  }
+
+  PECLET_ALWAYS_INLINE PairNormalsOf<Real> normals() const {
+    PairNormalsOf<Real> result;
+    Real* const parts[6] = {&result.theta.x, &result.theta.y, &result.theta.z,
+                            &result.chi.x,   &result.chi.y,   &result.chi.z};
+    if (in_.given_normals != nullptr) {
+      for (int k = 0; k < count_; ++k) {
+        for (int c = 0; c < 6; ++c) {
+          set_lane(*parts[c], k,
+                   in_.given_normals[6 * (std::size_t{begin_} + static_cast<std::size_t>(k)) +
+                                     static_cast<std::size_t>(c)]);
+        }
+      }
+      return result;
+    }
+    if (!eight_.drawn) {
+      draw();
+    }
+    const auto offset = static_cast<int>(begin_ - eight_.begin);
+    for (int c = 0; c < 6; ++c) {
+      for (int k = 0; k < width_of<Real>; ++k) {
+        set_lane(*parts[c], k, static_cast<double>(eight_.normals.value[c][offset + k]));
+      }
+    }
+    return result;
+  }
+
+  // For all pairs of the eight.
+  void draw() const {
+    std::uint64_t identity[identities_per_block] = {}, image[identities_per_block] = {};
+    for (std::uint32_t p = eight_.begin; p < eight_.end; ++p) {
+      const Pair& pair = in_.pairs[p];
+      identity[p - eight_.begin] = pair_identity(in_.id[pair.first], in_.id[pair.second]);
+      image[p - eight_.begin] = in_.image_keys[pair.image];
+    }
+    in_.fill_normals(in_.noise, identity, run_.imaged ? image : nullptr, eight_.normals);
+    eight_.drawn = true;
+  }
+
+  PECLET_ALWAYS_INLINE PairSpringsOf<Real> load_springs() const {
+    PairSpringsOf<Real> springs;
+    const auto load = [&](int c) { return load_lanes(in_.springs[c] + begin_, count_, Real{}); };
+    if constexpr (terms.friction) {
+      springs.tangential = {load(0), load(1), load(2)};
+    }
+    if constexpr (terms.rolling) {
+      springs.rolling = {load(3), load(4), load(5)};
+    }
+    return springs;
+  }
+  PECLET_ALWAYS_INLINE void store_springs(const PairSpringsOf<Real>& springs) const {
+    const auto store = [&](int c, const Real& x) { store_lanes(in_.springs[c] + begin_, count_, x); };
+    if constexpr (terms.friction) {
+      store(0, springs.tangential.x);
+      store(1, springs.tangential.y);
+      store(2, springs.tangential.z);
+    }
+    if constexpr (terms.rolling) {
+      store(3, springs.rolling.x);
+      store(4, springs.rolling.y);
+      store(5, springs.rolling.z);
+    }
+  }
+  PECLET_ALWAYS_INLINE void forget_springs() const {
+    if constexpr (terms.friction) {
+      store_springs({});
+    }
+  }
+
+  const PairKernelInput& in_;
+  const PairRun& run_;
+  const PairKind& kind_;
+  EightPairs& eight_;
+  std::uint32_t begin_;
+  int count_;
+  std::uint32_t first_[width_of<Real>], second_[width_of<Real>], image_[width_of<Real>];
+};
+
+// One particle of a crossing pair lies in another block, which is seldom in a cache: its rows are asked for
+// some pairs ahead.
+inline constexpr std::uint32_t pairs_ahead = 16;
+PECLET_ALWAYS_INLINE void ask_for_rows(const PairKernelInput& in, const PairRun& run, std::uint32_t begin,
+                                       std::uint32_t end) {
+  if (run.crossing == within_block) {
+    return;
+  }
+  end = end + pairs_ahead < run.end ? end + pairs_ahead : run.end;
+  for (std::uint32_t p = begin + pairs_ahead; p < end; ++p) {
+    const std::size_t row = 4 * std::size_t{run.first_is_away ? in.pairs[p].first : in.pairs[p].second};
+    __builtin_prefetch(in.position + row);
+    __builtin_prefetch(in.velocity + row);
+    __builtin_prefetch(in.spin + row);
+  }
+}
+
+template <class Real, Terms terms, bool mirrored>
+[[gnu::noinline]] void add_runs(const PairKernelInput& in, const PairRun* runs, const PairRun* end,
+                                const PairKernelOutput& out, PairSums& total) {
+  LaneSumsOf<Real> sums;
+  for (const PairRun* run = runs; run < end; ++run) {
+    EightPairs eight;
+    for (eight.begin = run->begin; eight.begin < run->end; eight.begin = eight.end) {
+      const std::uint32_t left = run->end - eight.begin;
+      eight.end = left < identities_per_block ? run->end : eight.begin + identities_per_block;
+      eight.drawn = false;
+      ask_for_rows(in, *run, eight.begin, eight.end);
+      for (std::uint32_t begin = eight.begin; begin < eight.end; begin += width_of<Real>) {
+        const auto rest = static_cast<int>(eight.end - begin);
+        PairGroup<Real, terms, mirrored>(in, *run, eight, begin,
+                                         rest < width_of<Real> ? rest : width_of<Real>)
+            .add(out, sums);
+      }
+    }
+  }
+  for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
+    const SymmetricTensorOf<Real>& s = sums.stress[t];
+    total.stress[t] = {sum_of_lanes(s.xx), sum_of_lanes(s.yy), sum_of_lanes(s.zz),
+                       sum_of_lanes(s.xy), sum_of_lanes(s.xz), sum_of_lanes(s.yz)};
+  }
+  total.contacts = sums.contacts;
+  total.largest_overlap = largest_lane(sums.largest_overlap);
+  total.finite = sums.not_finite == 0;
+}
+
+// Mirrored runs, the last ones of a block, have a loop of their own: the compiler makes slower code of one
+// for both.
+template <class Real, Terms terms>
+void run_pair_kernel(const PairKernelInput& in, const PairRun* runs, std::size_t count,
+                     const PairKernelOutput& out) {
+  const PairRun *const end = runs + count, *mirrored = runs;
+  while (mirrored < end && !mirrored->first_is_away) {
+    ++mirrored;
+  }
+  add_runs<Real, terms, false>(in, runs, mirrored, out, out.sums[0]);
+  if (mirrored < end) {
+    add_runs<Real, terms, true>(in, mirrored, end, out, out.sums[1]);
+  } else {
+    out.sums[1] = {};
+  }
+}
+
+}  // namespace peclet::engine

@@ -1,0 +1,52 @@
+// The compiled loops over pairs: what they take, what they leave, and one table of them for each instruction
+// set.
+//
+// Plain data, because this is shared with files that are compiled for one processor only.
+#pragma once
+
+#include "engine/kernels/pairs/pair_sums.h"
+#include "engine/kernels/pairs/pair_terms.h"
+#include "engine/kernels/pairs/recipes.h"
+#include "engine/random/normal_block.h"
+#include "engine/state/pair_run.h"
+
+namespace peclet::engine {
+
+// What the pairs of all blocks are computed from. Rows are those of a VectorField.
+struct PairKernelInput {
+  const double *position, *velocity, *spin;
+  const Pair* pairs;
+  const double* images;  // rows: displacement and velocity along x of each image
+  const PairKind* kinds;
+  PairParameters parameters;
+  double* springs[6];  // components, see SpringField; advanced in place
+
+  NoiseKey noise;
+  FillNormals fill_normals;
+  const std::uint32_t* id;          // of each particle
+  const std::uint64_t* image_keys;  // of each image
+  const double* given_normals;      // six of each pair, instead of drawn ones; or null
+};
+
+// Where the pairs of one block leave their loads: rows of the block's own particles, and of each crossing
+// pair two rows (force and torque on its particle in the other block).
+struct PairKernelOutput {
+  std::uint32_t first_particle;
+  double *force, *torque;
+  double* crossing;
+  PairSums* sums;  // two: of the pairs whose first particle lies in the block, and of the others
+};
+
+using PairKernel = void (*)(const PairKernelInput& input, const PairRun* runs, std::size_t count,
+                            const PairKernelOutput& output);
+
+// Indexed by the code of the terms (recipes.h); null where they are not valid.
+struct PairKernelTable {
+  PairKernel kernel[count_of_codes];
+};
+
+extern const PairKernelTable baseline_pair_kernels;  // one pair at a time: the twin of the others
+extern const PairKernelTable avx2_pair_kernels;
+extern const PairKernelTable avx512_pair_kernels;
+
+}  // namespace peclet::engine

@@ -1,0 +1,54 @@
+#include "engine/kernels/pairs/pair_kinds.h"
+
+#include <algorithm>
+
+namespace peclet::engine {
+namespace {
+
+PairKind make_pair_kind(const Physics& physics, double first, double second) {
+  PairKind kind{};
+  kind.radius_first = first;
+  kind.radius_second = second;
+  kind.sum_of_radii = first + second;
+  kind.smaller_radius = std::min(first, second);
+  kind.reduced_diameter = 2 * first * second / kind.sum_of_radii;
+  if (physics.lubrication) {
+    kind.resistance = resistance_constants(physics.viscosity, first, second);
+    kind.roots = root_constants(kind.resistance);
+    kind.lubrication_range = kind.sum_of_radii * (1 + 0.5 * physics.lubrication->outer_gap);
+  }
+  if (physics.repulsion) {
+    kind.repulsion_length = physics.repulsion->relative_length * kind.sum_of_radii;
+    kind.repulsion_range = kind.sum_of_radii + physics.repulsion->cutoff_lengths * kind.repulsion_length;
+  }
+  kind.range = std::max({kind.sum_of_radii, kind.lubrication_range, kind.repulsion_range});
+  kind.listed_range = kind.range;
+  if (physics.thermal_energy > 0) {
+    kind.listed_range = std::max(kind.range, kind.sum_of_radii + structural_shell * std::max(first, second));
+  }
+  return kind;
+}
+
+}  // namespace
+
+std::vector<PairKind> make_pair_kinds(const Physics& physics, const std::vector<double>& distinct_radii) {
+  std::vector<PairKind> kinds;
+  for (const double first : distinct_radii) {
+    for (const double second : distinct_radii) {
+      kinds.push_back(make_pair_kind(physics, first, second));
+    }
+  }
+  return kinds;
+}
+
+RangeTable range_table(const std::vector<PairKind>& kinds, std::size_t classes) {
+  RangeTable ranges(classes);
+  for (std::size_t a = 0; a < classes; ++a) {
+    for (std::size_t b = 0; b < classes; ++b) {
+      ranges.at(a, b) = kinds[a * classes + b].listed_range;
+    }
+  }
+  return ranges;
+}
+
+}  // namespace peclet::engine

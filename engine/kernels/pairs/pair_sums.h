@@ -1,0 +1,22 @@
+// What a pass over pairs adds up.
+#pragma once
+
+#include <cstdint>
+
+#include "engine/kernels/pairs/terms.h"
+#include "engine/state/vector3.h"
+
+namespace peclet::engine {
+
+// Sums over the pairs of one evaluation. stress is sum of sym(r F_i): divide by the volume for (1/V) sum r F.
+struct PairSums {
+  SymmetricTensor stress[count_of_stress_terms] = {};
+  std::uint64_t contacts = 0;
+  double largest_overlap = 0;  // over the smaller radius of the pair
+  bool finite = true;          // no separation was NaN or infinite
+
+  SymmetricTensor& of(StressTerm term) { return stress[static_cast<std::size_t>(term)]; }
+  const SymmetricTensor& of(StressTerm term) const { return stress[static_cast<std::size_t>(term)]; }
+};
+
+}  // namespace peclet::engine

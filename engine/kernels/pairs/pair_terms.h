@@ -1,0 +1,117 @@
+// All terms of one pair, or of several side by side, each on its own: the physics of the pair loop as a pure
+// function.
+#pragma once
+
+#include "engine/kernels/pairs/pair_kind.h"
+#include "engine/kernels/pairs/terms.h"
+#include "engine/terms/contact.h"
+#include "engine/terms/friction.h"
+#include "engine/terms/interactions.h"
+#include "engine/terms/lubrication.h"
+#include "engine/terms/pair_noise.h"
+#include "engine/terms/repulsion.h"
+#include "engine/terms/rolling.h"
+
+namespace peclet::engine {
+
+// What is the same for all pairs of one evaluation.
+struct PairParameters {
+  ContactParameters contact;
+  LubricationParameters lubrication;
+  double repulsion_strength = 0;
+  double spring_timestep = 0;  // by which the springs advance; 0: the springs are taken as they are
+  // Forces that depend on the distance are those at the distance that the present motion leads to in this
+  // time; their direction stays.
+  double approach_time = 0;
+  double noise_amplitude = 0;  // sqrt(2 kT / dt)
+};
+
+template <class Real>
+struct PairSpringsOf {
+  Vector3Of<Real> tangential, rolling;
+};
+
+template <class Real>
+struct PairNormalsOf {
+  Vector3Of<Real> theta, chi;
+};
+
+// Absent terms stay zero and cost nothing: a sum over a zero constant is folded away by the compiler.
+template <class Real>
+struct TermLoadsOf {
+  PairLoadOf<Real> lubrication, noise, friction, rolling;
+  Vector3Of<Real> contact_normal, contact_damping, repulsion;
+  Real overlap{};  // that contact forces belong to
+};
+
+template <Terms terms, class Real>
+PECLET_ALWAYS_INLINE void add_contact_terms(const PairParameters& parameters, const PairKind& kind,
+                                            const PairGeometryOf<Real>& pair,
+                                            const PairMotionOf<Real>& motion, PairSpringsOf<Real>& springs,
+                                            TermLoadsOf<Real>& loads) {
+  const ContactParameters& contact = parameters.contact;
+  const auto touching = pair.overlap() > 0.0;
+  loads.contact_normal = where(touching, contact_normal_force(contact.normal_stiffness, pair));
+  if constexpr (terms.damping) {
+    loads.contact_damping = where(touching, contact_damping_force(contact.normal_damping, pair, motion));
+  }
+  if constexpr (terms.friction) {
+    const Real normal_force = contact.normal_stiffness * pair.overlap();
+    const ContactLeversOf<Real> lever = contact_levers(kind.radius_first, kind.radius_second, pair);
+    const Vector3Of<Real> slip = Real{parameters.spring_timestep} * slip_velocity(lever, pair, motion);
+    const Real longest = (contact.friction / contact.tangential_stiffness) * normal_force;
+    springs.tangential = where(touching, advanced_spring(springs.tangential, pair.normal, slip, longest));
+    loads.friction = friction_load(contact.tangential_stiffness, springs.tangential, lever, pair);
+    if constexpr (terms.rolling) {
+      const Vector3Of<Real> turn =
+          Real{parameters.spring_timestep} * rolling_velocity(kind.reduced_diameter, pair, motion);
+      const Real longest_turn = (contact.rolling_friction / contact.rolling_stiffness) * normal_force;
+      springs.rolling = where(touching, advanced_spring(springs.rolling, pair.normal, turn, longest_turn));
+      loads.rolling = rolling_load(contact.rolling_stiffness, springs.rolling, kind.reduced_diameter, pair);
+    }
+  }
+}
+
+// Every pair lies within kind.range. `normals()` returns theta and chi and is called only where a pair is
+// lubricated and there is noise. The springs advance with the motion and are forgotten when the contact
+// opens.
+template <Terms terms, class Real, class Normals>
+PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& parameters, const PairKind& kind,
+                                                  const PairGeometryOf<Real>& pair,
+                                                  const PairMotionOf<Real>& motion,
+                                                  PairSpringsOf<Real>& springs, Normals&& normals) {
+  TermLoadsOf<Real> loads;
+  PairGeometryOf<Real> ahead = pair;
+  if constexpr (terms.contact || terms.repulsion) {
+    ahead.distance += parameters.approach_time * dot(motion.velocity, pair.normal);
+  }
+  if constexpr (terms.lubrication) {
+    if (any(pair.distance <= kind.lubrication_range)) {
+      const ResistanceModesOf<Real> modes =
+          resistance_modes(parameters.lubrication.inner_gap, kind.lubrication_range, pair);
+      const PairResistanceOf<Real> resistance = pair_resistance(kind.resistance, modes);
+      loads.lubrication = lubrication_load(resistance, pair, motion);
+      if constexpr (terms.noise) {
+        const PairNormalsOf<Real> drawn = normals();
+        loads.noise = pair_noise_load(parameters.noise_amplitude,
+                                      resistance_roots(kind.roots, resistance.squeeze, modes), pair,
+                                      drawn.theta, drawn.chi);
+      }
+    }
+  }
+  if constexpr (terms.repulsion) {
+    loads.repulsion = where(ahead.distance < kind.repulsion_range,
+                            repulsion_force(parameters.repulsion_strength, kind.repulsion_length, ahead));
+  }
+  if constexpr (terms.contact) {
+    loads.overlap = ahead.overlap();
+    if (any(ahead.overlap() > 0.0)) {
+      add_contact_terms<terms>(parameters, kind, ahead, motion, springs, loads);
+    } else if constexpr (terms.friction) {
+      springs = {};
+    }
+  }
+  return loads;
+}
+
+}  // namespace peclet::engine

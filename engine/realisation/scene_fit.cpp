@@ -1,0 +1,50 @@
+#include "engine/realisation/scene_fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "contract/input_error.h"
+#include "engine/kernels/pairs/pair_kinds.h"
+#include "engine/observables/catalogue.h"
+#include "engine/start/packing.h"
+
+namespace peclet::engine {
+namespace {
+
+// Radii of which there is a sphere; a species without one is refused unless another one has its radius.
+std::vector<double> present_radii(const Particles& particles, const std::string& file) {
+  const std::vector<std::size_t> number = species_numbers(particles);
+  std::vector<double> present;
+  for (std::size_t s = 0; s < number.size(); ++s) {
+    if (number[s] > 0) present.push_back(particles.species[s].radius);
+  }
+  present = distinct_radii(present);
+  for (const Species& species : particles.species) {
+    if (!std::binary_search(present.begin(), present.end(), species.radius)) {
+      throw InputError(file, "/particles/count", std::to_string(particles.count),
+                       fmt::format("must be large enough for one sphere of radius {}", species.radius));
+    }
+  }
+  return present;
+}
+
+}  // namespace
+
+void check_fit(const Scene& scene, const Schedule& schedule, const std::string& file) {
+  const std::vector<double> sizes = present_radii(scene.particles, file);
+  const double edge = cube_edge(scene.particles, scene.volume_fraction);
+  const double range = range_table(make_pair_kinds(scene.physics, sizes), sizes.size()).largest();
+  if (!(edge > range)) {
+    throw InputError(
+        file, "/particles/count", std::to_string(scene.particles.count),
+        fmt::format(
+            "must fill a box larger than the range of the forces, {:.4g}, at this volume fraction (its edge "
+            "would be {:.4g})",
+            range, edge));
+  }
+  check_observables(scene, edge, schedule.timestep, schedule.production, file);
+}
+
+}  // namespace peclet::engine

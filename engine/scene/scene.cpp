@@ -1,0 +1,330 @@
+// What a scene means: the rules that bind several keys, and the values that follow from others.
+#include "engine/scene/scene.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "contract/input_error.h"
+
+namespace peclet::engine {
+
+namespace {
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+// The checks of one document. Pointers in its faults are from the document's top.
+class Reading {
+ public:
+  Reading(const Json& document, std::string file) : document_(document), file_(std::move(file)) {}
+
+  Particles particles() const;
+  Physics physics() const;
+  // Rate and temperature, given as they are or by Péclet number and limits.
+  void set_flow(const Particles& particles, Physics& physics) const;
+  Duration duration(const std::string& pointer, const Physics& physics) const;
+  void set_observables(Scene& scene) const;
+
+ private:
+  bool has(const char* pointer) const { return document_.contains(Json::json_pointer(pointer)); }
+  const Json& at(const std::string& pointer) const { return document_.at(Json::json_pointer(pointer)); }
+  double number(const std::string& pointer) const { return at(pointer).get<double>(); }
+  double number_or(const char* pointer, double fallback) const {
+    return has(pointer) ? number(pointer) : fallback;
+  }
+
+  [[noreturn]] void refuse(const std::string& pointer, const std::string& allowed) const {
+    throw InputError(file_, pointer, shortened(at(pointer)), allowed);
+  }
+  [[noreturn]] void miss(const std::string& pointer, const std::string& allowed) const {
+    throw InputError(file_, pointer, "missing", allowed);
+  }
+
+  void read_shares(Particles& particles) const;
+  void check_sizes(const Particles& particles) const;
+  ContactParameters contact() const;
+  LubricationParameters lubrication() const;
+  void set_flow_from_peclet(double radius, Physics& physics) const;
+  bool asks_for(const char* observable) const;
+  template <class Settings>
+  void set_observable(const char* name, std::optional<Settings>& settings) const;
+
+  const Json& document_;
+  std::string file_;
+};
+
+// Shares are relative: they are divided by their sum.
+void Reading::read_shares(Particles& particles) const {
+  const Json& species = at("/particles/species");
+  const bool by_number = species[0].contains("number_share");
+  particles.shares = by_number ? Particles::Shares::number : Particles::Shares::volume;
+  const std::string wanted = by_number ? "number_share" : "volume_share";
+  const std::string other = by_number ? "volume_share" : "number_share";
+
+  double sum = 0;
+  for (std::size_t i = 0; i < species.size(); ++i) {
+    const std::string pointer = "/particles/species/" + std::to_string(i) + '/';
+    if (species[i].contains(other)) {
+      refuse(pointer + other,
+             "must be left out: the first species has " + wanted + ", all must have the same");
+    }
+    const bool is_alone = species.size() == 1;
+    if (!species[i].contains(wanted) && !is_alone) {
+      miss(pointer + wanted, "each species must have a " + wanted + " > 0 (or each a " + other + ")");
+    }
+    const double share = species[i].value(wanted, 1.0);
+    particles.species.push_back({species[i]["radius"].get<double>(), share});
+    sum += share;
+  }
+  for (Species& one : particles.species) one.share /= sum;
+}
+
+// Volume, mass and moment of inertia must be numbers, and one can divide by them.
+void Reading::check_sizes(const Particles& particles) const {
+  const auto is_usable = [](double value) { return std::isnormal(value) && std::isnormal(1 / value); };
+  for (std::size_t i = 0; i < particles.species.size(); ++i) {
+    const double a = particles.species[i].radius, volume = a * a * a, mass = particles.density * volume;
+    const double all = static_cast<double>(particles.count) * volume;
+    if (!is_usable(volume) || !is_usable(mass) || !is_usable(mass * a * a) || !is_usable(all)) {
+      refuse(fmt::format("/particles/species/{}/radius", i),
+             fmt::format(
+                 "must leave mass and moment of inertia that can be computed with, at the density {}; choose "
+                 "other units",
+                 particles.density));
+    }
+    if (!is_usable(particles.species[i].share)) {
+      refuse(fmt::format("/particles/species/{}", i),
+             "must have a share that is a part of the sum of all shares");
+    }
+  }
+}
+
+Particles Reading::particles() const {
+  Particles particles;
+  particles.count = at("/particles/count").get<std::size_t>();
+  particles.density = number("/particles/density");
+  read_shares(particles);
+  check_sizes(particles);
+  particles.reference_radius = number_or("/particles/reference_radius", particles.species.front().radius);
+  return particles;
+}
+
+ContactParameters Reading::contact() const {
+  ContactParameters contact;
+  contact.normal_stiffness = number("/contact/normal_stiffness");
+  contact.normal_damping = number("/contact/normal_damping");
+  contact.friction = number_or("/contact/friction", 0);
+  if (has("/contact/tangential_stiffness") && !has("/contact/friction")) {
+    refuse("/contact/tangential_stiffness", "must be left out without /contact/friction");
+  }
+  // 2/7: a homogeneous sphere's normal and tangential contact then oscillate with the same period.
+  contact.tangential_stiffness =
+      number_or("/contact/tangential_stiffness", 2.0 / 7.0 * contact.normal_stiffness);
+  contact.rolling_stiffness = number_or("/contact/rolling_stiffness", 0);
+  if (contact.rolling_stiffness > 0 && contact.friction <= 0) {
+    refuse("/contact/rolling_stiffness", "must be 0 or left out unless /contact/friction is > 0");
+  }
+  if (has("/contact/rolling_friction") && !has("/contact/rolling_stiffness")) {
+    refuse("/contact/rolling_friction", "must be left out without /contact/rolling_stiffness");
+  }
+  contact.rolling_friction = number_or("/contact/rolling_friction", contact.friction);
+  return contact;
+}
+
+LubricationParameters Reading::lubrication() const {
+  const LubricationParameters lubrication{number("/lubrication/inner_gap"), number("/lubrication/outer_gap")};
+  if (lubrication.inner_gap >= lubrication.outer_gap) {
+    refuse("/lubrication/inner_gap", "must be a number > 0 and < /lubrication/outer_gap, which is " +
+                                         shortened(at("/lubrication/outer_gap")));
+  }
+  return lubrication;
+}
+
+Physics Reading::physics() const {
+  Physics physics;
+  physics.viscosity = number("/fluid/viscosity");
+  physics.thermal_energy = number_or("/fluid/thermal_energy", 0);
+  physics.shear_rate = number_or("/flow/shear_rate", 0);
+  if (has("/contact")) physics.contact = contact();
+  if (has("/lubrication")) physics.lubrication = lubrication();
+  if (has("/repulsion") && number("/repulsion/strength") > 0) {
+    physics.repulsion = {number("/repulsion/strength"), number("/repulsion/relative_length"),
+                         number("/repulsion/cutoff_lengths")};
+  }
+  return physics;
+}
+
+// Of all pairs with rate / kT = Pe / (6 pi eta a^3) within the limits, the one with the larger values.
+void Reading::set_flow_from_peclet(double radius, Physics& physics) const {
+  const double peclet = number("/peclet");
+  const double scale = 6 * std::numbers::pi * physics.viscosity * radius * radius * radius;
+  const double largest_rate = number("/limits/shear_rate");
+  const double largest_energy = number("/limits/thermal_energy");
+  const double rate_at_largest_energy = peclet * largest_energy / scale;
+  if (rate_at_largest_energy <= largest_rate) {
+    physics.shear_rate = rate_at_largest_energy;
+    physics.thermal_energy = largest_energy;
+  } else {
+    physics.shear_rate = largest_rate;
+    physics.thermal_energy = scale * largest_rate / peclet;
+  }
+  const auto is_usable = [](double value) { return std::isnormal(value) && value > 0; };
+  if (!is_usable(physics.shear_rate) || !is_usable(physics.thermal_energy)) {
+    refuse("/peclet", "leaves no shear rate and thermal energy above 0 within /limits");
+  }
+}
+
+void Reading::set_flow(const Particles& particles, Physics& physics) const {
+  if (!has("/peclet")) {
+    if (has("/limits")) refuse("/limits", "must be left out without /peclet");
+    if (!has("/flow/shear_rate")) {
+      miss("/flow/shear_rate", "must be a number >= 0, or /peclet with /limits must be given");
+    }
+    return;
+  }
+  for (const char* pointer : {"/flow/shear_rate", "/fluid/thermal_energy"}) {
+    if (has(pointer)) refuse(pointer, "must be left out together with /peclet, which sets it");
+  }
+  if (!has("/limits"))
+    miss("/limits", "must be an object with shear_rate and thermal_energy, because /peclet is given");
+  set_flow_from_peclet(particles.reference_radius, physics);
+}
+
+Duration Reading::duration(const std::string& pointer, const Physics& physics) const {
+  const Json& limits = at(pointer);
+  if (limits.empty()) refuse(pointer, "must have at least one of strain, brownian_times, time");
+  Duration duration;
+  for (const auto& [name, limit] : limits.items()) {
+    if (limit == 0) return {unlimited, unlimited, 0};  // over before it starts, whatever the flow
+  }
+  if (physics.shear_rate > 0) duration.strain = limits.value("strain", unlimited);
+  if (physics.thermal_energy > 0) duration.brownian_times = limits.value("brownian_times", unlimited);
+  duration.time = limits.value("time", unlimited);
+  if (duration.strain == unlimited && duration.brownian_times == unlimited && duration.time == unlimited) {
+    refuse(pointer,
+           "would never end: strain needs a shear rate > 0, brownian_times a thermal energy > 0; give one of "
+           "them "
+           "that is reached, or time");
+  }
+  return duration;
+}
+
+// Whether the scene lists the observable. Its block of settings alone would be measured by nobody.
+bool Reading::asks_for(const char* observable) const {
+  const Json& list = at("/observables");
+  if (std::find(list.begin(), list.end(), observable) != list.end()) return true;
+  const std::string pointer = fmt::format("/{}", observable);
+  if (has(pointer.c_str())) refuse(pointer, "must be left out unless /observables lists it");
+  return false;
+}
+
+template <class Settings>
+void Reading::set_observable(const char* name, std::optional<Settings>& settings) const {
+  if (!asks_for(name)) return;
+  settings.emplace();
+  const std::string interval = fmt::format("/{}/interval", name);
+  if (has(interval.c_str())) settings->interval = number(interval);
+}
+
+void Reading::set_observables(Scene& scene) const {
+  set_observable("mean_squared_displacement", scene.mean_squared_displacement);
+  set_observable("stress_correlation", scene.stress_correlation);
+  if (scene.stress_correlation && (scene.physics.shear_rate > 0 || scene.physics.thermal_energy <= 0)) {
+    refuse("/observables",
+           "must not list stress_correlation unless the thermal energy is > 0 and the shear rate 0");
+  }
+  set_observable("pair_distribution", scene.pair_distribution);
+  if (scene.pair_distribution && has("/pair_distribution")) {
+    PairDistributionSettings& settings = *scene.pair_distribution;
+    settings.range = number("/pair_distribution/range");
+    settings.bin = number("/pair_distribution/bin");
+    settings.slab = number("/pair_distribution/slab");
+    const double bins = settings.range / settings.bin;
+    constexpr double most_bins = 1000;
+    if (std::abs(bins - std::round(bins)) > 1e-9 * bins || bins < 1 || bins > most_bins) {
+      refuse("/pair_distribution/bin",
+             fmt::format("must divide /pair_distribution/range, which is {}, into 1 to {} equal parts",
+                         shortened(at("/pair_distribution/range")), most_bins));
+    }
+  }
+  set_observable("contact_network", scene.contact_network);
+  if (scene.contact_network && !scene.physics.contact) {
+    refuse("/observables", "must not list contact_network without /contact");
+  }
+}
+
+// The method, and the default of the guard that follows from it. Without lubrication explicit steps are bound
+// by contacts and drag alone, and cheaper.
+void fill_method_and_guard(Json& document) {
+  Json& integrator = document["integrator"];
+  if (!integrator.contains("method")) {
+    integrator["method"] = document.contains("lubrication") ? "implicit" : "explicit";
+  }
+  Json& guard = document["guard"];
+  if (!guard.contains("largest_displacement")) {
+    guard["largest_displacement"] = integrator["method"] == "implicit" ? 0.3 : 0.05;
+  }
+}
+
+}  // namespace
+
+Scene read_scene(const Json& document, const std::string& file) {
+  Scene scene;
+  scene.document = scene_keys().validate(document, file);
+  const Json& filled = scene.document;
+  const Reading reading(filled, file);
+  fill_method_and_guard(scene.document);
+
+  scene.particles = reading.particles();
+  scene.volume_fraction = filled["volume_fraction"].get<double>();
+  scene.physics = reading.physics();
+  reading.set_flow(scene.particles, scene.physics);
+
+  const Json& integrator = filled["integrator"];
+  if (integrator["method"] == "implicit") scene.method = Method::implicit_steps;
+  scene.solver_tolerance = integrator.value("tolerance", scene.solver_tolerance);
+  if (integrator.contains("tolerance") && scene.method != Method::implicit_steps) {
+    throw InputError(file, "/integrator/tolerance", shortened(integrator["tolerance"]),
+                     "must be left out unless /integrator/method is \"implicit\"");
+  }
+  const Json& timestep = filled["integrator"]["timestep"];
+  if (timestep.is_number()) scene.timestep = timestep.get<double>();
+  scene.equilibration = reading.duration("/duration/equilibration", scene.physics);
+  scene.production = reading.duration("/duration/production", scene.physics);
+  reading.set_observables(scene);
+  scene.guard = {filled["guard"]["largest_overlap"].get<double>(),
+                 filled["guard"]["largest_displacement"].get<double>(),
+                 filled["guard"]["energy_imbalance"].get<double>(),
+                 filled["guard"]["half_step_difference"].get<double>()};
+  return scene;
+}
+
+Physics read_physics(const Json& document, const std::string& file, const std::string& pointer) {
+  if (!document.is_object()) throw InputError(file, pointer, shortened(document), "must be an object");
+  constexpr std::array blocks = {"fluid", "flow", "contact", "lubrication", "repulsion"};
+  Json filled = Json::object();
+  for (const auto& [name, block] : document.items()) {
+    if (std::find(blocks.begin(), blocks.end(), name) == blocks.end()) {
+      throw InputError(file, pointer + '/' + name, "unknown key",
+                       fmt::format("allowed keys: {}", fmt::join(blocks, ", ")));
+    }
+    try {
+      filled[name] = scene_keys().validate(block, "", '/' + name);
+    } catch (const InputError& error) {
+      throw error.within(file, pointer + '/' + name);
+    }
+  }
+  if (!filled.contains("fluid")) throw InputError(file, pointer + "/fluid", "missing", "must be an object");
+  try {
+    return Reading(filled, "").physics();
+  } catch (const InputError& error) {
+    throw error.within(file, pointer);
+  }
+}
+
+}  // namespace peclet::engine

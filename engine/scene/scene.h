@@ -1,0 +1,112 @@
+// A scene: what is simulated, checked for form (the table of keys) and then for meaning.
+//
+// A block that is absent is physics that is not computed; std::optional says so here.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "contract/json.h"
+#include "contract/key_table.h"
+#include "engine/terms/interactions.h"
+
+namespace peclet::engine {
+
+// The physics of a scene without its particles: all that forces depend on.
+struct Physics {
+  double viscosity = 0;
+  double thermal_energy = 0;  // k_B T
+  double shear_rate = 0;      // of the streaming flow (rate y, 0, 0)
+  std::optional<ContactParameters> contact;
+  std::optional<LubricationParameters> lubrication;
+  std::optional<RepulsionParameters> repulsion;
+};
+
+struct Species {
+  double radius = 0;
+  double share = 0;  // of the volume or of the number, see Particles; the shares add up to 1
+};
+
+struct Particles {
+  enum class Shares { volume, number };
+  std::size_t count = 0;
+  double density = 0;
+  double reference_radius = 0;  // the a of Pe, St and the time scales
+  Shares shares = Shares::volume;
+  std::vector<Species> species;
+};
+
+// Ends with the first of its limits that is reached; infinity where there is none or where the scene cannot
+// reach it (strain without shear, Brownian times without temperature). One at least is finite. A limit of 0
+// in the document makes time 0 and the others infinite.
+struct Duration {
+  double strain = std::numeric_limits<double>::infinity();
+  double brownian_times = std::numeric_limits<double>::infinity();  // units of eta a^3 / kT
+  double time = std::numeric_limits<double>::infinity();
+};
+
+// Limits that end a realisation with a named cause, and one beyond which its result is flagged.
+struct Guard {
+  double largest_overlap = 0.05;       // of the smaller radius of the pair
+  double largest_displacement = 0.05;  // per step, of the smallest radius of all
+  // Beyond these there is only a warning.
+  double energy_imbalance = 0.3;       // of the flow's work
+  double half_step_difference = 0.03;  // of the stress
+};
+
+struct Warning {
+  std::string code;  // "inertia-shear", "inertia-thermal", "overlap", "timestep", "solver"
+  std::string message;
+};
+
+// What is measured besides the stress. An interval is the time between samples; absent: as observables/
+// catalogue.cpp has it.
+struct MeanSquaredDisplacementSettings {
+  std::optional<double> interval;
+};
+
+struct StressCorrelationSettings {
+  std::optional<double> interval;
+};
+
+// Lengths in units of the reference radius.
+struct PairDistributionSettings {
+  std::optional<double> interval;
+  double range = 4, bin = 0.1, slab = 0.1;
+};
+
+struct ContactNetworkSettings {
+  std::optional<double> interval;
+};
+
+// How the equations of motion are solved.
+enum class Method { explicit_steps, implicit_steps };
+
+struct Scene {
+  Particles particles;
+  double volume_fraction = 0;
+  Physics physics;
+  Method method = Method::explicit_steps;
+  std::optional<double> timestep;  // absent: "auto"
+  double solver_tolerance = 1e-3;  // of implicit steps
+  Duration equilibration, production;
+  std::optional<MeanSquaredDisplacementSettings> mean_squared_displacement;
+  std::optional<StressCorrelationSettings> stress_correlation;
+  std::optional<PairDistributionSettings> pair_distribution;
+  std::optional<ContactNetworkSettings> contact_network;
+  Guard guard;
+  Json document;  // as given, defaults filled
+};
+
+const KeyTable& scene_keys();
+
+// Reads and checks a scene. `file` names it in messages. Throws InputError.
+Scene read_scene(const Json& document, const std::string& file);
+
+// Reads the blocks fluid, flow, contact, lubrication, repulsion alone (a configuration's "scene").
+Physics read_physics(const Json& document, const std::string& file, const std::string& pointer);
+
+}  // namespace peclet::engine

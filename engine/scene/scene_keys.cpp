@@ -1,0 +1,264 @@
+// Every key of a scene: the one list behind validation, schema/scene.schema.json and the manual's page.
+#include <utility>
+
+#include "engine/scene/scene.h"
+
+namespace peclet::engine {
+
+namespace {
+
+// Each pair of sizes has constants of its own.
+constexpr std::size_t most_species = 256;
+
+constexpr bool required = true;
+
+Key positive(std::string pointer, std::string unit, std::string meaning, bool is_required = false) {
+  return {.pointer = std::move(pointer),
+          .kind = KeyKind::number,
+          .meaning = std::move(meaning),
+          .unit = std::move(unit),
+          .required = is_required,
+          .minimum = 0,
+          .above_minimum = true};
+}
+
+Key not_negative(std::string pointer, std::string unit, std::string meaning, bool is_required = false) {
+  Key key = positive(std::move(pointer), std::move(unit), std::move(meaning), is_required);
+  key.above_minimum = false;
+  return key;
+}
+
+Key block(std::string pointer, std::string meaning, bool is_required = false) {
+  return {.pointer = std::move(pointer),
+          .kind = KeyKind::object,
+          .meaning = std::move(meaning),
+          .required = is_required};
+}
+
+Key choice(std::string pointer, std::string meaning, std::vector<std::string> choices) {
+  return {.pointer = std::move(pointer),
+          .kind = KeyKind::choice,
+          .meaning = std::move(meaning),
+          .choices = std::move(choices)};
+}
+
+// A number strictly between 0 and `below`.
+Key fraction(Key key, double below) {
+  key.maximum = below;
+  key.below_maximum = true;
+  return key;
+}
+
+Key with_default(Key key, Json value) {
+  key.default_value = std::move(value);
+  return key;
+}
+
+Key must_be_given(Key key) {
+  key.required = true;
+  return key;
+}
+
+using Keys = std::vector<Key>;
+
+Keys particle_keys() {
+  return {
+      block("/particles", "The spheres.", required),
+      {.pointer = "/particles/count",
+       .kind = KeyKind::integer,
+       .meaning = "Number of particles.",
+       .required = true,
+       .minimum = 1,
+       .maximum = 10'000'000},
+      positive("/particles/density", "mass / length^3", "Mass density of the particles.", required),
+      {.pointer = "/particles/species",
+       .kind = KeyKind::array,
+       .meaning =
+           "The sizes; all have volume_share or all have number_share. A single species needs neither.",
+       .required = true,
+       .minimum_items = 1,
+       .maximum_items = most_species},
+      block("/particles/species/*", "One size."),
+      positive("/particles/species/*/radius", "length", "Radius.", required),
+      positive(
+          "/particles/species/*/volume_share", "",
+          "Share of the particles' volume, relative to the other species (the shares need not add up to 1)."),
+      positive("/particles/species/*/number_share", "",
+               "Share of the number of particles, relative to the other species (need not add up to 1)."),
+      positive("/particles/reference_radius", "length",
+               "The a of Pe, St, Brownian times and derived groups; the first species' radius unless given."),
+      must_be_given(
+          fraction(positive("/volume_fraction", "", "Volume of the particles over that of the box."), 0.74)),
+  };
+}
+
+Keys flow_keys() {
+  return {
+      block("/fluid", "The solvent.", required),
+      positive("/fluid/viscosity", "mass / (length time)", "Viscosity eta of the solvent.", required),
+      not_negative("/fluid/thermal_energy", "energy",
+                   "k_B T; absent (or 0): no Brownian motion. Not together with peclet."),
+      block("/flow", "The streaming flow (rate y, 0, 0). A scene has flow.shear_rate or peclet."),
+      not_negative("/flow/shear_rate", "1 / time",
+                   "Shear rate; 0: a fluid at rest. Not together with peclet."),
+      positive("/peclet", "",
+               "Pe = 6 pi eta a^3 rate / k_B T, in place of shear_rate and thermal_energy; needs limits."),
+      block("/limits",
+            "Of the scene with a given peclet: the largest rate and temperature that Pe allows are used."),
+      positive("/limits/shear_rate", "1 / time", "Shear rate that is not exceeded.", required),
+      positive("/limits/thermal_energy", "energy", "k_B T that is not exceeded.", required),
+  };
+}
+
+Keys contact_keys() {
+  return {
+      block("/contact", "Forces between overlapping spheres; absent: none."),
+      positive("/contact/normal_stiffness", "force / length", "Normal stiffness k_n.", required),
+      with_default(not_negative("/contact/normal_damping", "force time / length", "Normal damping."), 0),
+      not_negative("/contact/friction", "", "Coefficient of sliding friction; absent (or 0): frictionless."),
+      positive("/contact/tangential_stiffness", "force / length",
+               "Tangential stiffness, with friction only; 2/7 of the normal one unless given."),
+      not_negative(
+          "/contact/rolling_stiffness", "force / length",
+          "Stiffness against rolling; absent (or 0): free rolling. Above 0 it needs friction above 0."),
+      not_negative(
+          "/contact/rolling_friction", "",
+          "Coefficient that caps rolling resistance, with rolling_stiffness only; that of sliding unless "
+          "given."),
+  };
+}
+
+Keys lubrication_keys() {
+  return {
+      block("/lubrication", "Squeeze, shear and pump modes between near spheres; absent: none."),
+      must_be_given(choice("/lubrication/form", "The resistance functions.", {"kim-karrila"})),
+      with_default(
+          fraction(positive("/lubrication/inner_gap", "",
+                            "Gap 2 (r - a_i - a_j) / (a_i + a_j) below which the resistance stays constant."),
+                   1),
+          1e-3),
+      with_default(fraction(positive("/lubrication/outer_gap", "",
+                                     "Gap beyond which there is none; must be larger than inner_gap."),
+                            1),
+                   0.05),
+  };
+}
+
+Keys repulsion_keys() {
+  return {
+      block("/repulsion", "Repulsion of the surfaces, at distance h; absent: none."),
+      must_be_given(
+          choice("/repulsion/form", "exponential: energy strength * exp(-h / kappa).", {"exponential"})),
+      not_negative("/repulsion/strength", "energy", "Energy of a pair that touches.", required),
+      with_default(positive("/repulsion/relative_length", "", "kappa / (a_i + a_j)."), 0.01),
+      with_default(
+          positive("/repulsion/cutoff_lengths", "", "Distance h / kappa beyond which there is none."), 20),
+  };
+}
+
+Keys duration_keys(const std::string& pointer, const std::string& meaning, bool zero_is_allowed) {
+  const auto limit = zero_is_allowed ? not_negative : positive;
+  return {
+      block(pointer, meaning + " Ends with the first of its limits that is reached; one at least.", required),
+      limit(pointer + "/strain", "", "Strain: shear rate times time.", false),
+      limit(pointer + "/brownian_times", "eta a^3 / k_B T", "Time in units of the Brownian time.", false),
+      limit(pointer + "/time", "time", "Time.", false),
+  };
+}
+
+Keys run_keys() {
+  Keys keys = {
+      with_default(block("/integrator", "How the equations of motion are solved."), Json::object()),
+      choice("/integrator/method",
+             "explicit: velocity Verlet; implicit: steps that solve for the velocities. Unless given, "
+             "implicit with lubrication and explicit without.",
+             {"explicit", "implicit"}),
+      {.pointer = "/integrator/timestep",
+       .kind = KeyKind::number_or_auto,
+       .meaning = "Time step; auto: half of the largest stable explicit one, or the implicit one whose error "
+                  "has been measured, and not more than a 32nd of the production window.",
+       .unit = "time",
+       .default_value = "auto",
+       .minimum = 0,
+       .above_minimum = true},
+      {.pointer = "/integrator/tolerance",
+       .kind = KeyKind::number,
+       .meaning = "Residual of the equations of an implicit step, relative to the motion, in the energy "
+                  "norm; 0.001 unless given.",
+       .minimum = 0,
+       .maximum = 1e-3,
+       .above_minimum = true},
+      block("/duration", "How long a realisation runs.", required),
+  };
+  const auto append = [&](const Keys& more) { keys.insert(keys.end(), more.begin(), more.end()); };
+  append(
+      duration_keys("/duration/equilibration", "Before anything is measured; a limit of 0 skips it.", true));
+  append(duration_keys("/duration/production", "The window of all means.", false));
+  append({
+      {.pointer = "/observables",
+       .kind = KeyKind::array,
+       .meaning = "What is measured.",
+       .default_value = Json::array({"stress"}),
+       .minimum_items = 1},
+      choice("/observables/*",
+             "stress: the tensor, split by term, which is always there. mean_squared_displacement: of each "
+             "species. stress_correlation: of the structural Brownian stress of a fluid at rest, and the "
+             "viscosity by Green and Kubo. pair_distribution: g(r) and g(x, y). contact_network: contacts of "
+             "a particle, mobilised friction.",
+             {"stress", "mean_squared_displacement", "stress_correlation", "pair_distribution",
+              "contact_network"}),
+      block("/mean_squared_displacement", "How the observable of that name is measured."),
+      positive("/mean_squared_displacement/interval", "time",
+               "Time between samples, in whole steps; one step unless given."),
+      block("/stress_correlation", "How the observable of that name is measured."),
+      positive("/stress_correlation/interval", "time",
+               "Time between samples, in whole steps; one step unless given."),
+      block("/pair_distribution", "How the observable of that name is measured."),
+      positive("/pair_distribution/interval", "time",
+               "Time between samples, in whole steps; a 256th of the production window unless given."),
+      with_default(positive("/pair_distribution/range", "reference radius",
+                            "Largest distance; at most half of the box, at rest 0.707 of it."),
+                   4),
+      with_default(positive("/pair_distribution/bin", "reference radius",
+                            "Width of a bin; a whole number of them, at most 1000, makes up the range."),
+                   0.1),
+      with_default(positive("/pair_distribution/slab", "reference radius",
+                            "Distance |z| below which a pair counts for g(x, y)."),
+                   0.1),
+      block("/contact_network", "How the observable of that name is measured."),
+      positive("/contact_network/interval", "time",
+               "Time between samples, in whole steps; a 256th of the production window unless given."),
+      with_default(block("/guard", "Limits that end a realisation as failed, or flag its result."),
+                   Json::object()),
+      with_default(positive("/guard/largest_overlap", "", "Overlap over the smaller radius of the pair."),
+                   0.05),
+      positive("/guard/largest_displacement", "",
+               "Displacement in one step, relative to the flow, over the smallest radius; 0.05 with explicit "
+               "and 0.3 with implicit steps unless given."),
+      with_default(positive("/guard/energy_imbalance", "",
+                            "Energy that the finite step makes over the work of the flow; beyond it the "
+                            "result has the warning timestep."),
+                   0.3),
+      with_default(positive("/guard/half_step_difference", "",
+                            "Relative difference of the stress between steps and half steps, on samples; "
+                            "beyond it the result has the warning timestep."),
+                   0.03),
+  });
+  return keys;
+}
+
+}  // namespace
+
+const KeyTable& scene_keys() {
+  static const KeyTable table = [] {
+    Keys keys;
+    for (const Keys& part :
+         {particle_keys(), flow_keys(), contact_keys(), lubrication_keys(), repulsion_keys(), run_keys()}) {
+      keys.insert(keys.end(), part.begin(), part.end());
+    }
+    return KeyTable("Scene of a peclet simulation", std::move(keys));
+  }();
+  return table;
+}
+
+}  // namespace peclet::engine

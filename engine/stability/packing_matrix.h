@@ -1,0 +1,45 @@
+// How a packing resists small motions about its present configuration, per mass.
+//
+//   A = M^-1/2 (c_R R + c_K K) M^-1/2,  six rows for each particle: velocity and spin.
+// R is the resistance: lubrication, drag, damping of contacts. K is the stiffness: springs of contacts along
+// n and, as if every contact stuck, tangential and rolling ones, and the curvature of the repulsion. Both are
+// symmetric and positive semidefinite. Forces that push also turn with n, which only makes the packing softer
+// across n (by F/r): left out, K is a bound.
+#pragma once
+
+#include "engine/kernels/pairs/pair_kinds.h"
+#include "engine/state/system.h"
+
+namespace peclet::engine {
+
+struct MatrixWeights {
+  double resistance = 0, stiffness = 0;  // c_R, c_K
+};
+
+class PackingMatrix {
+ public:
+  PackingMatrix(const System& system, const std::vector<PairKind>& kinds, const Physics& physics,
+                const MatrixWeights& weights);
+
+  std::size_t rows() const { return 6 * spheres_.size(); }
+
+  // product = A vector; particle i has rows 6 i ... 6 i + 5.
+  void multiply(const std::vector<double>& vector, std::vector<double>& product) const;
+
+ private:
+  struct Sphere {
+    double per_root_mass, per_root_inertia;  // 1 / sqrt(m), 1 / sqrt(I)
+    double drag_rate, rotational_drag_rate;  // c_R zeta / m, c_R zeta_r / I
+  };
+  // Springs couple velocities and spins of a pair in the same form as lubrication does.
+  struct Link {
+    std::uint32_t first, second;
+    PairGeometry shape;
+    PairResistance coupling;
+  };
+
+  std::vector<Sphere> spheres_;
+  std::vector<Link> links_;
+};
+
+}  // namespace peclet::engine

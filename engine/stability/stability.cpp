@@ -1,0 +1,240 @@
+#include "engine/stability/stability.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "contract/input_error.h"
+#include "engine/terms/drag.h"
+#include "engine/terms/pair_resistance.h"
+
+namespace peclet::engine {
+namespace {
+
+double mass_of(const Scene& scene, double radius) {
+  return 4.0 / 3.0 * std::numbers::pi * scene.particles.density * radius * radius * radius;
+}
+
+struct SpherePair {
+  double first, second;  // radii
+  double mass_first, mass_second;
+  double mobility;  // 1/m_i + 1/m_j
+};
+
+// Largest rate at which a pair's translations are damped: one-body drag and squeezing.
+double translational_damping(const Physics& physics, const PairResistance& resistance, double damping,
+                             const SpherePair& pair) {
+  return std::max(translational_drag(physics.viscosity, pair.first) / pair.mass_first,
+                  translational_drag(physics.viscosity, pair.second) / pair.mass_second) +
+         (resistance.squeeze + damping) * pair.mobility;
+}
+
+// Bound of the rate at which its spins are: their drag (10/3 of the translational rate) and the trace of the
+// shearing and twisting modes. It decides only where lubrication is weak or absent.
+double rotational_damping(const Physics& physics, const PairResistance& resistance, const SpherePair& pair) {
+  const double inertia_first = 0.4 * pair.mass_first * pair.first * pair.first;
+  const double inertia_second = 0.4 * pair.mass_second * pair.second * pair.second;
+  return std::max(rotational_drag(physics.viscosity, pair.first) / inertia_first,
+                  rotational_drag(physics.viscosity, pair.second) / inertia_second) +
+         resistance.shear * pair.mobility + resistance.twist_first / inertia_first +
+         resistance.twist_second / inertia_second;
+}
+
+PairRates rates_of_pair(const Scene& scene, double first, double second) {
+  const Physics& physics = scene.physics;
+  const SpherePair pair = {first, second, mass_of(scene, first), mass_of(scene, second),
+                           1 / mass_of(scene, first) + 1 / mass_of(scene, second)};
+  const double mobility = pair.mobility, sum = first + second;
+  PairResistance resistance{};
+  if (physics.lubrication) {
+    const PairGeometry touching = {{sum, 0, 0}, {1, 0, 0}, sum, sum};
+    resistance = pair_resistance(resistance_constants(physics.viscosity, first, second),
+                                 physics.lubrication->inner_gap, touching);
+  }
+  const double normal_damping = physics.contact ? physics.contact->normal_damping : 0;
+  PairRates rates{};
+  rates.damping = std::max(translational_damping(physics, resistance, normal_damping, pair),
+                           rotational_damping(physics, resistance, pair));
+  if (physics.contact) {
+    const ContactParameters& contact = *physics.contact;
+    // A tangential spring acts on centres and, through levers a, on spins with 2/5 m a^2: 1 + 5/2 times as
+    // stiff.
+    const double tangential = contact.friction > 0 ? 3.5 * contact.tangential_stiffness : 0;
+    // A rolling spring turns both spheres through the reduced diameter, at most the diameter of the smaller
+    // one.
+    const double reduced = 2 * first * second / sum;
+    const double smaller = std::min(first, second);
+    const double rolling = 2.5 * contact.rolling_stiffness * (reduced / smaller) * (reduced / smaller);
+    rates.frequency_squared = std::max({contact.normal_stiffness, tangential, rolling}) * mobility;
+  }
+  if (physics.repulsion) {
+    const double length = physics.repulsion->relative_length * sum;
+    rates.frequency_squared += physics.repulsion->strength / (length * length) * mobility;
+  }
+  return rates;
+}
+
+double stable_step(const PairRates& rates) {
+  const double l = packing_factor * rates.damping, w2 = packing_factor * rates.frequency_squared;
+  // 4 / (l + sqrt(l^2 + 4 w^2)) is the positive root of w^2 dt^2 + 2 l dt = 4, also for w = 0.
+  return 4 / (l + std::sqrt(l * l + 4 * w2));
+}
+
+// drag / stiffness of the repulsion where lubrication ends and the drag of single spheres alone resists it;
+// infinite where it does not reach that far.
+double repulsion_time_beyond_lubrication(const Physics& physics, double first, double second) {
+  const double sum = first + second;
+  const double length = physics.repulsion->relative_length * sum;
+  const double distance = 0.5 * physics.lubrication->outer_gap * sum;
+  if (!(distance < physics.repulsion->cutoff_lengths * length)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const double drag_first = translational_drag(physics.viscosity, first);
+  const double drag_second = translational_drag(physics.viscosity, second);
+  const double stiffness = physics.repulsion->strength / (length * length) * std::exp(-distance / length);
+  return drag_first * drag_second / (drag_first + drag_second) / stiffness;
+}
+
+// X_A at the outer gap of the smallest sphere, with the partner that has most of it.
+double largest_resistance_at_the_outer_gap(const Scene& scene, double smallest) {
+  const Physics& physics = scene.physics;
+  double largest = 0;
+  for (const Species& partner : scene.particles.species) {
+    const double sum = smallest + partner.radius, distance = sum * (1 + 0.5 * physics.lubrication->outer_gap);
+    const PairGeometry parting = {{distance, 0, 0}, {1, 0, 0}, distance, sum};
+    largest =
+        std::max(largest, pair_resistance(resistance_constants(physics.viscosity, smallest, partner.radius),
+                                          physics.lubrication->inner_gap, parting)
+                              .squeeze);
+  }
+  return largest;
+}
+
+// What a sphere and a third one do to the distance between them in the step in which a pair of the first one
+// leaves the range of lubrication: twice the outer gap over the standard deviation of that way. The pair
+// keeps the noise F_B^2 = 2 kT X_A / dt of a resistance that is gone, which moves the sphere by
+// dt F_B / (m / dt + zeta); free spheres move by dt^2 kT / (m + zeta dt / 2) squared. Small spheres leap
+// farthest and have the least room, whatever the other sizes.
+double room_over_leap(const Scene& scene, double smallest, double resistance, double timestep) {
+  const double mass = mass_of(scene, smallest), energy = scene.physics.thermal_energy;
+  const double drag = translational_drag(scene.physics.viscosity, smallest);
+  const double inertia = mass + timestep * drag;
+  const double parting = 2 * energy * resistance * timestep / (inertia * inertia);
+  const double free = energy / (mass + 0.5 * timestep * drag);
+  return 2 * scene.physics.lubrication->outer_gap * smallest / (timestep * std::sqrt(parting + 2 * free));
+}
+
+// `longest`, or the step at which so many standard deviations of a leap are that room.
+double step_of_leaps(const Scene& scene, double smallest, double deviations, double longest) {
+  const double resistance = largest_resistance_at_the_outer_gap(scene, smallest);
+  const auto fits = [&](double step) {
+    return room_over_leap(scene, smallest, resistance, step) >= deviations;
+  };
+  if (fits(longest)) return longest;
+  double low = longest;
+  do {
+    low /= 2;
+    // With energies near the largest numbers no step fits that is one: the run itself then says so.
+    if (!std::isnormal(low)) return longest;
+  } while (!fits(low));
+  double high = 2 * low;
+  constexpr int bisections = 48;
+  for (int i = 0; i < bisections; ++i) {
+    const double middle = 0.5 * (low + high);
+    (fits(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+}  // namespace
+
+PairRates stiffest_pair(const Scene& scene) {
+  PairRates stiffest{};
+  double smallest_step = std::numeric_limits<double>::infinity();
+  for (const Species& first : scene.particles.species) {
+    for (const Species& second : scene.particles.species) {
+      const PairRates rates = rates_of_pair(scene, first.radius, second.radius);
+      if (stable_step(rates) < smallest_step) {
+        smallest_step = stable_step(rates);
+        stiffest = rates;
+      }
+    }
+  }
+  return stiffest;
+}
+
+double largest_timestep(const Scene& scene) { return stable_step(stiffest_pair(scene)); }
+
+double automatic_implicit_timestep(const Scene& scene) {
+  const Physics& physics = scene.physics;
+  const bool friction = physics.contact && physics.contact->friction > 0;
+  const double strain = friction ? 0.0025 : 0.005, contact_times = friction ? 2 : 5;
+  constexpr double brownian_times = 0.0017, repulsion_times = 20, leaps = 5;
+  double step = std::numeric_limits<double>::infinity();
+  double smallest = scene.particles.species.front().radius, largest = smallest;
+  for (const Species& species : scene.particles.species) {
+    smallest = std::min(smallest, species.radius);
+    largest = std::max(largest, species.radius);
+  }
+  if (physics.shear_rate > 0) {
+    const double stokes =
+        scene.particles.density * largest * largest * physics.shear_rate / physics.viscosity;
+    step = strain / ((1 + 2 * stokes) * physics.shear_rate);
+  }
+  if (physics.thermal_energy > 0) {
+    step =
+        std::min(step, brownian_times * physics.viscosity * std::pow(smallest, 3) / physics.thermal_energy);
+  }
+  if (const PairRates rates = stiffest_pair(scene); rates.frequency_squared > 0) {
+    step = std::min(step, contact_times * rates.damping / rates.frequency_squared);
+  }
+  if (physics.lubrication && physics.repulsion) {
+    for (const Species& first : scene.particles.species) {
+      for (const Species& second : scene.particles.species) {
+        step = std::min(
+            step, repulsion_times * repulsion_time_beyond_lubrication(physics, first.radius, second.radius));
+      }
+    }
+  }
+  if (physics.lubrication && physics.thermal_energy > 0) {
+    step = step_of_leaps(scene, smallest, leaps, step);
+  }
+  return step;
+}
+
+double automatic_timestep(const Scene& scene) {
+  return scene.method == Method::implicit_steps ? automatic_implicit_timestep(scene)
+                                                : 0.5 * largest_timestep(scene);
+}
+
+double resolved_timestep(const Scene& scene, const std::string& file) {
+  const double automatic = automatic_timestep(scene);
+  if (!scene.timestep) {
+    if (!std::isfinite(automatic)) {
+      throw InputError(file, "/integrator/timestep", "\"auto\"",
+                       "must be a number in a scene without flow, temperature, contact and repulsion");
+    }
+    return automatic;
+  }
+  if (scene.method == Method::implicit_steps) {
+    if (*scene.timestep > largest_over_automatic * automatic) {
+      throw InputError(file, "/integrator/timestep", fmt::format("{}", *scene.timestep),
+                       fmt::format("must be at most {:.4g}, {} times \"auto\" in this scene",
+                                   largest_over_automatic * automatic, largest_over_automatic));
+    }
+    return *scene.timestep;
+  }
+  const double largest = largest_timestep(scene);
+  if (*scene.timestep > largest) {
+    throw InputError(
+        file, "/integrator/timestep", fmt::format("{}", *scene.timestep),
+        fmt::format("must be at most {:.4g}, the largest stable step of the scene's stiffest pair in a "
+                    "dense packing (or \"auto\", half of that)",
+                    largest));
+  }
+  return *scene.timestep;
+}
+
+}  // namespace peclet::engine

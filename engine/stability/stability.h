@@ -1,0 +1,54 @@
+// The steps that a scene allows: of explicit ones the largest that is stable, of implicit ones those whose
+// error has been looked at.
+#pragma once
+
+#include "engine/scene/scene.h"
+
+namespace peclet::engine {
+
+// Fastest modes of the stiffest pair of the scene, at the inner gap and in contact.
+struct PairRates {
+  // 1/time: (X_A + gamma_n)(1/m_i + 1/m_j) plus the drag of the lighter sphere; the rate of its spin if that
+  // is larger.
+  double damping;
+  // 1/time^2: stiffness (1/m_i + 1/m_j) of the normal, tangential and rolling springs and the repulsion.
+  double frequency_squared;
+};
+
+PairRates stiffest_pair(const Scene& scene);
+
+// In the densest packings the largest eigenvalue of M^-1 R is 2.8 times that of one pair (2.1 at volume
+// fraction 0.45); contacts stay below the same factor.
+constexpr double packing_factor = 2.8;
+
+// Largest stable explicit step: root of w^2 dt^2 + 2 l dt = 4 with l and w^2 those of the stiffest pair times
+// packing_factor.
+double largest_timestep(const Scene& scene);
+
+// The automatic implicit step, the smallest of these:
+// - 0.005 / (rate (1 + 2 St)), with friction 0.0025; St = rho a^2 rate / eta with the largest radius. Pairs
+//   that the flow presses together pass through the gaps of lubrication in many steps; sliding contacts and
+//   inertia are of first order only.
+// - 0.0017 eta a^3 / kT, a the smallest radius. Noise moves a pair through these gaps in many steps, too.
+// - 5 X_A / k, with friction 2: the time in which lubrication at the inner gap holds up the stiffest contact
+//   or repulsion.
+// - 20 drag / k of the repulsion at the outer gap, where the drag of single spheres alone resists it. Larger
+//   steps throw the spheres of unbalanced packings apart.
+// - With noise and lubrication, the step at which five standard deviations of a leap out of the range of
+//   lubrication are twice the outer gap. No sphere is hit that was out of range before.
+// A scene without flow and temperature has those of contact and repulsion alone. Infinite where nothing sets
+// a time.
+double automatic_implicit_timestep(const Scene& scene);
+
+// A given implicit step may be that many times the automatic one. Errors of larger steps have a flag of their
+// own: half steps without noise, and with it the step itself, beyond the automatic one.
+constexpr double largest_over_automatic = 4;
+
+// What "auto" means: half of the largest step, or the automatic implicit one.
+double automatic_timestep(const Scene& scene);
+
+// The scene's own step or the automatic one. Throws InputError when the given one is too large, or none sets
+// an automatic one.
+double resolved_timestep(const Scene& scene, const std::string& file);
+
+}  // namespace peclet::engine

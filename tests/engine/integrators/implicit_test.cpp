@@ -1,0 +1,309 @@
+#include "engine/integrators/implicit.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numbers>
+
+#include "engine/integrators/velocity_verlet.h"
+#include "engine/realisation/simulation.h"
+#include "engine/stability/stability.h"
+#include "tests/engine/dense_suspension.h"
+#include "tests/engine/small_scene.h"
+
+namespace peclet::engine {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double tight = 1e-5;
+
+System system_of(const Physics& physics, const std::vector<double>& radius, double density, double edge) {
+  System system;
+  system.particles = make_particles(radius, density);
+  system.box = ShearedBox({edge, edge, edge}, physics.shear_rate);
+  const std::vector<double> sizes = distinct_radii(radius);
+  system.list = NeighbourList(range_table(make_pair_kinds(physics, sizes), sizes.size()), 0.1);
+  return system;
+}
+
+// m (V - V_n) = dt zeta (U - V): velocities approach the streaming flow's by a factor 1 / (1 + dt zeta / m) a
+// step, whatever the step.
+TEST(Implicit, SpheresRelaxToTheStreamingFlow) {
+  Physics physics;
+  physics.viscosity = 0.1;
+  physics.shear_rate = 0.01;
+  for (const double decay : {0.01, 1.0, 10.0}) {
+    System system = system_of(physics, {1.4}, 0.1, 20);
+    system.particles.position.set(0, {5, 12, 5});
+    system.particles.velocity.set(0, {0.12, 0, 0.01});
+    system.particles.angular_velocity.set(0, {0.01, 0, -0.005});
+    const double m = 0.1 * 4 * pi / 3 * std::pow(1.4, 3), rate = 6 * pi * 0.1 * 1.4 / m;
+    const double spin_rate = 8 * pi * 0.1 * std::pow(1.4, 3) / (0.4 * m * 1.4 * 1.4);
+    const double step = decay / rate;
+    const double first = system.particles.velocity[0].z;
+    Implicit integrator(physics, system.particles, step, tight, 1, 1);
+    integrator.start(system);
+    constexpr int steps = 3;
+    for (int k = 0; k < steps; ++k) integrator.advance(system);
+    const ParticleState& p = system.particles;
+    // Each step may leave a residual of `tight`.
+    EXPECT_NEAR(p.velocity[0].z / first * std::pow(1 + decay, steps), 1, 10 * tight) << decay;
+    EXPECT_NEAR(p.velocity[0].x, 0.12, 1e-6) << decay;
+    EXPECT_NEAR(p.angular_velocity[0].x / 0.01 * std::pow(1 + spin_rate * step, steps), 1, 10 * tight)
+        << decay;
+    EXPECT_NEAR(p.angular_velocity[0].z, -0.005, 1e-7) << decay;
+  }
+}
+
+// Two spheres pass each other in shear flow, between the inner and the outer gap all the time and without
+// much inertia. Where they end depends on the square of the step.
+Vector3 end_of_encounter(int steps) {
+  Physics physics;
+  physics.viscosity = 0.1;
+  physics.shear_rate = 1;
+  physics.lubrication = LubricationParameters{1e-3, 0.9};
+  System system = system_of(physics, {1, 1.4}, 1e-6, 30);
+  system.particles.position.set(0, {10, 3, 15});
+  system.particles.position.set(1, {8.2, 4.9, 15.9});
+  for (const std::size_t i : {0, 1}) {
+    system.particles.velocity.set(i, {system.particles.position[i].y, 0, 0});
+    system.particles.angular_velocity.set(i, {0, 0, -0.5});
+  }
+  Implicit integrator(physics, system.particles, 1.2 / steps, 1e-6, 1, 1);
+  integrator.start(system);
+  for (int k = 0; k < steps; ++k) integrator.advance(system);
+  const ParticleState& p = system.particles;
+  const std::size_t first = p.id[0] == 0 ? 0 : 1;
+  return p.position[1 - first] - p.position[first];
+}
+
+TEST(Implicit, IsOfSecondOrderForAnEncounter) {
+  const Vector3 exact = end_of_encounter(960);
+  ASSERT_LT(norm(exact), 2.4 * 1.45);  // still within the range
+  double coarse = norm(end_of_encounter(15) - exact);
+  for (const int steps : {30, 60, 120}) {
+    const double fine = norm(end_of_encounter(steps) - exact);
+    EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1) << steps;
+    coarse = fine;
+  }
+}
+
+// A sheared packing with friction, from the same places: the stress that explicit steps of a five hundredth
+// give.
+class AgainstExplicit : public testing::TestWithParam<double> {
+ protected:
+  static Json document() {
+    Json document = small_scene(
+        {{"particles", {{"count", 200}}}, {"integrator", {{"method", "implicit"}, {"timestep", "auto"}}}});
+    document["fluid"].erase("thermal_energy");
+    document.erase("repulsion");
+    document["flow"]["shear_rate"] = 0.045;
+    document["lubrication"]["inner_gap"] = 1e-3;
+    document["contact"] = {{"normal_stiffness", 1e4}};
+    if (GetParam() > 0) document["contact"]["friction"] = GetParam();
+    document["duration"] = {{"equilibration", {{"strain", 0.05}}}, {"production", {{"strain", 0.2}}}};
+    return document;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Frictions, AgainstExplicit, testing::Values(0.0, 0.5));
+TEST_P(AgainstExplicit, TheStressIsTheSame) {
+  Json document = this->document();
+  const auto stress = [&](const char* method) {
+    document["integrator"]["method"] = method;
+    const Scene scene = read_scene(document, "scene.json");
+    const Schedule schedule = make_schedule(scene, "scene.json");
+    Simulation simulation(scene, schedule, 4, 1, "scene.json");
+    simulation.start();
+    EXPECT_EQ(simulation.advance(schedule.total())->cause, Ending::Cause::completed);
+    double sum = 0, steps = 0;
+    for (const BlockSums& block : simulation.production().blocks()) {
+      for (const SymmetricTensor& term : block.stress) sum += term.xy;
+      steps += static_cast<double>(block.steps);
+    }
+    return sum / steps;
+  };
+  EXPECT_NEAR(stress("implicit") / stress("explicit"), 1, 0.01);
+}
+
+// Sum over terms of sigma_xy, the mean of all steps up to that time.
+double mean_stress(Integrator& integrator, System& system, double time) {
+  const auto steps = std::lround(time / integrator.timestep());
+  double sum = 0;
+  for (long step = 0; step < steps; ++step) {
+    const StepReport report = integrator.advance(system);
+    EXPECT_LT(report.largest_displacement, 0.05);
+    for (const SymmetricTensor& term : report.sums.stress) sum += term.xy;
+  }
+  return sum / static_cast<double>(steps);
+}
+
+// The flow turns round at once: contacts that it had closed open, and the stress changes its sign and most of
+// its size. What contacts still press relaxes within the first step, of which large steps see less.
+TEST_P(AgainstExplicit, TheStressAfterAReversalIsTheSame) {
+  const Scene scene = read_scene(document(), "scene.json");
+  Simulation simulation(scene, {automatic_timestep(scene), 0, 1000}, 4, 1, "scene.json");
+  simulation.start();
+  ASSERT_FALSE(simulation.advance(400));
+  System reversed = simulation.system();
+  const ShearedBox& box = reversed.box;
+  const double rate = scene.physics.shear_rate;
+  reversed.box = ShearedBox(box.lengths(), -rate, box.tilt());
+  reversed.step = 0;
+  ParticleState& particles = reversed.particles;
+  for (std::size_t i = 0; i < particles.count(); ++i) {
+    particles.velocity.add(i, {-2 * rate * particles.position[i].y, 0, 0});
+    particles.angular_velocity.add(i, {0, 0, rate});
+  }
+  Physics physics = scene.physics;
+  physics.shear_rate = -rate;
+  const auto stress = [&](auto& integrator, double time) {
+    System system = reversed;
+    integrator.start(system);
+    return mean_stress(integrator, system, time);
+  };
+  const double step = automatic_timestep(scene);
+  for (const auto& [steps, tolerance] : {std::pair{5, 0.05}, std::pair{25, 0.01}}) {
+    VelocityVerlet small(ForceField(physics, particles, step / 400, 1, 1), particles, step / 400);
+    Implicit large(physics, particles, step, scene.solver_tolerance, 1, 1);
+    const double expected = stress(small, steps * step);
+    EXPECT_LT(expected, 0);
+    EXPECT_NEAR(stress(large, steps * step) / expected, 1, tolerance) << steps;
+  }
+}
+
+TEST(Implicit, SaysWhatItsEquationsAreLeftWith) {
+  const Physics physics = physics_with({.lubrication = true, .contact = true});
+  System system = dense_suspension(physics, 203, 7);
+  Implicit integrator(physics, system.particles, 1e-3, tight, 1, 1);
+  integrator.start(system);
+  const StepReport report = integrator.advance(system);
+  EXPECT_GT(report.solver_iterations, 0);
+  EXPECT_GT(report.solver_residual, 0);
+  EXPECT_LT(report.solver_residual, 1e-2);
+}
+
+TEST(Implicit, StrainAfterNStepsIsNTimesRateAndStep) {
+  Physics physics;
+  physics.viscosity = 0.1;
+  physics.shear_rate = 0.7;
+  for (const double thermal_energy : {0.0, 1e-6}) {
+    physics.thermal_energy = thermal_energy;
+    System system = system_of(physics, {1}, 0.1, 20);
+    Implicit integrator(physics, system.particles, 0.01, tight, 1, 1);
+    integrator.start(system);
+    for (int n = 1; n <= 5; ++n) {
+      integrator.advance(system);
+      EXPECT_NEAR(system.box.strain(), n * 0.7 * 0.01, 1e-15) << n;
+    }
+  }
+}
+
+// Iterations end when the residual is below the tolerance, and smooth packings never need more than they may.
+TEST(Implicit, LeavesNoLargerResidualThanItsTolerance) {
+  const Json document = small_scene(
+      {{"particles", {{"count", 100}}},
+       {"fluid", {{"thermal_energy", 0}}},
+       {"repulsion", nullptr},
+       {"lubrication", {{"inner_gap", 1e-3}, {"outer_gap", 0.5}}},
+       {"contact", {{"friction", nullptr}, {"rolling_stiffness", nullptr}, {"rolling_friction", nullptr}}},
+       {"integrator", {{"method", "implicit"}, {"timestep", "auto"}}}});
+  const Scene scene = read_scene(document, "scene.json");
+  constexpr double tolerance = 1e-3;
+  Simulation simulation(scene, make_schedule(scene, "scene.json"), 3, 1, "scene.json");
+  simulation.start();
+  System system = simulation.system();
+  Implicit integrator(scene.physics, system.particles, automatic_timestep(scene), tolerance, 1, 1);
+  integrator.start(system);
+  for (int step = 0; step < 200; ++step) {
+    EXPECT_LE(integrator.advance(system).solver_residual, tolerance) << step;
+  }
+}
+
+// The comparison beside the system: steps as the system will take them, and steps of half the size.
+TEST(Implicit, ComparesStepsWithHalfSteps) {
+  Json document = small_scene(
+      {{"fluid", {{"thermal_energy", 0}}}, {"integrator", {{"method", "implicit"}, {"timestep", "auto"}}}});
+  const Scene scene = read_scene(document, "scene.json");
+  const double step = 4 * automatic_timestep(scene);
+  Simulation simulation(scene, {step, 200, 200}, 1, 1, "scene.json");
+  simulation.start();
+  ASSERT_FALSE(simulation.advance(100));
+  constexpr int steps = 3;
+  const auto stress = [&](int parts) {
+    System system = simulation.system();
+    system.step *= static_cast<std::uint64_t>(parts);
+    Implicit integrator(scene.physics, system.particles, step / parts, tight, 1, 1);
+    integrator.start(system);
+    return steps * mean_stress(integrator, system, steps * step);
+  };
+  System system = simulation.system();
+  Implicit integrator(scene.physics, system.particles, step, tight, 1, 1);
+  integrator.start(system);
+  const Integrator::HalfSteps found = integrator.compare_half_steps(system, steps);
+  const double whole = stress(1), halved = stress(2);
+  EXPECT_GT(std::abs(whole / halved - 1), 2e-4);
+  EXPECT_NEAR(found.whole / whole, 1, 2e-5);
+  EXPECT_NEAR(found.halved / halved, 1, 2e-5);
+}
+
+TEST(Implicit, ReportsTheLargestDisplacementRelativeToTheFlow) {
+  Physics physics;
+  physics.viscosity = 1e-12;
+  physics.shear_rate = 100;
+  for (const double thermal_energy : {0.0, 1e-30}) {
+    physics.thermal_energy = thermal_energy;
+    System system = system_of(physics, {1, 1}, 0.1, 20);
+    system.particles.position.set(0, {5, 15, 5});
+    system.particles.velocity.set(0, {1500, 0, 0});  // at rest in the flow
+    system.particles.position.set(1, {5, 5, 5});
+    system.particles.velocity.set(1, {503, 4, 12});
+    Implicit integrator(physics, system.particles, 1e-3, tight, 1, 1);
+    integrator.start(system);
+    EXPECT_NEAR(integrator.advance(system).largest_displacement, 0.013, 1e-6) << thermal_energy;
+  }
+}
+
+// Heavy spheres that touch pass each other at a constant velocity, far below Coulomb's limit: their spring
+// grows by dt v_t a step, however often a step evaluates the forces.
+TEST(Implicit, StretchesSpringsOnceAStep) {
+  Physics physics;
+  physics.viscosity = 0.1;
+  physics.contact = ContactParameters{.normal_stiffness = 1e3, .friction = 1, .tangential_stiffness = 300};
+  physics.lubrication = LubricationParameters{1e-3, 0.05};
+  constexpr double step = 1e-3, slip = 0.02;
+  constexpr int steps = 4;
+  for (const double thermal_energy : {0.0, 1e-30}) {
+    physics.thermal_energy = thermal_energy;
+    System system = system_of(physics, {1, 1.4}, 1e6, 20);
+    system.particles.position.set(0, {10, 10, 10});
+    system.particles.position.set(1, {12.39, 10, 10});
+    system.particles.velocity.set(1, {0, 0, slip});
+    Implicit integrator(physics, system.particles, step, 1e-3, 1, 1);
+    integrator.start(system);
+    for (int k = 0; k < steps; ++k) integrator.advance(system);
+    const std::vector<HeldContact> held = held_contacts(system.list, system.particles, system.springs);
+    ASSERT_EQ(held.size(), 1u);
+    EXPECT_NEAR(held[0].springs.tangential.z / (steps * step * slip), 1, 1e-3) << thermal_energy;
+  }
+}
+
+// Spheres that fly beyond any list are reported, not looked for.
+TEST(Implicit, ReportsALeapOverTheNeighbours) {
+  Physics physics;
+  physics.viscosity = 1e-9;
+  physics.contact = ContactParameters{.normal_stiffness = 1e4};
+  System system = system_of(physics, {1, 1}, 0.1, 20);
+  system.particles.position.set(0, {5, 5, 5});
+  system.particles.position.set(1, {12, 5, 5});
+  system.particles.velocity.set(1, {50, 0, 0});
+  Implicit integrator(physics, system.particles, 0.1, tight, 1, 1);
+  integrator.start(system);
+  EXPECT_GE(integrator.advance(system).largest_displacement, 2);
+
+  system.particles.velocity.set(1, {std::numeric_limits<double>::quiet_NaN(), 0, 0});
+  EXPECT_FALSE(std::isfinite(integrator.advance(system).largest_displacement));
+}
+
+}  // namespace
+}  // namespace peclet::engine

@@ -1,0 +1,137 @@
+// The automatic implicit step: which of its bounds a scene meets.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "contract/input_error.h"
+#include "engine/realisation/simulation.h"
+#include "engine/stability/stability.h"
+#include "tests/engine/small_scene.h"
+
+namespace peclet::engine {
+namespace {
+
+using std::numbers::pi;
+
+Scene scene_with(const Json& patch) {
+  Json document = small_scene({{"integrator", {{"method", "implicit"}, {"timestep", "auto"}}}});
+  document.merge_patch(patch);
+  return read_scene(document, "scene.json");
+}
+
+// 0.005 / rate (1 + 2 St), or half of that with friction; 0.0017 eta a^3 / kT; and the contact, whose rates
+// are those of the explicit step's bound.
+TEST(ImplicitTimestep, IsTheLeastOfStrainBrownianAndContactTimes) {
+  const Json soft = {{"contact", {{"normal_stiffness", 1e-3}, {"friction", 0.5}}}, {"repulsion", nullptr}};
+  const double stokes = 0.1 * 1.4 * 1.4 * 2 / 0.1;
+  EXPECT_NEAR(automatic_timestep(scene_with(soft)), 0.0025 / 2 / (1 + 2 * stokes), 1e-12);
+  Json smooth = soft;
+  smooth["contact"] = {{"normal_stiffness", 1e-3},
+                       {"rolling_stiffness", nullptr},
+                       {"friction", nullptr},
+                       {"rolling_friction", nullptr}};
+  EXPECT_NEAR(automatic_timestep(scene_with(smooth)), 0.005 / 2 / (1 + 2 * stokes), 1e-12);
+  Json warm = soft;
+  warm["fluid"] = {{"thermal_energy", 5}};
+  EXPECT_NEAR(automatic_timestep(scene_with(warm)), 0.0017 * 0.1 / 5, 1e-12);
+  Json stiff = soft;
+  stiff["contact"] = {{"normal_stiffness", 1e9},
+                      {"friction", nullptr},
+                      {"rolling_stiffness", nullptr},
+                      {"rolling_friction", nullptr}};
+  const PairRates rates = stiffest_pair(scene_with(stiff));
+  EXPECT_NEAR(automatic_timestep(scene_with(stiff)), 5 * rates.damping / rates.frequency_squared, 1e-15);
+  stiff["contact"] = {{"normal_stiffness", 1e9},
+                      {"friction", 0.5},
+                      {"rolling_stiffness", nullptr},
+                      {"rolling_friction", nullptr}};
+  const PairRates with_friction = stiffest_pair(scene_with(stiff));
+  EXPECT_NEAR(automatic_timestep(scene_with(stiff)),
+              2 * with_friction.damping / with_friction.frequency_squared, 1e-15);
+}
+
+// Springs of strength / kappa^2 exp(-h / kappa) with kappa = 1 at h = outer gap (a_i + a_j) / 2 = 0.1,
+// between two of the small spheres, whose drags 6 pi eta a are in series.
+TEST(ImplicitTimestep, IsBoundByARepulsionBeyondLubrication) {
+  const Scene scene = scene_with(Json::parse(R"({
+    "contact": {"friction": null, "rolling_stiffness": null, "rolling_friction": null},
+    "repulsion": {"strength": 1e5, "relative_length": 0.5}})"));
+  const double drag = 0.5 * 6 * pi * 0.1, stiffness = 1e5 * std::exp(-0.1);
+  EXPECT_NEAR(automatic_timestep(scene) / (20 * drag / stiffness), 1, 1e-12);
+  // One that ends within the range of lubrication is no such bound.
+  const Scene short_scene = scene_with(Json::parse(R"({
+    "contact": {"friction": null, "rolling_stiffness": null, "rolling_friction": null},
+    "repulsion": {"strength": 1e5, "relative_length": 0.5, "cutoff_lengths": 0.09}})"));
+  EXPECT_GT(automatic_timestep(short_scene), 1.2 * automatic_timestep(scene));
+}
+
+// Spheres with hardly any inertia, Pe = 1; of one radius, X_A = 6 pi eta a (1 / (4 xi) + 9/40 ln(1 / xi)).
+Json light_spheres(double density, double outer_gap, const Json& species) {
+  return {{"particles", {{"count", 150}, {"density", density}, {"species", species}}},
+          {"fluid", {{"thermal_energy", 0.017}}},
+          {"flow", {{"shear_rate", 0.009}}},
+          {"contact",
+           {{"normal_stiffness", 1e4},
+            {"friction", nullptr},
+            {"normal_damping", nullptr},
+            {"rolling_stiffness", nullptr},
+            {"rolling_friction", nullptr}}},
+          {"lubrication", {{"inner_gap", 1e-3}, {"outer_gap", outer_gap}}},
+          {"repulsion", nullptr},
+          {"guard", nullptr},
+          {"duration", {{"equilibration", {{"time", 0}}}, {"production", {{"brownian_times", 2}}}}}};
+}
+
+// Standard deviation of the way by which a sphere whose pair leaves the range, and a third one, approach:
+// (m + dt zeta) dV = dt F with F^2 = 2 kT X_A / dt, and dt V with V^2 = kT / (m + dt zeta / 2) of both.
+TEST(ImplicitTimestep, IsBoundByLeapsOutOfTheRangeOfLubrication) {
+  const Json one = Json::parse(R"([{"radius": 1}])");
+  for (const double outer_gap : {0.02, 0.05}) {
+    for (const double density : {1e-4, 1e-3}) {
+      const double step = automatic_timestep(scene_with(light_spheres(density, outer_gap, one)));
+      ASSERT_LT(step, 0.9 * 0.0017 * 0.1 / 0.017);
+      const double zeta = 6 * pi * 0.1, m = density * 4 * pi / 3;
+      const double squeeze = zeta * (0.25 / outer_gap + 9.0 / 40 * std::log(1 / outer_gap));
+      const double parting = std::pow(step / (m + step * zeta), 2) * 2 * 0.017 * squeeze / step;
+      const double free = 0.017 / (m + 0.5 * step * zeta);
+      EXPECT_NEAR(2 * outer_gap / (step * std::sqrt(parting + 2 * free)), 5, 1e-6)
+          << outer_gap << ' ' << density;
+    }
+  }
+  // Neither heavy spheres nor a wide range are bound by it: 0.0017 eta a^3 / kT.
+  for (const auto& [density, outer_gap] : {std::pair{0.01, 0.05}, std::pair{1e-4, 0.5}}) {
+    EXPECT_NEAR(automatic_timestep(scene_with(light_spheres(density, outer_gap, one))), 0.01, 1e-12);
+  }
+}
+
+// At the step of the Brownian time alone overlaps were 0.02 to 0.04; thermal ones are about 0.005.
+TEST(ImplicitTimestep, LetsNoLightSphereLeapIntoAnother) {
+  const Json two = Json::parse(R"([{"radius": 1, "volume_share": 1}, {"radius": 1.4, "volume_share": 1}])");
+  const Scene scene = scene_with(light_spheres(2e-4, 0.05, two));
+  const Schedule schedule = make_schedule(scene, "scene.json");
+  Simulation simulation(scene, schedule, 1, 1, "scene.json");
+  simulation.start();
+  EXPECT_EQ(simulation.advance(schedule.total())->cause, Ending::Cause::completed);
+  EXPECT_LT(simulation.largest_overlap(), 0.008);
+}
+
+TEST(ImplicitTimestep, IsRefusedBeyondFourTimesTheAutomaticOne) {
+  const double automatic = automatic_timestep(scene_with(Json::object()));
+  const auto resolved = [&](double factor) {
+    return resolved_timestep(scene_with({{"integrator", {{"timestep", factor * automatic}}}}), "scene.json");
+  };
+  EXPECT_EQ(resolved(3.99), 3.99 * automatic);
+  EXPECT_THROW(resolved(4.01), InputError);
+}
+
+TEST(ImplicitTimestep, MustBeGivenWhereNothingSetsATime) {
+  Json document = small_scene({{"integrator", {{"method", "implicit"}, {"timestep", "auto"}}},
+                               {"flow", {{"shear_rate", 0}}},
+                               {"fluid", {{"thermal_energy", 0}}}});
+  document.erase("contact");
+  document.erase("repulsion");
+  EXPECT_THROW(resolved_timestep(read_scene(document, "scene.json"), "scene.json"), InputError);
+}
+
+}  // namespace
+}  // namespace peclet::engine

@@ -1,0 +1,247 @@
+// The numbers of a completed realisation, against sums that are done here.
+#include "engine/output/result.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "engine/evaluation/configuration.h"
+#include "engine/jobs/job.h"
+#include "tests/engine/every_image.h"
+#include "tests/engine/small_scene.h"
+
+namespace peclet::engine {
+namespace {
+
+constexpr std::uint64_t seed = 2;
+
+Json result_of(const Json& patch) {
+  JobSpecification job;
+  job.header = {"point", seed};
+  job.scene = small_scene(patch);
+  job.scene_name = "scene.json";
+  return run_job(job, {}).value();
+}
+
+const Json& usual_result() {
+  static const Json result = result_of(Json::object());
+  return result;
+}
+
+// Only the parts that enter the total.
+std::vector<double> sum_of_parts(const Json& stress) {
+  std::vector<double> sum(6);
+  for (const auto& [name, tensor] : stress.items()) {
+    for (std::size_t c = 0; c < 6 && name != "total"; ++c) sum[c] += tensor[c].get<double>();
+  }
+  return sum;
+}
+
+TEST(Result, TotalIsTheSumOfItsParts) {
+  const Json& stress = usual_result().at("mean").at("stress");
+  for (const char* part : {"solvent", "stresslet", "lubrication", "contact_normal", "contact_damping",
+                           "friction", "repulsion", "total"}) {
+    EXPECT_TRUE(stress.contains(part)) << part;
+  }
+  EXPECT_FALSE(stress.contains("brownian_lubrication"));  // of mean zero: apart
+  const std::vector<double> sum = sum_of_parts(stress);
+  for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(stress.at("total")[c], sum[c], 1e-12 * std::abs(sum[3]));
+}
+
+TEST(Result, AbsentTermsAreAbsent) {
+  const Json result = result_of({{"contact",
+                                  {{"friction", nullptr},
+                                   {"rolling_stiffness", nullptr},
+                                   {"rolling_friction", nullptr},
+                                   {"normal_damping", nullptr}}},
+                                 {"repulsion", nullptr}});
+  std::vector<std::string> names;
+  for (const auto& [name, tensor] : result.at("mean").at("stress").items()) names.push_back(name);
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"contact_normal", "lubrication", "solvent", "stresslet", "total"}));
+}
+
+TEST(Result, SolventIsOneAndTheStressletTwoAndAHalfVolumeFractions) {
+  const Json& stress = usual_result().at("mean").at("stress");
+  for (std::size_t c = 0; c < 6; ++c) {
+    EXPECT_EQ(stress.at("solvent")[c], c == 3 ? 1 : 0);
+    EXPECT_NEAR(stress.at("stresslet")[c], c == 3 ? 2.5 * 0.45 : 0, 1e-12);
+  }
+}
+
+TEST(Result, ViscosityAndNormalStressesAreThoseOfTheTotal) {
+  const Json& mean = usual_result().at("mean");
+  const Json& total = mean.at("stress").at("total");  // xx yy zz xy xz yz
+  const auto component = [&](std::size_t c) { return total[c].get<double>(); };
+  EXPECT_EQ(mean.at("relative_viscosity"), component(3));
+  EXPECT_NEAR(mean.at("relative_viscosity_pair"), component(3) - 1 - 2.5 * 0.45, 1e-12 * component(3));
+  EXPECT_NEAR(mean.at("first_normal_difference"), component(0) - component(1), 1e-12);
+  EXPECT_NEAR(mean.at("second_normal_difference"), component(1) - component(2), 1e-12);
+  EXPECT_NEAR(mean.at("pressure"), -(component(0) + component(1) + component(2)) / 3, 1e-12);
+  EXPECT_EQ(mean.at("control_variates").at("brownian_pairwise"), mean.at("brownian_pairwise")[3]);
+  EXPECT_GT(component(3), 1);
+  EXPECT_GT(mean.at("pressure"), 0);
+}
+
+// 320 steps make 32 blocks of ten, so that blocks weigh the same. They have five digits: each is wrong by at
+// most half a unit of the last one.
+void expect_average(const Json& blocks, const Json& mean, const std::string& where) {
+  ASSERT_EQ(blocks.size(), 32u) << where;
+  double sum = 0, largest_error = 0;
+  for (const Json& block : blocks) {
+    sum += block.get<double>();
+    largest_error += 5e-5 / 32 * std::abs(block.get<double>());
+  }
+  EXPECT_NEAR(sum / 32, mean.get<double>(), 1e-12 + largest_error) << where;
+}
+
+// What the stress of the pairwise noise would be in each observable, in the mean and in all blocks.
+void expect_controls(const Json& result) {
+  const Json &mean = result.at("mean"), &blocks = result.at("blocks").at("control_variates");
+  const auto b = mean.at("brownian_pairwise").get<std::vector<double>>();  // xx, yy, zz, xy, ...
+  const Json expected = {{"brownian_pairwise", b[3]},
+                         {"first_normal_difference", b[0] - b[1]},
+                         {"second_normal_difference", b[1] - b[2]},
+                         {"pressure", -(b[0] + b[1] + b[2]) / 3}};
+  EXPECT_EQ(mean.at("control_variates"), expected);
+  EXPECT_NE(b[3], 0);
+  for (const auto& [name, value] : expected.items()) expect_average(blocks.at(name), value, name);
+}
+
+TEST(Result, BlocksAverageToTheMean) {
+  const Json& mean = usual_result().at("mean");
+  const Json& blocks = usual_result().at("blocks");
+  for (const auto& [name, value] : mean.items()) {
+    if (value.is_number()) expect_average(blocks.at(name), value, name);
+  }
+  expect_controls(usual_result());
+  for (const auto& [term, series] : blocks.at("shear_stress").items()) {
+    const Json& whole =
+        term == "brownian_structural" ? mean.at("brownian_structural") : mean.at("stress").at(term);
+    expect_average(series, whole[3], term);
+  }
+}
+
+TEST(Result, BlocksHoldWhatFluctuatesAndNothingElse) {
+  const Json& blocks = usual_result().at("blocks");
+  std::vector<std::string> terms;
+  for (const auto& [term, series] : blocks.at("shear_stress").items()) terms.push_back(term);
+  EXPECT_EQ(terms, (std::vector<std::string>{"brownian_structural", "contact_damping", "contact_normal",
+                                             "friction", "lubrication", "repulsion"}));
+  EXPECT_EQ(blocks.size(), 10u);  // eight numbers, shear_stress and control_variates
+  for (const Json& pressure : blocks.at("pressure")) {
+    EXPECT_EQ(pressure.get<double>(), std::stod(fmt::format("{:.4e}", pressure.get<double>())));
+  }
+}
+
+TEST(Result, StatesWhatWasSimulated) {
+  const Json& result = usual_result();
+  EXPECT_EQ(result.at("schema_version"), 1);
+  EXPECT_EQ(result.at("point"), "point");
+  EXPECT_EQ(result.at("seed"), seed);
+  EXPECT_EQ(result.at("method"), "explicit");
+  EXPECT_EQ(result.at("timestep"), 0.002);
+  EXPECT_EQ(result.at("steps"), (Json{{"equilibration", 100}, {"production", 320}}));
+  EXPECT_NEAR(result.at("time").at("production"), 0.64, 1e-12);
+  EXPECT_NEAR(result.at("strain").at("production"), 1.28, 1e-12);
+  EXPECT_NEAR(result.at("strain").at("equilibration"), 0.4, 1e-12);
+  EXPECT_EQ(result.at("units"), "viscosity * shear_rate");
+  EXPECT_EQ(result.at("final_state_sha256").get<std::string>().size(), 64u);
+  EXPECT_GE(result.at("statistical_inefficiency"), 1);
+}
+
+TEST(Result, AtRestStressesAreInTheScenesUnitsAndThereIsNoViscosity) {
+  const Json result = result_of({{"flow", {{"shear_rate", 0}}}});
+  EXPECT_EQ(result.at("units"), "scene");
+  const Json& mean = result.at("mean");
+  EXPECT_TRUE(mean.at("relative_viscosity").is_null());
+  EXPECT_TRUE(mean.at("relative_viscosity_pair").is_null());
+  EXPECT_FALSE(mean.at("stress").contains("solvent"));
+  EXPECT_FALSE(mean.at("stress").contains("stresslet"));
+}
+
+double variance(const std::vector<double>& series) {
+  const double mean = std::accumulate(series.begin(), series.end(), 0.0) / static_cast<double>(series.size());
+  double sum = 0;
+  for (const double x : series) sum += (x - mean) * (x - mean);
+  return sum / static_cast<double>(series.size());
+}
+
+// Lubrication resists what the noise does, so that pressure and control vary less together than the pressure
+// alone: what makes either usable where there is no viscosity.
+TEST(Result, AtRestThePressureHasBlocksAndAControlVariate) {
+  const Json result = result_of(
+      {{"flow", {{"shear_rate", 0}}},
+       {"repulsion", nullptr},
+       {"contact", {{"friction", nullptr}, {"rolling_stiffness", nullptr}, {"rolling_friction", nullptr}}},
+       {"lubrication", {{"inner_gap", 1e-3}, {"outer_gap", 0.05}}},
+       {"integrator", {{"method", "implicit"}, {"timestep", 0.008}}},
+       {"duration", {{"production", {{"time", 1280 * 0.008}}}}}});
+  expect_controls(result);
+  const Json& blocks = result.at("blocks");
+  const auto pressure = blocks.at("pressure").get<std::vector<double>>();
+  const auto control = blocks.at("control_variates").at("pressure").get<std::vector<double>>();
+  std::vector<double> sum(pressure.size());
+  for (std::size_t k = 0; k < sum.size(); ++k) sum[k] = pressure[k] + control[k];
+  EXPECT_LT(variance(sum), 0.3 * variance(pressure));
+}
+
+TEST(Result, WithoutNoiseThereIsNoControlVariate) {
+  const Json result = result_of({{"fluid", {{"thermal_energy", 0}}}});
+  for (const auto& [name, value] : result.at("mean").at("control_variates").items()) {
+    EXPECT_TRUE(value.is_null()) << name;
+  }
+}
+
+TEST(Result, SameSeedSameBytesButForTheCost) {
+  Json again = result_of(Json::object()), first = usual_result();
+  again.erase("cost");
+  first.erase("cost");
+  EXPECT_EQ(again.dump(), first.dump());
+}
+
+// Contact and repulsion depend on positions alone: every step of the production window is evaluated here once
+// more, one configuration at a time.
+TEST(Result, MeansAreTakenOverEveryStepOfTheProductionWindow) {
+  const Scene scene = read_scene(small_scene(), "scene.json");
+  Simulation simulation(scene, make_schedule(scene, ""), seed, 1, "");
+  simulation.start();
+  simulation.advance(100);
+  std::map<std::string, double> sums;
+  double contacts = 0, largest_overlap = 0;
+  for (int step = 0; step < 320; ++step) {
+    simulation.advance(1);
+    const ParticleState& p = simulation.system().particles;
+    Configuration configuration;
+    configuration.physics = scene.physics;
+    configuration.particles = p;
+    configuration.box = simulation.system().box;
+    const Json stress = evaluate_configuration(configuration).at("stress");
+    for (const char* term : {"contact_normal", "repulsion"}) {
+      sums[term] += stress.at(term)[0][1].get<double>();
+      sums[std::string(term) + " zz"] += stress.at(term)[2][2].get<double>();
+    }
+    for (const SeenPair& pair :
+         every_image(p.position, configuration.box.lengths(), configuration.box.tilt(),
+                     [&](std::uint32_t i, std::uint32_t j) { return p.radius[i] + p.radius[j]; })) {
+      ++contacts;
+      const double overlap = p.radius[pair.first] + p.radius[pair.second] - norm(pair.separation);
+      largest_overlap =
+          std::max(largest_overlap, overlap / std::min(p.radius[pair.first], p.radius[pair.second]));
+    }
+  }
+  const Json& mean = usual_result().at("mean");
+  constexpr double unit = 0.1 * 2 * 320;  // viscosity, rate, steps
+  for (const char* term : {"contact_normal", "repulsion"}) {
+    const Json& found = mean.at("stress").at(term);
+    EXPECT_NEAR(found[3], sums[term] / unit, 1e-11 * std::abs(sums[term] / unit)) << term;
+    const double zz = sums[std::string(term) + " zz"] / unit;
+    EXPECT_NEAR(found[2], zz, 1e-11 * std::abs(zz)) << term;
+  }
+  EXPECT_NEAR(mean.at("contacts_per_particle"), 2 * contacts / 320 / 60, 1e-12);
+  EXPECT_NEAR(usual_result().at("largest_overlap"), largest_overlap, 1e-12);
+}
+
+}  // namespace
+}  // namespace peclet::engine

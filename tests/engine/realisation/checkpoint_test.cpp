@@ -1,0 +1,168 @@
+#include "engine/realisation/checkpoint.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <functional>
+
+#include "contract/durable_file.h"
+#include "contract/sha256.h"
+#include "engine/jobs/job.h"
+#include "tests/engine/small_scene.h"
+#include "tests/engine/temporary_folder.h"
+
+namespace peclet::engine {
+namespace {
+
+const CheckpointIdentity identity = {"a scene", 7, "a binary"};
+
+class Checkpoint : public testing::Test {
+ protected:
+  Checkpoint() {
+    simulation_.start();
+    simulation_.advance(30);
+    write_checkpoint(path_, identity, {}, simulation_);
+    whole_ = read_file(path_);
+  }
+
+  // The message with which the file is refused; it must name the file and leave it as it is.
+  std::string refusal(const std::string& bytes, const CheckpointIdentity& expected = identity) {
+    write_durably(path_, bytes);
+    Simulation fresh(scene_, make_schedule(scene_, ""), 7, 1, "");
+    std::string message = "accepted";
+    try {
+      read_checkpoint(path_, expected, fresh);
+    } catch (const CheckpointError& error) {
+      message = error.what();
+      EXPECT_NE(message.find(path_.string()), std::string::npos) << message;
+    }
+    EXPECT_TRUE(read_file(path_) == bytes);
+    return message;
+  }
+
+  void expect_refused(const std::string& bytes, const std::string& reason) {
+    EXPECT_NE(refusal(bytes).find(reason), std::string::npos) << refusal(bytes);
+  }
+
+  // The payload replaced, with a length and a checksum that fit.
+  std::string with_payload(const std::string& payload) const {
+    ArchiveWriter length;
+    length.put(static_cast<std::uint64_t>(payload.size()));
+    return whole_.substr(0, 12) + length.bytes() + payload + sha256(payload);
+  }
+  std::string payload() const { return whole_.substr(20, whole_.size() - 20 - 64); }
+
+  TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_ / "checkpoint";
+  Scene scene_ = read_scene(small_scene(), "");
+  Simulation simulation_{scene_, make_schedule(scene_, ""), 7, 1, ""};
+  std::string whole_;
+};
+
+TEST_F(Checkpoint, IsAcceptedAsItWasWritten) {
+  EXPECT_EQ(refusal(whole_), "accepted");
+  EXPECT_EQ(refusal(with_payload(payload())), "accepted");
+}
+
+TEST_F(Checkpoint, WhatIsNoCheckpointIsSaidToBeNone) {
+  expect_refused("", "is no checkpoint");
+  expect_refused("PCLTCKPT", "is no checkpoint");
+  expect_refused(std::string(5000, 'x'), "is no checkpoint");
+  std::string other = whole_;
+  other[3] = 'X';
+  expect_refused(other, "is no checkpoint");
+}
+
+// Nothing is followed, waited for, or read that is larger than any checkpoint.
+TEST_F(Checkpoint, WhatIsNoFileOfReasonableSizeIsRefused) {
+  const auto refusal_of = [&](const std::filesystem::path& path) {
+    Simulation fresh(scene_, make_schedule(scene_, ""), 7, 1, "");
+    try {
+      read_checkpoint(path, identity, fresh);
+    } catch (const CheckpointError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  std::filesystem::create_symlink(path_, folder_ / "link");
+  EXPECT_NE(refusal_of(folder_ / "link").find("is a link"), std::string::npos);
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  EXPECT_NE(refusal_of(folder_ / "pipe").find("is a FIFO"), std::string::npos);
+  std::filesystem::resize_file(path_, std::uintmax_t{1} << 40);
+  EXPECT_NE(refusal_of(path_).find("is too large"), std::string::npos);
+}
+
+TEST_F(Checkpoint, OtherVersionsAreRefused) {
+  std::string other = whole_;
+  other[8] = 99;
+  expect_refused(other, "version 99");
+}
+
+TEST_F(Checkpoint, TornFilesAreRefused) {
+  for (const std::size_t kept :
+       {std::size_t{84}, std::size_t{200}, whole_.size() / 2, whole_.size() - 64, whole_.size() - 1}) {
+    expect_refused(whole_.substr(0, kept), "is torn");
+  }
+  expect_refused(whole_ + "x", "is torn");
+}
+
+TEST_F(Checkpoint, AnyFlippedBitOfThePayloadIsNoticed) {
+  for (const std::size_t place : {std::size_t{20}, std::size_t{60}, whole_.size() / 2, whole_.size() - 65}) {
+    std::string damaged = whole_;
+    damaged[place] = static_cast<char>(damaged[place] ^ 1);
+    expect_refused(damaged, "is damaged");
+  }
+  std::string damaged = whole_;
+  damaged.back() = damaged.back() == '0' ? '1' : '0';  // of the checksum itself
+  expect_refused(damaged, "is damaged");
+}
+
+// Sound in themselves, but not what belongs there.
+TEST_F(Checkpoint, PayloadsOfTheWrongLengthAreRefused) {
+  expect_refused(with_payload(payload() + "x"), "more than belongs there");
+  expect_refused(with_payload(payload().substr(0, payload().size() - 8)), "ends too early");
+  expect_refused(with_payload(""), "ends too early");
+}
+
+TEST_F(Checkpoint, OfAnotherRealisationIsRefusedWithWhatDiffers) {
+  EXPECT_NE(refusal(whole_, {"another", 7, "a binary"}).find("another scene"), std::string::npos);
+  EXPECT_NE(refusal(whole_, {"a scene", 8, "a binary"}).find("another seed"), std::string::npos);
+  EXPECT_NE(refusal(whole_, {"a scene", 7, "another"}).find("another build"), std::string::npos);
+}
+
+TEST_F(Checkpoint, AnAbsentFileIsAnErrorThatNamesIt) {
+  Simulation fresh(scene_, make_schedule(scene_, ""), 7, 1, "");
+  try {
+    read_checkpoint(folder_ / "absent", identity, fresh);
+    ADD_FAILURE() << "accepted";
+  } catch (const CheckpointError& error) {
+    EXPECT_NE(std::string(error.what()).find("absent"), std::string::npos);
+  }
+}
+
+JobSpecification job_with(const std::filesystem::path& checkpoint) {
+  JobSpecification job;
+  job.header.seed = 7;
+  job.scene = small_scene();
+  job.checkpoint = checkpoint;
+  return job;
+}
+
+TEST_F(Checkpoint, AJobEndsWithAnUnusableOneUnlessItMayStartAgain) {
+  write_durably(path_, whole_);  // of another scene's hash
+  JobSpecification job = job_with(path_);
+  EXPECT_THROW(run_job(job, {}), CheckpointError);
+  EXPECT_TRUE(read_file(path_) == whole_);
+
+  job.restart_on_bad_checkpoint = true;
+  JobEvents events;
+  std::string remark;
+  events.remark = [&](const std::string& text) { remark = text; };
+  Json result = run_job(job, events).value();
+  EXPECT_NE(remark.find("another scene"), std::string::npos) << remark;
+  EXPECT_TRUE(read_file(folder_ / "checkpoint.rejected") == whole_);
+  EXPECT_EQ(result.at("final_state_sha256"), run_job(job_with({}), {}).value().at("final_state_sha256"));
+}
+
+}  // namespace
+}  // namespace peclet::engine

@@ -1,0 +1,235 @@
+// A run that was cut and resumed ends in the same bits as one that was not.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <memory>
+
+#include "engine/jobs/job.h"
+#include "engine/realisation/checkpoint.h"
+#include "tests/engine/small_scene.h"
+#include "tests/engine/temporary_folder.h"
+
+namespace peclet::engine {
+namespace {
+
+constexpr std::uint64_t seed = 3;
+constexpr std::uint64_t total_steps = 420;
+
+// What is special about each way to step.
+struct Way {
+  const char* name;
+  Json patch;
+};
+const Way ways[] = {
+    {"explicit", Json::object()},
+    // With less inertia, which large steps follow in a part of the range only.
+    {"implicit", {{"integrator", {{"method", "implicit"}}}, {"particles", {{"density", 0.01}}}}},
+    {"implicit_without_noise",
+     {{"integrator", {{"method", "implicit"}}},
+      {"particles", {{"density", 0.01}}},
+      {"fluid", {{"thermal_energy", nullptr}}}}},
+    {"with_every_observable_of_a_flow",
+     {{"observables", {"mean_squared_displacement", "pair_distribution", "contact_network"}},
+      {"pair_distribution", {{"range", 3}}}}},
+};
+const auto name_of_way = [](const auto& way) { return std::string(way.param.name); };
+
+class ResumedRun : public testing::TestWithParam<Way> {
+ protected:
+  std::unique_ptr<Simulation> simulation(int threads = 1) const {
+    return std::make_unique<Simulation>(scene_, make_schedule(scene_, "scene.json"), seed, threads,
+                                        "scene.json");
+  }
+  std::unique_ptr<Simulation> started(int threads = 1) const {
+    auto fresh = simulation(threads);
+    fresh->start();
+    return fresh;
+  }
+
+  static std::string bytes_of(const Simulation& simulation) {
+    ArchiveWriter archive;
+    simulation.save(archive);
+    return archive.bytes();
+  }
+
+  // What the uncut run ends in.
+  const std::string& uncut() const {
+    static std::map<std::string, std::string> bytes;
+    std::string& of_method = bytes[GetParam().name];
+    if (of_method.empty()) {
+      const auto whole = started();
+      EXPECT_TRUE(whole->advance(total_steps).has_value());
+      of_method = bytes_of(*whole);
+    }
+    return of_method;
+  }
+
+  static std::size_t stretched_springs(const System& system) {
+    return held_contacts(system.list, system.particles, system.springs).size();
+  }
+
+  Scene scene_ = read_scene(small_scene(GetParam().patch), "scene.json");
+};
+
+// The claims below say little unless this holds.
+TEST_P(ResumedRun, PassesThroughContactsRebuildsAndFlips) {
+  const auto run = started();
+  std::size_t steps_with_springs = 0;
+  while (!run->advance(1)) steps_with_springs += stretched_springs(run->system()) > 0 ? 1 : 0;
+  EXPECT_EQ(run->system().step, total_steps);
+  EXPECT_GT(steps_with_springs, 350u);
+  EXPECT_GT(run->system().list.builds(), 20u);
+  EXPECT_EQ(run->system().box.flips(), 2);
+}
+
+TEST_P(ResumedRun, EndsAsTheUncutOneWhereverItWasCut) {
+  for (const std::uint64_t cut : {0, 1, 57, 100, 101, 200, 333, 419}) {
+    const auto before = started();
+    before->advance(cut);
+    ArchiveWriter archive;
+    before->save(archive);
+    const auto after = simulation();
+    ArchiveReader reader(archive.bytes());
+    after->load(reader);
+    EXPECT_TRUE(reader.at_end());
+    EXPECT_EQ(bytes_of(*after), archive.bytes()) << "cut at " << cut;  // nothing is lost on the way
+    const std::optional<Ending> ending = after->advance(total_steps);
+    ASSERT_TRUE(ending.has_value());
+    EXPECT_EQ(ending->cause, Ending::Cause::completed);
+    EXPECT_TRUE(bytes_of(*after) == uncut()) << "cut at " << cut;
+  }
+}
+
+TEST_P(ResumedRun, EndsAsTheUncutOneAfterThreeCheckpointsOnDisk) {
+  const TemporaryFolder folder;
+  const CheckpointIdentity identity = {"scene", seed, "binary"};
+  auto run = started();
+  for (const std::uint64_t steps : {90, 111, 150}) {  // in equilibration, and twice in production
+    EXPECT_FALSE(run->advance(steps).has_value());
+    EXPECT_GT(stretched_springs(run->system()), 0u);  // in the middle of contacts with friction
+    write_checkpoint(folder / "checkpoint", identity, {1.5, 2.5}, *run);
+    run = simulation();
+    const Spent spent = read_checkpoint(folder / "checkpoint", identity, *run);
+    EXPECT_EQ(spent.processor_seconds, 1.5);
+    EXPECT_EQ(spent.wall_seconds, 2.5);
+  }
+  EXPECT_TRUE(run->advance(total_steps).has_value());
+  EXPECT_TRUE(bytes_of(*run) == uncut());
+}
+
+TEST_P(ResumedRun, HasTheSameBitsOnAnyNumberOfThreads) {
+  const auto one = started(1), two = started(2);
+  one->advance(150);
+  two->advance(150);
+  EXPECT_TRUE(bytes_of(*two) == bytes_of(*one));
+
+  const auto three = simulation(3);  // and the number may change on the way
+  ArchiveWriter archive;
+  two->save(archive);
+  ArchiveReader reader(archive.bytes());
+  three->load(reader);
+  three->advance(50);
+  one->advance(50);
+  EXPECT_TRUE(bytes_of(*three) == bytes_of(*one));
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryWay, ResumedRun, testing::ValuesIn(ways), name_of_way);
+
+// Pairs across blocks of memory come and go, and lists are rebuilt, before and after the cut.
+class ResumedLargeRun : public testing::TestWithParam<Way> {};
+INSTANTIATE_TEST_SUITE_P(EveryWay, ResumedLargeRun, testing::ValuesIn(ways), name_of_way);
+TEST_P(ResumedLargeRun, EndsAsTheUncutOne) {
+  Json document = small_scene(GetParam().patch);
+  document["particles"]["count"] = 5000;
+  const Scene scene = read_scene(document, "scene.json");
+  const auto made = [&](int threads) {
+    return Simulation(scene, make_schedule(scene, "scene.json"), seed, threads, "scene.json");
+  };
+  const auto bytes_of = [](const Simulation& simulation) {
+    ArchiveWriter archive;
+    simulation.save(archive);
+    return archive.bytes();
+  };
+  Simulation uncut = made(1);
+  uncut.start();
+  uncut.advance(97);
+  EXPECT_GT(uncut.system().list.crossings(), 500u);
+  const std::string checkpoint = bytes_of(uncut);
+  const std::uint64_t builds = uncut.system().list.builds();
+  uncut.advance(60);
+  EXPECT_GT(uncut.system().list.builds(), builds);
+  Simulation resumed = made(2);
+  ArchiveReader reader(checkpoint);
+  resumed.load(reader);
+  resumed.advance(60);
+  EXPECT_TRUE(bytes_of(resumed) == bytes_of(uncut));
+}
+
+TEST_P(ResumedRun, DoesNotDependOnHowManyStepsAreAskedForAtOnce) {
+  const auto run = started();
+  while (!run->advance(7)) {
+  }
+  EXPECT_TRUE(bytes_of(*run) == uncut());
+}
+
+TEST_P(ResumedRun, OtherSeedsEndElsewhere) {
+  Simulation other(scene_, make_schedule(scene_, "scene.json"), seed + 1, 1, "scene.json");
+  other.start();
+  other.advance(total_steps);
+  EXPECT_FALSE(bytes_of(other) == uncut());
+}
+
+// The one observable that a flow does not allow.
+TEST(ResumedRunAtRest, KeepsTheStressCorrelation) {
+  const Scene scene = read_scene(
+      small_scene({{"flow", {{"shear_rate", 0}}}, {"observables", {"stress_correlation"}}}), "scene.json");
+  const auto made = [&] {
+    return Simulation(scene, make_schedule(scene, "scene.json"), seed, 1, "scene.json");
+  };
+  Simulation uncut = made();
+  uncut.start();
+  uncut.advance(271);
+  ArchiveWriter checkpoint;
+  uncut.save(checkpoint);
+  Simulation resumed = made();
+  ArchiveReader reader(checkpoint.bytes());
+  resumed.load(reader);
+  uncut.advance(total_steps);
+  resumed.advance(total_steps);
+  Json expected = Json::object(), mean = Json::object();
+  uncut.observables().front()->add_to(expected);
+  resumed.observables().front()->add_to(mean);
+  EXPECT_GT(expected.at("green_kubo_viscosity"), 0);
+  EXPECT_EQ(mean, expected);
+}
+
+// A job that is drained at every opportunity, and one that is left alone.
+TEST(ResumedJob, ResultEqualsTheUncutOneButForItsCost) {
+  const TemporaryFolder folder;
+  JobSpecification job;
+  job.header = {"point", seed};
+  // A job looks up after 65536 particle-steps, 1092 steps here.
+  job.scene = small_scene({{"duration", {{"production", {{"time", 9}}}}}});
+  job.scene_name = "scene.json";
+  Json uncut = run_job(job, {}).value();
+  EXPECT_EQ(uncut.at("ending").at("cause"), "completed");
+
+  job.checkpoint = folder / "checkpoint";
+  JobEvents drained;
+  drained.drain_requested = [] { return true; };
+  int drains = 0;
+  std::optional<Json> result;
+  while (!(result = run_job(job, drained))) {
+    ++drains;
+    EXPECT_TRUE(std::filesystem::exists(job.checkpoint));
+    job.threads = 1 + drains % 2;
+  }
+  EXPECT_GE(drains, 3);
+  EXPECT_GT(result->at("cost").at("cpu_seconds"), 0);
+  uncut.erase("cost");
+  result->erase("cost");
+  EXPECT_EQ(result->dump(), uncut.dump());
+}
+
+}  // namespace
+}  // namespace peclet::engine

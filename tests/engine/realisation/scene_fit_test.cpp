@@ -1,0 +1,123 @@
+// What is checked before a sphere is placed, and the names that are promised before anything is measured.
+#include "engine/realisation/scene_fit.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "contract/input_error.h"
+#include "engine/jobs/job.h"
+#include "engine/start/packing.h"
+#include "tests/engine/small_scene.h"
+
+namespace peclet::engine {
+namespace {
+
+std::string fault_of(const Json& patch) {
+  try {
+    const Scene scene = read_scene(small_scene(patch), "scene.json");
+    check_fit(scene, make_schedule(scene, "scene.json"), "scene.json");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+Json with_species(std::size_t count, const Json& species) {
+  return {{"particles", {{"count", count}, {"species", species}}}};
+}
+
+TEST(SceneFit, IsRefusedWithTheReason) {
+  EXPECT_EQ(fault_of(Json::object()), "");
+  EXPECT_NE(fault_of({{"particles", {{"count", 1}}}})
+                .find("/particles/count: 1: must be large enough for one sphere"),
+            std::string::npos);
+  EXPECT_NE(
+      fault_of({{"volume_fraction", 0.6}, {"particles", {{"count", 1}, {"species", {{{"radius", 1}}}}}}})
+          .find("/particles/count: 1: must fill a box larger than"),
+      std::string::npos);
+  EXPECT_NE(fault_of({{"observables", {"pair_distribution"}}, {"particles", {{"count", 20}}}})
+                .find("/pair_distribution/range: 4: must be at most"),
+            std::string::npos);
+  EXPECT_NE(fault_of({{"observables", {"mean_squared_displacement"}},
+                      {"mean_squared_displacement", {{"interval", 1e300}}}})
+                .find("/mean_squared_displacement/interval: 1 samples: must leave at least 8"),
+            std::string::npos);
+}
+
+TEST(SceneFit, OfSizesThatCannotBeComputedWithIsRefused) {
+  for (const double radius : {1e-300, 1e-80, 1e80, 1e300}) {
+    EXPECT_NE(fault_of(with_species(60, {{{"radius", radius}}})).find("/particles/species/0/radius"),
+              std::string::npos)
+        << radius;
+  }
+  EXPECT_EQ(fault_of(with_species(
+                60, {{{"radius", 1}, {"volume_share", 1}}, {{"radius", 1}, {"volume_share", 1}}})),
+            "")
+      << "two species of one size";
+}
+
+TEST(SceneFit, ASpeciesMoreThanThereMayBeIsRefused) {
+  Json species = Json::array();
+  for (int i = 0; i < 257; ++i) species.push_back({{"radius", 1 + 1e-3 * i}, {"number_share", 1}});
+  EXPECT_NE(fault_of(with_species(1000, species)).find("/particles/species"), std::string::npos);
+  species.erase(0);
+  EXPECT_EQ(fault_of(with_species(1000, species)), "");
+}
+
+// The edge is a part of the trajectory: to the last bit that of a box for the list of all radii.
+TEST(SceneFit, TheBoxIsThatOfAllRadii) {
+  for (const std::size_t count : {2, 7, 60, 12345}) {
+    const Scene scene = read_scene(small_scene(with_species(count, {{{"radius", 1.1}, {"number_share", 1}},
+                                                                    {{"radius", 0.7}, {"number_share", 2}}})),
+                                   "scene.json");
+    EXPECT_EQ(cube_edge(scene.particles, 0.3), cube_edge(species_radii(scene.particles), 0.3)) << count;
+  }
+}
+
+TEST(SceneFit, OfTheLargestSceneTakesNoMemory) {
+  const auto high_water = [] {
+    rusage used{};
+    getrusage(RUSAGE_SELF, &used);
+    return used.ru_maxrss;  // kB
+  };
+  const long before = high_water();
+  EXPECT_EQ(fault_of({{"particles", {{"count", 10'000'000}}}}), "");
+  EXPECT_LT(high_water() - before, 20'000);  // a list of radii alone has 80 000
+}
+
+std::vector<std::string> numbers_in(const Json& mean) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : mean.items()) {
+    if (value.is_number()) names.push_back(name);
+  }
+  return names;
+}
+
+TEST(NamesOfMeans, AreThoseOfTheNumbersThatTheResultHas) {
+  const Json rest = {{"flow", {{"shear_rate", 0}}}, {"duration", {{"equilibration", {{"time", 0.02}}}}}};
+  const Json patches[] = {
+      Json::object(),
+      {{"fluid", {{"thermal_energy", nullptr}}},
+       {"observables", {"mean_squared_displacement", "contact_network"}}},
+      {{"observables", {"mean_squared_displacement", "pair_distribution", "contact_network"}},
+       {"pair_distribution", {{"range", 3}}}},
+      {{"contact", {{"friction", nullptr}, {"rolling_stiffness", nullptr}, {"rolling_friction", nullptr}}},
+       {"observables", {"contact_network"}}},
+      rest,
+      {{"flow", {{"shear_rate", 0}}}, {"observables", {"mean_squared_displacement", "stress_correlation"}}}};
+  for (const Json& patch : patches) {
+    JobSpecification job;
+    job.scene = small_scene(patch);
+    job.scene_name = "scene.json";
+    const Json result = run_job(job, {}).value();
+    ASSERT_EQ(result["ending"]["cause"], "completed") << patch;
+    EXPECT_EQ(names_of_means(read_scene(job.scene, "scene.json")), numbers_in(result["mean"])) << patch;
+  }
+}
+
+}  // namespace
+}  // namespace peclet::engine

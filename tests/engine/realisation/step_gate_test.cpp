@@ -1,0 +1,222 @@
+// What a realisation does about a step that is too large for its packing, and what its result says of the
+// step.
+#include <gtest/gtest.h>
+
+#include "engine/integrators/velocity_verlet.h"
+#include "engine/jobs/job.h"
+#include "engine/stability/stability.h"
+#include "tests/engine/small_scene.h"
+
+namespace peclet::engine {
+namespace {
+
+// The published parameters without noise.
+Json published(double volume_fraction) {
+  Json scene = Json::parse(R"({
+    "particles": {"count": 60, "density": 0.1,
+                  "species": [{"radius": 1, "volume_share": 1}, {"radius": 1.4, "volume_share": 1}]},
+    "fluid": {"viscosity": 0.1},
+    "flow": {"shear_rate": 0.045},
+    "contact": {"normal_stiffness": 1e4},
+    "lubrication": {"form": "kim-karrila"},
+    "integrator": {"method": "explicit"},
+    "duration": {"equilibration": {"strain": 0}, "production": {"strain": 1}}})");
+  scene["volume_fraction"] = volume_fraction;
+  return scene;
+}
+
+Scene published_scene(double volume_fraction) { return read_scene(published(volume_fraction), "scene.json"); }
+
+// With a step of one's own, which make_schedule() might refuse.
+Simulation started(const Scene& scene, const Schedule& schedule) {
+  Simulation simulation(scene, schedule, /*seed=*/1, /*threads=*/1, "scene.json");
+  simulation.start();
+  return simulation;
+}
+
+double named_bound(const Ending& ending) {
+  double bound = 0;
+  EXPECT_EQ(std::sscanf(ending.message.substr(ending.message.find("allows")).c_str(), "allows %lf", &bound),
+            1)
+      << ending.message;
+  return bound;
+}
+
+TEST(StepGate, EndsARealisationThatIsTooStiffAtItsStart) {
+  const Scene scene = published_scene(0.6);
+  const double step = 2 * largest_timestep(scene);
+  Simulation simulation = started(scene, {step, 0, 1000});
+  const std::optional<Ending> ending = simulation.advance(1000);
+  ASSERT_TRUE(ending.has_value());
+  EXPECT_EQ(ending->cause, Ending::Cause::timestep);
+  EXPECT_STREQ(name_of(ending->cause), "timestep");
+  EXPECT_EQ(ending->step, 0u);
+  EXPECT_GE(simulation.step_errors().largest_stability_share, 1);
+  EXPECT_LT(named_bound(*ending), step);
+  // The bound that the message names is one.
+  Simulation slower = started(scene, {0.999 * named_bound(*ending), 0, 1000});
+  EXPECT_FALSE(slower.advance(10).has_value());
+}
+
+// Spheres come nearer to each other by and by. A resumed realisation ends as one that was not cut.
+TEST(StepGate, EndsARealisationWhosePackingGetsTooStiffOnItsWay) {
+  const Scene scene = published_scene(0.5);
+  const Schedule schedule = {4.2e-4, 0, 40000};
+  Simulation simulation = started(scene, schedule);
+  ASSERT_FALSE(simulation.advance(6000).has_value());
+  EXPECT_LT(simulation.step_errors().largest_stability_share, 1);
+  ArchiveWriter checkpoint;
+  simulation.save(checkpoint);
+  const std::optional<Ending> ending = simulation.advance(40000);
+  ASSERT_TRUE(ending.has_value());
+  EXPECT_EQ(ending->cause, Ending::Cause::timestep);
+  EXPECT_GT(ending->step, 6000u);
+  EXPECT_NE(ending->message.find("strain"), std::string::npos);
+
+  Simulation resumed(scene, schedule, 1, 1, "scene.json");
+  ArchiveReader reader(checkpoint.bytes());
+  resumed.load(reader);
+  const std::optional<Ending> again = resumed.advance(40000);
+  ASSERT_TRUE(again.has_value());
+  EXPECT_EQ(again->step, ending->step);
+  EXPECT_EQ(again->message, ending->message);
+  EXPECT_EQ(resumed.step_errors().spurious_energy, simulation.step_errors().spurious_energy);
+}
+
+Json result_of(const Json& patch) {
+  JobSpecification job;
+  job.header = {"point", 2};
+  job.scene = small_scene(patch);
+  job.scene_name = "scene.json";
+  return run_job(job, {}).value();
+}
+
+Json without_noise(const Json& patch) {
+  Json scene = {{"fluid", {{"thermal_energy", 0}}}};
+  scene.merge_patch(patch);
+  return scene;
+}
+
+bool has_warning(const Json& result, const std::string& code) {
+  for (const Json& warning : result.at("warnings")) {
+    if (warning.at("code") == code) return true;
+  }
+  return false;
+}
+
+// Of first order in the step, as everything that velocity Verlet gets wrong by velocities half a step old.
+TEST(StepGate, EnergyThatTheStepMakesIsInProportionToIt) {
+  const auto imbalance = [](double step) {
+    JobSpecification job;
+    job.header = {"point", 2};
+    job.scene = published(0.55);
+    job.scene["integrator"]["timestep"] = step;
+    job.scene["duration"] = {{"equilibration", {{"strain", 0.1}}}, {"production", {{"strain", 0.3}}}};
+    job.scene_name = "scene.json";
+    return run_job(job, {}).value().at("gate").at("energy_imbalance").get<double>();
+  };
+  const double whole = imbalance(2e-4), half = imbalance(1e-4);
+  EXPECT_GT(whole, 0);
+  EXPECT_NEAR(half / whole, 0.5, 0.1);
+}
+
+TEST(StepGate, FlagsAResultWhoseStepMakesTooMuchEnergy) {
+  EXPECT_FALSE(has_warning(result_of(without_noise(Json::object())), "timestep"));
+  const Json flagged = result_of(without_noise({{"guard", {{"energy_imbalance", 1e-6}}}}));
+  EXPECT_TRUE(has_warning(flagged, "timestep"));
+  EXPECT_EQ(flagged.at("ending").at("cause"), "completed");
+  EXPECT_TRUE(flagged.at("mean").is_object());
+}
+
+// The comparison runs beside the system, through the steps that the system takes next, bit by bit. Beyond the
+// stable steps whole steps drift away from half ones.
+TEST(StepGate, StepsAreComparedWithHalfStepsOfTheSameMotion) {
+  constexpr int steps = 200;
+  Json document = published(0.55);
+  document["contact"]["friction"] = 1;
+  const Scene scene = read_scene(document, "scene.json");
+  Simulation simulation = started(scene, {1e-4, 40000, 40000});
+  simulation.advance(20000);
+  const auto compared = [&](int factor) {
+    const double timestep = factor * 1e-4;
+    System system = simulation.system();
+    system.step /= static_cast<std::uint64_t>(factor);  // the same strain
+    VelocityVerlet integrator(ForceField(scene.physics, system.particles, timestep, 1, 1), system.particles,
+                              timestep);
+    integrator.start(system);
+    integrator.advance(system);
+    const Integrator::HalfSteps half_steps = integrator.compare_half_steps(system, steps);
+    double sum = 0;
+    for (int step = 0; step < steps; ++step) {
+      for (const SymmetricTensor& stress : integrator.advance(system).sums.stress) sum += stress.xy;
+    }
+    EXPECT_EQ(half_steps.whole, sum);
+    return half_steps.whole / half_steps.halved - 1;
+  };
+  const double stable = compared(1), unstable = compared(5);
+  EXPECT_LT(std::abs(stable), 1e-3);
+  EXPECT_GT(std::abs(unstable), 0.03);
+}
+
+TEST(StepGate, FlagsAResultThatHalfStepsWouldChange) {
+  const auto result = [](const Json& guard) {
+    JobSpecification job;
+    job.header = {"point", 2};
+    job.scene = published(0.5);
+    job.scene["guard"] = guard;
+    job.scene["duration"] = {{"equilibration", {{"strain", 0.1}}}, {"production", {{"strain", 0.2}}}};
+    job.scene_name = "scene.json";
+    return run_job(job, {}).value();
+  };
+  const Json fine = result(Json::object());
+  EXPECT_FALSE(has_warning(fine, "timestep"));
+  EXPECT_LT(std::abs(fine.at("gate").at("half_step_difference").get<double>()), 0.001);
+  const Json flagged = result({{"half_step_difference", 1e-12}});
+  EXPECT_TRUE(has_warning(flagged, "timestep"));
+  EXPECT_EQ(flagged.at("mean"), fine.at("mean"));
+}
+
+// Beyond what is known of their error with noise, and where friction is too stiff for Newton's iterations.
+TEST(StepGate, FlagsImplicitSteps) {
+  const auto result = [](Json scene, const Json& patch) {
+    scene.merge_patch(
+        {{"integrator", {{"method", "implicit"}}},
+         {"duration", {{"equilibration", {{"strain", 0.1}}}, {"production", {{"strain", 0.5}}}}}});
+    scene.merge_patch(patch);
+    JobSpecification job;
+    job.header = {"point", 2};
+    job.scene = scene;
+    job.scene_name = "scene.json";
+    return run_job(job, {}).value();
+  };
+  const Json fine = result(published(0.5), Json::object());
+  EXPECT_FALSE(has_warning(fine, "timestep"));
+  EXPECT_FALSE(has_warning(fine, "solver"));
+  EXPECT_GT(fine.at("gate").at("solver").at("iterations_per_step"), 1);
+  EXPECT_TRUE(has_warning(result(published(0.5), {{"contact", {{"friction", 40}}}}), "solver"));
+
+  Json warm = published(0.5);
+  warm["fluid"]["thermal_energy"] = 0.01;
+  const double automatic = 0.0017 * 0.1 / 0.01;
+  EXPECT_FALSE(has_warning(result(warm, {{"integrator", {{"timestep", 0.99 * automatic}}}}), "timestep"));
+  EXPECT_TRUE(has_warning(result(warm, {{"integrator", {{"timestep", 1.01 * automatic}}}}), "timestep"));
+}
+
+TEST(StepGate, NoiseAndRestHaveNoBalance) {
+  const Json noisy = result_of(Json::object()).at("gate");
+  EXPECT_TRUE(noisy.at("energy_imbalance").is_null());
+  EXPECT_TRUE(noisy.at("half_step_difference").is_null());
+  EXPECT_GT(noisy.at("largest_stability_share"), 0);
+  EXPECT_LT(noisy.at("largest_stability_share"), 1);
+  const Json resting = result_of(without_noise({{"flow", {{"shear_rate", 0}}}})).at("gate");
+  EXPECT_TRUE(resting.at("energy_imbalance").is_null());
+  EXPECT_TRUE(resting.at("half_step_difference").is_null());
+}
+
+TEST(StepGate, OfSpheresThatWereNotPackedThereIsNothingToSay) {
+  const Json result = result_of({{"volume_fraction", 0.73}, {"particles", {{"count", 20}}}});
+  EXPECT_TRUE(result.at("gate").is_null());
+}
+
+}  // namespace
+}  // namespace peclet::engine

@@ -1,0 +1,58 @@
+// The files that others read say the same as the table of keys.
+#include <gtest/gtest.h>
+
+#include "contract/durable_file.h"
+#include "contract/input_error.h"
+#include "engine/evaluation/configuration.h"
+#include "engine/scene/scene.h"
+
+namespace peclet::engine {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path source = PECLET_SOURCE_DIR;
+
+TEST(SceneSchema, CommittedFileIsTheTablesOwn) {
+  EXPECT_EQ(read_json(source / "schema/scene.schema.json"), scene_keys().json_schema("scene.schema.json"))
+      << "build the target `schemas`";
+}
+
+TEST(SceneSchema, CommittedManualIsTheTablesOwn) {
+  EXPECT_NE(read_file(source / "schema/README.md").find(scene_keys().markdown()), std::string::npos)
+      << "build the target `schemas`";
+}
+
+TEST(ConfigurationSchema, CommittedFileAndManualAreTheTablesOwn) {
+  EXPECT_EQ(read_json(source / "schema/configuration.schema.json"),
+            configuration_keys().json_schema("configuration.schema.json"))
+      << "build the target `schemas`";
+  EXPECT_NE(read_file(source / "schema/README.md").find(configuration_keys().markdown()), std::string::npos)
+      << "build the target `schemas`";
+}
+
+TEST(SceneSchema, TheExampleInTheManualIsValid) {
+  const std::string page = read_file(source / "schema/README.md");
+  const auto begin = page.find("```json\n", page.find("## Scene")) + 8;
+  EXPECT_NO_THROW(
+      read_scene(parse_json(page.substr(begin, page.find("```", begin) - begin), "README.md"), "README.md"));
+}
+
+// schema_agreement.py holds the schema file to the same documents.
+TEST(SceneSchema, TheTableJudgesTheReferenceDocumentsByTheirNames) {
+  int documents = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(source / "tests/reference/scenes")) {
+    const Json document = read_json(entry.path());
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("valid_")) {
+      EXPECT_NO_THROW(read_scene(document, name));
+    } else {
+      EXPECT_THROW(scene_keys().validate(document, name), InputError) << name;
+    }
+    ++documents;
+  }
+  EXPECT_GE(documents, 40);
+}
+
+}  // namespace
+}  // namespace peclet::engine

@@ -1,0 +1,192 @@
+#include "engine/scene/scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "contract/input_error.h"
+
+namespace peclet::engine {
+namespace {
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+Json smallest_scene() {
+  return Json::parse(R"({
+    "particles": {"count": 100, "density": 0.1, "species": [{"radius": 2}]},
+    "volume_fraction": 0.45,
+    "fluid": {"viscosity": 0.1},
+    "flow": {"shear_rate": 0.009},
+    "duration": {"equilibration": {"strain": 2}, "production": {"strain": 5}}})");
+}
+
+Scene scene_with(const Json& patch) {
+  Json document = smallest_scene();
+  document.merge_patch(patch);
+  return read_scene(document, "scene.json");
+}
+
+TEST(Scene, WhatIsAbsentIsNotComputed) {
+  const Scene scene = read_scene(smallest_scene(), "scene.json");
+  EXPECT_EQ(scene.physics.thermal_energy, 0);
+  EXPECT_FALSE(scene.physics.contact);
+  EXPECT_FALSE(scene.physics.lubrication);
+  EXPECT_FALSE(scene.physics.repulsion);
+  EXPECT_FALSE(scene.timestep);
+  EXPECT_FALSE(scene.document.contains("contact"));
+  EXPECT_EQ(scene.document["observables"], Json::array({"stress"}));
+  EXPECT_EQ(scene.guard.largest_overlap, 0.05);
+  EXPECT_EQ(scene.guard.largest_displacement, 0.05);
+  EXPECT_EQ(scene.guard.energy_imbalance, 0.3);
+  EXPECT_EQ(scene.guard.half_step_difference, 0.03);
+}
+
+// Implicit steps where there is lubrication, and the room that they need.
+TEST(Scene, LubricationDecidesTheMethod) {
+  const Json lubrication = {{"form", "kim-karrila"}};
+  const Scene without = scene_with(Json::object());
+  EXPECT_EQ(without.method, Method::explicit_steps);
+  EXPECT_EQ(without.document["integrator"]["method"], "explicit");
+  const Scene with = scene_with({{"lubrication", lubrication}});
+  EXPECT_EQ(with.method, Method::implicit_steps);
+  EXPECT_EQ(with.document["integrator"]["method"], "implicit");
+  EXPECT_EQ(with.guard.largest_displacement, 0.3);
+  EXPECT_EQ(scene_with({{"integrator", {{"method", "implicit"}}}}).method, Method::implicit_steps);
+  const Scene given = scene_with({{"lubrication", lubrication},
+                                  {"integrator", {{"method", "explicit"}}},
+                                  {"guard", {{"largest_displacement", 0.1}}}});
+  EXPECT_EQ(given.method, Method::explicit_steps);
+  EXPECT_EQ(given.guard.largest_displacement, 0.1);
+  EXPECT_EQ(scene_with({{"integrator", {{"method", "explicit"}}}}).guard.largest_displacement, 0.05);
+}
+
+TEST(Scene, DefaultsThatFollowFromOtherKeys) {
+  const Scene scene =
+      scene_with({{"contact", {{"normal_stiffness", 7e3}, {"friction", 0.4}, {"rolling_stiffness", 10}}}});
+  EXPECT_EQ(scene.particles.reference_radius, 2);
+  EXPECT_DOUBLE_EQ(scene.physics.contact->tangential_stiffness, 2e3);
+  EXPECT_EQ(scene.physics.contact->rolling_friction, 0.4);
+  EXPECT_EQ(scene.physics.contact->normal_damping, 0);
+}
+
+TEST(Scene, GivenValuesAreKept) {
+  const Scene scene = scene_with(Json::parse(R"({
+    "particles": {"reference_radius": 1.5},
+    "fluid": {"thermal_energy": 0.017},
+    "contact": {"normal_stiffness": 1e4, "normal_damping": 0.04, "friction": 0.5, "tangential_stiffness": 2857,
+                "rolling_stiffness": 3, "rolling_friction": 0.3},
+    "lubrication": {"form": "kim-karrila", "inner_gap": 1e-4, "outer_gap": 0.2},
+    "repulsion": {"form": "exponential", "strength": 1.7, "relative_length": 0.02, "cutoff_lengths": 10},
+    "integrator": {"timestep": 1e-4},
+    "guard": {"largest_overlap": 0.1, "largest_displacement": 0.02, "energy_imbalance": 0.01,
+              "half_step_difference": 0.002}})"));
+  EXPECT_EQ(scene.particles.reference_radius, 1.5);
+  EXPECT_EQ(scene.physics.viscosity, 0.1);
+  EXPECT_EQ(scene.physics.thermal_energy, 0.017);
+  EXPECT_EQ(scene.physics.shear_rate, 0.009);
+  EXPECT_EQ(scene.physics.contact->normal_stiffness, 1e4);
+  EXPECT_EQ(scene.physics.contact->normal_damping, 0.04);
+  EXPECT_EQ(scene.physics.contact->tangential_stiffness, 2857);
+  EXPECT_EQ(scene.physics.contact->rolling_friction, 0.3);
+  EXPECT_EQ(scene.physics.lubrication->inner_gap, 1e-4);
+  EXPECT_EQ(scene.physics.lubrication->outer_gap, 0.2);
+  EXPECT_EQ(scene.physics.repulsion->strength, 1.7);
+  EXPECT_EQ(scene.physics.repulsion->relative_length, 0.02);
+  EXPECT_EQ(scene.physics.repulsion->cutoff_lengths, 10);
+  EXPECT_EQ(scene.timestep, 1e-4);
+  EXPECT_EQ(scene.guard.largest_overlap, 0.1);
+  EXPECT_EQ(scene.guard.largest_displacement, 0.02);
+  EXPECT_EQ(scene.guard.energy_imbalance, 0.01);
+  EXPECT_EQ(scene.guard.half_step_difference, 0.002);
+}
+
+TEST(Scene, SharesAreDividedByTheirSum) {
+  const Scene by_number = scene_with(Json::parse(
+      R"({"particles": {"species": [{"radius": 1, "number_share": 3}, {"radius": 2, "number_share": 1}]}})"));
+  EXPECT_EQ(by_number.particles.shares, Particles::Shares::number);
+  EXPECT_EQ(by_number.particles.species[0].share, 0.75);
+  EXPECT_EQ(by_number.particles.species[1].share, 0.25);
+  const Scene by_volume = scene_with(Json::parse(
+      R"({"particles": {"species": [{"radius": 1, "volume_share": 0.2}, {"radius": 2, "volume_share": 0.2}]}})"));
+  EXPECT_EQ(by_volume.particles.shares, Particles::Shares::volume);
+  EXPECT_EQ(by_volume.particles.species[1].share, 0.5);
+  EXPECT_EQ(read_scene(smallest_scene(), "").particles.species[0].share, 1);
+}
+
+TEST(Scene, WhatCanNeverBeReachedIsNoLimit) {
+  const Scene sheared =
+      scene_with(Json::parse(R"({"duration": {"production": {"brownian_times": 4, "time": 9}}})"));
+  EXPECT_EQ(sheared.equilibration.strain, 2);
+  EXPECT_EQ(sheared.production.strain, 5);
+  EXPECT_EQ(sheared.production.brownian_times, unlimited);  // no temperature
+  EXPECT_EQ(sheared.production.time, 9);
+
+  const Scene at_rest = scene_with(Json::parse(R"({"flow": {"shear_rate": 0}, "fluid": {"thermal_energy": 1},
+      "duration": {"equilibration": {"brownian_times": 4}, "production": {"brownian_times": 8}}})"));
+  EXPECT_EQ(at_rest.equilibration.strain, unlimited);
+  EXPECT_EQ(at_rest.equilibration.brownian_times, 4);
+  EXPECT_EQ(at_rest.production.brownian_times, 8);
+}
+
+TEST(Scene, EquilibrationOfZeroIsOverBeforeItStarts) {
+  const Scene scene = scene_with(Json::parse(R"({"duration": {"equilibration": {"strain": 0, "time": 3}}})"));
+  EXPECT_EQ(scene.equilibration.time, 0);
+}
+
+// Table 4.1 of Li (2023): rate and k_B T at each Pe with eta = 0.1, a = 1, printed to two digits.
+constexpr struct {
+  double peclet, shear_rate, thermal_energy;
+} table_4_1[] = {{0.01, 9e-5, 0.017},  {0.046, 4.2e-4, 0.017}, {0.22, 1.9e-3, 0.017}, {1, 9e-3, 0.017},
+                 {4.6, 9e-3, 3.7e-3},  {22, 9e-3, 7.9e-4},     {100, 9e-3, 1.7e-4},   {460, 9e-3, 3.7e-5},
+                 {2200, 9e-3, 7.9e-6}, {1e4, 9e-3, 1.7e-6}};
+constexpr double rounding = 0.07;  // of two digits and of Pe itself: 1.9e-3 is printed for 1.98e-3
+
+TEST(Scene, PecletNumberWithinLimitsGivesThePublishedRatesAndTemperatures) {
+  for (const auto& row : table_4_1) {
+    const Scene scene = scene_with({{"particles", {{"reference_radius", 1}}},
+                                    {"flow", nullptr},
+                                    {"peclet", row.peclet},
+                                    {"limits", {{"shear_rate", 0.009}, {"thermal_energy", 0.017}}}});
+    const Physics& physics = scene.physics;
+    EXPECT_NEAR(physics.shear_rate / row.shear_rate, 1, rounding) << row.peclet;
+    EXPECT_NEAR(physics.thermal_energy / row.thermal_energy, 1, rounding) << row.peclet;
+    EXPECT_NEAR(6 * std::numbers::pi * 0.1 * physics.shear_rate / physics.thermal_energy, row.peclet,
+                1e-12 * row.peclet);
+    EXPECT_LE(physics.shear_rate, 0.009);
+    EXPECT_LE(physics.thermal_energy, 0.017);
+    EXPECT_TRUE(physics.shear_rate == 0.009 || physics.thermal_energy == 0.017);  // as large as allowed
+  }
+}
+
+TEST(Scene, AConfigurationsBlocksAreReadByTheSameKeys) {
+  const Json blocks = Json::parse(R"({"fluid": {"viscosity": 0.1, "thermal_energy": 0.017},
+      "contact": {"normal_stiffness": 7, "friction": 0.5}, "lubrication": {"form": "kim-karrila"},
+      "repulsion": {"form": "exponential", "strength": 1.7}})");
+  const Physics physics = read_physics(blocks, "c.json", "/scene");
+  EXPECT_EQ(physics.thermal_energy, 0.017);
+  EXPECT_EQ(physics.shear_rate, 0);
+  EXPECT_EQ(physics.contact->tangential_stiffness, 2);
+  EXPECT_EQ(physics.lubrication->outer_gap, 0.05);
+  EXPECT_EQ(physics.repulsion->cutoff_lengths, 20);
+
+  const auto pointer_of_fault = [&](const Json& patch) {
+    Json document = blocks;
+    document.merge_patch(patch);
+    try {
+      read_physics(document, "c.json", "/scene");
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.file(), "c.json");
+      return error.pointer();
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(pointer_of_fault({{"particles", 1}}), "/scene/particles");
+  EXPECT_EQ(pointer_of_fault({{"fluid", nullptr}}), "/scene/fluid");
+  EXPECT_EQ(pointer_of_fault({{"fluid", {{"viscosity", -1}}}}), "/scene/fluid/viscosity");
+  EXPECT_EQ(pointer_of_fault({{"contact", {{"normal_stifness", 1}}}}), "/scene/contact/normal_stifness");
+  EXPECT_EQ(pointer_of_fault({{"lubrication", {{"inner_gap", 0.1}}}}), "/scene/lubrication/inner_gap");
+}
+
+}  // namespace
+}  // namespace peclet::engine

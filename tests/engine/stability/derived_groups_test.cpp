@@ -1,0 +1,87 @@
+// Time scales and groups against the figures that were published with Table 4.1 of Li (2023).
+#include "engine/stability/derived_groups.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/scene/scene.h"
+
+namespace peclet::engine {
+namespace {
+
+Scene scene_of(double shear_rate, double thermal_energy) {
+  Scene scene;
+  scene.particles.density = 0.1;
+  scene.particles.reference_radius = 1;
+  scene.physics.viscosity = 0.1;
+  scene.physics.shear_rate = shear_rate;
+  scene.physics.thermal_energy = thermal_energy;
+  scene.physics.contact = ContactParameters{.normal_stiffness = 1e4};
+  return scene;
+}
+
+std::vector<std::string> warning_codes(const Scene& scene) {
+  std::vector<std::string> codes;
+  for (const Warning& warning : scene_warnings(scene)) codes.push_back(warning.code);
+  return codes;
+}
+
+TEST(DerivedGroups, ReproduceThePublishedTable) {
+  const struct {
+    double peclet, shear_rate, thermal_energy;
+  } rows[] = {{0.01, 9e-5, 0.017},  {0.046, 4.2e-4, 0.017}, {0.22, 1.9e-3, 0.017}, {1, 9e-3, 0.017},
+              {4.6, 9e-3, 3.7e-3},  {22, 9e-3, 7.9e-4},     {100, 9e-3, 1.7e-4},   {460, 9e-3, 3.7e-5},
+              {2200, 9e-3, 7.9e-6}, {1e4, 9e-3, 1.7e-6}};
+  for (const auto& row : rows) {
+    const DerivedGroups groups = derived_groups(scene_of(row.shear_rate, row.thermal_energy));
+    EXPECT_NEAR(*groups.peclet / row.peclet, 1, 0.045) << row.peclet;  // the table has two digits
+    EXPECT_NEAR(*groups.contact_time, 0.0032, 0.00005);
+    EXPECT_NEAR(*groups.inertial_time, 1, 1e-12);
+    EXPECT_NEAR(*groups.brownian_time * row.thermal_energy, 0.1, 1e-12);
+    EXPECT_NEAR(*groups.shear_time * row.shear_rate, 1, 1e-12);
+    EXPECT_NEAR(*groups.stokes, row.shear_rate, 1e-12);
+    EXPECT_NEAR(*groups.relative_stiffness * row.shear_rate, 1e5, 1e-6);
+  }
+}
+
+TEST(DerivedGroups, ScaleWithTheReferenceRadius) {
+  Scene scene = scene_of(0.5, 0.2);
+  scene.particles.reference_radius = 2;
+  const DerivedGroups groups = derived_groups(scene);
+  EXPECT_NEAR(*groups.inertial_time, 4, 1e-12);
+  EXPECT_NEAR(*groups.brownian_time, 4, 1e-12);
+  EXPECT_NEAR(*groups.contact_time, std::sqrt(8e-5), 1e-12);
+  EXPECT_NEAR(*groups.relative_stiffness, 1e5, 1e-6);
+  EXPECT_NEAR(*groups.peclet, 37.699111843077517, 1e-12);  // 12 pi
+}
+
+TEST(DerivedGroups, WhatHasNoMeaningIsNull) {
+  Scene scene = scene_of(0, 0);
+  scene.physics.contact.reset();
+  EXPECT_EQ(to_json(derived_groups(scene)), (Json{{"peclet", nullptr},
+                                                  {"stokes", 0.0},
+                                                  {"relative_stiffness", nullptr},
+                                                  {"contact_time", nullptr},
+                                                  {"inertial_time", 1.0},
+                                                  {"brownian_time", nullptr},
+                                                  {"shear_time", nullptr}}));
+}
+
+TEST(SceneWarnings, InertiaIsReportedFromTheBoundOn) {
+  using Codes = std::vector<std::string>;
+  EXPECT_EQ(warning_codes(scene_of(0.009, 0.0169)), Codes{});
+  EXPECT_EQ(warning_codes(scene_of(0.009, 0.017)), Codes{"inertia-thermal"});  // 0.17, as published
+  EXPECT_EQ(warning_codes(scene_of(0.0999, 0)), Codes{});
+  EXPECT_EQ(warning_codes(scene_of(0.1, 0)), Codes{"inertia-shear"});
+  EXPECT_EQ(warning_codes(scene_of(1, 1)), (Codes{"inertia-shear", "inertia-thermal"}));
+  EXPECT_EQ(warning_codes(scene_of(0, 0)), Codes{});
+}
+
+TEST(SceneWarnings, MessagesGiveTheNumbers) {
+  const std::string message = scene_warnings(scene_of(0.25, 0)).at(0).message;
+  EXPECT_NE(message.find("tau_I / tau_S = 0.25 (tau_I = 1, tau_S = 4)"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace peclet::engine

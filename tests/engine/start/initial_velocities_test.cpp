@@ -1,0 +1,54 @@
+// Seeds are fixed, so each claim holds or fails for good; a statistic is allowed five standard errors, which
+// one seed in a hundred thousand would exceed.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "engine/realisation/simulation.h"
+#include "tests/engine/small_scene.h"
+
+namespace peclet::engine {
+namespace {
+
+constexpr double rate = 2, thermal_energy = 0.02, count = 3000;
+
+System started() {
+  Json document = small_scene({{"particles", {{"count", count}}}, {"volume_fraction", 0.1}});
+  document.erase("repulsion");  // nothing that moves spheres before they start
+  const Scene scene = read_scene(document, "scene.json");
+  Simulation simulation(scene, make_schedule(scene, "scene.json"), 5, 1, "scene.json");
+  simulation.start();
+  return simulation.system();
+}
+
+double product(const Vector3& a, const Vector3& b) { return dot(a, b) / 3; }
+
+// Each in units of its own standard deviation sqrt(kT / m) or sqrt(kT / I), I = 2/5 m a^2: the mean is 0, the
+// mean square 1 with the variance 2 / 3 N, and velocity and spin have nothing to do with each other.
+TEST(InitialVelocities, AreThoseOfEquilibriumAboutTheFlow) {
+  const System system = started();
+  const ParticleState& p = system.particles;
+  Vector3 mean_velocity, mean_spin;
+  double velocity_squared = 0, spin_squared = 0, both = 0;
+  for (std::size_t i = 0; i < p.count(); ++i) {
+    const double m = 0.1 * 4 * std::numbers::pi / 3 * std::pow(p.radius[i], 3);
+    const double inertia = 0.4 * m * p.radius[i] * p.radius[i];
+    const Vector3 u = std::sqrt(m / thermal_energy) * (p.velocity[i] - Vector3{rate * p.position[i].y, 0, 0});
+    const Vector3 w =
+        std::sqrt(inertia / thermal_energy) * (p.angular_velocity[i] - Vector3{0, 0, -0.5 * rate});
+    mean_velocity += (1 / count) * u;
+    mean_spin += (1 / count) * w;
+    velocity_squared += product(u, u) / count;
+    spin_squared += product(w, w) / count;
+    both += product(u, w) / count;
+  }
+  for (const Vector3& mean : {mean_velocity, mean_spin}) {
+    for (const double component : {mean.x, mean.y, mean.z}) EXPECT_NEAR(component, 0, 5 / std::sqrt(count));
+  }
+  EXPECT_NEAR(velocity_squared, 1, 5 * std::sqrt(2 / (3 * count)));
+  EXPECT_NEAR(spin_squared, 1, 5 * std::sqrt(2 / (3 * count)));
+  EXPECT_NEAR(both, 0, 5 / std::sqrt(3 * count));
+}
+
+}  // namespace
+}  // namespace peclet::engine
