@@ -6,17 +6,16 @@ set(unwanted PATTERN __pycache__ EXCLUDE PATTERN "*.peclet" EXCLUDE)
 
 install(DIRECTORY adapters results templates DESTINATION ${own} USE_SOURCE_PERMISSIONS ${unwanted})
 install(DIRECTORY schema DESTINATION ${own} FILES_MATCHING PATTERN "*.json" PATTERN "*.sql" PATTERN "*.md")
-install(FILES README.md DESTINATION ${own})
-install(FILES engine/PHYSICS.md DESTINATION ${own}/engine)
-install(FILES runner/HANDOVER.md DESTINATION ${own}/runner)
-if(EXISTS ${PROJECT_SOURCE_DIR}/docs)
-  install(DIRECTORY docs DESTINATION ${own})
-endif()
+install(DIRECTORY docs DESTINATION ${own})
+# The other pages that these lead to; tests/pages/links.py is shown what was installed.
+foreach(page README.md CHANGELOG.md LICENSE CITATION.cff engine/PHYSICS.md runner/HANDOVER.md tests/bench/README.md
+    tests/end_to_end/README.md tests/end_to_end/MISTAKES.md tests/mutations/mutations.md tests/physics/README.md
+    tests/reference/forces/README.md)
+  cmake_path(GET page PARENT_PATH folder)
+  install(FILES ${page} DESTINATION ${own}/${folder})
+endforeach()
 
-install(FILES CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
-if(EXISTS ${PROJECT_SOURCE_DIR}/CITATION.cff)
-  install(FILES CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
-endif()
+install(FILES CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # Programs that carry libraries in them carry these libraries' licences with them.
 if(PECLET_STATIC)

@@ -8,10 +8,11 @@ namespace peclet::engine {
 
 // Fastest modes of the stiffest pair of the scene, at the inner gap and in contact.
 struct PairRates {
-  double damping;            // 1/time: (X_A + gamma_n)(1/m_i + 1/m_j) plus the drag of the lighter sphere,
-                             // or the like of its spin where that is more
-  double frequency_squared;  // 1/time^2: stiffness (1/m_i + 1/m_j), of the normal, tangential and rolling
-                             // springs and the repulsion
+  // 1/time: (X_A + gamma_n)(1/m_i + 1/m_j) plus the drag of the lighter sphere; the rate of its spin if that
+  // is larger.
+  double damping;
+  // 1/time^2: stiffness (1/m_i + 1/m_j) of the normal, tangential and rolling springs and the repulsion.
+  double frequency_squared;
 };
 
 PairRates stiffest_pair(const Scene& scene);
@@ -24,18 +25,19 @@ constexpr double packing_factor = 2.8;
 // packing_factor.
 double largest_timestep(const Scene& scene);
 
-// Of implicit steps. The least of
-//   0.005 or, with friction, 0.0025 / (rate (1 + 2 St)), St = rho a^2 rate / eta with the largest radius:
-//   pairs that the flow presses together pass through the gaps of lubrication in many steps; sliding contacts
-//   and inertia are of first order only;
-//   0.0017 eta a^3 / kT, a the smallest radius: so does a displacement by the noise;
-//   2 or, without friction, 5 times the time X_A / k in which lubrication at the inner gap holds up the
-//   stiffest contact or repulsion;
-//   20 times drag / k of the repulsion at the outer gap, where the drag of single spheres alone resists it:
-//   beyond that packings that start unbalanced throw their spheres apart;
-//   with noise and lubrication, that at which five standard deviations of a leap out of the range of
-//   lubrication are twice the outer gap, so that no third sphere is hit that was out of the range before.
-// Without flow and temperature those of contact and repulsion alone; infinite where nothing sets a time.
+// The automatic implicit step, the smallest of these:
+// - 0.005 / (rate (1 + 2 St)), with friction 0.0025; St = rho a^2 rate / eta with the largest radius. Pairs
+//   that the flow presses together pass through the gaps of lubrication in many steps; sliding contacts and
+//   inertia are of first order only.
+// - 0.0017 eta a^3 / kT, a the smallest radius. Noise moves a pair through these gaps in many steps, too.
+// - 5 X_A / k, with friction 2: the time in which lubrication at the inner gap holds up the stiffest contact
+//   or repulsion.
+// - 20 drag / k of the repulsion at the outer gap, where the drag of single spheres alone resists it. Larger
+//   steps throw the spheres of unbalanced packings apart.
+// - With noise and lubrication, the step at which five standard deviations of a leap out of the range of
+//   lubrication are twice the outer gap. No sphere is hit that was out of range before.
+// A scene without flow and temperature has those of contact and repulsion alone. Infinite where nothing sets
+// a time.
 double automatic_implicit_timestep(const Scene& scene);
 
 // A given implicit step may be that many times the automatic one. Errors of larger steps have a flag of their

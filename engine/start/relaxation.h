@@ -7,11 +7,10 @@
 namespace peclet::engine {
 
 // Lets repulsion and contacts move the spheres, without flow, noise and friction, until an automatic implicit
-// step moves none of them by more than a twentieth of the smallest radius: a step that moves one further is
-// taken back and made a quarter as long, the step after a good one is twice as long. Ends after two hundred
-// steps at the latest, with the packing as far as it came. The same for both methods, so that a seed is one
-// packing. Changes positions, the order of the particles in memory and the list; velocities are zero
-// afterwards.
+// step moves none of them by more than a twentieth of the smallest radius. A step that moves one further is
+// taken back and made a quarter as long; the step after a good one is twice as long. After two hundred steps
+// the packing stays as far as it came. Both methods relax alike, so that a seed is one packing. Changes
+// positions, the order of the particles in memory and the list; velocities are zero afterwards.
 void relax(System& system, const Scene& scene, int threads);
 
 }  // namespace peclet::engine

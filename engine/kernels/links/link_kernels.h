@@ -34,7 +34,8 @@ struct alignas(32) LinkGroup {
 // secant stiffness that leaves it at Coulomb's limit.
 struct LinkWeights {
   double timestep, normal_time;
-  double resistance_time;  // during which the approach changes the squeezing resistance; 0: it stays
+  // The approach changes the squeezing resistance during this time; 0: the resistance stays.
+  double resistance_time;
 };
 
 struct LinkSystem {

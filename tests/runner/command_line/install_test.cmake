@@ -24,6 +24,13 @@ foreach(file
   endif()
 endforeach()
 
+# Links between the pages hold where they were installed, too.
+execute_process(COMMAND /usr/bin/python3 ${CMAKE_CURRENT_LIST_DIR}/../../pages/links.py ${prefix}/share/peclet
+  RESULT_VARIABLE code OUTPUT_VARIABLE said ERROR_VARIABLE said)
+if(NOT code EQUAL 0)
+  message(SEND_ERROR "the installed pages: ${code}\n${said}")
+endif()
+
 # The engine is found beside peclet, wherever that is: without it the new campaign would be refused.
 execute_process(COMMAND ${prefix}/bin/peclet init ${prefix}/campaign.json OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${prefix}/bin/peclet validate ${prefix}/campaign.json OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
