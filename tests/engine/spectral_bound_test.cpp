@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <limits>
 #include <numbers>
 
 #include "engine/kernels/force_field.h"
@@ -37,12 +38,8 @@ std::vector<PairKind> kinds_of(const System& system, const Physics& physics) {
 // Columns by unit vectors.
 Dense dense(const PackingMatrix& matrix) {
   Dense all;
-  std::vector<double> unit(rows), column(rows);
-  for (std::size_t k = 0; k < rows; ++k) {
-    unit[k] = 1;
-    matrix.multiply(unit, column);
-    unit[k] = 0;
-    all.col(static_cast<Eigen::Index>(k)) = Eigen::Map<const Rows>(column.data());
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    all.col(k) = matrix * Rows::Unit(k);
   }
   return all;
 }
@@ -227,6 +224,29 @@ TEST(SpectralBound, UpperEstimateIsHardlyEverBelowTheLargestEigenvalue) {
   }
   EXPECT_LE(below, 6);
   EXPECT_GT(lowest, 0.99);
+}
+
+// Units are the scene's own: rates may be of any size.
+TEST(SpectralBound, ScalesWithTheMatrix) {
+  const Physics physics = physics_with(every_term);
+  const System system = dense_suspension(physics, count, 1);
+  const auto largest = [&](double scale) {
+    return largest_eigenvalue(PackingMatrix(system, kinds_of(system, physics), physics, {scale, 0}), 1e-6);
+  };
+  const SpectralBound one = largest(1);
+  for (const double scale : {1e-100, 1e-12, 1e12, 1e100}) {
+    const SpectralBound scaled = largest(scale);
+    EXPECT_NEAR(scaled.value / scale, one.value, 1e-12 * one.value) << scale;
+    EXPECT_EQ(scaled.iterations, one.iterations) << scale;
+  }
+}
+
+TEST(SpectralBound, OfAMatrixThatIsNotFiniteIsNotANumber) {
+  const Physics physics = physics_with(every_term);
+  const System system = dense_suspension(physics, count, 1);
+  const MatrixWeights weights = {std::numeric_limits<double>::quiet_NaN(), 0};
+  const PackingMatrix matrix(system, kinds_of(system, physics), physics, weights);
+  EXPECT_TRUE(std::isnan(largest_eigenvalue(matrix).upper()));
 }
 
 TEST(SpectralBound, OfSpheresWithoutNeighboursIsTheirDrag) {
