@@ -48,9 +48,11 @@ Matrix12 reference_resistance(double viscosity, double radius_i, double radius_j
   const Eigen::Vector3d n = to_eigen(separation).normalized();
   const Eigen::Matrix3d along = n * n.transpose(), across = Eigen::Matrix3d::Identity() - along;
   Matrix12 R = Matrix12::Zero();
-  const auto block = [&R](int row, int column) { return R.block<3, 3>(3 * row, 3 * column); };
-  for (const int one : {0, 1}) {
-    const int other = 1 - one;
+  const auto block = [&R](Eigen::Index row, Eigen::Index column) {
+    return R.block<3, 3>(3 * row, 3 * column);
+  };
+  for (const Eigen::Index one : {0, 1}) {
+    const Eigen::Index other = 1 - one;
     const double a = one == 0 ? radius_i : radius_j, lambda = (S - a) / a;
     // The formulas are those of sphere 1, whose partner lies along d.
     const Eigen::Matrix3d turn = cross(one == 0 ? n : Eigen::Vector3d(-n));
