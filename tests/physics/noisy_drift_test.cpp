@@ -57,7 +57,7 @@ Laboratory many_pairs(double thermal_energy, double timestep, double distance) {
   for (std::size_t p = 0; p < pairs; ++p) {
     const Vector3 place = {1 + spacing * static_cast<double>(p % row),
                            1 + spacing * static_cast<double>(p / row % row),
-                           1 + spacing * static_cast<double>(p / row / row)};
+                           1 + spacing * static_cast<double>(p / row / row % row)};
     laboratory.particles().position.set(2 * p, place);
     laboratory.particles().position.set(2 * p + 1, place + Vector3{distance, 0, 0});
   }
