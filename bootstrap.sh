@@ -12,7 +12,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")"
 to_build=(
   g++ cmake ninja-build pkg-config git
   nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev                 # both programs
-  librandom123-dev libsodium-dev libsqlite3-dev zlib1g-dev libboost-dev
+  librandom123-dev libsodium-dev libsqlite3-dev zlib1g-dev libboost-dev libeigen3-dev
 )
 to_test=(
   libgtest-dev python3 python3-jsonschema sqlite3 libfaketime

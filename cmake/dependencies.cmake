@@ -22,6 +22,7 @@ if(PECLET_STATIC)
 endif()
 
 package(CLI11 libcli11-dev)
+package(Eigen3 libeigen3-dev 3.4 NO_MODULE)
 package(fmt libfmt-dev)
 package(nlohmann_json nlohmann-json3-dev)
 package(OpenMP g++ COMPONENTS CXX)
@@ -54,6 +55,10 @@ if(missing)
   endif()
   message(FATAL_ERROR "Not found (Debian's package):\n  ${list}\n${cure}")
 endif()
+
+# Eigen would share large products among OpenMP's threads, unasked; and files of it under another licence than the MPL
+# are refused.
+target_compile_definitions(Eigen3::Eigen INTERFACE EIGEN_DONT_PARALLELIZE EIGEN_MPL2_ONLY)
 
 # Debian has fmt and spdlog as shared libraries only. Their archives are compiled here, from the headers, which hold the
 # sources; everything else is compiled as it is for the shared ones.

@@ -19,7 +19,7 @@ install(FILES CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCD
 
 # Programs that carry libraries in them carry these libraries' licences with them.
 if(PECLET_STATIC)
-  foreach(library libboost-dev libc6-dev libcli11-dev libfmt-dev librandom123-dev libsodium-dev libspdlog-dev libsqlite3-dev
+  foreach(library libboost-dev libc6-dev libcli11-dev libeigen3-dev libfmt-dev librandom123-dev libsodium-dev libspdlog-dev libsqlite3-dev
       libstdc++-12-dev nlohmann-json3-dev zlib1g-dev)
     set(licence /usr/share/doc/${library}/copyright)
     if(NOT EXISTS ${licence})

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/state/field_array.h"
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {
@@ -93,9 +94,9 @@ StepReport Implicit::advance_open(System& system) {
     return report;
   }
   const ParticleState& particles = system.particles;
-  for (std::size_t i = 0; !noisy_ && i < particles.count(); ++i) {
-    velocity_change_.row(particles.id[i]) = particles.velocity.row(i) - origin_.velocity.row(i);
-    spin_change_.row(particles.id[i]) = particles.angular_velocity.row(i) - origin_.spin.row(i);
+  if (!noisy_) {
+    array(velocity_change_)(Eigen::all, particles.id) = array(particles.velocity) - array(origin_.velocity);
+    array(spin_change_)(Eigen::all, particles.id) = array(particles.angular_velocity) - array(origin_.spin);
   }
   move(system, timestep_);
   ++system.step;
@@ -116,10 +117,8 @@ StepReport Implicit::advance_open(System& system) {
 
 std::optional<StepReport> Implicit::find_velocities(System& system) {
   ParticleState& particles = system.particles;
-  for (std::size_t i = 0; i < particles.count(); ++i) {
-    particles.velocity.row(i) += velocity_change_.row(particles.id[i]);
-    particles.angular_velocity.row(i) += spin_change_.row(particles.id[i]);
-  }
+  array(particles.velocity) += array(velocity_change_)(Eigen::all, particles.id);
+  array(particles.angular_velocity) += array(spin_change_)(Eigen::all, particles.id);
   StepReport report;
   for (int iteration = 0;; ++iteration) {
     if (!move_half_a_step(system)) {
@@ -161,10 +160,8 @@ std::optional<StepReport> Implicit::find_noisy_velocities(System& system) {
   restore_springs(system);
   const PairSums drawn = noisy_->with.evaluate(system, force_, torque_);
   restore_springs(system);
-  for (std::size_t i = 0; i < system.particles.count(); ++i) {
-    noise_force_.row(i) = force_.row(i) - noise_force_.row(i);
-    noise_torque_.row(i) = torque_.row(i) - noise_torque_.row(i);
-  }
+  array(noise_force_) = array(force_) - array(noise_force_);
+  array(noise_torque_) = array(torque_) - array(noise_torque_);
   const bool predicted = solve(false);
 
   if (!move_half_a_step(system)) {
@@ -220,9 +217,7 @@ bool Implicit::move_half_a_step(System& system) {
 // To where the present velocities lead from the origin in that time.
 void Implicit::move(System& system, double time) {
   ParticleState& particles = system.particles;
-  for (std::size_t i = 0; i < particles.count(); ++i) {
-    particles.position.row(i) = origin_.position.row(i) + time * particles.velocity.row(i);
-  }
+  array(particles.position) = array(origin_.position) + time * array(particles.velocity);
   system.box.set_strain(system.box.shear_rate() * (static_cast<double>(system.step) * timestep_ + time));
 }
 

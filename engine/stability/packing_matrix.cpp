@@ -1,6 +1,7 @@
 #include "engine/stability/packing_matrix.h"
 
 #include "engine/kernels/pairs/pair_access.h"
+#include "engine/state/eigen_vector.h"
 #include "engine/terms/drag.h"
 #include "engine/terms/friction.h"
 #include "engine/terms/lubrication.h"
@@ -44,26 +45,20 @@ PairResistance coupling_of(const Physics& physics, const PairKind& kind, const P
   return coupling;
 }
 
-Vector3 vector_at(const std::vector<double>& rows, std::size_t row) {
-  return {rows[row], rows[row + 1], rows[row + 2]};
-}
-
-void add_at(std::vector<double>& rows, std::size_t row, const Vector3& v) {
-  rows[row] += v.x;
-  rows[row + 1] += v.y;
-  rows[row + 2] += v.z;
-}
-
 }  // namespace
 
 PackingMatrix::PackingMatrix(const System& system, const std::vector<PairKind>& kinds, const Physics& physics,
                              const MatrixWeights& weights) {
   const ParticleState& particles = system.particles;
+  const auto motions = static_cast<Eigen::Index>(2 * particles.count());
+  per_root_inertia_.resize(motions);
+  drag_rate_.resize(motions);
   for (std::size_t i = 0; i < particles.count(); ++i) {
     const double radius = particles.radius[i], mass = particles.mass[i], inertia = particles.inertia[i];
-    spheres_.push_back({1 / std::sqrt(mass), 1 / std::sqrt(inertia),
-                        weights.resistance * translational_drag(physics.viscosity, radius) / mass,
-                        weights.resistance * rotational_drag(physics.viscosity, radius) / inertia});
+    const auto row = static_cast<Eigen::Index>(2 * i);
+    per_root_inertia_.segment<2>(row) << 1 / std::sqrt(mass), 1 / std::sqrt(inertia);
+    drag_rate_.segment<2>(row) << weights.resistance * translational_drag(physics.viscosity, radius) / mass,
+        weights.resistance * rotational_drag(physics.viscosity, radius) / inertia;
   }
   const std::vector<ImageFrame> frames = image_frames(system.list, system.box);
   for (const Pair& pair : system.list.pairs()) {
@@ -75,26 +70,25 @@ PackingMatrix::PackingMatrix(const System& system, const std::vector<PairKind>& 
   }
 }
 
-void PackingMatrix::multiply(const std::vector<double>& vector, std::vector<double>& product) const {
-  for (std::size_t i = 0; i < spheres_.size(); ++i) {
-    for (std::size_t row = 6 * i; row < 6 * i + 3; ++row) {
-      product[row] = spheres_[i].drag_rate * vector[row];
-      product[row + 3] = spheres_[i].rotational_drag_rate * vector[row + 3];
-    }
-  }
+Eigen::VectorXd PackingMatrix::operator*(const Eigen::VectorXd& vector) const {
+  // A column for each velocity and spin.
+  const Eigen::Map<const Eigen::Matrix3Xd> scaled(vector.data(), 3, drag_rate_.size());
+  const Eigen::Matrix3Xd motion = scaled * per_root_inertia_.asDiagonal();
+  Eigen::Matrix3Xd load = Eigen::Matrix3Xd::Zero(3, motion.cols());
   for (const Link& link : links_) {
-    const std::size_t i = 6 * std::size_t{link.first}, j = 6 * std::size_t{link.second};
-    const Sphere &first = spheres_[link.first], &second = spheres_[link.second];
-    const PairMotion motion = {
-        second.per_root_mass * vector_at(vector, j) - first.per_root_mass * vector_at(vector, i),
-        first.per_root_inertia * vector_at(vector, i + 3),
-        second.per_root_inertia * vector_at(vector, j + 3)};
-    const PairLoad load = lubrication_load(link.coupling, link.shape, motion);
-    add_at(product, i, -first.per_root_mass * load.force);
-    add_at(product, j, second.per_root_mass * load.force);
-    add_at(product, i + 3, -first.per_root_inertia * load.torque_first);
-    add_at(product, j + 3, -second.per_root_inertia * load.torque_second);
+    const Eigen::Index i = 2 * Eigen::Index{link.first}, j = 2 * Eigen::Index{link.second};
+    const PairMotion of_pair = {from_eigen(motion.col(j) - motion.col(i)), from_eigen(motion.col(i + 1)),
+                                from_eigen(motion.col(j + 1))};
+    const PairLoad felt = lubrication_load(link.coupling, link.shape, of_pair);
+    load.col(i) -= to_eigen(felt.force);
+    load.col(j) += to_eigen(felt.force);
+    load.col(i + 1) -= to_eigen(felt.torque_first);
+    load.col(j + 1) -= to_eigen(felt.torque_second);
   }
+  Eigen::VectorXd product(vector.size());
+  Eigen::Map<Eigen::Matrix3Xd>(product.data(), 3, load.cols()) =
+      scaled * drag_rate_.asDiagonal() + load * per_root_inertia_.asDiagonal();
+  return product;
 }
 
 }  // namespace peclet::engine

@@ -7,6 +7,8 @@
 // across n (by F/r): left out, K is a bound.
 #pragma once
 
+#include <Eigen/Core>
+
 #include "engine/kernels/pairs/pair_kinds.h"
 #include "engine/state/system.h"
 
@@ -21,16 +23,12 @@ class PackingMatrix {
   PackingMatrix(const System& system, const std::vector<PairKind>& kinds, const Physics& physics,
                 const MatrixWeights& weights);
 
-  std::size_t rows() const { return 6 * spheres_.size(); }
+  Eigen::Index rows() const { return 3 * drag_rate_.size(); }
 
-  // product = A vector; particle i has rows 6 i ... 6 i + 5.
-  void multiply(const std::vector<double>& vector, std::vector<double>& product) const;
+  // A vector; particle i has rows 6 i ... 6 i + 5.
+  Eigen::VectorXd operator*(const Eigen::VectorXd& vector) const;
 
  private:
-  struct Sphere {
-    double per_root_mass, per_root_inertia;  // 1 / sqrt(m), 1 / sqrt(I)
-    double drag_rate, rotational_drag_rate;  // c_R zeta / m, c_R zeta_r / I
-  };
   // Springs couple velocities and spins of a pair in the same form as lubrication does.
   struct Link {
     std::uint32_t first, second;
@@ -38,7 +36,9 @@ class PackingMatrix {
     PairResistance coupling;
   };
 
-  std::vector<Sphere> spheres_;
+  // Of the velocity and of the spin of each particle in turn.
+  Eigen::VectorXd per_root_inertia_;  // 1 / sqrt(m), 1 / sqrt(I)
+  Eigen::VectorXd drag_rate_;         // c_R zeta / m, c_R zeta_r / I
   std::vector<Link> links_;
 };
 

@@ -1,10 +1,12 @@
 #include "engine/stability/spectral_bound.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 #include "engine/random/keyed_random.h"
+#include "engine/state/eigen_vector.h"
 
 namespace peclet::engine {
 namespace {
@@ -13,93 +15,55 @@ namespace {
 constexpr int most_iterations = 200;
 constexpr int iterations_between_looks = 4;
 
-double inner_product(const std::vector<double>& a, const std::vector<double>& b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
-
-std::vector<double> start_vector(std::size_t rows) {
+Eigen::VectorXd start_vector(Eigen::Index rows) {
   const KeyedRandom random(/*seed=*/0, Purpose::initial_velocity);  // any numbers will do
-  std::vector<double> vector;
-  vector.reserve(rows);
-  for (std::uint32_t i = 0; vector.size() < rows; ++i) {
-    const NormalPair normals = random.normals(0, i);
-    for (const Vector3& part : {normals.first, normals.second}) {
-      vector.insert(vector.end(), {part.x, part.y, part.z});
-    }
+  Eigen::VectorXd vector(rows);
+  for (Eigen::Index row = 0; row < rows; row += 6) {
+    const NormalPair normals = random.normals(0, static_cast<std::uint32_t>(row / 6));
+    vector.segment<6>(row) << to_eigen(normals.first), to_eigen(normals.second);
   }
-  return vector;
+  return vector.normalized();
 }
 
-// The symmetric tridiagonal matrix that the iterations build.
-struct Tridiagonal {
-  std::vector<double> diagonal, beside;  // beside[k] couples k and k + 1; the last one leads out
-
-  // Whether an eigenvalue lies above x: signs of the pivots of T - x.
-  bool reaches_beyond(double x) const {
-    double pivot = diagonal[0] - x;
-    for (std::size_t k = 1; k < diagonal.size() && pivot < 0; ++k) {
-      pivot = diagonal[k] - x - beside[k - 1] * beside[k - 1] / pivot;
-    }
-    return !(pivot < 0);
-  }
-
-  double largest_eigenvalue() const {
-    double low = *std::max_element(diagonal.begin(), diagonal.end());
-    double high = low + 2 * *std::max_element(beside.begin(), beside.end());
-    while (true) {
-      const double middle = 0.5 * (low + high);
-      if (!(low < middle && middle < high)) {
-        return high;
-      }
-      (reaches_beyond(middle) ? low : high) = middle;
-    }
-  }
-
-  // Of the unit eigenvector for the largest eigenvalue: |last component|, from the ratios of neighbours.
-  double last_component(double eigenvalue) const {
-    double component = 1, squared = 1, pivot = diagonal[0] - eigenvalue;
-    for (std::size_t k = 1; k < diagonal.size(); ++k) {
-      component *= -pivot / beside[k - 1];
-      squared += component * component;
-      pivot = diagonal[k] - eigenvalue - beside[k - 1] * beside[k - 1] / pivot;
-    }
-    return std::abs(component) / std::sqrt(squared);
-  }
+// The largest eigenvalue of a symmetric tridiagonal matrix, and |last component| of its unit eigenvector.
+struct Largest {
+  double eigenvalue, last_component;
 };
+
+Largest largest_of(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& beside) {
+  // Entries are small to the solver when they are so beside 1. The matrix may be zero.
+  const double unit = std::max(diagonal.maxCoeff(), std::numeric_limits<double>::min());
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  solver.computeFromTridiagonal(diagonal / unit, beside / unit);
+  const Eigen::Index last = diagonal.size() - 1;
+  return {unit * solver.eigenvalues()(last), std::abs(solver.eigenvectors()(last, last))};
+}
 
 }  // namespace
 
 SpectralBound largest_eigenvalue(const PackingMatrix& matrix, double tolerance) {
-  const std::size_t rows = matrix.rows();
-  std::vector<double> vector = start_vector(rows), before(rows), product(rows);
-  double length = std::sqrt(inner_product(vector, vector));
-  Tridiagonal tridiagonal;
+  Eigen::VectorXd vector = start_vector(matrix.rows()), before = Eigen::VectorXd::Zero(matrix.rows());
+  Eigen::VectorXd diagonal(most_iterations), beside(most_iterations);  // beside(k) couples k and k + 1
+  double length = 0;
   SpectralBound bound;
   while (bound.iterations < most_iterations) {
-    for (double& entry : vector) {
-      entry /= length;
-    }
-    matrix.multiply(vector, product);
-    const double diagonal = inner_product(vector, product);
-    const double back = tridiagonal.beside.empty() ? 0 : tridiagonal.beside.back();
-    for (std::size_t row = 0; row < rows; ++row) {
-      product[row] -= diagonal * vector[row] + back * before[row];
-    }
-    length = std::sqrt(inner_product(product, product));
-    tridiagonal.diagonal.push_back(diagonal);
-    tridiagonal.beside.push_back(length);
-    ++bound.iterations;
+    Eigen::VectorXd product = matrix * vector;
+    const int k = bound.iterations++;
+    diagonal(k) = vector.dot(product);
+    product -= diagonal(k) * vector + length * before;
+    length = beside(k) = product.norm();
     // The vectors span everything that the start vector reaches: nothing is left but rounding.
-    const bool exhausted = !(length > 1e-12 * diagonal);
+    const bool exhausted = !(length > 1e-12 * diagonal(k));
     if (exhausted || bound.iterations % iterations_between_looks == 0) {
-      bound.value = tridiagonal.largest_eigenvalue();
-      bound.residual = exhausted ? 0 : length * tridiagonal.last_component(bound.value);
-      if (bound.residual <= tolerance * bound.value) {
+      const Largest found = largest_of(diagonal.head(k + 1), beside.head(k));
+      bound.value = found.eigenvalue;
+      bound.residual = exhausted ? 0 : length * found.last_component;
+      if (exhausted || bound.residual <= tolerance * bound.value) {
         break;
       }
     }
     before.swap(vector);
-    vector.swap(product);
+    vector = product / length;
   }
   return bound;
 }

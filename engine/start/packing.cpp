@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "engine/random/keyed_random.h"
+#include "engine/state/field_array.h"
 #include "engine/state/neighbour_list.h"
 
 namespace peclet::engine {
@@ -105,9 +106,7 @@ class Quench {
   }
 
   void steer(double along_force, double keep) {
-    for (std::size_t i = 0; i < particles_.count(); ++i) {
-      particles_.velocity.set(i, keep * particles_.velocity[i] + along_force * force_[i]);
-    }
+    array(particles_.velocity) = keep * array(particles_.velocity) + along_force * array(force_);
   }
 
   void move() {

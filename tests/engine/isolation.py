@@ -1,11 +1,15 @@
-"""Usage: isolation.py ARCHIVE...
+"""Usage: isolation.py SOURCE_FOLDER ARCHIVE...
 
 What is compiled for newer processors must not leak into the rest of the program: where several objects define the same inline
 function, the linker keeps one copy, and if that is the one with the newer instructions the program no longer runs everywhere.
 So no object compiled for an instruction set may define a symbol that others could share, and no other object may contain
 registers of 256 or 512 bits.
+
+Eigen is made of such inline functions. Nothing in kernels/ or terms/ and no source for an instruction set may include it, also not by way
+of other headers: it would then take a single call to leak.
 """
 
+import re
 import subprocess
 import sys
 import tempfile
@@ -18,10 +22,42 @@ def output(*command, folder):
     return subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True).stdout
 
 
+def guarded_sources(engine):
+    sources = [path for folder in ("kernels", "terms") for path in (engine / folder).rglob("*") if path.suffix in (".h", ".cpp")]
+    for suffix in ("baseline", "avx2", "avx512"):
+        sources += engine.rglob(f"*_{suffix}.cpp")
+    return sorted(set(sources))
+
+
+def way_to_eigen(source, root, seen):
+    """The chain of includes from `source` to Eigen, or nothing; files in `seen` have none and are not read again."""
+    seen.add(source)
+    for opening, name in re.findall(r'^\s*#\s*include\s*([<"])([^>"]+)', source.read_text(), re.MULTILINE):
+        if re.match(r"(unsupported/)?Eigen/", name):
+            return [source, name]
+        header = root / name
+        if opening == '"' and header.is_file() and header not in seen:
+            if way := way_to_eigen(header, root, seen):
+                return [source, *way]
+    return []
+
+
+def includes_of_eigen(root):
+    sources, seen, faults = guarded_sources(root / "engine"), set(), []
+    for source in sources:
+        if source not in seen and (way := way_to_eigen(source, root, seen)):
+            names = [str(step.relative_to(root)) if isinstance(step, Path) else step for step in way]
+            faults.append(" includes ".join(names))
+            seen -= set(way)  # others may get there as well
+    if len(sources) < 30:
+        faults.append(f"only {len(sources)} sources were found below {root}")
+    return faults
+
+
 def main():
-    faults, special = [], 0
+    faults, special = includes_of_eigen(Path(sys.argv[1]).resolve()), 0
     with tempfile.TemporaryDirectory() as top:
-        for archive in map(Path, sys.argv[1:]):
+        for archive in map(Path, sys.argv[2:]):
             folder = Path(top) / archive.name
             folder.mkdir()
             output("ar", "x", str(archive.resolve()), folder=folder)

@@ -3,7 +3,7 @@
 
 #include "engine/terms/lubrication.h"
 #include "tests/engine/draws.h"
-#include "tests/engine/symmetric_eigenvalues.h"
+#include "tests/engine/linear_algebra.h"
 
 namespace peclet::engine {
 
@@ -36,32 +36,23 @@ inline double dissipated(const PairLoad& load, const PairMotion& motion) {
 }
 
 // Components of (F_i, F_j, T_i, T_j).
-inline std::array<double, 12> components(const PairLoad& load) {
-  const Vector3 &f = load.force, &t = load.torque_first, &u = load.torque_second;
-  return {f.x, f.y, f.z, -f.x, -f.y, -f.z, t.x, t.y, t.z, u.x, u.y, u.z};
+inline Vector12 components(const PairLoad& load) {
+  const Eigen::Vector3d force = to_eigen(load.force);
+  Vector12 all;
+  all << force, -force, to_eigen(load.torque_first), to_eigen(load.torque_second);
+  return all;
 }
 
 // R of (F_i, F_j, T_i, T_j) = -R (U_i, U_j, Omega_i, Omega_j), column by column.
-inline Matrix<12> grand_resistance(const PairResistance& resistance, const PairGeometry& pair) {
-  Matrix<12> matrix{};
-  for (std::size_t k = 0; k < 12; ++k) {
-    std::array<Vector3, 4> unit{};
-    Vector3& part = unit[k / 3];
-    (k % 3 == 0 ? part.x : k % 3 == 1 ? part.y : part.z) = 1;
-    const PairLoad load = lubrication_load(resistance, pair, {unit[1] - unit[0], unit[2], unit[3]});
-    for (std::size_t row = 0; row < 12; ++row) {
-      matrix[row][k] = -components(load)[row];
-    }
+inline Matrix12 grand_resistance(const PairResistance& resistance, const PairGeometry& pair) {
+  Matrix12 matrix;
+  for (Eigen::Index k = 0; k < 12; ++k) {
+    const Vector12 unit = Vector12::Unit(k);
+    const PairMotion motion = {from_eigen(unit.segment<3>(3) - unit.head<3>()),
+                               from_eigen(unit.segment<3>(6)), from_eigen(unit.tail<3>())};
+    matrix.col(k) = -components(lubrication_load(resistance, pair, motion));
   }
   return matrix;
-}
-
-inline double largest_entry(const Matrix<12>& matrix) {
-  double largest = 0;
-  for (const auto& row : matrix) {
-    for (const double value : row) largest = std::max(largest, std::abs(value));
-  }
-  return largest;
 }
 
 }  // namespace peclet::engine

@@ -5,6 +5,7 @@
 // deviations, 1.2e-5.
 #include <gtest/gtest.h>
 
+#include "tests/engine/linear_algebra.h"
 #include "tests/physics/laboratory.h"
 #include "tests/physics/sampled_covariance.h"
 
@@ -14,9 +15,10 @@ namespace {
 constexpr double largest_sigma = 5.5;
 constexpr double thermal_energy = 0.3, timestep = 2e-3;
 constexpr std::uint64_t samples = 150000;
-constexpr std::size_t spheres = 4, components = 6 * spheres;
+constexpr Eigen::Index spheres = 4, components = 6 * spheres;
 
-using Components = std::vector<double>;  // forces of all spheres, then torques
+using Components = Eigen::Vector<double, components>;  // forces of all spheres, then torques
+using Matrix = Eigen::Matrix<double, components, components>;
 
 // A cell as wide as two unit spheres and hardly more, inclined: the first two touch through two images.
 System cluster(const Physics& physics) {
@@ -43,11 +45,9 @@ class Cluster {
   Components loads() {
     field_.evaluate(system_, force_, torque_);
     Components all;
-    for (const VectorField* field : {&force_, &torque_}) {
-      for (std::size_t i = 0; i < spheres; ++i) {
-        const Vector3 v = (*field)[i];
-        all.insert(all.end(), {v.x, v.y, v.z});
-      }
+    for (Eigen::Index i = 0; i < spheres; ++i) {
+      all.segment<3>(3 * i) = to_eigen(force_[static_cast<std::size_t>(i)]);
+      all.segment<3>(3 * (spheres + i)) = to_eigen(torque_[static_cast<std::size_t>(i)]);
     }
     return all;
   }
@@ -69,27 +69,25 @@ class Cluster {
 };
 
 // Column by column from unit velocities and spins of one sphere after another.
-std::vector<Components> felt_resistance() {
+Matrix felt_resistance() {
   Cluster cold(0);
-  std::vector<Components> columns;
-  for (std::size_t k = 0; k < components; ++k) {
+  Matrix R;
+  for (Eigen::Index k = 0; k < components; ++k) {
     ParticleState& all = cold.system().particles;
     all.velocity = all.angular_velocity = VectorField(spheres);
     const Vector3 unit = {k % 3 == 0 ? 1.0 : 0, k % 3 == 1 ? 1.0 : 0, k % 3 == 2 ? 1.0 : 0};
-    (k < 3 * spheres ? all.velocity : all.angular_velocity).set(k / 3 % spheres, unit);
-    columns.push_back(cold.loads());
-    for (double& element : columns.back()) {
-      element = -element;
-    }
+    (k < 3 * spheres ? all.velocity : all.angular_velocity)
+        .set(static_cast<std::size_t>(k / 3 % spheres), unit);
+    R.col(k) = -cold.loads();
   }
-  return columns;
+  return R;
 }
 
 TEST(ClusterNoise, FeltResistanceIsSymmetric) {
-  const std::vector<Components> R = felt_resistance();
-  for (std::size_t a = 0; a < components; ++a) {
-    for (std::size_t b = 0; b < a; ++b) {
-      EXPECT_NEAR(R[a][b], R[b][a], 1e-12 * std::sqrt(R[a][a] * R[b][b]));
+  const Matrix R = felt_resistance();
+  for (Eigen::Index a = 0; a < components; ++a) {
+    for (Eigen::Index b = 0; b < a; ++b) {
+      EXPECT_NEAR(R(a, b), R(b, a), 1e-12 * std::sqrt(R(a, a) * R(b, b)));
     }
   }
 }
@@ -104,16 +102,13 @@ TEST(ClusterNoise, FirstTwoSpheresActThroughTwoImages) {
 }
 
 TEST(ClusterNoise, SampledCovarianceEqualsTheFeltResistance) {
-  const std::vector<Components> R = felt_resistance();
+  const Matrix expected = 2 * thermal_energy / timestep * felt_resistance();
   Cluster warm(thermal_energy);
   SampledCovariance sampled(components);
   for (std::uint64_t step = 0; step < samples; ++step) {
     warm.system().step = step;
     sampled.add(warm.loads());
   }
-  const auto expected = [&R](std::size_t a, std::size_t b) {
-    return 2 * thermal_energy / timestep * R[a][b];
-  };
   EXPECT_LT(sampled.largest_deviation(expected), largest_sigma);
   EXPECT_LT(sampled.largest_mean(expected), largest_sigma);
 }

@@ -71,9 +71,10 @@ PairPower power_of_pair(const ParticleState& all, std::size_t i, std::size_t j, 
   PairPower power;
   if (h <= 0.5 * outer_gap * sum) {
     const Vector3 wi = all.angular_velocity[i], wj = all.angular_velocity[j];
-    power.dissipated =
-        quadratic_form(reference_resistance(natural_viscosity, all.radius[i], all.radius[j], r, inner_gap),
-                       {0, 0, 0, du.x, du.y, du.z, wi.x, wi.y, wi.z, wj.x, wj.y, wj.z});
+    Vector12 motion;
+    motion << Eigen::Vector3d::Zero(), to_eigen(du), to_eigen(wi), to_eigen(wj);
+    power.dissipated = motion.dot(
+        reference_resistance(natural_viscosity, all.radius[i], all.radius[j], r, inner_gap) * motion);
   }
   if (h < 0) {
     power.stored += stiffness * h * opening;

@@ -4,6 +4,8 @@
 // False failures: the mean is allowed five standard errors, 6e-7, were the seed drawn anew.
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+
 #include "engine/random/keyed_random.h"
 #include "tests/physics/laboratory.h"
 #include "tests/physics/reference_resistance.h"
@@ -15,41 +17,18 @@ constexpr double inner_gap = 1e-4, outer_gap = 0.9, gap = 0.02;
 constexpr std::size_t pairs = 4000;
 constexpr int steps_of_each = 10;
 
-using Vector12 = std::array<double, 12>;
-
-// R x = b by elimination; R is positive definite.
-Vector12 solved(Matrix12 R, Vector12 b) {
-  for (std::size_t k = 0; k < 12; ++k) {
-    for (std::size_t i = k + 1; i < 12; ++i) {
-      const double factor = R[i][k] / R[k][k];
-      for (std::size_t j = k; j < 12; ++j) R[i][j] -= factor * R[k][j];
-      b[i] -= factor * b[k];
-    }
-  }
-  for (std::size_t k = 12; k-- > 0;) {
-    for (std::size_t j = k + 1; j < 12; ++j) b[k] -= R[k][j] * b[j];
-    b[k] /= R[k][k];
-  }
-  return b;
-}
-
 // Of two unit spheres in units of 6 pi eta: of the pair and of the drag on each.
 Matrix12 resistance_at(const Vector3& separation) {
   Matrix12 R = reference_resistance(natural_viscosity, 1, 1, separation, inner_gap);
-  for (std::size_t k = 0; k < 6; ++k) {
-    R[k][k] += 1;
-    R[6 + k][6 + k] += natural_spin_rate * 0.4;  // 8 pi eta
-  }
+  R.diagonal().head<6>().array() += 1;
+  R.diagonal().tail<6>().array() += natural_spin_rate * 0.4;  // 8 pi eta
   return R;
 }
 
 // Component c of the relative velocity that opposite unit forces along c give.
-double relative_mobility(const Vector3& separation, std::size_t c) {
-  Vector12 force{};
-  force[c] = -1;
-  force[3 + c] = 1;
-  const Vector12 velocity = solved(resistance_at(separation), force);
-  return velocity[3 + c] - velocity[c];
+double relative_mobility(const Vector3& separation, Eigen::Index c) {
+  const Vector12 force = Vector12::Unit(3 + c) - Vector12::Unit(c);
+  return force.dot(resistance_at(separation).llt().solve(force));
 }
 
 // Along n = x: d M_xx / dx, and d M_xy / dy = d M_xz / dz = (M_xx - M_yy) / r.
@@ -78,7 +57,7 @@ Laboratory many_pairs(double thermal_energy, double timestep, double distance) {
   for (std::size_t p = 0; p < pairs; ++p) {
     const Vector3 place = {1 + spacing * static_cast<double>(p % row),
                            1 + spacing * static_cast<double>(p / row % row),
-                           1 + spacing * static_cast<double>(p / row / row)};
+                           1 + spacing * static_cast<double>(p / row / row % row)};
     laboratory.particles().position.set(2 * p, place);
     laboratory.particles().position.set(2 * p + 1, place + Vector3{distance, 0, 0});
   }
@@ -92,7 +71,7 @@ class LinearAnswer {
       : amplitude_(std::sqrt(2 * thermal_energy / timestep)),
         pair_(seed, Purpose::pair_noise),
         single_(seed, Purpose::one_body_noise),
-        squeeze_(reference_resistance(natural_viscosity, 1, 1, {distance, 0, 0}, inner_gap)[0][0]) {}
+        squeeze_(reference_resistance(natural_viscosity, 1, 1, {distance, 0, 0}, inner_gap)(0, 0)) {}
 
   double velocity(std::uint64_t step, std::uint32_t first, std::uint32_t second) const {
     const double between = amplitude_ * std::sqrt(squeeze_) * pair_.normals(step, first, second, {}).first.x;

@@ -5,6 +5,8 @@
 // 3.8e-8, one of 90 (12 components and their means) in one of 18 cases with 6e-5, one of 324 with 1.2e-5.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include "engine/kernels/pair_pass.h"
 #include "tests/physics/laboratory.h"
 #include "tests/physics/reference_resistance.h"
@@ -19,7 +21,7 @@ constexpr double thermal_energy = 0.3, timestep = 2e-3;
 constexpr double radius_i = 0.8;
 constexpr std::uint64_t samples = 100000;
 
-using Components = std::vector<double>;  // F_i, F_j, T_i, T_j
+using Components = Vector12;  // F_i, F_j, T_i, T_j
 
 // Two spheres at a gap, in a direction without zeros; forces come from the engine's pair pass alone.
 class NoisyPair {
@@ -52,47 +54,25 @@ class NoisyPair {
                                  .noise = random_.key(step)};
     pass_.evaluate(input, system_.springs, force, torque);
     Components c;
-    for (const VectorField* field : {&force, &torque}) {
-      for (const std::size_t particle : {0U, 1U}) {
-        const Vector3 v = (*field)[particle];
-        c.insert(c.end(), {v.x, v.y, v.z});
-      }
-    }
+    c << to_eigen(force[0]), to_eigen(force[1]), to_eigen(torque[0]), to_eigen(torque[1]);
     return c;
   }
 
   Matrix12 expected_covariance() const {
-    Matrix12 R = reference_resistance(viscosity, radius_i, radius_j_, separation_, inner_gap);
-    for (auto& row : R) {
-      for (double& element : row) {
-        element *= 2 * thermal_energy / timestep;
-      }
-    }
-    return R;
+    return 2 * thermal_energy / timestep *
+           reference_resistance(viscosity, radius_i, radius_j_, separation_, inner_gap);
   }
 
   // The same sample with the sign that the published eq. 24 prints before the second root. What theta gives
   // to T_j is Y_B21 / Y_A F_i x n, where -Y_B21 v x n is the block (F_j, T_j) of -R; the rest is chi's.
   Components with_printed_sign(Components c) const {
     const Matrix12 R = reference_resistance(viscosity, radius_i, radius_j_, separation_, inner_gap);
-    const Vector3 n = (1 / norm(separation_)) * separation_;
-    const Vector3 e = (1 / norm(Vector3{n.y, -n.x, 0})) * Vector3{n.y, -n.x, 0};  // any direction across n
-    const Vector3 turned = cross(e, n);
-    const auto element = [&](std::size_t row, std::size_t column, const Vector3& u, const Vector3& v) {
-      const std::array<double, 3> left = {u.x, u.y, u.z}, right = {v.x, v.y, v.z};
-      double sum = 0;
-      for (std::size_t a = 0; a < 3; ++a) {
-        for (std::size_t b = 0; b < 3; ++b) {
-          sum += left[a] * R[3 * row + a][3 * column + b] * right[b];
-        }
-      }
-      return sum;
-    };
-    const double shear = element(0, 0, e, e), pump_j = element(3, 0, turned, e);
-    const Vector3 moment = cross(Vector3{c[0], c[1], c[2]}, n);
-    const Vector3 by_theta = (pump_j / shear) * moment;
-    const Vector3 printed = 2 * by_theta - Vector3{c[9], c[10], c[11]};
-    c[9] = printed.x, c[10] = printed.y, c[11] = printed.z;
+    const Eigen::Vector3d n = to_eigen(separation_).normalized(), across = n.unitOrthogonal();
+    const Eigen::Vector3d turned = across.cross(n);
+    const double shear = across.dot(R.topLeftCorner<3, 3>() * across);
+    const double pump_j = turned.dot(R.bottomLeftCorner<3, 3>() * across);
+    const Eigen::Vector3d by_theta = pump_j / shear * c.head<3>().cross(n);
+    c.tail<3>() = 2 * by_theta - c.tail<3>();
     return c;
   }
 
@@ -120,14 +100,13 @@ void for_each_pair(Check&& check) {
     for (const double gap : gaps) {
       SCOPED_TRACE(testing::Message() << "ratio " << ratio << ", gap " << gap);
       NoisyPair pair(ratio, gap, seed++);
-      const Matrix12 covariance = pair.expected_covariance();
-      check(pair, [&covariance](std::size_t a, std::size_t b) { return covariance[a][b]; });
+      check(pair, pair.expected_covariance());
     }
   }
 }
 
 TEST(PairNoise, SampledCovarianceEqualsTheResistance) {
-  for_each_pair([](NoisyPair& pair, const auto& expected) {
+  for_each_pair([](NoisyPair& pair, const Matrix12& expected) {
     SampledCovariance sampled(12);
     for (std::uint64_t step = 0; step < samples; ++step) {
       sampled.add(pair.noise(step));
@@ -139,7 +118,7 @@ TEST(PairNoise, SampledCovarianceEqualsTheResistance) {
 
 // The printed plus makes <T_i T_j> two to four times too large.
 TEST(PairNoise, PrintedSignOfTheSecondTorqueFailsByFar) {
-  for_each_pair([](NoisyPair& pair, const auto& expected) {
+  for_each_pair([](NoisyPair& pair, const Matrix12& expected) {
     SampledCovariance sampled(12);
     for (std::uint64_t step = 0; step < samples; ++step) {
       sampled.add(pair.with_printed_sign(pair.noise(step)));
@@ -151,19 +130,16 @@ TEST(PairNoise, PrintedSignOfTheSecondTorqueFailsByFar) {
 // Twenty-four components, of one step and of the next: their blocks must be independent.
 TEST(PairNoise, IsFreshAtEveryStep) {
   NoisyPair pair(1.4, 0.01, 1);
-  const Matrix12 covariance = pair.expected_covariance();
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(24, 24);
+  expected.topLeftCorner<12, 12>() = expected.bottomRightCorner<12, 12>() = pair.expected_covariance();
   SampledCovariance sampled(24);
-  Components two = pair.noise(0);
-  two.resize(24);
+  Eigen::VectorXd two(24);
+  two.head<12>() = pair.noise(0);
   for (std::uint64_t step = 1; step < samples; ++step) {
-    const Components next = pair.noise(step);
-    std::copy(next.begin(), next.end(), two.begin() + 12);
+    two.tail<12>() = pair.noise(step);
     sampled.add(two);
-    std::copy(next.begin(), next.end(), two.begin());
+    two.head<12>() = two.tail<12>();
   }
-  const auto expected = [&](std::size_t a, std::size_t b) {
-    return a / 12 == b / 12 ? covariance[a % 12][b % 12] : 0.0;
-  };
   EXPECT_LT(sampled.largest_deviation(expected), largest_sigma);
 }
 

@@ -1,5 +1,6 @@
 #include "tests/physics/reference_resistance.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,83 +8,68 @@
 namespace peclet::engine {
 namespace {
 
-using Matrix3 = std::array<std::array<double, 3>, 3>;
-
-struct Directions {
-  Matrix3 along, across;  // n n and 1 - n n
-  Matrix3 turn;           // turn v = v x n
+// Near contact a function of resistance is inverse / xi + logarithm ln(1/xi) + O(1). It belongs to a sphere
+// and depends on lambda, the other radius over its own.
+struct Divergent {
+  double inverse, logarithm;
 };
 
-Directions directions_of(const Vector3& n) {
-  const std::array<double, 3> c = {n.x, n.y, n.z};
-  Directions d{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t b = 0; b < 3; ++b) {
-      d.along[a][b] = c[a] * c[b];
-      d.across[a][b] = (a == b ? 1.0 : 0.0) - c[a] * c[b];
-    }
-  }
-  d.turn = {{{0, n.z, -n.y}, {-n.z, 0, n.x}, {n.y, -n.x, 0}}};
-  return d;
+// On the sphere that moves or turns, in units of 6 pi eta a, 4 pi eta a^2 and 8 pi eta a^3.
+Divergent x_a_own(double lambda) {
+  const double g = std::pow(1 + lambda, -3);
+  return {2 * lambda * lambda * g, lambda * (1 + 7 * lambda + lambda * lambda) / 5 * g};
 }
+Divergent y_a_own(double lambda) {
+  return {0, 4.0 / 15 * lambda * (2 + lambda + 2 * lambda * lambda) * std::pow(1 + lambda, -3)};
+}
+Divergent y_b_own(double lambda) { return {0, -lambda * (4 + lambda) / 5 * std::pow(1 + lambda, -2)}; }
+Divergent y_c_own(double lambda) { return {0, 0.4 * lambda / (1 + lambda)}; }
 
-// Puts the block `factor` m at rows of `row` and columns of `column` (0 F_i, 1 F_j, 2 T_i, 3 T_j).
-void add_block(Matrix12& R, std::size_t row, std::size_t column, double factor, const Matrix3& m) {
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t b = 0; b < 3; ++b) {
-      R[3 * row + a][3 * column + b] += factor * m[a][b];
-    }
-  }
+// On the other sphere, in units of 3 pi eta S, pi eta S^2 and pi eta S^3, S the sum of both radii.
+Divergent times(double factor, const Divergent& g) { return {factor * g.inverse, factor * g.logarithm}; }
+Divergent x_a_other(double lambda) { return times(-2 / (1 + lambda), x_a_own(lambda)); }
+Divergent y_a_other(double lambda) { return times(-2 / (1 + lambda), y_a_own(lambda)); }
+Divergent y_b_other(double lambda) { return times(-4 * std::pow(1 + lambda, -2), y_b_own(lambda)); }
+Divergent y_c_other(double lambda) { return {0, 0.8 * lambda * lambda * std::pow(1 + lambda, -4)}; }
+
+// cross(d) v = v x d, epsilon_ijk d_k.
+Eigen::Matrix3d cross(const Eigen::Vector3d& d) {
+  return (Eigen::Matrix3d() << 0, d.z(), -d.y(), -d.z(), 0, d.x(), d.y(), -d.x(), 0).finished();
 }
 
 }  // namespace
 
 Matrix12 reference_resistance(double viscosity, double radius_i, double radius_j, const Vector3& separation,
                               double inner_gap) {
-  using std::pow;
-  const double pi = std::numbers::pi, r = norm(separation), sum = radius_i + radius_j;
-  const double gap = std::max(2 * (r - sum) / sum, inner_gap), log = std::log(1 / gap), q = r / sum;
-  const double b = radius_j / radius_i, c = 1 / b;
-  const double squeeze =
-      6 * pi * viscosity * radius_i *
-      (2 * b * b / pow(1 + b, 3) / gap + b * (1 + 7 * b + b * b) / (5 * pow(1 + b, 3)) * log);
-  const double shear =
-      6 * pi * viscosity * radius_i * 4 * b * (2 + b + 2 * b * b) / (15 * pow(1 + b, 3)) * log;
-  const double pump_i = -4 * pi * viscosity * pow(radius_i, 2) * b * (4 + b) / (5 * pow(1 + b, 2)) * log * q;
-  const double pump_j = -4 * pi * viscosity * pow(radius_j, 2) * c * (4 + c) / (5 * pow(1 + c, 2)) * log * q;
-  const double twist_i = 8 * pi * viscosity * pow(radius_i, 3) * 2 * b / (5 * (1 + b)) * log * q * q;
-  const double twist_j = 8 * pi * viscosity * pow(radius_j, 3) * 2 * c / (5 * (1 + c)) * log * q * q;
-  const double twist_ij = 8 * pi * viscosity * pow(radius_i, 3) * b * b / (10 * (1 + b)) * log * q * q;
+  const double pi_eta = std::numbers::pi * viscosity, S = radius_i + radius_j;
+  const double lever = norm(separation) / S, xi = std::max(2 * lever - 2, inner_gap);
+  const auto at_gap = [&](const Divergent& g) { return g.inverse / xi - g.logarithm * std::log(xi); };
 
-  const Directions d = directions_of((1 / r) * separation);
-  Matrix12 R{};
-  for (const std::size_t row : {0U, 1U}) {
-    const double sign = row == 0 ? 1 : -1;
-    for (const std::size_t column : {0U, 1U}) {
-      const double same = row == column ? 1 : -1;
-      add_block(R, row, column, same * squeeze, d.along);
-      add_block(R, row, column, same * shear, d.across);
-    }
-    add_block(R, row, 2, -sign * pump_i, d.turn);
-    add_block(R, row, 3, -sign * pump_j, d.turn);
-    add_block(R, 2, row, sign * pump_i, d.turn);
-    add_block(R, 3, row, sign * pump_j, d.turn);
+  const Eigen::Vector3d n = to_eigen(separation).normalized();
+  const Eigen::Matrix3d along = n * n.transpose(), across = Eigen::Matrix3d::Identity() - along;
+  Matrix12 R = Matrix12::Zero();
+  const auto block = [&R](Eigen::Index row, Eigen::Index column) {
+    return R.block<3, 3>(3 * row, 3 * column);
+  };
+  for (const Eigen::Index one : {0, 1}) {
+    const Eigen::Index other = 1 - one;
+    const double a = one == 0 ? radius_i : radius_j, lambda = (S - a) / a;
+    // The formulas are those of sphere 1, whose partner lies along d.
+    const Eigen::Matrix3d turn = cross(one == 0 ? n : Eigen::Vector3d(-n));
+    block(one, one) = 6 * pi_eta * a * (at_gap(x_a_own(lambda)) * along + at_gap(y_a_own(lambda)) * across);
+    block(one, other) =
+        3 * pi_eta * S * (at_gap(x_a_other(lambda)) * along + at_gap(y_a_other(lambda)) * across);
+    // Torque of velocities; forces of spins are the transposed block.
+    block(2 + one, one) = 4 * pi_eta * a * a * at_gap(y_b_own(lambda)) * turn;
+    block(2 + one, other) = pi_eta * S * S * at_gap(y_b_other(lambda)) * turn;
+    block(2 + one, 2 + one) = 8 * pi_eta * std::pow(a, 3) * at_gap(y_c_own(lambda)) * across;
+    block(2 + one, 2 + other) = pi_eta * std::pow(S, 3) * at_gap(y_c_other(lambda)) * across;
   }
-  add_block(R, 2, 2, twist_i, d.across);
-  add_block(R, 3, 3, twist_j, d.across);
-  add_block(R, 2, 3, twist_ij, d.across);
-  add_block(R, 3, 2, twist_ij, d.across);
-  return R;
-}
+  R.topRightCorner<6, 6>() = R.bottomLeftCorner<6, 6>().transpose();
 
-double quadratic_form(const Matrix12& R, const std::array<double, 12>& v) {
-  double sum = 0;
-  for (std::size_t a = 0; a < 12; ++a) {
-    for (std::size_t b = 0; b < 12; ++b) {
-      sum += v[a] * R[a][b] * v[b];
-    }
-  }
-  return sum;
+  Vector12 levers;
+  levers << Eigen::Vector<double, 6>::Ones(), Eigen::Vector<double, 6>::Constant(lever);
+  return levers.asDiagonal() * R * levers.asDiagonal();
 }
 
 }  // namespace peclet::engine

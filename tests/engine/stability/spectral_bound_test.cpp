@@ -3,21 +3,25 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+#include <limits>
 #include <numbers>
 
 #include "engine/kernels/force_field.h"
 #include "engine/start/packing.h"
 #include "tests/engine/dense_suspension.h"
 #include "tests/engine/every_image.h"
-#include "tests/engine/symmetric_eigenvalues.h"
+#include "tests/engine/linear_algebra.h"
 
 namespace peclet::engine {
 namespace {
 
 using std::numbers::pi;
 
-constexpr std::size_t count = 12, rows = 6 * count;
-using Dense = Matrix<rows>;
+constexpr std::size_t count = 12;
+constexpr Eigen::Index rows = 6 * count;  // particle by particle, velocity and spin
+using Dense = Eigen::Matrix<double, rows, rows>;
+using Rows = Eigen::Vector<double, rows>;
 
 constexpr Terms every_term = {.lubrication = true,
                               .noise = false,
@@ -34,43 +38,36 @@ std::vector<PairKind> kinds_of(const System& system, const Physics& physics) {
 // Columns by unit vectors.
 Dense dense(const PackingMatrix& matrix) {
   Dense all;
-  std::vector<double> unit(rows), column(rows);
-  for (std::size_t k = 0; k < rows; ++k) {
-    unit[k] = 1;
-    matrix.multiply(unit, column);
-    unit[k] = 0;
-    for (std::size_t row = 0; row < rows; ++row) {
-      all[row][k] = column[row];
-    }
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    all.col(k) = matrix * Rows::Unit(k);
   }
   return all;
 }
 
-double largest_entry(const Dense& matrix) {
-  double largest = 0;
-  for (const auto& row : matrix) {
-    for (const double entry : row) {
-      largest = std::max(largest, std::abs(entry));
-    }
-  }
-  return largest;
-}
-
 void expect_equal(const Dense& a, const Dense& b) {
-  const double scale = largest_entry(b);
-  for (std::size_t row = 0; row < rows; ++row) {
-    for (std::size_t k = 0; k < rows; ++k) {
-      ASSERT_NEAR(a[row][k], b[row][k], 1e-10 * scale) << row << ' ' << k;
-    }
+  EXPECT_LE(largest_entry(a - b), 1e-10 * largest_entry(b));
+}
+
+Eigen::Index row_of(std::size_t particle) { return 6 * static_cast<Eigen::Index>(particle); }
+
+Rows inverse_roots(const ParticleState& particles) {
+  Rows inertia;
+  for (std::size_t i = 0; i < count; ++i) {
+    inertia.segment<3>(row_of(i)).setConstant(particles.mass[i]);
+    inertia.segment<3>(row_of(i) + 3).setConstant(particles.inertia[i]);
   }
+  return inertia.cwiseSqrt().cwiseInverse();
 }
 
-double inverse_root(const ParticleState& particles, std::size_t row) {
-  const double inertia = row % 6 < 3 ? particles.mass[row / 6] : particles.inertia[row / 6];
-  return 1 / std::sqrt(inertia);
+Rows loads(ForceField& field, System& system) {
+  VectorField force(count), torque(count);
+  field.evaluate(system, force, torque);
+  Rows all;
+  for (std::size_t i = 0; i < count; ++i) {
+    all.segment<6>(row_of(i)) << to_eigen(force[i]), to_eigen(torque[i]);
+  }
+  return all;
 }
-
-double component(const Vector3& v, std::size_t k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; }
 
 Vector3 unit_vector(std::size_t k) { return {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0}; }
 
@@ -78,53 +75,36 @@ Vector3 unit_vector(std::size_t k) { return {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0,
 // unit steps are exact.
 Dense resistance_by_forces(System system, const Physics& physics) {
   ForceField field(physics, system.particles, /*timestep=*/0, /*seed=*/1, /*threads=*/1);
-  VectorField force(count), torque(count), force_before(count), torque_before(count);
-  field.evaluate(system, force_before, torque_before);
+  const Rows before = loads(field, system), roots = inverse_roots(system.particles);
   Dense matrix;
   for (std::size_t k = 0; k < rows; ++k) {
     System moved = system;
     VectorField& motion = k % 6 < 3 ? moved.particles.velocity : moved.particles.angular_velocity;
     motion.set(k / 6, motion[k / 6] + unit_vector(k % 3));
-    field.evaluate(moved, force, torque);
-    for (std::size_t row = 0; row < rows; ++row) {
-      const std::size_t i = row / 6;
-      const Vector3 loss = row % 6 < 3 ? force_before[i] - force[i] : torque_before[i] - torque[i];
-      matrix[row][k] =
-          component(loss, row % 3) * inverse_root(system.particles, row) * inverse_root(system.particles, k);
-    }
+    matrix.col(static_cast<Eigen::Index>(k)) = before - loads(field, moved);
   }
-  return matrix;
+  return roots.asDiagonal() * matrix * roots.asDiagonal();
 }
 
 // K as the sum of k g g^T, g how fast a spring of stiffness k grows with each velocity and spin.
 class StiffnessByExtensions {
  public:
-  explicit StiffnessByExtensions(const ParticleState& particles) : particles_(particles) {}
+  explicit StiffnessByExtensions(const ParticleState& particles) : roots_(inverse_roots(particles)) {}
 
   void add(double stiffness, std::size_t i, std::size_t j, const Vector3& velocity, const Vector3& spin_first,
            const Vector3& spin_second) {
-    std::array<double, rows> growth{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      growth[6 * i + k] = -component(velocity, k);
-      growth[6 * j + k] = component(velocity, k);
-      growth[6 * i + 3 + k] = component(spin_first, k);
-      growth[6 * j + 3 + k] = component(spin_second, k);
-    }
-    for (std::size_t row = 0; row < rows; ++row) {
-      growth[row] *= inverse_root(particles_, row);
-    }
-    for (std::size_t row = 0; row < rows; ++row) {
-      for (std::size_t k = 0; k < rows; ++k) {
-        matrix_[row][k] += stiffness * growth[row] * growth[k];
-      }
-    }
+    Rows growth = Rows::Zero();
+    growth.segment<6>(row_of(i)) << -to_eigen(velocity), to_eigen(spin_first);
+    growth.segment<6>(row_of(j)) << to_eigen(velocity), to_eigen(spin_second);
+    growth.array() *= roots_.array();
+    matrix_ += stiffness * growth * growth.transpose();
   }
 
   const Dense& matrix() const { return matrix_; }
 
  private:
-  const ParticleState& particles_;
-  Dense matrix_{};
+  Rows roots_;
+  Dense matrix_ = Dense::Zero();
 };
 
 // Springs of every contact, and the repulsion's potential curving with the distance.
@@ -186,7 +166,7 @@ TEST(SpectralBound, IsTheLargestOfAllEigenvalues) {
     const System system = dense_suspension(physics, count, seed);
     for (const MatrixWeights weights : {MatrixWeights{1, 0}, {0, 1}, {1e-2, 1e-4}}) {
       const PackingMatrix matrix(system, kinds_of(system, physics), physics, weights);
-      const double largest = symmetric_eigenvalues(dense(matrix)).back();
+      const double largest = Eigen::SelfAdjointEigenSolver<Dense>(dense(matrix)).eigenvalues().maxCoeff();
       const SpectralBound rough = largest_eigenvalue(matrix), fine = largest_eigenvalue(matrix, 1e-6);
       EXPECT_LE(rough.value, largest * (1 + 1e-12));
       EXPECT_GE(rough.upper(), 0.99 * largest);
@@ -244,6 +224,29 @@ TEST(SpectralBound, UpperEstimateIsHardlyEverBelowTheLargestEigenvalue) {
   }
   EXPECT_LE(below, 6);
   EXPECT_GT(lowest, 0.99);
+}
+
+// Units are the scene's own: rates may be of any size.
+TEST(SpectralBound, ScalesWithTheMatrix) {
+  const Physics physics = physics_with(every_term);
+  const System system = dense_suspension(physics, count, 1);
+  const auto largest = [&](double scale) {
+    return largest_eigenvalue(PackingMatrix(system, kinds_of(system, physics), physics, {scale, 0}), 1e-6);
+  };
+  const SpectralBound one = largest(1);
+  for (const double scale : {1e-100, 1e-12, 1e12, 1e100}) {
+    const SpectralBound scaled = largest(scale);
+    EXPECT_NEAR(scaled.value / scale, one.value, 1e-12 * one.value) << scale;
+    EXPECT_EQ(scaled.iterations, one.iterations) << scale;
+  }
+}
+
+TEST(SpectralBound, OfAMatrixThatIsNotFiniteIsNotANumber) {
+  const Physics physics = physics_with(every_term);
+  const System system = dense_suspension(physics, count, 1);
+  const MatrixWeights weights = {std::numeric_limits<double>::quiet_NaN(), 0};
+  const PackingMatrix matrix(system, kinds_of(system, physics), physics, weights);
+  EXPECT_TRUE(std::isnan(largest_eigenvalue(matrix).upper()));
 }
 
 TEST(SpectralBound, OfSpheresWithoutNeighboursIsTheirDrag) {

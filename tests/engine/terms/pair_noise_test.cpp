@@ -14,27 +14,15 @@ using NoiseLoad = PairLoad (*)(double, const ResistanceRoots&, const PairGeometr
                                const Vector3&);
 
 // Covariance of (F_i, F_j, T_i, T_j) for theta and chi with independent components of variance one.
-Matrix<12> covariance(NoiseLoad noise, double amplitude, const ResistanceRoots& root,
-                      const PairGeometry& pair) {
-  Matrix<12> sum{};
-  for (std::size_t k = 0; k < 6; ++k) {
-    Vector3 theta, chi;
-    Vector3& part = k < 3 ? theta : chi;
-    (k % 3 == 0 ? part.x : k % 3 == 1 ? part.y : part.z) = 1;
-    const std::array<double, 12> column = components(noise(amplitude, root, pair, theta, chi));
-    for (std::size_t i = 0; i < 12; ++i) {
-      for (std::size_t j = 0; j < 12; ++j) sum[i][j] += column[i] * column[j];
-    }
+Matrix12 covariance(NoiseLoad noise, double amplitude, const ResistanceRoots& root,
+                    const PairGeometry& pair) {
+  Eigen::Matrix<double, 12, 6> loads;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const Vector3 unit = from_eigen(Eigen::Vector3d::Unit(k));
+    loads.col(k) = components(noise(amplitude, root, pair, unit, {}));
+    loads.col(3 + k) = components(noise(amplitude, root, pair, {}, unit));
   }
-  return sum;
-}
-
-double largest_difference(const Matrix<12>& a, const Matrix<12>& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < 12; ++i) {
-    for (std::size_t j = 0; j < 12; ++j) largest = std::max(largest, std::abs(a[i][j] - b[i][j]));
-  }
-  return largest;
+  return loads * loads.transpose();
 }
 
 // As eq. 24 is printed: a plus before the second torque's root.
@@ -52,9 +40,9 @@ TEST(PairNoise, CovarianceIsTheResistanceForUnequalSizes) {
     for (const double gap : gaps) {
       const PairGeometry pair = pair_at(1.3, 1.3 * ratio, gap, draws.direction());
       const PairResistance R = resistance_of(viscosity, 1.3, 1.3 * ratio, pair);
-      const Matrix<12> expected = grand_resistance(R, pair);
+      const Matrix12 expected = grand_resistance(R, pair);
       const ResistanceRoots root = roots_of(viscosity, 1.3, 1.3 * ratio, pair);
-      EXPECT_LT(largest_difference(covariance(pair_noise_load, 1, root, pair), expected),
+      EXPECT_LT(largest_entry(covariance(pair_noise_load, 1, root, pair) - expected),
                 1e-13 * largest_entry(expected))
           << ratio << ' ' << gap;
     }
@@ -71,9 +59,9 @@ TEST(PairNoise, TheWrongSignInTheSecondTorqueIsFarFromTheResistance) {
       const PairGeometry pair = pair_at(1, each.ratio, gap, {1, 0, 0});
       const PairResistance R = resistance_of(viscosity, 1, each.ratio, pair);
       const ResistanceRoots root = roots_of(viscosity, 1, each.ratio, pair);
-      const std::size_t first = 7, second = 10;  // y components of both torques
-      EXPECT_NEAR(covariance(pair_noise_load, 1, root, pair)[first][second] / R.twist_cross, 1, 1e-12);
-      EXPECT_NEAR(covariance(wrong_sign, 1, root, pair)[first][second] / R.twist_cross, each.too_large_by,
+      const Eigen::Index first = 7, second = 10;  // y components of both torques
+      EXPECT_NEAR(covariance(pair_noise_load, 1, root, pair)(first, second) / R.twist_cross, 1, 1e-12);
+      EXPECT_NEAR(covariance(wrong_sign, 1, root, pair)(first, second) / R.twist_cross, each.too_large_by,
                   0.06);
     }
   }
