@@ -28,8 +28,11 @@ def merged(base, patch):
 
 # The published system without noise and friction, at a Stokes number of 0.045.
 REFERENCE_SCENE = {
-    "particles": {"count": 1000, "density": 0.1,
-                  "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}]},
+    "particles": {
+        "count": 1000,
+        "density": 0.1,
+        "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}],
+    },
     "volume_fraction": 0.5,
     "fluid": {"viscosity": 0.1},
     "flow": {"shear_rate": 0.045},
@@ -41,10 +44,19 @@ REFERENCE_SCENE = {
 
 # Table 4.1 of Li's thesis, with N = 250 and windows that end with a strain or, at small Peclet numbers, with Brownian times. Ten of these
 # are no equilibration: the viscosity at Pe = 0.1 and phi = 0.5 still rises after 50 (results/control-variates); a^2 / D_0 is 19.
-TABLE_SCENE = merged(REFERENCE_SCENE, {
-    "particles": {"count": 250}, "flow": None, "peclet": 1, "limits": {"shear_rate": 0.009, "thermal_energy": 0.017},
-    "duration": {"equilibration": {"strain": 1, "brownian_times": 100}, "production": {"strain": 2, "brownian_times": 40}},
-})
+TABLE_SCENE = merged(
+    REFERENCE_SCENE,
+    {
+        "particles": {"count": 250},
+        "flow": None,
+        "peclet": 1,
+        "limits": {"shear_rate": 0.009, "thermal_energy": 0.017},
+        "duration": {
+            "equilibration": {"strain": 1, "brownian_times": 100},
+            "production": {"strain": 2, "brownian_times": 40},
+        },
+    },
+)
 
 
 def at_peclet(number):
@@ -77,7 +89,8 @@ class Program:
         pointers = sorted(settings[0])
         seeds *= self.times
         campaign = {
-            "name": name, "scene": scene,
+            "name": name,
+            "scene": scene,
             "sweep": [{"set": pointers, "values": [[s[p] for p in pointers] for s in settings]}],
             "target": {"observable": observable, "relative_tolerance": 1e-9},
             "realisations": {"minimum": seeds, "maximum": seeds},
@@ -91,8 +104,12 @@ class Program:
         if done.returncode not in (0, 3):
             sys.exit(f"{path}: peclet run ended with {done.returncode}")
         export = json.loads(subprocess.run([self.peclet, "export", path], check=True, capture_output=True).stdout)
-        self.commits |= {engine["git_commit"][:7] + ("+" if engine["git_dirty"] else "") for engine in export["engines"].values()}
-        self.processor_seconds += sum(r["cost"]["cpu_seconds"] for point in export["points"] for r in point["realisations"])
+        self.commits |= {
+            engine["git_commit"][:7] + ("+" if engine["git_dirty"] else "") for engine in export["engines"].values()
+        }
+        self.processor_seconds += sum(
+            r["cost"]["cpu_seconds"] for point in export["points"] for r in point["realisations"]
+        )
         return export["points"]
 
     def stored_results(self, name):
@@ -100,7 +117,8 @@ class Program:
         database = sqlite3.connect(f"file:{os.path.join(self.folder, name)}.peclet/campaign.db?mode=ro", uri=True)
         points = {}
         for place, result, dictionary in database.execute(
-                "SELECT place, result, dictionary FROM realisations WHERE state = 'done' ORDER BY place, seed"):
+            "SELECT place, result, dictionary FROM realisations WHERE state = 'done' ORDER BY place, seed"
+        ):
             points.setdefault(place, []).append(json.loads(inflated(result, dictionary)))
         database.close()
         return [points[place] for place in sorted(points)]
@@ -109,9 +127,17 @@ class Program:
         """What `peclet validate` says of one scene: its time step, groups and warnings."""
         path = os.path.join(self.folder, "scene.json")
         with open(path, "w") as f:
-            json.dump({"name": "scene", "scene": scene, "sweep": [],
-                       "target": {"observable": "relative_viscosity", "relative_tolerance": 0.1},
-                       "realisations": {"minimum": 2, "maximum": 2}, "engine": [self.engine, "serve"]}, f)
+            json.dump(
+                {
+                    "name": "scene",
+                    "scene": scene,
+                    "sweep": [],
+                    "target": {"observable": "relative_viscosity", "relative_tolerance": 0.1},
+                    "realisations": {"minimum": 2, "maximum": 2},
+                    "engine": [self.engine, "serve"],
+                },
+                f,
+            )
         done = subprocess.run([self.peclet, "validate", path, "--json"], capture_output=True, text=True)
         if done.returncode == 2:
             return {"refused": done.stderr.strip()}
@@ -137,7 +163,14 @@ def student_quantile(degrees, probability):
     def between_0_and(t):  # Simpson's rule in the angle: t = sqrt(degrees) tan a
         top, steps = math.atan(t / math.sqrt(degrees)), 200
         weights = [1, *[4, 2] * (steps // 2 - 1), 4, 1]
-        return sum(w * math.cos(top * k / steps) ** (degrees - 1) for k, w in enumerate(weights)) * top / steps / 3 * norm * math.sqrt(degrees)
+        return (
+            sum(w * math.cos(top * k / steps) ** (degrees - 1) for k, w in enumerate(weights))
+            * top
+            / steps
+            / 3
+            * norm
+            * math.sqrt(degrees)
+        )
 
     low, high = 0.0, 1e4
     for _ in range(100):
@@ -201,7 +234,11 @@ def viscosity_row(point, *others):
         "structural": lambda m: m["brownian_structural"][3],
         **{name: (lambda m, name=name: m[name]) for name in others},
     }
-    row = {"seeds": len(means), "lost": len(point["realisations"]) - len(means), "transient": int(bool((point["look"] or {}).get("transient")))}
+    row = {
+        "seeds": len(means),
+        "lost": len(point["realisations"]) - len(means),
+        "transient": int(bool((point["look"] or {}).get("transient"))),
+    }
     for name, of in quantities.items():
         row[name], row[f"{name}_error"] = estimate([of(m) for m in means]) if means else (math.nan, math.inf)
     return row
@@ -230,7 +267,9 @@ def log_minimum(abscissae, values):
     x = [math.log10(a) for a in abscissae]
     if lowest in (0, len(values) - 1):
         return x[lowest]
-    (x1, x2, x3), (y1, y2, y3) = x[lowest - 1:lowest + 2], [math.log(max(v, 1e-9)) for v in values[lowest - 1:lowest + 2]]
+    (x1, x2, x3), (y1, y2, y3) = x[lowest - 1 : lowest + 2], [
+        math.log(max(v, 1e-9)) for v in values[lowest - 1 : lowest + 2]
+    ]
     left, right = (y2 - y1) / (x2 - x1), (y3 - y2) / (x3 - x2)
     return (x1 + x2) / 2 - left * (x3 - x1) / 2 / (right - left)
 
@@ -248,7 +287,12 @@ FLAGS = ("timestep", "solver", "overlap")
 
 def flags(realisations):
     """How many completed realisations warn of what."""
-    return collections.Counter(code for r in realisations if r.get("mean") for code in {w["code"] for w in r.get("warnings") or []} & set(FLAGS))
+    return collections.Counter(
+        code
+        for r in realisations
+        if r.get("mean")
+        for code in {w["code"] for w in r.get("warnings") or []} & set(FLAGS)
+    )
 
 
 def counts_text(counter):
@@ -272,4 +316,6 @@ def write_table(path, columns, rows, digits):
         writer = csv.DictWriter(f, columns)
         writer.writeheader()
         for row in rows:
-            writer.writerow({k: f"{row[k]:.{digits}g}" if isinstance(row.get(k), float) else row.get(k) for k in columns})
+            writer.writerow(
+                {k: f"{row[k]:.{digits}g}" if isinstance(row.get(k), float) else row.get(k) for k in columns}
+            )

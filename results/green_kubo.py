@@ -7,7 +7,9 @@ import os
 def table_at_rest():
     """What the zero-shear study has measured, by volume fraction: viscosity over the solvent's, time in Brownian ones, and their standard errors."""
     with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "zero-shear", "table.csv"), newline="") as f:
-        return {float(row["fraction"]): {name: float(value) for name, value in row.items()} for row in csv.DictReader(f)}
+        return {
+            float(row["fraction"]): {name: float(value) for name, value in row.items()} for row in csv.DictReader(f)
+        }
 
 
 def curve(point, unit):

@@ -44,12 +44,26 @@ class Statement:
     def as_json(self):
         def number(x):
             return float(f"{x:.5g}") if math.isfinite(x) else None
-        return {"statement": self.text, "source": self.source, "value": number(self.value), "standard_error": number(self.error),
-                "low": number(self.low), "high": number(self.high), "essential": self.essential, "answer": self.answer()}
+
+        return {
+            "statement": self.text,
+            "source": self.source,
+            "value": number(self.value),
+            "standard_error": number(self.error),
+            "low": number(self.low),
+            "high": number(self.high),
+            "essential": self.essential,
+            "answer": self.answer(),
+        }
 
     def row(self):
-        bound = (f"{self.low:g} to {self.high:g}" if math.isfinite(self.low) and math.isfinite(self.high)
-                 else f"at least {self.low:g}" if math.isfinite(self.low) else f"at most {self.high:g}")
+        bound = (
+            f"{self.low:g} to {self.high:g}"
+            if math.isfinite(self.low) and math.isfinite(self.high)
+            else f"at least {self.low:g}"
+            if math.isfinite(self.low)
+            else f"at most {self.high:g}"
+        )
         return f"| {self.text} | {self.source} | {self.value:.4g} ± {self.error:.2g} | {bound} | {self.answer()} |"
 
 
@@ -97,20 +111,35 @@ def line_through(x, y, errors):
 
 def main(folder, title, measure, quick_measure):
     """The command line of a study. measure(program) runs it whole, writes its table and picture beside study.py and returns its
-    statements; quick_measure(program) is a version of half a minute, whose statements must all hold: the tests run it."""
+    statements; quick_measure(program) is a version of half a minute, whose statements must all hold: the tests run it.
+    """
     parser = argparse.ArgumentParser(description=title)
     parser.add_argument("binaries", help="folder of peclet and peclet-engine")
-    parser.add_argument("folder", nargs="?", help="of the campaigns, with which a second call goes on; a temporary one unless given")
+    parser.add_argument(
+        "folder", nargs="?", help="of the campaigns, with which a second call goes on; a temporary one unless given"
+    )
     parser.add_argument("--quick", action="store_true", help="half a minute; fails where the physics is broken")
-    parser.add_argument("--long", action="store_true", help="also the points that take hours, where the study has such; goes on with FOLDER")
-    parser.add_argument("--times", type=int, default=1, metavar="N", help="N times as many seeds everywhere, for error bars that are smaller by the root of N; goes on with FOLDER")
+    parser.add_argument(
+        "--long",
+        action="store_true",
+        help="also the points that take hours, where the study has such; goes on with FOLDER",
+    )
+    parser.add_argument(
+        "--times",
+        type=int,
+        default=1,
+        metavar="N",
+        help="N times as many seeds everywhere, for error bars that are smaller by the root of N; goes on with FOLDER",
+    )
     arguments = parser.parse_args()
     if arguments.times < 1:
         parser.error("--times: must be at least 1")
     if not arguments.quick and not os.access(folder, os.W_OK):
         # Said before hours of work, not after them.
-        parser.error(f"{folder}: a whole study writes its table there, and may not; copy the folder above it, and name the copy: "
-                     "peclet study --results COPY")
+        parser.error(
+            f"{folder}: a whole study writes its table there, and may not; copy the folder above it, and name the copy: "
+            "peclet study --results COPY"
+        )
     with tempfile.TemporaryDirectory() as temporary:
         program = Program(arguments.binaries, arguments.folder or temporary)
         program.long, program.times = arguments.long, arguments.times
@@ -123,7 +152,18 @@ def main(folder, title, measure, quick_measure):
         if arguments.quick:
             sys.exit(0 if found == "holds" else 1)
         with open(os.path.join(folder, "study.json"), "w") as f:
-            json.dump({"title": title, "verdict": found, "processor_hours": float(f"{program.processor_seconds / 3600:.2g}"),
-                       "date": datetime.date.today().isoformat(), "engine": sorted(program.commits), "machine": processor(),
-                       "statements": [s.as_json() for s in statements]}, f, indent=1, ensure_ascii=False)
+            json.dump(
+                {
+                    "title": title,
+                    "verdict": found,
+                    "processor_hours": float(f"{program.processor_seconds / 3600:.2g}"),
+                    "date": datetime.date.today().isoformat(),
+                    "engine": sorted(program.commits),
+                    "machine": processor(),
+                    "statements": [s.as_json() for s in statements],
+                },
+                f,
+                indent=1,
+                ensure_ascii=False,
+            )
             f.write("\n")

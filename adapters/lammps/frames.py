@@ -58,7 +58,7 @@ class Channel:
             raise FrameError(f"a frame announces {length} bytes")
         if len(self.received) < 8 + length:
             return None
-        payload, self.received = self.received[8:8 + length], self.received[8 + length:]
+        payload, self.received = self.received[8 : 8 + length], self.received[8 + length :]
         return json.loads(payload)
 
 

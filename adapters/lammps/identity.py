@@ -25,13 +25,18 @@ def sha256_of_script(path):
 
 
 def output_of(*command):
-    return subprocess.run(command, capture_output=True, text=True, env=lammps.ENVIRONMENT, stdin=subprocess.DEVNULL).stdout
+    return subprocess.run(
+        command, capture_output=True, text=True, env=lammps.ENVIRONMENT, stdin=subprocess.DEVNULL
+    ).stdout
 
 
 def libraries_of(program):
     """LAMMPS itself, where it is a shared library, the mathematical functions, and what adds up over ranks."""
-    return [line.split()[2] for line in output_of("ldd", program).splitlines()
-            if re.match(r"\s*(liblammps|libm\.so|libmpi)\S* => /", line)]
+    return [
+        line.split()[2]
+        for line in output_of("ldd", program).splitlines()
+        if re.match(r"\s*(liblammps|libm\.so|libmpi)\S* => /", line)
+    ]
 
 
 def own_sources():
@@ -58,5 +63,8 @@ def engine_identity(lmp, launcher, script, files):
     digest.update(f"{os.path.basename(script)} {sha256_of_script(script)}\n".encode())
     digest.update(f"launcher {json.dumps(launcher)}\n".encode())
     version = re.search(r"Parallel Simulator - (.+)", output_of(lmp, "-h"))
-    return {"version": f"LAMMPS {version[1].strip() if version else 'of unknown version'}", "binary_sha256": digest.hexdigest(),
-            "instruction_set": processor()}
+    return {
+        "version": f"LAMMPS {version[1].strip() if version else 'of unknown version'}",
+        "binary_sha256": digest.hexdigest(),
+        "instruction_set": processor(),
+    }

@@ -26,9 +26,9 @@ def whole_commands(content):
 def without_comment(command):
     quote, place = b"", 0
     while place < len(command):
-        if not quote and command[place:place + 1] == b"#":
+        if not quote and command[place : place + 1] == b"#":
             return command[:place]
-        here = TRIPLE if command.startswith(TRIPLE, place) and quote in (b"", TRIPLE) else command[place:place + 1]
+        here = TRIPLE if command.startswith(TRIPLE, place) and quote in (b"", TRIPLE) else command[place : place + 1]
         if not quote and here in (TRIPLE, b'"', b"'"):
             quote = here
         elif here == quote:

@@ -99,8 +99,15 @@ class Lammps:
         for name, value in variables.items():
             command += ["-var", name, str(value)]
         parent = os.getpid()
-        self.process = subprocess.Popen(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                        stderr=subprocess.STDOUT, preexec_fn=lambda: die_with(parent))
+        self.process = subprocess.Popen(
+            command,
+            cwd=folder,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            preexec_fn=lambda: die_with(parent),
+        )
         self.thermo = Thermo()
         self.unfinished_line = b""
 
@@ -139,11 +146,17 @@ class Lammps:
         if status != 0 or self.thermo.error:
             last = "\n".join(self.thermo.last_lines)
             print(f"lmp ended with {status}:\n{last}", flush=True)
-            raise LammpsError(self.thermo.error or f"lmp ended with status {status}: {list(self.thermo.last_lines)[-1:]}")
+            raise LammpsError(
+                self.thermo.error or f"lmp ended with status {status}: {list(self.thermo.last_lines)[-1:]}"
+            )
         heading = self.thermo.heading
         if self.thermo.atoms is None or "Step" not in heading or heading[0].startswith("-"):
-            raise LammpsError("the script has no run whose thermo output has a column Step and one line per sample "
-                              "(thermo_style one or custom)")
+            raise LammpsError(
+                "the script has no run whose thermo output has a column Step and one line per sample "
+                "(thermo_style one or custom)"
+            )
         if self.thermo.steps_done() != steps:
-            raise LammpsError(f"the script's last run was to make ${{steps}} = {steps} steps and made {self.thermo.steps_done()}")
+            raise LammpsError(
+                f"the script's last run was to make ${{steps}} = {steps} steps and made {self.thermo.steps_done()}"
+            )
         return self.thermo

@@ -35,8 +35,14 @@ def lammps_seed(point, seed, number, numbers):
 def variables_of(scene, number, seed, before, after, steps=None):
     """What the script of chunk `number` is given."""
     chunk = scene.chunks()[number]
-    return {**scene.variables, "from": before, "to": after, "steps": chunk.steps if steps is None else steps, "phase": chunk.phase,
-            "seed": seed}
+    return {
+        **scene.variables,
+        "from": before,
+        "to": after,
+        "steps": chunk.steps if steps is None else steps,
+        "phase": chunk.phase,
+        "seed": seed,
+    }
 
 
 class Stopwatch:
@@ -60,7 +66,7 @@ class Realisation:
     def __init__(self, job, scene, identity, folder):
         self.job, self.scene, self.identity = job, scene, identity
         self.chunks = scene.chunks()
-        self.number = 0    # of the chunk to come
+        self.number = 0  # of the chunk to come
         self.restart = b""  # what it begins with; nothing: the script makes the beginning
         self.samples = {name: [] for name in scene.observables}
         self.timestep = None
@@ -69,7 +75,7 @@ class Realisation:
         self.folder = folder
 
     def steps(self, phase=None):
-        return sum(chunk.steps for chunk in self.chunks[:self.number] if phase in (None, chunk.phase))
+        return sum(chunk.steps for chunk in self.chunks[: self.number] if phase in (None, chunk.phase))
 
     def cost(self):
         return tuple(before + now for before, now in zip(self.spent, self.stopwatch.read()))
@@ -79,21 +85,37 @@ class Realisation:
         try:
             with open(self.job["checkpoint"], "rb") as file:
                 heading, restart = json.loads(file.readline()), file.read()
-            mine = {"point": self.job["point"], "seed": self.job["seed"], "identity": self.identity,
-                    "restart_sha256": hashlib.sha256(restart).hexdigest()}
+            mine = {
+                "point": self.job["point"],
+                "seed": self.job["seed"],
+                "identity": self.identity,
+                "restart_sha256": hashlib.sha256(restart).hexdigest(),
+            }
             if any(heading[key] != value for key, value in mine.items()):
                 raise ValueError("it is of another realisation or engine, or damaged")
             self.number, self.samples, self.timestep, self.spent, self.restart = (
-                heading["number"], heading["samples"], heading["timestep"], tuple(heading["spent"]), restart)
+                heading["number"],
+                heading["samples"],
+                heading["timestep"],
+                tuple(heading["spent"]),
+                restart,
+            )
         except FileNotFoundError:
             return
         except (ValueError, KeyError, TypeError, OSError) as error:
             print(f"{self.job['checkpoint']}: {error}; the realisation starts from the beginning", flush=True)
 
     def save(self):
-        heading = {"point": self.job["point"], "seed": self.job["seed"], "identity": self.identity, "number": self.number,
-                   "samples": self.samples, "timestep": self.timestep, "spent": self.cost(),
-                   "restart_sha256": hashlib.sha256(self.restart).hexdigest()}
+        heading = {
+            "point": self.job["point"],
+            "seed": self.job["seed"],
+            "identity": self.identity,
+            "number": self.number,
+            "samples": self.samples,
+            "timestep": self.timestep,
+            "spent": self.cost(),
+            "restart_sha256": hashlib.sha256(self.restart).hexdigest(),
+        }
         write_durably(self.job["checkpoint"], json.dumps(heading, allow_nan=False).encode() + b"\n" + self.restart)
 
     def next_variables(self):
@@ -140,16 +162,28 @@ class Realisation:
         steps = {phase: self.steps(phase) for phase in ("equilibration", "production")}
         time_of = {phase: None if self.timestep is None else count * self.timestep for phase, count in steps.items()}
         cpu_seconds, wall_seconds = self.cost()
-        return {"schema_version": 1, "point": self.job["point"], "seed": self.job["seed"],
-                "ending": {"cause": cause, "step": self.steps(), "message": message, "state": None},
-                "method": None, "timestep": self.timestep, "steps": steps,
-                "strain": {"equilibration": None, "production": None}, "time": time_of,
-                "derived": {}, "warnings": [], "units": "scene",
-                "mean": self.mean() if completed else None, "blocks": self.blocks() if completed else None,
-                "statistical_inefficiency": None, "largest_overlap": None, "gate": None,
-                "cost": {"cpu_seconds": cpu_seconds, "wall_seconds": wall_seconds},
-                "final_state_sha256": hashlib.sha256(self.restart).hexdigest() if self.restart else None,
-                "engine": engine}
+        return {
+            "schema_version": 1,
+            "point": self.job["point"],
+            "seed": self.job["seed"],
+            "ending": {"cause": cause, "step": self.steps(), "message": message, "state": None},
+            "method": None,
+            "timestep": self.timestep,
+            "steps": steps,
+            "strain": {"equilibration": None, "production": None},
+            "time": time_of,
+            "derived": {},
+            "warnings": [],
+            "units": "scene",
+            "mean": self.mean() if completed else None,
+            "blocks": self.blocks() if completed else None,
+            "statistical_inefficiency": None,
+            "largest_overlap": None,
+            "gate": None,
+            "cost": {"cpu_seconds": cpu_seconds, "wall_seconds": wall_seconds},
+            "final_state_sha256": hashlib.sha256(self.restart).hexdigest() if self.restart else None,
+            "engine": engine,
+        }
 
 
 def take_restart(folder, name):

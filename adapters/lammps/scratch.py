@@ -25,7 +25,7 @@ def folder_with(files):
     path = tempfile.mkdtemp(prefix="new-" + PREFIX)
     descriptor = lock(path)
     # Only now has it a name under which others look for what the dead have left.
-    path, unlocked_name = os.path.join(os.path.dirname(path), os.path.basename(path)[len("new-"):]), path
+    path, unlocked_name = os.path.join(os.path.dirname(path), os.path.basename(path)[len("new-") :]), path
     os.rename(unlocked_name, path)
     try:
         for file in files:

@@ -20,7 +20,7 @@ def ratio(pairs):
 
 def slope(pairs):
     mean_eta, mean_b = statistics.fmean(p[0] for p in pairs), statistics.fmean(p[1] for p in pairs)
-    return (sum((eta - mean_eta) * (b - mean_b) for eta, b in pairs) / sum((b - mean_b) ** 2 for _, b in pairs))
+    return sum((eta - mean_eta) * (b - mean_b) for eta, b in pairs) / sum((b - mean_b) ** 2 for _, b in pairs)
 
 
 def cross_fitted(pairs):
@@ -38,8 +38,9 @@ def interval(pairs):
 
 def correlation(a, b):
     mean_a, mean_b = statistics.fmean(a), statistics.fmean(b)
-    return (sum((x - mean_a) * (y - mean_b) for x, y in zip(a, b)) /
-            math.sqrt(sum((x - mean_a) ** 2 for x in a) * sum((y - mean_b) ** 2 for y in b)))
+    return sum((x - mean_a) * (y - mean_b) for x, y in zip(a, b)) / math.sqrt(
+        sum((x - mean_a) ** 2 for x in a) * sum((y - mean_b) ** 2 for y in b)
+    )
 
 
 def mean_text(values):
@@ -48,8 +49,10 @@ def mean_text(values):
 
 def main():
     export = json.load(sys.stdin)
-    print("| Pe | realisations | η_r | η_r + B | B | standard deviation of η_r | variance of η_r + B over that of η_r | with β cross-fitted | β | "
-          "correlation of η_r + B with the structural stress | largest one with xx, yy, zz, xz or yz of B | s of processor each |")
+    print(
+        "| Pe | realisations | η_r | η_r + B | B | standard deviation of η_r | variance of η_r + B over that of η_r | with β cross-fitted | β | "
+        "correlation of η_r + B with the structural stress | largest one with xx, yy, zz, xz or yz of B | s of processor each |"
+    )
     print("|---|---|---|---|---|---|---|---|---|---|---|---|")
     for point in export["points"]:
         results = [r for r in point["realisations"] + point["surplus"] if r.get("mean")]
@@ -58,11 +61,16 @@ def main():
         fitted, beta = cross_fitted(pairs)
         controlled = [eta + b for eta, b in pairs]
         structural = correlation(controlled, [r["mean"]["brownian_structural"][3] for r in results])
-        others = max((correlation(controlled, [r["mean"]["brownian_pairwise"][k] for r in results]) for k in (0, 1, 2, 4, 5)), key=abs)
+        others = max(
+            (correlation(controlled, [r["mean"]["brownian_pairwise"][k] for r in results]) for k in (0, 1, 2, 4, 5)),
+            key=abs,
+        )
         cost = statistics.median(r["cost"]["cpu_seconds"] for r in results)
-        print(f"| {point['settings']['/peclet']} | {len(pairs)} | {mean_text([p[0] for p in pairs])} | {mean_text([p[0] + p[1] for p in pairs])} | "
-              f"{mean_text([p[1] for p in pairs])} | {statistics.stdev([p[0] for p in pairs]):.2f} | **{ratio(pairs):.3f}** ({low:.3f} .. {high:.3f}) | "
-              f"{fitted:.3f} | {beta:.2f} | {structural:.2f} | {others:.2f} | {cost:.2g} |")
+        print(
+            f"| {point['settings']['/peclet']} | {len(pairs)} | {mean_text([p[0] for p in pairs])} | {mean_text([p[0] + p[1] for p in pairs])} | "
+            f"{mean_text([p[1] for p in pairs])} | {statistics.stdev([p[0] for p in pairs]):.2f} | **{ratio(pairs):.3f}** ({low:.3f} .. {high:.3f}) | "
+            f"{fitted:.3f} | {beta:.2f} | {structural:.2f} | {others:.2f} | {cost:.2g} |"
+        )
 
 
 main()

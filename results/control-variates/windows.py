@@ -37,22 +37,30 @@ def main():
         for place, settings in database.execute("SELECT place, settings FROM points").fetchall():
             series, window = [], None
             for stored, dictionary in database.execute(
-                    "SELECT result, dictionary FROM realisations WHERE place = ? AND state = 'done' ORDER BY seed", (place,)):
+                "SELECT result, dictionary FROM realisations WHERE place = ? AND state = 'done' ORDER BY seed", (place,)
+            ):
                 result = json.loads(inflated(stored, dictionary))
                 blocks = result["blocks"]
                 series.append((blocks["relative_viscosity"], blocks["control_variates"]["brownian_pairwise"]))
-                window = result["time"]["production"] / result["derived"]["brownian_time"], result["strain"]["production"]
+                window = (
+                    result["time"]["production"] / result["derived"]["brownian_time"],
+                    result["strain"]["production"],
+                )
             for together in (1, 2, 4, 8, 16, 32):
                 per_seed = []
                 for viscosity, brownian in series:
-                    averages = [(sum(viscosity[k:k + together]) / together, sum(brownian[k:k + together]) / together)
-                                for k in range(0, len(viscosity), together)]
+                    averages = [
+                        (sum(viscosity[k : k + together]) / together, sum(brownian[k : k + together]) / together)
+                        for k in range(0, len(viscosity), together)
+                    ]
                     per_seed.append((moments([eta for eta, _ in averages]), moments([eta + b for eta, b in averages])))
                 resampled = sorted(ratio(generator.choices(per_seed, k=len(per_seed))) for _ in range(RESAMPLES))
                 low, high = resampled[int(0.025 * RESAMPLES)], resampled[int(0.975 * RESAMPLES)]
                 part = together / 32
-                print(f"| {json.loads(settings)['/peclet']:g} | {window[0] * part:.3g} Brownian times, strain {window[1] * part:.2g} | "
-                      f"{len(per_seed) * 32 // together} | {ratio(per_seed):.3f} ({low:.3f} .. {high:.3f}) |")
+                print(
+                    f"| {json.loads(settings)['/peclet']:g} | {window[0] * part:.3g} Brownian times, strain {window[1] * part:.2g} | "
+                    f"{len(per_seed) * 32 // together} | {ratio(per_seed):.3f} ({low:.3f} .. {high:.3f}) |"
+                )
 
 
 main()

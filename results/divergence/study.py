@@ -9,7 +9,16 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from campaigns import TABLE_SCENE, columns_of, merged, number, propagated, quotient, viscosity_row, write_table  # noqa: E402
+from campaigns import (
+    TABLE_SCENE,
+    columns_of,
+    merged,
+    number,
+    propagated,
+    quotient,
+    viscosity_row,
+    write_table,
+)  # noqa: E402
 from green_kubo import table_at_rest  # noqa: E402
 from studies import Statement, data_block, gnuplot, main  # noqa: E402
 
@@ -21,7 +30,10 @@ SEEDS = 5
 
 # At rest: what the zero-shear study has of these volume fractions, and lubrication at a small Peclet number.
 REST_FRACTIONS = FRACTIONS[:7]
-SLOW = merged(TABLE_SCENE, {"peclet": 0.22, "duration": {"equilibration": {"brownian_times": 20}, "production": {"brownian_times": 20}}})
+SLOW = merged(
+    TABLE_SCENE,
+    {"peclet": 0.22, "duration": {"equilibration": {"brownian_times": 20}, "production": {"brownian_times": 20}}},
+)
 SLOW_SEEDS = 3
 
 PUBLISHED = {0: (0.587, 1.5), 4.6: (None, 1.5), 1e4: (0.642, 1.5)}
@@ -48,7 +60,9 @@ def fit_with_error(rows, quantity):
     fractions, numbers = [r["fraction"] for r in rows], [number(r, quantity) for r in rows]
     whole = fitted(fractions, [v for v, _ in numbers])
     errors, n = [], len(rows)
-    parts = [fitted(fractions[:k] + fractions[k + 1:], [v for v, _ in numbers[:k] + numbers[k + 1:]]) for k in range(n)]
+    parts = [
+        fitted(fractions[:k] + fractions[k + 1 :], [v for v, _ in numbers[:k] + numbers[k + 1 :]]) for k in range(n)
+    ]
     for which in range(2):
         drawn = propagated(numbers, lambda values, which=which: fitted(fractions, values)[which], 100)[1]
         middle = sum(p[which] for p in parts) / n
@@ -71,13 +85,23 @@ def other_forms(rows, quantity, lowest):
         rest = math.sqrt(sum((b - mean_y - slope * (a - mean_x)) ** 2 for a, b in zip(x, y)) / len(x))
         candidate = rest, jammed, slope, math.exp(mean_y - slope * mean_x)
         free = min(free or candidate, candidate)
-    return {"fixed_jammed": fixed[1], "fixed_rest": fixed[0], "free_jammed": free[1], "free_exponent": free[2], "free_prefactor": free[3], "free_rest": free[0]}
+    return {
+        "fixed_jammed": fixed[1],
+        "fixed_rest": fixed[0],
+        "free_jammed": free[1],
+        "free_exponent": free[2],
+        "free_prefactor": free[3],
+        "free_rest": free[0],
+    }
 
 
 def sheared(program, name, cases, seeds, patch=None):
     """Rows of (Peclet number, volume fraction)."""
     settings = [{"/peclet": p, "/volume_fraction": f} for p, f in cases]
-    return [{"peclet": p, "fraction": f, **viscosity_row(point)} for (p, f), point in zip(cases, program.run(name, merged(SHEARED, patch or {}), settings, seeds))]
+    return [
+        {"peclet": p, "fraction": f, **viscosity_row(point)}
+        for (p, f), point in zip(cases, program.run(name, merged(SHEARED, patch or {}), settings, seeds))
+    ]
 
 
 def at_rest(program):
@@ -90,9 +114,25 @@ def at_rest(program):
         (brownian, brownian_error), (tau, tau_error) = number(rest, "viscosity"), number(rest, "time")
         lubrication = number(viscosity_row(slow), "lubrication")
         pairs, error = brownian + lubrication[0], math.hypot(brownian_error, lubrication[1])
-        rows.append({"peclet": 0, "fraction": fraction, "seeds": round(rest["seeds"]), "lost": 0, "transient": 0, "brownian": brownian, "brownian_error": brownian_error,
-                     "time": tau, "time_error": tau_error, "lubrication": lubrication[0], "lubrication_error": lubrication[1],
-                     "pairs": pairs, "pairs_error": error, "viscosity": 1 + 2.5 * fraction + pairs, "viscosity_error": error})
+        rows.append(
+            {
+                "peclet": 0,
+                "fraction": fraction,
+                "seeds": round(rest["seeds"]),
+                "lost": 0,
+                "transient": 0,
+                "brownian": brownian,
+                "brownian_error": brownian_error,
+                "time": tau,
+                "time_error": tau_error,
+                "lubrication": lubrication[0],
+                "lubrication_error": lubrication[1],
+                "pairs": pairs,
+                "pairs_error": error,
+                "viscosity": 1 + 2.5 * fraction + pairs,
+                "viscosity_error": error,
+            }
+        )
     return rows
 
 
@@ -103,14 +143,50 @@ def statements_of(curves, fits):
         for quantity, text, essential in (("pairs", "η_r of pairs", True), ("viscosity", "η_r with 1 + 2.5 φ", False)):
             fit = fits[peclet, quantity]
             if jammed:
-                yield Statement(f"{names[peclet]}: φ_J of {text} (published: {jammed})", "L4.9a", *fit[0][:2], jammed - 0.01, jammed + 0.01, degrees, essential)
-            yield Statement(f"{names[peclet]}: λ of {text} (published: 1.5)", "L4.9a", *fit[1][:2], exponent - 0.2, exponent + 0.2, degrees, essential)
+                yield Statement(
+                    f"{names[peclet]}: φ_J of {text} (published: {jammed})",
+                    "L4.9a",
+                    *fit[0][:2],
+                    jammed - 0.01,
+                    jammed + 0.01,
+                    degrees,
+                    essential,
+                )
+            yield Statement(
+                f"{names[peclet]}: λ of {text} (published: 1.5)",
+                "L4.9a",
+                *fit[1][:2],
+                exponent - 0.2,
+                exponent + 0.2,
+                degrees,
+                essential,
+            )
     shift = [fits[4.6, "pairs"][0], fits[1e4, "pairs"][0]]
-    yield Statement("φ_J at Pe = 4.6 less that at 10⁴ (marginally above)", "L4.9a", shift[0][0] - shift[1][0], math.hypot(shift[0][1], shift[1][1]), 0, 0.02, len(FRACTIONS) - 2, essential=False)
+    yield Statement(
+        "φ_J at Pe = 4.6 less that at 10⁴ (marginally above)",
+        "L4.9a",
+        shift[0][0] - shift[1][0],
+        math.hypot(shift[0][1], shift[1][1]),
+        0,
+        0.02,
+        len(FRACTIONS) - 2,
+        essential=False,
+    )
     for peclet in (0, 1e4):
-        ratios = {r["fraction"]: quotient(number(next(m for m in curves[4.6] if m["fraction"] == r["fraction"]), "pairs"), number(r, "pairs")) for r in curves[peclet]}
+        ratios = {
+            r["fraction"]: quotient(
+                number(next(m for m in curves[4.6] if m["fraction"] == r["fraction"]), "pairs"), number(r, "pairs")
+            )
+            for r in curves[peclet]
+        }
         fraction = max(ratios, key=lambda f: ratios[f][0])
-        yield Statement(f"largest η_r of pairs at Pe = 4.6 over that at {names[peclet]} (at φ = {fraction:g})", "L4.9a", *ratios[fraction], high=1, degrees=min(r["seeds"] for r in curves[4.6]) - 1)
+        yield Statement(
+            f"largest η_r of pairs at Pe = 4.6 over that at {names[peclet]} (at φ = {fraction:g})",
+            "L4.9a",
+            *ratios[fraction],
+            high=1,
+            degrees=min(r["seeds"] for r in curves[4.6]) - 1,
+        )
 
 
 def measure(program):
@@ -118,23 +194,91 @@ def measure(program):
     curves = {0: at_rest(program), **{p: [r for r in rows if r["peclet"] == p] for p in PECLET}}
     fits = {(p, q): fit_with_error(c, q) for p, c in curves.items() for q in ("pairs", "viscosity")}
     fast = {"limits": {"shear_rate": 0.045}, "duration": {"production": {"strain": 2}}}
-    methods = {m: sheared(program, m, [(1e4, 0.5)], 6, merged(fast, {"integrator": {"method": m}}))[0] for m in ("implicit", "explicit")}
-    write_table(os.path.join(HERE, "table.csv"), ["method", "peclet", "fraction", "seeds", "lost", "transient", *columns_of("viscosity", "pairs", "lubrication", "contact", "brownian", "time")],
-                [{"method": "implicit", **r} for c in curves.values() for r in c] + [{"method": f"{m} at rate 0.045", **r} for m, r in methods.items()], 4)
-    write_table(os.path.join(HERE, "fits.csv"), ["peclet", "quantity", "jammed", "jammed_error", "jammed_by_seeds", "jammed_by_fractions", "exponent", "exponent_error", "exponent_by_seeds", "exponent_by_fractions"],
-                [dict(zip(["peclet", "quantity", "jammed", "jammed_error", "jammed_by_seeds", "jammed_by_fractions", "exponent", "exponent_error", "exponent_by_seeds", "exponent_by_fractions"],
-                          [p, q, *fit[0], *fit[1]])) for (p, q), fit in fits.items()], 4)
-    forms = [{"peclet": p, "quantity": q, "lowest": f, **other_forms(curves[p], q, f)} for p in (0, *PECLET) for q in ("pairs", "viscosity") for f in (0.40, 0.48)]
+    methods = {
+        m: sheared(program, m, [(1e4, 0.5)], 6, merged(fast, {"integrator": {"method": m}}))[0]
+        for m in ("implicit", "explicit")
+    }
+    write_table(
+        os.path.join(HERE, "table.csv"),
+        [
+            "method",
+            "peclet",
+            "fraction",
+            "seeds",
+            "lost",
+            "transient",
+            *columns_of("viscosity", "pairs", "lubrication", "contact", "brownian", "time"),
+        ],
+        [{"method": "implicit", **r} for c in curves.values() for r in c]
+        + [{"method": f"{m} at rate 0.045", **r} for m, r in methods.items()],
+        4,
+    )
+    write_table(
+        os.path.join(HERE, "fits.csv"),
+        [
+            "peclet",
+            "quantity",
+            "jammed",
+            "jammed_error",
+            "jammed_by_seeds",
+            "jammed_by_fractions",
+            "exponent",
+            "exponent_error",
+            "exponent_by_seeds",
+            "exponent_by_fractions",
+        ],
+        [
+            dict(
+                zip(
+                    [
+                        "peclet",
+                        "quantity",
+                        "jammed",
+                        "jammed_error",
+                        "jammed_by_seeds",
+                        "jammed_by_fractions",
+                        "exponent",
+                        "exponent_error",
+                        "exponent_by_seeds",
+                        "exponent_by_fractions",
+                    ],
+                    [p, q, *fit[0], *fit[1]],
+                )
+            )
+            for (p, q), fit in fits.items()
+        ],
+        4,
+    )
+    forms = [
+        {"peclet": p, "quantity": q, "lowest": f, **other_forms(curves[p], q, f)}
+        for p in (0, *PECLET)
+        for q in ("pairs", "viscosity")
+        for f in (0.40, 0.48)
+    ]
     write_table(os.path.join(HERE, "forms.csv"), list(forms[0]), forms, 4)
     draw(curves, fits)
-    return [*statements_of(curves, fits), Statement("φ = 0.5, Pe = 10⁴, rate 0.045: η_r with implicit steps over that with explicit ones", "method",
-                                                    *quotient(number(methods["implicit"], "viscosity"), number(methods["explicit"], "viscosity")), 0.9, 1.1, methods["explicit"]["seeds"] - 1)]
+    return [
+        *statements_of(curves, fits),
+        Statement(
+            "φ = 0.5, Pe = 10⁴, rate 0.045: η_r with implicit steps over that with explicit ones",
+            "method",
+            *quotient(number(methods["implicit"], "viscosity"), number(methods["explicit"], "viscosity")),
+            0.9,
+            1.1,
+            methods["explicit"]["seeds"] - 1,
+        ),
+    ]
 
 
 def draw(curves, fits):
     colours = {0: "#2060b0", 4.6: "#308030", 1e4: "#c03028"}
     names = {0: "Pe → 0", 4.6: "Pe = 4.6", 1e4: "Pe = 10⁴"}
-    lines = ["set terminal pngcairo size 1100, 480 font 'Sans,11'", f"set output '{os.path.join(HERE, 'chart.png')}'", "set multiplot layout 1, 2", "set grid lc rgb '#d8d8d8'; set samples 600"]
+    lines = [
+        "set terminal pngcairo size 1100, 480 font 'Sans,11'",
+        f"set output '{os.path.join(HERE, 'chart.png')}'",
+        "set multiplot layout 1, 2",
+        "set grid lc rgb '#d8d8d8'; set samples 600",
+    ]
     for k, rows in enumerate(curves.values()):
         lines += data_block(f"c{k}", [(r["fraction"], *number(r, "pairs")) for r in rows])
     for panel in ("η_r of pairs", "(η_r of pairs)^{-2/3}"):
@@ -144,12 +288,22 @@ def draw(curves, fits):
             jammed, exponent = (f[0] for f in fits[peclet, "pairs"])
             published = PUBLISHED[peclet][0]
             y, e = ("2", "3") if shape == "{}" else ("($2**(-1/1.5))", "($3/1.5*$2**(-1/1.5-1))")
-            parts.append(f"$c{k} using 1:{y}:{e} with yerrorbars pt 7 ps 0.8 lc rgb '{colours[peclet]}' title '{names[peclet]}'")
-            parts.append(f"(x < {jammed} ? {shape.format(f'(1 - x / {jammed})**-{exponent}')} : 1/0) lc rgb '{colours[peclet]}' notitle")
+            parts.append(
+                f"$c{k} using 1:{y}:{e} with yerrorbars pt 7 ps 0.8 lc rgb '{colours[peclet]}' title '{names[peclet]}'"
+            )
+            parts.append(
+                f"(x < {jammed} ? {shape.format(f'(1 - x / {jammed})**-{exponent}')} : 1/0) lc rgb '{colours[peclet]}' notitle"
+            )
             if published:
-                parts.append(f"(x < {published} ? {shape.format(f'(1 - x / {published})**-1.5')} : 1/0) lc rgb '{colours[peclet]}' dt 2 title 'published, φ_J = {published}'")
+                parts.append(
+                    f"(x < {published} ? {shape.format(f'(1 - x / {published})**-1.5')} : 1/0) lc rgb '{colours[peclet]}' dt 2 title 'published, φ_J = {published}'"
+                )
         lines += [f"set xlabel 'φ'; set ylabel '{panel}'; set xrange [0.38:0.66]"]
-        lines += ["set logscale y; set yrange [1:300]; set key top left"] if shape == "{}" else ["unset logscale y; set yrange [0:0.6]; set key top right"]
+        lines += (
+            ["set logscale y; set yrange [1:300]; set key top left"]
+            if shape == "{}"
+            else ["unset logscale y; set yrange [0:0.6]; set key top right"]
+        )
         lines.append("plot " + ", ".join(parts))
     gnuplot(lines)
 
@@ -159,9 +313,21 @@ def quick_measure(program):
     rows = sheared(program, "quick", [*((1e4, f) for f in fractions), (4.6, 0.5)], 8, {"particles": {"count": 150}})
     fast, slow = rows[:3], rows[3]
     numbers = [number(r, "pairs") for r in fast]
-    jammed, exponent = (propagated(numbers, lambda values, which=which: fitted(fractions, values)[which], 100) for which in range(2))
-    return [Statement("Pe = 10⁴: φ_J of η_r of pairs", "L4.9a", *jammed, 0.58, 0.72, 7), Statement("Pe = 10⁴: its λ", "L4.9a", *exponent, 1, 2.2, 7),
-            Statement("φ = 0.5: η_r of pairs at Pe = 4.6 over that at 10⁴", "L4.9a", *quotient(number(slow, "pairs"), number(fast[1], "pairs")), 0.3, 0.9, 7)]
+    jammed, exponent = (
+        propagated(numbers, lambda values, which=which: fitted(fractions, values)[which], 100) for which in range(2)
+    )
+    return [
+        Statement("Pe = 10⁴: φ_J of η_r of pairs", "L4.9a", *jammed, 0.58, 0.72, 7),
+        Statement("Pe = 10⁴: its λ", "L4.9a", *exponent, 1, 2.2, 7),
+        Statement(
+            "φ = 0.5: η_r of pairs at Pe = 4.6 over that at 10⁴",
+            "L4.9a",
+            *quotient(number(slow, "pairs"), number(fast[1], "pairs")),
+            0.3,
+            0.9,
+            7,
+        ),
+    ]
 
 
 main(HERE, TITLE, measure, quick_measure)

@@ -28,7 +28,9 @@ def main():
         points.append((point["settings"]["/integrator"], results, len(point["realisations"])))
     noise = "thermal_energy" in export["document"]["scene"]["fluid"]
     reference = next(results for settings, results, _ in points if settings["method"] == "implicit")
-    print("| integrator | steps per unit of strain | seeds | η_r | over the smallest implicit step | pressure / ηγ̇ | contacts per particle | s of processor per unit of strain |")
+    print(
+        "| integrator | steps per unit of strain | seeds | η_r | over the smallest implicit step | pressure / ηγ̇ | contacts per particle | s of processor per unit of strain |"
+    )
     print("|---|---|---|---|---|---|---|---|")
     for settings, results, seeds in points:
         viscosity = {seed: controlled(r["mean"]) for seed, r in results.items()}
@@ -45,14 +47,18 @@ def main():
         any_result = next(iter(results.values()))
         strain = sum(any_result["strain"].values())
         steps = sum(any_result["steps"].values()) / strain
-        (eta, d_eta), (p, dp) = estimate(list(viscosity.values())), estimate([r["mean"]["pressure"] for r in results.values()])
+        (eta, d_eta), (p, dp) = estimate(list(viscosity.values())), estimate(
+            [r["mean"]["pressure"] for r in results.values()]
+        )
         contacts, d_contacts = estimate([r["mean"]["contacts_per_particle"] for r in results.values()])
         cost = sorted(r["cost"]["cpu_seconds"] / strain for r in results.values())
         name = "explicit" if settings["method"] == "explicit" else f"implicit, {settings['timestep']}"
         if settings.get("timestep") == "auto":
             name += f" = {any_result['timestep']:.4g}"
-        print(f"| {name} | {steps:.4g} | {len(results)} of {seeds} | {eta:.3f} ± {d_eta:.3f} | {ratio} | {p:.2f} ± {dp:.2f} | "
-              f"{contacts:.4f} ± {d_contacts:.4f} | {cost[len(cost) // 2]:.3g} ({cost[0]:.3g} .. {cost[-1]:.3g}) |")
+        print(
+            f"| {name} | {steps:.4g} | {len(results)} of {seeds} | {eta:.3f} ± {d_eta:.3f} | {ratio} | {p:.2f} ± {dp:.2f} | "
+            f"{contacts:.4f} ± {d_contacts:.4f} | {cost[len(cost) // 2]:.3g} ({cost[0]:.3g} .. {cost[-1]:.3g}) |"
+        )
 
 
 main()

@@ -54,14 +54,18 @@ def cell(estimate, expected):
 
 
 def main():
-    print("| rate λ | seeds | viscosity | from theory with the step, errors | normal stress | from theory with the step, errors |")
+    print(
+        "| rate λ | seeds | viscosity | from theory with the step, errors | normal stress | from theory with the step, errors |"
+    )
     print("|---|---|---|---|---|---|")
     for point in json.load(sys.stdin)["points"]:
         rate = point["scene"]["variables"]["weissenberg"]
         viscosity, normal = with_step(rate)
         estimates = point["estimates"]
-        print(f"| {rate:g} | {point['look']['seeds']} | {cell(estimates['/viscosity'], viscosity)} | "
-              f"{cell(estimates['/first_normal_difference'], normal)} |")
+        print(
+            f"| {rate:g} | {point['look']['seeds']} | {cell(estimates['/viscosity'], viscosity)} | "
+            f"{cell(estimates['/first_normal_difference'], normal)} |"
+        )
     print(f"\nWith the step: viscosity {viscosity:.4f}, normal stress {normal:.4f}")
 
 

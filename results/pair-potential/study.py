@@ -76,12 +76,27 @@ def statements_of(method, distance, rows, tolerance):
 
     def statement(text, value, error, low, high):
         return Statement(f"{text}, {method} steps", source, value, error, low, high, degrees)
+
     return [
         statement("U / kT = 0 between contact and the outer gap", inner, inner_error, -tolerance, tolerance),
         statement("U / kT = 0 beyond the outer gap", outer, outer_error, -tolerance, tolerance),
-        statement("no step of U / kT at the outer gap", inner - outer, math.hypot(inner_error, outer_error), -tolerance, tolerance),
-        statement("no step of U / kT at the inner gap", touching - inner, math.hypot(touching_error, inner_error), -tolerance, tolerance),
-        statement("density of overlaps over that of U = k_n delta^2 / 2", ratio, ratio_error, 1 - tolerance, 1 + tolerance),
+        statement(
+            "no step of U / kT at the outer gap",
+            inner - outer,
+            math.hypot(inner_error, outer_error),
+            -tolerance,
+            tolerance,
+        ),
+        statement(
+            "no step of U / kT at the inner gap",
+            touching - inner,
+            math.hypot(touching_error, inner_error),
+            -tolerance,
+            tolerance,
+        ),
+        statement(
+            "density of overlaps over that of U = k_n delta^2 / 2", ratio, ratio_error, 1 - tolerance, 1 + tolerance
+        ),
     ]
 
 
@@ -89,13 +104,24 @@ def local_step(method, distance, rows):
     """ln of the density in the last shell within the outer gap over that in the first one beyond. Implicit steps have one of their own."""
     inside, inside_error = potential(distance, rows, 2.045, 2.05)
     outside, outside_error = potential(distance, rows, 2.05, 2.055)
-    return Statement(f"no step of U / kT from the shell within the outer gap to the next one, {method} steps", "L4.1", outside - inside, math.hypot(inside_error, outside_error),
-                     -0.1, 0.1, len(rows) - 1, essential=method != "implicit")
+    return Statement(
+        f"no step of U / kT from the shell within the outer gap to the next one, {method} steps",
+        "L4.1",
+        outside - inside,
+        math.hypot(inside_error, outside_error),
+        -0.1,
+        0.1,
+        len(rows) - 1,
+        essential=method != "implicit",
+    )
 
 
 def point_of(program, method, seeds, brownian_times):
-    scene = {**SCENE, "integrator": {"method": method},
-             "duration": {"equilibration": {"brownian_times": 20}, "production": {"brownian_times": brownian_times}}}
+    scene = {
+        **SCENE,
+        "integrator": {"method": method},
+        "duration": {"equilibration": {"brownian_times": 20}, "production": {"brownian_times": brownian_times}},
+    }
     return program.run(f"pair-potential-{method}", scene, [{"/particles/count": 2}], seeds, "kinetic_temperature")[0]
 
 
@@ -117,10 +143,16 @@ def measure(program):
 
 
 def draw(curves):
-    lines = ["set terminal pngcairo size 1100, 480 font 'Sans,11'", f"set output '{os.path.join(HERE, 'chart.png')}'",
-             "set multiplot layout 1, 2", "set grid lc rgb '#d8d8d8'; set key bottom right; set xlabel 'r / a'"]
+    lines = [
+        "set terminal pngcairo size 1100, 480 font 'Sans,11'",
+        f"set output '{os.path.join(HERE, 'chart.png')}'",
+        "set multiplot layout 1, 2",
+        "set grid lc rgb '#d8d8d8'; set key bottom right; set xlabel 'r / a'",
+    ]
     for method, rows in curves.items():
-        lines += data_block(method, [(r, g, e, -math.log(g) if g > 0 else math.nan, e / g if g > 0 else math.nan) for r, g, e in rows])
+        lines += data_block(
+            method, [(r, g, e, -math.log(g) if g > 0 else math.nan, e / g if g > 0 else math.nan) for r, g, e in rows]
+        )
     lines += [
         "set ylabel 'g(r)'; set yrange [0:1.3]; set xrange [1.95:2.8]",
         "set arrow 1 from 2.001, 0 to 2.001, 1.3 nohead dt 3; set arrow 2 from 2.05, 0 to 2.05, 1.3 nohead dt 3",

@@ -37,9 +37,11 @@ def main():
 
         mean, error = estimate("relative_viscosity")
         reference = fit(phi, friction)
-        print(f"| {phi:.2f} | {friction} | {settings['outer_gap']} | {len(means)} | {text('relative_viscosity')} | {text('relative_viscosity_pair')} | "
-              f"{text('first_normal_difference')} | {text('second_normal_difference')} | {reference:.2f} | "
-              f"{mean / reference:.3f} ± {error / reference:.3f} |")
+        print(
+            f"| {phi:.2f} | {friction} | {settings['outer_gap']} | {len(means)} | {text('relative_viscosity')} | {text('relative_viscosity_pair')} | "
+            f"{text('first_normal_difference')} | {text('second_normal_difference')} | {reference:.2f} | "
+            f"{mean / reference:.3f} ± {error / reference:.3f} |"
+        )
 
 
 if __name__ == "__main__":

@@ -29,7 +29,9 @@ def times(program, counts, rounds, particle_steps, method="implicit"):
     settings, more = [], [max(SHORT, round(particle_steps / count)) for count in counts]
     for count, steps in zip(counts, more):
         # Half a step less than whole ones, so that rounding makes none more.
-        settings += [{"/particles/count": count, "/duration/production/time": (n - 0.5) * step} for n in (SHORT, SHORT + steps)]
+        settings += [
+            {"/particles/count": count, "/duration/production/time": (n - 0.5) * step} for n in (SHORT, SHORT + steps)
+        ]
     points = program.run(f"scaling-{method}", scene, settings, rounds, "relative_viscosity_pair", ONE_THREAD)
     table = []
     for count, short, longer in zip(counts, points[::2], points[1::2]):
@@ -49,37 +51,81 @@ def exponent(table, largest, time):
     rows = [r for r in table if r["particles"] <= largest]
 
     def slope(values):
-        return line_through([math.log(r["particles"]) for r in rows], [math.log(v * r["particles"]) for v, r in zip(values, rows)], [1.0] * len(rows))[1]
-    return slope([statistics.median(r[time]) for r in rows]), estimate([slope(values) for values in zip(*(r[time] for r in rows))])[1]
+        return line_through(
+            [math.log(r["particles"]) for r in rows],
+            [math.log(v * r["particles"]) for v, r in zip(values, rows)],
+            [1.0] * len(rows),
+        )[1]
+
+    return (
+        slope([statistics.median(r[time]) for r in rows]),
+        estimate([slope(values) for values in zip(*(r[time] for r in rows))])[1],
+    )
 
 
 def statement(text, table, largest, width, time="processor", essential=True):
-    return Statement(f"{text}exponent of {time} time, N = 10 to {largest}", "L4.4", *exponent(table, largest, time), 1 - width, 1 + width, len(table[0][time]) - 1, essential)
+    return Statement(
+        f"{text}exponent of {time} time, N = 10 to {largest}",
+        "L4.4",
+        *exponent(table, largest, time),
+        1 - width,
+        1 + width,
+        len(table[0][time]) - 1,
+        essential,
+    )
 
 
 def measure(program):
     implicit = times(program, COUNTS, 5, 1e6)
     # Their steps cost little: more of them, or the difference of two packings is what is measured.
     explicit = times(program, [n for n in COUNTS[::2] if n <= PUBLISHED], 10, 2e7, "explicit")
-    rows = [{"method": method, "particles": r["particles"], "steps": r["steps"],
-             **{f"{time}_{name}": of(r[time]) for time in ("processor", "wall") for name, of in (("ns", statistics.median), ("lowest", min), ("highest", max))}}
-            for method, table in (("implicit", implicit), ("explicit", explicit)) for r in table]
+    rows = [
+        {
+            "method": method,
+            "particles": r["particles"],
+            "steps": r["steps"],
+            **{
+                f"{time}_{name}": of(r[time])
+                for time in ("processor", "wall")
+                for name, of in (("ns", statistics.median), ("lowest", min), ("highest", max))
+            },
+        }
+        for method, table in (("implicit", implicit), ("explicit", explicit))
+        for r in table
+    ]
     write_table(os.path.join(HERE, "table.csv"), list(rows[0]), rows, 4)
     draw(implicit, explicit)
-    return [statement("", implicit, PUBLISHED, 0.1), statement("", implicit, COUNTS[-1], 0.1, essential=False), statement("", implicit, PUBLISHED, 0.1, "wall", False),
-            statement("explicit steps: ", explicit, PUBLISHED, 0.1)]
+    return [
+        statement("", implicit, PUBLISHED, 0.1),
+        statement("", implicit, COUNTS[-1], 0.1, essential=False),
+        statement("", implicit, PUBLISHED, 0.1, "wall", False),
+        statement("explicit steps: ", explicit, PUBLISHED, 0.1),
+    ]
 
 
 def draw(implicit, explicit):
-    lines = ["set terminal pngcairo size 1100, 480 font 'Sans,11'", f"set output '{os.path.join(HERE, 'chart.png')}'", "set multiplot layout 1, 2", "set grid lc rgb '#d8d8d8'"]
+    lines = [
+        "set terminal pngcairo size 1100, 480 font 'Sans,11'",
+        f"set output '{os.path.join(HERE, 'chart.png')}'",
+        "set multiplot layout 1, 2",
+        "set grid lc rgb '#d8d8d8'",
+    ]
     for name, table in (("implicit", implicit), ("explicit", explicit)):
-        lines += data_block(name, [(r["particles"], statistics.median(r["processor"]), min(r["processor"]), max(r["processor"])) for r in table])
+        lines += data_block(
+            name,
+            [
+                (r["particles"], statistics.median(r["processor"]), min(r["processor"]), max(r["processor"]))
+                for r in table
+            ],
+        )
     middle = next(statistics.median(r["processor"]) for r in implicit if r["particles"] == 1000)
-    lines += ["set logscale xy; set format '10^{%L}'; set xlabel 'N'; set ylabel 'processor time of a step, s'; set key top left; set xrange [5:200000]",
-              f"plot {middle * 1e-9:.6g} * x lc rgb 'black' title 'proportional to N', $implicit using 1:($1*$2*1e-9):($1*$3*1e-9):($1*$4*1e-9) with yerrorbars pt 7 lc rgb '#2060b0' title 'implicit steps', "
-              "$explicit using 1:($1*$2*1e-9):($1*$3*1e-9):($1*$4*1e-9) with yerrorbars pt 5 lc rgb '#c03028' title 'explicit steps'",
-              "set format y '%g'; set ylabel 'processor time of a step of a particle, ns'; set yrange [30:5000]; set key top left",
-              "plot $implicit using 1:2:3:4 with yerrorlines pt 7 lc rgb '#2060b0' title 'implicit steps', $explicit using 1:2:3:4 with yerrorlines pt 5 lc rgb '#c03028' title 'explicit steps'"]
+    lines += [
+        "set logscale xy; set format '10^{%L}'; set xlabel 'N'; set ylabel 'processor time of a step, s'; set key top left; set xrange [5:200000]",
+        f"plot {middle * 1e-9:.6g} * x lc rgb 'black' title 'proportional to N', $implicit using 1:($1*$2*1e-9):($1*$3*1e-9):($1*$4*1e-9) with yerrorbars pt 7 lc rgb '#2060b0' title 'implicit steps', "
+        "$explicit using 1:($1*$2*1e-9):($1*$3*1e-9):($1*$4*1e-9) with yerrorbars pt 5 lc rgb '#c03028' title 'explicit steps'",
+        "set format y '%g'; set ylabel 'processor time of a step of a particle, ns'; set yrange [30:5000]; set key top left",
+        "plot $implicit using 1:2:3:4 with yerrorlines pt 7 lc rgb '#2060b0' title 'implicit steps', $explicit using 1:2:3:4 with yerrorlines pt 5 lc rgb '#c03028' title 'explicit steps'",
+    ]
     gnuplot(lines)
 
 

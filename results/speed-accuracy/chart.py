@@ -42,7 +42,9 @@ def panel(name, rows):
         yield f"{block} << EOD"
         for r in chosen:
             bias = float(r["bias_percent"] or 0)
-            label = ("" if style == "LAMMPS" else f"{float(r['step']):.2g}") + ("!" if r["flags"] or r["lost"] not in ("", "0") else "")
+            label = ("" if style == "LAMMPS" else f"{float(r['step']):.2g}") + (
+                "!" if r["flags"] or r["lost"] not in ("", "0") else ""
+            )
             if abs(bias) > RANGE:
                 label += f" {'↑' if bias > 0 else '↓'} {bias:.0f} %"
             shown = max(-0.85 * RANGE, min(0.85 * RANGE, bias)) if abs(bias) > RANGE else bias
@@ -59,8 +61,10 @@ def script(rows, picture):
     width, height = COLUMNS * 380, lines * 310
     yield f"set terminal pngcairo size {width}, {height} font 'Sans,11'"
     yield f"set output {quoted(picture)}"
-    yield (f"set multiplot layout {lines}, {COLUMNS} margins {70 / width}, {1 - 20 / width}, {60 / height}, {1 - 30 / height} "
-           f"spacing {75 / width}, {95 / height}")
+    yield (
+        f"set multiplot layout {lines}, {COLUMNS} margins {70 / width}, {1 - 20 / width}, {60 / height}, {1 - 30 / height} "
+        f"spacing {75 / width}, {95 / height}"
+    )
     yield "set logscale x; set format x '%g'; set grid lc rgb '#d8d8d8'; set key off"
     yield f"set yrange [-{RANGE}:{RANGE}]; set ytics 2; set ylabel 'difference of η_r / %' offset 1.2; set xlabel 's of processor to a standard error of 2 %' offset 0,0.6"
     yield "set object 1 rectangle from graph 0, first -2 to graph 1, first 2 behind fc rgb '#eef4e8' fs solid noborder"
@@ -72,8 +76,10 @@ def script(rows, picture):
     for k, (style, (point, colour)) in enumerate(STYLES.items()):
         y = 0.9 - 0.12 * k
         yield f"set label {10 + k} {quoted(style)} at 0.12, {y} left tc rgb '{colour}' point pt {point} ps 1.1 lc rgb '{colour}' offset 1.5, 0"
-    yield ("set label 20 \"numbers: explicit step over\\nthe largest stable one, implicit step\\nover the automatic one;\\n"
-           "!: flagged or seeds lost;\\nbars: 95 %; band: 2 %\" at 0.02, 0.36 left")
+    yield (
+        'set label 20 "numbers: explicit step over\\nthe largest stable one, implicit step\\nover the automatic one;\\n'
+        '!: flagged or seeds lost;\\nbars: 95 %; band: 2 %" at 0.02, 0.36 left'
+    )
     yield "plot -1 with lines lc rgb 'white'"
 
 

@@ -60,8 +60,12 @@ def main():
         if row["window"] >= 0 and row["timestep"] != REFERENCE:
             points[row["friction"], row["volume_fraction"], row["timestep"]].append(row)
         elif row["window"] < 0:
-            print(f"μ = {row['friction']}, φ = {row['volume_fraction']}, seed {row['seed']}: equilibration ended, {row['ending']}")
-    print("| μ | φ | Δt / 10⁻⁴ | windows | η_r | η_r differs by, % | lubrication differs by, % | share | energy imbalance | gate, apart from the scene's bound |")
+            print(
+                f"μ = {row['friction']}, φ = {row['volume_fraction']}, seed {row['seed']}: equilibration ended, {row['ending']}"
+            )
+    print(
+        "| μ | φ | Δt / 10⁻⁴ | windows | η_r | η_r differs by, % | lubrication differs by, % | share | energy imbalance | gate, apart from the scene's bound |"
+    )
     print("|---|---|---|---|---|---|---|---|---|---|")
     for (friction, phi, step), group in sorted(points.items()):
         pairs = [(row, references[window(row)]) for row in group if row["ending"] == "completed"]
@@ -72,8 +76,10 @@ def main():
             continue
         eta = sum(viscosity(reference) for _, reference in pairs) / len(pairs)
         imbalance = [row["energy_imbalance"] for row, _ in pairs]
-        print(f"{head} {eta:.2f} | {difference(pairs, viscosity)} | {difference(pairs, lubrication)} | "
-              f"{max(row['stability_share'] for row, _ in pairs):.3f} | {min(imbalance):.1e} … {max(imbalance):.1e} | {verdicts(group)} |")
+        print(
+            f"{head} {eta:.2f} | {difference(pairs, viscosity)} | {difference(pairs, lubrication)} | "
+            f"{max(row['stability_share'] for row, _ in pairs):.3f} | {min(imbalance):.1e} … {max(imbalance):.1e} | {verdicts(group)} |"
+        )
 
 
 if __name__ == "__main__":

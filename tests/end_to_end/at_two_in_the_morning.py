@@ -17,8 +17,14 @@ from mistakes import databases, files, folders, machine, processes, typing_error
 from mistakes.night import Night, NotTried, Wrong
 from mistakes.transcript import page
 
-CHAPTERS = [("Typed wrong", typing_errors), ("Files", files), ("Folders and owners", folders), ("Databases", databases),
-            ("Processes", processes), ("The machine", machine)]
+CHAPTERS = [
+    ("Typed wrong", typing_errors),
+    ("Files", files),
+    ("Folders and owners", folders),
+    ("Databases", databases),
+    ("Processes", processes),
+    ("The machine", machine),
+]
 
 
 def main():

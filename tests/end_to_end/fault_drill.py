@@ -30,8 +30,12 @@ def print_table(tallies):
     rows = [HEADINGS] + [[str(cell) for cell in tally.row()] for tally in tallies]
     widths = [max(len(row[column]) for row in rows) for column in range(len(HEADINGS))]
     for row in rows:
-        print("  ".join(cell.ljust(width) if column == 0 else cell.rjust(width)
-                        for column, (cell, width) in enumerate(zip(row, widths))))
+        print(
+            "  ".join(
+                cell.ljust(width) if column == 0 else cell.rjust(width)
+                for column, (cell, width) in enumerate(zip(row, widths))
+            )
+        )
 
 
 def main():
@@ -41,8 +45,9 @@ def main():
     parser.add_argument("--quick", action="store_true", help="the part that runs with the tests, about half a minute")
     parser.add_argument("--case", action="append", metavar="NAME", help="only these; a part of the name is enough")
     parser.add_argument("--seed", type=int, default=1, help="of the random moments")
-    parser.add_argument("--every-allocation", action="store_true",
-                        help="only this: every allocation of SQLite fails in turn")
+    parser.add_argument(
+        "--every-allocation", action="store_true", help="only this: every allocation of SQLite fails in turn"
+    )
     parser.add_argument("--list", action="store_true", help="names the cases")
     arguments = parser.parse_args()
     chosen = [case for case in cases.CASES if not arguments.case or any(part in case.name for part in arguments.case)]

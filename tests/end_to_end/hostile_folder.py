@@ -42,8 +42,11 @@ def tried(stock, folder, way, short):
         word = False, f"WRONG: {str(wrong)[:1000]}"
     finally:
         shutil.rmtree(folder, ignore_errors=True)
-    print(f"{way.title().encode('unicode_escape').decode()}  [{time.monotonic() - started:.1f} s, {trial.most if trial else 0:.0f} MB]  "
-          f"{word[1].replace(os.path.dirname(folder), '')}", flush=True)
+    print(
+        f"{way.title().encode('unicode_escape').decode()}  [{time.monotonic() - started:.1f} s, {trial.most if trial else 0:.0f} MB]  "
+        f"{word[1].replace(os.path.dirname(folder), '')}",
+        flush=True,
+    )
     return word[0]
 
 
@@ -63,7 +66,9 @@ def main():
     with tempfile.TemporaryDirectory(prefix="hostile-folder-", dir=memory) as folder:
         os.chmod(folder, 0o755)  # some ways are those of an ordinary user
         stock = Stock(arguments.bin, folder)
-        passed = [tried(stock, os.path.join(folder, str(number)), way, arguments.quick) for number, way in enumerate(chosen)]
+        passed = [
+            tried(stock, os.path.join(folder, str(number)), way, arguments.quick) for number, way in enumerate(chosen)
+        ]
         if not arguments.only:
             passed.append(outputs.check(stock.peclet, stock.engine, stock.of(False)[0]))
     print(f"{sum(passed)} of {len(passed)} passed")

@@ -23,7 +23,9 @@ MOST_SECONDS, MOST_BYTES, LONGEST_LINE = 1.0, 200e6, 500
 
 
 def contents(folder):
-    return sorted((entry.name, about.st_size, about.st_mtime_ns) for entry in os.scandir(folder) for about in [os.lstat(entry)])
+    return sorted(
+        (entry.name, about.st_size, about.st_mtime_ns) for entry in os.scandir(folder) for about in [os.lstat(entry)]
+    )
 
 
 class Trial:
@@ -49,8 +51,13 @@ class Trial:
             if case.prepare:
                 case.prepare(folder)
             before = contents(folder)
-            process = subprocess.Popen([os.path.join(self.programs, case.program), *case.words], cwd=folder, stdin=subprocess.PIPE,
-                                       stdout=output, stderr=errors)
+            process = subprocess.Popen(
+                [os.path.join(self.programs, case.program), *case.words],
+                cwd=folder,
+                stdin=subprocess.PIPE,
+                stdout=output,
+                stderr=errors,
+            )
             for feed in (lambda: process.stdin.write(case.sent), process.stdin.close):
                 try:
                     feed()
@@ -105,8 +112,10 @@ def main():
     for fault in trial.faults:
         print(fault)
     seconds, name = trial.dearest
-    print(f"{trial.refused} refused, {trial.valid} extreme but valid, {len(trial.faults)} not as they should be; "
-          f"the dearest took {seconds:.2f} s: {name}")
+    print(
+        f"{trial.refused} refused, {trial.valid} extreme but valid, {len(trial.faults)} not as they should be; "
+        f"the dearest took {seconds:.2f} s: {name}"
+    )
     assert trial.refused >= 250, "the schemas list too few keys"
     return 1 if trial.faults else 0
 

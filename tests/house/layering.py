@@ -14,11 +14,54 @@ import sys
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
 
 # From below to above.
-RUNNER = ["contract", *("runner/" + room for room in ("text", "campaign", "statistics", "folder", "engines", "database", "events", "owner",
-                                                      "batch", "care", "reports", "verbs", "command_line"))]
-ENGINE = ["contract", *("engine/" + room for room in ("state", "random", "terms", "scene", "kernels/lanes", "kernels/bodies", "kernels/pairs",
-                                                      "kernels/links", "kernels", "stability", "integrators", "start", "observables",
-                                                      "realisation", "output", "jobs", "evaluation", "benchmark")), "engine"]
+RUNNER = [
+    "contract",
+    *(
+        "runner/" + room
+        for room in (
+            "text",
+            "campaign",
+            "statistics",
+            "folder",
+            "engines",
+            "database",
+            "events",
+            "owner",
+            "batch",
+            "care",
+            "reports",
+            "verbs",
+            "command_line",
+        )
+    ),
+]
+ENGINE = [
+    "contract",
+    *(
+        "engine/" + room
+        for room in (
+            "state",
+            "random",
+            "terms",
+            "scene",
+            "kernels/lanes",
+            "kernels/bodies",
+            "kernels/pairs",
+            "kernels/links",
+            "kernels",
+            "stability",
+            "integrators",
+            "start",
+            "observables",
+            "realisation",
+            "output",
+            "jobs",
+            "evaluation",
+            "benchmark",
+        )
+    ),
+    "engine",
+]
 LAYERS = {"engine": ENGINE, "runner": RUNNER}
 MOST_LINES, MOST_FILES = 350, 30
 INCLUDE = re.compile(r'\s*#\s*include\s+"((?:contract|engine|runner)/[^"]+)"')
@@ -73,7 +116,9 @@ def picture(source):
     """The folders from below to above and their includes, for dot."""
     text = 'digraph layers {\n  rankdir=BT; node [shape=box, style=filled, fillcolor="#eef3f8", fontname="sans"]; edge [color="#7090b0"];\n'
     for top, layers in LAYERS.items():
-        between = collections.Counter((os.path.dirname(path), os.path.dirname(included)) for path, _, included in includes(source, top))
+        between = collections.Counter(
+            (os.path.dirname(path), os.path.dirname(included)) for path, _, included in includes(source, top)
+        )
         for folder in layers:
             count = sum(1 for path in sources(source, folder) if os.path.dirname(path) == folder)
             text += f'  "{folder}" [label="{folder}\\n{count} files"];\n'
@@ -90,7 +135,9 @@ def main():
     arguments = parser.parse_args()
     if arguments.picture:
         kind = os.path.splitext(arguments.picture)[1][1:]
-        subprocess.run(["dot", f"-T{kind}", "-o", arguments.picture], input=picture(arguments.source), text=True, check=True)
+        subprocess.run(
+            ["dot", f"-T{kind}", "-o", arguments.picture], input=picture(arguments.source), text=True, check=True
+        )
     faults = [*upward(arguments.source), *too_large(arguments.source)]
     for fault in faults:
         print(fault)

@@ -31,7 +31,9 @@ class Found:
 
 def within_bounds(found):
     """Whether the value itself is what it must be: the error only decides whether that is known."""
-    return (found["low"] is None or found["low"] <= found["value"]) and (found["high"] is None or found["value"] <= found["high"])
+    return (found["low"] is None or found["low"] <= found["value"]) and (
+        found["high"] is None or found["value"] <= found["high"]
+    )
 
 
 def statement(value, error, low=-math.inf, high=math.inf, degrees=7, essential=True):
@@ -112,7 +114,11 @@ class Pages(unittest.TestCase):
             with open(os.path.join(RESULTS, name, "study.json")) as f:
                 found = json.load(f)["statements"]
             with open(os.path.join(RESULTS, name, "README.md")) as f:
-                rows = [line.strip().strip("|").split("|") for line in f if re.search(r"\| (holds|fails|open) \|$", line.strip())]
+                rows = [
+                    line.strip().strip("|").split("|")
+                    for line in f
+                    if re.search(r"\| (holds|fails|open) \|$", line.strip())
+                ]
             with self.subTest(name):
                 self.assertEqual(len(rows), len(found))
             for row, entry in zip(rows, found):
@@ -127,14 +133,18 @@ class Pages(unittest.TestCase):
                             # What is stored has five digits itself.
                             self.assertLessEqual(abs(printed - entry[key]), half * 1.001 + abs(entry[key]) * 5e-5)
                     bounds = [float(number) for number in re.findall("-?[0-9.]+", row[-2].replace("−", "-"))]
-                    self.assertEqual([f"{b:.4g}" for b in bounds], [f"{entry[key]:.4g}" for key in ("low", "high") if entry[key] is not None])
+                    self.assertEqual(
+                        [f"{b:.4g}" for b in bounds],
+                        [f"{entry[key]:.4g}" for key in ("low", "high") if entry[key] is not None],
+                    )
 
 
 class Folders(unittest.TestCase):
     def test_a_study_that_may_not_write_what_it_finds_says_so_before_it_computes(self):
         said = io.StringIO()
-        with unittest.mock.patch("sys.argv", ["study.py", "/nowhere"]), unittest.mock.patch("os.access", return_value=False), \
-                contextlib.redirect_stderr(said), self.assertRaises(SystemExit) as ending:
+        with unittest.mock.patch("sys.argv", ["study.py", "/nowhere"]), unittest.mock.patch(
+            "os.access", return_value=False
+        ), contextlib.redirect_stderr(said), self.assertRaises(SystemExit) as ending:
             studies.main("/installed/results/some-study", "Some study", self.fail, self.fail)
         self.assertEqual(ending.exception.code, 2)
         self.assertIn("/installed/results/some-study", said.getvalue())

@@ -8,9 +8,14 @@ from drill.board import Board
 from drill.campaign import FAKE, Campaign
 from drill.kills import kind_of
 
-WISHES = [["set", "drill.json", "--tolerance", "0.3"], ["set", "drill.json", "--tolerance", "0.05", "--maximum", "20"],
-          ["set", "drill.json", "--point", "peclet=2", "--priority", "3"], ["cancel", "drill.json", "peclet=2"],
-          ["cancel", "drill.json", "peclet=2", "--undo"], ["retry", "drill.json"]]
+WISHES = [
+    ["set", "drill.json", "--tolerance", "0.3"],
+    ["set", "drill.json", "--tolerance", "0.05", "--maximum", "20"],
+    ["set", "drill.json", "--point", "peclet=2", "--priority", "3"],
+    ["cancel", "drill.json", "peclet=2"],
+    ["cancel", "drill.json", "peclet=2", "--undo"],
+    ["retry", "drill.json"],
+]
 # As the undisturbed campaign was from the beginning.
 LAST = [["set", "drill.json", "--tolerance", "0.08", "--maximum", "14"], ["cancel", "drill.json", "peclet=2", "--undo"]]
 

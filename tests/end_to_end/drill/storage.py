@@ -30,8 +30,11 @@ def failing_calls(lab, tally, chance, call, action, path, stride=1, role="owner"
         log = campaign.log().splitlines()
         what = f"{board.what} (call {number})"
         tally.expect(campaign, code in allowed | {lab.undisturbed(campaign)[0]}, f"{what}: exit code {code}")
-        tally.expect(campaign, code not in allowed or any(line.startswith("peclet: ") and len(line) > 20 for line in log),
-                     f"{what}: no message")
+        tally.expect(
+            campaign,
+            code not in allowed or any(line.startswith("peclet: ") and len(line) > 20 for line in log),
+            f"{what}: no message",
+        )
         tally.judge(campaign)
         number += stride
     tally.remarks.append("exit codes " + ", ".join(f"{code}: {count}" for code, count in sorted(codes.items())))

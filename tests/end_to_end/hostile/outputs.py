@@ -122,8 +122,12 @@ def check(peclet, engine, campaign):
     with open(os.path.join(folder, "scene.json"), "w") as f:
         f.write(SCENE)
     passed = True
-    for command, begins in ((f"{peclet} export ../drill.json --csv", "label"), (f"{peclet} report ../drill.json", "<!"),
-                            (f"{peclet} completion bash", "#"), (f"{engine} run scene.json", "{")):
+    for command, begins in (
+        (f"{peclet} export ../drill.json --csv", "label"),
+        (f"{peclet} report ../drill.json", "<!"),
+        (f"{peclet} completion bash", "#"),
+        (f"{engine} run scene.json", "{"),
+    ):
         words = []
         for kind in KINDS:
             try:

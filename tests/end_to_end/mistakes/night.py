@@ -22,8 +22,11 @@ CAMPAIGN = {
 }
 # A second of real physics a seed.
 SCENE = {
-    "particles": {"count": 30, "density": 0.1,
-                  "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}]},
+    "particles": {
+        "count": 30,
+        "density": 0.1,
+        "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}],
+    },
     "volume_fraction": 0.3,
     "fluid": {"viscosity": 0.1},
     "flow": {"shear_rate": 0.05},
@@ -31,7 +34,9 @@ SCENE = {
     "lubrication": {"form": "kim-karrila", "inner_gap": 0.01, "outer_gap": 0.05},
     "duration": {"equilibration": {"strain": 0.5}, "production": {"strain": 1}},
 }
-REAL = dict(CAMPAIGN, scene=SCENE, sweep=[{"set": "/flow/shear_rate", "values": [0.05]}], engine=["peclet-engine", "serve"])
+REAL = dict(
+    CAMPAIGN, scene=SCENE, sweep=[{"set": "/flow/shear_rate", "values": [0.05]}], engine=["peclet-engine", "serve"]
+)
 
 
 def workers_of(night):
@@ -74,8 +79,16 @@ class Night:
 
     def types(self, command, code=0, says=(), hides=()):
         """Runs a line as a shell would, and judges exit code and answer. Returns the answer."""
-        done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment, text=True,
-                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=PATIENCE)
+        done = subprocess.run(
+            ["bash", "-c", command],
+            cwd=self.folder,
+            env=self.environment,
+            text=True,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            timeout=PATIENCE,
+        )
         self.hear(command, done.stdout)
         self.judge(done.returncode, code, says, hides)
         return self.said
@@ -84,8 +97,15 @@ class Night:
         """The line with an & behind it, in a process group of its own as an interactive shell makes one."""
         log = self.path(f"answer-{len(self.started)}")
         with open(log, "w") as f:
-            process = subprocess.Popen(["bash", "-c", "exec " + command], cwd=self.folder, env=self.environment,
-                                       stdin=subprocess.DEVNULL, stdout=f, stderr=f, start_new_session=True)
+            process = subprocess.Popen(
+                ["bash", "-c", "exec " + command],
+                cwd=self.folder,
+                env=self.environment,
+                stdin=subprocess.DEVNULL,
+                stdout=f,
+                stderr=f,
+                start_new_session=True,
+            )
         self.page.append(("types", command + " &"))
         self.started.append((process, log))
         return process
@@ -139,8 +159,11 @@ class Night:
 
     def results(self, data="night.peclet"):
         """What the database of a campaign's folder holds."""
-        rows = self.query("SELECT hash, seed, final_state_sha256 FROM realisation JOIN point USING (point_id) "
-                          "WHERE state IN ('done', 'failed')", data)
+        rows = self.query(
+            "SELECT hash, seed, final_state_sha256 FROM realisation JOIN point USING (point_id) "
+            "WHERE state IN ('done', 'failed')",
+            data,
+        )
         return {(point, seed): state for point, seed, state in rows}
 
     def remembers(self, data="night.peclet"):
@@ -158,7 +181,9 @@ class Night:
     def answers_as_undisturbed(self):
         """The canonical export is that of the same campaign without the mistake."""
         disturbed = self.quietly("peclet export night.json --canonical")
-        self.quietly("mkdir undisturbed && cp night.json undisturbed/ && cd undisturbed && peclet run night.json --quiet")
+        self.quietly(
+            "mkdir undisturbed && cp night.json undisturbed/ && cd undisturbed && peclet run night.json --quiet"
+        )
         if self.quietly("cd undisturbed && peclet export night.json --canonical") != disturbed:
             raise Wrong("the export differs from that of an undisturbed campaign")
         self.page.append(("same",))
@@ -169,8 +194,14 @@ class Night:
         return os.path.join(self.folder, *names)
 
     def quietly(self, command):
-        done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment, capture_output=True, text=True,
-                              timeout=PATIENCE)
+        done = subprocess.run(
+            ["bash", "-c", command],
+            cwd=self.folder,
+            env=self.environment,
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE,
+        )
         if done.returncode not in (0, 3):
             raise Wrong(f"{command}: exit code {done.returncode}: {done.stdout}{done.stderr}")
         return done.stdout

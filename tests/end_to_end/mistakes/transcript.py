@@ -23,7 +23,7 @@ def shortened(text, night):
     text = re.sub(r"(?<!\d)\d\d:\d\d:\d\d", "02:00:00", text)
     lines = text.rstrip("\n").splitlines()
     if len(lines) > LONGEST:
-        lines = lines[:LONGEST - 1] + [f"... ({len(lines) - LONGEST + 1} lines)"]
+        lines = lines[: LONGEST - 1] + [f"... ({len(lines) - LONGEST + 1} lines)"]
     return lines
 
 
@@ -53,7 +53,11 @@ def of_case(night):
 def remark(kind, about):
     if kind == "kept":
         kept, gone = about
-        return f"*{kept} results before, {kept} of them now.*" if not gone else f"*Of {kept + gone} results {kept} are kept.*"
+        return (
+            f"*{kept} results before, {kept} of them now.*"
+            if not gone
+            else f"*Of {kept + gone} results {kept} are kept.*"
+        )
     return "*The export is that of an undisturbed campaign, byte for byte.*" if kind == "same" else about[0]
 
 
