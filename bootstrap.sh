@@ -19,7 +19,7 @@ to_test=(
   groff-base systemd                                                      # read manual pages and the unit
   lammps openmpi-bin                                                      # another engine, which tests run, also with MPI
   slurm-wlm munge                                                         # a Slurm to be tested with
-  gnuplot-nox                                                             # pictures of the studies
+  python3-numpy python3-scipy gnuplot-nox                                 # numbers and pictures of the studies
 )
 to_lint=(clang-format clang-tidy)
 

@@ -21,8 +21,8 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.dirname(os.path.dirname(HERE))
 sys.path.insert(0, os.path.join(SOURCE, "results"))
-from studies import processor  # noqa: E402
-from named_mutations import NAMED  # noqa: E402
+from studies.command_line import processor
+from named_mutations import NAMED
 
 # What is broken; file, text in it that occurs once, and what takes its place.
 MUTATIONS = [
