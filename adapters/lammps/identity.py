@@ -55,8 +55,8 @@ def processor():
 
 
 def engine_identity(lmp, launcher, script, files):
-    """The `engine` of hello and of the results. `launcher`: words, because another number of ranks adds up in another order.
-    `files`: what the script reads, in the order of the command line."""
+    """The `engine` of hello and of the results. `launcher`: words, because another number of ranks adds up in another
+    order. `files`: what the script reads, in the order of the command line."""
     digest = hashlib.sha256()
     for path in (*own_sources(), os.path.realpath(lmp), *libraries_of(lmp), *files):
         digest.update(f"{os.path.basename(path)} {sha256_of_file(path)}\n".encode())

@@ -84,7 +84,8 @@ class Thermo:
 
 
 class Lammps:
-    """A running `lmp -in script` in `folder`, or what `launcher` (words) makes of it. Use it in a with block, which ends it."""
+    """A running `lmp -in script` in `folder`, or what `launcher` (words) makes of it. Use it in a with block, which
+    ends it."""
 
     def __init__(self, program, launcher, script, folder, variables):
         # stdbuf: without it progress would come in pieces of 4 KiB.
@@ -137,7 +138,8 @@ class Lammps:
         return bool(part), also in ready
 
     def finish(self, steps):
-        """Once it has stopped printing: its thermo output, if it ran so many steps. Throws LammpsError, KilledFromOutside."""
+        """Once it has stopped printing: its thermo output, if it ran so many steps. Throws LammpsError,
+        KilledFromOutside."""
         status = self.process.wait()
         # A launcher leaves as a shell does when one of its ranks was killed: with 128 + the signal.
         killer = status - 128 if self.is_launched and status > 128 else -status

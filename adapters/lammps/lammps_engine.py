@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """lammps_engine.py SCRIPT [FILE ...] [--lmp PROGRAM] [--launcher COMMAND]
 
-LAMMPS as the engine of a campaign: started by peclet, with whom it speaks over descriptor 0. SCRIPT is a LAMMPS input; each FILE
-is something that it reads (a data file, a molecule, an include) and finds under its name without folders. README.md beside this
-file says what a script has to do. Editing any of these files (comments of SCRIPT apart) makes another engine, whose results peclet
-does not mix with others.
+LAMMPS as the engine of a campaign: started by peclet, with whom it speaks over descriptor 0. SCRIPT is a LAMMPS input;
+each FILE is something that it reads (a data file, a molecule, an include) and finds under its name without folders.
+README.md beside this file says what a script has to do. Editing any of these files (comments of SCRIPT apart) makes
+another engine, whose results peclet does not mix with others.
 """
 import argparse
 import hashlib

@@ -1,7 +1,7 @@
 """One seed of one scene: chunk after chunk, each a LAMMPS process that goes on from the restart file of the one before.
 
-LAMMPS is not the same after a restart as without one (random numbers, the order of atoms). So every chunk begins with a restart,
-also when nothing has been interrupted: then it makes no difference whether something has.
+LAMMPS is not the same after a restart as without one (random numbers, the order of atoms). So every chunk begins with a
+restart, also when nothing has been interrupted: then it makes no difference whether something has.
 """
 import hashlib
 import json
@@ -16,7 +16,8 @@ from frames import write_durably
 
 BLOCKS = 32
 
-# Restart files, in the folder where LAMMPS runs. (Its command `if` compares words without dots that begin with a letter.)
+# Restart files, in the folder where LAMMPS runs. (Its command `if` compares words without dots that begin with a
+# letter.)
 BEFORE, AFTER = "before_restart", "after_restart"
 
 # LAMMPS' random numbers take seeds from 1 to 900000000: the largest prime below, and a number that scatters neighbours.
@@ -81,7 +82,8 @@ class Realisation:
         return tuple(before + now for before, now in zip(self.spent, self.stopwatch.read()))
 
     def resume(self):
-        """Takes over the checkpoint of an earlier attempt. One that is torn, or another engine's, is as good as none."""
+        """Takes over the checkpoint of an earlier attempt. One that is torn, or another engine's, is as good as
+        none."""
         try:
             with open(self.job["checkpoint"], "rb") as file:
                 heading, restart = json.loads(file.readline()), file.read()

@@ -1,4 +1,5 @@
-"""Folders for LAMMPS to run in, each locked by the process that uses it, so that those of the killed can be told and removed."""
+"""Folders for LAMMPS to run in, each locked by the process that uses it, so that those of the killed can be told and
+removed."""
 import contextlib
 import fcntl
 import os
@@ -9,7 +10,8 @@ PREFIX = "peclet-lammps-"
 
 
 def lock(path):
-    """A descriptor that holds the folder's lock until it is closed, also by the process's death; None when another one has it."""
+    """A descriptor that holds the folder's lock until it is closed, also by the process's death; None when another one
+    has it."""
     descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY)
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)

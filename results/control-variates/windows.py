@@ -3,7 +3,8 @@
 
 Variance of the relative viscosity plus the pairs' Brownian stress over that of the viscosity alone, for averages over
 shorter parts of the production window, from the 32 blocks of each realisation in the database of a campaign. Intervals
-are 95 % by resampling realisations. """
+are 95 % by resampling realisations.
+"""
 import random
 import sys
 from pathlib import Path

@@ -4,7 +4,8 @@
 Prints a line for each integrator: relative viscosity (with noise plus the pairs' Brownian stress, which has the mean
 zero), what it is over that of the smallest implicit step, the pressure, pairs in contact, and processor time. Errors
 are standard errors; those of the ratio are of the seeds that both have where one packing decides most of the scatter
-(without noise), else of both means. """
+(without noise), else of both means.
+"""
 import json
 import sys
 from pathlib import Path

@@ -3,7 +3,8 @@
 
 Compares the ensemble with the theory of Hookean dumbbells: viscosity and first normal stress difference over n kT
 lambda and 2 n kT (lambda rate)^2, which are 1 at every rate, and what they are with the finite step of dumbbells.in.
-Errors: standard ones. """
+Errors: standard ones.
+"""
 import json
 import sys
 from pathlib import Path

@@ -3,7 +3,8 @@
 
 Draws the table of this study: a panel for each case (or for those that are named), relative difference of the viscosity
 from the reference over the processor time to a standard error of 2 %. Bars are 95 %; an arrow stands for what is beyond
-the panel. lammps.csv beside this script, where there is one, has points of LAMMPS. """
+the panel. lammps.csv beside this script, where there is one, has points of LAMMPS.
+"""
 import csv
 import sys
 from pathlib import Path

@@ -5,7 +5,8 @@ Runs the campaigns of this study with the programs in BIN, keeps them in FOLDER 
 there), prints a summary and writes table.csv, chart.png and overview.png beside this script. --quick makes small
 systems and few seeds, writes into FOLDER and fails where a default step loses a seed or, without a flag, changes the
 viscosity by more than 1 % and more than chance does in one run of ten thousand: without noise it compares the two
-methods and sees half a percent; with noise it sees little. """
+methods and sees half a percent; with noise it sees little.
+"""
 import dataclasses
 import math
 import subprocess

@@ -3,7 +3,8 @@
 
 Runs the cells of the stability map with the programs in BIN, keeps their campaigns in FOLDER (a second call goes on
 with what is there), and writes table.csv and map.png beside this script; with --quick or --panel into FOLDER. Fails
-where a cell is biased and no realisation says so; chance makes one of a thousand cells so. """
+where a cell is biased and no realisation says so; chance makes one of a thousand cells so.
+"""
 import collections
 import subprocess
 import sys

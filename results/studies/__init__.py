@@ -12,7 +12,8 @@
     command_line   the command lines of the drivers
 
 A study is a folder beside this one with study.py, README.md, table.csv, a picture, and study.json: what was found,
-which `peclet study --list` shows. """
+which `peclet study --list` shows.
+"""
 import sys
 
 try:

@@ -7,7 +7,8 @@ Each published statement is answered by a number with its standard error and a c
     open        the number is not known well enough to say: its interval of 95 % reaches across the bound
 
 and the study's verdict follows: "holds" when every statement holds; "does not hold" when one that is marked essential
-fails; "not yet" when one is open; "holds with a difference" otherwise. """
+fails; "not yet" when one is open; "holds with a difference" otherwise.
+"""
 import math
 
 from studies.estimates import student_quantile

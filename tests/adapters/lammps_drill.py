@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """lammps_drill.py BIN [--kills 6] [--seed 1] [--launcher COMMAND]
 
-Runs a small ensemble of the dumbbells of results/lammps-ensemble undisturbed with one worker, then with two while peclet, a worker
-or a LAMMPS process is killed with SIGKILL at random moments. The canonical exports must be the same bytes, no kill may be blamed
-on the engine, and neither a LAMMPS process nor its folder may be left behind. With a launcher (mpirun -np 2) ranks are struck too,
-and a SIGTERM to the adapter.
+Runs a small ensemble of the dumbbells of results/lammps-ensemble undisturbed with one worker, then with two while
+peclet, a worker or a LAMMPS process is killed with SIGKILL at random moments. The canonical exports must be the same
+bytes, no kill may be blamed on the engine, and neither a LAMMPS process nor its folder may be left behind. With a
+launcher (mpirun -np 2) ranks are struck too, and a SIGTERM to the adapter.
 """
 import argparse
 import json
@@ -124,7 +124,8 @@ def candidates(drill, process, whom):
 
 
 def strike(drill, process, whom, chance, longest_delay):
-    """Kills one of them some time after there has been one. Returns whether it did; there is none when the campaign is through."""
+    """Kills one of them some time after there has been one. Returns whether it did; there is none when the campaign is
+    through."""
     while not candidates(drill, process, whom):
         if process.poll() is not None:
             return False
@@ -186,7 +187,8 @@ def main():
         cut = drill.ask("SELECT count(*) FROM attempt WHERE outcome IN ('killed', 'abandoned')")
         left = drill.left_behind() + undisturbed.left_behind()
         print(
-            f"kills: {kills}; last run: exit code {code}; same bytes: {same}; realisations {done}, results {results}; attempts "
+            f"kills: {kills}; last run: exit code {code}; same bytes: {same}; realisations {done}, results "
+            f"{results}; attempts "
             f"cut {cut}, blamed on the engine {blamed:.0f}; left behind: {left}"
         )
         enough = sum(kills.values()) >= arguments.kills

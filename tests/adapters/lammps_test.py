@@ -10,12 +10,12 @@ import types
 import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../adapters/lammps"))
-import lammps  # noqa: E402
-import scratch  # noqa: E402
-from identity import engine_identity  # noqa: E402
-from input_script import commands  # noqa: E402
-from realisation import Realisation, ending_of, lammps_seed  # noqa: E402
-from scene import Chunk, Refused, read_scene  # noqa: E402
+import lammps
+import scratch
+from identity import engine_identity
+from input_script import commands
+from realisation import Realisation, ending_of, lammps_seed
+from scene import Chunk, Refused, read_scene
 
 GOOD = {
     "variables": {"rate": 0.1, "style": "lj"},

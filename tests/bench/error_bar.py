@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """error_bar.py ENGINE --before ENGINE [--rounds N] [--seeds N] [--seeds-before N] [--count N] [--window TIMES]
 
-What an error bar costs: processor time per unit of strain and, with noise, the variance of the relative viscosity times the
-processor time, of ENGINE at its defaults and of the engine of an earlier commit (build_before.sh) with its explicit steps, in the
-same scenes and in turn. The costs are those of a whole run from a packing, a hundredth as long before. Variances are those of
-averages of 1, 2, 4 ... of the 32 blocks of a window (of 40 Brownian times, after a quarter of that): the longer they are, the less the control variate
-takes away. Their errors take averages for independent.
+What an error bar costs: processor time per unit of strain and, with noise, the variance of the relative viscosity times
+the processor time, of ENGINE at its defaults and of the engine of an earlier commit (build_before.sh) with its explicit
+steps, in the same scenes and in turn. The costs are those of a whole run from a packing, a hundredth as long before.
+Variances are those of averages of 1, 2, 4 ... of the 32 blocks of a window (of 40 Brownian times, after a quarter of
+that): the longer they are, the less the control variate takes away. Their errors take averages for independent.
 """
 import argparse
 import json
@@ -103,7 +103,8 @@ def variance_of_averages(series, together, which):
 
 def error_bars(engines, seeds, count, window, cases, folder):
     print(
-        f"\nVariance of the relative viscosity times processor time, N = {count}; {window / 4:g} Brownian times and then {window:g}\n"
+        f"\nVariance of the relative viscosity times processor time, N = {count}; {window / 4:g} Brownian times and "
+        f"then {window:g}\n"
     )
     plain, controlled = 0, 1
     for name, drive, friction, _, _, _ in cases:
@@ -116,12 +117,14 @@ def error_bars(engines, seeds, count, window, cases, folder):
             mean = [statistics.mean(block[which] for block in row) for row in series[-1]]
             error = statistics.stdev(mean) / math.sqrt(many) if many > 1 else math.inf
             print(
-                f"{name}, {'before' if which == plain else 'now'}: {many} seeds, viscosity {statistics.mean(mean):.3f} +- {error:.3f}, "
+                f"{name}, {'before' if which == plain else 'now'}: {many} seeds, viscosity "
+                f"{statistics.mean(mean):.3f} +- {error:.3f}, "
                 f"{cost[-1]:.3g} s per Brownian time",
                 flush=True,
             )
         print(
-            f"  {'averages over':>15} {'variance now':>20} {'now, uncontrolled':>20} {'before':>20} {'processor time before over now, to the same error':>52}"
+            f"  {'averages over':>15} {'variance now':>20} {'now, uncontrolled':>20} {'before':>20} "
+            f"{'processor time before over now, to the same error':>52}"
         )
         for together in (1, 2, 4, 8, 16, 32):
             (now, n), (same, _), (before, n_before) = (
@@ -133,7 +136,8 @@ def error_bars(engines, seeds, count, window, cases, folder):
                 ratio, error = before / now * cost[1] / cost[0], math.sqrt(2 / (n - 1) + 2 / (n_before - 1))
                 text = f"{ratio:.0f} +- {ratio * error:.0f}"
             print(
-                f"  {window * together / 32:>13.4g}tB {now:>14.3g} ({n:4}) {same:>13.3g} ({n:4}) {before:>13.3g} ({n_before:4}) {text:>52}",
+                f"  {window * together / 32:>13.4g}tB {now:>14.3g} ({n:4}) {same:>13.3g} ({n:4}) {before:>13.3g} "
+                f"({n_before:4}) {text:>52}",
                 flush=True,
             )
 

@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """peer.py ENGINE [--before ENGINE] [--repetitions 7] [--strain 0.2] [--skins 0.05] [--lammps lmp]
 
-How fast ENGINE (a peclet-engine) is beside LAMMPS on the nearest scenes that LAMMPS has, each on one core. Every round runs all
-contestants in turn, so that what else the machine does falls on all of them; ratios are taken within a round. README.md says what
-is the same in both programs and what is not.
+How fast ENGINE (a peclet-engine) is beside LAMMPS on the nearest scenes that LAMMPS has, each on one core. Every round
+runs all contestants in turn, so that what else the machine does falls on all of them; ratios are taken within a round.
+README.md says what is the same in both programs and what is not.
 
 --before   another peclet-engine, for example of build_before.sh, that takes part in every round
---strain   of the warm-up of LAMMPS; relative viscosity and temperature of each program are averaged over its second half
+--strain   of the warm-up of LAMMPS; relative viscosity and temperature of each program are averaged over its second
+           half
 --skins    of the neighbour list of LAMMPS; one contestant each
 """
 import argparse
@@ -21,7 +22,8 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 VISCOSITY = 0.1
-# Cube of 733 spheres of radius 1 and 267 of radius 1.4, which is what the engine makes of 1000 in equal volumes, at 0.5.
+# Cube of 733 spheres of radius 1 and 267 of radius 1.4, which is what the engine makes of 1000 in equal volumes, at
+# 0.5.
 EDGE = ((733 + 267 * 1.4**3) * 4 / 3 * math.pi / 0.5) ** (1 / 3)
 TIMED_STEPS = 3000
 STEPS_BETWEEN_SAMPLES = 20
@@ -141,7 +143,8 @@ def compare(case, arguments, folder):
             f"{label}: commit {build['git_commit']}{' with changes' if build['git_dirty'] else ''}, {build['compiler']}"
         )
     print(
-        f"{case}: {arguments.repetitions} rounds, time step {step:.4g}, shear rate {rate:.4g}, kT {thermal_energy:.4g}\n"
+        f"{case}: {arguments.repetitions} rounds, time step {step:.4g}, shear rate {rate:.4g}, kT "
+        f"{thermal_energy:.4g}\n"
     )
     report(rounds, states, thermal_energy)
 

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """fault_drill.py BIN [--quick] [--case NAME ...] [--seed 1] [--every-allocation] [--list]
 
-Runs campaigns, does to them what happens to programs that are left alone for weeks, runs them to their end, and compares
-with the same campaign run in peace by one worker. Prints a table: the fault, how often it was tried, acknowledged results
-that were lost, results that were counted twice, canonical exports with different bytes, anything else that should not have
-happened (a wrong exit code, a damaged database, a seed that was blamed for what others did), and seconds. All must be zero;
-the exit code is 1 otherwise. A result is acknowledged when its spool file is complete or it has been committed.
+Runs campaigns, does to them what happens to programs that are left alone for weeks, runs them to their end, and
+compares with the same campaign run in peace by one worker. Prints a table: the fault, how often it was tried,
+acknowledged results that were lost, results that were counted twice, canonical exports with different bytes, anything
+else that should not have happened (a wrong exit code, a damaged database, a seed that was blamed for what others did),
+and seconds. All must be zero; the exit code is 1 otherwise. A result is acknowledged when its spool file is complete or
+it has been committed.
 
 BIN holds peclet, peclet-engine, fake_engine and fault_shim.so. --quick is the part that runs with the tests.
 """

@@ -3,9 +3,9 @@
 
 Fills the file system of a campaign's database, spool, checkpoints, logs, and of all of them together, each in turn and
 while the campaign runs with real engines. Nothing may be lost: the run must say once what is full, give out no further
-seed, go on by itself when there is room, and export the same bytes as an undisturbed one. A run that is stopped while its
-disk is full must leave with exit code 75 and go on afterwards. A file system that is too small for the campaign ends it with
-exit code 75 and one message, and it goes on where it is moved.
+seed, go on by itself when there is room, and export the same bytes as an undisturbed one. A run that is stopped while
+its disk is full must leave with exit code 75 and go on afterwards. A file system that is too small for the campaign
+ends it with exit code 75 and one message, and it goes on where it is moved.
 
 The file systems are small tmpfs. Mounting them takes root, or an unprivileged user namespace (unshare -Urm), which the
 script makes for itself; where the kernel grants neither, it fails and says so.
@@ -200,7 +200,8 @@ def judge(disk, name, code, reference):
 
 
 def too_small(peclet, folder, size, reference):
-    """The campaign's file system is too small for it: it ends by itself, says so, and goes on elsewhere to the same bytes."""
+    """The campaign's file system is too small for it: it ends by itself, says so, and goes on elsewhere to the same
+    bytes."""
     drill = Drill(peclet, folder)
     root = os.path.join(folder, "drill.peclet")
     mount(root, size)
@@ -218,7 +219,8 @@ def too_small(peclet, folder, size, reference):
     again = drill.start().wait(300)
     same = drill.export() == reference
     print(
-        f"a file system of {size}: exit code {code}, said {said} times; in a larger one: exit code {again}, same bytes {same}",
+        f"a file system of {size}: exit code {code}, said {said} times; in a larger one: exit code {again}, same "
+        f"bytes {same}",
         flush=True,
     )
     return (code == 75 and said == 1 or code == 0) and again == 0 and same

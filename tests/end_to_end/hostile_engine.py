@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """hostile_engine.py BIN [--quick] [--way NAME ...] [--jobs 2] [--list]
 
-An engine lies in every way of hostile/lies.py, once and (without --quick) at every try. For each way: the run does not crash
-and does not hang, its memory stays below 200 MB, what it prints is short lines without control characters, and what is stored
-in the end is what the honest campaign has; a seed that is lied about at every try is given up and counts as lost. The texts of
-results that are none are also put into the spool of a campaign with an honest engine: none of them may count.
+An engine lies in every way of hostile/lies.py, once and (without --quick) at every try. For each way: the run does not
+crash and does not hang, its memory stays below 200 MB, what it prints is short lines without control characters, and
+what is stored in the end is what the honest campaign has; a seed that is lied about at every try is given up and counts
+as lost. The texts of results that are none are also put into the spool of a campaign with an honest engine: none of
+them may count.
 
 Prints a line for each way; the exit code is 1 when one of them failed. BIN holds peclet.
 """

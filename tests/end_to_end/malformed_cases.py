@@ -1,4 +1,5 @@
-"""What can be wrong with a campaign, its scene, the text and the file that it is in, and with options: one Case each."""
+"""What can be wrong with a campaign, its scene, the text and the file that it is in, and with options: one Case
+each."""
 import copy
 import json
 import os

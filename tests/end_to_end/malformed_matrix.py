@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """malformed_matrix.py BIN SCHEMAS [--unbounded]
 
-Spoils a campaign and its scene key by key, as the schemas in SCHEMAS list them (each key by every kind of wrong value), the text
-of the file, the file itself and the options of every verb, and gives it all to the programs in BIN. Each must be refused with exit
-code 2, one line of less than 500 characters without control characters, nothing on standard output, below one second of processor
-time and 200 MB, and without a change in the folder. Values that are allowed but extreme may be valid instead.
+Spoils a campaign and its scene key by key, as the schemas in SCHEMAS list them (each key by every kind of wrong value),
+the text of the file, the file itself and the options of every verb, and gives it all to the programs in BIN. Each must
+be refused with exit code 2, one line of less than 500 characters without control characters, nothing on standard
+output, below one second of processor time and 200 MB, and without a change in the folder. Values that are allowed but
+extreme may be valid instead.
 
 --unbounded leaves time and memory out, for programs that a sanitizer slows down.
 """
@@ -35,7 +36,8 @@ class Trial:
         self.faults, self.refused, self.valid, self.dearest = [], 0, 0, (0, "")
 
     def work(self, cases):
-        """One case after another: all of them at once would take more memory than the programs under test, which inherit the mark."""
+        """One case after another: all of them at once would take more memory than the programs under test, which
+        inherit the mark."""
         while True:
             with self.lock:
                 case = next(cases, None)
@@ -44,7 +46,8 @@ class Trial:
             self.run(case)
 
     def run(self, case):
-        with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
+        files = tempfile.TemporaryFile
+        with tempfile.TemporaryDirectory() as folder, files() as output, files() as errors:
             if case.text is not None:
                 with open(os.path.join(folder, "input.json"), "wb") as file:
                     file.write(case.text if isinstance(case.text, bytes) else case.text.encode())

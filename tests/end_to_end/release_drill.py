@@ -1,13 +1,15 @@
 #!/usr/bin/python3
 """release_drill.py FOLDER [--suite bookworm] [--mirror URL] [--root DIR]
 
-Tries the packages that `./bootstrap.sh package` leaves in FOLDER (build/package) on a Debian that has nothing of ours: the smallest
-that debootstrap makes, in a folder, as a user without rights. Needs root, debootstrap, readelf and a mirror; takes minutes, most of
-them debootstrap's; --root keeps what it made, for the next time. What must be so:
+Tries the packages that `./bootstrap.sh package` leaves in FOLDER (build/package) on a Debian that has nothing of ours:
+the smallest that debootstrap makes, in a folder, as a user without rights. Needs root, debootstrap, readelf and a
+mirror; takes minutes, most of them debootstrap's; --root keeps what it made, for the next time. What must be so:
 
     programs  ask for no shared library
-    .tar.gz   unpacked by the user, runs the demonstration; moved, it goes on; studies, adapters and manual pages are found
-    .deb      is installed by dpkg alone, runs the demonstration with the same bytes, and leaves nothing behind when removed
+    .tar.gz   unpacked by the user, runs the demonstration; moved, it goes on; studies, adapters and manual pages are
+              found
+    .deb      is installed by dpkg alone, runs the demonstration with the same bytes, and leaves nothing behind when
+              removed
 """
 import argparse
 import contextlib

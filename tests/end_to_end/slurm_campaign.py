@@ -38,7 +38,8 @@ class Campaign:
         self.processes = []
 
     def holds(self, seed=0):
-        """This and later seeds of the fake engine stand still half-way from now on, and their tasks run, until lets_go()."""
+        """This and later seeds of the fake engine stand still half-way from now on, and their tasks run, until
+        lets_go()."""
         with open(self.hold, "w"):
             pass
         self.environment.update(PECLET_FAKE_HOLD=self.hold, PECLET_FAKE_HOLD_SEED=str(seed))

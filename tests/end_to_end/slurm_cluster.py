@@ -1,6 +1,6 @@
-"""A Slurm of one's own on one machine: munged, slurmctld and slurmd from Debian's packages, as whoever runs the test, with
-their files in a temporary folder. One node with CPUS processors, whatever the machine has; jobs of the partition `urgent`
-preempt those of `usual`, which are queued again."""
+"""A Slurm of one's own on one machine: munged, slurmctld and slurmd from Debian's packages, as whoever runs the test,
+with their files in a temporary folder. One node with CPUS processors, whatever the machine has; jobs of the partition
+`urgent` preempt those of `usual`, which are queued again."""
 import os
 import pwd
 import signal

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """slurm_drill.py BIN [--quick] [--only CASE] [--keep FOLDER]
 
-Runs campaigns through a real Slurm (slurmctld, slurmd and munged of this machine's packages, started here) while tasks are
-killed, preempted and warned, the controller is restarted or away, submissions are refused, lose their answers or are forgotten,
-and the owner is killed.
-After each case the canonical export must be, byte for byte, that of the same campaign run by `peclet run` without Slurm;
-no realisation may be lost or counted twice. Prints a table and leaves with 1 when anything differs. --quick: some of the
-cases; --only: one of them (time_limit, which waits for a minute, is run only so); --keep: leave everything in that folder.
+Runs campaigns through a real Slurm (slurmctld, slurmd and munged of this machine's packages, started here) while tasks
+are killed, preempted and warned, the controller is restarted or away, submissions are refused, lose their answers or
+are forgotten, and the owner is killed. After each case the canonical export must be, byte for byte, that of the same
+campaign run by `peclet run` without Slurm; no realisation may be lost or counted twice. Prints a table and leaves with
+1 when anything differs. --quick: some of the cases; --only: one of them (time_limit, which waits for a minute, is run
+only so); --keep: leave everything in that folder.
 """
 import argparse
 import contextlib
@@ -117,8 +117,8 @@ class Drill:
             time.sleep(1)
             self.cluster.start_controller()
             self.cluster.wait_for_controller()
-        # Killed, it may have forgotten jobs that it had started, and give their numbers out again; it then takes the node
-        # out of use until an administrator says that all is well.
+        # Killed, it may have forgotten jobs that it had started, and give their numbers out again; it then takes the
+        # node out of use until an administrator says that all is well.
         resumed = 0
         end = time.monotonic() + 240
         while owner.poll() is None and time.monotonic() < end:
@@ -237,7 +237,8 @@ class Drill:
         self.cluster.wait_until(lambda: not self.cluster.say("squeue", "-h", "--me"), "the last job", 240)
         campaign.do("restore", saved, "drill.json")
         attempts = campaign.ask("SELECT count(*) FROM attempt WHERE outcome = 'drained'")
-        return f"one job, the database on its node: warned, preempted, queued again; {attempts} seeds went on from checkpoints"
+        node = "one job, the database on its node"
+        return f"{node}: warned, preempted, queued again; {attempts} seeds went on from checkpoints"
 
     def owner_killed(self, campaign):
         kills = 0
@@ -342,7 +343,8 @@ def try_case(drill, name, expected):
     finally:
         campaign.stop()
     print(
-        f"{name:22}{lost:>5}{double:>7}{again:>10}  {'yes' if same else 'NO':5}{time.monotonic() - started:6.1f} s  {said}",
+        f"{name:22}{lost:>5}{double:>7}{again:>10}  {'yes' if same else 'NO':5}{time.monotonic() - started:6.1f} s  "
+        f"{said}",
         flush=True,
     )
     return same and lost == 0 and double == 0

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """command_line.py ENGINE      what peclet-engine says to the one who calls it
 
-Bad arguments end with 2 and name what was given; a run ends with a summary on standard error whose numbers are those of the result,
-computed here once more; results begin with the means; waiting threads sleep unless the environment has its own wishes.
+Bad arguments end with 2 and name what was given; a run ends with a summary on standard error whose numbers are those of
+the result, computed here once more; results begin with the means; waiting threads sleep unless the environment has its
+own wishes.
 """
 import json
 import math
@@ -46,7 +47,8 @@ def bad_arguments(engine, scene):
 
 
 def standard_error(series):
-    """Of a correlated series: the variance of the mean times 1 + 2 sum of the correlations before the first that is not positive."""
+    """Of a correlated series: the variance of the mean times 1 + 2 sum of the correlations before the first that is not
+    positive."""
     n = len(series)
     mean = math.fsum(series) / n
     products = [math.fsum((a - mean) * (b - mean) for a, b in zip(series, series[lag:])) / n for lag in range(n)]

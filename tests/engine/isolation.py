@@ -1,9 +1,9 @@
 """Usage: isolation.py ARCHIVE...
 
-What is compiled for newer processors must not leak into the rest of the program: where several objects define the same inline
-function, the linker keeps one copy, and if that is the one with the newer instructions the program no longer runs everywhere.
-So no object compiled for an instruction set may define a symbol that others could share, and no other object may contain
-registers of 256 or 512 bits.
+What is compiled for newer processors must not leak into the rest of the program: where several objects define the same
+inline function, the linker keeps one copy, and if that is the one with the newer instructions the program no longer
+runs everywhere. So no object compiled for an instruction set may define a symbol that others could share, and no other
+object may contain registers of 256 or 512 bits.
 """
 
 import subprocess

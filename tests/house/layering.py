@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """layering.py [--picture FILE.svg]      may every folder include what it includes?
 
-A folder may include those before it in its list below, and itself. An include that runs upward is an error; so are a file of more than
-350 lines and a folder of more than 30 files, which hide a second subject. --picture draws the folders and their includes (needs graphviz).
+A folder may include those before it in its list below, and itself. An include that runs upward is an error; so are a
+file of more than 350 lines and a folder of more than 30 files, which hide a second subject. --picture draws the folders
+and their includes (needs graphviz).
 """
 import argparse
 import collections
@@ -114,7 +115,10 @@ def too_large(source):
 
 def picture(source):
     """The folders from below to above and their includes, for dot."""
-    text = 'digraph layers {\n  rankdir=BT; node [shape=box, style=filled, fillcolor="#eef3f8", fontname="sans"]; edge [color="#7090b0"];\n'
+    text = (
+        'digraph layers {\n  rankdir=BT; node [shape=box, style=filled, fillcolor="#eef3f8", fontname="sans"]; '
+        'edge [color="#7090b0"];\n'
+    )
     for top, layers in LAYERS.items():
         between = collections.Counter(
             (os.path.dirname(path), os.path.dirname(included)) for path, _, included in includes(source, top)

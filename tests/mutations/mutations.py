@@ -1,13 +1,13 @@
 #!/usr/bin/python3
-"""mutations.py FOLDER [--named] [--only WORD] [--jobs N]      break the physics in a copy of the source and see who notices
-mutations.py --check                                        only see that every mutation still applies
+"""mutations.py FOLDER [--named] [--only WORD] [--jobs N]  break the physics in a copy of the source and see who notices
+mutations.py --check                                    only see that every mutation still applies
 
-Each mutation is one change of a line of the engine. It is made in FOLDER, a copy of the source that this script makes, and built there.
-The coarse ones (mutations.py) are shown to the quick forms of the studies and to the tests of the engine and of the physics; the fine
-ones (named_mutations.py, --named) each to the one test of seconds that has to notice it. A mutation that is missed is an error.
-Prints a table, and writes it to its half of mutations.md beside this script when all were tried. Some four minutes of two cores for each
-coarse mutation, a minute for each fine one; a second call with FOLDER goes on where the first one was stopped, if the source has the same
-commit and no changes.
+Each mutation is one change of a line of the engine. It is made in FOLDER, a copy of the source that this script makes,
+and built there. The coarse ones (mutations.py) are shown to the quick forms of the studies and to the tests of the
+engine and of the physics; the fine ones (named_mutations.py, --named) each to the one test of seconds that has to
+notice it. A mutation that is missed is an error. Prints a table, and writes it to its half of mutations.md beside this
+script when all were tried. Some four minutes of two cores for each coarse mutation, a minute for each fine one; a
+second call with FOLDER goes on where the first one was stopped, if the source has the same commit and no changes.
 """
 import argparse
 import datetime
@@ -264,7 +264,8 @@ def trees():
 
 
 class Known:
-    """Who noticed what, of this call and of earlier ones with the same commit; of source with changes nothing is kept."""
+    """Who noticed what, of this call and of earlier ones with the same commit; of source with changes nothing is
+    kept."""
 
     def __init__(self, folder, commit, file):
         os.makedirs(folder, exist_ok=True)
@@ -297,8 +298,10 @@ def write_halves(before, rows):
     names = ["nothing", *(mutation[0] for mutation in NAMED)]
     with open(os.path.join(HERE, "mutations.md"), "w") as f:
         f.write(
-            f"{before}\n\n{MARK}\n`mutations.py --named` shows each to the one test of seconds that has to notice it. A row is made by itself (`--only WORD`); its last column is\n"
-            "the tree of `engine/` that it was made with (`git rev-parse HEAD:engine`).\n\n| broken | noticed by | engine |\n|---|---|---|\n"
+            f"{before}\n\n{MARK}\n`mutations.py --named` shows each to the one test of seconds that has to notice "
+            "it. A row is made by itself (`--only WORD`); its last column is\n"
+            "the tree of `engine/` that it was made with (`git rev-parse HEAD:engine`).\n\n| broken | noticed by | "
+            "engine |\n|---|---|---|\n"
         )
         f.write("".join(rows[name] + "\n" for name in names if name in rows))
 
@@ -361,8 +364,10 @@ def main():
             write_halves(before, rows)
     if not arguments.named and not arguments.only:
         write_halves(
-            "# Who notices broken physics\n\nOne line of the engine is broken at a time, in a copy.\n\n## Coarse mistakes\n\n`mutations.py` shows each to the quick forms of the studies and "
-            f"to all tests of the engine and of the physics. Commit {commit}, {processor()}, {datetime.date.today().isoformat()}.\n\n"
+            "# Who notices broken physics\n\nOne line of the engine is broken at a time, in a copy.\n\n## Coarse "
+            "mistakes\n\n`mutations.py` shows each to the quick forms of the studies and "
+            f"to all tests of the engine and of the physics. Commit {commit}, {processor()}, "
+            f"{datetime.date.today().isoformat()}.\n\n"
             "| broken | noticed by |\n|---|---|\n" + "\n".join(lines),
             rows,
         )

@@ -33,14 +33,16 @@ NAMED = [
         "stress of the noise at the middle of the step",
         IMPLICIT,
         "report.sums.of(StressTerm::brownian_lubrication) = drawn.of(",
-        "report.sums.of(StressTerm::brownian_lubrication) = (drawn.finite ? noisy_->with.evaluate(system, force_, torque_) : drawn).of(",
+        "report.sums.of(StressTerm::brownian_lubrication) = (drawn.finite ? noisy_->with.evaluate(system, force_, "
+        "torque_) : drawn).of(",
         "engine_tests:NoisyStep.HasTheStressOfItsNoiseWhereItWasDrawn",
     ),
     (
         "predictor without noise",
         IMPLICIT,
         "  const bool predicted = solve(false);",
-        "  for (std::size_t i = 0; i < system.particles.count(); ++i) force_.row(i) = force_.row(i) - noise_force_.row(i);\n  const bool predicted = solve(false);",
+        "  for (std::size_t i = 0; i < system.particles.count(); ++i) force_.row(i) = force_.row(i) - "
+        "noise_force_.row(i);\n  const bool predicted = solve(false);",
         "physics_tests:NoisyDrift.OfALubricatedPairIsTheDivergenceOfItsMobility",
     ),
     (

@@ -17,7 +17,8 @@ class Case:
 
 
 def every_allocation():
-    """The full form takes one in twenty of some ten thousand allocations; this takes them all, which is an hour's work."""
+    """The full form takes one in twenty of some ten thousand allocations; this takes them all, which is an hour's
+    work."""
     return case(
         "database: every allocation fails in turn",
         storage.failing_calls,

@@ -1,5 +1,5 @@
-"""What comes by socket and spool: frames and files that are repeated, out of order, cut off, too large, or somebody else's;
-and engines that hang, crash or lie."""
+"""What comes by socket and spool: frames and files that are repeated, out of order, cut off, too large, or somebody
+else's; and engines that hang, crash or lie."""
 import json
 import os
 import re
@@ -37,7 +37,8 @@ def crash_at_each_step(lab, tally, chance, steps):
 
 
 def other_answer(lab, tally, chance, times):
-    """A worker that wakes up late has another result for its seed: exit code 6 from then on, the numbers as they were."""
+    """A worker that wakes up late has another result for its seed: exit code 6 from then on, the numbers as they
+    were."""
     for _ in range(times):
         campaign = Campaign(lab, workers=1)
         board = Board(campaign.folder)

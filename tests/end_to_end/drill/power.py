@@ -1,8 +1,8 @@
 """A power cut: takes back what the shim's journal (shim/journal.h) says was changed and never synchronised.
 
-What is on the disk afterwards is any mixture of what was there at the last fsync and what was written since: per file, of
-sectors; per folder, of its first changes without the later ones. The strict reading of POSIX: a file's fsync does not save
-its name, only that of its folder does."""
+What is on the disk afterwards is any mixture of what was there at the last fsync and what was written since: per file,
+of sectors; per folder, of its first changes without the later ones. The strict reading of POSIX: a file's fsync does
+not save its name, only that of its folder does."""
 import contextlib
 import os
 import re
@@ -82,8 +82,8 @@ def files_below(folder):
 
 
 def cut(campaign, journal, chance):
-    """Takes back a random part of what was not synchronised. Returns the numbers of changes of contents and of names that
-    were at stake, and notes in the campaign what had been acknowledged."""
+    """Takes back a random part of what was not synchronised. Returns the numbers of changes of contents and of names
+    that were at stake, and notes in the campaign what had been acknowledged."""
     records = read_journal(journal)
     contents = spoil_contents(campaign, journal, records, chance)
     names = spoil_names(journal, records, chance)

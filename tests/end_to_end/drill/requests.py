@@ -49,7 +49,8 @@ def changes_and_kills(lab, tally, chance, times):
 
 
 def edges_of_a_verb(lab, tally, chance, stride):
-    """A finished campaign is reopened, and the verb is killed before every call that changes a file; it is said again."""
+    """A finished campaign is reopened, and the verb is killed before every call that changes a file; it is said
+    again."""
     calls, struck, number = None, collections.Counter(), 1 if stride == 1 else chance.randint(1, stride)
     tighten = [lab.peclet, "set", "drill.json", "--tolerance", str(FAKE["target"]["relative_tolerance"])]
     while calls is None or number <= calls:

@@ -53,8 +53,8 @@ def worker_stopped(lab, tally, chance, times):
 
 
 def late_workers(lab, tally, chance, times):
-    """A worker hangs in one of its calls, its owner dies, another one runs the campaign, and then it goes on. (It cannot be
-    stopped for that: a stopped process whose owner dies is ended by the system with SIGHUP.)"""
+    """A worker hangs in one of its calls, its owner dies, another one runs the campaign, and then it goes on. (It
+    cannot be stopped for that: a stopped process whose owner dies is ended by the system with SIGHUP.)"""
     for _ in range(times):
         campaign = Campaign(lab, checkpoint=0.001, steps=10, step_ms=1)
         board = Board(campaign.folder)

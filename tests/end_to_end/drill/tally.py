@@ -1,6 +1,5 @@
 """What is counted against the programs: results lost or counted twice, exports that differ, and anything else that
 should not have happened."""
-import sqlite3
 
 
 class Tally:
@@ -22,8 +21,8 @@ class Tally:
             self.complain(campaign, message)
 
     def judge(self, campaign, tried=1, code=None):
-        """Runs the disturbed campaign to its end in peace and compares it with the undisturbed one; `code` is the exit code
-        to expect when it is not that one's."""
+        """Runs the disturbed campaign to its end in peace and compares it with the undisturbed one; `code` is the exit
+        code to expect when it is not that one's."""
         self.tried += tried
         campaign.settle()
         campaign.acknowledge()
@@ -51,7 +50,8 @@ class Tally:
         latest = {
             (point, seed): attempt
             for point, seed, attempt in campaign.query(
-                "SELECT substr(hash, 1, 16), seed, max(attempt_id) FROM attempt JOIN point USING (point_id) GROUP BY 1, 2"
+                "SELECT substr(hash, 1, 16), seed, max(attempt_id) FROM attempt JOIN point USING (point_id) GROUP BY "
+                "1, 2"
             )
         }
         lost = [

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""engine.py WAY TIMES: an engine that speaks the frames honestly, until it is asked for seed 2: that one's first TIMES tries
-go wrong in a WAY of lies.py. Ways with names that begin with hello or validate lie there instead."""
+"""engine.py WAY TIMES: an engine that speaks the frames honestly, until it is asked for seed 2: that one's first TIMES
+tries go wrong in a WAY of lies.py. Ways with names that begin with hello or validate lie there instead."""
 import hashlib
 import json
 import os
@@ -11,7 +11,7 @@ import sys
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-from hostile import lies  # noqa: E402
+from hostile import lies
 
 STEPS = 4
 IDENTITY = {"version": "1.0", "instruction_set": "none", "binary_sha256": hashlib.sha256(b"hostile").hexdigest()}

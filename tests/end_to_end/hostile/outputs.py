@@ -7,7 +7,8 @@ import threading
 from . import things
 from .trial import Wrong
 
-SCENE = """{ "particles": { "count": 20, "density": 0.1, "species": [ { "radius": 1, "volume_share": 1 } ] }, "volume_fraction": 0.2,
+SCENE = """{ "particles": { "count": 20, "density": 0.1, "species": [ { "radius": 1, "volume_share": 1 } ] },
+"volume_fraction": 0.2,
 "fluid": { "viscosity": 0.1 }, "flow": { "shear_rate": 0.05 }, "contact": { "normal_stiffness": 1e4 },
 "duration": { "equilibration": { "strain": 0.001 }, "production": { "strain": 0.01 } } }"""
 

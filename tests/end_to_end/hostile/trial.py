@@ -1,5 +1,5 @@
-"""One way that is tried: a campaign of which some seeds have ended, what somebody has put into its folder, and what the programs
-do about it."""
+"""One way that is tried: a campaign of which some seeds have ended, what somebody has put into its folder, and what the
+programs do about it."""
 import json
 import os
 import re

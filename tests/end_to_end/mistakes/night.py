@@ -129,8 +129,8 @@ class Night:
         self.page.append(("remark", text))
 
     def follows(self, pattern=r"peclet [^`\n]*", code=0, says=()):
-        """Does literally what the last answer names as the next command: the first thing between `` or at the end of a line
-        that the pattern fits."""
+        """Does literally what the last answer names as the next command: the first thing between `` or at the end of a
+        line that the pattern fits."""
         found = re.search(rf"`({pattern})`|(?:with: |: )({pattern})$", self.said, re.MULTILINE)
         if not found:
             raise Wrong(f"no command to follow in: {self.said!r}")
@@ -171,7 +171,8 @@ class Night:
         return len(self.known)
 
     def lost_nothing(self, data="night.peclet", but=0):
-        """Every result there has been is there, with the same content; `but` so many that the mistake itself destroyed."""
+        """Every result there has been is there, with the same content; `but` so many that the mistake itself
+        destroyed."""
         now = self.results(data)
         gone = [key for key, state in self.known.items() if now.get(key) != state]
         if len(gone) > but:
@@ -224,8 +225,8 @@ class Night:
         self.wait_for(f"{count} results", lambda: len(self.results(data)) >= count)
 
     def holds(self):
-        """The last seed of each point stands still half-way from now on: a run goes on until lets_go(), whatever the machine
-        does besides."""
+        """The last seed of each point stands still half-way from now on: a run goes on until lets_go(), whatever the
+        machine does besides."""
         with open(self.path("hold"), "w"):
             pass
         self.environment.update(PECLET_FAKE_HOLD=self.path("hold"), PECLET_FAKE_HOLD_SEED="7")

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """conversation.py [--refused POINTER=VALUE] SCHEMAS SCENE ENGINE [ARGUMENT ...]
 
-Plays the runner's part for one engine, in another language than both programs: asks about a scene and about a bad one (SCENE
-with VALUE at POINTER; unless given, a viscosity of -1), runs one seed, runs it again and takes the job back after the first
-progress, runs it once more and hangs up, each time with a new process that goes on. An engine that takes a job ahead gets two at
-once, and a drain with two of them. Holds every frame and result to
-schema/frames.schema.json and schema/result.schema.json with an independent validator (Debian's python3-jsonschema), and the
-results to each other.
+Plays the runner's part for one engine, in another language than both programs: asks about a scene and about a bad one
+(SCENE with VALUE at POINTER; unless given, a viscosity of -1), runs one seed, runs it again and takes the job back
+after the first progress, runs it once more and hangs up, each time with a new process that goes on. An engine that
+takes a job ahead gets two at once, and a drain with two of them. Holds every frame and result to
+schema/frames.schema.json and schema/result.schema.json with an independent validator (Debian's python3-jsonschema), and
+the results to each other.
 """
 import argparse
 import copy
@@ -150,7 +150,8 @@ class Conversation:
         return result
 
     def disturbed(self, job, how):
-        """Interrupts the job after its first progress and lets another process go on. Returns its result and whether it was cut."""
+        """Interrupts the job after its first progress and lets another process go on. Returns its result and whether it
+        was cut."""
         engine = self.start()
         self.give_job(engine, job)
         answer = engine.receive()

@@ -1,4 +1,5 @@
-"""Carries out what schema/README.md says about results in the sqlite3 shell: usage results_elsewhere.py PECLET FAKE_ENGINE."""
+"""Carries out what schema/README.md says about results in the sqlite3 shell: usage results_elsewhere.py PECLET
+FAKE_ENGINE."""
 import csv
 import io
 import json
