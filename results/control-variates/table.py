@@ -14,7 +14,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from studies.estimates import estimate
-from studies.tables import markdown_head, markdown_row
+from studies.tables import markdown_head, markdown_row, number_text
 
 XY, OTHERS = 3, (0, 1, 2, 4, 5)  # components of a stress
 HEAD = (
@@ -58,11 +58,6 @@ def correlation(a, b):
     return np.corrcoef(a, b)[0, 1]
 
 
-def mean_text(values):
-    mean, error = estimate(values)
-    return f"{mean:.3f} ± {error:.3f}"
-
-
 def main():
     export = json.load(sys.stdin)
     print(markdown_head(HEAD))
@@ -77,7 +72,7 @@ def main():
         cells = [
             point["settings"]["/peclet"],
             len(results),
-            *(mean_text(values) for values in (eta, eta + b, b)),
+            *(number_text(estimate(values), 3) for values in (eta, eta + b, b)),
             f"{eta.std(ddof=1):.2f}",
             f"**{ratio(eta, b):.3f}** ({low:.3f} .. {high:.3f})",
             f"{fitted:.3f}",

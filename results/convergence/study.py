@@ -15,6 +15,7 @@ from studies.command_line import main
 from studies.estimates import estimate, jackknife, over, quotient
 from studies.figure import BLACK, BLUE, GREEN, RED, Figure
 from studies.fits import line_through
+from studies.published import JAMMED_AT_REST, diverging
 from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
 from studies.tables import entries, write_table
 from studies.verdicts import Statement
@@ -32,8 +33,8 @@ SHEARED = during({"strain": 1}, {"strain": 4})
 RUNS = ((0.01, 96, BROWNIAN, 8), (1, 96, BROWNIAN, None), (1e4, 192, SHEARED, 5))
 TARGET = 0.1
 # At Pe = 0.01 the mean of such windows is not known to 10 %: spreads there are relative to the published viscosity at
-# rest, (1 - phi / 0.587)^-1.5.
-PUBLISHED_MEAN = {0.01: (1 - 0.5 / 0.587) ** -1.5}
+# rest.
+PUBLISHED_MEAN = {0.01: diverging(0.5, JAMMED_AT_REST)}
 KINDS = {"plain": "without", "controlled": "with"}
 
 

@@ -16,6 +16,7 @@ from studies.estimates import difference, jackknife, propagated, quotient
 from studies.figure import BLUE, GREEN, RED, Figure
 from studies.fits import lines, multiples
 from studies.green_kubo import table_at_rest
+from studies.published import JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, diverging
 from studies.scenes import TABLE_SCENE, during, merged
 from studies.tables import columns_of, entries, number, write_table
 from studies.verdicts import Statement
@@ -33,11 +34,7 @@ REST_FRACTIONS = FRACTIONS[:7]
 SLOW = merged(TABLE_SCENE, {"peclet": 0.22, **during({"brownian_times": 20}, {"brownian_times": 20})})
 SLOW_SEEDS = 3
 
-PUBLISHED = {0: (0.587, 1.5), 4.6: (None, 1.5), 1e4: (0.642, 1.5)}
-
-
-def divergence(fraction, jammed, exponent):
-    return (1 - fraction / jammed) ** -exponent
+PUBLISHED = {0: (JAMMED_AT_REST, 1.5), 4.6: (None, 1.5), 1e4: (JAMMED_IN_STRONG_FLOW, 1.5)}
 
 
 def candidates(fractions):
@@ -171,7 +168,7 @@ def measure(program):
 
 def draw_divergence(panel, title, colour, power, jammed, exponent, **style):
     ends = 0.38, min(jammed, 0.66) - 1e-5
-    panel.curve(lambda f: divergence(f, jammed, exponent) ** power, title, colour, ends, **style)
+    panel.curve(lambda f: diverging(f, jammed, exponent) ** power, title, colour, ends, **style)
 
 
 def draw(curves, fits):

@@ -16,6 +16,7 @@ from studies.estimates import estimate, propagated, quotient
 from studies.figure import BLACK, BLUE, GREEN, GREY, RED, Figure
 from studies.fits import log_minimum
 from studies.green_kubo import table_at_rest
+from studies.published import JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, diverging
 from studies.scenes import TABLE_SCENE, during, merged
 from studies.tables import columns_of, entries, number, write_table
 from studies.verdicts import Statement
@@ -193,8 +194,8 @@ def draw(rows):
             curve = [(r["peclet"], *number(r, name)) for r in curve_of(rows, fraction)]
             panel.points(curve, title, colour, mark, 0.8, joined=True)
         title = "published fits of both ends"
-        for jammed, span in ((0.587, (5e-3, 0.02)), (0.642, (3e3, 3e4))):
-            panel.level((1 - fraction / jammed) ** -1.5, title, GREY, span, width=3)
+        for jammed, span in ((JAMMED_AT_REST, (5e-3, 0.02)), (JAMMED_IN_STRONG_FLOW, (3e3, 3e4))):
+            panel.level(diverging(fraction, jammed), title, GREY, span, width=3)
             title = None
         panel.level(rest[fraction][0], "structural Brownian at rest", GREEN, (5e-3, 0.1), width=2, dash=2)
     figure.draw()

@@ -12,7 +12,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from studies.estimates import estimate, quotient
-from studies.tables import markdown_head, markdown_row
+from studies.tables import markdown_head, markdown_row, number_text
 
 HEAD = (
     "integrator",
@@ -31,18 +31,14 @@ def controlled(mean):
     return mean["relative_viscosity"] + mean["brownian_pairwise"][3]
 
 
-def error_text(found, digits):
-    return f"{found[0]:.{digits}f} ± {found[1]:.{digits}f}"
-
-
 def ratio_text(viscosity, of_reference, noise):
     """Of viscosities by seed."""
     if viscosity == of_reference:
         return "1"
     if noise:
-        return error_text(quotient(*(estimate([*values.values()]) for values in (viscosity, of_reference))), 3)
+        return number_text(quotient(*(estimate([*values.values()]) for values in (viscosity, of_reference))), 3)
     common = sorted(viscosity.keys() & of_reference.keys())
-    return error_text(estimate([viscosity[s] / of_reference[s] for s in common]), 3)
+    return number_text(estimate([viscosity[s] / of_reference[s] for s in common]), 3)
 
 
 def name_of(settings, result):
@@ -63,10 +59,10 @@ def cells_of(settings, results, seeds, of_reference, noise):
         name_of(settings, first),
         f"{sum(first['steps'].values()) / strain:.4g}",
         f"{len(results)} of {seeds}",
-        error_text(estimate([*viscosity.values()]), 3),
+        number_text(estimate([*viscosity.values()]), 3),
         ratio_text(viscosity, of_reference, noise),
-        error_text(estimate([m["pressure"] for m in means]), 2),
-        error_text(estimate([m["contacts_per_particle"] for m in means]), 4),
+        number_text(estimate([m["pressure"] for m in means]), 2),
+        number_text(estimate([m["contacts_per_particle"] for m in means]), 4),
         f"{cost[len(cost) // 2]:.3g} ({cost[0]:.3g} .. {cost[-1]:.3g})",
     ]
 

@@ -15,6 +15,7 @@ from studies.command_line import main
 from studies.estimates import estimate, over, quotient, weighted_mean
 from studies.figure import BLUE, GREEN, ORANGE, PURPLE, RED, Figure
 from studies.fits import line_through
+from studies.published import mari_fit
 from studies.scenes import REFERENCE_SCENE, during, merged
 from studies.tables import write_table
 from studies.verdicts import Statement
@@ -29,9 +30,6 @@ FLOW_BOUND = 0.1
 STOKES = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)
 SMALL = {"particles": {"count": 250}}
 FLOW = merged(REFERENCE_SCENE, {**SMALL, "volume_fraction": 0.55, "flow": {"shear_rate": RATE}})
-# Of the fit of Mari et al. (2014) to viscosities without friction, as Monti et al. (2021) quote it; with the solvent
-# and the stresslet.
-MARI = 1.4 * (1 - 0.55 / 0.66) ** -1.6
 
 # With noise: tau_I / tau_B = rho kT / (eta^2 a), by the density too; tau_I / tau_S = Pe / (6 pi) tau_I / tau_B stays
 # below 0.01. Pe, seeds, values of tau_I / tau_B, equilibration and window.
@@ -243,7 +241,7 @@ def quick_measure(program):
     slow, flat, fast = flow_rows(program, (0.005, 0.1, 5), seeds, small, window=3)
     parts = during({"brownian_times": 3}, {"brownian_times": 10})
     little, more = thermal_rows(program, 1, seeds, (0.001, 0.01), parts, small)
-    of_fit = over((flat["viscosity"] + 1 + 2.5 * 0.55, flat["standard_error"]), MARI)
+    of_fit = over((flat["viscosity"] + 1 + 2.5 * 0.55, flat["standard_error"]), mari_fit(0.55, 0))
     text = "η_r with solvent and stresslet over Mari's fit"
     return [
         Statement("η_r at τ_I/τ_S = 0.1 over that at 0.005", "L4.6a", *ratio_of(flat, slow), 0.7, 1.4, degrees),

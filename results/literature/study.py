@@ -12,6 +12,7 @@ from studies.command_line import main
 from studies.estimates import difference, over, propagated, quotient
 from studies.figure import BLUE, GREEN, RED, Figure
 from studies.fits import log_minimum
+from studies.published import mari_fit
 from studies.scenes import REFERENCE_SCENE, TABLE_SCENE, during, merged
 from studies.tables import columns_of, entries, number, write_table
 from studies.verdicts import Statement
@@ -48,18 +49,13 @@ NOISY_SEEDS = 8
 NOISY_FRACTIONS, NOISY_GAPS = (0.45, 0.50), (0.05, 0.5)
 
 
-def fit(fraction, friction):
-    """Of Mari et al. as Monti et al. (2021) quote it; with solvent and stresslet."""
-    return 0.71 * (1 - fraction / 0.575) ** -2.3 if friction else 1.4 * (1 - fraction / 0.66) ** -1.6
-
-
 def steady(program, name, cases, seeds, patch=None):
     """Rows of (fraction, friction, gap) without noise."""
     settings = [{"/volume_fraction": f, "/contact/friction": m, "/lubrication/outer_gap": g} for f, m, g in cases]
     points = program.run(name, merged(STEADY, patch or {}), settings, seeds)
     rows = []
     for (fraction, friction, gap), point in zip(cases, points):
-        published = fit(fraction, friction)
+        published = mari_fit(fraction, friction)
         row = {"fraction": fraction, "friction": friction, "gap": gap, "fit": published}
         row |= viscosity_row(point, "first_normal_difference", "second_normal_difference")
         for of in ("viscosity", "pairs"):
@@ -149,7 +145,10 @@ def draw(rows, curves):
     panel = figure.panel("φ", "η_r = σ / (η γ̇)", log="y", key="top left", **ends)
     for friction, dash in ((0, 2), (1, 1)):
         panel.curve(
-            lambda phi, friction=friction: fit(phi, friction), f"Mari fit, μ = {friction}", span=(0.28, 0.56), dash=dash
+            lambda phi, friction=friction: mari_fit(phi, friction),
+            f"Mari fit, μ = {friction}",
+            span=(0.28, 0.56),
+            dash=dash,
         )
     for friction in (0, 1):
         for gap in GAPS:

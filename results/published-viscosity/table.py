@@ -11,18 +11,11 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from studies.estimates import estimate, over
-from studies.tables import markdown_head, markdown_row
+from studies.published import mari_fit
+from studies.tables import markdown_head, markdown_row, number_text
 
 HEAD = ["φ", "μ", "outer gap", "seeds", "η_r", "of the pairs", "N₁/ηγ̇", "N₂/ηγ̇", "Mari fit", "η_r / fit"]
 QUANTITIES = ("relative_viscosity", "relative_viscosity_pair", "first_normal_difference", "second_normal_difference")
-
-
-def fit(phi, friction):
-    return 0.71 * (1 - phi / 0.575) ** -2.3 if friction else 1.4 * (1 - phi / 0.66) ** -1.6
-
-
-def error_text(found, digits):
-    return f"{found[0]:.{digits}f} ± {found[1]:.{digits}f}"
 
 
 def main():
@@ -35,9 +28,9 @@ def main():
         settings |= {path.split("/")[-1]: value for path, value in point["settings"].items()}
         phi, friction = settings["volume_fraction"], settings["friction"]
         found = [estimate([mean[name] for mean in means]) for name in QUANTITIES]
-        reference = fit(phi, friction)
-        cells = [f"{phi:.2f}", friction, settings["outer_gap"], len(means), *(error_text(f, 2) for f in found)]
-        print(markdown_row([*cells, f"{reference:.2f}", error_text(over(found[0], reference), 3)]))
+        reference = mari_fit(phi, friction)
+        cells = [f"{phi:.2f}", friction, settings["outer_gap"], len(means), *(number_text(f, 2) for f in found)]
+        print(markdown_row([*cells, f"{reference:.2f}", number_text(over(found[0], reference), 3)]))
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@
     viscosities    viscosities of a point of an export, split by term, as rows of a table
     estimates      means, quotients and other numbers with their standard errors
     fits           lines and curves through such numbers
+    published      fits that others have published
     green_kubo     the viscosity at rest from the correlation of the structural Brownian stress
     tables         csv files
     figure         pictures

@@ -28,6 +28,11 @@ def entries(name, pair):
     return {name: pair[0], f"{name}_error": pair[1]}
 
 
+def number_text(pair, digits):
+    """A number with its standard error on a page."""
+    return f"{pair[0]:.{digits}f} ± {pair[1]:.{digits}f}"
+
+
 def columns_of(*names):
     """Column names of numbers with their errors."""
     return [c for n in names for c in (n, f"{n}_error")]

@@ -23,7 +23,8 @@ from studies.estimates import (
 )
 from studies.fits import line_through, lines, log_minimum, multiples
 from studies.green_kubo import fit_with_errors, fitted
-from studies.tables import columns_of, markdown_head, markdown_row
+from studies.published import JAMMED_AT_REST, diverging, mari_fit
+from studies.tables import columns_of, markdown_head, markdown_row, number_text
 
 
 class Means(unittest.TestCase):
@@ -158,6 +159,13 @@ class Fits(unittest.TestCase):
         self.assertAlmostEqual(tau_error, 0)
 
 
+class Published(unittest.TestCase):
+    def test_fits_have_their_values(self):
+        self.assertAlmostEqual(mari_fit(0.495, 0), 1.4 * 4**1.6)  # 1 - 0.75
+        self.assertAlmostEqual(mari_fit(0.43125, 1), 0.71 * 4**2.3)
+        self.assertAlmostEqual(diverging(0.75 * JAMMED_AT_REST, JAMMED_AT_REST), 8)
+
+
 class Tables(unittest.TestCase):
     def test_errors_have_columns_of_their_own(self):
         self.assertEqual(columns_of("a", "b"), ["a", "a_error", "b", "b_error"])
@@ -165,6 +173,7 @@ class Tables(unittest.TestCase):
     def test_lines_of_a_page(self):
         self.assertEqual(markdown_head(["a", "b"]), "| a | b |\n|---|---|")
         self.assertEqual(markdown_row(["x", "", 0]), "| x | | 0 |")
+        self.assertEqual(number_text((1.25, 0.004), 2), "1.25 ± 0.00")
 
 
 if __name__ == "__main__":
