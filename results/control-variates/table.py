@@ -10,11 +10,11 @@ import random
 import sys
 from pathlib import Path
 
-import numpy as np
-
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from studies.estimates import estimate
 from studies.tables import markdown_head, markdown_row, number_text
+
+import numpy as np
 
 XY, OTHERS = 3, (0, 1, 2, 4, 5)  # components of a stress
 HEAD = (

@@ -9,11 +9,11 @@ import random
 import sys
 from pathlib import Path
 
-import numpy as np
-
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from studies.campaigns import read_results
 from studies.tables import markdown_head, markdown_row
+
+import numpy as np
 
 BLOCKS, RESAMPLES = 32, 1000
 

@@ -7,8 +7,6 @@ import math
 import sys
 from pathlib import Path
 
-import numpy as np
-
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
@@ -19,6 +17,8 @@ from studies.published import JAMMED_AT_REST, diverging
 from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
 from studies.tables import entries, write_table
 from studies.verdicts import Statement
+
+import numpy as np
 
 TITLE = "Convergence of the viscosity"
 SCENE = merged(REFERENCE_SCENE, {"particles": {"count": 250}})

@@ -7,8 +7,6 @@ import math
 import sys
 from pathlib import Path
 
-import numpy as np
-
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
@@ -18,6 +16,8 @@ from studies.fits import line_through
 from studies.scenes import REFERENCE_SCENE, during, merged
 from studies.tables import write_table
 from studies.verdicts import Statement
+
+import numpy as np
 
 TITLE = "Mean squared displacement and self-diffusion"
 AT_REST = merged(REFERENCE_SCENE, {"flow": {"shear_rate": 0}, "observables": ["stress", "mean_squared_displacement"]})

@@ -7,8 +7,6 @@ import math
 import sys
 from pathlib import Path
 
-import numpy as np
-
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
@@ -21,6 +19,8 @@ from studies.scenes import TABLE_SCENE, during, merged
 from studies.tables import columns_of, entries, number, write_table
 from studies.verdicts import Statement
 from studies.viscosities import completed, pair_viscosity, term, viscosity_row
+
+import numpy as np
 
 TITLE = "Flow curves of Brownian suspensions"
 FRACTIONS = (0.45, 0.50, 0.55)

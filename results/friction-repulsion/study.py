@@ -7,8 +7,6 @@ import math
 import sys
 from pathlib import Path
 
-import numpy as np
-
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
@@ -19,6 +17,8 @@ from studies.scenes import TABLE_SCENE, during, merged
 from studies.tables import columns_of, number, write_table
 from studies.verdicts import Statement
 from studies.viscosities import viscosity_row
+
+import numpy as np
 
 TITLE = "Friction and repulsion in flow curves"
 PECLET = (10, 100, 1e3, 1e4, 1e5, 1e6)

@@ -7,8 +7,6 @@ import math
 import sys
 from pathlib import Path
 
-import numpy as np
-
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
@@ -20,6 +18,8 @@ from studies.scenes import REFERENCE_SCENE, during, merged
 from studies.tables import write_table
 from studies.verdicts import Statement
 from studies.viscosities import counts_text, flags, pair_viscosity
+
+import numpy as np
 
 TITLE = "Viscosity and inertia"
 VISCOSITY, THERMAL_ENERGY, RATE = 0.1, 0.017, 0.045

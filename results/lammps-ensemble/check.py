@@ -9,11 +9,11 @@ import json
 import sys
 from pathlib import Path
 
-import numpy as np
-from scipy.linalg import solve_discrete_lyapunov
-
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from studies.tables import markdown_head, markdown_row
+
+import numpy as np
+from scipy.linalg import solve_discrete_lyapunov
 
 # dumbbells.in: kT = H = lambda = 1, so zeta = 4; mass of a bead; step.
 FRICTION, MASS, STEP = 4.0, 0.5, 0.005

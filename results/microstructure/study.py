@@ -6,8 +6,6 @@ study.py BIN [FOLDER] [--quick]
 import sys
 from pathlib import Path
 
-import numpy as np
-
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
@@ -16,6 +14,8 @@ from studies.figure import BLUE, GREEN, RED, Figure
 from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
 from studies.tables import entries, write_table
 from studies.verdicts import Statement
+
+import numpy as np
 
 TITLE = "Microstructure in the flow"
 FRACTION, BIN = 0.5, 0.05

@@ -7,8 +7,6 @@ import math
 import sys
 from pathlib import Path
 
-import numpy as np
-
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
@@ -17,6 +15,8 @@ from studies.figure import BLUE, RED, Figure
 from studies.scenes import during
 from studies.tables import write_table
 from studies.verdicts import Statement
+
+import numpy as np
 
 TITLE = "Potential of mean force of two spheres"
 THERMAL_ENERGY, STIFFNESS = 0.017, 170.0  # a thermal overlap sqrt(kT / k_n) of 0.01 a

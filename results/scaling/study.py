@@ -7,8 +7,6 @@ import statistics
 import sys
 from pathlib import Path
 
-import numpy as np
-
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
@@ -18,6 +16,8 @@ from studies.fits import line_through
 from studies.scenes import REFERENCE_SCENE, at_peclet, merged
 from studies.tables import write_table
 from studies.verdicts import Statement
+
+import numpy as np
 
 TITLE = "Time against the number of particles"
 SCENE = merged(REFERENCE_SCENE, {**at_peclet(1), "duration": {"equilibration": {"time": 0}}})

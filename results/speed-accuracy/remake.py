@@ -13,8 +13,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
-
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.campaigns import Program
@@ -23,6 +21,8 @@ from studies.estimates import estimate, relative_difference, student_quantile
 from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
 from studies.tables import markdown_head, markdown_row, write_table
 from studies.viscosities import counts_text, flags, values_by_seed
+
+import numpy as np
 
 
 @dataclasses.dataclass

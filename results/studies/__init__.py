@@ -17,6 +17,7 @@ which `peclet study --list` shows.
 """
 import sys
 
+# Drivers import this package before NumPy, so that they can say what is missing.
 try:
     import numpy  # noqa: F401
     import scipy  # noqa: F401

@@ -6,8 +6,6 @@ study.py BIN [FOLDER] [--quick]
 import sys
 from pathlib import Path
 
-import numpy as np
-
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
@@ -17,6 +15,8 @@ from studies.green_kubo import curve, fit_with_errors
 from studies.scenes import REFERENCE_SCENE, during, merged
 from studies.tables import entries, number, write_table
 from studies.verdicts import Statement
+
+import numpy as np
 
 TITLE = "Zero-shear viscosity by Green and Kubo"
 FRACTIONS = (0.30, 0.40, 0.45, 0.48, 0.50, 0.52, 0.54, 0.56)

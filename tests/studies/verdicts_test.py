@@ -1,12 +1,15 @@
 #!/usr/bin/python3
 """How studies answer published statements, and whether their pages say what was found."""
 import contextlib
+import glob
 import io
 import json
 import math
 import os
 import re
+import subprocess
 import sys
+import tempfile
 import unittest
 import unittest.mock
 
@@ -143,6 +146,28 @@ class Folders(unittest.TestCase):
             main("/installed/results/some-study", "Some study", self.fail, self.fail)
         self.assertEqual(ending.exception.code, 2)
         self.assertIn("/installed/results/some-study", said.getvalue())
+
+
+class Drivers(unittest.TestCase):
+    def test_that_lack_a_module_say_what_to_install(self):
+        absent = "raise ModuleNotFoundError(\"No module named 'numpy'\", name='numpy')"
+        scripts = [path for path in glob.glob(os.path.join(RESULTS, "*", "*.py")) if "/studies/" not in path]
+        self.assertGreaterEqual(len(scripts), 20)
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "numpy.py"), "w") as f:
+                f.write(absent)
+            for script in scripts:
+                with self.subTest(os.path.relpath(script, RESULTS)):
+                    done = subprocess.run(
+                        ["/usr/bin/python3", script],
+                        env={**os.environ, "PYTHONPATH": folder},
+                        stdin=subprocess.DEVNULL,
+                        capture_output=True,
+                        text=True,
+                    )
+                    self.assertEqual(done.returncode, 1)
+                    said = "studies need the Python module numpy: install python3-numpy and python3-scipy\n"
+                    self.assertEqual(done.stderr, said)
 
 
 if __name__ == "__main__":
