@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """forces.py make MIXTURE SEED [--scene SCENE.json]    print a case: a random configuration and the answer expected
-forces.py check ENGINE [--seeds N]                 compare the engine with the evaluator on random configurations
+forces.py check ENGINE [--seeds N] [--scene FILE]  compare the engine with the evaluator on random configurations
 forces.py confirm [CASE.json...]                   compare stored cases (those of forces/) with the evaluator
 
 Forces, torques, stresses and advanced springs by the evaluator beside this file (README.md). Differences are relative
@@ -54,9 +54,12 @@ class Comparison:
         sys.exit(1 if self.failures or not self.count else 0)
 
 
+def scene_of(arguments):
+    return json.loads(arguments.scene.read_text()) if arguments.scene else SCENE
+
+
 def make(arguments):
-    scene = json.loads(arguments.scene.read_text()) if arguments.scene else SCENE
-    configuration = random_configuration(arguments.mixture, scene, arguments.seed)
+    configuration = random_configuration(arguments.mixture, scene_of(arguments), arguments.seed)
     case = {"configuration": configuration, "expected": evaluate(configuration)}
     print(json.dumps(case, separators=(",", ":")))
 
@@ -68,19 +71,20 @@ def answer_of(engine, configuration):
         return subprocess.run([engine, "forces", file.name], capture_output=True, text=True)
 
 
-def scenes(seed):
-    """One with all terms and other numbers for each seed; and with the laws of one block alone."""
-    scene = varied(SCENE, np.random.default_rng(seed))
+def variants(scene, seed):
+    """All terms with other numbers for each seed; and the laws of one block alone."""
+    scene = varied(scene, np.random.default_rng(seed))
     yield "all terms", scene
     for block in PAIR_TERMS:
-        yield f"{block} alone", with_only(scene, block)
+        if block in scene:
+            yield f"{block} alone", with_only(scene, block)
 
 
 def check(arguments):
     comparison = Comparison()
     for mixture in MIXTURES:
         for seed in range(1, arguments.seeds + 1):
-            for text, scene in scenes(seed):
+            for text, scene in variants(scene_of(arguments), seed):
                 name = f"{mixture}, seed {seed}, {text}"
                 configuration = random_configuration(mixture, scene, seed)
                 done = answer_of(arguments.engine, configuration)
@@ -102,14 +106,16 @@ def confirm(arguments):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     verbs = parser.add_subparsers(required=True)
+    blocks = "the blocks fluid, flow, contact, lubrication, repulsion, attraction; all that engines have unless given"
     verb = verbs.add_parser("make")
     verb.add_argument("mixture", choices=MIXTURES)
     verb.add_argument("seed", type=int)
-    verb.add_argument("--scene", type=Path, help="the blocks fluid, flow, contact, lubrication, repulsion")
+    verb.add_argument("--scene", type=Path, help=blocks)
     verb.set_defaults(perform=make)
     verb = verbs.add_parser("check")
     verb.add_argument("engine")
     verb.add_argument("--seeds", type=int, default=3, help="of each mixture of sizes")
+    verb.add_argument("--scene", type=Path, help=blocks)
     verb.set_defaults(perform=check)
     verb = verbs.add_parser("confirm")
     verb.add_argument("cases", nargs="*", type=Path)

@@ -3,9 +3,8 @@ import copy
 
 import numpy as np
 
-from evaluator.evaluation import pairs_of
+from evaluator.evaluation import flow_of, pairs_of
 from evaluator.geometry import across, lattice
-from evaluator.laws import streaming_velocity
 
 # Radius and number of spheres.
 MIXTURES = {"1": {1: 30}, "1-1.4": {1: 22, 1.4: 8}, "1-3": {1: 54, 3: 2}, "1-1.4-5-7": {1: 110, 1.4: 40, 5: 1, 7: 1}}
@@ -28,19 +27,22 @@ SCENE = {
 }
 
 
+# Keys that say how far a law reaches.
+REACHES = ("outer_gap", "outer_distance", "relative_length", "debye_length", "cutoff")
+
+
 def varied(scene, generator):
-    """A scene whose numbers are up to three times larger or smaller; no reach grows so far that a particle could meet
-    its own image."""
-    result = {}
-    for block, entries in scene.items():
-        result[block] = {
-            key: value if isinstance(value, str) else float(value * 3 ** generator.uniform(-1, 1))
-            for key, value in entries.items()
-        }
-    if "lubrication" in result:
+    """A scene whose numbers are up to three times larger or smaller; reaches do not grow, or a particle could meet its
+    own image, but for the outer gap, which is one of three."""
+
+    def other(key, value):
+        if not isinstance(value, float):
+            return value
+        return value * float(3 ** generator.uniform(-1, 0 if key in REACHES else 1))
+
+    result = {block: {key: other(key, value) for key, value in entries.items()} for block, entries in scene.items()}
+    if "outer_gap" in result.get("lubrication", {}):
         result["lubrication"]["outer_gap"] = float(generator.choice([0.05, 0.2, 0.4]))
-    if "repulsion" in result:
-        result["repulsion"] |= {"relative_length": float(generator.uniform(0.003, 0.01)), "cutoff_lengths": 20}
     return result
 
 
@@ -73,9 +75,9 @@ def random_state(mixture, scene, generator):
     edge = max((4 / 3 * np.pi * np.sum(radius**3) / VOLUME_FRACTION) ** (1 / 3), 2.5 * radius.max())
     box = {"lengths": [edge] * 3, "tilt": generator.uniform(-0.5, 0.5) * edge}
     position = packed(radius, box, generator) + 3e-3 * generator.normal(size=(len(radius), 3))
-    rate = scene["flow"]["shear_rate"]
-    velocity = streaming_velocity(position, rate) + 0.3 * generator.normal(size=position.shape)
-    spin = 0.3 * generator.normal(size=position.shape) - [0, 0, rate / 2]
+    flow, height = flow_of(scene, {"box": box}), position[:, 1]
+    velocity = flow.velocity(height) + 0.3 * generator.normal(size=position.shape)
+    spin = 0.3 * generator.normal(size=position.shape) + flow.spin(height)
     return {
         "box": box,
         "radius": radius.tolist(),

@@ -38,6 +38,19 @@ class Answer:
         return {"force": listed(self.force), "torque": listed(self.torque), "stress": listed(self.stress)}
 
 
+def outermost(lubrication, sums):
+    """The surface distance where lubrication ends, by the sum of the radii."""
+    if lubrication["form"] == "mari":
+        return lubrication["outer_distance"] + 0 * sums
+    return lubrication["outer_gap"] * sums / 2
+
+
+def screening_length(repulsion, sums):
+    if repulsion["form"] == "screened":
+        return repulsion["debye_length"] + 0 * sums
+    return repulsion["relative_length"] * sums
+
+
 def reach_of(scene):
     """The distance of centres within which two spheres act on each other, by their radii."""
 
@@ -45,10 +58,11 @@ def reach_of(scene):
         sums = a_i + a_j
         surface = [0 * sums]
         if "lubrication" in scene:
-            surface.append(scene["lubrication"]["outer_gap"] * sums / 2)
+            surface.append(outermost(scene["lubrication"], sums))
         if "repulsion" in scene:
-            repulsion = scene["repulsion"]
-            surface.append(repulsion["cutoff_lengths"] * repulsion["relative_length"] * sums)
+            surface.append(scene["repulsion"]["cutoff_lengths"] * screening_length(scene["repulsion"], sums))
+        if "attraction" in scene:
+            surface.append(scene["attraction"]["cutoff"] + 0 * sums)
         return sums + np.max(surface, axis=0)
 
     return reach
@@ -91,25 +105,45 @@ def add_contact(answer, scene, state, pairs):
 
 
 def add_lubrication(answer, scene, state, pairs):
-    viscosity, inner, outer = scene["fluid"]["viscosity"], *(
-        scene["lubrication"][k] for k in ("inner_gap", "outer_gap")
-    )
-    near = pairs.where(2 * pairs.surface_distance <= outer * (pairs.radius_i + pairs.radius_j))
-    answer.add_pairs("lubrication", near, *laws.lubrication(near, viscosity, inner))
+    block, viscosity = scene["lubrication"], scene["fluid"]["viscosity"]
+    near = pairs.where(pairs.surface_distance <= outermost(block, pairs.radius_i + pairs.radius_j))
+    if block["form"] == "mari":
+        load = laws.mari_lubrication(near, viscosity, block["regularisation"], flow_of(scene, state))
+    else:
+        load = laws.lubrication(near, viscosity, block["inner_gap"])
+    answer.add_pairs("lubrication", near, *load)
     if "noise" in state:
         vectors = given(near, state["noise"]["pairs"], "theta", "chi")
-        load = laws.lubrication_noise(near, viscosity, inner, amplitude_of(scene, state), *vectors)
+        load = laws.lubrication_noise(near, viscosity, block["inner_gap"], amplitude_of(scene, state), *vectors)
         answer.add_pairs("brownian_lubrication", near, *load)
 
 
+def numbers(block):
+    """What a law takes by the names of the scene."""
+    return {name: value for name, value in block.items() if name != "form"}
+
+
 def add_repulsion(answer, scene, _, pairs):
-    repulsion = scene["repulsion"]
-    numbers = (repulsion[name] for name in ("strength", "relative_length", "cutoff_lengths"))
-    answer.add_pairs("repulsion", pairs, laws.exponential_repulsion(pairs, *numbers))
+    form = scene["repulsion"]["form"]
+    law = laws.screened_repulsion if form == "screened" else laws.exponential_repulsion
+    answer.add_pairs("repulsion", pairs, law(pairs, **numbers(scene["repulsion"])))
+
+
+def add_attraction(answer, scene, _, pairs):
+    answer.add_pairs("attraction", pairs, laws.attraction(pairs, **numbers(scene["attraction"])))
 
 
 # Block of a scene, and what it adds.
-PAIR_TERMS = {"contact": add_contact, "lubrication": add_lubrication, "repulsion": add_repulsion}
+PAIR_TERMS = {
+    "contact": add_contact,
+    "lubrication": add_lubrication,
+    "repulsion": add_repulsion,
+    "attraction": add_attraction,
+}
+
+
+def flow_of(scene, state):
+    return laws.Flow(scene["flow"], state["box"]["lengths"][1])
 
 
 def amplitude_of(scene, state):
@@ -117,17 +151,17 @@ def amplitude_of(scene, state):
 
 
 def add_singles(answer, scene, state):
-    viscosity, rate = scene["fluid"]["viscosity"], scene["flow"]["shear_rate"]
+    viscosity, flow = scene["fluid"]["viscosity"], flow_of(scene, state)
     radius, position, velocity, spin = (
         np.array(state[name], float) for name in ("radius", "position", "velocity", "angular_velocity")
     )
-    answer.add_single("drag", *laws.drag(radius, position, velocity, spin, viscosity, rate))
+    answer.add_single("drag", *laws.drag(radius, position, velocity, spin, viscosity, flow))
     if "noise" in state:
         vectors = (np.array(state["noise"][name], float) for name in ("force", "torque"))
         load = laws.drag_noise(radius, viscosity, amplitude_of(scene, state), *vectors)
         answer.add_single("brownian_drag", *load)
-    answer.stress["solvent"] = laws.solvent_stress(viscosity, rate)
-    answer.stress["stresslet"] = laws.stresslet(radius, viscosity, rate, answer.volume)
+    answer.stress["solvent"] = laws.solvent_stress(viscosity, flow.shear_rate)
+    answer.stress["stresslet"] = laws.stresslet(radius, position[:, 1], viscosity, flow, answer.volume)
 
 
 def pairs_of(configuration):

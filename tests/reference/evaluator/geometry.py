@@ -38,6 +38,7 @@ class Pairs:
     velocity_j: np.ndarray  # of the image: U_j + rate Ly k_y in x
     spin_i: np.ndarray
     spin_j: np.ndarray
+    height_i: np.ndarray  # y of i, by which the flow is known at i and at the image of j
 
     def __len__(self):
         return len(self.i)
@@ -49,6 +50,10 @@ class Pairs:
     @property
     def normal(self):
         return self.separation / self.distance[:, None]
+
+    @property
+    def height_j(self):
+        return self.height_i + self.separation[:, 1]
 
     @property
     def surface_distance(self):
@@ -85,5 +90,5 @@ def pairs_within(state, shear_rate, reach):
     velocity, spin = np.array(state["velocity"], float), np.array(state["angular_velocity"], float)
     velocity_j = velocity[j]
     velocity_j[:, 0] += shear_rate * vectors[1, 1] * image[:, 1]
-    bodies = radius[i], radius[j], velocity[i], velocity_j, spin[i], spin[j]
+    bodies = radius[i], radius[j], velocity[i], velocity_j, spin[i], spin[j], position[i, 1]
     return Pairs(i, j, image, separation[row, column], *bodies)

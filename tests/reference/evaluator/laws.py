@@ -169,28 +169,152 @@ def exponential_repulsion(pairs, strength, relative_length, cutoff_lengths):
     return -column(size) * pairs.normal
 
 
-# Single particles: arrays of radii, positions and so on. Force and torque on each.
+def screened_repulsion(pairs, force, debye_length, reference_radius, cutoff_lengths):
+    """F_i = -F_ER (a / a_0) exp(-max(h, 0) / lambda) n, a the harmonic mean of the radii, for h < cutoff_lengths lambda
+    (M 6)."""
+    h = pairs.surface_distance
+    size = force * rolling_radius(pairs) / reference_radius * np.exp(-np.maximum(h, 0) / debye_length)
+    return -column(np.where(h < cutoff_lengths * debye_length, size, 0)) * pairs.normal
 
 
-def streaming_velocity(position, shear_rate):
-    """(rate y, 0, 0)."""
-    velocity = np.zeros_like(position)
-    velocity[:, 0] = shear_rate * position[:, 1]
-    return velocity
+def attraction(pairs, hamaker, regularisation, cutoff):
+    """F_i = A a / (12 (max(h, 0)^2 + eps^2)) n, a the harmonic mean of the radii and eps = regularisation a, for h <
+    cutoff (M 7)."""
+    h, mean = pairs.surface_distance, rolling_radius(pairs)
+    size = hamaker * mean / (12 * (np.maximum(h, 0) ** 2 + (regularisation * mean) ** 2))
+    return column(np.where(h < cutoff, size, 0)) * pairs.normal
 
 
-def strain_rate(shear_rate):
-    """E, whose xy and yx are half the rate."""
-    tensor = np.zeros((3, 3))
-    tensor[0, 1] = tensor[1, 0] = shear_rate / 2
+# Lubrication in a flow of any shape, by velocities relative to it and its rate of strain (M 3 and A.1 to A.7).
+
+
+def mari_coefficients(a_i, a_j):
+    """g of X_A, Y_A, Y_B, Y_C, X_G, Y_G, Y_H for ii, ij, ji, jj; X = 6 pi eta g / d and Y = 6 pi eta g ln(1/d). With b
+    the ratio of the sizes; those of j follow by exchanging the spheres, which turns b into 1/b."""
+    b, c, s = a_j / a_i, a_i / a_j, a_i + a_j
+
+    def own(power, shape):
+        return a_i**power * shape(b)
+
+    def other(power, shape):
+        return a_j**power * shape(c)
+
+    def x_g(b):
+        return 2 * b**2 / (1 + b) ** 3
+
+    def y_a(b):
+        return 4 / 15 * b * (2 + b + 2 * b**2) / (1 + b) ** 3
+
+    def y_b(b):
+        return -2 / 15 * b * (4 + b) / (1 + b) ** 2
+
+    def y_c(b):
+        return 8 / 15 * b / (1 + b)
+
+    def y_g(b):
+        return 1 / 15 * b * (4 - b + 7 * b**2) / (1 + b) ** 3
+
+    def y_h(b):
+        return 2 / 15 * b * (2 - b) / (1 + b) ** 2
+
+    def mixed(b):
+        return s**3 / 15 * b**2 * (1 + 7 * b) / (1 + b) ** 5
+
+    force_x, force_y, cross = own(1, x_g), own(1, y_a), 2 * s**3 / 15 * b**2 / (1 + b) ** 4
+    return {
+        "XA": (force_x, -force_x, -force_x, force_x),
+        "YA": (force_y, -force_y, -force_y, force_y),
+        "YB": (own(2, y_b), -own(2, y_b), other(2, y_b), -other(2, y_b)),
+        "YC": (own(3, y_c), cross, cross, other(3, y_c)),
+        "XG": (own(2, x_g), -own(2, x_g), other(2, x_g), -other(2, x_g)),
+        "YG": (own(2, y_g), -own(2, y_g), other(2, y_g), -other(2, y_g)),
+        "YH": (own(3, y_h), mixed(b), mixed(c), other(3, y_h)),
+    }
+
+
+def mari_lubrication(pairs, viscosity, regularisation, flow):
+    """With u and w relative to the flow, P = n.E.n, Q = 2 E.n - 2 (n.E.n) n, H = 2 n x (E.n):
+
+    F_i = -A_ii u_i - A_ij u_j - n x (YB_ii w_i + YB_ji w_j) + (XG_ii P_i + XG_ji P_j) n + YG_ii Q_i + YG_ji Q_j
+    T_i = n x (YB_ii u_i + YB_ij u_j) - (1 - nn).(YC_ii w_i + YC_ij w_j) + YH_ii H_i + YH_ji H_j
+
+    and T_j with i and j exchanged in the indices. d = max(xi, 0) + regularisation. The print has H twice as large."""
+    n = pairs.normal
+    d = np.maximum(2 * pairs.surface_distance / (pairs.radius_i + pairs.radius_j), 0) + regularisation
+    size = {"X": 6 * PI * viscosity / d, "Y": 6 * PI * viscosity * np.log(1 / d)}
+    g = {
+        name: [column(size[name[0]] * value) for value in values]
+        for name, values in mari_coefficients(pairs.radius_i, pairs.radius_j).items()
+    }
+    ends = ((pairs.height_i, pairs.velocity_i, pairs.spin_i), (pairs.height_j, pairs.velocity_j, pairs.spin_j))
+    u = [velocity - flow.velocity(height) for height, velocity, _ in ends]
+    w = [spin - flow.spin(height) for height, _, spin in ends]
+    strained = [np.einsum("pab,pb->pa", strain_rate(flow.gradient(height)), n) for height, *_ in ends]
+
+    def both(name, vectors, places):
+        return sum(g[name][place] * vector for place, vector in zip(places, vectors))
+
+    squeezed = both("XA", [along(n, v) for v in u], (0, 1)) + both("YA", [across(n, v) for v in u], (0, 1))
+    force = -squeezed - np.cross(n, both("YB", w, (0, 2)))
+    force += both("XG", [along(n, v) for v in strained], (0, 2)) + both(
+        "YG", [2 * across(n, v) for v in strained], (0, 2)
+    )
+    torques = []
+    for rows, columns in (((0, 1), (0, 2)), ((2, 3), (1, 3))):
+        torque = np.cross(n, both("YB", u, rows)) - across(n, both("YC", w, rows))
+        torques.append(torque + both("YH", [2 * np.cross(n, v) for v in strained], columns))
+    return force, *torques
+
+
+# The flow, and single particles in it: arrays of radii, positions and so on. Force and torque on each.
+
+
+class Flow:
+    """u_x(y) = rate y + sum of sine sin(k y) + cosine cos(k y), k = 2 pi periods / Ly: M's flows, sin^3 among them, are
+    of this kind. `faxen` says whether particles feel its curvature."""
+
+    def __init__(self, scene_flow, length):
+        self.shear_rate, self.faxen = scene_flow["shear_rate"], scene_flow.get("faxen", False)
+        waves = scene_flow.get("waves", [])
+        self._k, self._sine, self._cosine = (
+            np.array([[2 * PI * w["periods"] / length, w["sine"], w["cosine"]] for w in waves], float).reshape(-1, 3).T
+        )
+
+    def _derivative(self, height, order):
+        """Of the waves: each derivative multiplies by k and goes on a quarter of a period."""
+        phase = self._k * np.asarray(height)[..., None] + order * PI / 2
+        return np.sum(self._k**order * (self._sine * np.sin(phase) + self._cosine * np.cos(phase)), axis=-1)
+
+    def speed(self, height, radius=0.0):
+        """u_x, and with a radius what Faxen's first law makes of it: (1 + a^2/6 d^2/dy^2) u_x."""
+        curvature = self._derivative(height, 2) if self.faxen else 0.0
+        return self.shear_rate * np.asarray(height) + self._derivative(height, 0) + radius**2 / 6 * curvature
+
+    def gradient(self, height, radius=0.0):
+        """du_x/dy, and with a radius that of the stresslet: (1 + a^2/10 d^2/dy^2) of it."""
+        curvature = self._derivative(height, 3) if self.faxen else 0.0
+        return self.shear_rate + self._derivative(height, 1) + radius**2 / 10 * curvature
+
+    def velocity(self, height, radius=0.0):
+        return self.speed(height, radius)[..., None] * np.array([1.0, 0, 0])
+
+    def spin(self, height):
+        """Half the vorticity, (0, 0, -du_x/dy / 2)."""
+        return self.gradient(height)[..., None] * np.array([0, 0, -0.5])
+
+
+def strain_rate(gradient):
+    """E, whose xy and yx are half the gradient."""
+    tensor = np.zeros((*np.shape(gradient), 3, 3))
+    tensor[..., 0, 1] = tensor[..., 1, 0] = np.asarray(gradient) / 2
     return tensor
 
 
-def drag(radius, position, velocity, spin, viscosity, shear_rate):
-    """F = 6 pi eta a (U_inf - U), T = 8 pi eta a^3 (Omega_inf - Omega), Omega_inf = (0, 0, -rate / 2) (L 5, 6)."""
-    turning = np.array([0, 0, -shear_rate / 2])
-    force = 6 * PI * viscosity * column(radius) * (streaming_velocity(position, shear_rate) - velocity)
-    return force, 8 * PI * viscosity * column(radius**3) * (turning - spin)
+def drag(radius, position, velocity, spin, viscosity, flow):
+    """F = 6 pi eta a (U_inf - U), T = 8 pi eta a^3 (Omega_inf - Omega) (L 5, 6; M A.1)."""
+    height = position[:, 1]
+    force = 6 * PI * viscosity * column(radius) * (flow.velocity(height, radius) - velocity)
+    return force, 8 * PI * viscosity * column(radius**3) * (flow.spin(height) - spin)
 
 
 def drag_noise(radius, viscosity, amplitude, psi, phi):
@@ -213,6 +337,6 @@ def solvent_stress(viscosity, shear_rate):
     return 2 * viscosity * strain_rate(shear_rate)
 
 
-def stresslet(radius, viscosity, shear_rate, volume):
-    """(1/V) sum of 20/3 pi eta a^3 E: 2.5 phi of 2 eta E."""
-    return 20 / 3 * PI * viscosity * np.sum(radius**3) / volume * strain_rate(shear_rate)
+def stresslet(radius, height, viscosity, flow, volume):
+    """(1/V) sum of 20/3 pi eta a^3 E: 2.5 phi of 2 eta E in simple shear (M 9)."""
+    return 20 / 3 * PI * viscosity * np.tensordot(radius**3, strain_rate(flow.gradient(height, radius)), 1) / volume
