@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from evaluator import laws
 from evaluator.configurations import MIXTURES, SCENE, random_configuration, with_only
 from evaluator.evaluation import evaluate, largest_difference, pairs_of, screening_length
-from evaluator.geometry import Pairs, across, along, lattice
+from evaluator.geometry import Pairs, across, along, harmonic_mean, lattice
+from evaluator.laws import contact, flow, lubrication, strained_lubrication, stress, surface_forces
 
 GENERATOR = np.random.default_rng(7)
 VISCOSITY, INNER = 0.1, 1e-3
@@ -65,12 +65,12 @@ class Lubrication(unittest.TestCase):
     def test_of_equal_spheres_has_the_resistances_of_printed_tables(self):
         # In units of 6 pi eta a: 1/(4 xi) + 9/40 ln(1/xi) and ln(1/xi)/6 (Kim & Karrila).
         for xi, squeeze, shear in ((1e-3, 251.55, 1.1513), (0.05, 5.674, 0.4993), (0.5, 0.6560, 0.11553)):
-            found = laws.resistances(some_pairs(1, 1, 1, xi), 1.0, INNER)
+            found = lubrication.resistances(some_pairs(1, 1, 1, xi), 1.0, INNER)
             self.assertAlmostEqual(found[0][0] / (6 * np.pi), squeeze, delta=1e-4 * squeeze)
             self.assertAlmostEqual(found[1][0] / (6 * np.pi), shear, delta=1e-4 * shear)
 
     def test_matrix_is_symmetric_and_positive_with_five_modes(self):
-        for matrix in laws.resistance_matrix(some_pairs(50), VISCOSITY, INNER):
+        for matrix in lubrication.resistance_matrix(some_pairs(50), VISCOSITY, INNER):
             scale = abs(matrix).max()
             self.assertLess(abs(matrix - matrix.T).max(), 1e-14 * scale)
             values = np.linalg.eigvalsh(matrix)
@@ -79,27 +79,27 @@ class Lubrication(unittest.TestCase):
 
     def test_noise_has_the_covariance_of_the_resistance(self):
         pairs = some_pairs(50)
-        root = laws.noise_matrix(pairs, VISCOSITY, INNER)
-        matrix = laws.resistance_matrix(pairs, VISCOSITY, INNER)
+        root = lubrication.noise_matrix(pairs, VISCOSITY, INNER)
+        matrix = lubrication.resistance_matrix(pairs, VISCOSITY, INNER)
         scale = abs(matrix).max(axis=(1, 2), keepdims=True)
         self.assertLess((abs(root @ root.transpose(0, 2, 1) - matrix) / scale).max(), 1e-13)
 
     def test_does_not_resist_a_rigid_motion(self):
         pairs = rigidly_moved(some_pairs(50))
-        loads = laws.lubrication(pairs, VISCOSITY, INNER)
-        typical = laws.lubrication(some_pairs(50), VISCOSITY, INNER)
+        loads = lubrication.lubrication(pairs, VISCOSITY, INNER)
+        typical = lubrication.lubrication(some_pairs(50), VISCOSITY, INNER)
         for load, other in zip(loads, typical):
             self.assertLess(abs(load).max(), 1e-12 * abs(other).max())
 
     def test_takes_energy_away(self):
         pairs = some_pairs(200)
-        self.assertLess(power(pairs, *laws.lubrication(pairs, VISCOSITY, INNER)).max(), 0)
+        self.assertLess(power(pairs, *lubrication.lubrication(pairs, VISCOSITY, INNER)).max(), 0)
 
     def test_holds_back_spheres_that_are_parted(self):
         pairs = some_pairs(1)
         pairs.velocity_i, pairs.velocity_j = 0 * pairs.normal, pairs.normal
         pairs.spin_i = pairs.spin_j = 0 * pairs.normal
-        force, *_ = laws.lubrication(pairs, VISCOSITY, INNER)
+        force, *_ = lubrication.lubrication(pairs, VISCOSITY, INNER)
         self.assertGreater(np.sum(force * pairs.normal), 0)
 
 
@@ -107,7 +107,7 @@ class LubricationInAFlow(unittest.TestCase):
     """The form with rates of strain."""
 
     sizes = GENERATOR.uniform(0.3, 7, (2, 50))
-    g = laws.mari_coefficients(*sizes)
+    g = strained_lubrication.mari_coefficients(*sizes)
 
     def test_its_coefficients_obey_the_identities_of_the_other_form(self):
         total = self.sizes.sum(axis=0)
@@ -119,7 +119,7 @@ class LubricationInAFlow(unittest.TestCase):
                 np.testing.assert_allclose(found, factor * total * self.g[motion][row], rtol=1e-12)
 
     def test_exchanging_the_spheres_exchanges_the_indices(self):
-        for name, values in laws.mari_coefficients(*self.sizes[::-1]).items():
+        for name, values in strained_lubrication.mari_coefficients(*self.sizes[::-1]).items():
             # The normal turns round: what is odd in it changes its sign.
             sign = -1 if name in ("YB", "XG", "YG") else 1
             np.testing.assert_allclose(values[0], sign * self.g[name][3])
@@ -129,31 +129,33 @@ class LubricationInAFlow(unittest.TestCase):
         # They differ by terms of the order of xi; squeezing is 1 / xi stronger than the rest and is looked at by
         # itself.
         pairs = some_pairs(50, gap=1e-6)
-        shear = laws.Flow({"shear_rate": 0.7}, 10.0)
-        ours, other = laws.mari_lubrication(pairs, VISCOSITY, 0.0, shear), laws.lubrication(pairs, VISCOSITY, 1e-8)
+        shear = flow.Flow({"shear_rate": 0.7}, 10.0)
+        ours, other = strained_lubrication.mari_lubrication(pairs, VISCOSITY, 0.0, shear), lubrication.lubrication(
+            pairs, VISCOSITY, 1e-8
+        )
         parts = [(along(pairs.normal, ours[0]), along(pairs.normal, other[0]))]
         parts += [(across(pairs.normal, a), across(pairs.normal, b)) for a, b in zip(ours, other)]
         for a, b in parts:
             self.assertLess(abs(a - b).max(), 1e-4 * abs(b).max())
 
     def test_spheres_that_turn_with_the_fluid_feel_nothing_but_its_strain(self):
-        flow = laws.Flow({"shear_rate": 0.7}, 10.0)
+        shear = flow.Flow({"shear_rate": 0.7}, 10.0)
         pairs = some_pairs(50, gap=0.01)
-        pairs.velocity_i, pairs.velocity_j = flow.velocity(pairs.height_i), flow.velocity(pairs.height_j)
-        pairs.spin_i, pairs.spin_j = flow.spin(pairs.height_i), flow.spin(pairs.height_j)
-        force, *_ = laws.mari_lubrication(pairs, VISCOSITY, 1e-3, flow)
+        pairs.velocity_i, pairs.velocity_j = shear.velocity(pairs.height_i), shear.velocity(pairs.height_j)
+        pairs.spin_i, pairs.spin_j = shear.spin(pairs.height_i), shear.spin(pairs.height_j)
+        force, *_ = strained_lubrication.mari_lubrication(pairs, VISCOSITY, 1e-3, shear)
         approach = 0.7 * pairs.normal[:, 0] * pairs.normal[:, 1]  # n.E.n: positive where the flow parts them
         self.assertTrue(np.all(np.sign(np.sum(force * pairs.normal, axis=1)) == np.sign(approach)))
 
 
 class Flows(unittest.TestCase):
-    flow = laws.Flow(MONTI["flow"], 10.0)
+    waves = flow.Flow(MONTI["flow"], 10.0)
     height = np.linspace(-3, 12, 7)
 
     def test_gradient_is_that_of_the_velocity(self):
         step = 1e-5
-        numeric = (self.flow.speed(self.height + step) - self.flow.speed(self.height - step)) / (2 * step)
-        np.testing.assert_allclose(self.flow.gradient(self.height), numeric, rtol=1e-8)
+        numeric = (self.waves.speed(self.height + step) - self.waves.speed(self.height - step)) / (2 * step)
+        np.testing.assert_allclose(self.waves.gradient(self.height), numeric, rtol=1e-8)
 
     def assert_mean(self, of, weight):
         """Small spheres feel a mean: of a function of y alone, one over heights; Gauss-Legendre in 8 points. The next
@@ -165,18 +167,18 @@ class Flows(unittest.TestCase):
         np.testing.assert_allclose(found, correction, rtol=0, atol=4e-3 * abs(correction).max())
 
     def test_drag_is_by_the_mean_over_the_surface(self):
-        self.assert_mean(self.flow.speed, lambda height: 0.5)  # all heights have the same area
+        self.assert_mean(self.waves.speed, lambda height: 0.5)  # all heights have the same area
 
     def test_stresslets_are_by_the_mean_over_the_volume(self):
-        self.assert_mean(self.flow.gradient, lambda height: 0.75 * (1 - height**2))
+        self.assert_mean(self.waves.gradient, lambda height: 0.75 * (1 - height**2))
 
     def test_shear_alone_has_no_curvature(self):
-        shear = laws.Flow({"shear_rate": 0.7, "faxen": True}, 10.0)
+        shear = flow.Flow({"shear_rate": 0.7, "faxen": True}, 10.0)
         np.testing.assert_allclose(shear.speed(self.height, 3.0), 0.7 * self.height)
         np.testing.assert_allclose(shear.gradient(self.height, 3.0), 0.7)
 
     def test_waves_come_back_after_the_edge_of_the_box(self):
-        np.testing.assert_allclose(self.flow.speed(self.height + 10), self.flow.speed(self.height) + 7)
+        np.testing.assert_allclose(self.waves.speed(self.height + 10), self.waves.speed(self.height) + 7)
 
 
 class Contact(unittest.TestCase):
@@ -184,30 +186,30 @@ class Contact(unittest.TestCase):
 
     def test_normal_force_parts_the_spheres_by_stiffness_times_overlap(self):
         pairs = some_pairs(3, 1, 3, -0.01)  # an overlap of 0.01 (1 + 3) / 2
-        force = laws.contact_normal(pairs, 1e4)
+        force = contact.contact_normal(pairs, 1e4)
         np.testing.assert_allclose(force, -200 * pairs.normal, rtol=1e-10)
 
     def test_damping_takes_energy_away(self):
-        self.assertLess(power(self.pairs, laws.contact_damping(self.pairs, 1.3)).max(), 1e-15)
+        self.assertLess(power(self.pairs, contact.contact_damping(self.pairs, 1.3)).max(), 1e-15)
 
     def test_a_rigid_motion_neither_slips_nor_rolls(self):
         moved = rigidly_moved(self.pairs)
-        self.assertLess(abs(laws.slip_velocity(moved)).max(), 1e-12)
-        self.assertLess(abs(laws.rolling_velocity(moved)).max(), 1e-12)
+        self.assertLess(abs(contact.slip_velocity(moved)).max(), 1e-12)
+        self.assertLess(abs(contact.rolling_velocity(moved)).max(), 1e-12)
 
     def test_a_spring_that_is_turned_keeps_its_length(self):
         spring = GENERATOR.normal(size=(200, 3))
-        held = laws.held_spring(self.pairs, spring, 0 * spring, 0.0, np.full(200, np.inf))
+        held = contact.held_spring(self.pairs, spring, 0 * spring, 0.0, np.full(200, np.inf))
         np.testing.assert_allclose(np.linalg.norm(held, axis=1), np.linalg.norm(spring, axis=1))
         self.assertLess(abs(np.sum(held * self.pairs.normal, axis=1)).max(), 1e-14)
 
     def test_a_spring_is_no_longer_than_coulomb_lets_it_be(self):
         spring = spring_of(self.pairs)
-        held = laws.held_spring(self.pairs, spring, spring, 1.0, np.full(200, 0.1))
+        held = contact.held_spring(self.pairs, spring, spring, 1.0, np.full(200, 0.1))
         np.testing.assert_allclose(held, 0.1 * spring / np.linalg.norm(spring, axis=1, keepdims=True))
 
     def test_friction_and_rolling_slow_down_what_stretched_their_springs(self):
-        for velocity, law in ((laws.slip_velocity, laws.friction), (laws.rolling_velocity, laws.rolling)):
+        for velocity, law in ((contact.slip_velocity, contact.friction), (contact.rolling_velocity, contact.rolling)):
             spring = 1e-3 * velocity(self.pairs)
             self.assertLess(power(self.pairs, *law(self.pairs, spring, 1e3)).max(), 0)
 
@@ -219,15 +221,15 @@ class AllLawsOfPairs(unittest.TestCase):
 
     def loads(self, pairs, spring, theta, chi):
         nothing = np.zeros_like(pairs.normal)
-        yield laws.contact_normal(pairs, 1e4), nothing, nothing
-        yield laws.contact_damping(pairs, 1.3), nothing, nothing
-        yield laws.friction(pairs, spring, 1e3)
-        yield laws.rolling(pairs, spring, 1e3)
-        yield laws.lubrication(pairs, VISCOSITY, INNER)
-        yield laws.lubrication_noise(pairs, VISCOSITY, INNER, 3.0, theta, chi)
-        yield laws.exponential_repulsion(pairs, 0.17, 0.01, 20), nothing, nothing
-        yield laws.screened_repulsion(pairs, 1.06, 0.02, 1.0, 20), nothing, nothing
-        yield laws.attraction(pairs, 6.7e-5, 0.01, 1.0), nothing, nothing
+        yield contact.contact_normal(pairs, 1e4), nothing, nothing
+        yield contact.contact_damping(pairs, 1.3), nothing, nothing
+        yield contact.friction(pairs, spring, 1e3)
+        yield contact.rolling(pairs, spring, 1e3)
+        yield lubrication.lubrication(pairs, VISCOSITY, INNER)
+        yield lubrication.lubrication_noise(pairs, VISCOSITY, INNER, 3.0, theta, chi)
+        yield surface_forces.exponential_repulsion(pairs, 0.17, 0.01, 20), nothing, nothing
+        yield surface_forces.screened_repulsion(pairs, 1.06, 0.02, 1.0, 20), nothing, nothing
+        yield surface_forces.attraction(pairs, 6.7e-5, 0.01, 1.0), nothing, nothing
 
     def test_conserve_angular_momentum(self):
         for force, torque_i, torque_j in self.loads(self.pairs, self.spring, self.theta, self.chi):
@@ -264,11 +266,11 @@ class Energies(unittest.TestCase):
         repulsion, h = MONTI["repulsion"], pairs.surface_distance
         length = repulsion["debye_length"]
         shape = np.where(h > 0, length * np.exp(-np.maximum(h, 0) / length), length - h)
-        return np.sum(repulsion["force"] * laws.rolling_radius(pairs) * shape * (h < 20 * length))
+        return np.sum(repulsion["force"] * harmonic_mean(pairs) * shape * (h < 20 * length))
 
     @staticmethod
     def attraction_energy(pairs):
-        block, h, mean = MONTI["attraction"], pairs.surface_distance, laws.rolling_radius(pairs)
+        block, h, mean = MONTI["attraction"], pairs.surface_distance, harmonic_mean(pairs)
         width = block["regularisation"] * mean
         shape = np.where(h > 0, np.arctan(np.maximum(h, 0) / width), h / width) - np.pi / 2
         return np.sum(block["hamaker"] * mean / (12 * width) * shape * (h < block["cutoff"]))
@@ -336,15 +338,15 @@ class Stress(unittest.TestCase):
     def test_of_a_pair_that_the_flow_presses_together_is_positive(self):
         pairs = some_pairs(1, 1, 1, -0.01)
         pairs.separation = 1.99 * np.array([[1, -1, 0]]) / np.sqrt(2)
-        stress = laws.pair_stress(pairs, laws.contact_normal(pairs, 1e4), 1.0)
-        self.assertGreater(stress[0, 1], 0)
-        self.assertLess(np.trace(stress), 0)
+        tensor = stress.pair_stress(pairs, contact.contact_normal(pairs, 1e4), 1.0)
+        self.assertGreater(tensor[0, 1], 0)
+        self.assertLess(np.trace(tensor), 0)
 
     def test_stresslets_of_all_spheres_are_two_and_a_half_times_their_share(self):
         radius, volume = np.array([1.0, 1.4, 3.0]), 1000.0
         share = 4 / 3 * np.pi * np.sum(radius**3) / volume
-        found = laws.stresslet(radius, 0 * radius, 0.1, laws.Flow({"shear_rate": 0.7}, 10.0), volume)
-        ratio = found[0, 1] / laws.solvent_stress(0.1, 0.7)[0, 1]
+        found = stress.stresslet(radius, 0 * radius, 0.1, flow.Flow({"shear_rate": 0.7}, 10.0), volume)
+        ratio = found[0, 1] / stress.solvent_stress(0.1, 0.7)[0, 1]
         self.assertAlmostEqual(ratio, 2.5 * share)
 
 

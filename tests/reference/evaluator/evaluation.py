@@ -1,8 +1,8 @@
 """Which laws a scene has, and what they make of a configuration."""
 import numpy as np
 
-from evaluator import laws
 from evaluator.geometry import lattice, pairs_within
+from evaluator.laws import contact, flow, lubrication, strained_lubrication, stress, surface_forces
 
 
 class Answer:
@@ -29,7 +29,7 @@ class Answer:
         if torque_i is not None:
             np.add.at(self.torque[term], pairs.i, torque_i)
             np.add.at(self.torque[term], pairs.j, torque_j)
-        self.stress[term] += laws.pair_stress(pairs, force, self.volume)
+        self.stress[term] += stress.pair_stress(pairs, force, self.volume)
 
     def as_json(self):
         def listed(block):
@@ -38,11 +38,11 @@ class Answer:
         return {"force": listed(self.force), "torque": listed(self.torque), "stress": listed(self.stress)}
 
 
-def outermost(lubrication, sums):
+def outermost(block, sums):
     """The surface distance where lubrication ends, by the sum of the radii."""
-    if lubrication["form"] == "mari":
-        return lubrication["outer_distance"] + 0 * sums
-    return lubrication["outer_gap"] * sums / 2
+    if block["form"] == "mari":
+        return block["outer_distance"] + 0 * sums
+    return block["outer_gap"] * sums / 2
 
 
 def screening_length(repulsion, sums):
@@ -77,44 +77,44 @@ def given(pairs, listed, *names):
 
 def springs_after(scene, state, pairs, time):
     """Tangential and rolling springs of pairs in contact."""
-    contact = scene["contact"]
-    normal_force = contact["normal_stiffness"] * pairs.overlap
+    block = scene["contact"]
+    normal_force = block["normal_stiffness"] * pairs.overlap
     tangential, rolling = given(pairs, state.get("springs", []), "tangential", "rolling")
     held = []
     for spring, kind, velocity in (
-        (tangential, ("tangential_stiffness", "friction"), laws.slip_velocity),
-        (rolling, ("rolling_stiffness", "rolling_friction"), laws.rolling_velocity),
+        (tangential, ("tangential_stiffness", "friction"), contact.slip_velocity),
+        (rolling, ("rolling_stiffness", "rolling_friction"), contact.rolling_velocity),
     ):
-        stiffness, coefficient = (contact.get(name, 0) for name in kind)
+        stiffness, coefficient = (block.get(name, 0) for name in kind)
         longest = coefficient * normal_force / stiffness if stiffness else 0 * normal_force
-        held.append(laws.held_spring(pairs, spring, velocity(pairs), time, longest))
+        held.append(contact.held_spring(pairs, spring, velocity(pairs), time, longest))
     return held
 
 
 def add_contact(answer, scene, state, pairs):
-    contact = scene["contact"]
+    block = scene["contact"]
     touching = pairs.where(pairs.overlap > 0)
-    answer.add_pairs("contact_normal", touching, laws.contact_normal(touching, contact["normal_stiffness"]))
-    if "normal_damping" in contact:
-        answer.add_pairs("contact_damping", touching, laws.contact_damping(touching, contact["normal_damping"]))
-    if contact.get("friction", 0) > 0:
+    answer.add_pairs("contact_normal", touching, contact.contact_normal(touching, block["normal_stiffness"]))
+    if "normal_damping" in block:
+        answer.add_pairs("contact_damping", touching, contact.contact_damping(touching, block["normal_damping"]))
+    if block.get("friction", 0) > 0:
         tangential, rolling = springs_after(scene, state, touching, 0)
-        answer.add_pairs("friction", touching, *laws.friction(touching, tangential, contact["tangential_stiffness"]))
-        if "rolling_stiffness" in contact:
-            answer.add_pairs("rolling", touching, *laws.rolling(touching, rolling, contact["rolling_stiffness"]))
+        answer.add_pairs("friction", touching, *contact.friction(touching, tangential, block["tangential_stiffness"]))
+        if "rolling_stiffness" in block:
+            answer.add_pairs("rolling", touching, *contact.rolling(touching, rolling, block["rolling_stiffness"]))
 
 
 def add_lubrication(answer, scene, state, pairs):
     block, viscosity = scene["lubrication"], scene["fluid"]["viscosity"]
     near = pairs.where(pairs.surface_distance <= outermost(block, pairs.radius_i + pairs.radius_j))
     if block["form"] == "mari":
-        load = laws.mari_lubrication(near, viscosity, block["regularisation"], flow_of(scene, state))
+        load = strained_lubrication.mari_lubrication(near, viscosity, block["regularisation"], flow_of(scene, state))
     else:
-        load = laws.lubrication(near, viscosity, block["inner_gap"])
+        load = lubrication.lubrication(near, viscosity, block["inner_gap"])
     answer.add_pairs("lubrication", near, *load)
     if "noise" in state:
         vectors = given(near, state["noise"]["pairs"], "theta", "chi")
-        load = laws.lubrication_noise(near, viscosity, block["inner_gap"], amplitude_of(scene, state), *vectors)
+        load = lubrication.lubrication_noise(near, viscosity, block["inner_gap"], amplitude_of(scene, state), *vectors)
         answer.add_pairs("brownian_lubrication", near, *load)
 
 
@@ -125,12 +125,12 @@ def numbers(block):
 
 def add_repulsion(answer, scene, _, pairs):
     form = scene["repulsion"]["form"]
-    law = laws.screened_repulsion if form == "screened" else laws.exponential_repulsion
+    law = surface_forces.screened_repulsion if form == "screened" else surface_forces.exponential_repulsion
     answer.add_pairs("repulsion", pairs, law(pairs, **numbers(scene["repulsion"])))
 
 
 def add_attraction(answer, scene, _, pairs):
-    answer.add_pairs("attraction", pairs, laws.attraction(pairs, **numbers(scene["attraction"])))
+    answer.add_pairs("attraction", pairs, surface_forces.attraction(pairs, **numbers(scene["attraction"])))
 
 
 # Block of a scene, and what it adds.
@@ -143,7 +143,7 @@ PAIR_TERMS = {
 
 
 def flow_of(scene, state):
-    return laws.Flow(scene["flow"], state["box"]["lengths"][1])
+    return flow.Flow(scene["flow"], state["box"]["lengths"][1])
 
 
 def amplitude_of(scene, state):
@@ -151,17 +151,17 @@ def amplitude_of(scene, state):
 
 
 def add_singles(answer, scene, state):
-    viscosity, flow = scene["fluid"]["viscosity"], flow_of(scene, state)
+    viscosity, stream = scene["fluid"]["viscosity"], flow_of(scene, state)
     radius, position, velocity, spin = (
         np.array(state[name], float) for name in ("radius", "position", "velocity", "angular_velocity")
     )
-    answer.add_single("drag", *laws.drag(radius, position, velocity, spin, viscosity, flow))
+    answer.add_single("drag", *flow.drag(radius, position, velocity, spin, viscosity, stream))
     if "noise" in state:
         vectors = (np.array(state["noise"][name], float) for name in ("force", "torque"))
-        load = laws.drag_noise(radius, viscosity, amplitude_of(scene, state), *vectors)
+        load = flow.drag_noise(radius, viscosity, amplitude_of(scene, state), *vectors)
         answer.add_single("brownian_drag", *load)
-    answer.stress["solvent"] = laws.solvent_stress(viscosity, flow.shear_rate)
-    answer.stress["stresslet"] = laws.stresslet(radius, position[:, 1], viscosity, flow, answer.volume)
+    answer.stress["solvent"] = stress.solvent_stress(viscosity, stream.shear_rate)
+    answer.stress["stresslet"] = stress.stresslet(radius, position[:, 1], viscosity, stream, answer.volume)
 
 
 def pairs_of(configuration):

@@ -24,6 +24,15 @@ def across(normal, vector):
     return vector - along(normal, vector)
 
 
+def column(values):
+    return np.asarray(values)[:, None]
+
+
+def harmonic_mean(pairs):
+    """Of the radii, a_ij = 2 a_i a_j / (a_i + a_j)."""
+    return 2 * pairs.radius_i * pairs.radius_j / (pairs.radius_i + pairs.radius_j)
+
+
 @dataclasses.dataclass
 class Pairs:
     """Rows of pairs of particles i < j; the separation r leads from i to an image of j, and F_i is the force on i."""
