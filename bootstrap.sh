@@ -4,7 +4,7 @@
 #   ./bootstrap.sh demo     install what building needs, build, run the demonstration campaign, print its table
 #   ./bootstrap.sh package  the same, and make a .tar.gz for any Linux and a .deb of it
 #   ./bootstrap.sh test     install the packages, build, run every test
-#   ./bootstrap.sh lint     formatting and clang-tidy of the whole source
+#   ./bootstrap.sh lint     formatting, flake8 and clang-tidy of the whole source
 #   ./bootstrap.sh deps     install the packages only
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
@@ -19,9 +19,9 @@ to_test=(
   groff-base systemd                                                      # read manual pages and the unit
   lammps openmpi-bin                                                      # another engine, which tests run, also with MPI
   slurm-wlm munge                                                         # a Slurm to be tested with
-  gnuplot-nox                                                             # pictures of the studies
+  python3-numpy python3-scipy gnuplot-nox                                 # numbers and pictures of the studies
 )
-to_lint=(clang-format clang-tidy)
+to_lint=(clang-format clang-tidy black flake8)
 
 say() { printf '\n== %s\n' "$*"; }
 
@@ -85,6 +85,9 @@ run_tests() {
 lint() {
   say "Formatting"
   git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run --Werror
+  git ls-files '*.py' | xargs black --check --quiet --diff
+  say "flake8"
+  git ls-files '*.py' | xargs flake8
   build ON
   say "clang-tidy"
   git ls-files '*.cpp' | xargs -P "$(nproc)" -n 4 clang-tidy --quiet -p build/release

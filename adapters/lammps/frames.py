@@ -1,4 +1,5 @@
-"""Peclet's frames over one end of a socket pair, and files that appear whole or not at all (schema/README.md, "Frames")."""
+"""Peclet's frames over one end of a socket pair, and files that appear whole or not at all (schema/README.md,
+"Frames")."""
 import json
 import os
 import select
@@ -35,7 +36,8 @@ class Channel:
             raise Gone from None
 
     def receive(self, patience=None):
-        """The next message; None when there is none within `patience` seconds (None waits for ever). Raises Gone, FrameError."""
+        """The next message; None when there is none within `patience` seconds (None waits for ever). Raises Gone,
+        FrameError."""
         while (message := self.next_message()) is None:
             if not select.select([self.socket], [], [], patience)[0]:
                 return None
@@ -58,7 +60,7 @@ class Channel:
             raise FrameError(f"a frame announces {length} bytes")
         if len(self.received) < 8 + length:
             return None
-        payload, self.received = self.received[8:8 + length], self.received[8 + length:]
+        payload, self.received = self.received[8 : 8 + length], self.received[8 + length :]
         return json.loads(payload)
 
 

@@ -25,13 +25,18 @@ def sha256_of_script(path):
 
 
 def output_of(*command):
-    return subprocess.run(command, capture_output=True, text=True, env=lammps.ENVIRONMENT, stdin=subprocess.DEVNULL).stdout
+    return subprocess.run(
+        command, capture_output=True, text=True, env=lammps.ENVIRONMENT, stdin=subprocess.DEVNULL
+    ).stdout
 
 
 def libraries_of(program):
     """LAMMPS itself, where it is a shared library, the mathematical functions, and what adds up over ranks."""
-    return [line.split()[2] for line in output_of("ldd", program).splitlines()
-            if re.match(r"\s*(liblammps|libm\.so|libmpi)\S* => /", line)]
+    return [
+        line.split()[2]
+        for line in output_of("ldd", program).splitlines()
+        if re.match(r"\s*(liblammps|libm\.so|libmpi)\S* => /", line)
+    ]
 
 
 def own_sources():
@@ -50,13 +55,16 @@ def processor():
 
 
 def engine_identity(lmp, launcher, script, files):
-    """The `engine` of hello and of the results. `launcher`: words, because another number of ranks adds up in another order.
-    `files`: what the script reads, in the order of the command line."""
+    """The `engine` of hello and of the results. `launcher`: words, because another number of ranks adds up in another
+    order. `files`: what the script reads, in the order of the command line."""
     digest = hashlib.sha256()
     for path in (*own_sources(), os.path.realpath(lmp), *libraries_of(lmp), *files):
         digest.update(f"{os.path.basename(path)} {sha256_of_file(path)}\n".encode())
     digest.update(f"{os.path.basename(script)} {sha256_of_script(script)}\n".encode())
     digest.update(f"launcher {json.dumps(launcher)}\n".encode())
     version = re.search(r"Parallel Simulator - (.+)", output_of(lmp, "-h"))
-    return {"version": f"LAMMPS {version[1].strip() if version else 'of unknown version'}", "binary_sha256": digest.hexdigest(),
-            "instruction_set": processor()}
+    return {
+        "version": f"LAMMPS {version[1].strip() if version else 'of unknown version'}",
+        "binary_sha256": digest.hexdigest(),
+        "instruction_set": processor(),
+    }

@@ -1,8 +1,9 @@
-"""What LAMMPS reads of an input script: its commands, without comments, blank lines and the way they are broken into lines.
+"""What LAMMPS reads of an input script: its commands, without comments, blank lines and the way they are broken into
+lines.
 
-As Input::file() and Input::parse() of LAMMPS do it, in this order: a line whose last printable character is & goes on with the next
-one, also when it is a comment; so does one with an odd number of triple quotes, whose line breaks stay. Then a # outside quotes
-ends the command."""
+As Input::file() and Input::parse() of LAMMPS do it, in this order: a line whose last printable character is & goes on
+with the next one, also when it is a comment; so does one with an odd number of triple quotes, whose line breaks stay.
+Then a # outside quotes ends the command."""
 
 BLANK = b" \t\n\v\f\r"
 TRIPLE = b'"""'
@@ -26,9 +27,9 @@ def whole_commands(content):
 def without_comment(command):
     quote, place = b"", 0
     while place < len(command):
-        if not quote and command[place:place + 1] == b"#":
+        if not quote and command[place : place + 1] == b"#":
             return command[:place]
-        here = TRIPLE if command.startswith(TRIPLE, place) and quote in (b"", TRIPLE) else command[place:place + 1]
+        here = TRIPLE if command.startswith(TRIPLE, place) and quote in (b"", TRIPLE) else command[place : place + 1]
         if not quote and here in (TRIPLE, b'"', b"'"):
             quote = here
         elif here == quote:

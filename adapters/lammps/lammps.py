@@ -84,7 +84,8 @@ class Thermo:
 
 
 class Lammps:
-    """A running `lmp -in script` in `folder`, or what `launcher` (words) makes of it. Use it in a with block, which ends it."""
+    """A running `lmp -in script` in `folder`, or what `launcher` (words) makes of it. Use it in a with block, which
+    ends it."""
 
     def __init__(self, program, launcher, script, folder, variables):
         # stdbuf: without it progress would come in pieces of 4 KiB.
@@ -99,8 +100,15 @@ class Lammps:
         for name, value in variables.items():
             command += ["-var", name, str(value)]
         parent = os.getpid()
-        self.process = subprocess.Popen(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                        stderr=subprocess.STDOUT, preexec_fn=lambda: die_with(parent))
+        self.process = subprocess.Popen(
+            command,
+            cwd=folder,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            preexec_fn=lambda: die_with(parent),
+        )
         self.thermo = Thermo()
         self.unfinished_line = b""
 
@@ -130,7 +138,8 @@ class Lammps:
         return bool(part), also in ready
 
     def finish(self, steps):
-        """Once it has stopped printing: its thermo output, if it ran so many steps. Throws LammpsError, KilledFromOutside."""
+        """Once it has stopped printing: its thermo output, if it ran so many steps. Throws LammpsError,
+        KilledFromOutside."""
         status = self.process.wait()
         # A launcher leaves as a shell does when one of its ranks was killed: with 128 + the signal.
         killer = status - 128 if self.is_launched and status > 128 else -status
@@ -139,11 +148,17 @@ class Lammps:
         if status != 0 or self.thermo.error:
             last = "\n".join(self.thermo.last_lines)
             print(f"lmp ended with {status}:\n{last}", flush=True)
-            raise LammpsError(self.thermo.error or f"lmp ended with status {status}: {list(self.thermo.last_lines)[-1:]}")
+            raise LammpsError(
+                self.thermo.error or f"lmp ended with status {status}: {list(self.thermo.last_lines)[-1:]}"
+            )
         heading = self.thermo.heading
         if self.thermo.atoms is None or "Step" not in heading or heading[0].startswith("-"):
-            raise LammpsError("the script has no run whose thermo output has a column Step and one line per sample "
-                              "(thermo_style one or custom)")
+            raise LammpsError(
+                "the script has no run whose thermo output has a column Step and one line per sample "
+                "(thermo_style one or custom)"
+            )
         if self.thermo.steps_done() != steps:
-            raise LammpsError(f"the script's last run was to make ${{steps}} = {steps} steps and made {self.thermo.steps_done()}")
+            raise LammpsError(
+                f"the script's last run was to make ${{steps}} = {steps} steps and made {self.thermo.steps_done()}"
+            )
         return self.thermo

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """lammps_engine.py SCRIPT [FILE ...] [--lmp PROGRAM] [--launcher COMMAND]
 
-LAMMPS as the engine of a campaign: started by peclet, with whom it speaks over descriptor 0. SCRIPT is a LAMMPS input; each FILE
-is something that it reads (a data file, a molecule, an include) and finds under its name without folders. README.md beside this
-file says what a script has to do. Editing any of these files (comments of SCRIPT apart) makes another engine, whose results peclet
-does not mix with others.
+LAMMPS as the engine of a campaign: started by peclet, with whom it speaks over descriptor 0. SCRIPT is a LAMMPS input;
+each FILE is something that it reads (a data file, a molecule, an include) and finds under its name without folders.
+README.md beside this file says what a script has to do. Editing any of these files (comments of SCRIPT apart) makes
+another engine, whose results peclet does not mix with others.
 """
 import argparse
 import hashlib
@@ -82,18 +82,31 @@ class Engine:
             scene = read_scene(document)
         except Refused as refused:
             return {"type": "refused", "pointer": refused.pointer, "value": refused.value, "allowed": refused.allowed}
-        answer = {"type": "validated", "timestep": None, "steps": scene.equilibration + scene.production, "particles": 0,
-                  "derived": {}, "warnings": [], "observables": sorted(scene.observables)}
+        answer = {
+            "type": "validated",
+            "timestep": None,
+            "steps": scene.equilibration + scene.production,
+            "particles": 0,
+            "derived": {},
+            "warnings": [],
+            "observables": sorted(scene.observables),
+        }
         try:
             with folder_with(self.files) as folder:
                 thermo = self.try_out(scene, folder)
             return {**answer, "timestep": thermo.timestep, "particles": thermo.atoms}
         except TrialTakesTooLong:
-            warning = f"the script makes no run of 0 steps within {TRIAL_SECONDS} s, so nobody knows yet whether it works"
+            warning = (
+                f"the script makes no run of 0 steps within {TRIAL_SECONDS} s, so nobody knows yet whether it works"
+            )
             return {**answer, "warnings": [{"code": "untried", "message": warning}]}
         except NoSuchColumn as error:
-            return {"type": "refused", "pointer": f"/observables/{escaped(error.name)}/column", "value": error.column,
-                    "allowed": f"must be a column of the thermo output: {', '.join(error.columns)}"}
+            return {
+                "type": "refused",
+                "pointer": f"/observables/{escaped(error.name)}/column",
+                "value": error.column,
+                "allowed": f"must be a column of the thermo output: {', '.join(error.columns)}",
+            }
         except lammps.LammpsError as error:
             return {"type": "refused", "pointer": "", "value": os.path.basename(self.files[0]), "allowed": str(error)}
 
@@ -179,8 +192,16 @@ class Engine:
                 step = done + min(process.thermo.steps_done(), chunk.steps)
                 if step > told_step and time.monotonic() - told >= realisation.job["progress_seconds"]:
                     told, told_step = time.monotonic(), step
-                    self.channel.send({"type": "progress", "job": realisation.job["job"], "phase": chunk.phase, "step": step,
-                                       "steps": total, "strain": 0})
+                    self.channel.send(
+                        {
+                            "type": "progress",
+                            "job": realisation.job["job"],
+                            "phase": chunk.phase,
+                            "step": step,
+                            "steps": total,
+                            "strain": 0,
+                        }
+                    )
             realisation.advance(process.finish(chunk.steps))
 
 
@@ -189,7 +210,9 @@ def main():
     parser.add_argument("script")
     parser.add_argument("files", nargs="*")
     parser.add_argument("--lmp", default="lmp", help="the LAMMPS program (default: lmp)")
-    parser.add_argument("--launcher", default="", help="what starts it with MPI, such as 'mpirun -np 2' (default: nothing)")
+    parser.add_argument(
+        "--launcher", default="", help="what starts it with MPI, such as 'mpirun -np 2' (default: nothing)"
+    )
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # a death like those of other signals, instead of an exception
     remove_left_folders()
     try:

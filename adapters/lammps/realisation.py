@@ -1,7 +1,7 @@
 """One seed of one scene: chunk after chunk, each a LAMMPS process that goes on from the restart file of the one before.
 
-LAMMPS is not the same after a restart as without one (random numbers, the order of atoms). So every chunk begins with a restart,
-also when nothing has been interrupted: then it makes no difference whether something has.
+LAMMPS is not the same after a restart as without one (random numbers, the order of atoms). So every chunk begins with a
+restart, also when nothing has been interrupted: then it makes no difference whether something has.
 """
 import hashlib
 import json
@@ -16,7 +16,8 @@ from frames import write_durably
 
 BLOCKS = 32
 
-# Restart files, in the folder where LAMMPS runs. (Its command `if` compares words without dots that begin with a letter.)
+# Restart files, in the folder where LAMMPS runs. (Its command `if` compares words without dots that begin with a
+# letter.)
 BEFORE, AFTER = "before_restart", "after_restart"
 
 # LAMMPS' random numbers take seeds from 1 to 900000000: the largest prime below, and a number that scatters neighbours.
@@ -35,8 +36,14 @@ def lammps_seed(point, seed, number, numbers):
 def variables_of(scene, number, seed, before, after, steps=None):
     """What the script of chunk `number` is given."""
     chunk = scene.chunks()[number]
-    return {**scene.variables, "from": before, "to": after, "steps": chunk.steps if steps is None else steps, "phase": chunk.phase,
-            "seed": seed}
+    return {
+        **scene.variables,
+        "from": before,
+        "to": after,
+        "steps": chunk.steps if steps is None else steps,
+        "phase": chunk.phase,
+        "seed": seed,
+    }
 
 
 class Stopwatch:
@@ -60,7 +67,7 @@ class Realisation:
     def __init__(self, job, scene, identity, folder):
         self.job, self.scene, self.identity = job, scene, identity
         self.chunks = scene.chunks()
-        self.number = 0    # of the chunk to come
+        self.number = 0  # of the chunk to come
         self.restart = b""  # what it begins with; nothing: the script makes the beginning
         self.samples = {name: [] for name in scene.observables}
         self.timestep = None
@@ -69,31 +76,48 @@ class Realisation:
         self.folder = folder
 
     def steps(self, phase=None):
-        return sum(chunk.steps for chunk in self.chunks[:self.number] if phase in (None, chunk.phase))
+        return sum(chunk.steps for chunk in self.chunks[: self.number] if phase in (None, chunk.phase))
 
     def cost(self):
         return tuple(before + now for before, now in zip(self.spent, self.stopwatch.read()))
 
     def resume(self):
-        """Takes over the checkpoint of an earlier attempt. One that is torn, or another engine's, is as good as none."""
+        """Takes over the checkpoint of an earlier attempt. One that is torn, or another engine's, is as good as
+        none."""
         try:
             with open(self.job["checkpoint"], "rb") as file:
                 heading, restart = json.loads(file.readline()), file.read()
-            mine = {"point": self.job["point"], "seed": self.job["seed"], "identity": self.identity,
-                    "restart_sha256": hashlib.sha256(restart).hexdigest()}
+            mine = {
+                "point": self.job["point"],
+                "seed": self.job["seed"],
+                "identity": self.identity,
+                "restart_sha256": hashlib.sha256(restart).hexdigest(),
+            }
             if any(heading[key] != value for key, value in mine.items()):
                 raise ValueError("it is of another realisation or engine, or damaged")
             self.number, self.samples, self.timestep, self.spent, self.restart = (
-                heading["number"], heading["samples"], heading["timestep"], tuple(heading["spent"]), restart)
+                heading["number"],
+                heading["samples"],
+                heading["timestep"],
+                tuple(heading["spent"]),
+                restart,
+            )
         except FileNotFoundError:
             return
         except (ValueError, KeyError, TypeError, OSError) as error:
             print(f"{self.job['checkpoint']}: {error}; the realisation starts from the beginning", flush=True)
 
     def save(self):
-        heading = {"point": self.job["point"], "seed": self.job["seed"], "identity": self.identity, "number": self.number,
-                   "samples": self.samples, "timestep": self.timestep, "spent": self.cost(),
-                   "restart_sha256": hashlib.sha256(self.restart).hexdigest()}
+        heading = {
+            "point": self.job["point"],
+            "seed": self.job["seed"],
+            "identity": self.identity,
+            "number": self.number,
+            "samples": self.samples,
+            "timestep": self.timestep,
+            "spent": self.cost(),
+            "restart_sha256": hashlib.sha256(self.restart).hexdigest(),
+        }
         write_durably(self.job["checkpoint"], json.dumps(heading, allow_nan=False).encode() + b"\n" + self.restart)
 
     def next_variables(self):
@@ -140,16 +164,28 @@ class Realisation:
         steps = {phase: self.steps(phase) for phase in ("equilibration", "production")}
         time_of = {phase: None if self.timestep is None else count * self.timestep for phase, count in steps.items()}
         cpu_seconds, wall_seconds = self.cost()
-        return {"schema_version": 1, "point": self.job["point"], "seed": self.job["seed"],
-                "ending": {"cause": cause, "step": self.steps(), "message": message, "state": None},
-                "method": None, "timestep": self.timestep, "steps": steps,
-                "strain": {"equilibration": None, "production": None}, "time": time_of,
-                "derived": {}, "warnings": [], "units": "scene",
-                "mean": self.mean() if completed else None, "blocks": self.blocks() if completed else None,
-                "statistical_inefficiency": None, "largest_overlap": None, "gate": None,
-                "cost": {"cpu_seconds": cpu_seconds, "wall_seconds": wall_seconds},
-                "final_state_sha256": hashlib.sha256(self.restart).hexdigest() if self.restart else None,
-                "engine": engine}
+        return {
+            "schema_version": 1,
+            "point": self.job["point"],
+            "seed": self.job["seed"],
+            "ending": {"cause": cause, "step": self.steps(), "message": message, "state": None},
+            "method": None,
+            "timestep": self.timestep,
+            "steps": steps,
+            "strain": {"equilibration": None, "production": None},
+            "time": time_of,
+            "derived": {},
+            "warnings": [],
+            "units": "scene",
+            "mean": self.mean() if completed else None,
+            "blocks": self.blocks() if completed else None,
+            "statistical_inefficiency": None,
+            "largest_overlap": None,
+            "gate": None,
+            "cost": {"cpu_seconds": cpu_seconds, "wall_seconds": wall_seconds},
+            "final_state_sha256": hashlib.sha256(self.restart).hexdigest() if self.restart else None,
+            "engine": engine,
+        }
 
 
 def take_restart(folder, name):

@@ -19,6 +19,7 @@ class Refused(Exception):
 @dataclasses.dataclass(frozen=True)
 class Chunk:
     """What one LAMMPS process does."""
+
     phase: str
     steps: int
 
@@ -26,7 +27,7 @@ class Chunk:
 @dataclasses.dataclass(frozen=True)
 class Observable:
     column: str  # of the thermo output
-    take: str    # "mean" over the production window, or "last"
+    take: str  # "mean" over the production window, or "last"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -54,7 +55,9 @@ def check_object(value, pointer, required=(), optional=()):
         refuse(pointer, value, "must be an object")
     for key in value:
         if key not in (*required, *optional):
-            refuse(f"{pointer}/{escaped(key)}", value[key], f"is unknown; known are {', '.join((*required, *optional))}")
+            refuse(
+                f"{pointer}/{escaped(key)}", value[key], f"is unknown; known are {', '.join((*required, *optional))}"
+            )
     for key in required:
         if key not in value:
             refuse(f"{pointer}/{key}", None, "is required")
@@ -84,7 +87,9 @@ def read_variables(variables):
         is_word = isinstance(value, str) and re.fullmatch(r"[^\s\"'$&#]+", value) and not value.startswith("-")
         is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
         if not is_word and not is_number:
-            refuse(pointer, value, "must be a number or a word without blanks, quotes, $, & and #, and without a leading -")
+            refuse(
+                pointer, value, "must be a number or a word without blanks, quotes, $, & and #, and without a leading -"
+            )
     return {name: value if isinstance(value, str) else f"{value:.17g}" for name, value in variables.items()}
 
 
@@ -108,8 +113,10 @@ def read_scene(scene):
     check_object(scene, "", required=("steps", "observables"), optional=("variables",))
     check_object(scene["steps"], "/steps", required=("production",), optional=("equilibration", "chunk"))
     production = steps_at(scene["steps"], "production", 1)
-    return Scene(variables=read_variables(scene.get("variables", {})),
-                 equilibration=steps_at(scene["steps"], "equilibration", 0, 0),
-                 production=production,
-                 chunk=steps_at(scene["steps"], "chunk", 1, production),
-                 observables=read_observables(scene["observables"]))
+    return Scene(
+        variables=read_variables(scene.get("variables", {})),
+        equilibration=steps_at(scene["steps"], "equilibration", 0, 0),
+        production=production,
+        chunk=steps_at(scene["steps"], "chunk", 1, production),
+        observables=read_observables(scene["observables"]),
+    )

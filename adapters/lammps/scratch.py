@@ -1,4 +1,5 @@
-"""Folders for LAMMPS to run in, each locked by the process that uses it, so that those of the killed can be told and removed."""
+"""Folders for LAMMPS to run in, each locked by the process that uses it, so that those of the killed can be told and
+removed."""
 import contextlib
 import fcntl
 import os
@@ -9,7 +10,8 @@ PREFIX = "peclet-lammps-"
 
 
 def lock(path):
-    """A descriptor that holds the folder's lock until it is closed, also by the process's death; None when another one has it."""
+    """A descriptor that holds the folder's lock until it is closed, also by the process's death; None when another one
+    has it."""
     descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY)
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -25,7 +27,7 @@ def folder_with(files):
     path = tempfile.mkdtemp(prefix="new-" + PREFIX)
     descriptor = lock(path)
     # Only now has it a name under which others look for what the dead have left.
-    path, unlocked_name = os.path.join(os.path.dirname(path), os.path.basename(path)[len("new-"):]), path
+    path, unlocked_name = os.path.join(os.path.dirname(path), os.path.basename(path)[len("new-") :]), path
     os.rename(unlocked_name, path)
     try:
         for file in files:

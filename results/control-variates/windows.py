@@ -1,58 +1,67 @@
 #!/usr/bin/python3
 """windows.py FOLDER.peclet...
 
-Variance of the relative viscosity plus the pairs' Brownian stress over that of the viscosity alone, for averages over shorter parts of
-the production window, from the 32 blocks of each realisation in the database of a campaign. Intervals are 95 % by
-resampling realisations.
+Variance of the relative viscosity plus the pairs' Brownian stress over that of the viscosity alone, for averages over
+shorter parts of the production window, from the 32 blocks of each realisation in the database of a campaign. Intervals
+are 95 % by resampling realisations.
 """
-import json
-import os
 import random
-import sqlite3
 import sys
+from pathlib import Path
 
-sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-from campaigns import inflated  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from studies.campaigns import read_results
+from studies.tables import markdown_head, markdown_row
 
-RESAMPLES = 1000
+import numpy as np
+
+BLOCKS, RESAMPLES = 32, 1000
 
 
 def moments(rows):
-    """Count, sum and sum of squares of a list."""
-    return len(rows), sum(rows), sum(x * x for x in rows)
+    """By realisation: count, sum and sum of squares of its averages."""
+    return np.stack((np.full(len(rows), rows.shape[1]), rows.sum(axis=1), np.square(rows).sum(axis=1)), axis=1)
 
 
-def ratio(realisations):
-    """Of sums over realisations: variance of the controlled averages over that of the plain ones."""
-    totals = [[sum(r[k][m] for r in realisations) for m in range(3)] for k in (0, 1)]
-    plain, controlled = ((squares - total * total / count) / (count - 1) for count, total, squares in totals)
-    return controlled / plain
+def variance(moments):
+    count, total, squares = moments.sum(axis=0)
+    return (squares - total * total / count) / (count - 1)
+
+
+def ratio(plain, controlled):
+    """Of moments of realisations: variance of the controlled averages over that of the plain ones."""
+    return variance(controlled) / variance(plain)
+
+
+def window_of(result):
+    """Brownian times and strain of the production window."""
+    return result["time"]["production"] / result["derived"]["brownian_time"], result["strain"]["production"]
 
 
 def main():
-    print("| Pe | average over | averages | variance of η_r + B over that of η_r |\n|---|---|---|---|")
+    print(markdown_head(["Pe", "average over", "averages", "variance of η_r + B over that of η_r"]))
     generator = random.Random(1)
     for folder in sys.argv[1:]:
-        database = sqlite3.connect(f"file:{os.path.join(folder, 'campaign.db')}?mode=ro", uri=True)
-        for place, settings in database.execute("SELECT place, settings FROM points").fetchall():
-            series, window = [], None
-            for stored, dictionary in database.execute(
-                    "SELECT result, dictionary FROM realisations WHERE place = ? AND state = 'done' ORDER BY seed", (place,)):
-                result = json.loads(inflated(stored, dictionary))
-                blocks = result["blocks"]
-                series.append((blocks["relative_viscosity"], blocks["control_variates"]["brownian_pairwise"]))
-                window = result["time"]["production"] / result["derived"]["brownian_time"], result["strain"]["production"]
+        for settings, results in read_results(folder):
+            blocks = [r["blocks"] for r in results]
+            viscosity = np.array([b["relative_viscosity"] for b in blocks])
+            controlled = viscosity + [b["control_variates"]["brownian_pairwise"] for b in blocks]
+            times, strain = window_of(results[-1])
+            seeds = range(len(results))
             for together in (1, 2, 4, 8, 16, 32):
-                per_seed = []
-                for viscosity, brownian in series:
-                    averages = [(sum(viscosity[k:k + together]) / together, sum(brownian[k:k + together]) / together)
-                                for k in range(0, len(viscosity), together)]
-                    per_seed.append((moments([eta for eta, _ in averages]), moments([eta + b for eta, b in averages])))
-                resampled = sorted(ratio(generator.choices(per_seed, k=len(per_seed))) for _ in range(RESAMPLES))
+                parts = (rows.reshape(len(seeds), -1, together).mean(axis=2) for rows in (viscosity, controlled))
+                sums = [moments(part) for part in parts]
+                draws = [generator.choices(seeds, k=len(seeds)) for _ in range(RESAMPLES)]
+                resampled = np.sort([ratio(*(s[chosen] for s in sums)) for chosen in draws])
                 low, high = resampled[int(0.025 * RESAMPLES)], resampled[int(0.975 * RESAMPLES)]
-                part = together / 32
-                print(f"| {json.loads(settings)['/peclet']:g} | {window[0] * part:.3g} Brownian times, strain {window[1] * part:.2g} | "
-                      f"{len(per_seed) * 32 // together} | {ratio(per_seed):.3f} ({low:.3f} .. {high:.3f}) |")
+                part = together / BLOCKS
+                cells = [
+                    f"{settings['/peclet']:g}",
+                    f"{times * part:.3g} Brownian times, strain {strain * part:.2g}",
+                    len(seeds) * BLOCKS // together,
+                    f"{ratio(*sums):.3f} ({low:.3f} .. {high:.3f})",
+                ]
+                print(markdown_row(cells))
 
 
 main()

@@ -3,22 +3,33 @@
 
 study.py BIN [FOLDER] [--quick]
 """
-import math
-import os
 import sys
+from pathlib import Path
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.dirname(HERE))
-from campaigns import REFERENCE_SCENE, TABLE_SCENE, columns_of, log_minimum, merged, number, propagated, quotient, viscosity_row, write_table  # noqa: E402
-from studies import Statement, data_block, gnuplot, main  # noqa: E402
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from studies.command_line import main
+from studies.estimates import difference, over, propagated, quotient
+from studies.figure import BLUE, GREEN, RED, Figure
+from studies.fits import log_minimum
+from studies.published import mari_fit
+from studies.scenes import REFERENCE_SCENE, TABLE_SCENE, during, merged
+from studies.tables import columns_of, entries, number, write_table
+from studies.verdicts import Statement
+from studies.viscosities import viscosity_row
 
 TITLE = "Published viscosities, and the outer gap"
 GAPS = (0.05, 0.2, 0.5)
 FRACTIONS = {0: (0.30, 0.40, 0.45, 0.50, 0.55), 1: (0.30, 0.40, 0.45, 0.50, 0.53)}
-STEADY = merged(REFERENCE_SCENE, {
-    "particles": {"count": 500}, "flow": {"shear_rate": 0.05}, "contact": {"friction": 0},
-    "duration": {"equilibration": {"strain": 2}, "production": {"strain": 5}},
-})
+STEADY = merged(
+    REFERENCE_SCENE,
+    {
+        "particles": {"count": 500},
+        "flow": {"shear_rate": 0.05},
+        "contact": {"friction": 0},
+        **during({"strain": 2}, {"strain": 5}),
+    },
+)
 SEEDS = 8
 # With more seeds: these lie near the bound of 0.9.
 MORE, MORE_SEEDS = [(f, 1, 0.05) for f in (0.30, 0.40, 0.45)], 24
@@ -30,16 +41,12 @@ VARIANTS = {
     "a tenth of the inner gap": {"lubrication": {"inner_gap": 1e-4}},
 }
 VARIANT_SEEDS = 6
+EXPLICIT = {"integrator": {"method": "explicit"}, "duration": {"production": {"strain": 3}}}
 
 PECLET = (1, 4.6, 22, 100, 460, 2200, 1e4)
 NOISY = merged(TABLE_SCENE, {"contact": {"friction": 1}, "duration": {"production": {"strain": 3}}})
 NOISY_SEEDS = 8
 NOISY_FRACTIONS, NOISY_GAPS = (0.45, 0.50), (0.05, 0.5)
-
-
-def fit(fraction, friction):
-    """Of Mari et al. as Monti et al. (2021) quote it; with solvent and stresslet."""
-    return 0.71 * (1 - fraction / 0.575) ** -2.3 if friction else 1.4 * (1 - fraction / 0.66) ** -1.6
 
 
 def steady(program, name, cases, seeds, patch=None):
@@ -48,10 +55,12 @@ def steady(program, name, cases, seeds, patch=None):
     points = program.run(name, merged(STEADY, patch or {}), settings, seeds)
     rows = []
     for (fraction, friction, gap), point in zip(cases, points):
-        row = viscosity_row(point, "first_normal_difference", "second_normal_difference")
+        published = mari_fit(fraction, friction)
+        row = {"fraction": fraction, "friction": friction, "gap": gap, "fit": published}
+        row |= viscosity_row(point, "first_normal_difference", "second_normal_difference")
         for of in ("viscosity", "pairs"):
-            row[f"{of}_over_fit"], row[f"{of}_over_fit_error"] = (v / fit(fraction, friction) for v in number(row, of))
-        rows.append({"fraction": fraction, "friction": friction, "gap": gap, "fit": fit(fraction, friction), **row})
+            row |= entries(f"{of}_over_fit", over(number(row, of), published))
+        rows.append(row)
     return rows
 
 
@@ -59,87 +68,113 @@ def noisy(program):
     """Rows of (volume fraction, outer gap, Peclet number) with friction."""
     cases = [(f, g, p) for f in NOISY_FRACTIONS for g in NOISY_GAPS for p in PECLET]
     settings = [{"/volume_fraction": f, "/lubrication/outer_gap": g, "/peclet": p} for f, g, p in cases]
-    return [{"fraction": f, "gap": g, "peclet": p, **viscosity_row(point)}
-            for (f, g, p), point in zip(cases, program.run("noisy", NOISY, settings, NOISY_SEEDS))]
+    points = program.run("noisy", NOISY, settings, NOISY_SEEDS)
+    return [dict(zip(("fraction", "gap", "peclet"), c)) | viscosity_row(p) for c, p in zip(cases, points)]
 
 
 def steady_statements(rows):
     for row in rows:
-        name = f"φ = {row['fraction']:g}, μ = {row['friction']}, outer gap {row['gap']}: η_r over the fit"
-        published, bounds, essential = ("L4.7", (2 / 3, 1.5), True) if row["gap"] == 0.5 else ("M fig 7", (0.9, 1.1), False)
-        yield Statement(name, published, *number(row, "viscosity_over_fit"), *bounds, row["seeds"] - 1, essential)
+        published, bounds, essential = "M fig 7", (0.9, 1.1), False
+        if row["gap"] == 0.5:
+            published, bounds, essential = "L4.7", (2 / 3, 1.5), True
+        text = f"φ = {row['fraction']:g}, μ = {row['friction']}, outer gap {row['gap']}: η_r over the fit"
+        ratio = number(row, "viscosity_over_fit")
+        yield Statement(text, published, *ratio, *bounds, row["seeds"] - 1, essential)
+
+
+def curve_of(rows, fraction, gap):
+    return [r for r in rows if r["fraction"] == fraction and r["gap"] == gap]
 
 
 def noisy_statements(rows):
-    def of(fraction, gap):
-        return [r for r in rows if r["fraction"] == fraction and r["gap"] == gap]
     degrees = min(r["seeds"] for r in rows) - 1
     for fraction in NOISY_FRACTIONS:
-        minima = []
+        name = f"φ = {fraction:g}, μ = 1"
+        curves, minima = [], []
         for gap in NOISY_GAPS:
-            curve = of(fraction, gap)
-            numbers = [number(r, "pairs") for r in curve]
-            minima.append(propagated(numbers, lambda v: log_minimum(PECLET, v)))
-            name = f"φ = {fraction:g}, μ = 1, outer gap {gap}"
-            yield Statement(f"{name}: η_r of pairs at Pe = 1 over that at 4.6: thinning", "L4.7", *quotient(numbers[0], numbers[1]), low=1, degrees=degrees)
-            yield Statement(f"{name}: at Pe = 10⁴ over that at 4.6: thickening", "L4.7", *quotient(numbers[-1], numbers[1]), low=1, degrees=degrees)
-        yield Statement(f"φ = {fraction:g}, μ = 1: log10 Pe of the minimum, outer gap 0.5 less 0.05 (a step of the grid: 0.66)", "L4.7",
-                        minima[1][0] - minima[0][0], math.hypot(minima[0][1], minima[1][1]), -0.66, 0.66, degrees)
-        factors = [quotient(number(b, "pairs"), number(a, "pairs")) for a, b in zip(of(fraction, 0.05), of(fraction, 0.5))]
+            numbers = [number(r, "pairs") for r in curve_of(rows, fraction, gap)]
+            curves.append(numbers)
+            minima.append(propagated(numbers, lambda values: log_minimum(PECLET, values)))
+            text = f"{name}, outer gap {gap}: η_r of pairs at Pe = 1 over that at 4.6: thinning"
+            yield Statement(text, "L4.7", *quotient(numbers[0], numbers[1]), low=1, degrees=degrees)
+            text = f"{name}, outer gap {gap}: at Pe = 10⁴ over that at 4.6: thickening"
+            yield Statement(text, "L4.7", *quotient(numbers[-1], numbers[1]), low=1, degrees=degrees)
+        text = f"{name}: log10 Pe of the minimum, outer gap 0.5 less 0.05 (a step of the grid: 0.66)"
+        yield Statement(text, "L4.7", *difference(minima[1], minima[0]), -0.66, 0.66, degrees)
+        factors = [quotient(wide, narrow) for narrow, wide in zip(*curves)]
         least, most = min(factors), max(factors)
-        yield Statement(f"φ = {fraction:g}, μ = 1: smallest factor over all Pe from outer gap 0.05 to 0.5", "L4.7", *least, low=1, degrees=degrees)
-        yield Statement(f"φ = {fraction:g}, μ = 1: largest of these factors over the smallest (1: a mere change of magnitude)", "L4.7", *quotient(most, least), high=1.5,
-                        degrees=degrees, essential=False)
+        text = f"{name}: smallest factor over all Pe from outer gap 0.05 to 0.5"
+        yield Statement(text, "L4.7", *least, low=1, degrees=degrees)
+        text = f"{name}: largest of these factors over the smallest (1: a mere change of magnitude)"
+        yield Statement(text, "L4.7", *quotient(most, least), high=1.5, degrees=degrees, essential=False)
+
+
+def write_tables(table, curves):
+    names = ["method", "fraction", "friction", "gap", "seeds", "lost", "transient"]
+    names += columns_of("viscosity", "pairs", "lubrication", "contact")
+    names += columns_of("first_normal_difference", "second_normal_difference")
+    write_table(HERE / "table.csv", [*names, "fit", *columns_of("viscosity_over_fit", "pairs_over_fit")], table, 4)
+    names = ["fraction", "gap", "peclet", "seeds", "lost", "transient"]
+    names += columns_of("viscosity", "pairs", "lubrication", "contact", "structural")
+    write_table(HERE / "peclet.csv", names, curves, 4)
 
 
 def measure(program):
     cases = [(f, m, g) for m in (0, 1) for g in GAPS for f in FRACTIONS[m] if (m, g) != (0, 0.2)]
-    rows = steady(program, "steady", cases, SEEDS)
-    for row in steady(program, "steady-more", MORE, MORE_SEEDS):
-        rows[cases.index((row["fraction"], row["friction"], row["gap"]))] = row
-    variants = [{"method": name, **steady(program, f"variant-{k}", [(0.5, 1, 0.05)], VARIANT_SEEDS, patch)[0]} for k, (name, patch) in enumerate(VARIANTS.items())]
-    explicit, = steady(program, "steady-explicit", [(0.45, 1, 0.05)], 4, {"integrator": {"method": "explicit"}, "duration": {"production": {"strain": 3}}})
+    rows = dict(zip(cases, steady(program, "steady", cases, SEEDS)))
+    rows.update(zip(MORE, steady(program, "steady-more", MORE, MORE_SEEDS)))
+    one = (0.45, 1, 0.05)
+    (explicit,) = steady(program, "steady-explicit", [one], 4, EXPLICIT)
+    table = [{"method": "implicit", **r} for r in rows.values()] + [{"method": "explicit", **explicit}]
+    for k, (name, patch) in enumerate(VARIANTS.items()):
+        (row,) = steady(program, f"variant-{k}", [(0.5, 1, 0.05)], VARIANT_SEEDS, patch)
+        table.append({"method": name, **row})
     curves = noisy(program)
-    write_table(os.path.join(HERE, "table.csv"),
-                ["method", "fraction", "friction", "gap", "seeds", "lost", "transient",
-                 *columns_of("viscosity", "pairs", "lubrication", "contact", "first_normal_difference", "second_normal_difference"), "fit",
-                 *columns_of("viscosity_over_fit", "pairs_over_fit")],
-                [{"method": "implicit", **r} for r in rows] + [{"method": "explicit", **explicit}] + variants, 4)
-    write_table(os.path.join(HERE, "peclet.csv"),
-                ["fraction", "gap", "peclet", "seeds", "lost", "transient", *columns_of("viscosity", "pairs", "lubrication", "contact", "structural")], curves, 4)
-    draw(rows, curves)
-    implicit = next(r for r in rows if (r["fraction"], r["friction"], r["gap"]) == (0.45, 1, 0.05))
-    return [*steady_statements(rows), *noisy_statements(curves),
-            Statement("φ = 0.45, μ = 1, no noise: implicit steps over explicit ones", "method", *quotient(number(implicit, "viscosity"), number(explicit, "viscosity")), 0.9, 1.1, explicit["seeds"] - 1)]
+    write_tables(table, curves)
+    draw(rows.values(), curves)
+    ratio = quotient(number(rows[one], "viscosity"), number(explicit, "viscosity"))
+    text = "φ = 0.45, μ = 1, no noise: implicit steps over explicit ones"
+    comparison = Statement(text, "method", *ratio, 0.9, 1.1, explicit["seeds"] - 1)
+    return [*steady_statements(rows.values()), *noisy_statements(curves), comparison]
 
 
 def draw(rows, curves):
-    colours = {0.05: "#2060b0", 0.2: "#308030", 0.5: "#c03028"}
-    lines = ["set terminal pngcairo size 1100, 480 font 'Sans,11'", f"set output '{os.path.join(HERE, 'chart.png')}'", "set multiplot layout 1, 2", "set grid lc rgb '#d8d8d8'",
-             "set logscale y; set xlabel 'φ'; set ylabel 'η_r = σ / (η γ̇)'; set key top left; set xrange [0.28:0.57]; set yrange [2:1000]; set samples 400"]
-    parts = ["(x < 0.56 ? 1.4 * (1 - x / 0.66)**-1.6 : 1/0) lc rgb 'black' dt 2 title 'Mari fit, μ = 0'", "(x < 0.56 ? 0.71 * (1 - x / 0.575)**-2.3 : 1/0) lc rgb 'black' title 'Mari fit, μ = 1'"]
+    colours = dict(zip(GAPS, (BLUE, GREEN, RED)))
+    figure = Figure(HERE / "chart.png", columns=2)
+    ends = {"x_range": (0.28, 0.57), "y_range": (2, 1000)}
+    panel = figure.panel("φ", "η_r = σ / (η γ̇)", log="y", key="top left", **ends)
+    for friction, dash in ((0, 2), (1, 1)):
+        panel.curve(
+            lambda phi, friction=friction: mari_fit(phi, friction),
+            f"Mari fit, μ = {friction}",
+            span=(0.28, 0.56),
+            dash=dash,
+        )
     for friction in (0, 1):
-        for gap in GAPS if friction else (0.05, 0.5):
-            name = f"s{friction}_{round(gap * 100)}"
-            lines += data_block(name, [(r["fraction"], r["viscosity"], r["viscosity_error"]) for r in rows if r["friction"] == friction and r["gap"] == gap])
-            parts.append(f"${name} using 1:2:3 with yerrorbars pt {7 if friction else 6} ps 0.8 lc rgb '{colours[gap]}' title 'μ = {friction}, outer gap {gap}'")
-    lines.append("plot " + ", ".join(parts))
-    lines += ["set logscale x; set format x '10^{%L}'; set xrange [0.1:3e4]; set yrange [2:150]; set xlabel 'Pe'; set ylabel 'η_r of pairs, μ = 1'"]
-    parts = []
-    for fraction in NOISY_FRACTIONS:
+        for gap in GAPS:
+            chosen = [r for r in rows if (r["friction"], r["gap"]) == (friction, gap)]
+            points = [(r["fraction"], *number(r, "viscosity")) for r in chosen]
+            if points:
+                title = f"μ = {friction}, outer gap {gap}"
+                panel.points(points, title, colours[gap], 7 if friction else 6, 0.8)
+    ends = {"x_range": (0.1, 3e4), "y_range": (2, 150)}
+    panel = figure.panel("Pe", "η_r of pairs, μ = 1", log="xy", powers="x", key="top left", **ends)
+    for fraction, mark in zip(NOISY_FRACTIONS, (6, 7)):
         for gap in NOISY_GAPS:
-            name = f"n{round(fraction * 100)}_{round(gap * 100)}"
-            lines += data_block(name, [(r["peclet"], *number(r, "pairs")) for r in curves if r["fraction"] == fraction and r["gap"] == gap])
-            parts.append(f"${name} using 1:2:3 with yerrorlines pt {7 if fraction == 0.5 else 6} ps 0.8 lc rgb '{colours[gap]}' title 'φ = {fraction:g}, outer gap {gap}'")
-    lines.append("plot " + ", ".join(parts))
-    gnuplot(lines)
+            points = [(r["peclet"], *number(r, "pairs")) for r in curve_of(curves, fraction, gap)]
+            panel.points(points, f"φ = {fraction:g}, outer gap {gap}", colours[gap], mark, 0.8, joined=True)
+    figure.draw()
 
 
 def quick_measure(program):
-    rows = steady(program, "quick", [(0.45, 0, 0.05), (0.40, 1, 0.05), (0.45, 0, 0.5)], 8, {"particles": {"count": 200}, "duration": {"equilibration": {"strain": 1}, "production": {"strain": 4}}})
-    for row in rows[:2]:
-        yield Statement(f"φ = {row['fraction']:g}, μ = {row['friction']}: η_r over the fit", "M fig 7", *number(row, "viscosity_over_fit"), 0.8, 1.2, row["seeds"] - 1)
-    yield Statement("φ = 0.45, μ = 0: η_r of pairs at outer gap 0.5 over that at 0.05", "L4.7", *quotient(number(rows[2], "pairs"), number(rows[0], "pairs")), 1.1, 1.8, 7)
+    cases = [(0.45, 0, 0.05), (0.40, 1, 0.05), (0.45, 0, 0.5)]
+    small = {"particles": {"count": 200}, **during({"strain": 1}, {"strain": 4})}
+    *narrow, wide = steady(program, "quick", cases, 8, small)
+    for row in narrow:
+        text = f"φ = {row['fraction']:g}, μ = {row['friction']}: η_r over the fit"
+        yield Statement(text, "M fig 7", *number(row, "viscosity_over_fit"), 0.8, 1.2, row["seeds"] - 1)
+    text = "φ = 0.45, μ = 0: η_r of pairs at outer gap 0.5 over that at 0.05"
+    yield Statement(text, "L4.7", *quotient(number(wide, "pairs"), number(narrow[0], "pairs")), 1.1, 1.8, 7)
 
 
 main(HERE, TITLE, measure, quick_measure)

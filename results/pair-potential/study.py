@@ -4,17 +4,24 @@
 study.py BIN [FOLDER] [--quick]
 """
 import math
-import os
 import sys
+from pathlib import Path
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.dirname(HERE))
-from campaigns import estimate, write_table  # noqa: E402
-from studies import Statement, data_block, gnuplot, main  # noqa: E402
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from studies.command_line import main
+from studies.estimates import difference, estimate, logarithm, over
+from studies.figure import BLUE, RED, Figure
+from studies.scenes import during
+from studies.tables import write_table
+from studies.verdicts import Statement
+
+import numpy as np
 
 TITLE = "Potential of mean force of two spheres"
 THERMAL_ENERGY, STIFFNESS = 0.017, 170.0  # a thermal overlap sqrt(kT / k_n) of 0.01 a
 BIN = 0.005
+INNER, OUTER = 2.001, 2.05  # distances at the gaps of lubrication
 SCENE = {
     "particles": {"count": 2, "density": 0.1, "species": [{"radius": 1.0}]},
     "volume_fraction": 2 * 4 / 3 * math.pi / 4**3,
@@ -31,110 +38,106 @@ RUNS = [("implicit", 64, 4000), ("explicit", 32, 1000)]
 QUICK_RUNS = [("implicit", 16, 1200)]
 
 
+def contact_energy(distance):
+    """U / kT of the contact, k_n (2 a - r)^2 / 2 kT."""
+    return STIFFNESS * np.maximum(2 - distance, 0) ** 2 / (2 * THERMAL_ENERGY)
+
+
 def densities(point):
-    """By seed and bin: counts over ideal counts, normalised to 1 between 2.2 and 2.8 a, where there are no forces; and the distances."""
-    rows, distance = [], None
-    for realisation in point["realisations"]:
-        radial = realisation["mean"]["pair_distribution"]["radial"]
-        distance = radial["r"]
-        far = [k for k, r in enumerate(distance) if 2.2 < r < 2.8]
-        level = sum(radial["counts"][k] for k in far) / sum(radial["ideal"][k] for k in far)
-        rows.append([c / i / level for c, i in zip(radial["counts"], radial["ideal"])])
-    return distance, rows
+    """Distances and, by seed and bin: counts over ideal counts, normalised to 1 between 2.2 and 2.8 a, where there are
+    no forces."""
+    radial = [r["mean"]["pair_distribution"]["radial"] for r in point["realisations"]]
+    distance = np.array(radial[0]["r"])
+    counts, ideal = (np.array([r[name] for r in radial]) for name in ("counts", "ideal"))
+    far = (2.2 < distance) & (distance < 2.8)
+    level = counts[:, far].sum(axis=1) / ideal[:, far].sum(axis=1)
+    return distance, counts / ideal / level[:, None]
 
 
 def mean_density(distance, rows, low, high):
     """Mean over the shells between two distances, with its standard error over seeds."""
-    chosen = [k for k, r in enumerate(distance) if low < r < high]
-    weight = [distance[k] ** 2 for k in chosen]
-    return estimate([sum(w * row[k] for w, k in zip(weight, chosen)) / sum(weight) for row in rows])
+    chosen = (low < distance) & (distance < high)
+    return estimate(np.average(rows[:, chosen], axis=1, weights=distance[chosen] ** 2))
 
 
 def potential(distance, rows, low, high):
-    density, error = mean_density(distance, rows, low, high)
-    return -math.log(density), error / density
+    value, error = logarithm(mean_density(distance, rows, low, high))
+    return -value, error
 
 
 def contact_ratio(distance, rows):
-    """Density of overlaps up to two thermal ones over the mean of exp(-U / kT) there, weighted with r^2 as the density is."""
-    low, parts, sums = 1.98, 2000, [0.0, 0.0]
-    for k in range(parts):
-        r = low + (2 - low) * (k + 0.5) / parts
-        sums[0] += r * r * math.exp(-STIFFNESS * (2 - r) ** 2 / (2 * THERMAL_ENERGY))
-        sums[1] += r * r
-    density, error = mean_density(distance, rows, low, 2)
-    expected = sums[0] / sums[1]
-    return density / expected, error / expected
+    """Density of overlaps up to two thermal ones over the mean of exp(-U / kT) there, weighted with r^2 as the density
+    is."""
+    low, parts = 1.98, 2000
+    r = low + (2 - low) * (np.arange(parts) + 0.5) / parts
+    expected = np.average(np.exp(-contact_energy(r)), weights=r**2)
+    return over(mean_density(distance, rows, low, 2), expected)
 
 
 def statements_of(method, distance, rows, tolerance):
-    source, degrees = "L4.1", len(rows) - 1
-    inner, inner_error = potential(distance, rows, 2.005, 2.045)
-    outer, outer_error = potential(distance, rows, 2.055, 2.155)
-    touching, touching_error = potential(distance, rows, 2.0, 2.005)
-    ratio, ratio_error = contact_ratio(distance, rows)
+    inner, outer = (potential(distance, rows, *ends) for ends in ((2.005, 2.045), (2.055, 2.155)))
+    touching = potential(distance, rows, 2.0, 2.005)
 
-    def statement(text, value, error, low, high):
-        return Statement(f"{text}, {method} steps", source, value, error, low, high, degrees)
+    def statement(text, found, middle=0):
+        bounds = middle - tolerance, middle + tolerance
+        return Statement(f"{text}, {method} steps", "L4.1", *found, *bounds, len(rows) - 1)
+
+    ratio = contact_ratio(distance, rows)
     return [
-        statement("U / kT = 0 between contact and the outer gap", inner, inner_error, -tolerance, tolerance),
-        statement("U / kT = 0 beyond the outer gap", outer, outer_error, -tolerance, tolerance),
-        statement("no step of U / kT at the outer gap", inner - outer, math.hypot(inner_error, outer_error), -tolerance, tolerance),
-        statement("no step of U / kT at the inner gap", touching - inner, math.hypot(touching_error, inner_error), -tolerance, tolerance),
-        statement("density of overlaps over that of U = k_n delta^2 / 2", ratio, ratio_error, 1 - tolerance, 1 + tolerance),
+        statement("U / kT = 0 between contact and the outer gap", inner),
+        statement("U / kT = 0 beyond the outer gap", outer),
+        statement("no step of U / kT at the outer gap", difference(inner, outer)),
+        statement("no step of U / kT at the inner gap", difference(touching, inner)),
+        statement("density of overlaps over that of U = k_n delta^2 / 2", ratio, 1),
     ]
 
 
 def local_step(method, distance, rows):
-    """ln of the density in the last shell within the outer gap over that in the first one beyond. Implicit steps have one of their own."""
-    inside, inside_error = potential(distance, rows, 2.045, 2.05)
-    outside, outside_error = potential(distance, rows, 2.05, 2.055)
-    return Statement(f"no step of U / kT from the shell within the outer gap to the next one, {method} steps", "L4.1", outside - inside, math.hypot(inside_error, outside_error),
-                     -0.1, 0.1, len(rows) - 1, essential=method != "implicit")
+    """ln of the density in the last shell within the outer gap over that in the first one beyond. Implicit steps have
+    one of their own."""
+    inside, outside = (potential(distance, rows, *ends) for ends in ((2.045, 2.05), (2.05, 2.055)))
+    text = f"no step of U / kT from the shell within the outer gap to the next one, {method} steps"
+    found = difference(outside, inside)
+    return Statement(text, "L4.1", *found, -0.1, 0.1, len(rows) - 1, essential=method != "implicit")
 
 
 def point_of(program, method, seeds, brownian_times):
-    scene = {**SCENE, "integrator": {"method": method},
-             "duration": {"equilibration": {"brownian_times": 20}, "production": {"brownian_times": brownian_times}}}
+    parts = during({"brownian_times": 20}, {"brownian_times": brownian_times})
+    scene = {**SCENE, "integrator": {"method": method}, **parts}
     return program.run(f"pair-potential-{method}", scene, [{"/particles/count": 2}], seeds, "kinetic_temperature")[0]
 
 
 def measure(program):
-    statements, table, curves = [], [], {}
+    statements, table = [], []
     for run in RUNS:
         method = run[0]
         distance, rows = densities(point_of(program, *run))
         statements += [*statements_of(method, distance, rows, 0.1), local_step(method, distance, rows)]
-        curves[method] = []
-        for k, r in enumerate(distance):
-            density, error = estimate([row[k] for row in rows])
+        for r, values in zip(distance.tolist(), rows.T):
             if r > 1.95:
+                density, error = estimate(values)
                 table.append({"method": method, "distance": r, "density": density, "standard_error": error})
-                curves[method].append((r, density, error))
-    write_table(os.path.join(HERE, "table.csv"), ["method", "distance", "density", "standard_error"], table, 5)
-    draw(curves)
+    write_table(HERE / "table.csv", ["method", "distance", "density", "standard_error"], table, 5)
+    draw(table)
     return statements
 
 
-def draw(curves):
-    lines = ["set terminal pngcairo size 1100, 480 font 'Sans,11'", f"set output '{os.path.join(HERE, 'chart.png')}'",
-             "set multiplot layout 1, 2", "set grid lc rgb '#d8d8d8'; set key bottom right; set xlabel 'r / a'"]
-    for method, rows in curves.items():
-        lines += data_block(method, [(r, g, e, -math.log(g) if g > 0 else math.nan, e / g if g > 0 else math.nan) for r, g, e in rows])
-    lines += [
-        "set ylabel 'g(r)'; set yrange [0:1.3]; set xrange [1.95:2.8]",
-        "set arrow 1 from 2.001, 0 to 2.001, 1.3 nohead dt 3; set arrow 2 from 2.05, 0 to 2.05, 1.3 nohead dt 3",
-        f"plot x < 2 ? exp(-{STIFFNESS} * (2 - x)**2 / (2 * {THERMAL_ENERGY})) : 1 lc rgb 'black' title 'exp(-U / kT)', "
-        "$implicit using 1:2:3 with yerrorbars pt 7 ps 0.4 lc rgb '#2060b0' title 'implicit steps', "
-        "$explicit using 1:2:3 with yerrorbars pt 5 ps 0.4 lc rgb '#c03028' title 'explicit steps'",
-        "unset arrow 1; unset arrow 2; set xrange [1.965:2.08]; set yrange [-0.3:4]; set ylabel 'U / kT'; set key top right; set samples 1000",
-        "set arrow 1 from 2.001, -0.3 to 2.001, 1.5 nohead dt 3; set arrow 2 from 2.05, -0.3 to 2.05, 1.5 nohead dt 3",
-        "set label 1 'inner gap' at 2.003, 1.4; set label 2 'outer gap' at 2.052, 1.4",
-        f"plot x < 2 ? {STIFFNESS} * (2 - x)**2 / (2 * {THERMAL_ENERGY}) : 0 lc rgb 'black' title 'k_n δ² / 2', "
-        "$implicit using 1:4:5 with yerrorbars pt 7 ps 0.6 lc rgb '#2060b0' title 'implicit steps', "
-        "$explicit using 1:4:5 with yerrorbars pt 5 ps 0.6 lc rgb '#c03028' title 'explicit steps'",
-    ]
-    gnuplot(lines)
+def draw(table):
+    figure = Figure(HERE / "chart.png", columns=2)
+    density = figure.panel("r / a", "g(r)", key="bottom right", x_range=(1.95, 2.8), y_range=(0, 1.3))
+    energy = figure.panel("r / a", "U / kT", x_range=(1.965, 2.08), y_range=(-0.3, 4))
+    for gap, name in ((INNER, "inner gap"), (OUTER, "outer gap")):
+        density.upright(gap)
+        energy.upright(gap, -0.3, 1.5)
+        energy.text(name, gap + 0.002, 1.4)
+    density.curve(lambda r: np.exp(-contact_energy(r)), "exp(-U / kT)")
+    energy.curve(contact_energy, "k_n δ² / 2")
+    for method, colour, mark in (("implicit", BLUE, 7), ("explicit", RED, 5)):
+        rows = [(r["distance"], r["density"], r["standard_error"]) for r in table if r["method"] == method]
+        density.points(rows, f"{method} steps", colour, mark, 0.4)
+        logs = [(r, -math.log(g), error / g) for r, g, error in rows if g > 0]
+        energy.points(logs, f"{method} steps", colour, mark, 0.6)
+    figure.draw()
 
 
 def quick_measure(program):

@@ -6,40 +6,31 @@ Prints the relative viscosities of the campaign beside the fits of Mari et al. a
 Every seed that has ended counts, surplus ones too.
 """
 import json
-import math
 import sys
+from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from studies.estimates import estimate, over
+from studies.published import mari_fit
+from studies.tables import markdown_head, markdown_row, number_text
 
-def fit(phi, friction):
-    return 0.71 * (1 - phi / 0.575) ** -2.3 if friction else 1.4 * (1 - phi / 0.66) ** -1.6
+HEAD = ["φ", "μ", "outer gap", "seeds", "η_r", "of the pairs", "N₁/ηγ̇", "N₂/ηγ̇", "Mari fit", "η_r / fit"]
+QUANTITIES = ("relative_viscosity", "relative_viscosity_pair", "first_normal_difference", "second_normal_difference")
 
 
 def main():
     export = json.load(sys.stdin)
-    print("| φ | μ | outer gap | seeds | η_r | of the pairs | N₁/ηγ̇ | N₂/ηγ̇ | Mari fit | η_r / fit |")
-    print("|---|---|---|---|---|---|---|---|---|---|")
+    scene = export["document"]["scene"]
+    print(markdown_head(HEAD))
     for point in export["points"]:
         means = [r["mean"] for r in point["realisations"] + point["surplus"] if r.get("mean")]
-        scene = export["document"]["scene"]
         settings = {**scene["contact"], **scene["lubrication"]}
         settings |= {path.split("/")[-1]: value for path, value in point["settings"].items()}
         phi, friction = settings["volume_fraction"], settings["friction"]
-
-        def estimate(name):
-            values = [mean[name] for mean in means]
-            mean = sum(values) / len(values)
-            spread = math.sqrt(sum((v - mean) ** 2 for v in values) / (len(values) - 1) / len(values))
-            return mean, spread
-
-        def text(name, digits=2):
-            mean, error = estimate(name)
-            return f"{mean:.{digits}f} ± {error:.{digits}f}"
-
-        mean, error = estimate("relative_viscosity")
-        reference = fit(phi, friction)
-        print(f"| {phi:.2f} | {friction} | {settings['outer_gap']} | {len(means)} | {text('relative_viscosity')} | {text('relative_viscosity_pair')} | "
-              f"{text('first_normal_difference')} | {text('second_normal_difference')} | {reference:.2f} | "
-              f"{mean / reference:.3f} ± {error / reference:.3f} |")
+        found = [estimate([mean[name] for mean in means]) for name in QUANTITIES]
+        reference = mari_fit(phi, friction)
+        cells = [f"{phi:.2f}", friction, settings["outer_gap"], len(means), *(number_text(f, 2) for f in found)]
+        print(markdown_row([*cells, f"{reference:.2f}", number_text(over(found[0], reference), 3)]))
 
 
 if __name__ == "__main__":

@@ -1,94 +1,109 @@
 #!/usr/bin/python3
 """chart.py TABLE PICTURE [PANEL...]
 
-Draws the table of this study with gnuplot: a panel for each case (or for those that are named), relative difference of the
-viscosity from the reference over the processor time to a standard error of 2 %. Bars are 95 %; an arrow stands for what is beyond the panel. lammps.csv beside this script, where there is one, has points of LAMMPS.
+Draws the table of this study: a panel for each case (or for those that are named), relative difference of the viscosity
+from the reference over the processor time to a standard error of 2 %. Bars are 95 %; an arrow stands for what is beyond
+the panel. lammps.csv beside this script, where there is one, has points of LAMMPS.
 """
 import csv
-import os
-import subprocess
 import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from studies.figure import BLUE, GREEN, RED, Figure
 
 COLUMNS = 4
 RANGE = 6  # percent, of every panel
 STYLES = {  # point type, colour
-    "explicit": (5, "#c03028"),
-    "implicit": (7, "#2060b0"),
-    "implicit, tolerance 0.0001": (6, "#2060b0"),
-    "LAMMPS": (9, "#308030"),
+    "explicit": (5, RED),
+    "implicit": (7, BLUE),
+    "implicit, tolerance 0.0001": (6, BLUE),
+    "LAMMPS": (9, GREEN),
 }
+LEGEND = (
+    "numbers: explicit step over\\nthe largest stable one, implicit step\\nover the automatic one;\\n"
+    "!: flagged or seeds lost;\\nbars: 95 %; band: 2 %"
+)
 
 
 def style_of(row):
     return f"implicit, tolerance {row['tolerance']}" if row["tolerance"] == "0.0001" else row["method"]
 
 
-def quoted(text):
-    return '"' + text.replace('"', "") + '"'
+def bar_of(row):
+    """Place of a point, half of its bar, and what is written above it."""
+    bias = float(row["bias_percent"] or 0)
+    text = "" if row["method"] == "LAMMPS" else f"{float(row['step']):.2g}"
+    if row["flags"] or row["lost"] not in ("", "0"):
+        text += "!"
+    shown = bias
+    if abs(bias) > RANGE:
+        text += f" {'↑' if bias > 0 else '↓'} {bias:.0f} %"
+        shown = 0.85 * RANGE if bias > 0 else -0.85 * RANGE
+    return float(row["seconds_to_2_percent"]), shown, float(row["bias_half_width_percent"] or 0), text
 
 
-def panel(name, rows):
-    data = [r for r in rows if r["viscosity"] and float(r["seconds_to_2_percent"]) > 0]
+def add_panel(figure, name, rows):
+    chosen = [r for r in rows if r["viscosity"] and float(r["seconds_to_2_percent"]) > 0]
     dropped = [f"{r['method']} {float(r['step']):.2g}" for r in rows if not r["viscosity"]]
-    times = [float(r["seconds_to_2_percent"]) for r in data]
-    yield f"set title {quoted(name + (' (no seed left: ' + ', '.join(dropped) + ')' if dropped else ''))} offset 0,-0.6"
-    yield f"set xrange [{min(times) / 3:.3g}:{max(times) * 3:.3g}]"
-    plots = []
-    for style, (point, colour) in STYLES.items():
-        chosen = [r for r in data if style_of(r) == style]
-        if not chosen:
-            continue
-        block = f"$d{len(plots)}"
-        yield f"{block} << EOD"
-        for r in chosen:
-            bias = float(r["bias_percent"] or 0)
-            label = ("" if style == "LAMMPS" else f"{float(r['step']):.2g}") + ("!" if r["flags"] or r["lost"] not in ("", "0") else "")
-            if abs(bias) > RANGE:
-                label += f" {'↑' if bias > 0 else '↓'} {bias:.0f} %"
-            shown = max(-0.85 * RANGE, min(0.85 * RANGE, bias)) if abs(bias) > RANGE else bias
-            yield f"{r['seconds_to_2_percent']} {shown} {float(r['bias_half_width_percent'] or 0)} {quoted(label)}"
-        yield "EOD"
-        plots.append(f"{block} using 1:2:3 with yerrorbars pt {point} ps 1.1 lc rgb '{colour}'")
-        plots.append(f"{block} using 1:2:4 with labels offset 0,1 font ',10' tc rgb '{colour}'")
-    yield "plot " + ", ".join(plots)
+    title = f"{name} (no seed left: {', '.join(dropped)})" if dropped else name
+    times = [float(r["seconds_to_2_percent"]) for r in chosen]
+    panel = figure.panel(
+        "s of processor to a standard error of 2 %",
+        "difference of η_r / %",
+        title,
+        log="x",
+        key=None,
+        x_range=(min(times) / 3, max(times) * 3),
+        y_range=(-RANGE, RANGE),
+        y_step=2,
+        settings=["set xlabel offset 0,0.6", "set ylabel offset 1.2", "set title offset 0,-0.6"],
+    )
+    panel.box("graph 0", "graph 1", "first -2", "first 2", "#eef4e8")
+    for style, (mark, colour) in STYLES.items():
+        bars = [bar_of(r) for r in chosen if style_of(r) == style]
+        if bars:
+            panel.points([bar[:3] for bar in bars], None, colour, mark, 1.1)
+            panel.texts([(x, y, text) for x, y, _, text in bars], colour)
 
 
-def script(rows, picture):
+def add_legend(figure):
+    """In a place of its own."""
+    panel = figure.blank()
+    for k, (style, (mark, colour)) in enumerate(STYLES.items()):
+        point = f"tc rgb '{colour}' point pt {mark} ps 1.1 lc rgb '{colour}' offset 1.5, 0"
+        panel.text(style, 0.12, 0.9 - 0.12 * k, style=point)
+    panel.text(LEGEND, 0.02, 0.36)
+
+
+def draw(rows, picture):
     names = list(dict.fromkeys(r["panel"] for r in rows))
     lines = -(-(len(names) + 1) // COLUMNS)
     width, height = COLUMNS * 380, lines * 310
-    yield f"set terminal pngcairo size {width}, {height} font 'Sans,11'"
-    yield f"set output {quoted(picture)}"
-    yield (f"set multiplot layout {lines}, {COLUMNS} margins {70 / width}, {1 - 20 / width}, {60 / height}, {1 - 30 / height} "
-           f"spacing {75 / width}, {95 / height}")
-    yield "set logscale x; set format x '%g'; set grid lc rgb '#d8d8d8'; set key off"
-    yield f"set yrange [-{RANGE}:{RANGE}]; set ytics 2; set ylabel 'difference of η_r / %' offset 1.2; set xlabel 's of processor to a standard error of 2 %' offset 0,0.6"
-    yield "set object 1 rectangle from graph 0, first -2 to graph 1, first 2 behind fc rgb '#eef4e8' fs solid noborder"
+    layout = (
+        f"margins {70 / width}, {1 - 20 / width}, {60 / height}, {1 - 30 / height} "
+        f"spacing {75 / width}, {95 / height}"
+    )
+    figure = Figure(picture, COLUMNS, lines, (width, height), layout)
     for name in names:
-        yield from panel(name, [r for r in rows if r["panel"] == name])
-    # the legend has a place of its own
-    yield "unset object 1; unset grid; unset xlabel; unset ylabel; unset tics; unset border; unset logscale x; unset title"
-    yield "set xrange [0:1]; set yrange [0:1]"
-    for k, (style, (point, colour)) in enumerate(STYLES.items()):
-        y = 0.9 - 0.12 * k
-        yield f"set label {10 + k} {quoted(style)} at 0.12, {y} left tc rgb '{colour}' point pt {point} ps 1.1 lc rgb '{colour}' offset 1.5, 0"
-    yield ("set label 20 \"numbers: explicit step over\\nthe largest stable one, implicit step\\nover the automatic one;\\n"
-           "!: flagged or seeds lost;\\nbars: 95 %; band: 2 %\" at 0.02, 0.36 left")
-    yield "plot -1 with lines lc rgb 'white'"
+        add_panel(figure, name, [r for r in rows if r["panel"] == name])
+    add_legend(figure)
+    figure.draw()
 
 
 def main():
     table, picture, wanted = sys.argv[1], sys.argv[2], sys.argv[3:]
     rows = []
-    for path in (table, os.path.join(os.path.dirname(os.path.abspath(__file__)), "lammps.csv")):
-        if os.path.exists(path):
+    for path in (Path(table), HERE / "lammps.csv"):
+        if path.exists():
             with open(path, newline="") as f:
                 rows += list(csv.DictReader(f))
     cases = {r["panel"] for r in rows if r["method"] != "LAMMPS"}
     rows = [r for r in rows if r["panel"] in (wanted or cases)]
     if wanted:
         rows.sort(key=lambda r: wanted.index(r["panel"]))
-    subprocess.run(["gnuplot"], input="\n".join(script(rows, picture)) + "\n", text=True, check=True)
+    draw(rows, picture)
 
 
 main()

@@ -1,108 +1,176 @@
 #!/usr/bin/python3
 """remake.py BIN [FOLDER] [--quick] [--panel NAME]
 
-Runs the campaigns of this study with the programs in BIN, keeps them in FOLDER (a second call goes on with what is there), prints a
-summary and writes table.csv, chart.png and overview.png beside this script. --quick makes small systems and few seeds, writes into
-FOLDER and fails where a default step loses a seed or, without a flag, changes the viscosity by more than 1 % and more than chance does
-in one run of ten thousand: without noise it compares the two methods and sees half a percent; with noise it sees little.
+Runs the campaigns of this study with the programs in BIN, keeps them in FOLDER (a second call goes on with what is
+there), prints a summary and writes table.csv, chart.png and overview.png beside this script. --quick makes small
+systems and few seeds, writes into FOLDER and fails where a default step loses a seed or, without a flag, changes the
+viscosity by more than 1 % and more than chance does in one run of ten thousand: without noise it compares the two
+methods and sees half a percent; with noise it sees little.
 """
+import dataclasses
 import math
-import os
-import statistics
 import subprocess
 import sys
+from pathlib import Path
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.dirname(HERE))
-from campaigns import (REFERENCE_SCENE, Program, at_peclet, counts_text, drive, estimate, flags, merged, relative_difference, student_quantile,  # noqa: E402
-                       values_by_seed, write_table)
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from studies.campaigns import Program
+from studies.command_line import drive
+from studies.estimates import estimate, relative_difference, student_quantile
+from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
+from studies.tables import markdown_head, markdown_row, write_table
+from studies.viscosities import counts_text, flags, values_by_seed
 
-BROWNIAN_WINDOW = {"duration": {"equilibration": {"brownian_times": 10}, "production": {"brownian_times": 40}}}
+import numpy as np
 
-# name, what differs from the reference scene, seeds, explicit steps (of the largest stable one) and implicit ones (of the
-# automatic one) with their seeds where those are others, tolerances at the automatic step
-PANELS = [
-    ("reference", {}, 8, {0.5: None, 0.999: None}, {0.25: None, 0.5: None, 1: None, 2: None, 3.99: None}, [1e-4]),
-    ("friction 1, phi 0.45", {"contact": {"friction": 1}, "volume_fraction": 0.45}, 8, {0.5: None},
-     {0.5: None, 1: None, 2: None, 3.99: None}, [1e-4]),
-    ("friction 1", {"contact": {"friction": 1}}, 4, {0.5: None}, {0.5: None, 1: None, 2: None}, []),
-    ("N 250", {"particles": {"count": 250}}, 16, {0.5: None}, {1: None, 2: None}, []),
-    ("N 4000", {"particles": {"count": 4000}}, 2, {0.5: None}, {1: None, 2: None}, []),
-    ("outer gap 0.2", {"lubrication": {"outer_gap": 0.2}}, 4, {0.5: None}, {1: None, 2: None}, []),
-    ("outer gap 0.5", {"lubrication": {"outer_gap": 0.5}}, 2, {0.5: None}, {1: None, 2: None}, []),
-    ("inner gap 0.01", {"lubrication": {"inner_gap": 1e-2}}, 4, {0.5: None}, {0.5: None, 1: None, 2: None}, []),
-    ("inner gap 0.0001", {"lubrication": {"inner_gap": 1e-4}, "particles": {"count": 250}}, 8, {0.5: 4}, {0.5: None, 1: None, 2: None}, []),
-    ("stiffness 1000", {"contact": {"normal_stiffness": 1e3}}, 4, {0.5: None}, {0.5: None, 1: None, 2: None}, []),
-    ("stiffness 100000", {"contact": {"normal_stiffness": 1e5}}, 4, {0.5: None}, {0.5: None, 1: None, 2: None}, []),
-    ("Pe 100", at_peclet(100), 48, {0.5: 16}, {0.5: None, 1: None, 2: None, 3.99: None}, []),
-    ("Pe 1", {**at_peclet(1), **BROWNIAN_WINDOW, "particles": {"count": 250}}, 32, {0.5: 16},
-     {0.25: 48, 0.5: 48, 1: 64, 2: None, 3.99: None}, [1e-4]),
-    ("Pe 0.1", {**at_peclet(0.1), **BROWNIAN_WINDOW, "particles": {"count": 250}}, 64, {0.5: 24}, {0.5: None, 1: 128, 2: None}, []),
-]
-OVERVIEW = ["reference", "friction 1, phi 0.45", "Pe 1"]
-QUICK_PANELS = {
-    "reference": {"particles": {"count": 100}, "duration": {"equilibration": {"strain": 0.5}, "production": {"strain": 1}}},
-    "Pe 100": {"particles": {"count": 100}, "duration": {"equilibration": {"strain": 0.5}, "production": {"strain": 1}}},
+
+@dataclasses.dataclass
+class Case:
+    """What differs from the reference scene, and steps: explicit ones over the largest stable one, implicit ones over
+    the automatic one, each with its seeds where those are others; tolerances at the automatic step."""
+
+    patch: dict
+    seeds: int
+    explicit: dict = dataclasses.field(default_factory=lambda: {0.5: None})
+    implicit: dict = dataclasses.field(default_factory=lambda: dict.fromkeys((0.5, 1, 2)))
+    tolerances: tuple = ()
+
+
+BROWNIAN = {**during({"brownian_times": 10}, {"brownian_times": 40}), "particles": {"count": 250}}
+ONE_AND_TWO = dict.fromkeys((1, 2))
+UP_TO_FOUR = dict.fromkeys((0.5, 1, 2, 3.99))
+NARROW = {"lubrication": {"inner_gap": 1e-4}, "particles": {"count": 250}}
+ROUGH = {"contact": {"friction": 1}}
+
+PANELS = {
+    "reference": Case({}, 8, dict.fromkeys((0.5, 0.999)), dict.fromkeys((0.25, 0.5, 1, 2, 3.99)), (1e-4,)),
+    "friction 1, phi 0.45": Case({**ROUGH, "volume_fraction": 0.45}, 8, implicit=UP_TO_FOUR, tolerances=(1e-4,)),
+    "friction 1": Case(ROUGH, 4),
+    "N 250": Case({"particles": {"count": 250}}, 16, implicit=ONE_AND_TWO),
+    "N 4000": Case({"particles": {"count": 4000}}, 2, implicit=ONE_AND_TWO),
+    "outer gap 0.2": Case({"lubrication": {"outer_gap": 0.2}}, 4, implicit=ONE_AND_TWO),
+    "outer gap 0.5": Case({"lubrication": {"outer_gap": 0.5}}, 2, implicit=ONE_AND_TWO),
+    "inner gap 0.01": Case({"lubrication": {"inner_gap": 1e-2}}, 4),
+    "inner gap 0.0001": Case(NARROW, 8, explicit={0.5: 4}),
+    "stiffness 1000": Case({"contact": {"normal_stiffness": 1e3}}, 4),
+    "stiffness 100000": Case({"contact": {"normal_stiffness": 1e5}}, 4),
+    "Pe 100": Case(at_peclet(100), 48, {0.5: 16}, UP_TO_FOUR),
+    "Pe 1": Case({**at_peclet(1), **BROWNIAN}, 32, {0.5: 16}, {0.25: 48, 0.5: 48, 1: 64, 2: None, 3.99: None}, (1e-4,)),
+    "Pe 0.1": Case({**at_peclet(0.1), **BROWNIAN}, 64, {0.5: 24}, {0.5: None, 1: 128, 2: None}),
 }
+OVERVIEW = ["reference", "friction 1, phi 0.45", "Pe 1"]
+QUICK_PANELS = ("reference", "Pe 100")
+QUICK = {"particles": {"count": 100}, **during({"strain": 0.5}, {"strain": 1})}
 QUICK_SEEDS = 8
-COLUMNS = ["panel", "method", "step", "timestep", "tolerance", "seeds", "lost", "flags", "viscosity", "viscosity_error", "bias_percent",
-           "bias_half_width_percent", "seconds_per_strain", "seconds_to_2_percent", "particles", "commit"]
+COLUMNS = (
+    "panel",
+    "method",
+    "step",
+    "timestep",
+    "tolerance",
+    "seeds",
+    "lost",
+    "flags",
+    "viscosity",
+    "viscosity_error",
+    "bias_percent",
+    "bias_half_width_percent",
+    "seconds_per_strain",
+    "seconds_to_2_percent",
+    "particles",
+    "commit",
+)
+SUMMARY = (
+    "case",
+    "η_r",
+    "automatic step against the reference, %",
+    "s per strain, implicit",
+    "explicit",
+    "times as much",
+    "s to a standard error of 2 %",
+)
+NORMAL_TOLERANCE = 1e-3
 
 
 def median(values):
-    return statistics.median(values) if values else math.nan
+    return float(np.median(values)) if values else math.nan
 
 
-def variants(panel, automatic, largest):
-    """Label parts and the integrator block of every variant, the finest first."""
-    _, _, seeds, explicit, implicit, tolerances = panel
-    for factor, own in sorted(implicit.items()):
-        yield ("implicit", factor, 1e-3, own or seeds,
-               {"method": "implicit", "timestep": "auto" if factor == 1 else factor * automatic})
-    for tolerance in tolerances:
-        yield "implicit", 1, tolerance, seeds, {"method": "implicit", "timestep": "auto", "tolerance": tolerance}
-    for factor, own in sorted(explicit.items()):
-        yield ("explicit", factor, None, own or seeds,
-               {"method": "explicit", "timestep": "auto" if factor == 0.5 else factor * largest})
+def variants(case, automatic, largest):
+    """Of every variant, the finest first: method, factor, tolerance, seeds, step, integrator block."""
+
+    def block(method, factor, step, **more):
+        timestep = "auto" if factor == (1 if method == "implicit" else 0.5) else step
+        return {"method": method, "timestep": timestep, **more}
+
+    for factor, own in sorted(case.implicit.items()):
+        step = factor * automatic
+        yield "implicit", factor, NORMAL_TOLERANCE, own or case.seeds, step, block("implicit", factor, step)
+    for tolerance in case.tolerances:
+        integrator = block("implicit", 1, automatic, tolerance=tolerance)
+        yield "implicit", 1, tolerance, case.seeds, automatic, integrator
+    for factor, own in sorted(case.explicit.items()):
+        step = factor * largest
+        yield "explicit", factor, None, own or case.seeds, step, block("explicit", factor, step)
 
 
-def rows_of(panel, program, quick):
-    name, patch = panel[:2]
-    scene = merged(REFERENCE_SCENE, patch)
-    if quick:
-        scene = merged(scene, QUICK_PANELS[name])
+def made_of(name, case, scene, program, quick):
+    """A row for each variant, with `values` by seed and the `cost` of a realisation."""
     automatic = program.derived(merged(scene, {"integrator": {"method": "implicit"}}))["timestep"]
     largest = 2 * program.derived(merged(scene, {"integrator": {"method": "explicit"}}))["timestep"]
-    # Without noise both methods follow the same trajectory for a while, and the explicit one is the reference; with noise
-    # another step draws another noise, and the reference is the finest implicit step, because explicit ones miss contacts.
-    noise = "peclet" in scene
-    made = []
-    for method, factor, tolerance, seeds, integrator in variants(panel, automatic, largest):
-        label = f"{method} {factor:g}" + (f" {tolerance:g}" if tolerance not in (None, 1e-3) else "")
-        identifier = f"{name} {label}".replace(" ", "-").replace(",", "")
-        points = program.run(("quick-" if quick else "") + identifier, scene, [{"/integrator": integrator}],
-                             QUICK_SEEDS if quick else seeds)
-        realisations = points[0]["realisations"]
+    for method, factor, tolerance, seeds, step, integrator in variants(case, automatic, largest):
+        label = f"{method} {factor:g}" + (f" {tolerance:g}" if tolerance not in (None, NORMAL_TOLERANCE) else "")
+        identifier = ("quick-" if quick else "") + f"{name} {label}".replace(" ", "-").replace(",", "")
+        settings = [{"/integrator": integrator}]
+        realisations = program.run(identifier, scene, settings, QUICK_SEEDS if quick else seeds)[0]["realisations"]
         living = [r for r in realisations if r.get("mean")]
-        made.append({"panel": name, "method": method, "step": factor, "tolerance": tolerance, "values": values_by_seed(realisations),
-                     "flags": counts_text(flags(realisations)), "lost": len(realisations) - len(living), "seeds": len(realisations),
-                     "seconds_per_strain": median([r["cost"]["cpu_seconds"] / sum(r["strain"].values()) for r in living]),
-                     "cost": median([r["cost"]["cpu_seconds"] for r in living]),
-                     "particles": scene["particles"]["count"], "commit": " ".join(sorted(program.commits)),
-                     "timestep": integrator["timestep"] if integrator["timestep"] != "auto" else automatic if method == "implicit" else largest / 2})
-    reference = made[0] if noise else next((m for m in made if m["method"] == "explicit" and m["values"]), made[0])
-    # Seeds decide the scatter, not the step: what an error bar costs follows from the scatter of all of them.
+        yield {
+            "panel": name,
+            "method": method,
+            "step": factor,
+            "tolerance": tolerance,
+            "timestep": step,
+            "values": values_by_seed(realisations),
+            "flags": counts_text(flags(realisations)),
+            "lost": len(realisations) - len(living),
+            "seeds": len(realisations),
+            "seconds_per_strain": median([r["cost"]["cpu_seconds"] / sum(r["strain"].values()) for r in living]),
+            "cost": median([r["cost"]["cpu_seconds"] for r in living]),
+            "particles": scene["particles"]["count"],
+            "commit": " ".join(sorted(program.commits)),
+        }
+
+
+def relative_variance(made):
+    """Seeds decide the scatter, not the step: what an error bar costs follows from the scatter of all of them."""
     scatter = []
     for m in made:
         if len(m["values"]) > 1 and not m["lost"] and not m["flags"]:
-            mean, error = estimate(list(m["values"].values()))
-            scatter.append((len(m["values"]), (error / mean) ** 2 * len(m["values"])))
-    variance = sum(n * v for n, v in scatter) / sum(n for n, _ in scatter)
+            mean, error = estimate([*m["values"].values()])
+            scatter.append(((error / mean) ** 2 * len(m["values"]), len(m["values"])))
+    variances, weights = zip(*scatter)
+    return float(np.average(variances, weights=weights))
+
+
+def rows_of(name, case, program, quick):
+    scene = merged(REFERENCE_SCENE, case.patch)
+    if quick:
+        scene = merged(scene, QUICK)
+    made = [*made_of(name, case, scene, program, quick)]
+    # Without noise both methods follow the same trajectory for a while, and the explicit one is the reference; with
+    # noise another step draws another noise, and the reference is the finest implicit step, because explicit ones miss
+    # contacts.
+    noise = "peclet" in scene
+    reference = made[0]
+    if not noise:
+        reference = next((m for m in made if m["method"] == "explicit" and m["values"]), reference)
+    variance = relative_variance(made)
     for m in made:
         row = {key: m[key] for key in COLUMNS if key in m}
         row["seconds_to_2_percent"] = m["cost"] * variance / 0.02**2
         if m["values"]:
-            row["viscosity"], row["viscosity_error"] = estimate(list(m["values"].values()))
+            row["viscosity"], row["viscosity_error"] = estimate([*m["values"].values()])
             if m is not reference:
                 bias, error, degrees = relative_difference(m["values"], reference["values"], not noise)
                 row["bias_percent"] = 100 * bias
@@ -113,39 +181,51 @@ def rows_of(panel, program, quick):
 
 def print_summary(rows):
     """The automatic step of every panel beside half of the largest stable explicit one."""
-    print("| case | η_r | automatic step against the reference, % | s per strain, implicit | explicit | times as much | s to a standard error of 2 % |")
-    print("|---|---|---|---|---|---|---|")
+    by_variant = {(row["panel"], row["method"], row["step"], row["tolerance"]): row for row in rows}
+    print(markdown_head(SUMMARY))
     for name in dict.fromkeys(row["panel"] for row in rows):
-        def of(method, step, tolerance):
-            return next(r for r in rows if (r["panel"], r["method"], r["step"], r["tolerance"]) == (name, method, step, tolerance))
-        implicit, explicit = of("implicit", 1, 1e-3), of("explicit", 0.5, None)
-        cost, before = implicit["seconds_per_strain"], explicit["seconds_per_strain"]
-        print(f"| {name} | {implicit['viscosity']:.2f} ± {implicit['viscosity_error']:.2f} | "
-              f"{implicit['bias_percent']:.2f} ± {implicit['bias_half_width_percent']:.2f} | {cost:.3g} | {before:.3g} | "
-              f"{before / cost:.3g} | {implicit['seconds_to_2_percent']:.2g} |")
+        implicit = by_variant[name, "implicit", 1, NORMAL_TOLERANCE]
+        cost, before = (r["seconds_per_strain"] for r in (implicit, by_variant[name, "explicit", 0.5, None]))
+        cells = [
+            name,
+            f"{implicit['viscosity']:.2f} ± {implicit['viscosity_error']:.2f}",
+            f"{implicit['bias_percent']:.2f} ± {implicit['bias_half_width_percent']:.2f}",
+            f"{cost:.3g}",
+            f"{before:.3g}",
+            f"{before / cost:.3g}",
+            f"{implicit['seconds_to_2_percent']:.2g}",
+        ]
+        print(markdown_row(cells))
+
+
+def judge(rows):
+    for row in rows:
+        if row["step"] == 1 and (row["lost"] or row.get("surely_wrong") and not row["flags"]):
+            change = row.get("bias_percent", math.nan)
+            sys.exit(
+                f"{row['panel']}: the automatic step changes the viscosity by {change:.1f} % "
+                f"and loses {row['lost']} seeds"
+            )
 
 
 def remake(arguments, folder):
     program = Program(arguments.binaries, folder)
     rows = []
-    for panel in PANELS:
-        if arguments.quick and panel[0] not in QUICK_PANELS or arguments.panel not in (None, panel[0]):
+    for name, case in PANELS.items():
+        if arguments.quick and name not in QUICK_PANELS or arguments.panel not in (None, name):
             continue
-        rows += rows_of(panel, program, arguments.quick)
-        print(f"{panel[0]}: done", file=sys.stderr, flush=True)
+        rows += rows_of(name, case, program, arguments.quick)
+        print(f"{name}: done", file=sys.stderr, flush=True)
     whole = not arguments.quick and not arguments.panel
-    target = HERE if whole else folder
-    table = os.path.join(target, "table.csv")
-    write_table(table, COLUMNS, rows, digits=5)
+    target = HERE if whole else Path(folder)
+    write_table(target / "table.csv", COLUMNS, rows, digits=5)
     print_summary(rows)
-    draw = [sys.executable, os.path.join(HERE, "chart.py"), table]
-    subprocess.run([*draw, os.path.join(target, "chart.png")], check=True)
+    draw = [sys.executable, HERE / "chart.py", target / "table.csv"]
+    subprocess.run([*draw, target / "chart.png"], check=True)
     if whole:
-        subprocess.run([*draw, os.path.join(target, "overview.png"), *OVERVIEW], check=True)
+        subprocess.run([*draw, target / "overview.png", *OVERVIEW], check=True)
     if arguments.quick:
-        for row in rows:
-            if row["step"] == 1 and (row["lost"] or row.get("surely_wrong") and not row["flags"]):
-                sys.exit(f"{row['panel']}: the automatic step changes the viscosity by {row.get('bias_percent', math.nan):.1f} % and loses {row['lost']} seeds")
+        judge(rows)
 
 
-drive(__doc__.splitlines()[0], [panel[0] for panel in PANELS], remake)
+drive(__doc__.splitlines()[0], list(PANELS), remake)

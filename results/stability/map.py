@@ -1,20 +1,30 @@
 #!/usr/bin/python3
 """map.py TABLE PICTURE
 
-Draws the table of the stability map with gnuplot: a row for each case, a column for each step of each method.
+Draws the table of the stability map: a row for each case, a column for each step of each method.
 """
 import csv
-import subprocess
 import sys
+from pathlib import Path
 
-COLOURS = {"ok": "#b8dcae", "undecided": "#e9efb4", "biased": "#e88a30", "losses": "#dcb0d8", "blown up": "#d06058", "jammed": "#8fb4dc", "refused": "#d9d9d9",
-           "no reference": "#ffffff"}
-CELL = 92, 22  # pixels
-LABEL = 250
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from studies.figure import Figure
 
-
-def quoted(text):
-    return '"' + text.replace('"', "") + '"'
+COLOURS = {
+    "ok": "#b8dcae",
+    "undecided": "#e9efb4",
+    "biased": "#e88a30",
+    "losses": "#dcb0d8",
+    "blown up": "#d06058",
+    "jammed": "#8fb4dc",
+    "refused": "#d9d9d9",
+    "no reference": "#ffffff",
+}
+WIDTH, HEIGHT = 92, 22  # of a cell, in pixels
+LABEL = 250  # of the names of the cases
+LEGEND = (
+    "!: flagged;  numbers: difference of the viscosity from the reference and half of its 95 % interval, in percent"
+)
 
 
 def text_of(row):
@@ -33,53 +43,66 @@ def text_of(row):
     return {"refused": "refused", "no reference": "?"}[verdict] + flag
 
 
+def lines_of(rows):
+    """From the top: the name of a panel and None, or that of a case and its cells by method and step."""
+    lines = {}
+    for row in rows:
+        lines.setdefault((row["panel"], None), None)
+        lines.setdefault((row["panel"], row["case"]), {})[row["method"], row["step"]] = row
+    return [(case or panel, cells) for (panel, case), cells in lines.items()]
+
+
+def halves(lines):
+    """Two parts that stand side by side, the second one beginning with a panel; one part if there is little."""
+    if len(lines) <= 30:
+        return [lines]
+    half = next(k for k in range(len(lines) // 2, len(lines)) if lines[k][1] is None)
+    return [lines[:half], lines[half:]]
+
+
+def write(panel, text, x, y, side="left", font="Sans,10"):
+    panel.text(text, x, y, side, f"font '{font}' noenhanced front")
+
+
+def draw_part(panel, left, columns, lines):
+    for column, (method, step) in enumerate(columns):
+        middle = left + LABEL + WIDTH * (column + 0.5)
+        write(panel, method, middle, HEIGHT * 0.8, "center")
+        write(panel, f"{float(step):.3g} x", middle, HEIGHT * 1.6, "center")
+    for k, (name, cells) in enumerate(lines):
+        top = HEIGHT * (k + 2.2)
+        if cells is None:
+            write(panel, name, left, top + HEIGHT / 2, font="Sans Bold,11")
+            continue
+        write(panel, name, left + 14, top + HEIGHT / 2)
+        for column, key in enumerate(columns):
+            x = left + LABEL + WIDTH * column
+            panel.box(x, x + WIDTH, top, top + HEIGHT, COLOURS[cells[key]["verdict"]], border="white")
+            write(panel, text_of(cells[key]), x + WIDTH / 2, top + HEIGHT / 2, "center")
+
+
+def draw_legend(panel, top):
+    x = 10
+    for verdict, colour in COLOURS.items():
+        panel.box(x, x + 30, top, top + HEIGHT * 0.8, colour, border="#888888")
+        write(panel, verdict, x + 36, top + HEIGHT * 0.4)
+        x += 105
+    write(panel, LEGEND, x + 15, top + HEIGHT * 0.4)
+
+
 def main():
     with open(sys.argv[1], newline="") as f:
         rows = list(csv.DictReader(f))
     columns = list(dict.fromkeys((r["method"], r["step"]) for r in rows))
-    lines = []  # panel or case, cells
-    for panel in dict.fromkeys(r["panel"] for r in rows):
-        lines.append((panel, None))
-        for case in dict.fromkeys(r["case"] for r in rows if r["panel"] == panel):
-            lines.append((case, {(r["method"], r["step"]): r for r in rows if r["panel"] == panel and r["case"] == case}))
-    # two halves side by side
-    half = next(k for k in range(len(lines) // 2, len(lines)) if lines[k][1] is None) if len(lines) > 30 else len(lines)
-    width = LABEL + CELL[0] * len(columns) + 20
-    parts = [lines[:half], lines[half:]]
-    parts = [p for p in parts if p]
-    height = CELL[1] * (max(map(len, parts)) + 5)
-    script = [f"set terminal pngcairo size {width * len(parts)}, {height} font 'Sans,10'", f"set output {quoted(sys.argv[2])}",
-              f"set xrange [0:{width * len(parts)}]; set yrange [{height}:0]; unset tics; unset border; unset key",
-              "set lmargin 0; set rmargin 0; set tmargin 0; set bmargin 0"]
-
-    def label(x, y, text, where="left", font="Sans,10"):
-        script.append(f"set label {quoted(text)} at {x}, {y} {where} font '{font}' noenhanced front")
-
-    number = 0
+    parts = halves(lines_of(rows))
+    width = LABEL + WIDTH * len(columns) + 20
+    size = width * len(parts), HEIGHT * (max(map(len, parts)) + 5)
+    figure = Figure(sys.argv[2], columns=1, size=size, font="Sans,10")
+    panel = figure.blank((0, size[0]), (size[1], 0), place=(0, 1, 0, 1))
     for k, part in enumerate(parts):
-        left = k * width + 10
-        for column, (method, step) in enumerate(columns):
-            x = left + LABEL + CELL[0] * (column + 0.5)
-            label(x, CELL[1] * 0.8, method, "center")
-            label(x, CELL[1] * 1.6, f"{float(step):.3g} x", "center")
-        for line, (name, cells) in enumerate(part):
-            y = CELL[1] * (line + 2.2)
-            label(left + (0 if cells is None else 14), y + CELL[1] / 2, name, font="Sans,10" if cells else "Sans Bold,11")
-            for column, key in enumerate(columns if cells else ()):
-                number += 1
-                x = left + LABEL + CELL[0] * column
-                script.append(f"set object {number} rectangle from {x}, {y} to {x + CELL[0]}, {y + CELL[1]} fc rgb '{COLOURS[cells[key]['verdict']]}' fs solid border lc rgb 'white'")
-                label(x + CELL[0] / 2, y + CELL[1] / 2, text_of(cells[key]), "center")
-    y = height - CELL[1] * 1.6
-    x = 10
-    for verdict, colour in COLOURS.items():
-        number += 1
-        script.append(f"set object {number} rectangle from {x}, {y} to {x + 30}, {y + CELL[1] * 0.8} fc rgb '{colour}' fs solid border lc rgb '#888888'")
-        label(x + 36, y + CELL[1] * 0.4, verdict)
-        x += 105
-    label(x + 15, y + CELL[1] * 0.4, "!: flagged;  numbers: difference of the viscosity from the reference and half of its 95 % interval, in percent")
-    script.append("plot -1 with lines lc rgb 'white'")
-    subprocess.run(["gnuplot"], input="\n".join(script) + "\n", text=True, check=True)
+        draw_part(panel, k * width + 10, columns, part)
+    draw_legend(panel, size[1] - HEIGHT * 1.6)
+    figure.draw()
 
 
 main()

@@ -6,12 +6,28 @@ their standard errors, beside what the gate says of the windows.
 """
 import collections
 import json
-import math
 import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from studies.estimates import estimate
+from studies.tables import markdown_head, markdown_row
 
 REFERENCE = 5e-5
 LARGEST_OF_SCENE = 3.138e-4  # of the scene's stiffest pair: larger steps are refused before anything runs
 TOLERANCE = 0.3  # guard.energy_imbalance
+HEAD = (
+    "μ",
+    "φ",
+    "Δt / 10⁻⁴",
+    "windows",
+    "η_r",
+    "η_r differs by, %",
+    "lubrication differs by, %",
+    "share",
+    "energy imbalance",
+    "gate, apart from the scene's bound",
+)
 SOFT = 0.01  # overlap beyond which a result has the warning "overlap"
 
 
@@ -29,11 +45,8 @@ def lubrication(row):
 
 def difference(pairs, quantity):
     values = [100 * (quantity(row) / quantity(reference) - 1) for row, reference in pairs]
-    mean = sum(values) / len(values)
-    if len(values) < 2:
-        return f"{mean:+.2f}"
-    error = math.sqrt(sum((v - mean) ** 2 for v in values) / (len(values) - 1) / len(values))
-    return f"{mean:+.2f} ± {error:.2f}"
+    mean, error = estimate(values)
+    return f"{mean:+.2f}" if len(values) < 2 else f"{mean:+.2f} ± {error:.2f}"
 
 
 def verdicts(rows):
@@ -52,6 +65,20 @@ def verdicts(rows):
     return ", ".join(f"{number} {name}" for name, number in sorted(count.items()))
 
 
+def measured(pairs):
+    """Cells of windows and their references."""
+    if not pairs:
+        return [""] * 5
+    imbalance = [row["energy_imbalance"] for row, _ in pairs]
+    return [
+        f"{sum(viscosity(reference) for _, reference in pairs) / len(pairs):.2f}",
+        difference(pairs, viscosity),
+        difference(pairs, lubrication),
+        f"{max(row['stability_share'] for row, _ in pairs):.3f}",
+        f"{min(imbalance):.1e} … {max(imbalance):.1e}",
+    ]
+
+
 def main():
     rows = [json.loads(line) for name in sys.argv[1:] for line in open(name)]
     references = {window(row): row for row in rows if row["timestep"] == REFERENCE}
@@ -60,20 +87,14 @@ def main():
         if row["window"] >= 0 and row["timestep"] != REFERENCE:
             points[row["friction"], row["volume_fraction"], row["timestep"]].append(row)
         elif row["window"] < 0:
-            print(f"μ = {row['friction']}, φ = {row['volume_fraction']}, seed {row['seed']}: equilibration ended, {row['ending']}")
-    print("| μ | φ | Δt / 10⁻⁴ | windows | η_r | η_r differs by, % | lubrication differs by, % | share | energy imbalance | gate, apart from the scene's bound |")
-    print("|---|---|---|---|---|---|---|---|---|---|")
+            point = f"μ = {row['friction']}, φ = {row['volume_fraction']}, seed {row['seed']}"
+            print(f"{point}: equilibration ended, {row['ending']}")
+    print(markdown_head(HEAD))
     for (friction, phi, step), group in sorted(points.items()):
         pairs = [(row, references[window(row)]) for row in group if row["ending"] == "completed"]
         mark = "" if step < LARGEST_OF_SCENE else "*"
-        head = f"| {friction:g} | {phi:.2f} | {1e4 * step:g}{mark} | {len(group)} |"
-        if not pairs:
-            print(f"{head} | | | | | {verdicts(group)} |")
-            continue
-        eta = sum(viscosity(reference) for _, reference in pairs) / len(pairs)
-        imbalance = [row["energy_imbalance"] for row, _ in pairs]
-        print(f"{head} {eta:.2f} | {difference(pairs, viscosity)} | {difference(pairs, lubrication)} | "
-              f"{max(row['stability_share'] for row, _ in pairs):.3f} | {min(imbalance):.1e} … {max(imbalance):.1e} | {verdicts(group)} |")
+        head = [f"{friction:g}", f"{phi:.2f}", f"{1e4 * step:g}{mark}", len(group)]
+        print(markdown_row([*head, *measured(pairs), verdicts(group)]))
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ fs::path results_folder(const fs::path& chosen) {
     if (fs::is_directory(chosen)) return chosen;
     throw InputError("", "--results", chosen.string(), "must be a folder with studies");
   }
-  if (const std::optional<fs::path> marker = own_file("results/studies.py")) return marker->parent_path();
+  if (const std::optional<fs::path> marker = own_file("results/studies")) return marker->parent_path();
   throw InputError("", "--results", "missing",
                    fmt::format("must name the folder `results` of the source or of an installation: there is "
                                "none in {}, and no build tree around this program",

@@ -2,7 +2,7 @@
 //
 // A study is a folder with study.py, which remakes it, and study.json, what it found when it was last made
 // whole: title, verdict ("holds", "holds with a difference", "does not hold", "not yet"), processor_hours,
-// date, and statements with an answer each. results/studies.py writes that file and has the rule by which the
+// date, and statements with an answer each. results/studies writes that file and has the rule by which the
 // verdict follows.
 #pragma once
 

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """lammps_drill.py BIN [--kills 6] [--seed 1] [--launcher COMMAND]
 
-Runs a small ensemble of the dumbbells of results/lammps-ensemble undisturbed with one worker, then with two while peclet, a worker
-or a LAMMPS process is killed with SIGKILL at random moments. The canonical exports must be the same bytes, no kill may be blamed
-on the engine, and neither a LAMMPS process nor its folder may be left behind. With a launcher (mpirun -np 2) ranks are struck too,
-and a SIGTERM to the adapter.
+Runs a small ensemble of the dumbbells of results/lammps-ensemble undisturbed with one worker, then with two while
+peclet, a worker or a LAMMPS process is killed with SIGKILL at random moments. The canonical exports must be the same
+bytes, no kill may be blamed on the engine, and neither a LAMMPS process nor its folder may be left behind. With a
+launcher (mpirun -np 2) ranks are struck too, and a SIGTERM to the adapter.
 """
 import argparse
 import json
@@ -27,8 +27,11 @@ CAMPAIGN = {
         "observables": {"viscosity": {"column": "v_viscosity"}},
     },
     "target": {"observable": "viscosity", "relative_tolerance": 0.5},
-    "engine": [os.path.join(ROOT, "adapters/lammps/lammps_engine.py"), os.path.join(STUDY, "dumbbells.in"),
-               os.path.join(STUDY, "dumbbell.mol")],
+    "engine": [
+        os.path.join(ROOT, "adapters/lammps/lammps_engine.py"),
+        os.path.join(STUDY, "dumbbells.in"),
+        os.path.join(STUDY, "dumbbell.mol"),
+    ],
 }
 
 
@@ -58,17 +61,32 @@ class Drill:
         self.scratch = os.path.join(folder, "scratch")
         os.makedirs(self.scratch)
         with open(os.path.join(folder, "drill.json"), "w") as f:
-            json.dump({**CAMPAIGN, "realisations": {"minimum": seeds, "maximum": seeds},
-                       "engine": CAMPAIGN["engine"] + (["--launcher", launcher] if launcher else [])}, f)
+            json.dump(
+                {
+                    **CAMPAIGN,
+                    "realisations": {"minimum": seeds, "maximum": seeds},
+                    "engine": CAMPAIGN["engine"] + (["--launcher", launcher] if launcher else []),
+                },
+                f,
+            )
 
     def start(self):
         log = open(os.path.join(self.folder, "log"), "a")
-        return subprocess.Popen([self.peclet, "run", "drill.json", "--workers", str(self.workers), "--checkpoint", "0.01"],
-                                cwd=self.folder, env={**os.environ, "TMPDIR": self.scratch}, stdout=log, stderr=log)
+        return subprocess.Popen(
+            [self.peclet, "run", "drill.json", "--workers", str(self.workers), "--checkpoint", "0.01"],
+            cwd=self.folder,
+            env={**os.environ, "TMPDIR": self.scratch},
+            stdout=log,
+            stderr=log,
+        )
 
     def export(self):
-        return subprocess.run([self.peclet, "export", "drill.json", "--json", "--canonical"], cwd=self.folder,
-                              capture_output=True, check=True).stdout
+        return subprocess.run(
+            [self.peclet, "export", "drill.json", "--json", "--canonical"],
+            cwd=self.folder,
+            capture_output=True,
+            check=True,
+        ).stdout
 
     def rows(self, query):
         with sqlite3.connect(f"file:{self.folder}/drill.peclet/campaign.db?mode=ro", uri=True) as database:
@@ -96,13 +114,18 @@ class Drill:
 def candidates(drill, process, whom):
     """peclet while it has given out seeds, the workers that have them, or the LAMMPS processes of these."""
     workers = drill.workers_at_work(process)
-    return {"peclet": [process.pid] if workers else [], "worker": workers,
-            "term": workers, "lmp": [child for worker in workers for child in children(worker)],
-            "rank": [rank for worker in workers for child in children(worker) for rank in children(child)]}[whom]
+    return {
+        "peclet": [process.pid] if workers else [],
+        "worker": workers,
+        "term": workers,
+        "lmp": [child for worker in workers for child in children(worker)],
+        "rank": [rank for worker in workers for child in children(worker) for rank in children(child)],
+    }[whom]
 
 
 def strike(drill, process, whom, chance, longest_delay):
-    """Kills one of them some time after there has been one. Returns whether it did; there is none when the campaign is through."""
+    """Kills one of them some time after there has been one. Returns whether it did; there is none when the campaign is
+    through."""
     while not candidates(drill, process, whom):
         if process.poll() is not None:
             return False
@@ -153,13 +176,21 @@ def main():
                 break  # through before it could be struck as often as asked
         code = process.wait()
         same = drill.export() == undisturbed.export()
-        done, results, blamed = (drill.ask(query) for query in (
-            "SELECT count(*) FROM realisation WHERE state = 'done'", "SELECT count(*) FROM result",
-            "SELECT total(blamed) FROM attempt"))
+        done, results, blamed = (
+            drill.ask(query)
+            for query in (
+                "SELECT count(*) FROM realisation WHERE state = 'done'",
+                "SELECT count(*) FROM result",
+                "SELECT total(blamed) FROM attempt",
+            )
+        )
         cut = drill.ask("SELECT count(*) FROM attempt WHERE outcome IN ('killed', 'abandoned')")
         left = drill.left_behind() + undisturbed.left_behind()
-        print(f"kills: {kills}; last run: exit code {code}; same bytes: {same}; realisations {done}, results {results}; attempts "
-              f"cut {cut}, blamed on the engine {blamed:.0f}; left behind: {left}")
+        print(
+            f"kills: {kills}; last run: exit code {code}; same bytes: {same}; realisations {done}, results "
+            f"{results}; attempts "
+            f"cut {cut}, blamed on the engine {blamed:.0f}; left behind: {left}"
+        )
         enough = sum(kills.values()) >= arguments.kills
         return 0 if code == 0 and same and done == results and blamed == 0 and not left and enough and cut else 1
 

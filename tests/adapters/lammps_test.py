@@ -10,15 +10,18 @@ import types
 import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../adapters/lammps"))
-import lammps  # noqa: E402
-import scratch  # noqa: E402
-from identity import engine_identity  # noqa: E402
-from input_script import commands  # noqa: E402
-from realisation import Realisation, ending_of, lammps_seed  # noqa: E402
-from scene import Chunk, Refused, read_scene  # noqa: E402
+import lammps
+import scratch
+from identity import engine_identity
+from input_script import commands
+from realisation import Realisation, ending_of, lammps_seed
+from scene import Chunk, Refused, read_scene
 
-GOOD = {"variables": {"rate": 0.1, "style": "lj"}, "steps": {"equilibration": 250, "production": 1000, "chunk": 400},
-        "observables": {"viscosity": {"column": "v_eta"}, "msd": {"column": "c_msd[4]", "take": "last"}}}
+GOOD = {
+    "variables": {"rate": 0.1, "style": "lj"},
+    "steps": {"equilibration": 250, "production": 1000, "chunk": 400},
+    "observables": {"viscosity": {"column": "v_eta"}, "msd": {"column": "c_msd[4]", "take": "last"}},
+}
 POINT = "ab" * 32
 
 # As the version of Debian 12 prints it: a run of the set-up, then the one that counts.
@@ -66,8 +69,10 @@ def realisation(folder, seed=3):
 
 class Scenes(unittest.TestCase):
     def test_chunks_follow_from_the_scene_and_do_not_cross_phases(self):
-        self.assertEqual(read_scene(GOOD).chunks(), [Chunk("equilibration", 250), Chunk("production", 400), Chunk("production", 400),
-                                                     Chunk("production", 200)])
+        self.assertEqual(
+            read_scene(GOOD).chunks(),
+            [Chunk("equilibration", 250), Chunk("production", 400), Chunk("production", 400), Chunk("production", 200)],
+        )
 
     def test_without_a_chunk_there_is_one_for_each_phase(self):
         scene = read_scene({"steps": {"production": 1e3}, "observables": GOOD["observables"]})
@@ -77,12 +82,27 @@ class Scenes(unittest.TestCase):
         self.assertEqual(float(read_scene(with_value("/variables/rate", 0.1 + 0.2)).variables["rate"]), 0.1 + 0.2)
 
     def test_faults_are_refused_where_they_are(self):
-        for pointer, value in (("/variables/rate", True), ("/variables/rate", None), ("/variables/rate", "two words"),
-                               ("/variables/rate", "$(quit)"), ("/variables/rate", "-log"), ("/variables/seed", 5),
-                               ("/variables/a-b", 5), ("/variables", []), ("/steps/production", 0), ("/steps/production", 2.5),
-                               ("/steps/equilibration", -1), ("/steps/chunk", 0), ("/steps/chunk", 2**31), ("/steps/total", 5),
-                               ("/observables", {}), ("/observables/msd", {"column": 4}), ("/observables/msd", "c_msd[4]"),
-                               ("/observables/msd/take", "median"), ("/viscosity", 1)):
+        for pointer, value in (
+            ("/variables/rate", True),
+            ("/variables/rate", None),
+            ("/variables/rate", "two words"),
+            ("/variables/rate", "$(quit)"),
+            ("/variables/rate", "-log"),
+            ("/variables/seed", 5),
+            ("/variables/a-b", 5),
+            ("/variables", []),
+            ("/steps/production", 0),
+            ("/steps/production", 2.5),
+            ("/steps/equilibration", -1),
+            ("/steps/chunk", 0),
+            ("/steps/chunk", 2**31),
+            ("/steps/total", 5),
+            ("/observables", {}),
+            ("/observables/msd", {"column": 4}),
+            ("/observables/msd", "c_msd[4]"),
+            ("/observables/msd/take", "median"),
+            ("/viscosity", 1),
+        ):
             with self.assertRaises(Refused, msg=f"{pointer} {value}") as caught:
                 read_scene(with_value(pointer, value))
             self.assertTrue(caught.exception.pointer.startswith(pointer), caught.exception)
@@ -104,13 +124,17 @@ class Seeds(unittest.TestCase):
 class ThermoOutput(unittest.TestCase):
     def test_the_last_run_counts(self):
         thermo = heard(OUTPUT)
-        self.assertEqual(thermo.columns, {"Step": [50, 100, 150], "Temp": [1, 1.5, 2], "v_eta": [-2, 0.03, 5], "c_msd[4]": [0, 4, 9]})
+        self.assertEqual(
+            thermo.columns, {"Step": [50, 100, 150], "Temp": [1, 1.5, 2], "v_eta": [-2, 0.03, 5], "c_msd[4]": [0, 4, 9]}
+        )
         self.assertEqual((thermo.steps_done(), thermo.timestep, thermo.atoms), (100, 0.005, 500))
 
     def test_several_lines_per_sample_are_refused(self):
         multi = OUTPUT.replace("   Step          Temp", "---------------- Step 50 ----- CPU = 0.0 (sec)")
         for text in (multi, OUTPUT.replace("Step ", "Stop "), ""):
-            ended = types.SimpleNamespace(process=types.SimpleNamespace(wait=lambda: 0), thermo=heard(text), is_launched=False)
+            ended = types.SimpleNamespace(
+                process=types.SimpleNamespace(wait=lambda: 0), thermo=heard(text), is_launched=False
+            )
             with self.assertRaisesRegex(lammps.LammpsError, "one line per sample"):
                 lammps.Lammps.finish(ended, 100)
 
@@ -119,10 +143,12 @@ class ThermoOutput(unittest.TestCase):
         self.assertFalse(heard(OUTPUT.replace("3e-2", "-nan")).is_finite())
 
     def test_an_error_of_the_simulation_is_an_ending_and_one_of_the_script_is_not(self):
-        for said, cause in (("ERROR: Lost atoms: original 500 current 499 (src/thermo.cpp:481)", "lost-atoms"),
-                            ("ERROR on proc 0: Bond atoms 1 2 missing on proc 0 at step 9 (src/ntopo_bond_all.cpp:63)", "lost-atoms"),
-                            ("ERROR on proc 0: Non-numeric box dimensions - simulation unstable (src/domain.cpp:285)", "non-finite"),
-                            ("ERROR: Unknown command: fxi (src/input.cpp:232)", None)):
+        for said, cause in (
+            ("ERROR: Lost atoms: original 500 current 499 (src/thermo.cpp:481)", "lost-atoms"),
+            ("ERROR on proc 0: Bond atoms 1 2 missing on proc 0 at step 9 (src/ntopo_bond_all.cpp:63)", "lost-atoms"),
+            ("ERROR on proc 0: Non-numeric box dimensions - simulation unstable (src/domain.cpp:285)", "non-finite"),
+            ("ERROR: Unknown command: fxi (src/input.cpp:232)", None),
+        ):
             self.assertEqual(ending_of(lammps.LammpsError(heard(said).error)), cause)
 
 
@@ -153,8 +179,13 @@ class Scripts(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             with open(os.path.join(folder, "in"), "wb") as file:
                 file.write(script)
-            return subprocess.run(["lmp", "-in", "in", "-log", "none", "-echo", "none"], cwd=folder, env=lammps.ENVIRONMENT,
-                                  capture_output=True, stdin=subprocess.DEVNULL).stdout.split(b"Total wall time")[0]
+            return subprocess.run(
+                ["lmp", "-in", "in", "-log", "none", "-echo", "none"],
+                cwd=folder,
+                env=lammps.ENVIRONMENT,
+                capture_output=True,
+                stdin=subprocess.DEVNULL,
+            ).stdout.split(b"Total wall time")[0]
 
     def test_lammps_does_the_same_without_what_is_left_out(self):
         said = self.said(SCRIPT)
@@ -171,19 +202,33 @@ class Scripts(unittest.TestCase):
                 with open(path, "wb") as file:
                     file.write(script)
                 return engine_identity("/usr/bin/lmp", list(launcher), path, [])
+
         original = identity(SCRIPT)
-        for same in (SCRIPT.replace(b"of the run", b"of every run"), b"\n# new\n" + SCRIPT + b"\n\n", SCRIPT.replace(b"\n", b"\r\n")):
-            self.assertEqual(identity(same) == original, b'three\r\n' not in same, same)
-        for other in (SCRIPT.replace(b"one #", b"two #"), SCRIPT.replace(b"of text", b"of texts"), SCRIPT.replace(b"index 1 ", b"index 2 "),
-                      SCRIPT.replace(b"too &", b"too"), SCRIPT + b"\nprint more"):
+        for same in (
+            SCRIPT.replace(b"of the run", b"of every run"),
+            b"\n# new\n" + SCRIPT + b"\n\n",
+            SCRIPT.replace(b"\n", b"\r\n"),
+        ):
+            self.assertEqual(identity(same) == original, b"three\r\n" not in same, same)
+        for other in (
+            SCRIPT.replace(b"one #", b"two #"),
+            SCRIPT.replace(b"of text", b"of texts"),
+            SCRIPT.replace(b"index 1 ", b"index 2 "),
+            SCRIPT.replace(b"too &", b"too"),
+            SCRIPT + b"\nprint more",
+        ):
             self.assertNotEqual(identity(other), original, other)
         self.assertNotEqual(identity(SCRIPT, ("mpirun", "-np", "2")), original)
 
 
 class Endings(unittest.TestCase):
     def end(self, status, is_launched, text=OUTPUT):
-        lammps.Lammps.finish(types.SimpleNamespace(process=types.SimpleNamespace(wait=lambda: status), thermo=heard(text),
-                                                   is_launched=is_launched), 100)
+        lammps.Lammps.finish(
+            types.SimpleNamespace(
+                process=types.SimpleNamespace(wait=lambda: status), thermo=heard(text), is_launched=is_launched
+            ),
+            100,
+        )
 
     def test_a_kill_is_nobodys_fault_whether_it_hits_lmp_or_a_rank_of_it(self):
         for status, is_launched in ((-signal.SIGKILL, False), (-signal.SIGTERM, True), (128 + signal.SIGKILL, True)):
@@ -191,8 +236,12 @@ class Endings(unittest.TestCase):
                 self.end(status, is_launched)
 
     def test_what_lammps_says_itself_is_no_kill(self):
-        for status, is_launched, text in ((128 + signal.SIGKILL, False, OUTPUT), (128 + signal.SIGSEGV, True, OUTPUT),
-                                          (128 + signal.SIGTERM, True, OUTPUT + "ERROR: Lost atoms\n"), (1, True, OUTPUT)):
+        for status, is_launched, text in (
+            (128 + signal.SIGKILL, False, OUTPUT),
+            (128 + signal.SIGSEGV, True, OUTPUT),
+            (128 + signal.SIGTERM, True, OUTPUT + "ERROR: Lost atoms\n"),
+            (1, True, OUTPUT),
+        ):
             with self.assertRaises(lammps.LammpsError):
                 self.end(status, is_launched, text)
 
@@ -207,8 +256,13 @@ class Samples(unittest.TestCase):
                 file.write(f"state {run.number}")
             rows = run.chunks[run.number].steps // 10 if run.chunks[run.number].phase == "production" else 2
             values = [1e9] + [count + row for row in range(1, rows + 1)]
-            run.advance(types.SimpleNamespace(columns={"Step": values, "v_eta": values, "c_msd[4]": [v * v for v in values]},
-                                              timestep=0.005, is_finite=lambda: True))
+            run.advance(
+                types.SimpleNamespace(
+                    columns={"Step": values, "v_eta": values, "c_msd[4]": [v * v for v in values]},
+                    timestep=0.005,
+                    is_finite=lambda: True,
+                )
+            )
             count += rows if run.chunks[run.number - 1].phase == "production" else 0
         return run
 
@@ -216,8 +270,10 @@ class Samples(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             result = self.run_through(folder).result({})
         self.assertEqual(result["mean"], {"viscosity": 50.5, "msd": 10000})
-        self.assertEqual((result["steps"], result["time"]), ({"equilibration": 250, "production": 1000},
-                                                             {"equilibration": 1.25, "production": 5.0}))
+        self.assertEqual(
+            (result["steps"], result["time"]),
+            ({"equilibration": 250, "production": 1000}, {"equilibration": 1.25, "production": 5.0}),
+        )
         self.assertEqual(list(result["blocks"]), ["viscosity"])
         self.assertEqual(len(result["blocks"]["viscosity"]), 32)
         self.assertEqual(result["blocks"]["viscosity"][0], 2)  # of 1, 2, 3

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """error_bar.py ENGINE --before ENGINE [--rounds N] [--seeds N] [--seeds-before N] [--count N] [--window TIMES]
 
-What an error bar costs: processor time per unit of strain and, with noise, the variance of the relative viscosity times the
-processor time, of ENGINE at its defaults and of the engine of an earlier commit (build_before.sh) with its explicit steps, in the
-same scenes and in turn. The costs are those of a whole run from a packing, a hundredth as long before. Variances are those of
-averages of 1, 2, 4 ... of the 32 blocks of a window (of 40 Brownian times, after a quarter of that): the longer they are, the less the control variate
-takes away. Their errors take averages for independent.
+What an error bar costs: processor time per unit of strain and, with noise, the variance of the relative viscosity times
+the processor time, of ENGINE at its defaults and of the engine of an earlier commit (build_before.sh) with its explicit
+steps, in the same scenes and in turn. The costs are those of a whole run from a packing, a hundredth as long before.
+Variances are those of averages of 1, 2, 4 ... of the 32 blocks of a window (of 40 Brownian times, after a quarter of
+that): the longer they are, the less the control variate takes away. Their errors take averages for independent.
 """
 import argparse
 import json
@@ -17,8 +17,11 @@ import sys
 import tempfile
 
 SCENE = {
-    "particles": {"count": 1000, "density": 0.1,
-                  "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}]},
+    "particles": {
+        "count": 1000,
+        "density": 0.1,
+        "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}],
+    },
     "volume_fraction": 0.5,
     "fluid": {"viscosity": 0.1},
     "lubrication": {"form": "kim-karrila", "inner_gap": 1e-3, "outer_gap": 0.05},
@@ -29,7 +32,14 @@ COST_CASES = [
     ("no noise, St = 0.01", QUIET, 0, "strain", 2, 0.02),
     ("the same, friction 1", QUIET, 1, "strain", 2, 0.02),
     ("Pe = 1", {"peclet": 1, "limits": {"shear_rate": 0.009, "thermal_energy": 0.017}}, 0, "brownian_times", 4, 0.2),
-    ("Pe = 0.1", {"peclet": 0.1, "limits": {"shear_rate": 0.009, "thermal_energy": 0.017}}, 0, "brownian_times", 4, 0.2),
+    (
+        "Pe = 0.1",
+        {"peclet": 0.1, "limits": {"shear_rate": 0.009, "thermal_energy": 0.017}},
+        0,
+        "brownian_times",
+        4,
+        0.2,
+    ),
 ]
 NOISY = [case for case in COST_CASES if "peclet" in case[1]]
 LEAST_BLOCKS = 30
@@ -39,7 +49,12 @@ def run(engine, scene, seed, folder):
     path = os.path.join(folder, "scene.json")
     with open(path, "w") as f:
         json.dump(scene, f)
-    done = subprocess.run([engine, "run", path, "--seed", str(seed)], capture_output=True, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
+    done = subprocess.run(
+        [engine, "run", path, "--seed", str(seed)],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "OMP_NUM_THREADS": "1"},
+    )
     if done.returncode != 0:
         sys.exit(f"{engine}: {done.stderr.strip()}")
     return json.loads(done.stdout)
@@ -47,8 +62,13 @@ def run(engine, scene, seed, folder):
 
 def scene_of(drive, friction, equilibration, production, count=1000):
     contact = {"normal_stiffness": 1e4, **({"friction": friction} if friction else {})}
-    return {**SCENE, **drive, "contact": contact, "particles": {**SCENE["particles"], "count": count},
-            "duration": {"equilibration": equilibration, "production": production}}
+    return {
+        **SCENE,
+        **drive,
+        "contact": contact,
+        "particles": {**SCENE["particles"], "count": count},
+        "duration": {"equilibration": equilibration, "production": production},
+    }
 
 
 def costs(engines, rounds, folder):
@@ -73,12 +93,19 @@ def blocks_of(result):
 
 def variance_of_averages(series, together, which):
     """Of averages of `together` consecutive blocks about the mean of all, and their number."""
-    averages = [statistics.mean(block[which] for block in row[i:i + together]) for row in series for i in range(0, len(row), together)]
+    averages = [
+        statistics.mean(block[which] for block in row[i : i + together])
+        for row in series
+        for i in range(0, len(row), together)
+    ]
     return statistics.variance(averages) if len(averages) > 1 else math.nan, len(averages)
 
 
 def error_bars(engines, seeds, count, window, cases, folder):
-    print(f"\nVariance of the relative viscosity times processor time, N = {count}; {window / 4:g} Brownian times and then {window:g}\n")
+    print(
+        f"\nVariance of the relative viscosity times processor time, N = {count}; {window / 4:g} Brownian times and "
+        f"then {window:g}\n"
+    )
     plain, controlled = 0, 1
     for name, drive, friction, _, _, _ in cases:
         scene = scene_of(drive, friction, {"brownian_times": window / 4}, {"brownian_times": window}, count=count)
@@ -89,17 +116,30 @@ def error_bars(engines, seeds, count, window, cases, folder):
             cost.append(statistics.median(r["cost"]["cpu_seconds"] for r in results) / (1.25 * window))
             mean = [statistics.mean(block[which] for block in row) for row in series[-1]]
             error = statistics.stdev(mean) / math.sqrt(many) if many > 1 else math.inf
-            print(f"{name}, {'before' if which == plain else 'now'}: {many} seeds, viscosity {statistics.mean(mean):.3f} +- {error:.3f}, "
-                  f"{cost[-1]:.3g} s per Brownian time", flush=True)
-        print(f"  {'averages over':>15} {'variance now':>20} {'now, uncontrolled':>20} {'before':>20} {'processor time before over now, to the same error':>52}")
+            print(
+                f"{name}, {'before' if which == plain else 'now'}: {many} seeds, viscosity "
+                f"{statistics.mean(mean):.3f} +- {error:.3f}, "
+                f"{cost[-1]:.3g} s per Brownian time",
+                flush=True,
+            )
+        print(
+            f"  {'averages over':>15} {'variance now':>20} {'now, uncontrolled':>20} {'before':>20} "
+            f"{'processor time before over now, to the same error':>52}"
+        )
         for together in (1, 2, 4, 8, 16, 32):
-            (now, n), (same, _), (before, n_before) = (variance_of_averages(series[k], together, which)
-                                                       for k, which in ((0, controlled), (0, plain), (1, plain)))
+            (now, n), (same, _), (before, n_before) = (
+                variance_of_averages(series[k], together, which)
+                for k, which in ((0, controlled), (0, plain), (1, plain))
+            )
             text = "too few before"
             if n_before >= LEAST_BLOCKS:
                 ratio, error = before / now * cost[1] / cost[0], math.sqrt(2 / (n - 1) + 2 / (n_before - 1))
                 text = f"{ratio:.0f} +- {ratio * error:.0f}"
-            print(f"  {window * together / 32:>13.4g}tB {now:>14.3g} ({n:4}) {same:>13.3g} ({n:4}) {before:>13.3g} ({n_before:4}) {text:>52}", flush=True)
+            print(
+                f"  {window * together / 32:>13.4g}tB {now:>14.3g} ({n:4}) {same:>13.3g} ({n:4}) {before:>13.3g} "
+                f"({n_before:4}) {text:>52}",
+                flush=True,
+            )
 
 
 def main():

@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """peer.py ENGINE [--before ENGINE] [--repetitions 7] [--strain 0.2] [--skins 0.05] [--lammps lmp]
 
-How fast ENGINE (a peclet-engine) is beside LAMMPS on the nearest scenes that LAMMPS has, each on one core. Every round runs all
-contestants in turn, so that what else the machine does falls on all of them; ratios are taken within a round. README.md says what
-is the same in both programs and what is not.
+How fast ENGINE (a peclet-engine) is beside LAMMPS on the nearest scenes that LAMMPS has, each on one core. Every round
+runs all contestants in turn, so that what else the machine does falls on all of them; ratios are taken within a round.
+README.md says what is the same in both programs and what is not.
 
 --before   another peclet-engine, for example of build_before.sh, that takes part in every round
---strain   of the warm-up of LAMMPS; relative viscosity and temperature of each program are averaged over its second half
+--strain   of the warm-up of LAMMPS; relative viscosity and temperature of each program are averaged over its second
+           half
 --skins    of the neighbour list of LAMMPS; one contestant each
 """
 import argparse
@@ -21,7 +22,8 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 VISCOSITY = 0.1
-# Cube of 733 spheres of radius 1 and 267 of radius 1.4, which is what the engine makes of 1000 in equal volumes, at 0.5.
+# Cube of 733 spheres of radius 1 and 267 of radius 1.4, which is what the engine makes of 1000 in equal volumes, at
+# 0.5.
 EDGE = ((733 + 267 * 1.4**3) * 4 / 3 * math.pi / 0.5) ** (1 / 3)
 TIMED_STEPS = 3000
 STEPS_BETWEEN_SAMPLES = 20
@@ -46,8 +48,11 @@ def output_of(*command):
 def engine_result(engine, case, strain, folder):
     """What the engine says of the scene of `case`, with means over the second half of `strain`."""
     scene = {
-        "particles": {"count": 1000, "density": 0.1,
-                      "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}]},
+        "particles": {
+            "count": 1000,
+            "density": 0.1,
+            "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}],
+        },
         "volume_fraction": 0.5,
         "fluid": {"viscosity": VISCOSITY},
         "contact": {"normal_stiffness": 1e4},
@@ -66,8 +71,11 @@ def bench_median(table, case):
     """The number of the row `case` that stands below the heading `median`."""
     heading = next(match for line in table.splitlines() for match in re.finditer(r"\bmedian\b", line))
     row = next(line for line in table.splitlines() if line.split()[:1] == [case])
-    return next(float(word.group()) for word in re.finditer(r"\S+", row)
-                if word.start() < heading.end() and heading.start() < word.end())
+    return next(
+        float(word.group())
+        for word in re.finditer(r"\S+", row)
+        if word.start() < heading.end() and heading.start() < word.end()
+    )
 
 
 class Lammps:
@@ -78,10 +86,17 @@ class Lammps:
         self.shear = {"rate": rate, "thermal_energy": thermal_energy, "step": step}
         packed, self.warm, self.unused = (os.path.join(folder, name) for name in ("packed", "warm", "unused"))
         self.run("lammps_packing.in", edge=EDGE, rate=rate, to=packed)
-        warming = self.run("lammps.in", **{"from": packed}, to=self.warm, steps=round(strain / rate / step),
-                           every=STEPS_BETWEEN_SAMPLES, skin=SKIN, **self.shear)
-        lines = warming[warming.index("\nStep "):warming.index("\nLoop time")].splitlines()[2:]
-        second_half = [[float(word) for word in line.split()] for line in lines[len(lines) // 2:]]
+        warming = self.run(
+            "lammps.in",
+            **{"from": packed},
+            to=self.warm,
+            steps=round(strain / rate / step),
+            every=STEPS_BETWEEN_SAMPLES,
+            skin=SKIN,
+            **self.shear,
+        )
+        lines = warming[warming.index("\nStep ") : warming.index("\nLoop time")].splitlines()[2:]
+        second_half = [[float(word) for word in line.split()] for line in lines[len(lines) // 2 :]]
         _, self.relative_viscosity, self.temperature = (statistics.fmean(column) for column in zip(*second_half))
 
     def run(self, script, **variables):
@@ -90,7 +105,9 @@ class Lammps:
 
     def nanoseconds(self, skin):
         """Processor time of the loop per particle and step: its wall-clock time times its share of a processor."""
-        output = self.run("lammps.in", **{"from": self.warm}, to=self.unused, steps=TIMED_STEPS, every=0, skin=skin, **self.shear)
+        output = self.run(
+            "lammps.in", **{"from": self.warm}, to=self.unused, steps=TIMED_STEPS, every=0, skin=skin, **self.shear
+        )
         loop = re.search(r"Loop time of (\S+) on 1 procs for (\d+) steps with (\d+) atoms", output)
         share = re.search(r"([\d.]+)% CPU use", output)
         return 1e9 * float(loop[1]) * float(share[1]) / 100 / (int(loop[2]) * int(loop[3]))
@@ -106,10 +123,14 @@ def compare(case, arguments, folder):
     thermal_energy = VISCOSITY / derived["brownian_time"] if derived["brownian_time"] else 0  # tau_B = eta a^3 / kT
     peer = Lammps(arguments.lammps, folder, rate, thermal_energy, step, arguments.strain)
 
-    contestants = {label: lambda engine=engine: bench_median(output_of(engine, "bench", case), case)
-                   for label, engine in engines.items()}
-    states = {label: (result["mean"]["relative_viscosity"], result["mean"]["kinetic_temperature"])
-              for label, result in results.items()}
+    contestants = {
+        label: lambda engine=engine: bench_median(output_of(engine, "bench", case), case)
+        for label, engine in engines.items()
+    }
+    states = {
+        label: (result["mean"]["relative_viscosity"], result["mean"]["kinetic_temperature"])
+        for label, result in results.items()
+    }
     for skin in arguments.skins:
         label = f"LAMMPS, skin {skin}"
         contestants[label] = lambda skin=skin: peer.nanoseconds(skin)
@@ -118,8 +139,13 @@ def compare(case, arguments, folder):
 
     for label, result in results.items():
         build = result["engine"]
-        print(f"{label}: commit {build['git_commit']}{' with changes' if build['git_dirty'] else ''}, {build['compiler']}")
-    print(f"{case}: {arguments.repetitions} rounds, time step {step:.4g}, shear rate {rate:.4g}, kT {thermal_energy:.4g}\n")
+        print(
+            f"{label}: commit {build['git_commit']}{' with changes' if build['git_dirty'] else ''}, {build['compiler']}"
+        )
+    print(
+        f"{case}: {arguments.repetitions} rounds, time step {step:.4g}, shear rate {rate:.4g}, kT "
+        f"{thermal_energy:.4g}\n"
+    )
     report(rounds, states, thermal_energy)
 
 

@@ -1,13 +1,12 @@
 #!/usr/bin/python3
 """at_two_in_the_morning.py BIN [--quick] [--only WORD] [--page FILE]
 
-Does by real commands what a tired person does wrong at two in the morning: names the wrong file or folder, starts a second
-owner, deletes a database, fills the disk, closes the laptop. Every answer must have the right exit code and the phrases
-that matter; where a case follows the command that an answer names, it is typed literally and must work; and where results
-are counted before and after, none may be lost. --page writes the transcript, MISTAKES.md.
+Does by real commands what a tired person does wrong at two in the morning: names the wrong file or folder, starts a
+second owner, deletes a database, fills the disk, closes the laptop. Every answer must have the right exit code and the
+phrases that matter; where a case follows the command that an answer names, it is typed literally and must work; and
+where results are counted before and after, none may be lost. --page writes the transcript, MISTAKES.md.
 """
 import argparse
-import os
 import subprocess
 import sys
 import tempfile
@@ -17,8 +16,14 @@ from mistakes import databases, files, folders, machine, processes, typing_error
 from mistakes.night import Night, NotTried, Wrong
 from mistakes.transcript import page
 
-CHAPTERS = [("Typed wrong", typing_errors), ("Files", files), ("Folders and owners", folders), ("Databases", databases),
-            ("Processes", processes), ("The machine", machine)]
+CHAPTERS = [
+    ("Typed wrong", typing_errors),
+    ("Files", files),
+    ("Folders and owners", folders),
+    ("Databases", databases),
+    ("Processes", processes),
+    ("The machine", machine),
+]
 
 
 def main():

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """fault_drill.py BIN [--quick] [--case NAME ...] [--seed 1] [--every-allocation] [--list]
 
-Runs campaigns, does to them what happens to programs that are left alone for weeks, runs them to their end, and compares
-with the same campaign run in peace by one worker. Prints a table: the fault, how often it was tried, acknowledged results
-that were lost, results that were counted twice, canonical exports with different bytes, anything else that should not have
-happened (a wrong exit code, a damaged database, a seed that was blamed for what others did), and seconds. All must be zero;
-the exit code is 1 otherwise. A result is acknowledged when its spool file is complete or it has been committed.
+Runs campaigns, does to them what happens to programs that are left alone for weeks, runs them to their end, and
+compares with the same campaign run in peace by one worker. Prints a table: the fault, how often it was tried,
+acknowledged results that were lost, results that were counted twice, canonical exports with different bytes, anything
+else that should not have happened (a wrong exit code, a damaged database, a seed that was blamed for what others did),
+and seconds. All must be zero; the exit code is 1 otherwise. A result is acknowledged when its spool file is complete or
+it has been committed.
 
 BIN holds peclet, peclet-engine, fake_engine and fault_shim.so. --quick is the part that runs with the tests.
 """
@@ -30,8 +31,12 @@ def print_table(tallies):
     rows = [HEADINGS] + [[str(cell) for cell in tally.row()] for tally in tallies]
     widths = [max(len(row[column]) for row in rows) for column in range(len(HEADINGS))]
     for row in rows:
-        print("  ".join(cell.ljust(width) if column == 0 else cell.rjust(width)
-                        for column, (cell, width) in enumerate(zip(row, widths))))
+        print(
+            "  ".join(
+                cell.ljust(width) if column == 0 else cell.rjust(width)
+                for column, (cell, width) in enumerate(zip(row, widths))
+            )
+        )
 
 
 def main():
@@ -41,8 +46,9 @@ def main():
     parser.add_argument("--quick", action="store_true", help="the part that runs with the tests, about half a minute")
     parser.add_argument("--case", action="append", metavar="NAME", help="only these; a part of the name is enough")
     parser.add_argument("--seed", type=int, default=1, help="of the random moments")
-    parser.add_argument("--every-allocation", action="store_true",
-                        help="only this: every allocation of SQLite fails in turn")
+    parser.add_argument(
+        "--every-allocation", action="store_true", help="only this: every allocation of SQLite fails in turn"
+    )
     parser.add_argument("--list", action="store_true", help="names the cases")
     arguments = parser.parse_args()
     chosen = [case for case in cases.CASES if not arguments.case or any(part in case.name for part in arguments.case)]

@@ -3,9 +3,9 @@
 
 Fills the file system of a campaign's database, spool, checkpoints, logs, and of all of them together, each in turn and
 while the campaign runs with real engines. Nothing may be lost: the run must say once what is full, give out no further
-seed, go on by itself when there is room, and export the same bytes as an undisturbed one. A run that is stopped while its
-disk is full must leave with exit code 75 and go on afterwards. A file system that is too small for the campaign ends it with
-exit code 75 and one message, and it goes on where it is moved.
+seed, go on by itself when there is room, and export the same bytes as an undisturbed one. A run that is stopped while
+its disk is full must leave with exit code 75 and go on afterwards. A file system that is too small for the campaign
+ends it with exit code 75 and one message, and it goes on where it is moved.
 
 The file systems are small tmpfs. Mounting them takes root, or an unprivileged user namespace (unshare -Urm), which the
 script makes for itself; where the kernel grants neither, it fails and says so.
@@ -47,12 +47,20 @@ class Drill:
 
     def start(self):
         with open(os.path.join(self.folder, "log"), "a") as log:
-            return subprocess.Popen([self.peclet, "run", "drill.json", "--workers", "2", "--checkpoint", str(CHECKPOINT_SECONDS)],
-                                    cwd=self.folder, stdout=log, stderr=log)
+            return subprocess.Popen(
+                [self.peclet, "run", "drill.json", "--workers", "2", "--checkpoint", str(CHECKPOINT_SECONDS)],
+                cwd=self.folder,
+                stdout=log,
+                stderr=log,
+            )
 
     def export(self):
-        return subprocess.run([self.peclet, "export", "drill.json", "--json", "--canonical"], cwd=self.folder,
-                              capture_output=True, check=True).stdout
+        return subprocess.run(
+            [self.peclet, "export", "drill.json", "--json", "--canonical"],
+            cwd=self.folder,
+            capture_output=True,
+            check=True,
+        ).stdout
 
     def count(self, query):
         database = sqlite3.connect(f"file:{self.folder}/drill.peclet/campaign.db?mode=ro", uri=True)
@@ -69,10 +77,15 @@ def in_own_namespace():
     ways = [["unshare", "-m"]] if os.geteuid() == 0 else []
     for way in ways + [["unshare", "-Urm"]]:
         with tempfile.TemporaryDirectory() as folder:
-            if subprocess.run(way + ["mount", "-t", "tmpfs", "none", folder], stderr=subprocess.DEVNULL).returncode == 0:
+            if (
+                subprocess.run(way + ["mount", "-t", "tmpfs", "none", folder], stderr=subprocess.DEVNULL).returncode
+                == 0
+            ):
                 os.execvpe(way[0], way + [sys.executable] + sys.argv, {**os.environ, "PECLET_MAY_MOUNT": "1"})
-    sys.exit("full_disk.py: needs to mount a tmpfs: run it as root, or where unprivileged user namespaces are allowed "
-             "(sysctl kernel.unprivileged_userns_clone, user.max_user_namespaces)")
+    sys.exit(
+        "full_disk.py: needs to mount a tmpfs: run it as root, or where unprivileged user namespaces are allowed "
+        "(sysctl kernel.unprivileged_userns_clone, user.max_user_namespaces)"
+    )
 
 
 def mount(path, size):
@@ -143,7 +156,9 @@ def starve(disk, case):
     else:
         end = time.monotonic() + 60
         while "is full" not in disk.log():
-            assert time.monotonic() < end and process.poll() is None, f"it does not say that the disk is full\n{disk.log()}"
+            assert (
+                time.monotonic() < end and process.poll() is None
+            ), f"it does not say that the disk is full\n{disk.log()}"
             disk.keep_full(0.1)
         before = disk.attempts()
         disk.keep_full(6)
@@ -176,13 +191,17 @@ def judge(disk, name, code, reference):
     done = disk.drill.count("SELECT count(*) FROM realisation WHERE state = 'done'")
     stored = disk.drill.count("SELECT count(*) FROM result")
     sound = disk.drill.count("PRAGMA integrity_check") == "ok"
-    print(f"{name}: exit code {code}, same bytes {same}, realisations {done}, results {stored}, blamed {blamed:.0f}, "
-          f"integrity {sound}", flush=True)
+    print(
+        f"{name}: exit code {code}, same bytes {same}, realisations {done}, results {stored}, blamed {blamed:.0f}, "
+        f"integrity {sound}",
+        flush=True,
+    )
     return code == 0 and same and done == stored and blamed == 0 and sound
 
 
 def too_small(peclet, folder, size, reference):
-    """The campaign's file system is too small for it: it ends by itself, says so, and goes on elsewhere to the same bytes."""
+    """The campaign's file system is too small for it: it ends by itself, says so, and goes on elsewhere to the same
+    bytes."""
     drill = Drill(peclet, folder)
     root = os.path.join(folder, "drill.peclet")
     mount(root, size)
@@ -199,7 +218,11 @@ def too_small(peclet, folder, size, reference):
     os.rename(moved, root)
     again = drill.start().wait(300)
     same = drill.export() == reference
-    print(f"a file system of {size}: exit code {code}, said {said} times; in a larger one: exit code {again}, same bytes {same}", flush=True)
+    print(
+        f"a file system of {size}: exit code {code}, said {said} times; in a larger one: exit code {again}, same "
+        f"bytes {same}",
+        flush=True,
+    )
     return (code == 75 and said == 1 or code == 0) and again == 0 and same
 
 

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """hostile_engine.py BIN [--quick] [--way NAME ...] [--jobs 2] [--list]
 
-An engine lies in every way of hostile/lies.py, once and (without --quick) at every try. For each way: the run does not crash
-and does not hang, its memory stays below 200 MB, what it prints is short lines without control characters, and what is stored
-in the end is what the honest campaign has; a seed that is lied about at every try is given up and counts as lost. The texts of
-results that are none are also put into the spool of a campaign with an honest engine: none of them may count.
+An engine lies in every way of hostile/lies.py, once and (without --quick) at every try. For each way: the run does not
+crash and does not hang, its memory stays below 200 MB, what it prints is short lines without control characters, and
+what is stored in the end is what the honest campaign has; a seed that is lied about at every try is given up and counts
+as lost. The texts of results that are none are also put into the spool of a campaign with an honest engine: none of
+them may count.
 
 Prints a line for each way; the exit code is 1 when one of them failed. BIN holds peclet.
 """
@@ -30,9 +31,9 @@ CAMPAIGN = {
     "target": {"observable": "relative_viscosity", "relative_tolerance": 0.05},
     "realisations": {"minimum": 4, "maximum": 4},
 }
-LEASE = 2              # seconds
+LEASE = 2  # seconds
 MOST_MEMORY = 200_000  # kB
-PATIENCE = 400         # seconds, for one run; hello is waited for three times a minute
+PATIENCE = 400  # seconds, for one run; hello is waited for three times a minute
 HONEST = lies.WAYS["honest"]
 
 
@@ -59,9 +60,13 @@ class Campaign:
     def run(self):
         """The exit code; the largest memory and what was printed are kept."""
         with open(os.path.join(self.folder, "printed"), "wb") as printed:
-            process = subprocess.Popen([self.peclet, "run", "hostile.json", "--workers", "1", "--threads", "1", "--lease",
-                                        str(LEASE)], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=printed,
-                                       stdin=subprocess.DEVNULL)
+            process = subprocess.Popen(
+                [self.peclet, "run", "hostile.json", "--workers", "1", "--threads", "1", "--lease", str(LEASE)],
+                cwd=self.folder,
+                stdout=subprocess.DEVNULL,
+                stderr=printed,
+                stdin=subprocess.DEVNULL,
+            )
             end = time.monotonic() + PATIENCE
             self.memory = 0
             while process.poll() is None:
@@ -136,7 +141,11 @@ class Lab:
 
     def judge_stored(self, campaign, way, times, code):
         said = campaign.printed.decode()
-        wrong = {seed: value for seed, value in campaign.values().items() if value is not None and value != self.values.get(seed)}
+        wrong = {
+            seed: value
+            for seed, value in campaign.values().items()
+            if value is not None and value != self.values.get(seed)
+        }
         expect(not wrong, f"stored: {wrong}")
         verdict = campaign.query("PRAGMA integrity_check")
         expect(verdict == [("ok",)], f"integrity_check: {verdict}")
@@ -144,7 +153,7 @@ class Lab:
             expect(code in way.codes, f"exit code {code}: {said}")
             return
         outcomes = [row[0] for row in campaign.query("SELECT outcome FROM attempt WHERE seed = 2 ORDER BY attempt_id")]
-        state, = campaign.query("SELECT state FROM realisation WHERE seed = 2")[0]
+        (state,) = campaign.query("SELECT state FROM realisation WHERE seed = 2")[0]
         if way.fate == "again" and times > 3:
             expect(state == "quarantined", f"the seed is {state} after {outcomes}")
             expect(code in (0, 3), f"exit code {code}: {said}")
@@ -180,13 +189,20 @@ class Lab:
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bin")
-    parser.add_argument("--quick", action="store_true", help="each way once, none that takes long; what runs with the tests")
+    parser.add_argument(
+        "--quick", action="store_true", help="each way once, none that takes long; what runs with the tests"
+    )
     parser.add_argument("--way", action="append", metavar="NAME", help="only these; a part of the name is enough")
     parser.add_argument("--jobs", type=int, default=4, help="runs at a time; most of them wait")
     parser.add_argument("--list", action="store_true", help="names the ways")
     arguments = parser.parse_args()
-    chosen = [way for way in lies.WAYS.values() if way is not HONEST and not (arguments.quick and way.slow)
-              and (not arguments.way or any(part in way.name for part in arguments.way))]
+    chosen = [
+        way
+        for way in lies.WAYS.values()
+        if way is not HONEST
+        and not (arguments.quick and way.slow)
+        and (not arguments.way or any(part in way.name for part in arguments.way))
+    ]
     if arguments.list:
         print("\n".join(way.name for way in chosen))
         return 0
@@ -196,8 +212,10 @@ def main():
     try:
         lab = Lab(os.path.abspath(arguments.bin), folder)
         with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-            runs = {pool.submit(lab.try_out, way, times): f"{way.name}, {'once' if times == 1 else 'always'}"
-                    for way, times in tasks}
+            runs = {
+                pool.submit(lab.try_out, way, times): f"{way.name}, {'once' if times == 1 else 'always'}"
+                for way, times in tasks
+            }
             if not arguments.way:
                 runs[pool.submit(lab.try_spool)] = "all texts in the spool"
             for run in concurrent.futures.as_completed(runs):
@@ -208,8 +226,10 @@ def main():
                     print(f"{runs[run]}: {type(error).__name__}: {error}")
     finally:
         shutil.rmtree(folder, ignore_errors=True)
-    print(f"{len(chosen)} ways, {len(runs)} runs in {time.monotonic() - began:.0f} s, {len(failed)} failed; most memory "
-          "{} kB ({})".format(*max(memories, default=(0, "none"))))
+    print(
+        f"{len(chosen)} ways, {len(runs)} runs in {time.monotonic() - began:.0f} s, {len(failed)} failed; most memory "
+        "{} kB ({})".format(*max(memories, default=(0, "none")))
+    )
     return 1 if failed or not memories else 0
 
 

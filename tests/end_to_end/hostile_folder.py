@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 """hostile_folder.py BIN [--quick] [--only PART] [--list]
 
-Puts into the folder of a campaign, of which some seeds have ended, what somebody else could put there: links to files, to
-folders and to themselves, FIFOs, sockets, devices, folders in the place of files, files in the place of folders, a terabyte
-of nothing, rubbish, half files, names that a terminal obeys, crowds; in spool, requests, checkpoints, logs, failures,
-backup, aside, lock and database. Then it runs the campaign, and in the long form looks at it with other verbs first. Each way
-must end in the bytes of the undisturbed campaign, at once or, where the run refuses to begin, when what is in the way has been
-taken away. Nothing may crash, hang (60 s), take more than 200 MB, or change what is outside of the folder; what happened is
-said in one line of at most 500 characters without control characters.
+Puts into the folder of a campaign, of which some seeds have ended, what somebody else could put there: links to files,
+to folders and to themselves, FIFOs, sockets, devices, folders in the place of files, files in the place of folders, a
+terabyte of nothing, rubbish, half files, names that a terminal obeys, crowds; in spool, requests, checkpoints, logs,
+failures, backup, aside, lock and database. Then it runs the campaign, and in the long form looks at it with other verbs
+first. Each way must end in the bytes of the undisturbed campaign, at once or, where the run refuses to begin, when what
+is in the way has been taken away. Nothing may crash, hang (60 s), take more than 200 MB, or change what is outside of
+the folder; what happened is said in one line of at most 500 characters without control characters.
 
 At last, where --output leads: devices, FIFOs, links and what a shell has open are written to and stay what they are.
 
@@ -42,8 +42,12 @@ def tried(stock, folder, way, short):
         word = False, f"WRONG: {str(wrong)[:1000]}"
     finally:
         shutil.rmtree(folder, ignore_errors=True)
-    print(f"{way.title().encode('unicode_escape').decode()}  [{time.monotonic() - started:.1f} s, {trial.most if trial else 0:.0f} MB]  "
-          f"{word[1].replace(os.path.dirname(folder), '')}", flush=True)
+    print(
+        f"{way.title().encode('unicode_escape').decode()}  [{time.monotonic() - started:.1f} s, "
+        f"{trial.most if trial else 0:.0f} MB]  "
+        f"{word[1].replace(os.path.dirname(folder), '')}",
+        flush=True,
+    )
     return word[0]
 
 
@@ -63,7 +67,9 @@ def main():
     with tempfile.TemporaryDirectory(prefix="hostile-folder-", dir=memory) as folder:
         os.chmod(folder, 0o755)  # some ways are those of an ordinary user
         stock = Stock(arguments.bin, folder)
-        passed = [tried(stock, os.path.join(folder, str(number)), way, arguments.quick) for number, way in enumerate(chosen)]
+        passed = [
+            tried(stock, os.path.join(folder, str(number)), way, arguments.quick) for number, way in enumerate(chosen)
+        ]
         if not arguments.only:
             passed.append(outputs.check(stock.peclet, stock.engine, stock.of(False)[0]))
     print(f"{sum(passed)} of {len(passed)} passed")

@@ -2,18 +2,19 @@
 """large_campaign.py BIN [--points 125] [--seeds 800] [--workers 64] [--milliseconds 100] [--block-numbers 475]
 
 Runs a campaign of 100 000 realisations with the fake engine of the tests, whose results take as much room as those of
-peclet-engine (--block-numbers), whose jobs sleep 100 ms and who takes a job ahead, every point up to its maximum, and prints what the owner costs:
+peclet-engine (--block-numbers), whose jobs sleep 100 ms and who takes a job ahead, every point up to its maximum, and
+prints what the owner costs:
 
 - processor time per realisation, of the owner and of the engines apart, and the owner's largest memory;
-- how busy the workers are: the time that they spent on jobs, by their own clocks, over workers times the time between the
-  first job's begin and the last one's end. A job counts from when its worker takes it up until its result is durable in the
-  spool and announced: delivering it is the worker's work, waiting for the next one is not;
+- how busy the workers are: the time that they spent on jobs, by their own clocks, over workers times the time between
+  the first job's begin and the last one's end. A job counts from when its worker takes it up until its result is
+  durable in the spool and announced: delivering it is the worker's work, waiting for the next one is not;
 - commits per second and results per commit, by the counter of transactions in the write-ahead log's index;
 - the time of `peclet status` while it runs (median and largest) and afterwards, and the size of the database.
 
-On a quiet machine of two cores it takes some four minutes; --points 5 is a quick look. It fails when a result is missing or
-`status` takes 0.3 s at its median; --claims also when workers are busy for less than 97 %, the database is larger than
-300 MB or the owner larger than 200 MiB.
+On a quiet machine of two cores it takes some four minutes; --points 5 is a quick look. It fails when a result is
+missing or `status` takes 0.3 s at its median; --claims also when workers are busy for less than 97 %, the database is
+larger than 300 MB or the owner larger than 200 MiB.
 """
 import argparse
 import json
@@ -51,7 +52,8 @@ class Owner(threading.Thread):
         self.seconds = (int(fields[11]) + int(fields[12])) / TICKS
         with open(f"/proc/{self.process.pid}/status") as f:
             self.memory = next((int(line.split()[1]) for line in f if line.startswith("VmHWM")), self.memory)
-        # https://www.sqlite.org/walformat.html: the index begins with the version, a zero, and the counter of transactions.
+        # https://www.sqlite.org/walformat.html: the index begins with the version, a zero, and the counter of
+        # transactions.
         with open(self.index, "rb") as f:
             self.commits = max(self.commits, struct.unpack("<3I", f.read(12))[2])
 
@@ -91,7 +93,8 @@ def busy_share(path, workers):
 def campaign_of(arguments, engine):
     scene = json.load(open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../runner/small_scene.json")))
     return {
-        "name": "large", "scene": scene,
+        "name": "large",
+        "scene": scene,
         "sweep": [{"set": "/volume_fraction", "values": [round(0.2 + 0.001 * k, 3) for k in range(arguments.points)]}],
         "target": {"observable": "relative_viscosity", "relative_tolerance": 1e-6},
         "realisations": {"minimum": 10, "maximum": arguments.seeds},
@@ -106,7 +109,12 @@ def main():
     parser.add_argument("--seeds", type=int, default=800)
     parser.add_argument("--workers", type=int, default=64)
     parser.add_argument("--milliseconds", type=int, default=100, help="of a job")
-    parser.add_argument("--block-numbers", type=int, default=475, help="in a result; 475 make 2.0 kB stored, as those of peclet-engine with friction and noise")
+    parser.add_argument(
+        "--block-numbers",
+        type=int,
+        default=475,
+        help="in a result; 475 make 2.0 kB stored, as those of peclet-engine with friction and noise",
+    )
     parser.add_argument("--claims", action="store_true", help="fail unless every claim holds")
     arguments = parser.parse_args()
     peclet, engine = (os.path.abspath(os.path.join(arguments.bin, name)) for name in ("peclet", "fake_engine"))
@@ -114,12 +122,21 @@ def main():
         with open(os.path.join(folder, "large.json"), "w") as f:
             json.dump(campaign_of(arguments, engine), f)
         times = os.path.join(folder, "times")
-        environment = dict(os.environ, PECLET_FAKE_STEPS="1", PECLET_FAKE_STEP_MS=str(arguments.milliseconds),
-                           PECLET_FAKE_PADDING=str(arguments.block_numbers), PECLET_FAKE_TIMES=times,
-                           PECLET_FAKE_AHEAD="1")
+        environment = dict(
+            os.environ,
+            PECLET_FAKE_STEPS="1",
+            PECLET_FAKE_STEP_MS=str(arguments.milliseconds),
+            PECLET_FAKE_PADDING=str(arguments.block_numbers),
+            PECLET_FAKE_TIMES=times,
+            PECLET_FAKE_AHEAD="1",
+        )
         started = time.monotonic()
-        run = subprocess.Popen([peclet, "run", "large.json", "--quiet", "--threads", "1", "--workers", str(arguments.workers)],
-                               cwd=folder, stdout=subprocess.DEVNULL, env=environment)
+        run = subprocess.Popen(
+            [peclet, "run", "large.json", "--quiet", "--threads", "1", "--workers", str(arguments.workers)],
+            cwd=folder,
+            stdout=subprocess.DEVNULL,
+            env=environment,
+        )
         owner, statuses = Owner(run, folder), Statuses(peclet, folder)
         owner.start()
         statuses.start()
@@ -129,8 +146,11 @@ def main():
         wall = time.monotonic() - started
         statuses.join()
         after = [status_seconds(peclet, folder) for _ in range(7)]
-        status = json.loads(subprocess.run([peclet, "status", "large.json", "--json"], cwd=folder, capture_output=True,
-                                           check=True).stdout)
+        status = json.loads(
+            subprocess.run(
+                [peclet, "status", "large.json", "--json"], cwd=folder, capture_output=True, check=True
+            ).stdout
+        )
         done = sum(point["seeds"]["done"] for point in status["points"])
         size = os.path.getsize(os.path.join(folder, "large.peclet", "campaign.db"))
         busy, span = busy_share(times, arguments.workers)
@@ -138,11 +158,20 @@ def main():
     during = statuses.seconds or after
     print(f"{done} realisations in {wall:.0f} s with {arguments.workers} workers, exit code {run.returncode}")
     print(f"workers busy: {100 * busy:.1f} % of {span:.0f} s; load of the machine: {os.getloadavg()[0]:.1f}")
-    print(f"processor time per realisation: owner {1e3 * owner.seconds / done:.3f} ms, engines {1e3 * engines / done:.3f} ms")
+    print(
+        f"processor time per realisation: owner {1e3 * owner.seconds / done:.3f} ms, engines "
+        f"{1e3 * engines / done:.3f} ms"
+    )
     print(f"largest memory of the owner: {owner.memory / 1024:.0f} MiB")
-    print(f"{owner.commits} commits: {owner.commits / span:.0f} a second, {done / max(1, owner.commits):.1f} results in each")
+    print(
+        f"{owner.commits} commits: {owner.commits / span:.0f} a second, {done / max(1, owner.commits):.1f} results "
+        "in each"
+    )
     for name, seconds in (("while it runs", during), ("afterwards", after)):
-        print(f"status {name}: {statistics.median(seconds):.3f} s (median), {max(seconds):.3f} s (largest of {len(seconds)})")
+        print(
+            f"status {name}: {statistics.median(seconds):.3f} s (median), {max(seconds):.3f} s (largest of "
+            f"{len(seconds)})"
+        )
     print(f"database: {size / 1e6:.0f} MB, {size / done / 1e3:.2f} kB per realisation")
     passed = done == arguments.points * arguments.seeds and statistics.median(during + after) < 0.3
     if arguments.claims:

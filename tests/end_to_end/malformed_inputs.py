@@ -19,8 +19,11 @@ import tempfile
 import time
 
 SCENE = {
-    "particles": {"count": 30, "density": 0.1,
-                  "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}]},
+    "particles": {
+        "count": 30,
+        "density": 0.1,
+        "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}],
+    },
     "volume_fraction": 0.3,
     "fluid": {"viscosity": 0.1},
     "flow": {"shear_rate": 0.05},
@@ -38,9 +41,13 @@ CAMPAIGN = {
 }
 CONFIGURATION = {
     "scene": {"fluid": {"viscosity": 0.1}, "contact": {"normal_stiffness": 1e4}},
-    "state": {"box": {"lengths": [10, 10, 10], "tilt": 0}, "radius": [1, 1],
-              "position": [[1, 1, 1], [4, 4, 4]], "velocity": [[0, 0, 0], [0, 0, 0]],
-              "angular_velocity": [[0, 0, 0], [0, 0, 0]]},
+    "state": {
+        "box": {"lengths": [10, 10, 10], "tilt": 0},
+        "radius": [1, 1],
+        "position": [[1, 1, 1], [4, 4, 4]],
+        "velocity": [[0, 0, 0], [0, 0, 0]],
+        "angular_velocity": [[0, 0, 0], [0, 0, 0]],
+    },
 }
 ABSENT = object()
 
@@ -67,8 +74,11 @@ SCENE_FAULTS = [
 CONFIGURATION_FAULTS = [
     ("/state/position", [[1, 1, 1]], ["/state/position", "2"]),
     ("/state/radius/1", 0, ["/state/radius/1", "0"]),
-    ("/state/springs", [{"i": 1, "j": 0, "image": [0, 0, 0], "tangential": [0, 0, 0], "rolling": [0, 0, 0]}],
-     ["/state/springs/0/j"]),
+    (
+        "/state/springs",
+        [{"i": 1, "j": 0, "image": [0, 0, 0], "tangential": [0, 0, 0], "rolling": [0, 0, 0]}],
+        ["/state/springs/0/j"],
+    ),
     ("/state/box/lengths", [1.5, 10, 10], ["image"]),
 ]
 CAMPAIGN_FAULTS = [
@@ -167,13 +177,18 @@ class Trial:
 
     def configurations(self):
         for pointer, value, fragments in CONFIGURATION_FAULTS:
-            self.file(f"configuration {pointer}", json.dumps(altered(CONFIGURATION, pointer, value)),
-                      [self.engine, "forces"], fragments)
+            self.file(
+                f"configuration {pointer}",
+                json.dumps(altered(CONFIGURATION, pointer, value)),
+                [self.engine, "forces"],
+                fragments,
+            )
 
     def campaigns(self):
         for pointer, value, fragments in CAMPAIGN_FAULTS:
-            self.file(f"campaign {pointer}", json.dumps(altered(CAMPAIGN, pointer, value)), [self.peclet, "run"],
-                      fragments)
+            self.file(
+                f"campaign {pointer}", json.dumps(altered(CAMPAIGN, pointer, value)), [self.peclet, "run"], fragments
+            )
         self.file("campaign, a list", "[]", [self.peclet, "run"], [])
 
     def checkpoints(self):
@@ -197,7 +212,7 @@ class Trial:
             flipped[len(good) // 2] ^= 4
             for name, content, more, fragments in [
                 ("empty", b"", [], ["no checkpoint"]),
-                ("torn", good[:len(good) // 3], [], ["torn"]),
+                ("torn", good[: len(good) // 3], [], ["torn"]),
                 ("one bit flipped", bytes(flipped), [], ["checksum"]),
                 ("of another version", good[:8] + struct.pack("<I", 99) + good[12:], [], ["version 99"]),
                 ("of another seed", good, ["--seed", "1"], ["another seed"]),
@@ -222,8 +237,14 @@ class Trial:
             with tempfile.TemporaryDirectory() as folder:
                 before = snapshot(folder)
                 ours, theirs = socket.socketpair()
-                process = subprocess.Popen([self.engine, "serve"], stdin=theirs, stdout=subprocess.PIPE,
-                                           stderr=subprocess.PIPE, cwd=folder, text=True)
+                process = subprocess.Popen(
+                    [self.engine, "serve"],
+                    stdin=theirs,
+                    stdout=subprocess.PIPE,
+                    stderr=subprocess.PIPE,
+                    cwd=folder,
+                    text=True,
+                )
                 theirs.close()
                 ours.sendall(sent)
                 out, err = process.communicate(timeout=20)
@@ -235,8 +256,9 @@ class Trial:
         with tempfile.TemporaryDirectory() as folder:
             with open(os.path.join(folder, "small.json"), "w") as f:
                 json.dump(CAMPAIGN, f)
-            run = subprocess.run([self.peclet, "run", "small.json", "--workers", "1"], cwd=folder, capture_output=True,
-                                 text=True)
+            run = subprocess.run(
+                [self.peclet, "run", "small.json", "--workers", "1"], cwd=folder, capture_output=True, text=True
+            )
             assert run.returncode in (0, 3), run.stderr
             path = os.path.join(folder, "small.peclet", "campaign.db")
             with open(path, "rb") as f:
@@ -255,7 +277,7 @@ class Trial:
 
             for name, content in [
                 ("that is none", b"once upon a time " * 500),
-                ("cut off", good[:len(good) // 2]),
+                ("cut off", good[: len(good) // 2]),
                 ("of another program", changed("PRAGMA application_id = 1")),
                 ("of a later version", changed("PRAGMA user_version = 99")),
             ]:
@@ -265,7 +287,9 @@ class Trial:
                             os.remove(path + suffix)
                     with open(path, "wb") as f:
                         f.write(content)
-                    self.refuse(f"database {name}, {verb}", folder, [self.peclet, verb, "small.json"], 6, ["campaign.db"])
+                    self.refuse(
+                        f"database {name}, {verb}", folder, [self.peclet, verb, "small.json"], 6, ["campaign.db"]
+                    )
 
 
 def main():

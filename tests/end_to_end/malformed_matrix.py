@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """malformed_matrix.py BIN SCHEMAS [--unbounded]
 
-Spoils a campaign and its scene key by key, as the schemas in SCHEMAS list them (each key by every kind of wrong value), the text
-of the file, the file itself and the options of every verb, and gives it all to the programs in BIN. Each must be refused with exit
-code 2, one line of less than 500 characters without control characters, nothing on standard output, below one second of processor
-time and 200 MB, and without a change in the folder. Values that are allowed but extreme may be valid instead.
+Spoils a campaign and its scene key by key, as the schemas in SCHEMAS list them (each key by every kind of wrong value),
+the text of the file, the file itself and the options of every verb, and gives it all to the programs in BIN. Each must
+be refused with exit code 2, one line of less than 500 characters without control characters, nothing on standard
+output, below one second of processor time and 200 MB, and without a change in the folder. Values that are allowed but
+extreme may be valid instead.
 
 --unbounded leaves time and memory out, for programs that a sanitizer slows down.
 """
@@ -23,7 +24,9 @@ MOST_SECONDS, MOST_BYTES, LONGEST_LINE = 1.0, 200e6, 500
 
 
 def contents(folder):
-    return sorted((entry.name, about.st_size, about.st_mtime_ns) for entry in os.scandir(folder) for about in [os.lstat(entry)])
+    return sorted(
+        (entry.name, about.st_size, about.st_mtime_ns) for entry in os.scandir(folder) for about in [os.lstat(entry)]
+    )
 
 
 class Trial:
@@ -33,7 +36,8 @@ class Trial:
         self.faults, self.refused, self.valid, self.dearest = [], 0, 0, (0, "")
 
     def work(self, cases):
-        """One case after another: all of them at once would take more memory than the programs under test, which inherit the mark."""
+        """One case after another: all of them at once would take more memory than the programs under test, which
+        inherit the mark."""
         while True:
             with self.lock:
                 case = next(cases, None)
@@ -42,15 +46,21 @@ class Trial:
             self.run(case)
 
     def run(self, case):
-        with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
+        files = tempfile.TemporaryFile
+        with tempfile.TemporaryDirectory() as folder, files() as output, files() as errors:
             if case.text is not None:
                 with open(os.path.join(folder, "input.json"), "wb") as file:
                     file.write(case.text if isinstance(case.text, bytes) else case.text.encode())
             if case.prepare:
                 case.prepare(folder)
             before = contents(folder)
-            process = subprocess.Popen([os.path.join(self.programs, case.program), *case.words], cwd=folder, stdin=subprocess.PIPE,
-                                       stdout=output, stderr=errors)
+            process = subprocess.Popen(
+                [os.path.join(self.programs, case.program), *case.words],
+                cwd=folder,
+                stdin=subprocess.PIPE,
+                stdout=output,
+                stderr=errors,
+            )
             for feed in (lambda: process.stdin.write(case.sent), process.stdin.close):
                 try:
                     feed()
@@ -105,8 +115,10 @@ def main():
     for fault in trial.faults:
         print(fault)
     seconds, name = trial.dearest
-    print(f"{trial.refused} refused, {trial.valid} extreme but valid, {len(trial.faults)} not as they should be; "
-          f"the dearest took {seconds:.2f} s: {name}")
+    print(
+        f"{trial.refused} refused, {trial.valid} extreme but valid, {len(trial.faults)} not as they should be; "
+        f"the dearest took {seconds:.2f} s: {name}"
+    )
     assert trial.refused >= 250, "the schemas list too few keys"
     return 1 if trial.faults else 0
 

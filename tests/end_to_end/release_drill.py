@@ -1,13 +1,15 @@
 #!/usr/bin/python3
 """release_drill.py FOLDER [--suite bookworm] [--mirror URL] [--root DIR]
 
-Tries the packages that `./bootstrap.sh package` leaves in FOLDER (build/package) on a Debian that has nothing of ours: the smallest
-that debootstrap makes, in a folder, as a user without rights. Needs root, debootstrap, readelf and a mirror; takes minutes, most of
-them debootstrap's; --root keeps what it made, for the next time. What must be so:
+Tries the packages that `./bootstrap.sh package` leaves in FOLDER (build/package) on a Debian that has nothing of ours:
+the smallest that debootstrap makes, in a folder, as a user without rights. Needs root, debootstrap, readelf and a
+mirror; takes minutes, most of them debootstrap's; --root keeps what it made, for the next time. What must be so:
 
     programs  ask for no shared library
-    .tar.gz   unpacked by the user, runs the demonstration; moved, it goes on; studies, adapters and manual pages are found
-    .deb      is installed by dpkg alone, runs the demonstration with the same bytes, and leaves nothing behind when removed
+    .tar.gz   unpacked by the user, runs the demonstration; moved, it goes on; studies, adapters and manual pages are
+              found
+    .deb      is installed by dpkg alone, runs the demonstration with the same bytes, and leaves nothing behind when
+              removed
 """
 import argparse
 import contextlib
@@ -46,9 +48,24 @@ class Root:
         self.path = path
 
     def run(self, *command, user=None, folder="/", check=True):
-        words = ["chroot", *([f"--userspec={user}:{user}"] if user else []), self.path, "/usr/bin/env", "-i", "PATH=/usr/bin:/bin:/usr/sbin:/sbin",
-                 f"HOME={HOME}", "/bin/sh", "-c", 'cd "$1" && shift && exec "$@"', "sh", folder, *command]
-        done = subprocess.run(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        words = [
+            "chroot",
+            *([f"--userspec={user}:{user}"] if user else []),
+            self.path,
+            "/usr/bin/env",
+            "-i",
+            "PATH=/usr/bin:/bin:/usr/sbin:/sbin",
+            f"HOME={HOME}",
+            "/bin/sh",
+            "-c",
+            'cd "$1" && shift && exec "$@"',
+            "sh",
+            folder,
+            *command,
+        ]
+        done = subprocess.run(
+            words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        )
         if check and done.returncode != 0:
             fail(f"{' '.join(command)}: exit {done.returncode}\n{done.stdout}")
         return done.stdout
@@ -65,7 +82,11 @@ def debian(arguments):
         os.makedirs(path, exist_ok=True)
         os.chmod(path, 0o755)  # the user's root folder: a temporary folder is closed to others
         if not os.path.exists(os.path.join(path, "etc/debian_version")):
-            subprocess.run(["debootstrap", "--variant=minbase", arguments.suite, path, arguments.mirror], check=True, stdout=subprocess.DEVNULL)
+            subprocess.run(
+                ["debootstrap", "--variant=minbase", arguments.suite, path, arguments.mirror],
+                check=True,
+                stdout=subprocess.DEVNULL,
+            )
         # The programs ask /proc where they are.
         subprocess.run(["mount", "-t", "proc", "proc", os.path.join(path, "proc")], check=True)
         stack.callback(subprocess.run, ["umount", os.path.join(path, "proc")], check=True)

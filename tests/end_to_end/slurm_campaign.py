@@ -38,7 +38,8 @@ class Campaign:
         self.processes = []
 
     def holds(self, seed=0):
-        """This and later seeds of the fake engine stand still half-way from now on, and their tasks run, until lets_go()."""
+        """This and later seeds of the fake engine stand still half-way from now on, and their tasks run, until
+        lets_go()."""
         with open(self.hold, "w"):
             pass
         self.environment.update(PECLET_FAKE_HOLD=self.hold, PECLET_FAKE_HOLD_SEED=str(seed))
@@ -53,8 +54,9 @@ class Campaign:
 
     def start(self, *words):
         log = open(os.path.join(self.folder, "log"), "a")
-        self.processes.append(subprocess.Popen([self.peclet, *words], cwd=self.folder, env=self.environment, stdout=log,
-                                               stderr=log))
+        self.processes.append(
+            subprocess.Popen([self.peclet, *words], cwd=self.folder, env=self.environment, stdout=log, stderr=log)
+        )
         return self.processes[-1]
 
     def stop(self):
@@ -84,11 +86,14 @@ class Campaign:
             return f.read()
 
     def export(self):
-        return subprocess.run([self.peclet, "export", "drill.json", "--canonical"], cwd=self.folder, capture_output=True,
-                              check=True).stdout
+        return subprocess.run(
+            [self.peclet, "export", "drill.json", "--canonical"], cwd=self.folder, capture_output=True, check=True
+        ).stdout
 
     def ask(self, query):
-        with contextlib.closing(sqlite3.connect(f"file:{self.folder}/drill.peclet/campaign.db?mode=ro", uri=True)) as db:
+        with contextlib.closing(
+            sqlite3.connect(f"file:{self.folder}/drill.peclet/campaign.db?mode=ro", uri=True)
+        ) as db:
             return db.execute(query).fetchone()[0]
 
     def spooled(self):
@@ -104,8 +109,10 @@ class Campaign:
     def lost(self):
         """Seeds of the looks that have no result; and files, bundles and seeds that were left lying."""
         wanted = self.ask("SELECT sum(seeds) FROM estimates")
-        closed = self.ask("SELECT count(*) FROM realisation JOIN point USING (point_id) JOIN estimates USING (hash)"
-                          " WHERE seed < seeds AND state IN ('done', 'failed', 'quarantined')")
+        closed = self.ask(
+            "SELECT count(*) FROM realisation JOIN point USING (point_id) JOIN estimates USING (hash)"
+            " WHERE seed < seeds AND state IN ('done', 'failed', 'quarantined')"
+        )
         left = self.ask("SELECT count(*) FROM bundle_seed WHERE outcome IS NULL")
         spool = os.path.join(self.shared, "spool")
         files = [name for name in os.listdir(spool) if name != "rejected"] if os.path.isdir(spool) else []
@@ -113,14 +120,18 @@ class Campaign:
 
     def double(self):
         """Results that a seed has beyond its first, counted or offered with another content."""
-        return int(self.ask("SELECT count(*) - count(DISTINCT point_id || ' ' || seed) FROM result")
-                + self.ask("SELECT total(suspect) FROM point")
-                + self.ask("SELECT count(*) FROM event WHERE kind IN ('suspect', 'rejected', 'mixed-engine')"))
+        return int(
+            self.ask("SELECT count(*) - count(DISTINCT point_id || ' ' || seed) FROM result")
+            + self.ask("SELECT total(suspect) FROM point")
+            + self.ask("SELECT count(*) FROM event WHERE kind IN ('suspect', 'rejected', 'mixed-engine')")
+        )
 
     def again(self):
         """Seeds that were run to their end a second time, which costs time and changes nothing."""
-        return self.ask("SELECT coalesce(sum(n - 1), 0) FROM (SELECT count(*) AS n FROM attempt WHERE outcome = 'result'"
-                        " GROUP BY point_id, seed)")
+        return self.ask(
+            "SELECT coalesce(sum(n - 1), 0) FROM (SELECT count(*) AS n FROM attempt WHERE outcome = 'result'"
+            " GROUP BY point_id, seed)"
+        )
 
     def blamed(self):
         return self.ask("SELECT total(blamed) FROM attempt")
@@ -140,8 +151,10 @@ def script_of_the_page(campaign, saved):
     """As it stands there, but for whose campaign it is."""
     with open(os.path.join(os.path.dirname(__file__), "..", "..", "docs", "clusters.md")) as f:
         script = f.read().split("```bash\n")[1].split("```")[0]
-    for line, mine in (("campaign=$HOME/suspensions/friction.json\n", f"campaign='{campaign.folder}/drill.json'\n"),
-                       ("saved=$HOME/suspensions/friction.saved ", f"saved='{saved}' ")):
+    for line, mine in (
+        ("campaign=$HOME/suspensions/friction.json\n", f"campaign='{campaign.folder}/drill.json'\n"),
+        ("saved=$HOME/suspensions/friction.saved ", f"saved='{saved}' "),
+    ):
         assert script.count(line) == 1, line
         script = script.replace(line, mine)
     return script

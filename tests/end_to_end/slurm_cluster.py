@@ -1,6 +1,6 @@
-"""A Slurm of one's own on one machine: munged, slurmctld and slurmd from Debian's packages, as whoever runs the test, with
-their files in a temporary folder. One node with CPUS processors, whatever the machine has; jobs of the partition `urgent`
-preempt those of `usual`, which are queued again."""
+"""A Slurm of one's own on one machine: munged, slurmctld and slurmd from Debian's packages, as whoever runs the test,
+with their files in a temporary folder. One node with CPUS processors, whatever the machine has; jobs of the partition
+`urgent` preempt those of `usual`, which are queued again."""
 import os
 import pwd
 import signal
@@ -65,16 +65,30 @@ class Cluster:
             key.write(os.urandom(128))
         self.configuration = os.path.join(folder, "slurm.conf")
         with open(self.configuration, "w") as f:
-            f.write(CONFIGURATION.format(folder=folder, host=socket.gethostname().split(".")[0], cpus=CPUS,
-                                         user=pwd.getpwuid(os.getuid()).pw_name, controller_port=free_port(),
-                                         node_port=free_port()))
+            f.write(
+                CONFIGURATION.format(
+                    folder=folder,
+                    host=socket.gethostname().split(".")[0],
+                    cpus=CPUS,
+                    user=pwd.getpwuid(os.getuid()).pw_name,
+                    controller_port=free_port(),
+                    node_port=free_port(),
+                )
+            )
         os.environ["SLURM_CONF"] = self.configuration
 
     def __enter__(self):
         try:
-            self.start("munged", "--foreground", "--force", f"--key-file={self.folder}/munge.key",
-                       f"--socket={self.folder}/munge.socket", f"--pid-file={self.folder}/munge.pid",
-                       f"--log-file={self.folder}/log/munge.log", f"--seed-file={self.folder}/munge.seed")
+            self.start(
+                "munged",
+                "--foreground",
+                "--force",
+                f"--key-file={self.folder}/munge.key",
+                f"--socket={self.folder}/munge.socket",
+                f"--pid-file={self.folder}/munge.pid",
+                f"--log-file={self.folder}/log/munge.log",
+                f"--seed-file={self.folder}/munge.seed",
+            )
             self.start_controller()
             self.start("slurmd", "-D", "-f", self.configuration)
             self.wait_until(lambda: self.say("sinfo", "-h", "-o", "%T") == "idle", "the node to be idle")

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """slurm_drill.py BIN [--quick] [--only CASE] [--keep FOLDER]
 
-Runs campaigns through a real Slurm (slurmctld, slurmd and munged of this machine's packages, started here) while tasks are
-killed, preempted and warned, the controller is restarted or away, submissions are refused, lose their answers or are forgotten,
-and the owner is killed.
-After each case the canonical export must be, byte for byte, that of the same campaign run by `peclet run` without Slurm;
-no realisation may be lost or counted twice. Prints a table and leaves with 1 when anything differs. --quick: some of the
-cases; --only: one of them (time_limit, which waits for a minute, is run only so); --keep: leave everything in that folder.
+Runs campaigns through a real Slurm (slurmctld, slurmd and munged of this machine's packages, started here) while tasks
+are killed, preempted and warned, the controller is restarted or away, submissions are refused, lose their answers or
+are forgotten, and the owner is killed. After each case the canonical export must be, byte for byte, that of the same
+campaign run by `peclet run` without Slurm; no realisation may be lost or counted twice. Prints a table and leaves with
+1 when anything differs. --quick: some of the cases; --only: one of them (time_limit, which waits for a minute, is run
+only so); --keep: leave everything in that folder.
 """
 import argparse
 import contextlib
@@ -21,6 +21,7 @@ import time
 from drill.campaign import REAL
 from slurm_campaign import CAMPAIGN, Campaign, script_of_the_page, template_of
 from slurm_cluster import CPUS, Cluster
+
 
 class Drill:
     def __init__(self, binaries, folder, cluster):
@@ -103,7 +104,9 @@ class Drill:
         self.cluster.wait_until(lambda: self.cluster.restarts() > 0, "a task at its time limit", 120)
         restarts = self.cluster.restarts()
         assert owner.wait(300) == 0, campaign.log()
-        assert campaign.blamed() == 0 and campaign.ask("SELECT count(*) FROM bundle_seed WHERE outcome != 'result'") == 0
+        assert (
+            campaign.blamed() == 0 and campaign.ask("SELECT count(*) FROM bundle_seed WHERE outcome != 'result'") == 0
+        )
         return f"{restarts} tasks at a real time limit of a minute queued themselves again"
 
     def controller_restarted(self, campaign):
@@ -114,8 +117,8 @@ class Drill:
             time.sleep(1)
             self.cluster.start_controller()
             self.cluster.wait_for_controller()
-        # Killed, it may have forgotten jobs that it had started, and give their numbers out again; it then takes the node
-        # out of use until an administrator says that all is well.
+        # Killed, it may have forgotten jobs that it had started, and give their numbers out again; it then takes the
+        # node out of use until an administrator says that all is well.
         resumed = 0
         end = time.monotonic() + 240
         while owner.poll() is None and time.monotonic() < end:
@@ -147,7 +150,9 @@ class Drill:
         campaign.holds()
         campaign.do(*campaign.hand_over("--template", template))
         assert campaign.ask("SELECT count(*) FROM bundle WHERE job IS NULL") == 1, campaign.log()
-        campaign.do(*campaign.hand_over("--template", template))  # nothing is left to hand over: only the name is asked for
+        campaign.do(
+            *campaign.hand_over("--template", template)
+        )  # nothing is left to hand over: only the name is asked for
         assert campaign.ask("SELECT count(*) FROM bundle WHERE job IS NULL") == 0, campaign.log()
         with open(os.path.join(campaign.folder, "numbers")) as f:
             submitted = len(f.readlines())
@@ -157,7 +162,9 @@ class Drill:
         return "sbatch took the job and nobody heard of it: found by its name, submitted once"
 
     def submission_lost(self, campaign):
-        template = template_of(campaign, 'if mkdir "$HOME_OF_DRILL/failed"; then exit 75; fi\nsbatch --parsable "$@" "$script"')
+        template = template_of(
+            campaign, 'if mkdir "$HOME_OF_DRILL/failed"; then exit 75; fi\nsbatch --parsable "$@" "$script"'
+        )
         campaign.do(*campaign.follow("--template", template))
         assert campaign.log().count("whether the batch system has taken the job is unknown") == 1, campaign.log()
         return "nobody heard of the submission, and there is no job: asked for by name, submitted again"
@@ -211,19 +218,27 @@ class Drill:
         with open(script, "w") as f:
             f.write(script_of_the_page(campaign, saved))
         bin_folder = os.path.dirname(campaign.peclet)
-        subprocess.run(["sbatch", "--parsable", script], cwd=campaign.folder, check=True, capture_output=True,
-                       env={**campaign.environment, "PATH": bin_folder + ":" + os.environ["PATH"]})
+        subprocess.run(
+            ["sbatch", "--parsable", script],
+            cwd=campaign.folder,
+            check=True,
+            capture_output=True,
+            env={**campaign.environment, "PATH": bin_folder + ":" + os.environ["PATH"]},
+        )
         interruptions = (("scancel", "--batch", "--signal=USR1", "--me"), URGENT)
         for count, interruption in enumerate(interruptions, 1):
-            self.cluster.wait_until(lambda: self.cluster.say("squeue", "-h", "--me", "--states=RUNNING", "-o", "%j") == "friction",
-                                    "the job")
+            self.cluster.wait_until(
+                lambda: self.cluster.say("squeue", "-h", "--me", "--states=RUNNING", "-o", "%j") == "friction",
+                "the job",
+            )
             time.sleep(1.5)
             self.cluster.say(*interruption)
             self.cluster.wait_until(lambda: self.cluster.restarts() >= count, "the job to be queued again", 120)
         self.cluster.wait_until(lambda: not self.cluster.say("squeue", "-h", "--me"), "the last job", 240)
         campaign.do("restore", saved, "drill.json")
         attempts = campaign.ask("SELECT count(*) FROM attempt WHERE outcome = 'drained'")
-        return f"one job, the database on its node: warned, preempted, queued again; {attempts} seeds went on from checkpoints"
+        node = "one job, the database on its node"
+        return f"{node}: warned, preempted, queued again; {attempts} seeds went on from checkpoints"
 
     def owner_killed(self, campaign):
         kills = 0
@@ -281,19 +296,38 @@ def kill_one(what, folder):
 
 FAULTS = {"PECLET_FAKE_FAULTS": "crash:3 exit:4x1 overlap:5 kill:2x2"}
 QUICK = ("arrays", "killed_task", "controller_away", "answer_lost", "refused", "odd_folder", "one_job")
-CASES = QUICK + ("killed_engine", "preempted", "warned", "controller_restarted", "submission_lost", "owner_killed",
-                 "taken_back", "forgotten", "failing_engine", "real_engine")
+CASES = QUICK + (
+    "killed_engine",
+    "preempted",
+    "warned",
+    "controller_restarted",
+    "submission_lost",
+    "owner_killed",
+    "taken_back",
+    "forgotten",
+    "failing_engine",
+    "real_engine",
+)
 SLOW = ("time_limit",)  # Slurm's shortest limit is a minute
 # Takes the node from others.
-URGENT = ("sbatch", "--partition=urgent", f"--cpus-per-task={CPUS - 1}", "--job-name=urgent", "--output=/dev/null", "--wrap",
-          "sleep 2")
+URGENT = (
+    "sbatch",
+    "--partition=urgent",
+    f"--cpus-per-task={CPUS - 1}",
+    "--job-name=urgent",
+    "--output=/dev/null",
+    "--wrap",
+    "sleep 2",
+)
 LONG_SEEDS = {**CAMPAIGN, "target": {"relative_tolerance": 0.9}, "realisations": {"minimum": 4, "maximum": 4}}
 LONGER = {"environment": {"PECLET_FAKE_STEP_MS": "75"}}  # the same results
-SETTINGS = {"preempted": LONGER,
-            "warned": LONGER,
-            "time_limit": {"document": LONG_SEEDS, "environment": {"PECLET_FAKE_STEP_MS": "1500"}},
-            "failing_engine": {"environment": FAULTS},
-            "real_engine": {"document": REAL}}
+SETTINGS = {
+    "preempted": LONGER,
+    "warned": LONGER,
+    "time_limit": {"document": LONG_SEEDS, "environment": {"PECLET_FAKE_STEP_MS": "1500"}},
+    "failing_engine": {"environment": FAULTS},
+    "real_engine": {"document": REAL},
+}
 
 
 def try_case(drill, name, expected):
@@ -308,7 +342,11 @@ def try_case(drill, name, expected):
         drill.cluster.clear()
     finally:
         campaign.stop()
-    print(f"{name:22}{lost:>5}{double:>7}{again:>10}  {'yes' if same else 'NO':5}{time.monotonic() - started:6.1f} s  {said}", flush=True)
+    print(
+        f"{name:22}{lost:>5}{double:>7}{again:>10}  {'yes' if same else 'NO':5}{time.monotonic() - started:6.1f} s  "
+        f"{said}",
+        flush=True,
+    )
     return same and lost == 0 and double == 0
 
 

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """command_line.py ENGINE      what peclet-engine says to the one who calls it
 
-Bad arguments end with 2 and name what was given; a run ends with a summary on standard error whose numbers are those of the result,
-computed here once more; results begin with the means; waiting threads sleep unless the environment has its own wishes.
+Bad arguments end with 2 and name what was given; a run ends with a summary on standard error whose numbers are those of
+the result, computed here once more; results begin with the means; waiting threads sleep unless the environment has its
+own wishes.
 """
 import json
 import math
@@ -13,18 +14,30 @@ import sys
 import tempfile
 
 SCENE = {
-    "particles": {"count": 40, "density": 0.1, "species": [{"radius": 1}]}, "volume_fraction": 0.4, "fluid": {"viscosity": 0.1, "thermal_energy": 0.02},
-    "flow": {"shear_rate": 2}, "contact": {"normal_stiffness": 1e4}, "lubrication": {"form": "kim-karrila", "inner_gap": 0.03, "outer_gap": 0.1},
-    "integrator": {"method": "explicit", "timestep": 0.002}, "guard": {"largest_overlap": 0.2, "largest_displacement": 0.2},
-    "duration": {"equilibration": {"time": 0.1}, "production": {"time": 0.64}}}
+    "particles": {"count": 40, "density": 0.1, "species": [{"radius": 1}]},
+    "volume_fraction": 0.4,
+    "fluid": {"viscosity": 0.1, "thermal_energy": 0.02},
+    "flow": {"shear_rate": 2},
+    "contact": {"normal_stiffness": 1e4},
+    "lubrication": {"form": "kim-karrila", "inner_gap": 0.03, "outer_gap": 0.1},
+    "integrator": {"method": "explicit", "timestep": 0.002},
+    "guard": {"largest_overlap": 0.2, "largest_displacement": 0.2},
+    "duration": {"equilibration": {"time": 0.1}, "production": {"time": 0.64}},
+}
 
 
 def bad_arguments(engine, scene):
     for arguments, named in [
-        ([], "subcommand"), (["run"], "scene"), (["frobnicate"], "subcommand"), (["run", scene, "--sead", "1"], "--sead"),
+        ([], "subcommand"),
+        (["run"], "scene"),
+        (["frobnicate"], "subcommand"),
+        (["run", scene, "--sead", "1"], "--sead"),
         (["run", scene, "--seed", "-1"], '"-1" must be a whole number from 0 to 18446744073709551615'),
-        (["run", scene, "--seed", "1.5"], '"1.5"'), (["run", scene, "--seed", "18446744073709551616"], '"18446744073709551616"'),
-        (["run", scene, "--seed", ""], '""'), (["run", scene, "--threads", "0"], "--threads"), (["run", scene, "--threads", "two"], "two"),
+        (["run", scene, "--seed", "1.5"], '"1.5"'),
+        (["run", scene, "--seed", "18446744073709551616"], '"18446744073709551616"'),
+        (["run", scene, "--seed", ""], '""'),
+        (["run", scene, "--threads", "0"], "--threads"),
+        (["run", scene, "--threads", "two"], "two"),
     ]:
         done = subprocess.run([engine, *arguments], capture_output=True, text=True)
         assert (done.returncode, done.stdout) == (2, ""), f"{arguments}: exit {done.returncode}, {done.stdout!r}"
@@ -34,7 +47,8 @@ def bad_arguments(engine, scene):
 
 
 def standard_error(series):
-    """Of a correlated series: the variance of the mean times 1 + 2 sum of the correlations before the first that is not positive."""
+    """Of a correlated series: the variance of the mean times 1 + 2 sum of the correlations before the first that is not
+    positive."""
     n = len(series)
     mean = math.fsum(series) / n
     products = [math.fsum((a - mean) * (b - mean) for a, b in zip(series, series[lag:])) / n for lag in range(n)]
@@ -61,8 +75,14 @@ def summaries(engine, scene, folder):
     def shown(name):
         return f"{result['mean'][name]:.4g} ± {standard_error(result['blocks'][name]):.2g}"
 
-    for line, name in [("viscosity", "relative_viscosity"), ("viscosity", "relative_viscosity_pair"), ("N1,", "first_normal_difference"),
-                       ("N1,", "second_normal_difference"), ("pressure", "pressure"), ("contacts", "contacts_per_particle")]:
+    for line, name in [
+        ("viscosity", "relative_viscosity"),
+        ("viscosity", "relative_viscosity_pair"),
+        ("N1,", "first_normal_difference"),
+        ("N1,", "second_normal_difference"),
+        ("pressure", "pressure"),
+        ("contacts", "contacts_per_particle"),
+    ]:
         assert shown(name) in text[line], f"{name} is {shown(name)}: {text[line]}"
     assert "50 + 320 explicit" in text["steps"] and "strain of 0.2 + 1.28" in text["steps"], text["steps"]
     assert "standard output" in text["result"] and str(2**64 - 1) in text["result"], text["result"]

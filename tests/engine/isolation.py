@@ -1,12 +1,11 @@
 """Usage: isolation.py SOURCE_FOLDER ARCHIVE...
 
-What is compiled for newer processors must not leak into the rest of the program: where several objects define the same inline
-function, the linker keeps one copy, and if that is the one with the newer instructions the program no longer runs everywhere.
-So no object compiled for an instruction set may define a symbol that others could share, and no other object may contain
-registers of 256 or 512 bits.
-
-Eigen is made of such inline functions. Nothing in kernels/ or terms/ and no source for an instruction set may include it, also not by way
-of other headers: it would then take a single call to leak.
+What is compiled for newer processors must not leak into the rest of the program: where several objects define the same
+inline function, the linker keeps one copy, and if that is the one with the newer instructions the program no longer
+runs everywhere. So no object compiled for an instruction set may define a symbol that others could share, and no other
+object may contain registers of 256 or 512 bits.
+Eigen is made of such inline functions. Nothing in kernels/ or terms/ and no source for an instruction set may include it,
+also not by way of other headers: it would then take a single call to leak.
 """
 
 import re

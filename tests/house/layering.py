@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """layering.py [--picture FILE.svg]      may every folder include what it includes?
 
-A folder may include those before it in its list below, and itself. An include that runs upward is an error; so are a file of more than
-350 lines and a folder of more than 30 files, which hide a second subject. --picture draws the folders and their includes (needs graphviz).
+A folder may include those before it in its list below, and itself. An include that runs upward is an error; so are a
+file of more than 350 lines and a folder of more than 30 files, which hide a second subject. --picture draws the folders
+and their includes (needs graphviz).
 """
 import argparse
 import collections
@@ -14,11 +15,54 @@ import sys
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
 
 # From below to above.
-RUNNER = ["contract", *("runner/" + room for room in ("text", "campaign", "statistics", "folder", "engines", "database", "events", "owner",
-                                                      "batch", "care", "reports", "verbs", "command_line"))]
-ENGINE = ["contract", *("engine/" + room for room in ("state", "random", "terms", "scene", "kernels/lanes", "kernels/bodies", "kernels/pairs",
-                                                      "kernels/links", "kernels", "stability", "integrators", "start", "observables",
-                                                      "realisation", "output", "jobs", "evaluation", "benchmark")), "engine"]
+RUNNER = [
+    "contract",
+    *(
+        "runner/" + room
+        for room in (
+            "text",
+            "campaign",
+            "statistics",
+            "folder",
+            "engines",
+            "database",
+            "events",
+            "owner",
+            "batch",
+            "care",
+            "reports",
+            "verbs",
+            "command_line",
+        )
+    ),
+]
+ENGINE = [
+    "contract",
+    *(
+        "engine/" + room
+        for room in (
+            "state",
+            "random",
+            "terms",
+            "scene",
+            "kernels/lanes",
+            "kernels/bodies",
+            "kernels/pairs",
+            "kernels/links",
+            "kernels",
+            "stability",
+            "integrators",
+            "start",
+            "observables",
+            "realisation",
+            "output",
+            "jobs",
+            "evaluation",
+            "benchmark",
+        )
+    ),
+    "engine",
+]
 LAYERS = {"engine": ENGINE, "runner": RUNNER}
 MOST_LINES, MOST_FILES = 350, 30
 INCLUDE = re.compile(r'\s*#\s*include\s+"((?:contract|engine|runner)/[^"]+)"')
@@ -71,9 +115,14 @@ def too_large(source):
 
 def picture(source):
     """The folders from below to above and their includes, for dot."""
-    text = 'digraph layers {\n  rankdir=BT; node [shape=box, style=filled, fillcolor="#eef3f8", fontname="sans"]; edge [color="#7090b0"];\n'
+    text = (
+        'digraph layers {\n  rankdir=BT; node [shape=box, style=filled, fillcolor="#eef3f8", fontname="sans"]; '
+        'edge [color="#7090b0"];\n'
+    )
     for top, layers in LAYERS.items():
-        between = collections.Counter((os.path.dirname(path), os.path.dirname(included)) for path, _, included in includes(source, top))
+        between = collections.Counter(
+            (os.path.dirname(path), os.path.dirname(included)) for path, _, included in includes(source, top)
+        )
         for folder in layers:
             count = sum(1 for path in sources(source, folder) if os.path.dirname(path) == folder)
             text += f'  "{folder}" [label="{folder}\\n{count} files"];\n'
@@ -90,7 +139,9 @@ def main():
     arguments = parser.parse_args()
     if arguments.picture:
         kind = os.path.splitext(arguments.picture)[1][1:]
-        subprocess.run(["dot", f"-T{kind}", "-o", arguments.picture], input=picture(arguments.source), text=True, check=True)
+        subprocess.run(
+            ["dot", f"-T{kind}", "-o", arguments.picture], input=picture(arguments.source), text=True, check=True
+        )
     faults = [*upward(arguments.source), *too_large(arguments.source)]
     for fault in faults:
         print(fault)

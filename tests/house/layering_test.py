@@ -16,11 +16,15 @@ class Layering(unittest.TestCase):
                 os.makedirs(os.path.join(folder, os.path.dirname(path)), exist_ok=True)
                 with open(os.path.join(folder, path), "w", encoding="utf-8") as f:
                     f.write(text)
-            done = subprocess.run([sys.executable, SCRIPT, "--source", folder], capture_output=True, text=True, check=False)
+            done = subprocess.run(
+                [sys.executable, SCRIPT, "--source", folder], capture_output=True, text=True, check=False
+            )
         return done.returncode, done.stdout
 
     def test_downward_is_allowed(self):
-        self.assertEqual(self.said({"runner/owner/a.cpp": '#include "runner/text/b.h"\n#include "contract/json.h"\n'}), (0, ""))
+        self.assertEqual(
+            self.said({"runner/owner/a.cpp": '#include "runner/text/b.h"\n#include "contract/json.h"\n'}), (0, "")
+        )
 
     def test_upward_is_not(self):
         code, text = self.said({"runner/text/a.cpp": '\n#include "runner/owner/b.h"\n'})

@@ -1,13 +1,13 @@
 #!/usr/bin/python3
-"""mutations.py FOLDER [--named] [--only WORD] [--jobs N]      break the physics in a copy of the source and see who notices
-mutations.py --check                                        only see that every mutation still applies
+"""mutations.py FOLDER [--named] [--only WORD] [--jobs N]  break the physics in a copy of the source and see who notices
+mutations.py --check                                    only see that every mutation still applies
 
-Each mutation is one change of a line of the engine. It is made in FOLDER, a copy of the source that this script makes, and built there.
-The coarse ones (mutations.py) are shown to the quick forms of the studies and to the tests of the engine and of the physics; the fine
-ones (named_mutations.py, --named) each to the one test of seconds that has to notice it. A mutation that is missed is an error.
-Prints a table, and writes it to its half of mutations.md beside this script when all were tried. Some four minutes of two cores for each
-coarse mutation, a minute for each fine one; a second call with FOLDER goes on where the first one was stopped, if the source has the same
-commit and no changes.
+Each mutation is one change of a line of the engine. It is made in FOLDER, a copy of the source that this script makes,
+and built there. The coarse ones (mutations.py) are shown to the quick forms of the studies and to the tests of the
+engine and of the physics; the fine ones (named_mutations.py, --named) each to the one test of seconds that has to
+notice it. A mutation that is missed is an error. Prints a table, and writes it to its half of mutations.md beside this
+script when all were tried. Some four minutes of two cores for each coarse mutation, a minute for each fine one; a
+second call with FOLDER goes on where the first one was stopped, if the source has the same commit and no changes.
 """
 import argparse
 import datetime
@@ -21,42 +21,123 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.dirname(os.path.dirname(HERE))
 sys.path.insert(0, os.path.join(SOURCE, "results"))
-from studies import processor  # noqa: E402
-from named_mutations import NAMED  # noqa: E402
+from studies.command_line import processor
+from named_mutations import NAMED
 
 # What is broken; file, text in it that occurs once, and what takes its place.
 MUTATIONS = [
-    ("plus sign in the second Brownian torque", "engine/terms/pair_noise.h",
-     "root.pump_second * turned - root.spin_second * spun", "root.pump_second * turned + root.spin_second * spun"),
-    ("noise of half the variance", "engine/kernels/pair_pass.cpp",
-     "std::sqrt(2 * physics.thermal_energy / timestep)", "std::sqrt(physics.thermal_energy / timestep)"),
-    ("image velocity missing", "engine/state/sheared_box.h",
-     "return shear_rate_ * lengths_.y * k.y;", "return 0 * shear_rate_ * lengths_.y * k.y;"),
-    ("torque coupling of lubrication omitted", "engine/terms/pair_resistance.h",
-     "      .pump_first = k.pump_first * pump,\n      .pump_second = k.pump_second * pump,\n",
-     "      .pump_first = 0.0 * pump,\n      .pump_second = 0.0 * pump,\n"),
-    ("squeeze mode doubled", "engine/terms/pair_resistance.h", ".squeeze_inverse = six * 2 * b * b / cube", ".squeeze_inverse = six * 4 * b * b / cube"),
-    ("shear mode with another sign", "engine/terms/lubrication.h",
-     "(R.squeeze * closing) * n + R.shear * sliding", "(R.squeeze * closing) * n - R.shear * sliding"),
-    ("every pair counted twice in the stress", "engine/observables/production.cpp",
-     "block.stress[t] += sums.stress[t];", "block.stress[t] += 2 * sums.stress[t];"),
-    ("contact half as stiff", "engine/terms/contact.h",
-     "(-normal_stiffness * pair.overlap())", "(-0.5 * normal_stiffness * pair.overlap())"),
-    ("spheres carried round the wrong way", "engine/terms/drag.h", "{0, 0, -0.5 * shear_rate}", "{0, 0, 0.5 * shear_rate}"),
-    ("drag of a slip sphere", "engine/terms/drag.h", "return 6 * std::numbers::pi * viscosity * radius;", "return 4 * std::numbers::pi * viscosity * radius;"),
-    ("hollow spheres", "engine/state/particles.cpp", "particles.inertia.push_back(0.4 * mass", "particles.inertia.push_back(2.0 / 3 * mass"),
-    ("friction twice as strong", "engine/kernels/pairs/pair_terms.h",
-     "(contact.friction / contact.tangential_stiffness) * normal_force", "(2 * contact.friction / contact.tangential_stiffness) * normal_force"),
-    ("contact spring that is not turned", "engine/terms/tangential_spring.h",
-     "Vector3Of<Real> turned = across(spring, normal);", "Vector3Of<Real> turned = spring + Real{0.0} * across(spring, normal);"),
-    ("repulsion of twice the range", "engine/terms/repulsion.h", "exponential((-1 / length)", "exponential((-0.5 / length)"),
-    ("structural stress from one side of each pair", "engine/observables/structure.cpp",
-     "within(kind.radius_first) + within(kind.radius_second)", "within(kind.radius_first)"),
-    ("gap clamped at ten times the inner gap", "engine/terms/pair_resistance.h",
-     "pair.surface_distance(), Real{inner_gap})", "pair.surface_distance(), Real{10 * inner_gap})"),
+    (
+        "plus sign in the second Brownian torque",
+        "engine/terms/pair_noise.h",
+        "root.pump_second * turned - root.spin_second * spun",
+        "root.pump_second * turned + root.spin_second * spun",
+    ),
+    (
+        "noise of half the variance",
+        "engine/kernels/pair_pass.cpp",
+        "std::sqrt(2 * physics.thermal_energy / timestep)",
+        "std::sqrt(physics.thermal_energy / timestep)",
+    ),
+    (
+        "image velocity missing",
+        "engine/state/sheared_box.h",
+        "return shear_rate_ * lengths_.y * k.y;",
+        "return 0 * shear_rate_ * lengths_.y * k.y;",
+    ),
+    (
+        "torque coupling of lubrication omitted",
+        "engine/terms/pair_resistance.h",
+        "      .pump_first = k.pump_first * pump,\n      .pump_second = k.pump_second * pump,\n",
+        "      .pump_first = 0.0 * pump,\n      .pump_second = 0.0 * pump,\n",
+    ),
+    (
+        "squeeze mode doubled",
+        "engine/terms/pair_resistance.h",
+        ".squeeze_inverse = six * 2 * b * b / cube",
+        ".squeeze_inverse = six * 4 * b * b / cube",
+    ),
+    (
+        "shear mode with another sign",
+        "engine/terms/lubrication.h",
+        "(R.squeeze * closing) * n + R.shear * sliding",
+        "(R.squeeze * closing) * n - R.shear * sliding",
+    ),
+    (
+        "every pair counted twice in the stress",
+        "engine/observables/production.cpp",
+        "block.stress[t] += sums.stress[t];",
+        "block.stress[t] += 2 * sums.stress[t];",
+    ),
+    (
+        "contact half as stiff",
+        "engine/terms/contact.h",
+        "(-normal_stiffness * pair.overlap())",
+        "(-0.5 * normal_stiffness * pair.overlap())",
+    ),
+    (
+        "spheres carried round the wrong way",
+        "engine/terms/drag.h",
+        "{0, 0, -0.5 * shear_rate}",
+        "{0, 0, 0.5 * shear_rate}",
+    ),
+    (
+        "drag of a slip sphere",
+        "engine/terms/drag.h",
+        "return 6 * std::numbers::pi * viscosity * radius;",
+        "return 4 * std::numbers::pi * viscosity * radius;",
+    ),
+    (
+        "hollow spheres",
+        "engine/state/particles.cpp",
+        "particles.inertia.push_back(0.4 * mass",
+        "particles.inertia.push_back(2.0 / 3 * mass",
+    ),
+    (
+        "friction twice as strong",
+        "engine/kernels/pairs/pair_terms.h",
+        "(contact.friction / contact.tangential_stiffness) * normal_force",
+        "(2 * contact.friction / contact.tangential_stiffness) * normal_force",
+    ),
+    (
+        "contact spring that is not turned",
+        "engine/terms/tangential_spring.h",
+        "Vector3Of<Real> turned = across(spring, normal);",
+        "Vector3Of<Real> turned = spring + Real{0.0} * across(spring, normal);",
+    ),
+    (
+        "repulsion of twice the range",
+        "engine/terms/repulsion.h",
+        "exponential((-1 / length)",
+        "exponential((-0.5 / length)",
+    ),
+    (
+        "structural stress from one side of each pair",
+        "engine/observables/structure.cpp",
+        "within(kind.radius_first) + within(kind.radius_second)",
+        "within(kind.radius_first)",
+    ),
+    (
+        "gap clamped at ten times the inner gap",
+        "engine/terms/pair_resistance.h",
+        "pair.surface_distance(), Real{inner_gap})",
+        "pair.surface_distance(), Real{10 * inner_gap})",
+    ),
 ]
 
-STUDIES = ["convergence", "diffusion", "divergence", "flow-curve", "friction-repulsion", "inertia", "literature", "microstructure", "pair-potential", "zero-shear", "speed-accuracy", "stability"]
+STUDIES = [
+    "convergence",
+    "diffusion",
+    "divergence",
+    "flow-curve",
+    "friction-repulsion",
+    "inertia",
+    "literature",
+    "microstructure",
+    "pair-potential",
+    "zero-shear",
+    "speed-accuracy",
+    "stability",
+]
 
 
 def replaced(mutation, root):
@@ -72,7 +153,9 @@ def replaced(mutation, root):
 
 def copy_of_source(folder):
     os.makedirs(folder, exist_ok=True)
-    files = subprocess.run(["git", "ls-files", "-z"], cwd=SOURCE, check=True, capture_output=True, text=True).stdout.split("\0")
+    files = subprocess.run(
+        ["git", "ls-files", "-z"], cwd=SOURCE, check=True, capture_output=True, text=True
+    ).stdout.split("\0")
     for file in filter(None, files):
         target = os.path.join(folder, file)
         os.makedirs(os.path.dirname(target), exist_ok=True)
@@ -85,9 +168,18 @@ def copy_of_source(folder):
 
 def build(folder, jobs, targets=("peclet", "peclet-engine", "engine_tests", "physics_tests")):
     if not os.path.exists(os.path.join(folder, "build/release/build.ninja")):
-        subprocess.run(["cmake", "--preset", "release", "-DBUILD_TESTING=ON", "-DPECLET_WERROR=OFF"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
-    done = subprocess.run(["cmake", "--build", "--preset", "release", "--target", *targets, "--", f"-j{jobs}"],
-                          cwd=folder, capture_output=True, text=True)
+        subprocess.run(
+            ["cmake", "--preset", "release", "-DBUILD_TESTING=ON", "-DPECLET_WERROR=OFF"],
+            cwd=folder,
+            check=True,
+            stdout=subprocess.DEVNULL,
+        )
+    done = subprocess.run(
+        ["cmake", "--build", "--preset", "release", "--target", *targets, "--", f"-j{jobs}"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+    )
     if done.returncode != 0:
         sys.exit(f"{folder}: does not build\n{done.stdout[-3000:]}")
 
@@ -95,7 +187,13 @@ def build(folder, jobs, targets=("peclet", "peclet-engine", "engine_tests", "phy
 def failed_tests(folder, program, arguments):
     """Names of the tests that fail, or the signal that ended them."""
     try:
-        done = subprocess.run([os.path.join(folder, "build/release/bin", program), *arguments], cwd=folder, capture_output=True, text=True, timeout=1800)
+        done = subprocess.run(
+            [os.path.join(folder, "build/release/bin", program), *arguments],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            timeout=1800,
+        )
     except subprocess.TimeoutExpired:
         return ["does not end"]
     names = re.findall(r"^\[  FAILED  \] ([\w./]+)(?:, |$| \()", done.stdout, re.M)
@@ -108,13 +206,20 @@ def who_notices(folder):
     for study in STUDIES:
         driver = next(d for d in ("study.py", "remake.py") if os.path.exists(os.path.join(folder, "results", study, d)))
         try:
-            done = subprocess.run(["/usr/bin/python3", os.path.join(folder, "results", study, driver), binaries, "--quick"], capture_output=True, timeout=1800)
+            done = subprocess.run(
+                ["/usr/bin/python3", os.path.join(folder, "results", study, driver), binaries, "--quick"],
+                capture_output=True,
+                timeout=1800,
+            )
         except subprocess.TimeoutExpired:
             noticed.append(f"study {study} (does not end)")
             continue
         if done.returncode != 0:
             noticed.append(f"study {study}")
-    for program, arguments in (("engine_tests", ["--gtest_filter=-Benchmark*"]), ("physics_tests", ["--gtest_filter=-PairDensity*"])):
+    for program, arguments in (
+        ("engine_tests", ["--gtest_filter=-Benchmark*"]),
+        ("physics_tests", ["--gtest_filter=-PairDensity*"]),
+    ):
         names = failed_tests(folder, program, arguments)
         if names:
             more = f" and {len(names) - 3} more" if len(names) > 3 else ""
@@ -128,7 +233,12 @@ def who_of_the_named(folder, names):
     for program in sorted({name.split(":")[0] for name in names}):
         tests = [name.split(":")[1] for name in names if name.startswith(program + ":")]
         chosen = [f"--gtest_filter={':'.join(tests)}"]
-        listed = subprocess.run([os.path.join(folder, "build/release/bin", program), *chosen, "--gtest_list_tests"], capture_output=True, text=True, check=True)
+        listed = subprocess.run(
+            [os.path.join(folder, "build/release/bin", program), *chosen, "--gtest_list_tests"],
+            capture_output=True,
+            text=True,
+            check=True,
+        )
         if listed.stdout.count("\n  ") < len(tests):
             sys.exit(f"{program} has not all of {', '.join(tests)}")
         noticed += [f"{program}: {name}" for name in failed_tests(folder, program, chosen)]
@@ -140,17 +250,22 @@ def git(*arguments):
 
 
 def commit_of_source():
-    return git("rev-parse", "--short=7", "HEAD") + (" with changes" if git("status", "--porcelain", "--untracked-files=no") else "")
+    return git("rev-parse", "--short=7", "HEAD") + (
+        " with changes" if git("status", "--porcelain", "--untracked-files=no") else ""
+    )
 
 
 def trees():
     """Of the engine and its tests: what the fine mistakes depend on. Outlives commits on other subjects."""
     folders = ("engine", "tests/engine", "tests/physics")
-    return " ".join(git("rev-parse", "--short=7", f"HEAD:{folder}") for folder in folders) + (" with changes" if git("status", "--porcelain", *folders) else "")
+    return " ".join(git("rev-parse", "--short=7", f"HEAD:{folder}") for folder in folders) + (
+        " with changes" if git("status", "--porcelain", *folders) else ""
+    )
 
 
 class Known:
-    """Who noticed what, of this call and of earlier ones with the same commit; of source with changes nothing is kept."""
+    """Who noticed what, of this call and of earlier ones with the same commit; of source with changes nothing is
+    kept."""
 
     def __init__(self, folder, commit, file):
         os.makedirs(folder, exist_ok=True)
@@ -182,8 +297,12 @@ def halves():
 def write_halves(before, rows):
     names = ["nothing", *(mutation[0] for mutation in NAMED)]
     with open(os.path.join(HERE, "mutations.md"), "w") as f:
-        f.write(f"{before}\n\n{MARK}\n`mutations.py --named` shows each to the one test of seconds that has to notice it. A row is made by itself (`--only WORD`); its last column is\n"
-                "the tree of `engine/` that it was made with (`git rev-parse HEAD:engine`).\n\n| broken | noticed by | engine |\n|---|---|---|\n")
+        f.write(
+            f"{before}\n\n{MARK}\n`mutations.py --named` shows each to the one test of seconds that has to notice "
+            "it. A row is made by itself (`--only WORD`); its last column is\n"
+            "the tree of `engine/` that it was made with (`git rev-parse HEAD:engine`).\n\n| broken | noticed by | "
+            "engine |\n|---|---|---|\n"
+        )
         f.write("".join(rows[name] + "\n" for name in names if name in rows))
 
 
@@ -216,7 +335,11 @@ def main():
         parser.error("needs a folder")
     chosen, who = (NAMED, fine) if arguments.named else (MUTATIONS, coarse)
     commit, tree = commit_of_source(), trees()
-    known = Known(arguments.folder, tree if arguments.named else commit, "noticed-named.json" if arguments.named else "noticed.json")
+    known = Known(
+        arguments.folder,
+        tree if arguments.named else commit,
+        "noticed-named.json" if arguments.named else "noticed.json",
+    )
     before, rows = halves()
     lines = []
     missed = 0
@@ -232,15 +355,22 @@ def main():
             known.add(mutation[0], who(arguments.folder, arguments.jobs, mutation))
         noticed = known.noticed[mutation[0]]
         missed += bool(mutation[1]) != bool(noticed)
-        lines.append(f"| {mutation[0]} | {'; '.join(noticed) or ('nobody' if mutation[1] else 'nobody, as it should be')} |")
+        lines.append(
+            f"| {mutation[0]} | {'; '.join(noticed) or ('nobody' if mutation[1] else 'nobody, as it should be')} |"
+        )
         print(lines[-1], flush=True)
         if arguments.named and known.lasting:
             rows[mutation[0]] = f"{lines[-1]} {tree.split()[0]} |"
             write_halves(before, rows)
     if not arguments.named and not arguments.only:
-        write_halves("# Who notices broken physics\n\nOne line of the engine is broken at a time, in a copy.\n\n## Coarse mistakes\n\n`mutations.py` shows each to the quick forms of the studies and "
-                     f"to all tests of the engine and of the physics. Commit {commit}, {processor()}, {datetime.date.today().isoformat()}.\n\n"
-                     "| broken | noticed by |\n|---|---|\n" + "\n".join(lines), rows)
+        write_halves(
+            "# Who notices broken physics\n\nOne line of the engine is broken at a time, in a copy.\n\n## Coarse "
+            "mistakes\n\n`mutations.py` shows each to the quick forms of the studies and "
+            f"to all tests of the engine and of the physics. Commit {commit}, {processor()}, "
+            f"{datetime.date.today().isoformat()}.\n\n"
+            "| broken | noticed by |\n|---|---|\n" + "\n".join(lines),
+            rows,
+        )
     return 1 if missed else 0
 
 

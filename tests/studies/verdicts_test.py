@@ -1,20 +1,22 @@
 #!/usr/bin/python3
 """How studies answer published statements, and whether their pages say what was found."""
 import contextlib
+import glob
 import io
 import json
 import math
 import os
 import re
+import subprocess
 import sys
+import tempfile
 import unittest
 import unittest.mock
 
 RESULTS = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "results")
 sys.path.insert(0, RESULTS)
-import studies  # noqa: E402
-from campaigns import student_quantile  # noqa: E402
-from studies import Statement, verdict  # noqa: E402
+from studies.command_line import main
+from studies.verdicts import Statement, verdict
 
 STUDIES = sorted(name for name in os.listdir(RESULTS) if os.path.exists(os.path.join(RESULTS, name, "study.json")))
 
@@ -31,7 +33,9 @@ class Found:
 
 def within_bounds(found):
     """Whether the value itself is what it must be: the error only decides whether that is known."""
-    return (found["low"] is None or found["low"] <= found["value"]) and (found["high"] is None or found["value"] <= found["high"])
+    return (found["low"] is None or found["low"] <= found["value"]) and (
+        found["high"] is None or found["value"] <= found["high"]
+    )
 
 
 def statement(value, error, low=-math.inf, high=math.inf, degrees=7, essential=True):
@@ -39,10 +43,6 @@ def statement(value, error, low=-math.inf, high=math.inf, degrees=7, essential=T
 
 
 class Answers(unittest.TestCase):
-    def test_quantiles_are_those_of_printed_tables(self):
-        for degrees, quantile in ((1, 12.706), (4, 2.776), (7, 2.365), (31, 2.040), (120, 1.980)):
-            self.assertAlmostEqual(student_quantile(degrees, 0.975), quantile, delta=6e-4)
-
     def test_an_interval_within_the_bounds_holds(self):
         self.assertEqual(statement(1.02, 0.01, 0.95, 1.05).answer(), "holds")  # to 1.0437
 
@@ -112,7 +112,11 @@ class Pages(unittest.TestCase):
             with open(os.path.join(RESULTS, name, "study.json")) as f:
                 found = json.load(f)["statements"]
             with open(os.path.join(RESULTS, name, "README.md")) as f:
-                rows = [line.strip().strip("|").split("|") for line in f if re.search(r"\| (holds|fails|open) \|$", line.strip())]
+                rows = [
+                    line.strip().strip("|").split("|")
+                    for line in f
+                    if re.search(r"\| (holds|fails|open) \|$", line.strip())
+                ]
             with self.subTest(name):
                 self.assertEqual(len(rows), len(found))
             for row, entry in zip(rows, found):
@@ -127,17 +131,43 @@ class Pages(unittest.TestCase):
                             # What is stored has five digits itself.
                             self.assertLessEqual(abs(printed - entry[key]), half * 1.001 + abs(entry[key]) * 5e-5)
                     bounds = [float(number) for number in re.findall("-?[0-9.]+", row[-2].replace("−", "-"))]
-                    self.assertEqual([f"{b:.4g}" for b in bounds], [f"{entry[key]:.4g}" for key in ("low", "high") if entry[key] is not None])
+                    self.assertEqual(
+                        [f"{b:.4g}" for b in bounds],
+                        [f"{entry[key]:.4g}" for key in ("low", "high") if entry[key] is not None],
+                    )
 
 
 class Folders(unittest.TestCase):
     def test_a_study_that_may_not_write_what_it_finds_says_so_before_it_computes(self):
         said = io.StringIO()
-        with unittest.mock.patch("sys.argv", ["study.py", "/nowhere"]), unittest.mock.patch("os.access", return_value=False), \
-                contextlib.redirect_stderr(said), self.assertRaises(SystemExit) as ending:
-            studies.main("/installed/results/some-study", "Some study", self.fail, self.fail)
+        with unittest.mock.patch("sys.argv", ["study.py", "/nowhere"]), unittest.mock.patch(
+            "os.access", return_value=False
+        ), contextlib.redirect_stderr(said), self.assertRaises(SystemExit) as ending:
+            main("/installed/results/some-study", "Some study", self.fail, self.fail)
         self.assertEqual(ending.exception.code, 2)
         self.assertIn("/installed/results/some-study", said.getvalue())
+
+
+class Drivers(unittest.TestCase):
+    def test_that_lack_a_module_say_what_to_install(self):
+        absent = "raise ModuleNotFoundError(\"No module named 'numpy'\", name='numpy')"
+        scripts = [path for path in glob.glob(os.path.join(RESULTS, "*", "*.py")) if "/studies/" not in path]
+        self.assertGreaterEqual(len(scripts), 20)
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "numpy.py"), "w") as f:
+                f.write(absent)
+            for script in scripts:
+                with self.subTest(os.path.relpath(script, RESULTS)):
+                    done = subprocess.run(
+                        ["/usr/bin/python3", script],
+                        env={**os.environ, "PYTHONPATH": folder},
+                        stdin=subprocess.DEVNULL,
+                        capture_output=True,
+                        text=True,
+                    )
+                    self.assertEqual(done.returncode, 1)
+                    said = "studies need the Python module numpy: install python3-numpy and python3-scipy\n"
+                    self.assertEqual(done.stderr, said)
 
 
 if __name__ == "__main__":

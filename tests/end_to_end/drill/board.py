@@ -28,8 +28,9 @@ class Board:
         """Nothing is hit any more."""
         struct.pack_into("<q", self.page, 16, 1)
 
-    def environment(self, shim, role="any", call="any", number=0, action="kill", path=".peclet/,socket", times=1,
-                    journal=None):
+    def environment(
+        self, shim, role="any", call="any", number=0, action="kill", path=".peclet/,socket", times=1, journal=None
+    ):
         plan = f"role={role} call={call} number={number} action={action} path={path} for={times}"
         variables = {"LD_PRELOAD": shim, "PECLET_FAULT_BOARD": self.path, "PECLET_FAULT_PLAN": plan}
         if journal:

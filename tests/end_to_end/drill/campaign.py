@@ -25,8 +25,11 @@ FAKE = {
 REAL = {
     "name": "drill",
     "scene": {
-        "particles": {"count": 60, "density": 0.1,
-                      "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}]},
+        "particles": {
+            "count": 60,
+            "density": 0.1,
+            "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}],
+        },
         "volume_fraction": 0.4,
         "peclet": 10,
         "limits": {"shear_rate": 0.045, "thermal_energy": 0.01},
@@ -107,16 +110,34 @@ class Campaign:
             json.dump(self.document, f)
 
     def command(self):
-        return [self.lab.peclet, "run", "drill.json", "--workers", str(self.workers), "--threads", "1", "--quiet",
-                "--lease", str(self.lease), "--checkpoint", str(self.checkpoint)]
+        return [
+            self.lab.peclet,
+            "run",
+            "drill.json",
+            "--workers",
+            str(self.workers),
+            "--threads",
+            "1",
+            "--quiet",
+            "--lease",
+            str(self.lease),
+            "--checkpoint",
+            str(self.checkpoint),
+        ]
 
     def start(self, environment=None, command=None):
         variables = dict(os.environ, **self.environment, **(environment or {}))
         variables[MARKER] = self.folder
         self.left_alone = True
         with open(os.path.join(self.folder, "log"), "a") as log:
-            process = subprocess.Popen(command or self.command(), cwd=self.folder, stdin=subprocess.DEVNULL, stdout=log,
-                                       stderr=log, env=variables)
+            process = subprocess.Popen(
+                command or self.command(),
+                cwd=self.folder,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
+                env=variables,
+            )
         return process
 
     def run(self, environment=None):
@@ -154,7 +175,9 @@ class Campaign:
         with contextlib.suppress(FileNotFoundError):
             for name in os.listdir(self.path("spool")):
                 if re.fullmatch(r"[0-9a-f]{16}-\d+-\d+\.json", name):
-                    with contextlib.suppress(FileNotFoundError, ValueError, KeyError), open(self.path("spool", name)) as f:
+                    with contextlib.suppress(FileNotFoundError, ValueError, KeyError), open(
+                        self.path("spool", name)
+                    ) as f:
                         result = json.load(f)
                         found[result["point"][:16], result["seed"]] = result["final_state_sha256"]
         return found
@@ -185,8 +208,10 @@ class Campaign:
     def results(self):
         """The final states of what lies in spool or database: (hash's beginning, seed) -> hash of the state."""
         spooled = self.spool()
-        stored = self.query("SELECT substr(hash, 1, 16), seed, final_state_sha256 FROM realisation JOIN point USING "
-                            "(point_id) WHERE state IN ('done', 'failed')")
+        stored = self.query(
+            "SELECT substr(hash, 1, 16), seed, final_state_sha256 FROM realisation JOIN point USING "
+            "(point_id) WHERE state IN ('done', 'failed')"
+        )
         return {**spooled, **{(point, seed): state for point, seed, state in stored}}
 
     def last_attempt(self):
@@ -216,7 +241,8 @@ class Lab:
     def __init__(self, programs, folder):
         self.peclet, self.engine, self.fake_engine, self.shim = (
             os.path.abspath(os.path.join(programs, name))
-            for name in ("peclet", "peclet-engine", "fake_engine", "fault_shim.so"))
+            for name in ("peclet", "peclet-engine", "fake_engine", "fault_shim.so")
+        )
         self.folder = folder
         self.known = {}
 

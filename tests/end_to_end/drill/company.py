@@ -68,8 +68,10 @@ def readers(lab, tally, chance, loops, seeds):
     tally.expect(campaign, alive(stopped.pid), "the stopped reader has gone")
     os.kill(stopped.pid, signal.SIGCONT)
     tally.expect(campaign, stopped.wait(20) == 0, f"the stopped reader ended with exit code {stopped.returncode}")
-    tally.remarks.append(f"{len(answers)} answers, the slowest after {slowest[0]:.1f} s; {2 * seeds} results in "
-                         f"{seconds:.1f} s; the write-ahead log grew to {log / 1e6:.1f} MB beside the stopped reader")
+    tally.remarks.append(
+        f"{len(answers)} answers, the slowest after {slowest[0]:.1f} s; {2 * seeds} results in "
+        f"{seconds:.1f} s; the write-ahead log grew to {log / 1e6:.1f} MB beside the stopped reader"
+    )
     tally.judge(campaign, len(answers))
 
 
@@ -79,8 +81,12 @@ def stop_a_reader(campaign, tally):
     count = Board(campaign.folder)
     campaign.start(count.environment(campaign.lab.shim, call="read", path="campaign.db"), command).wait()
     board = Board(campaign.folder)
-    reader = campaign.start(board.environment(campaign.lab.shim, call="read", path="campaign.db", action="stop",
-                                              number=max(3, count.calls // 2)), command)
+    reader = campaign.start(
+        board.environment(
+            campaign.lab.shim, call="read", path="campaign.db", action="stop", number=max(3, count.calls // 2)
+        ),
+        command,
+    )
     patience = time.monotonic() + 20
     while not board.struck and time.monotonic() < patience and reader.poll() is None:
         time.sleep(0.005)

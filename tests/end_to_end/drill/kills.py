@@ -7,7 +7,7 @@ import signal
 import time
 
 from drill.board import Board
-from drill.campaign import FAKE, REAL, Campaign, children
+from drill.campaign import FAKE, Campaign, children
 from drill.power import acknowledged_spool, cut, read_journal
 
 
@@ -22,8 +22,8 @@ def strike(process, whom):
 
 
 def seconds_alone(lab, document, **settings):
-    """How long such a campaign takes on this machine, so that random moments are of its whole length; of a slow one some
-    seconds will do."""
+    """How long such a campaign takes on this machine, so that random moments are of its whole length; of a slow one
+    some seconds will do."""
     campaign = Campaign(lab, document, **settings)
     started = time.monotonic()
     campaign.run()

@@ -1,5 +1,5 @@
-"""What comes by socket and spool: frames and files that are repeated, out of order, cut off, too large, or somebody else's;
-and engines that hang, crash or lie."""
+"""What comes by socket and spool: frames and files that are repeated, out of order, cut off, too large, or somebody
+else's; and engines that hang, crash or lie."""
 import json
 import os
 import re
@@ -15,7 +15,9 @@ ENGINES = ["hang", "lie", "swap", "nan", "crash", "exit", "kill", "mute", "refus
 def engine_faults(lab, tally, chance, times, faults):
     """Six seeds of each point meet a fault, once or twice, at a random step; the third try is sound."""
     for _ in range(times):
-        kinds = " ".join(f"{chance.choice(faults)}:{seed}x{chance.randint(1, 2)}" for seed in chance.sample(range(12), 6))
+        kinds = " ".join(
+            f"{chance.choice(faults)}:{seed}x{chance.randint(1, 2)}" for seed in chance.sample(range(12), 6)
+        )
         campaign = Campaign(lab, lease=1, steps=10, step_ms=1, checkpoint=0.003)
         code = campaign.run({"PECLET_FAKE_FAULTS": kinds, "PECLET_FAKE_FAULT_STEP": str(chance.randint(0, 9))})
         tally.expect(campaign, code == lab.undisturbed(campaign)[0], f"{kinds}: exit code {code}")
@@ -35,12 +37,17 @@ def crash_at_each_step(lab, tally, chance, steps):
 
 
 def other_answer(lab, tally, chance, times):
-    """A worker that wakes up late has another result for its seed: exit code 6 from then on, the numbers as they were."""
+    """A worker that wakes up late has another result for its seed: exit code 6 from then on, the numbers as they
+    were."""
     for _ in range(times):
         campaign = Campaign(lab, workers=1)
         board = Board(campaign.folder)
-        owner = campaign.start(dict(board.environment(lab.shim, role="worker", call="rename", path="/spool/", number=1,
-                                                      action="wait"), PECLET_FAKE_DRIFT="1"))
+        owner = campaign.start(
+            dict(
+                board.environment(lab.shim, role="worker", call="rename", path="/spool/", number=1, action="wait"),
+                PECLET_FAKE_DRIFT="1",
+            )
+        )
         while not board.struck and owner.poll() is None:
             time.sleep(0.002)
         owner.kill()
@@ -63,16 +70,26 @@ def spool_files(lab, tally, chance, times):
     for _ in range(times):
         campaign = Campaign(lab)
         board = Board(campaign.folder)
-        campaign.run(board.environment(lab.shim, role="owner", call="remove", path="/spool/", number=chance.randint(1, 12),
-                                       action="cut"))
+        campaign.run(
+            board.environment(
+                lab.shim, role="owner", call="remove", path="/spool/", number=chance.randint(1, 12), action="cut"
+            )
+        )
         campaign.settle()
         campaign.acknowledge()
         spool = campaign.path("spool")
         name = next(name for name in os.listdir(spool) if re.fullmatch(r"[0-9a-f]{16}-\d+-\d+\.json", name))
         put = litter(spool, name, chance)
         campaign.run()
-        tally.expect(campaign, not [left for left in os.listdir(spool) if left.endswith(".json") and "folder" not in left
-                                    and "nowhere" not in left], "files were left in the spool")
+        tally.expect(
+            campaign,
+            not [
+                left
+                for left in os.listdir(spool)
+                if left.endswith(".json") and "folder" not in left and "nowhere" not in left
+            ],
+            "files were left in the spool",
+        )
         kept = len(os.listdir(os.path.join(spool, "rejected")))
         tally.expect(campaign, kept == put, f"{kept} files were kept aside, not {put}")
         tally.judge(campaign, put)
@@ -89,7 +106,7 @@ def litter(spool, name, chance):
     lie = json.dumps(result).encode()
     foreign = json.dumps(dict(json.loads(good), point="f" * 64)).encode()
     bad = {
-        f"{point}-{seed}-9001.json": good[:chance.randint(1, len(good) - 1)],  # cut off
+        f"{point}-{seed}-9001.json": good[: chance.randint(1, len(good) - 1)],  # cut off
         f"{point}-{seed}-9002.json": b"",
         f"{point}-{seed}-9003.json": chance.randbytes(len(good)),
         f"{point}-{other}-9004.json": lie,  # another seed's, and wrong

@@ -1,8 +1,8 @@
 """A power cut: takes back what the shim's journal (shim/journal.h) says was changed and never synchronised.
 
-What is on the disk afterwards is any mixture of what was there at the last fsync and what was written since: per file, of
-sectors; per folder, of its first changes without the later ones. The strict reading of POSIX: a file's fsync does not save
-its name, only that of its folder does."""
+What is on the disk afterwards is any mixture of what was there at the last fsync and what was written since: per file,
+of sectors; per folder, of its first changes without the later ones. The strict reading of POSIX: a file's fsync does
+not save its name, only that of its folder does."""
 import contextlib
 import os
 import re
@@ -34,7 +34,7 @@ def read_journal(folder):
                 break
             line = content[place:end].decode()
             count = int(line.split(" ", 6)[5])
-            records.append(Record(line, content[end + 1:end + 1 + count]))
+            records.append(Record(line, content[end + 1 : end + 1 + count]))
             place = end + 1 + count
     return sorted(records, key=lambda record: record.sequence)
 
@@ -58,10 +58,10 @@ def undo(image, record):
     if record.kind == "truncate":
         if len(image) < record.size:  # it grew again only if a later record says so, which has been undone
             image.extend(bytes(record.size - len(image)))
-        image[record.offset:record.size] = record.data
+        image[record.offset : record.size] = record.data
     else:
-        image[record.offset:record.offset + len(record.data)] = record.data
-        del image[record.size:]
+        image[record.offset : record.offset + len(record.data)] = record.data
+        del image[record.size :]
     return image
 
 
@@ -70,8 +70,8 @@ def mixture(old, new, chance):
     size = chance.choice((len(old), len(new)))
     mixed = bytearray(size)
     for begin in range(0, size, SECTOR):
-        source = chance.choice((old, new))[begin:begin + SECTOR]
-        mixed[begin:begin + len(source)] = source[:size - begin]
+        source = chance.choice((old, new))[begin : begin + SECTOR]
+        mixed[begin : begin + len(source)] = source[: size - begin]
     return mixed
 
 
@@ -82,8 +82,8 @@ def files_below(folder):
 
 
 def cut(campaign, journal, chance):
-    """Takes back a random part of what was not synchronised. Returns the numbers of changes of contents and of names that
-    were at stake, and notes in the campaign what had been acknowledged."""
+    """Takes back a random part of what was not synchronised. Returns the numbers of changes of contents and of names
+    that were at stake, and notes in the campaign what had been acknowledged."""
     records = read_journal(journal)
     contents = spoil_contents(campaign, journal, records, chance)
     names = spoil_names(journal, records, chance)
@@ -129,7 +129,7 @@ def spoil_names(journal, records, chance):
     count = 0
     taken_back = []
     for changes in by_folder.values():
-        taken_back += changes[chance.randint(0, len(changes)):]
+        taken_back += changes[chance.randint(0, len(changes)) :]
         count += len(changes)
     # Newest first, over all folders: a change may rest upon one of another folder.
     for record in sorted(taken_back, key=lambda each: -each.sequence):

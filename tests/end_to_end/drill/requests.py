@@ -8,9 +8,14 @@ from drill.board import Board
 from drill.campaign import FAKE, Campaign
 from drill.kills import kind_of
 
-WISHES = [["set", "drill.json", "--tolerance", "0.3"], ["set", "drill.json", "--tolerance", "0.05", "--maximum", "20"],
-          ["set", "drill.json", "--point", "peclet=2", "--priority", "3"], ["cancel", "drill.json", "peclet=2"],
-          ["cancel", "drill.json", "peclet=2", "--undo"], ["retry", "drill.json"]]
+WISHES = [
+    ["set", "drill.json", "--tolerance", "0.3"],
+    ["set", "drill.json", "--tolerance", "0.05", "--maximum", "20"],
+    ["set", "drill.json", "--point", "peclet=2", "--priority", "3"],
+    ["cancel", "drill.json", "peclet=2"],
+    ["cancel", "drill.json", "peclet=2", "--undo"],
+    ["retry", "drill.json"],
+]
 # As the undisturbed campaign was from the beginning.
 LAST = [["set", "drill.json", "--tolerance", "0.08", "--maximum", "14"], ["cancel", "drill.json", "peclet=2", "--undo"]]
 
@@ -44,7 +49,8 @@ def changes_and_kills(lab, tally, chance, times):
 
 
 def edges_of_a_verb(lab, tally, chance, stride):
-    """A finished campaign is reopened, and the verb is killed before every call that changes a file; it is said again."""
+    """A finished campaign is reopened, and the verb is killed before every call that changes a file; it is said
+    again."""
     calls, struck, number = None, collections.Counter(), 1 if stride == 1 else chance.randint(1, stride)
     tighten = [lab.peclet, "set", "drill.json", "--tolerance", str(FAKE["target"]["relative_tolerance"])]
     while calls is None or number <= calls:

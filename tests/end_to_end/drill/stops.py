@@ -53,8 +53,8 @@ def worker_stopped(lab, tally, chance, times):
 
 
 def late_workers(lab, tally, chance, times):
-    """A worker hangs in one of its calls, its owner dies, another one runs the campaign, and then it goes on. (It cannot be
-    stopped for that: a stopped process whose owner dies is ended by the system with SIGHUP.)"""
+    """A worker hangs in one of its calls, its owner dies, another one runs the campaign, and then it goes on. (It
+    cannot be stopped for that: a stopped process whose owner dies is ended by the system with SIGHUP.)"""
     for _ in range(times):
         campaign = Campaign(lab, checkpoint=0.001, steps=10, step_ms=1)
         board = Board(campaign.folder)
@@ -83,8 +83,11 @@ def owner_stopped(lab, tally, chance, times):
         board = Board(campaign.folder)
         if number % 2 == 0:
             call, path = chance.choice((("any", ".peclet/,socket"), ("write", "campaign.db"), ("read", "campaign.db")))
-            owner = campaign.start(board.environment(lab.shim, role="owner", call=call, path=path,
-                                                     number=chance.randint(20, 60), action="stop"))
+            owner = campaign.start(
+                board.environment(
+                    lab.shim, role="owner", call=call, path=path, number=chance.randint(20, 60), action="stop"
+                )
+            )
             while not board.struck and owner.poll() is None:
                 time.sleep(0.005)
         else:
@@ -123,8 +126,15 @@ def clock_jumps(lab, tally, chance, times):
 
         now = "+0"
         set_clock(now)
-        owner = campaign.start({"LD_PRELOAD": libraries[0], "FAKETIME_TIMESTAMP_FILE": clock, "FAKETIME_NO_CACHE": "1",
-                                "FAKETIME_DONT_FAKE_MONOTONIC": "1", "NO_FAKE_STAT": "1"})
+        owner = campaign.start(
+            {
+                "LD_PRELOAD": libraries[0],
+                "FAKETIME_TIMESTAMP_FILE": clock,
+                "FAKETIME_NO_CACHE": "1",
+                "FAKETIME_DONT_FAKE_MONOTONIC": "1",
+                "NO_FAKE_STAT": "1",
+            }
+        )
         while owner.poll() is None:
             time.sleep(chance.uniform(0.02, 0.15))
             now = chance.choice([offset for offset in ("+1d", "-1d", "+0") if offset != now])

@@ -14,8 +14,8 @@ CLONE_NEWNS, CLONE_NEWUSER = 0x00020000, 0x10000000
 
 
 def failing_calls(lab, tally, chance, call, action, path, stride=1, role="owner", document=SHORT):
-    """The nth call fails, for all n: the run ends with exit code 1 and a message, or goes on. What cannot be read may be
-    called damaged (6), as SQLite does."""
+    """The nth call fails, for all n: the run ends with exit code 1 and a message, or goes on. What cannot be read may
+    be called damaged (6), as SQLite does."""
     allowed = {1, 6} if call == "read" else {1}
     calls, number, codes = None, 1 if stride == 1 else chance.randint(1, stride), collections.Counter()
     while calls is None or number <= calls:
@@ -30,8 +30,11 @@ def failing_calls(lab, tally, chance, call, action, path, stride=1, role="owner"
         log = campaign.log().splitlines()
         what = f"{board.what} (call {number})"
         tally.expect(campaign, code in allowed | {lab.undisturbed(campaign)[0]}, f"{what}: exit code {code}")
-        tally.expect(campaign, code not in allowed or any(line.startswith("peclet: ") and len(line) > 20 for line in log),
-                     f"{what}: no message")
+        tally.expect(
+            campaign,
+            code not in allowed or any(line.startswith("peclet: ") and len(line) > 20 for line in log),
+            f"{what}: no message",
+        )
         tally.judge(campaign)
         number += stride
     tally.remarks.append("exit codes " + ", ".join(f"{code}: {count}" for code, count in sorted(codes.items())))

@@ -1,6 +1,5 @@
 """What is counted against the programs: results lost or counted twice, exports that differ, and anything else that
 should not have happened."""
-import sqlite3
 
 
 class Tally:
@@ -10,7 +9,7 @@ class Tally:
         self.name = name
         self.tried = self.lost = self.double = self.different = self.other = 0
         self.seconds = 0.0
-        self.remarks = []    # measured by the way, for the table's foot
+        self.remarks = []  # measured by the way, for the table's foot
         self.complaints = []
 
     def complain(self, campaign, message, column="other", count=1):
@@ -22,8 +21,8 @@ class Tally:
             self.complain(campaign, message)
 
     def judge(self, campaign, tried=1, code=None):
-        """Runs the disturbed campaign to its end in peace and compares it with the undisturbed one; `code` is the exit code
-        to expect when it is not that one's."""
+        """Runs the disturbed campaign to its end in peace and compares it with the undisturbed one; `code` is the exit
+        code to expect when it is not that one's."""
         self.tried += tried
         campaign.settle()
         campaign.acknowledge()
@@ -41,27 +40,45 @@ class Tally:
 
     def _count_losses(self, campaign):
         """An acknowledged result that is absent, another one, or was computed once more has been lost."""
-        stored = {(point, seed): state for point, seed, state in campaign.query(
-            "SELECT substr(hash, 1, 16), seed, final_state_sha256 FROM realisation JOIN point USING (point_id) "
-            "JOIN result USING (point_id, seed) WHERE state IN ('done', 'failed')")}
-        latest = {(point, seed): attempt for point, seed, attempt in campaign.query(
-            "SELECT substr(hash, 1, 16), seed, max(attempt_id) FROM attempt JOIN point USING (point_id) GROUP BY 1, 2")}
-        lost = [key for key, (state, last) in campaign.safe.items()
-                if stored.get(key) != state or latest.get(key, 0) > last]
+        stored = {
+            (point, seed): state
+            for point, seed, state in campaign.query(
+                "SELECT substr(hash, 1, 16), seed, final_state_sha256 FROM realisation JOIN point USING (point_id) "
+                "JOIN result USING (point_id, seed) WHERE state IN ('done', 'failed')"
+            )
+        }
+        latest = {
+            (point, seed): attempt
+            for point, seed, attempt in campaign.query(
+                "SELECT substr(hash, 1, 16), seed, max(attempt_id) FROM attempt JOIN point USING (point_id) GROUP BY "
+                "1, 2"
+            )
+        }
+        lost = [
+            key for key, (state, last) in campaign.safe.items() if stored.get(key) != state or latest.get(key, 0) > last
+        ]
         if lost:
             self.complain(campaign, f"acknowledged and lost: {sorted(lost)}", "lost", len(lost))
 
     def _count_doubles(self, campaign):
         ended = campaign.count("SELECT count(*) FROM realisation WHERE state IN ('done', 'failed')")
         results = campaign.count("SELECT count(*) FROM result")
-        credited = campaign.count("SELECT count(*) FROM (SELECT 1 FROM attempt WHERE outcome = 'result' "
-                                  "GROUP BY point_id, seed HAVING count(*) > 1)")
-        again = campaign.count("SELECT count(*) FROM attempt late JOIN attempt first USING (point_id, seed) "
-                               "WHERE first.outcome = 'result' AND late.attempt_id > first.attempt_id")
+        credited = campaign.count(
+            "SELECT count(*) FROM (SELECT 1 FROM attempt WHERE outcome = 'result' "
+            "GROUP BY point_id, seed HAVING count(*) > 1)"
+        )
+        again = campaign.count(
+            "SELECT count(*) FROM attempt late JOIN attempt first USING (point_id, seed) "
+            "WHERE first.outcome = 'result' AND late.attempt_id > first.attempt_id"
+        )
         surplus = abs(results - ended) + credited + again
         if surplus:
-            self.complain(campaign, f"{ended} ended, {results} results, {credited} credited twice, {again} run again after "
-                          "their result", "double", surplus)
+            self.complain(
+                campaign,
+                f"{ended} ended, {results} results, {credited} credited twice, {again} run again after " "their result",
+                "double",
+                surplus,
+            )
 
     def row(self):
         return [self.name, self.tried, self.lost, self.double, self.different, self.other, f"{self.seconds:.0f}"]

@@ -1,2 +1,2 @@
-"""The hostile-folder drill's parts: the campaign that is tried and how it is judged (trial), what can be put where (things),
-and the ways, by the folder they lie in (ways)."""
+"""The hostile-folder drill's parts: the campaign that is tried and how it is judged (trial), what can be put where
+(things), and the ways, by the folder they lie in (ways)."""

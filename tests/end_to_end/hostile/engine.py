@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""engine.py WAY TIMES: an engine that speaks the frames honestly, until it is asked for seed 2: that one's first TIMES tries
-go wrong in a WAY of lies.py. Ways with names that begin with hello or validate lie there instead."""
+"""engine.py WAY TIMES: an engine that speaks the frames honestly, until it is asked for seed 2: that one's first TIMES
+tries go wrong in a WAY of lies.py. Ways with names that begin with hello or validate lie there instead."""
 import hashlib
 import json
 import os
@@ -11,7 +11,7 @@ import sys
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-from hostile import lies  # noqa: E402
+from hostile import lies
 
 STEPS = 4
 IDENTITY = {"version": "1.0", "instruction_set": "none", "binary_sha256": hashlib.sha256(b"hostile").hexdigest()}
@@ -69,8 +69,16 @@ class Engine:
                 self.run_job(message)
 
     def validate(self, message):
-        answer = {"type": "validated", "request": message["request"], "timestep": 0.1, "steps": STEPS, "particles": 1,
-                  "derived": {}, "warnings": [], "observables": ["relative_viscosity"]}
+        answer = {
+            "type": "validated",
+            "request": message["request"],
+            "timestep": 0.1,
+            "steps": STEPS,
+            "particles": 1,
+            "derived": {},
+            "warnings": [],
+            "observables": ["relative_viscosity"],
+        }
         if self.way.place == "validate":
             self.way.lie(self, answer)
         else:
@@ -91,20 +99,42 @@ class Engine:
         self.deliver(job, json.dumps(self.result(job)).encode())
 
     def progress(self, job, step, **changed):
-        self.send({"type": "progress", "job": job["job"], "phase": "production", "step": step, "steps": STEPS,
-                   "strain": 0.1, **changed})
+        self.send(
+            {
+                "type": "progress",
+                "job": job["job"],
+                "phase": "production",
+                "step": step,
+                "steps": STEPS,
+                "strain": 0.1,
+                **changed,
+            }
+        )
 
     def result(self, job):
         value = 10 + 0.01 * (job["seed"] % 3)
-        return {"schema_version": 1, "point": job["point"], "seed": job["seed"],
-                "ending": {"cause": "completed", "step": STEPS, "message": "", "state": None}, "method": None,
-                "timestep": 0.1, "steps": {"equilibration": 0, "production": STEPS},
-                "strain": {"equilibration": 0, "production": 0.4}, "time": {"equilibration": 0, "production": 0.4},
-                "derived": {}, "warnings": [], "units": "scene",
-                "mean": {"relative_viscosity": value, "control_variates": {"brownian_pairwise": None}},
-                "blocks": {"relative_viscosity": [value] * 32}, "statistical_inefficiency": 1, "largest_overlap": 0,
-                "gate": None, "cost": {"cpu_seconds": 0.1, "wall_seconds": 0.1},
-                "final_state_sha256": hashlib.sha256(str(job["seed"]).encode()).hexdigest(), "engine": IDENTITY}
+        return {
+            "schema_version": 1,
+            "point": job["point"],
+            "seed": job["seed"],
+            "ending": {"cause": "completed", "step": STEPS, "message": "", "state": None},
+            "method": None,
+            "timestep": 0.1,
+            "steps": {"equilibration": 0, "production": STEPS},
+            "strain": {"equilibration": 0, "production": 0.4},
+            "time": {"equilibration": 0, "production": 0.4},
+            "derived": {},
+            "warnings": [],
+            "units": "scene",
+            "mean": {"relative_viscosity": value, "control_variates": {"brownian_pairwise": None}},
+            "blocks": {"relative_viscosity": [value] * 32},
+            "statistical_inefficiency": 1,
+            "largest_overlap": 0,
+            "gate": None,
+            "cost": {"cpu_seconds": 0.1, "wall_seconds": 0.1},
+            "final_state_sha256": hashlib.sha256(str(job["seed"]).encode()).hexdigest(),
+            "engine": IDENTITY,
+        }
 
     def spool(self, job, text):
         temporary = f"{job['spool']}.{os.getpid()}.0.tmp"
@@ -113,8 +143,15 @@ class Engine:
         os.rename(temporary, job["spool"])
 
     def announce(self, job, text, **changed):
-        self.send({"type": "result", "job": job["job"], "spool": job["spool"],
-                   "sha256": hashlib.sha256(text).hexdigest(), **changed})
+        self.send(
+            {
+                "type": "result",
+                "job": job["job"],
+                "spool": job["spool"],
+                "sha256": hashlib.sha256(text).hexdigest(),
+                **changed,
+            }
+        )
 
     def deliver(self, job, text):
         self.spool(job, text)

@@ -22,11 +22,13 @@ def way(name, fate="again", place="job", codes=(), text=None, slow=False):
         assert name not in WAYS, name
         WAYS[name] = Way(name, place, fate, codes, lie, text, slow)
         return lie
+
     return register
 
 
 def document(name, change, **about):
     """A result whose text is made from the honest document; so the same can be put into the spool."""
+
     def text(result):
         changed = change(result)
         if changed is None:
@@ -47,6 +49,7 @@ def setting(*keys):
         for key in way_there:
             inner = inner[key]
         inner[last] = value
+
     return change
 
 
@@ -58,14 +61,17 @@ def without(*keys):
         for key in way_there:
             inner = inner[key]
         del inner[last]
+
     return change
 
 
 def spelt(number):
     """The value in a spelling that json.dumps does not know; what is long is made when it is asked for."""
+
     def change(result):
         text = json.dumps({**result, "mean": {"relative_viscosity": "HERE"}})
         return text.replace('"HERE"', number() if callable(number) else number).encode()
+
     return change
 
 
@@ -151,6 +157,7 @@ document("mean without the observable", without("mean", "relative_viscosity"), f
 
 # The file.
 
+
 @way("file absent")
 def file_absent(engine, job):
     engine.announce(job, json.dumps(engine.result(job)).encode())
@@ -232,6 +239,7 @@ def hash_number(engine, job):
 
 
 # Frames.
+
 
 def raw(name, data, **about):
     @way(name, **about)
@@ -413,6 +421,7 @@ def prints_for_ever(engine, job):
 
 # Who it is; told by workers only, from the second process on.
 
+
 def hello(name, fate="ends", codes=(1, 6), **changed):
     @way("hello " + name, fate=fate, place="hello", codes=codes)
     def lie(engine, honest):
@@ -455,6 +464,7 @@ def hello_changes(engine, honest):
 
 # What it says about scenes.
 
+
 def validate(name, codes=(1,), **changed):
     @way("validate " + name, fate="refused", place="validate", codes=codes)
     def lie(engine, honest):
@@ -470,7 +480,14 @@ validate("with names that move the cursor", derived={ESCAPE: 1})
 validate("with warnings in words", warnings="none")
 validate("with other observables", codes=(2,), observables=[ESCAPE] * 3000)
 validate("with another answer", type="progress")
-validate("refused with a novel", codes=(2,), type="refused", pointer=ESCAPE * 1000, value=ESCAPE * 1000, allowed=ESCAPE * 1000)
+validate(
+    "refused with a novel",
+    codes=(2,),
+    type="refused",
+    pointer=ESCAPE * 1000,
+    value=ESCAPE * 1000,
+    allowed=ESCAPE * 1000,
+)
 
 
 @way("validate and print without end", fate="refused", place="validate", codes=(1,))

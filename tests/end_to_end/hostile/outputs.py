@@ -7,7 +7,8 @@ import threading
 from . import things
 from .trial import Wrong
 
-SCENE = """{ "particles": { "count": 20, "density": 0.1, "species": [ { "radius": 1, "volume_share": 1 } ] }, "volume_fraction": 0.2,
+SCENE = """{ "particles": { "count": 20, "density": 0.1, "species": [ { "radius": 1, "volume_share": 1 } ] },
+"volume_fraction": 0.2,
 "fluid": { "viscosity": 0.1 }, "flow": { "shear_rate": 0.05 }, "contact": { "normal_stiffness": 1e4 },
 "duration": { "equilibration": { "strain": 0.001 }, "production": { "strain": 0.01 } } }"""
 
@@ -122,8 +123,12 @@ def check(peclet, engine, campaign):
     with open(os.path.join(folder, "scene.json"), "w") as f:
         f.write(SCENE)
     passed = True
-    for command, begins in ((f"{peclet} export ../drill.json --csv", "label"), (f"{peclet} report ../drill.json", "<!"),
-                            (f"{peclet} completion bash", "#"), (f"{engine} run scene.json", "{")):
+    for command, begins in (
+        (f"{peclet} export ../drill.json --csv", "label"),
+        (f"{peclet} report ../drill.json", "<!"),
+        (f"{peclet} completion bash", "#"),
+        (f"{engine} run scene.json", "{"),
+    ):
         words = []
         for kind in KINDS:
             try:

@@ -112,6 +112,7 @@ def text(content):
         make_way(path)
         with open(path, "w") as f:
             f.write(content)
+
     return put
 
 
@@ -134,6 +135,7 @@ def crowd(number, content="{", names="{}.json"):
         for i in range(trial.crowd(number)):
             with open(os.path.join(path, names.format(i)), "w") as f:
                 f.write(content)
+
     return put
 
 
@@ -141,4 +143,5 @@ def crowd_of_links(number):
     def put(path, trial):
         for i in range(trial.crowd(number)):
             os.symlink(trial.victim, os.path.join(path, f"{i}.json"))
+
     return put

@@ -1,5 +1,5 @@
-"""One way that is tried: a campaign of which some seeds have ended, what somebody has put into its folder, and what the programs
-do about it."""
+"""One way that is tried: a campaign of which some seeds have ended, what somebody has put into its folder, and what the
+programs do about it."""
 import json
 import os
 import re
@@ -34,7 +34,8 @@ class Stock:
 
     def __init__(self, programs, folder):
         self.peclet, self.engine, self.fake_engine = (
-            os.path.abspath(os.path.join(programs, name)) for name in ("peclet", "peclet-engine", "fake_engine"))
+            os.path.abspath(os.path.join(programs, name)) for name in ("peclet", "peclet-engine", "fake_engine")
+        )
         self.folder = folder
         self.known = {}
 
@@ -59,8 +60,15 @@ NOBODY = {"user": 65534, "group": 65534, "extra_groups": []}
 def run(peclet, folder, *arguments, humble=False):
     """One call, whose memory, time and last word are judged by whoever asked for it."""
     with open(os.path.join(folder, "said.out"), "wb") as out, open(os.path.join(folder, "said.err"), "wb") as err:
-        process = subprocess.Popen([peclet, *arguments], cwd=folder, stdin=subprocess.DEVNULL, stdout=out, stderr=err,
-                                   start_new_session=True, **(NOBODY if humble and ROOT else {}))
+        process = subprocess.Popen(
+            [peclet, *arguments],
+            cwd=folder,
+            stdin=subprocess.DEVNULL,
+            stdout=out,
+            stderr=err,
+            start_new_session=True,
+            **(NOBODY if humble and ROOT else {}),
+        )
         end = time.monotonic() + PATIENCE
         while True:
             done, status, usage = os.wait4(process.pid, os.WNOHANG)
@@ -133,8 +141,10 @@ class Trial:
         if "{point}" in path:
             database = sqlite3.connect(f"file:{self.data}/campaign.db?mode=ro", uri=True)
             try:
-                point, seed = database.execute("SELECT substr(hash, 1, 16), max(seed) + 1 FROM realisation JOIN point USING "
-                                               "(point_id) WHERE state = 'done' GROUP BY point_id ORDER BY place LIMIT 1").fetchone()
+                point, seed = database.execute(
+                    "SELECT substr(hash, 1, 16), max(seed) + 1 FROM realisation JOIN point USING "
+                    "(point_id) WHERE state = 'done' GROUP BY point_id ORDER BY place LIMIT 1"
+                ).fetchone()
             finally:
                 database.close()
             path = path.format(point=point, seed=seed)
@@ -161,7 +171,12 @@ class Trial:
         self.way.put(place, self)
         before = picture(self.folder, self.data)
         if not self.short:
-            for verb in (["status", "drill.json"], ["doctor", "drill.json"], ["explain", "drill.json"], ["backup", "drill.json", "copy"]):
+            for verb in (
+                ["status", "drill.json"],
+                ["doctor", "drill.json"],
+                ["explain", "drill.json"],
+                ["backup", "drill.json", "copy"],
+            ):
                 self.says(*verb)
             shutil.rmtree(os.path.join(self.folder, "copy"), ignore_errors=True)
         said = self.says("run", "drill.json", "--quiet", "--workers", "2")

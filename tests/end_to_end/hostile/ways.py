@@ -34,30 +34,81 @@ def ways_with(path, puts, outcome, says, quick=(), **more):
     return [Way(path, put, outcome, says, quick=put in quick, **more) for put in puts]
 
 
-NO_FILES = [things.link, things.link_to_folder, things.loop, things.dangling, things.fifo, things.folder, things.unix_socket,
-            things.device]
+NO_FILES = [
+    things.link,
+    things.link_to_folder,
+    things.loop,
+    things.dangling,
+    things.fifo,
+    things.folder,
+    things.unix_socket,
+    things.device,
+]
 
 SPOOL = [
     *ways_with(RESULT, NO_FILES, GOES_ON, ASIDE, quick=[things.loop, things.fifo]),
     *ways_with(RESULT, [things.sparse, things.rubbish, things.empty], GOES_ON, "is not taken", quick=[things.sparse]),
-    Way("spool/" + ODD_NAME, things.rubbish, GOES_ON, "is not taken", quick=True, name="spool: a name with a newline, an escape and no UTF-8"),
+    Way(
+        "spool/" + ODD_NAME,
+        things.rubbish,
+        GOES_ON,
+        "is not taken",
+        quick=True,
+        name="spool: a name with a newline, an escape and no UTF-8",
+    ),
     Way("spool/" + ODD_NAME, things.link, GOES_ON, ASIDE, name="spool: a link of such a name"),
-    Way("spool/" + "n" * 250 + ".json", things.rubbish, GOES_ON, "is not taken", name="spool: the longest name there is"),
+    Way(
+        "spool/" + "n" * 250 + ".json", things.rubbish, GOES_ON, "is not taken", name="spool: the longest name there is"
+    ),
     Way("spool", things.crowd_of_links(100_000), GOES_ON, ASIDE, quick=True, name="spool: 100000 links"),
     Way("spool", things.crowd(100_000), GOES_ON, "more files in", quick=True, name="spool: 100000 files of rubbish"),
-    *ways_with("spool", [things.linked_folder, things.loop, things.regular, things.fifo, things.foreign], REFUSED, "spool: ",
-               quick=[things.linked_folder, things.foreign]),
+    *ways_with(
+        "spool",
+        [things.linked_folder, things.loop, things.regular, things.fifo, things.foreign],
+        REFUSED,
+        "spool: ",
+        quick=[things.linked_folder, things.foreign],
+    ),
     *ways_with("spool/rejected", [things.linked_folder, things.regular], REFUSED, "rejected: "),
 ]
 REQUESTS = [
     *ways_with("requests/0.json", NO_FILES, GOES_ON, ASIDE, quick=[things.fifo, things.loop]),
-    *ways_with("requests/0.json", [things.sparse, things.rubbish, things.empty], GOES_ON, "is no request", quick=[things.sparse]),
-    Way("requests/0.json", things.text('{"version": 1, "verb": "prioritise", "points": ["peclet=1"], "priority": 1e300}'), GOES_ON,
-        "/priority: must be a whole number", quick=True, name="requests: a priority of 1e300"),
-    Way("requests/0.json", things.text("[" * 500_000), GOES_ON, "is no request", name="requests: half a million brackets"),
-    Way("requests/0.json", things.text('{"version": 1, "verb": "take-over", "file": "/dev/zero", "sha256": ""}'), GOES_ON,
-        "/dev/zero", name="requests: to take /dev/zero over"),
-    Way("requests/" + ODD_NAME, things.rubbish, GOES_ON, "is no request", name="requests: a name with a newline, an escape and no UTF-8"),
+    *ways_with(
+        "requests/0.json",
+        [things.sparse, things.rubbish, things.empty],
+        GOES_ON,
+        "is no request",
+        quick=[things.sparse],
+    ),
+    Way(
+        "requests/0.json",
+        things.text('{"version": 1, "verb": "prioritise", "points": ["peclet=1"], "priority": 1e300}'),
+        GOES_ON,
+        "/priority: must be a whole number",
+        quick=True,
+        name="requests: a priority of 1e300",
+    ),
+    Way(
+        "requests/0.json",
+        things.text("[" * 500_000),
+        GOES_ON,
+        "is no request",
+        name="requests: half a million brackets",
+    ),
+    Way(
+        "requests/0.json",
+        things.text('{"version": 1, "verb": "take-over", "file": "/dev/zero", "sha256": ""}'),
+        GOES_ON,
+        "/dev/zero",
+        name="requests: to take /dev/zero over",
+    ),
+    Way(
+        "requests/" + ODD_NAME,
+        things.rubbish,
+        GOES_ON,
+        "is no request",
+        name="requests: a name with a newline, an escape and no UTF-8",
+    ),
     Way("requests", things.crowd(2_000), GOES_ON, "is no request", name="requests: 2000 files of rubbish"),
     Way("requests", things.linked_folder, REFUSED, "requests: is a link"),
 ]
@@ -84,12 +135,28 @@ OTHERS = [
 ]
 LOCK = ways_with("campaign.lock", NO_FILES, REFUSED, "campaign.lock: is ", quick=[things.link, things.fifo])
 DATABASE = [
-    *ways_with("campaign.db", [things.link, things.loop, things.fifo, things.folder, things.unix_socket, things.device], REFUSED,
-               "campaign.db: is ", quick=[things.link]),
-    *ways_with("campaign.db", [things.rubbish, things.truncated, things.sparse, things.empty], REFUSED, "campaign.db", code=6,
-               quick=[things.sparse]),
-    *ways_with("campaign.db-wal", [things.link, things.fifo, things.folder, things.device], REFUSED, "campaign.db-wal: is ",
-               quick=[things.fifo]),
+    *ways_with(
+        "campaign.db",
+        [things.link, things.loop, things.fifo, things.folder, things.unix_socket, things.device],
+        REFUSED,
+        "campaign.db: is ",
+        quick=[things.link],
+    ),
+    *ways_with(
+        "campaign.db",
+        [things.rubbish, things.truncated, things.sparse, things.empty],
+        REFUSED,
+        "campaign.db",
+        code=6,
+        quick=[things.sparse],
+    ),
+    *ways_with(
+        "campaign.db-wal",
+        [things.link, things.fifo, things.folder, things.device],
+        REFUSED,
+        "campaign.db-wal: is ",
+        quick=[things.fifo],
+    ),
     *ways_with("campaign.db-shm", [things.link, things.fifo, things.folder], REFUSED, "campaign.db-shm: is "),
     *ways_with("campaign.db-journal", [things.link, things.fifo], REFUSED, "campaign.db-journal: is "),
 ]
@@ -98,7 +165,12 @@ CLOSED = [
     Way("requests/0.json", things.closed, GOES_ON, "is no request", humble=True),
     Way(CHECKPOINT, things.closed, GOES_ON, "", humble=True, real=True),
     Way("logs/peclet.log", things.closed, GOES_ON, "", humble=True),
-    *ways_with("", [things.closed], REFUSED, "Permission denied", humble=True, code=1, name="the campaign's folder: closed"),
-    *[Way(path, things.closed, REFUSED, path, humble=True, code=1) for path in ("spool", "campaign.lock", "campaign.db", "backup/backup.db")],
+    *ways_with(
+        "", [things.closed], REFUSED, "Permission denied", humble=True, code=1, name="the campaign's folder: closed"
+    ),
+    *[
+        Way(path, things.closed, REFUSED, path, humble=True, code=1)
+        for path in ("spool", "campaign.lock", "campaign.db", "backup/backup.db")
+    ],
 ]
 WAYS = CLOSED + SPOOL + REQUESTS + CHECKPOINTS + LOGS + OTHERS + LOCK + DATABASE

@@ -54,7 +54,9 @@ def deleted_while_it_runs(night):
 def cut(night):
     """campaign.db cut short"""
     finished(night)
-    night.types("truncate -s 20000 night.peclet/campaign.db && peclet status night.json", 6, ["is damaged", "peclet restore"])
+    night.types(
+        "truncate -s 20000 night.peclet/campaign.db && peclet status night.json", 6, ["is damaged", "peclet restore"]
+    )
     night.types("peclet run night.json", 6, ["damaged", "peclet restore"])
     night.follows(r"peclet restore [^`]*", 0, ["restored from", "with 16 results", "is kept in"])
     night.types("peclet run night.json --quiet", 0, ["2 converged"])
@@ -70,8 +72,11 @@ def older_copy(night):
     night.slow(20)
     night.types("peclet run night.json --quiet > table")
     night.remembers()
-    night.types("cp last-week.db night.peclet/campaign.db && peclet run night.json", 6,
-                ["is older than its own backup", "16", "Put the newer one back with"])
+    night.types(
+        "cp last-week.db night.peclet/campaign.db && peclet run night.json",
+        6,
+        ["is older than its own backup", "16", "Put the newer one back with"],
+    )
     night.follows(r"peclet restore [^`]*", 0, ["with 16 results", "is kept in"])
     night.types("peclet run night.json --quiet", 0, ["2 converged"])
     night.lost_nothing()
@@ -80,10 +85,15 @@ def older_copy(night):
 def log_deleted(night):
     """campaign.db-wal deleted after a crash, to tidy up"""
     before = killed(night)
-    night.types("rm night.peclet/campaign.db-wal night.peclet/campaign.db-shm && peclet run night.json --quiet", 0,
-                ["2 converged"])
-    night.remarks(f"What had been committed since the log was last copied into the database went with it ({before} results "
-                  "were older); these seeds ran again and gave the same results.")
+    night.types(
+        "rm night.peclet/campaign.db-wal night.peclet/campaign.db-shm && peclet run night.json --quiet",
+        0,
+        ["2 converged"],
+    )
+    night.remarks(
+        f"What had been committed since the log was last copied into the database went with it ({before} results "
+        "were older); these seeds ran again and gave the same results."
+    )
     night.answers_as_undisturbed()
 
 
@@ -120,10 +130,21 @@ def newer_program(night):
     database.execute("PRAGMA user_version = 99")
     database.close()
     night.remarks("Here the database says that its tables are of version 99.")
-    night.types("peclet run night.json", 6, ["written by a newer peclet", "version 99", "use that peclet or a newer one"])
+    night.types(
+        "peclet run night.json", 6, ["written by a newer peclet", "version 99", "use that peclet or a newer one"]
+    )
     night.types("peclet status night.json", 6, ["written by a newer peclet"])
     night.lost_nothing()
 
 
-CASES = [deleted, deleted_while_it_runs, cut, older_copy, log_deleted, copied_without_log, restored_over_newer, newer_program]
+CASES = [
+    deleted,
+    deleted_while_it_runs,
+    cut,
+    older_copy,
+    log_deleted,
+    copied_without_log,
+    restored_over_newer,
+    newer_program,
+]
 SLOW = [deleted_while_it_runs, restored_over_newer, log_deleted]

@@ -10,9 +10,14 @@ def other_folder(night):
     night.write()
     night.types("peclet run night.json --quiet > table")
     night.remembers()
-    night.types("mkdir elsewhere && cd elsewhere && peclet status night.json", 2, ["night.json", "no such file or folder"])
-    night.types("cp night.json elsewhere/ && cd elsewhere && peclet status night.json", 2,
-                ["has not been run yet", "elsewhere/night.peclet", "--directory"])
+    night.types(
+        "mkdir elsewhere && cd elsewhere && peclet status night.json", 2, ["night.json", "no such file or folder"]
+    )
+    night.types(
+        "cp night.json elsewhere/ && cd elsewhere && peclet status night.json",
+        2,
+        ["has not been run yet", "elsewhere/night.peclet", "--directory"],
+    )
     night.types("cd elsewhere && peclet status night.json --directory ../night.peclet", 0, ["2 converged"])
     night.lost_nothing()
 
@@ -32,8 +37,11 @@ def renamed(night):
     night.write()
     night.types("peclet run night.json --quiet > table")
     night.remembers()
-    night.types("mv night.json evening.json && peclet run evening.json", 2,
-                ["night.peclet has 16 results of its points", "was it renamed?"])
+    night.types(
+        "mv night.json evening.json && peclet run evening.json",
+        2,
+        ["night.peclet has 16 results of its points", "was it renamed?"],
+    )
     night.follows(r"mv [^`]*", 0, ["2 converged"])
     night.lost_nothing("evening.peclet")
     if os.path.exists(night.path("night.peclet")):
@@ -45,35 +53,53 @@ def other_name(night):
     night.write()
     night.types("peclet run night.json --quiet > table")
     night.remembers()
-    night.types("sed -i 's/\"night\"/\"evening\"/' night.json && peclet run night.json", 0, ["evening: ", "2 converged"],
-                ["no backup could be made"])
+    night.types(
+        'sed -i \'s/"night"/"evening"/\' night.json && peclet run night.json',
+        0,
+        ["evening: ", "2 converged"],
+        ["no backup could be made"],
+    )
     night.lost_nothing()
 
 
 def edited(night):
     """The scene changed when half of the campaign is done"""
     run = running(night, 4, 40)
-    night.types("sed -i 's/\"viscosity\": 1/\"viscosity\": 2/' night.json && peclet status night.json", 0,
-                ["has changed since it was last run", "`peclet set night.json` or `peclet run night.json` takes it over"])
+    night.types(
+        'sed -i \'s/"viscosity": 1/"viscosity": 2/\' night.json && peclet status night.json',
+        0,
+        ["has changed since it was last run", "`peclet set night.json` or `peclet run night.json` takes it over"],
+    )
     night.stops(run)
     night.waits(run, 75, ["workers checkpoint and stop"])
     night.lets_go()
     before = night.remembers()
-    night.types("peclet run night.json --workers 2", 0, [f"{before} seeds that ended at 2 points of earlier versions",
-                                                         "are kept, and count again"])
+    night.types(
+        "peclet run night.json --workers 2",
+        0,
+        [f"{before} seeds that ended at 2 points of earlier versions", "are kept, and count again"],
+    )
     night.lost_nothing()
-    night.types("sed -i 's/\"viscosity\": 2/\"viscosity\": 1/' night.json && peclet run night.json --workers 2 --quiet", 0,
-                ["2 converged"])
+    night.types(
+        'sed -i \'s/"viscosity": 2/"viscosity": 1/\' night.json && peclet run night.json --workers 2 --quiet',
+        0,
+        ["2 converged"],
+    )
     night.lost_nothing()
 
 
 def engine_missing(night):
     """The engine is not on PATH, or may not be executed"""
     night.write(dict(CAMPAIGN, engine=["my_engine"]))
-    night.types("peclet run night.json", 2, ["/engine/0: my_engine", "beside peclet, on PATH, or one of peclet's adapters"])
+    night.types(
+        "peclet run night.json", 2, ["/engine/0: my_engine", "beside peclet, on PATH, or one of peclet's adapters"]
+    )
     night.write(dict(CAMPAIGN, engine=["./my_engine"]))
-    night.types(f"cp {night.programs}/fake_engine my_engine && chmod -x my_engine && peclet run night.json", 2,
-                ["my_engine", "may not be executed", "chmod +x"])
+    night.types(
+        f"cp {night.programs}/fake_engine my_engine && chmod -x my_engine && peclet run night.json",
+        2,
+        ["my_engine", "may not be executed", "chmod +x"],
+    )
     night.follows(r"chmod [^`]*")
     night.types("peclet run night.json --quiet", 0, ["2 converged"])
 

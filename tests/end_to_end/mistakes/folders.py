@@ -18,7 +18,9 @@ def running(night, results=3, milliseconds=100, command="peclet run night.json -
 def second_owner(night):
     """Started a second time in another terminal"""
     run = running(night)
-    night.types("peclet run night.json", 5, [f"process {run.pid} owns this campaign", "peclet status", f"kill {run.pid}"])
+    night.types(
+        "peclet run night.json", 5, [f"process {run.pid} owns this campaign", "peclet status", f"kill {run.pid}"]
+    )
     night.follows(r"kill \d+")
     night.waits(run, 75, ["workers checkpoint and stop"])
     night.lets_go()
@@ -97,8 +99,10 @@ def spool_edited(night):
     run.wait()
     night.wait_for("the end of its workers", lambda: not workers_of(night))
     night.remembers()
-    night.remarks("The run is killed. In the spool lies a result that nobody has booked; somebody corrects a number in it, and "
-                  "a bracket goes missing.")
+    night.remarks(
+        "The run is killed. In the spool lies a result that nobody has booked; somebody corrects a number in it, and "
+        "a bracket goes missing."
+    )
     with open(night.path("night.peclet", "spool", "0123456789abcdef-000000-99.json"), "w") as f:
         f.write('{"schema_version": 1, "point": "corrected"')
     night.lets_go()
@@ -121,6 +125,14 @@ def checkpoint_deleted(night):
     night.answers_as_undisturbed()
 
 
-CASES = [second_owner, lock_deleted, copied, folder_deleted, folder_moved, folders_below_deleted, spool_edited,
-         checkpoint_deleted]
+CASES = [
+    second_owner,
+    lock_deleted,
+    copied,
+    folder_deleted,
+    folder_moved,
+    folders_below_deleted,
+    spool_edited,
+    checkpoint_deleted,
+]
 SLOW = [copied, folder_moved]

@@ -38,7 +38,7 @@ def run_as_root(night):
     if os.geteuid() != 0:
         raise NotTried("not started as root")
     night.write()
-    night.types("sudo() { \"$@\"; }; sudo peclet run night.json --quiet > table")
+    night.types('sudo() { "$@"; }; sudo peclet run night.json --quiet > table')
     night.remembers()
     os.chmod(night.folder, 0o755)
     as_nobody(night, "peclet status night.json", 0, ["2 converged"])
@@ -79,8 +79,12 @@ def clock_set_back(night):
 
 
 def can_mount(night):
-    return subprocess.run(["unshare", "-m", "mount", "-t", "tmpfs", "none", night.folder], stderr=subprocess.DEVNULL,
-                          check=False).returncode == 0
+    return (
+        subprocess.run(
+            ["unshare", "-m", "mount", "-t", "tmpfs", "none", night.folder], stderr=subprocess.DEVNULL, check=False
+        ).returncode
+        == 0
+    )
 
 
 def full_disk(night):
@@ -89,9 +93,11 @@ def full_disk(night):
         raise NotTried("no file system can be mounted here")
     night.write()
     night.slow(300)
-    script = ("unshare -m bash -c 'mkdir night.peclet && mount -t tmpfs -o size=16m none night.peclet && "
-              "{ (sleep 1; head -c 20m /dev/zero > night.peclet/film.mkv; sleep 3; rm night.peclet/film.mkv) 2> /dev/null & "
-              "peclet run night.json --workers 2; cp -r night.peclet kept.peclet; }'")
+    script = (
+        "unshare -m bash -c 'mkdir night.peclet && mount -t tmpfs -o size=16m none night.peclet && "
+        "{ (sleep 1; head -c 20m /dev/zero > night.peclet/film.mkv; sleep 3; rm night.peclet/film.mkv) 2> /dev/null & "
+        "peclet run night.json --workers 2; cp -r night.peclet kept.peclet; }'"
+    )
     night.types(script, 0, ["is full", "no further seed is given out", "there is room again", "2 converged"])
 
 

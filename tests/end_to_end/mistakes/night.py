@@ -22,8 +22,11 @@ CAMPAIGN = {
 }
 # A second of real physics a seed.
 SCENE = {
-    "particles": {"count": 30, "density": 0.1,
-                  "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}]},
+    "particles": {
+        "count": 30,
+        "density": 0.1,
+        "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}],
+    },
     "volume_fraction": 0.3,
     "fluid": {"viscosity": 0.1},
     "flow": {"shear_rate": 0.05},
@@ -31,7 +34,9 @@ SCENE = {
     "lubrication": {"form": "kim-karrila", "inner_gap": 0.01, "outer_gap": 0.05},
     "duration": {"equilibration": {"strain": 0.5}, "production": {"strain": 1}},
 }
-REAL = dict(CAMPAIGN, scene=SCENE, sweep=[{"set": "/flow/shear_rate", "values": [0.05]}], engine=["peclet-engine", "serve"])
+REAL = dict(
+    CAMPAIGN, scene=SCENE, sweep=[{"set": "/flow/shear_rate", "values": [0.05]}], engine=["peclet-engine", "serve"]
+)
 
 
 def workers_of(night):
@@ -74,8 +79,16 @@ class Night:
 
     def types(self, command, code=0, says=(), hides=()):
         """Runs a line as a shell would, and judges exit code and answer. Returns the answer."""
-        done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment, text=True,
-                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=PATIENCE)
+        done = subprocess.run(
+            ["bash", "-c", command],
+            cwd=self.folder,
+            env=self.environment,
+            text=True,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            timeout=PATIENCE,
+        )
         self.hear(command, done.stdout)
         self.judge(done.returncode, code, says, hides)
         return self.said
@@ -84,8 +97,15 @@ class Night:
         """The line with an & behind it, in a process group of its own as an interactive shell makes one."""
         log = self.path(f"answer-{len(self.started)}")
         with open(log, "w") as f:
-            process = subprocess.Popen(["bash", "-c", "exec " + command], cwd=self.folder, env=self.environment,
-                                       stdin=subprocess.DEVNULL, stdout=f, stderr=f, start_new_session=True)
+            process = subprocess.Popen(
+                ["bash", "-c", "exec " + command],
+                cwd=self.folder,
+                env=self.environment,
+                stdin=subprocess.DEVNULL,
+                stdout=f,
+                stderr=f,
+                start_new_session=True,
+            )
         self.page.append(("types", command + " &"))
         self.started.append((process, log))
         return process
@@ -109,8 +129,8 @@ class Night:
         self.page.append(("remark", text))
 
     def follows(self, pattern=r"peclet [^`\n]*", code=0, says=()):
-        """Does literally what the last answer names as the next command: the first thing between `` or at the end of a line
-        that the pattern fits."""
+        """Does literally what the last answer names as the next command: the first thing between `` or at the end of a
+        line that the pattern fits."""
         found = re.search(rf"`({pattern})`|(?:with: |: )({pattern})$", self.said, re.MULTILINE)
         if not found:
             raise Wrong(f"no command to follow in: {self.said!r}")
@@ -139,8 +159,11 @@ class Night:
 
     def results(self, data="night.peclet"):
         """What the database of a campaign's folder holds."""
-        rows = self.query("SELECT hash, seed, final_state_sha256 FROM realisation JOIN point USING (point_id) "
-                          "WHERE state IN ('done', 'failed')", data)
+        rows = self.query(
+            "SELECT hash, seed, final_state_sha256 FROM realisation JOIN point USING (point_id) "
+            "WHERE state IN ('done', 'failed')",
+            data,
+        )
         return {(point, seed): state for point, seed, state in rows}
 
     def remembers(self, data="night.peclet"):
@@ -148,7 +171,8 @@ class Night:
         return len(self.known)
 
     def lost_nothing(self, data="night.peclet", but=0):
-        """Every result there has been is there, with the same content; `but` so many that the mistake itself destroyed."""
+        """Every result there has been is there, with the same content; `but` so many that the mistake itself
+        destroyed."""
         now = self.results(data)
         gone = [key for key, state in self.known.items() if now.get(key) != state]
         if len(gone) > but:
@@ -158,7 +182,9 @@ class Night:
     def answers_as_undisturbed(self):
         """The canonical export is that of the same campaign without the mistake."""
         disturbed = self.quietly("peclet export night.json --canonical")
-        self.quietly("mkdir undisturbed && cp night.json undisturbed/ && cd undisturbed && peclet run night.json --quiet")
+        self.quietly(
+            "mkdir undisturbed && cp night.json undisturbed/ && cd undisturbed && peclet run night.json --quiet"
+        )
         if self.quietly("cd undisturbed && peclet export night.json --canonical") != disturbed:
             raise Wrong("the export differs from that of an undisturbed campaign")
         self.page.append(("same",))
@@ -169,8 +195,14 @@ class Night:
         return os.path.join(self.folder, *names)
 
     def quietly(self, command):
-        done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment, capture_output=True, text=True,
-                              timeout=PATIENCE)
+        done = subprocess.run(
+            ["bash", "-c", command],
+            cwd=self.folder,
+            env=self.environment,
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE,
+        )
         if done.returncode not in (0, 3):
             raise Wrong(f"{command}: exit code {done.returncode}: {done.stdout}{done.stderr}")
         return done.stdout
@@ -193,8 +225,8 @@ class Night:
         self.wait_for(f"{count} results", lambda: len(self.results(data)) >= count)
 
     def holds(self):
-        """The last seed of each point stands still half-way from now on: a run goes on until lets_go(), whatever the machine
-        does besides."""
+        """The last seed of each point stands still half-way from now on: a run goes on until lets_go(), whatever the
+        machine does besides."""
         with open(self.path("hold"), "w"):
             pass
         self.environment.update(PECLET_FAKE_HOLD=self.path("hold"), PECLET_FAKE_HOLD_SEED="7")

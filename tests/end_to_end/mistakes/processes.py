@@ -9,7 +9,9 @@ from .night import workers_of
 
 def interrupted_twice(night):
     """Ctrl-C, and again because it takes a second"""
-    night.environment.update(PECLET_FAKE_FAULTS="hang:7", PECLET_FAKE_FAULT_STEP="0")  # it does not hear the first signal
+    night.environment.update(
+        PECLET_FAKE_FAULTS="hang:7", PECLET_FAKE_FAULT_STEP="0"
+    )  # it does not hear the first signal
     run = running(night)
     night.wait_for("a seed that hangs", lambda: night.query("SELECT 1 FROM attempt WHERE seed = 7"))
     night.remembers()
@@ -99,11 +101,28 @@ def too_short(night):
     night.slow(1500)
     night.write()
     for _ in range(2):
-        night.types("peclet run night.json --workers 2 --time-limit 0.5 --quiet", 75, ["\n0 seeds ended", "`peclet run night.json` goes on"])
+        night.types(
+            "peclet run night.json --workers 2 --time-limit 0.5 --quiet",
+            75,
+            ["\n0 seeds ended", "`peclet run night.json` goes on"],
+        )
     night.remarks("Each time the seeds go on from their checkpoints, so that they end after a few such runs.")
-    night.types("for i in 1 2 3 4; do peclet run night.json --workers 2 --time-limit 0.6 --quiet > table; done; "
-                "peclet status night.json", 0, [" seeds ended"], ["\n0 seeds ended"])
+    night.types(
+        "for i in 1 2 3 4; do peclet run night.json --workers 2 --time-limit 0.6 --quiet > table; done; "
+        "peclet status night.json",
+        0,
+        [" seeds ended"],
+        ["\n0 seeds ended"],
+    )
 
 
-CASES = [interrupted_twice, owner_killed, worker_killed, laptop_closed, connection_lost, connection_lost_under_nohup, too_short]
+CASES = [
+    interrupted_twice,
+    owner_killed,
+    worker_killed,
+    laptop_closed,
+    connection_lost,
+    connection_lost_under_nohup,
+    too_short,
+]
 SLOW = [laptop_closed, too_short, worker_killed]

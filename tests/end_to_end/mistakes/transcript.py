@@ -3,9 +3,13 @@ import re
 
 HEAD = """# At two in the morning
 
-What a tired person does wrong, and what `peclet` answers: what happened, what was kept, and the next command. Written by
-`tests/end_to_end/at_two_in_the_morning.py BIN --page tests/end_to_end/MISTAKES.md`, which does all of this with real processes and checks it: exit codes, the
-phrases that matter, in the cases that count results that none is lost, and in many that the command that the answer names works as it stands. Folders are shortened to `~`, long answers and the legends of tables cut, times and process numbers replaced; `fake_engine` is
+What a tired person does wrong, and what `peclet` answers: what happened, what was kept, and the next command. Written \
+by
+`tests/end_to_end/at_two_in_the_morning.py BIN --page tests/end_to_end/MISTAKES.md`, which does all of \
+this with real processes and checks it: exit codes, the
+phrases that matter, in the cases that count results that none is lost, and in many that the command that the answer \
+names works as it stands. Folders are shortened to `~`, long answers and the legends of tables cut, times and process \
+numbers replaced; `fake_engine` is
 the tests' engine without physics.
 """
 LONGEST = 12  # lines of an answer
@@ -23,7 +27,7 @@ def shortened(text, night):
     text = re.sub(r"(?<!\d)\d\d:\d\d:\d\d", "02:00:00", text)
     lines = text.rstrip("\n").splitlines()
     if len(lines) > LONGEST:
-        lines = lines[:LONGEST - 1] + [f"... ({len(lines) - LONGEST + 1} lines)"]
+        lines = lines[: LONGEST - 1] + [f"... ({len(lines) - LONGEST + 1} lines)"]
     return lines
 
 
@@ -53,7 +57,11 @@ def of_case(night):
 def remark(kind, about):
     if kind == "kept":
         kept, gone = about
-        return f"*{kept} results before, {kept} of them now.*" if not gone else f"*Of {kept + gone} results {kept} are kept.*"
+        return (
+            f"*{kept} results before, {kept} of them now.*"
+            if not gone
+            else f"*Of {kept + gone} results {kept} are kept.*"
+        )
     return "*The export is that of an undisturbed campaign, byte for byte.*" if kind == "same" else about[0]
 
 

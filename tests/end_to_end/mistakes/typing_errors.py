@@ -80,5 +80,16 @@ def foreign_line_ends(night):
     night.types("peclet run night.json --quiet", 0, ["2 points: 2 converged"])
 
 
-CASES = [verb, option, file_name, point, key, percent, two_seeds, same_point_twice, commas_and_quotes, foreign_line_ends]
+CASES = [
+    verb,
+    option,
+    file_name,
+    point,
+    key,
+    percent,
+    two_seeds,
+    same_point_twice,
+    commas_and_quotes,
+    foreign_line_ends,
+]
 SLOW = []

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """conversation.py [--refused POINTER=VALUE] SCHEMAS SCENE ENGINE [ARGUMENT ...]
 
-Plays the runner's part for one engine, in another language than both programs: asks about a scene and about a bad one (SCENE
-with VALUE at POINTER; unless given, a viscosity of -1), runs one seed, runs it again and takes the job back after the first
-progress, runs it once more and hangs up, each time with a new process that goes on. An engine that takes a job ahead gets two at
-once, and a drain with two of them. Holds every frame and result to
-schema/frames.schema.json and schema/result.schema.json with an independent validator (Debian's python3-jsonschema), and the
-results to each other.
+Plays the runner's part for one engine, in another language than both programs: asks about a scene and about a bad one
+(SCENE with VALUE at POINTER; unless given, a viscosity of -1), runs one seed, runs it again and takes the job back
+after the first progress, runs it once more and hangs up, each time with a new process that goes on. An engine that
+takes a job ahead gets two at once, and a drain with two of them. Holds every frame and result to
+schema/frames.schema.json and schema/result.schema.json with an independent validator (Debian's python3-jsonschema), and
+the results to each other.
 """
 import argparse
 import copy
@@ -28,8 +28,10 @@ def validators(folder):
     schemas = {name: json.loads((folder / name).read_text()) for name in ("frames.schema.json", "result.schema.json")}
     for schema in schemas.values():
         Draft202012Validator.check_schema(schema)
-    return [Draft202012Validator(schema, resolver=RefResolver(name, schema, store=schemas))
-            for name, schema in schemas.items()]
+    return [
+        Draft202012Validator(schema, resolver=RefResolver(name, schema, store=schemas))
+        for name, schema in schemas.items()
+    ]
 
 
 class Engine:
@@ -102,9 +104,21 @@ class Conversation:
         engine.leave("stop")
 
     def give_job(self, engine, job):
-        engine.send({"type": "job", "job": job, "point": self.point, "seed": 3, "scene": self.scene, "threads": 1,
-                     "checkpoint": str(self.folder / "checkpoint"), "checkpoint_seconds": 0.01, "progress_seconds": 0.01,
-                     "spool": str(self.spool(job)), "failures": str(self.folder)})
+        engine.send(
+            {
+                "type": "job",
+                "job": job,
+                "point": self.point,
+                "seed": 3,
+                "scene": self.scene,
+                "threads": 1,
+                "checkpoint": str(self.folder / "checkpoint"),
+                "checkpoint_seconds": 0.01,
+                "progress_seconds": 0.01,
+                "spool": str(self.spool(job)),
+                "failures": str(self.folder),
+            }
+        )
 
     def spool(self, job):
         return self.folder / f"spool-{job}.json"
@@ -136,7 +150,8 @@ class Conversation:
         return result
 
     def disturbed(self, job, how):
-        """Interrupts the job after its first progress and lets another process go on. Returns its result and whether it was cut."""
+        """Interrupts the job after its first progress and lets another process go on. Returns its result and whether it
+        was cut."""
         engine = self.start()
         self.give_job(engine, job)
         answer = engine.receive()
@@ -152,7 +167,6 @@ class Conversation:
             return self.read_result(engine, job, answer["sha256"]), False
         engine.leave("hang up" if how == "hang up" else "drain")
         return self.undisturbed(job + 1), was_cut
-
 
     def ahead(self, job):
         """Two jobs at once: one result after the other."""
@@ -213,8 +227,12 @@ def main():
     arguments = parser.parse_args()
     pointer, _, value = arguments.refused.partition("=")
     with tempfile.TemporaryDirectory() as folder:
-        conversation = Conversation(arguments.engine, json.loads(arguments.scene.read_text()), pathlib.Path(folder),
-                                    validators(arguments.schemas))
+        conversation = Conversation(
+            arguments.engine,
+            json.loads(arguments.scene.read_text()),
+            pathlib.Path(folder),
+            validators(arguments.schemas),
+        )
         conversation.ask(pointer, json.loads(value))
         result = conversation.undisturbed(1)
         print("ended with", result["ending"]["cause"])

@@ -60,12 +60,18 @@ class EventLines(unittest.TestCase):
         return subprocess.check_output([PECLET, "export", self.path(name + ".json"), "--canonical"])
 
     def seeds(self, events):
-        return sorted((e["point"]["label"], e["seed"], e["cause"], e["value"])
-                      for e in events if e["event"] == "seed-ended")
+        return sorted(
+            (e["point"]["label"], e["seed"], e["cause"], e["value"]) for e in events if e["event"] == "seed-ended"
+        )
 
     def seeds_of_database(self, name):
-        return sorted(self.query(name, "SELECT label, seed, cause, value FROM realisations "
-                                       "WHERE state IN ('done', 'failed', 'quarantined')"))
+        return sorted(
+            self.query(
+                name,
+                "SELECT label, seed, cause, value FROM realisations "
+                "WHERE state IN ('done', 'failed', 'quarantined')",
+            )
+        )
 
     def test_tell_every_seed_look_and_decision_once(self):
         # Seed 7 crashes whenever it is tried, three times as a seed may; seed 3 ends with a verdict.
@@ -103,7 +109,9 @@ class EventLines(unittest.TestCase):
             lines.append(process.stdout.readline())
             self.assertTrue(lines[-1], "the run ended early")
         patience = time.monotonic() + 60
-        while self.query("stopped", f"SELECT count(*) FROM realisation WHERE state = 'running' AND seed >= {MINIMUM - 1}") != [(2,)]:
+        while self.query(
+            "stopped", f"SELECT count(*) FROM realisation WHERE state = 'running' AND seed >= {MINIMUM - 1}"
+        ) != [(2,)]:
             self.assertLess(time.monotonic(), patience, "no two workers are held")
             time.sleep(0.01)
         process.send_signal(signal.SIGTERM)

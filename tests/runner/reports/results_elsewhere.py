@@ -1,4 +1,5 @@
-"""Carries out what schema/README.md says about results in the sqlite3 shell: usage results_elsewhere.py PECLET FAKE_ENGINE."""
+"""Carries out what schema/README.md says about results in the sqlite3 shell: usage results_elsewhere.py PECLET
+FAKE_ENGINE."""
 import csv
 import io
 import json
@@ -34,7 +35,13 @@ class Elsewhere(unittest.TestCase):
             with open(os.path.join(folder, "flow-curve.json"), "w") as file:
                 json.dump(campaign, file)
             path = os.path.dirname(PECLET) + os.pathsep + os.environ["PATH"]
-            options = {"cwd": folder, "text": True, "check": True, "stdout": subprocess.PIPE, "env": {**os.environ, "PATH": path}}
+            options = {
+                "cwd": folder,
+                "text": True,
+                "check": True,
+                "stdout": subprocess.PIPE,
+                "env": {**os.environ, "PATH": path},
+            }
             subprocess.run([PECLET, "run", "flow-curve.json", "--workers", "2", "--quiet"], **options)
             said = subprocess.run(["bash", "-e", "-o", "pipefail", "-c", recipe()], **options).stdout
             rows = list(csv.reader(io.StringIO(said)))
@@ -43,7 +50,9 @@ class Elsewhere(unittest.TestCase):
             for (label, seeds, verdict, mean), point in zip(rows, points):
                 self.assertEqual((int(seeds), verdict), (point["look"]["seeds"], "converged"))
                 # Of the same seeds, summed in another order.
-                self.assertAlmostEqual(float(mean) / point["estimates"]["/" + OBSERVABLE]["mean"], 1, places=12, msg=label)
+                self.assertAlmostEqual(
+                    float(mean) / point["estimates"]["/" + OBSERVABLE]["mean"], 1, places=12, msg=label
+                )
 
 
 if __name__ == "__main__":

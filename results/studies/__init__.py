@@ -1,0 +1,25 @@
+"""What the drivers of studies share.
+
+    scenes         scenes that several studies start from, and patches of them
+    campaigns      campaigns made, run and read by the program
+    viscosities    viscosities of a point of an export, split by term, as rows of a table
+    estimates      means, quotients and other numbers with their standard errors
+    fits           lines and curves through such numbers
+    published      fits that others have published
+    green_kubo     the viscosity at rest from the correlation of the structural Brownian stress
+    tables         csv files
+    figure         pictures
+    verdicts       statements that are judged, and the verdict of a study
+    command_line   the command lines of the drivers
+
+A study is a folder beside this one with study.py, README.md, table.csv, a picture, and study.json: what was found,
+which `peclet study --list` shows.
+"""
+import sys
+
+# Drivers import this package before NumPy, so that they can say what is missing.
+try:
+    import numpy  # noqa: F401
+    import scipy  # noqa: F401
+except ModuleNotFoundError as missing:
+    sys.exit(f"studies need the Python module {missing.name}: install python3-numpy and python3-scipy")

@@ -1,0 +1,96 @@
+"""Campaigns, made, run and read by the program."""
+import json
+import os
+import sqlite3
+import subprocess
+import sys
+import zlib
+
+
+def inflated(result, dictionary):
+    """The text of a stored result (schema/README.md, Tables and views)."""
+    stream = zlib.decompressobj(zdict=dictionary.encode())
+    return stream.decompress(result) + stream.flush()
+
+
+def read_results(folder):
+    """Of the folder of a campaign: for every point with results, its settings and its whole results, with blocks, by
+    seed."""
+    database = sqlite3.connect(f"file:{os.path.join(folder, 'campaign.db')}?mode=ro", uri=True)
+    stored = database.execute(
+        "SELECT place, settings, result, dictionary FROM realisations JOIN points USING (place) "
+        "WHERE realisations.state = 'done' ORDER BY place, seed"
+    )
+    points = {}
+    for place, settings, result, dictionary in stored:
+        points.setdefault(place, (json.loads(settings), []))[1].append(json.loads(inflated(result, dictionary)))
+    database.close()
+    return list(points.values())
+
+
+class Program:
+    """The two programs of a folder, and a folder that keeps the campaigns: a study goes on where it was."""
+
+    def __init__(self, binaries, folder):
+        self.peclet = os.path.join(binaries, "peclet")
+        self.engine = os.path.join(os.path.abspath(binaries), "peclet-engine")
+        self.folder = folder
+        self.commits = set()  # of the engines that the results are of
+        self.processor_seconds = 0.0  # that they took
+        self.long = False  # whether points that take hours are wanted
+        self.times = 1  # as many seeds
+        os.makedirs(folder, exist_ok=True)
+
+    def run(self, name, scene, settings, seeds, observable="relative_viscosity", options=()):
+        """Runs `seeds` realisations, times `times`, with each of `settings` (objects of pointers and values) and
+        returns the points of the export. `observable` only has to be a number that the results have; `options` are for
+        `peclet run`."""
+        pointers = sorted(settings[0])
+        seeds *= self.times
+        campaign = {
+            "name": name,
+            "scene": scene,
+            "sweep": [{"set": pointers, "values": [[s[p] for p in pointers] for s in settings]}],
+            "target": {"observable": observable, "relative_tolerance": 1e-9},
+            "realisations": {"minimum": seeds, "maximum": seeds},
+            "engine": [self.engine, "serve"],
+        }
+        path = os.path.join(self.folder, name + ".json")
+        with open(path, "w") as f:
+            json.dump(campaign, f, indent=1)
+        # Points that are not within the tolerance after all seeds, or lost some, are what studies are made of: code 3.
+        done = subprocess.run([self.peclet, "run", path, "--quiet", *options], stdout=subprocess.DEVNULL)
+        if done.returncode not in (0, 3):
+            sys.exit(f"{path}: peclet run ended with {done.returncode}")
+        exported = subprocess.run([self.peclet, "export", path], check=True, capture_output=True).stdout
+        export = json.loads(exported)
+        for engine in export["engines"].values():
+            self.commits.add(engine["git_commit"][:7] + ("+" if engine["git_dirty"] else ""))
+        realisations = [r for point in export["points"] for r in point["realisations"]]
+        self.processor_seconds += sum(r["cost"]["cpu_seconds"] for r in realisations)
+        return export["points"]
+
+    def stored_results(self, name):
+        """Of a campaign that run() made: the whole results, with blocks, of every point in the order of its settings;
+        those that have means."""
+        return [results for _, results in read_results(os.path.join(self.folder, name + ".peclet"))]
+
+    def derived(self, scene):
+        """What `peclet validate` says of one scene: its time step, groups and warnings."""
+        path = os.path.join(self.folder, "scene.json")
+        campaign = {
+            "name": "scene",
+            "scene": scene,
+            "sweep": [],
+            "target": {"observable": "relative_viscosity", "relative_tolerance": 0.1},
+            "realisations": {"minimum": 2, "maximum": 2},
+            "engine": [self.engine, "serve"],
+        }
+        with open(path, "w") as f:
+            json.dump(campaign, f)
+        done = subprocess.run([self.peclet, "validate", path, "--json"], capture_output=True, text=True)
+        if done.returncode == 2:
+            return {"refused": done.stderr.strip()}
+        if done.returncode != 0:
+            sys.exit(f"{path}: peclet validate ended with {done.returncode}: {done.stderr.strip()}")
+        return json.loads(done.stdout)["points"][0]

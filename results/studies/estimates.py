@@ -1,0 +1,79 @@
+"""Means, quotients and other numbers with their standard errors.
+
+A number with its standard error is a pair (value, error).
+"""
+import math
+import random
+
+import numpy as np
+from scipy.special import stdtrit
+
+
+def estimate(values):
+    """Mean and standard error s / sqrt(n), s^2 = sum (v - mean)^2 / (n - 1); no error from a single value."""
+    values = np.asarray(values, float)
+    if len(values) < 2:
+        return float(values.mean()), math.inf
+    return float(values.mean()), float(values.std(ddof=1) / math.sqrt(len(values)))
+
+
+def student_quantile(degrees, probability):
+    """The t that Student's variate of so many degrees of freedom stays below with `probability`; infinite without
+    any."""
+    return math.inf if degrees < 1 else float(stdtrit(degrees, probability))
+
+
+def weighted_mean(values, errors):
+    """Of independent numbers: mean with weights 1 / error^2, and its standard error."""
+    mean, weight = np.average(values, weights=1 / np.square(errors), returned=True)
+    return float(mean), float(1 / math.sqrt(weight))
+
+
+def difference(a, b):
+    """a - b of two independent numbers, to first order in their errors, as all of these are."""
+    return a[0] - b[0], math.hypot(a[1], b[1])
+
+
+def quotient(a, b):
+    """a / b of two independent numbers."""
+    value = a[0] / b[0]
+    return value, math.hypot(a[1], value * b[1]) / abs(b[0])
+
+
+def over(a, scale):
+    """A number over another one that has no error."""
+    return a[0] / scale, a[1] / abs(scale)
+
+
+def logarithm(a):
+    """ln of a number."""
+    return math.log(a[0]), a[1] / a[0]
+
+
+def relative_difference(values, reference, paired):
+    """Of two objects of values by seed: the difference of their means over that of the reference, its standard error
+    and degrees of freedom; of the seeds of both where one packing decides most of the scatter, else of all."""
+    common = sorted(values.keys() & reference.keys())
+    if paired and common:
+        total, _ = estimate([reference[s] for s in common])
+        return (*over(estimate([values[s] - reference[s] for s in common]), total), len(common) - 1)
+    value, error = quotient(estimate(list(values.values())), estimate(list(reference.values())))
+    return value - 1, error, min(len(values), len(reference)) - 1
+
+
+def jackknife(function, count):
+    """function(indices) of all indices below `count`, and its standard error by leaving out one index at a time:
+    error^2 = (n - 1) / n sum (f_k - mean f_k)^2 (Efron & Tibshirani 1993, eq. 11.5). Of a function that returns several
+    numbers, both are lists."""
+    everything = np.arange(count)
+    parts = np.array([function(np.delete(everything, k)) for k in everything])
+    errors = np.sqrt((count - 1) * parts.var(axis=0))
+    return function(everything), errors.tolist()
+
+
+def propagated(numbers, function, draws=400):
+    """function([value, ...]) of independent numbers, and its standard error by drawing them again, normally
+    distributed. Of a function that returns several numbers, both are lists."""
+    generator = random.Random(1)
+    drawn = np.array([function([generator.gauss(v, e) for v, e in numbers]) for _ in range(draws)])
+    return function([v for v, _ in numbers]), drawn.std(axis=0, ddof=1).tolist()

@@ -1,0 +1,41 @@
+"""Lines and curves through numbers with errors."""
+import math
+
+import numpy as np
+
+
+def line_through(x, y, errors):
+    """Least squares with weights 1 / error^2: intercept, slope, and the slope's standard error."""
+    coefficients, covariance = np.polyfit(x, y, 1, w=1 / np.asarray(errors, float), cov="unscaled")
+    slope, intercept = coefficients.tolist()
+    return intercept, slope, math.sqrt(covariance[0, 0])
+
+
+def multiples(shapes, values):
+    """Of each row of `shapes`: the factor c of least squares in c shape = values, and the sum of squares that is
+    left."""
+    factors = shapes @ values / np.square(shapes).sum(axis=1)
+    return factors, np.square(factors[:, None] * shapes - values).sum(axis=1)
+
+
+def lines(shapes, values):
+    """Of each row of `shapes`: constant and slope of least squares in constant + slope shape = values, and the sum of
+    squares that is left."""
+    values = np.asarray(values, float)
+    centred = shapes - shapes.mean(axis=1, keepdims=True)
+    slopes, left = multiples(centred, values - values.mean())
+    return values.mean() - slopes * shapes.mean(axis=1), slopes, left
+
+
+def log_minimum(abscissae, values):
+    """log10 of where a curve of positive numbers is lowest: the vertex of the parabola through the logarithms of the
+    lowest point and its neighbours; the lowest point itself where it has only one."""
+    x, y = np.log10(abscissae), np.log(np.maximum(values, 1e-9))
+    lowest = int(np.argmin(values))
+    if lowest in (0, len(x) - 1):
+        return float(x[lowest])
+    (left, right), ends = (
+        np.diff(y[lowest - 1 : lowest + 2]) / np.diff(x[lowest - 1 : lowest + 2]),
+        x[[lowest - 1, lowest + 1]],
+    )
+    return float((ends[0] + x[lowest]) / 2 - left * (ends[1] - ends[0]) / 2 / (right - left))

@@ -1,0 +1,58 @@
+"""Scenes that several studies start from, and patches of them."""
+
+
+def merged(base, patch):
+    """`base` with `patch` in it, objects key by key; None removes a key."""
+    result = dict(base)
+    for key, value in patch.items():
+        if value is None:
+            result.pop(key, None)
+        elif isinstance(value, dict) and isinstance(result.get(key), dict):
+            result[key] = merged(result[key], value)
+        else:
+            result[key] = value
+    return result
+
+
+# The published system without noise and friction, at a Stokes number of 0.045.
+REFERENCE_SCENE = {
+    "particles": {
+        "count": 1000,
+        "density": 0.1,
+        "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}],
+    },
+    "volume_fraction": 0.5,
+    "fluid": {"viscosity": 0.1},
+    "flow": {"shear_rate": 0.045},
+    "contact": {"normal_stiffness": 1e4},
+    "lubrication": {"form": "kim-karrila", "inner_gap": 1e-3, "outer_gap": 0.05},
+    "duration": {"equilibration": {"strain": 1}, "production": {"strain": 2}},
+}
+
+# Table 4.1 of Li's thesis, with N = 250 and windows that end with a strain or, at small Peclet numbers, with Brownian
+# times. Ten of these are no equilibration: the viscosity at Pe = 0.1 and phi = 0.5 still rises after 50
+# (results/control-variates); a^2 / D_0 is 19.
+TABLE_SCENE = merged(
+    REFERENCE_SCENE,
+    {
+        "particles": {"count": 250},
+        "flow": None,
+        "peclet": 1,
+        "limits": {"shear_rate": 0.009, "thermal_energy": 0.017},
+        "duration": {
+            "equilibration": {"strain": 1, "brownian_times": 100},
+            "production": {"strain": 2, "brownian_times": 40},
+        },
+    },
+)
+
+
+def at_peclet(number):
+    """A patch: noise and flow at this Peclet number, as in the published table but five times as fast where kT allows
+    it."""
+    return {"flow": None, "peclet": number, "limits": {"shear_rate": 0.045, "thermal_energy": 0.017}}
+
+
+def during(equilibration, production):
+    """A patch: the two parts of a realisation."""
+    return {"duration": {"equilibration": equilibration, "production": production}}

@@ -1,0 +1,48 @@
+"""csv files, and rows that have numbers NAME with standard errors NAME_error."""
+import csv
+
+
+def write_table(path, columns, rows, digits):
+    with open(path, "w", newline="") as f:
+        writer = csv.DictWriter(f, columns)
+        writer.writeheader()
+        for row in rows:
+            writer.writerow(
+                {k: f"{row[k]:.{digits}g}" if isinstance(row.get(k), float) else row.get(k) for k in columns}
+            )
+
+
+def read_table(path):
+    """Rows of a table whose columns are all numbers."""
+    with open(path, newline="") as f:
+        return [{name: float(value) for name, value in row.items()} for row in csv.DictReader(f)]
+
+
+def number(row, name):
+    """A number of a row and its standard error."""
+    return row[name], row[f"{name}_error"]
+
+
+def entries(name, pair):
+    """The other way round: what a row has of a number and its standard error."""
+    return {name: pair[0], f"{name}_error": pair[1]}
+
+
+def number_text(pair, digits):
+    """A number with its standard error on a page."""
+    return f"{pair[0]:.{digits}f} ± {pair[1]:.{digits}f}"
+
+
+def columns_of(*names):
+    """Column names of numbers with their errors."""
+    return [c for n in names for c in (n, f"{n}_error")]
+
+
+def markdown_row(cells):
+    """A line of a table on a page."""
+    return "|" + "|".join(f" {cell} " if cell != "" else " " for cell in cells) + "|"
+
+
+def markdown_head(names):
+    """The two lines above a table on a page."""
+    return f"{markdown_row(names)}\n|{'---|' * len(names)}"

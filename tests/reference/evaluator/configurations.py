@@ -1,0 +1,127 @@
+"""Configurations at random: spheres whose gaps and overlaps scatter around zero, with velocities, springs and noise."""
+import copy
+
+import numpy as np
+
+from evaluator.evaluation import flow_of, pairs_of
+from evaluator.geometry import across, lattice
+
+# Radius and number of spheres.
+MIXTURES = {"1": {1: 30}, "1-1.4": {1: 22, 1.4: 8}, "1-3": {1: 54, 3: 2}, "1-1.4-5-7": {1: 110, 1.4: 40, 5: 1, 7: 1}}
+VOLUME_FRACTION = 0.52
+ADVANCE = 1e-3
+# Every term that a scene can have.
+SCENE = {
+    "fluid": {"viscosity": 0.1, "thermal_energy": 0.017},
+    "flow": {"shear_rate": 0.7},
+    "contact": {
+        "normal_stiffness": 1e4,
+        "normal_damping": 1.3,
+        "tangential_stiffness": 1e4 * 2 / 7,
+        "friction": 0.5,
+        "rolling_stiffness": 700.0,
+        "rolling_friction": 0.2,
+    },
+    "lubrication": {"form": "kim-karrila", "inner_gap": 1e-3, "outer_gap": 0.05},
+    "repulsion": {"form": "exponential", "strength": 0.17, "relative_length": 0.01, "cutoff_lengths": 20},
+}
+
+
+# Keys that say how far a law reaches.
+REACHES = ("outer_gap", "outer_distance", "relative_length", "debye_length", "cutoff")
+
+
+def varied(scene, generator):
+    """A scene whose numbers are up to three times larger or smaller; reaches do not grow, or a particle could meet its
+    own image, but for the outer gap, which is one of three."""
+
+    def other(key, value):
+        if not isinstance(value, float):
+            return value
+        return value * float(3 ** generator.uniform(-1, 0 if key in REACHES else 1))
+
+    result = {block: {key: other(key, value) for key, value in entries.items()} for block, entries in scene.items()}
+    if "outer_gap" in result.get("lubrication", {}):
+        result["lubrication"]["outer_gap"] = float(generator.choice([0.05, 0.2, 0.4]))
+    return result
+
+
+def with_only(scene, block):
+    """The scene without other laws of pairs than those of one block."""
+    return {name: entries for name, entries in scene.items() if name in ("fluid", "flow", block)}
+
+
+def packed(radius, box, generator):
+    """Positions at random, then pushed apart until no two spheres of radii larger by a five-hundredth overlap by more
+    than a thousandth: true gaps scatter around zero."""
+    vectors = lattice(box)
+    position = generator.uniform(size=(len(radius), 3)) @ vectors
+    wanted = 1.002 * (radius[:, None] + radius)
+    np.fill_diagonal(wanted, 0)
+    share = (1 / radius)[:, None] / (1 / radius[:, None] + 1 / radius)
+    for _ in range(5000):
+        separation = position[None] - position[:, None]
+        separation -= np.rint(separation @ np.linalg.inv(vectors)) @ vectors
+        distance = np.linalg.norm(separation, axis=2) + np.eye(len(radius))
+        overlap = np.maximum(wanted - distance, 0)
+        if overlap.max() < 1e-3:
+            break
+        position -= np.sum((0.5 * share * overlap / distance)[:, :, None] * separation, axis=1)
+    return position
+
+
+def random_state(mixture, scene, generator):
+    radius = np.repeat([*map(float, MIXTURES[mixture])], [*MIXTURES[mixture].values()])
+    edge = max((4 / 3 * np.pi * np.sum(radius**3) / VOLUME_FRACTION) ** (1 / 3), 2.5 * radius.max())
+    box = {"lengths": [edge] * 3, "tilt": generator.uniform(-0.5, 0.5) * edge}
+    position = packed(radius, box, generator) + 3e-3 * generator.normal(size=(len(radius), 3))
+    flow, height = flow_of(scene, {"box": box}), position[:, 1]
+    velocity = flow.velocity(height) + 0.3 * generator.normal(size=position.shape)
+    spin = 0.3 * generator.normal(size=position.shape) + flow.spin(height)
+    return {
+        "box": box,
+        "radius": radius.tolist(),
+        "position": position.tolist(),
+        "velocity": velocity.tolist(),
+        "angular_velocity": spin.tolist(),
+    }
+
+
+def named(pairs, **vectors):
+    """What a configuration lists of pairs."""
+    for k, (i, j, image) in enumerate(pairs.names()):
+        yield {"i": i, "j": j, "image": list(image), **{name: rows[k].tolist() for name, rows in vectors.items()}}
+
+
+def random_springs(pairs, generator):
+    """Of a length about that of the overlap, so that some of them slide and some do not."""
+    touching = pairs.where(pairs.overlap > 0)
+    size = touching.overlap[:, None]
+    tangential, rolling = (across(touching.normal, generator.normal(size=(len(touching), 3))) for _ in range(2))
+    return [*named(touching, tangential=size * tangential, rolling=3 * size * rolling)]
+
+
+def random_noise(pairs, count, generator):
+    theta, chi = generator.normal(size=(2, len(pairs), 3))
+    force, torque = generator.normal(size=(2, count, 3)).tolist()
+    return {"timestep": 1e-4, "force": force, "torque": torque, "pairs": [*named(pairs, theta=theta, chi=chi)]}
+
+
+def random_configuration(mixture, scene, seed):
+    """Springs where the scene has friction, noise where it has a thermal energy. Some pair touches, and some act on
+    each other over the boundary that moves."""
+    generator = np.random.default_rng(seed)
+    for _ in range(20):
+        state = random_state(mixture, scene, generator)
+        configuration = {"scene": copy.deepcopy(scene), "state": state}
+        pairs = pairs_of(configuration)
+        if np.any(pairs.overlap > 0) and (np.any(pairs.image[:, 1] != 0)):
+            break
+    else:
+        raise ValueError(f"no packing of {mixture} has a contact and a pair over the boundary")
+    if scene.get("contact", {}).get("friction", 0) > 0:
+        state["springs"] = random_springs(pairs, generator)
+        configuration["advance"] = ADVANCE
+    if "thermal_energy" in scene["fluid"]:
+        state["noise"] = random_noise(pairs, len(state["radius"]), generator)
+    return configuration

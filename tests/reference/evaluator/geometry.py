@@ -1,0 +1,103 @@
+"""The sheared cell, and pairs of particles in it."""
+import dataclasses
+import itertools
+
+import numpy as np
+
+# Lattice vectors beside the nearest ones that two particles may meet over: the tilt makes x the longest way.
+SHIFTS = np.array([*itertools.product((-2, -1, 0, 1, 2), (-1, 0, 1), (-1, 0, 1))])
+
+
+def lattice(box):
+    """Rows: the vectors (Lx, 0, 0), (tilt, Ly, 0), (0, 0, Lz)."""
+    vectors = np.diag(np.array(box["lengths"], float))
+    vectors[1, 0] = box["tilt"]
+    return vectors
+
+
+def along(normal, vector):
+    """The part of each vector along the unit vector of its row."""
+    return normal * np.sum(normal * vector, axis=-1, keepdims=True)
+
+
+def across(normal, vector):
+    return vector - along(normal, vector)
+
+
+def column(values):
+    return np.asarray(values)[:, None]
+
+
+def harmonic_mean(pairs):
+    """Of the radii, a_ij = 2 a_i a_j / (a_i + a_j)."""
+    return 2 * pairs.radius_i * pairs.radius_j / (pairs.radius_i + pairs.radius_j)
+
+
+@dataclasses.dataclass
+class Pairs:
+    """Rows of pairs of particles i < j; the separation r leads from i to an image of j, and F_i is the force on i."""
+
+    i: np.ndarray
+    j: np.ndarray
+    image: np.ndarray  # lattice vectors that are added to the position of j as it is given
+    separation: np.ndarray
+    radius_i: np.ndarray
+    radius_j: np.ndarray
+    velocity_i: np.ndarray
+    velocity_j: np.ndarray  # of the image: U_j + rate Ly k_y in x
+    spin_i: np.ndarray
+    spin_j: np.ndarray
+    height_i: np.ndarray  # y of i, by which the flow is known at i and at the image of j
+
+    def __len__(self):
+        return len(self.i)
+
+    @property
+    def distance(self):
+        return np.linalg.norm(self.separation, axis=1)
+
+    @property
+    def normal(self):
+        return self.separation / self.distance[:, None]
+
+    @property
+    def height_j(self):
+        return self.height_i + self.separation[:, 1]
+
+    @property
+    def surface_distance(self):
+        """h = r - a_i - a_j, negative in overlap."""
+        return self.distance - self.radius_i - self.radius_j
+
+    @property
+    def overlap(self):
+        return np.maximum(-self.surface_distance, 0)
+
+    def names(self):
+        return [(int(i), int(j), tuple(map(int, k))) for i, j, k in zip(self.i, self.j, self.image)]
+
+    def where(self, chosen):
+        parts = [getattr(self, field.name)[chosen] for field in dataclasses.fields(self)]
+        return Pairs(*parts)
+
+
+def pairs_within(state, shear_rate, reach):
+    """All pairs, in all images, whose centres are closer than reach(a_i, a_j). Every pair of particles is tried in
+    every image that could be near."""
+    vectors = lattice(state["box"])
+    position, radius = np.array(state["position"], float), np.array(state["radius"], float)
+    own = np.linalg.norm(SHIFTS[np.any(SHIFTS != 0, axis=1)] @ vectors, axis=1).min()
+    if own < reach(radius, radius).max():
+        raise ValueError("the box is too small: a particle acts on its own image")
+    i, j = np.triu_indices(len(radius), 1)
+    apart = position[j] - position[i]
+    nearest = -np.rint(apart @ np.linalg.inv(vectors))
+    images = nearest[:, None, :] + SHIFTS
+    separation = apart[:, None, :] + images @ vectors
+    row, column = np.nonzero(np.linalg.norm(separation, axis=2) < reach(radius[i], radius[j])[:, None])
+    i, j, image = i[row], j[row], images[row, column].astype(int)
+    velocity, spin = np.array(state["velocity"], float), np.array(state["angular_velocity"], float)
+    velocity_j = velocity[j]
+    velocity_j[:, 0] += shear_rate * vectors[1, 1] * image[:, 1]
+    bodies = radius[i], radius[j], velocity[i], velocity_j, spin[i], spin[j], position[i, 1]
+    return Pairs(i, j, image, separation[row, column], *bodies)

@@ -1,0 +1,180 @@
+#!/usr/bin/python3
+"""Numbers with standard errors, and fits, against printed tables and formulas."""
+import math
+import os
+import sys
+import unittest
+
+import numpy as np
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+sys.path.insert(0, os.path.join(ROOT, "results"))
+from studies.estimates import (
+    difference,
+    estimate,
+    jackknife,
+    logarithm,
+    over,
+    propagated,
+    quotient,
+    relative_difference,
+    student_quantile,
+    weighted_mean,
+)
+from studies.fits import line_through, lines, log_minimum, multiples
+from studies.green_kubo import fit_with_errors, fitted
+from studies.published import JAMMED_AT_REST, diverging, mari_fit
+from studies.tables import columns_of, markdown_head, markdown_row, number_text
+
+
+class Means(unittest.TestCase):
+    def test_quantiles_are_those_of_printed_tables(self):
+        for degrees, quantile in ((1, 12.706), (4, 2.776), (7, 2.365), (31, 2.040), (120, 1.980)):
+            self.assertAlmostEqual(student_quantile(degrees, 0.975), quantile, delta=6e-4)
+        for degrees, quantile in ((1, 636.619), (9, 4.781), (30, 3.646)):  # two-sided 0.999
+            self.assertAlmostEqual(student_quantile(degrees, 0.9995), quantile, delta=6e-4)
+        self.assertEqual(student_quantile(0, 0.975), math.inf)
+
+    def test_the_error_of_1_to_n_is_the_root_of_n_plus_1_over_12(self):
+        # The variance of 1 ... n about its mean is n (n + 1) / 12 with n - 1 in the denominator.
+        for n in (2, 5, 100):
+            mean, error = estimate(range(1, n + 1))
+            self.assertAlmostEqual(mean, (n + 1) / 2)
+            self.assertAlmostEqual(error, math.sqrt((n + 1) / 12))
+
+    def test_a_single_value_has_no_error(self):
+        self.assertEqual(estimate([3]), (3, math.inf))
+
+    def test_weights_are_inverse_variances(self):
+        # Errors of 1 and 2: weights 4/5 and 1/5, error sqrt(1 / (1 + 1/4)).
+        mean, error = weighted_mean([10, 20], [1, 2])
+        self.assertAlmostEqual(mean, 12)
+        self.assertAlmostEqual(error, math.sqrt(0.8))
+
+
+class Functions(unittest.TestCase):
+    def test_errors_add_in_quadrature(self):
+        self.assertEqual(difference((5, 3), (2, 4)), (3, 5))
+
+    def test_relative_errors_of_a_quotient_add_in_quadrature(self):
+        for sign in (1, -1):
+            value, error = quotient((sign * 6, 0.18), (2, 0.08))
+            self.assertEqual(value, sign * 3)
+            self.assertAlmostEqual(error, 3 * 0.05)  # 3 % and 4 %
+
+    def test_exact_factors_scale_errors(self):
+        self.assertEqual(over((6, 0.5), -2), (-3, 0.25))
+        self.assertEqual(logarithm((math.e, 0.1 * math.e)), (1, 0.1))
+
+    def test_pairs_of_seeds_hide_what_they_share(self):
+        reference, values = {1: 10, 2: 20, 3: 30}, {1: 11, 2: 21, 3: 31, 4: 1000}
+        value, error, degrees = relative_difference(values, reference, paired=True)
+        self.assertAlmostEqual(value, 0.05)
+        self.assertAlmostEqual(error, 0)
+        self.assertEqual(degrees, 2)
+
+    def test_without_pairs_both_scatters_count(self):
+        value, error, degrees = relative_difference({1: 11, 2: 13}, {3: 9, 4: 11, 5: 10}, paired=False)
+        self.assertAlmostEqual(value, 0.2)
+        # 12 +- 1 over 10 +- 1/sqrt(3)
+        self.assertAlmostEqual(error, 1.2 * math.hypot(1 / 12, 1 / math.sqrt(3) / 10))
+        self.assertEqual(degrees, 1)
+
+    def test_propagated_errors_of_a_sum_are_those_of_the_formula(self):
+        value, error = propagated([(1, 3), (2, 4)], sum)
+        self.assertEqual(value, 3)
+        # 400 draws know a standard deviation to 1 / sqrt(800): 3.5 %. The seed is fixed.
+        self.assertAlmostEqual(error, 5, delta=0.5)
+
+    def test_propagated_errors_of_several_numbers_come_from_the_same_draws(self):
+        values, errors = propagated([(1, 0.1)], lambda drawn: (drawn[0], 2 * drawn[0]))
+        self.assertEqual(values, (1, 2))
+        self.assertAlmostEqual(errors[1], 2 * errors[0])
+
+
+class Jackknife(unittest.TestCase):
+    values = np.array([2.0, 3.0, 5.0, 7.0, 11.0])
+
+    def test_of_a_mean_has_the_error_of_the_mean(self):
+        value, error = jackknife(lambda chosen: self.values[chosen].mean(), 5)
+        self.assertAlmostEqual(value, 5.6)
+        self.assertAlmostEqual(error, math.sqrt(12.8 / 5))  # the variance of these is 12.8
+
+    def test_of_several_numbers_has_an_error_for_each(self):
+        _, (first, second) = jackknife(lambda chosen: (self.values[chosen].mean(), 3 * self.values[chosen].mean()), 5)
+        self.assertAlmostEqual(second, 3 * first)
+
+
+class Fits(unittest.TestCase):
+    def test_a_line_is_found_exactly_and_its_slope_has_the_error_of_the_formula(self):
+        x = np.array([1.0, 2.0, 4.0])
+        intercept, slope, error = line_through(x, 3 - 2 * x, [0.5, 0.5, 0.5])
+        self.assertAlmostEqual(intercept, 3)
+        self.assertAlmostEqual(slope, -2)
+        # sigma / sqrt(sum (x - mean)^2): the squares about 7/3 are 14/3.
+        self.assertAlmostEqual(error, 0.5 / math.sqrt(14 / 3))
+
+    def test_weights_draw_a_line_to_points_with_small_errors(self):
+        # Two exact points and one that nobody knows.
+        _, slope, _ = line_through([0, 1, 2], [0, 1, 50], [1e-3, 1e-3, 1e6])
+        self.assertAlmostEqual(slope, 1)
+
+    def test_multiples_and_lines_leave_what_least_squares_leaves(self):
+        shapes = np.array([[1.0, 2.0, 3.0], [1.0, 1.0, 2.0]])
+        factors, left = multiples(shapes, np.array([2.0, 4.0, 6.0]))
+        self.assertAlmostEqual(factors[0], 2)
+        self.assertAlmostEqual(left[0], 0)
+        self.assertAlmostEqual(factors[1], 3)  # 18 / 6
+        self.assertAlmostEqual(left[1], 2)  # 56 - 18^2 / 6
+        constants, slopes, left = lines(shapes, [7, 9, 11])
+        self.assertAlmostEqual(constants[0], 5)
+        self.assertAlmostEqual(slopes[0], 2)
+        self.assertAlmostEqual(left[0], 0)
+        # Means 4/3 and 9; sum of products 2, of squares 2/3, of squares of the values 8.
+        self.assertAlmostEqual(slopes[1], 3)
+        self.assertAlmostEqual(constants[1], 5)
+        self.assertAlmostEqual(left[1], 2)
+
+    def test_the_minimum_of_a_parabola_in_logarithms_is_its_vertex(self):
+        x = [1, 3, 20, 100]
+        values = [math.exp((math.log10(a) - 0.7) ** 2) for a in x]
+        self.assertAlmostEqual(log_minimum(x, values), 0.7)
+
+    def test_the_minimum_at_an_end_is_that_point(self):
+        self.assertEqual(log_minimum([1, 10, 100], [1, 2, 3]), 0)
+        self.assertEqual(log_minimum([1, 10, 100], [3, 2, 1]), 2)
+
+    def test_a_relaxing_viscosity_is_found_within_the_grid(self):
+        times = np.geomspace(1e-3, 10, 200)
+        viscosity, tau = fitted(times, 5 * (1 - np.exp(-times / 0.3)))
+        self.assertAlmostEqual(tau, 0.3, delta=0.3 * math.log(10) / 160)  # half a step
+        self.assertAlmostEqual(viscosity, 5, delta=0.05)
+
+    def test_errors_of_that_fit_follow_the_scatter_of_the_seeds(self):
+        times = np.geomspace(1e-3, 10, 200)
+        scales = np.array([4.0, 5.0, 6.0, 5.0])
+        (viscosity, _), (error, tau_error) = fit_with_errors(times, scales[:, None] * (1 - np.exp(-times / 0.3)))
+        self.assertAlmostEqual(viscosity, 5, delta=0.05)
+        self.assertAlmostEqual(error, estimate(scales)[1], delta=0.01)
+        self.assertAlmostEqual(tau_error, 0)
+
+
+class Published(unittest.TestCase):
+    def test_fits_have_their_values(self):
+        self.assertAlmostEqual(mari_fit(0.495, 0), 1.4 * 4**1.6)  # 1 - 0.75
+        self.assertAlmostEqual(mari_fit(0.43125, 1), 0.71 * 4**2.3)
+        self.assertAlmostEqual(diverging(0.75 * JAMMED_AT_REST, JAMMED_AT_REST), 8)
+
+
+class Tables(unittest.TestCase):
+    def test_errors_have_columns_of_their_own(self):
+        self.assertEqual(columns_of("a", "b"), ["a", "a_error", "b", "b_error"])
+
+    def test_lines_of_a_page(self):
+        self.assertEqual(markdown_head(["a", "b"]), "| a | b |\n|---|---|")
+        self.assertEqual(markdown_row(["x", "", 0]), "| x | | 0 |")
+        self.assertEqual(number_text((1.25, 0.004), 2), "1.25 ± 0.00")
+
+
+if __name__ == "__main__":
+    unittest.main()
