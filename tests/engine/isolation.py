@@ -4,8 +4,8 @@ What is compiled for newer processors must not leak into the rest of the program
 inline function, the linker keeps one copy, and if that is the one with the newer instructions the program no longer
 runs everywhere. So no object compiled for an instruction set may define a symbol that others could share, and no other
 object may contain registers of 256 or 512 bits.
-Eigen is made of such inline functions. Nothing in kernels/ or terms/ and no source for an instruction set may include it,
-also not by way of other headers: it would then take a single call to leak.
+Eigen is made of such inline functions. Nothing in kernels/ or terms/ and no source for an instruction set may include
+it, also not by way of other headers: it would then take a single call to leak.
 """
 
 import re
@@ -22,7 +22,12 @@ def output(*command, folder):
 
 
 def guarded_sources(engine):
-    sources = [path for folder in ("kernels", "terms") for path in (engine / folder).rglob("*") if path.suffix in (".h", ".cpp")]
+    sources = [
+        path
+        for folder in ("kernels", "terms")
+        for path in (engine / folder).rglob("*")
+        if path.suffix in (".h", ".cpp")
+    ]
     for suffix in ("baseline", "avx2", "avx512"):
         sources += engine.rglob(f"*_{suffix}.cpp")
     return sorted(set(sources))

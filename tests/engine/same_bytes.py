@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """same_bytes.py BEFORE AFTER [--jobs N]      whether two builds of peclet-engine compute the same, to the last bit
 
-Runs short scenes of every combination of terms, with explicit and with implicit steps, and some others (a fluid at rest, four sizes, two
-threads, a larger system, every observable) with every instruction set that this processor has. Prints every field of the results that
-differs: in how many runs, by how much of its own size at most, and in which run first. What tells of the build and the machine is left out.
+Runs short scenes of every combination of terms, with explicit and with implicit steps, and some others (a fluid at
+rest, four sizes, two threads, a larger system, every observable) with every instruction set that this processor has.
+Prints every field of the results that differs: in how many runs, by how much of its own size at most, and in which run
+first. What tells of the build and the machine is left out.
 
-The exit code is 1 where trajectories differ, which is what `final_state_sha256` and `ending` say, or where a scene does not do what it is
-here for. Other fields are means and figures over the same trajectory; that they differ by rounding may be intended.
+The exit code is 1 where trajectories differ, which is what `final_state_sha256` and `ending` say, or where a scene does
+not do what it is here for. Other fields are means and figures over the same trajectory; that they differ by rounding may be intended.
 """
 import argparse
 import concurrent.futures
@@ -22,22 +23,39 @@ OF_THE_MACHINE = ("/cost", "/engine")
 SETS = ("baseline", "avx2", "avx512")
 
 SCENE = {
-    "particles": {"count": 60, "density": 0.1, "species": [{"radius": 1, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}]},
-    "volume_fraction": 0.55, "fluid": {"viscosity": 0.1}, "flow": {"shear_rate": 1}, "guard": {"largest_overlap": 0.9, "largest_displacement": 0.9},
-    "duration": {"equilibration": {"time": 0.1}, "production": {"time": 0.4}}}
+    "particles": {
+        "count": 60,
+        "density": 0.1,
+        "species": [{"radius": 1, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}],
+    },
+    "volume_fraction": 0.55,
+    "fluid": {"viscosity": 0.1},
+    "flow": {"shear_rate": 1},
+    "guard": {"largest_overlap": 0.9, "largest_displacement": 0.9},
+    "duration": {"equilibration": {"time": 0.1}, "production": {"time": 0.4}},
+}
 METHODS = {"explicit": {"method": "explicit", "timestep": 0.002}, "implicit": {"method": "implicit"}}
 LUBRICATION = {"lubrication": {"form": "kim-karrila", "inner_gap": 0.03, "outer_gap": 0.1}}
 REPULSION = {"repulsion": {"form": "exponential", "strength": 0.2, "relative_length": 0.02, "cutoff_lengths": 5}}
 NOISE = {"fluid": {"thermal_energy": 0.02}}
 ROUGH = {"normal_stiffness": 1e3, "friction": 0.5}
-CONTACTS = {"": {}, "contact": {"normal_stiffness": 1e3}, "friction": ROUGH, "rolling": ROUGH | {"rolling_stiffness": 500, "rolling_friction": 0.2}}
+CONTACTS = {
+    "": {},
+    "contact": {"normal_stiffness": 1e3},
+    "friction": ROUGH,
+    "rolling": ROUGH | {"rolling_stiffness": 500, "rolling_friction": 0.2},
+}
 CONTACTS |= {f"{name} damping": keys | {"normal_damping": 1} for name, keys in CONTACTS.items() if keys}
 FRICTION = {"contact": ROUGH}
 EVERY_OBSERVABLE = {"observables": ["stress", "mean_squared_displacement", "pair_distribution", "contact_network"]}
 FOUR_SIZES = {"particles": {"species": [{"radius": a, "volume_share": 0.25} for a in (1, 1.4, 2, 3)]}}
 AT_REST = {"flow": {"shear_rate": 0}, "observables": ["stress", "mean_squared_displacement", "stress_correlation"]}
-LARGE = {"particles": {"count": 5000}, "volume_fraction": 0.4,
-         "duration": {"equilibration": {"time": 0}, "production": {"time": 0.08}}, "integrator": {"timestep": 0.0025}}
+LARGE = {
+    "particles": {"count": 5000},
+    "volume_fraction": 0.4,
+    "duration": {"equilibration": {"time": 0}, "production": {"time": 0.08}},
+    "integrator": {"timestep": 0.0025},
+}
 
 
 def merged(*parts):
@@ -54,7 +72,9 @@ def scenes():
     """(name, scene, threads)"""
     for method, integrator in METHODS.items():
         base = merged(SCENE, {"integrator": integrator})
-        for (touch, contact), lubrication, noise, repulsion in itertools.product(CONTACTS.items(), (False, True), (False, True), (False, True)):
+        for (touch, contact), lubrication, noise, repulsion in itertools.product(
+            CONTACTS.items(), (False, True), (False, True), (False, True)
+        ):
             parts = [{"contact": contact}] if contact else []
             words = [method, touch] + ["lubrication"] * lubrication + ["noise"] * noise + ["repulsion"] * repulsion
             parts += [LUBRICATION] * lubrication + [NOISE] * noise + [REPULSION] * repulsion
@@ -88,7 +108,12 @@ def leaves(value, pointer=""):
 
 def result_of(engine, path, threads, instruction_set):
     environment = os.environ | {"PECLET_INSTRUCTION_SET": instruction_set}
-    done = subprocess.run([engine, "run", path, "--quiet", "--seed", "7", "--threads", str(threads)], env=environment, capture_output=True, text=True)
+    done = subprocess.run(
+        [engine, "run", path, "--quiet", "--seed", "7", "--threads", str(threads)],
+        env=environment,
+        capture_output=True,
+        text=True,
+    )
     if done.returncode != 0:
         raise SystemExit(f"same_bytes.py: {engine} run {path}: exit {done.returncode}\n{done.stderr}")
     return json.loads(done.stdout)
@@ -163,7 +188,9 @@ def main():
             with open(path, "w") as file:
                 json.dump(scene, file)
             for instruction_set in sets:
-                pending[name, instruction_set] = scene, [pool.submit(result_of, engine, path, threads, instruction_set) for engine in engines]
+                pending[name, instruction_set] = scene, [
+                    pool.submit(result_of, engine, path, threads, instruction_set) for engine in engines
+                ]
         for run, (scene, both) in pending.items():
             before, after = (future.result() for future in both)
             differences.add(", ".join(run), before, after)

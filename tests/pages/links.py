@@ -20,13 +20,17 @@ NOT_OURS = {".git", "build", "node_modules", "__pycache__"}
 FENCE = re.compile(r"\s*(```+|~~~+)")
 HEADING = re.compile(r"(#{1,6})\s+(.*?)\s*#*$")
 # [text](target "title"); the text may hold an image, the target a pair of parentheses.
-INLINE = re.compile(r"\[(?:[^\[\]]|\[[^\]]*\](?:\([^()]*\))?)*\]"
-                    r"\(\s*<?([^()\s<>]*(?:\([^()]*\)[^()\s<>]*)*)>?(?:\s+[\"'][^\"']*[\"'])?\s*\)")
+INLINE = re.compile(
+    r"\[(?:[^\[\]]|\[[^\]]*\](?:\([^()]*\))?)*\]"
+    r"\(\s*<?([^()\s<>]*(?:\([^()]*\)[^()\s<>]*)*)>?(?:\s+[\"'][^\"']*[\"'])?\s*\)"
+)
 IMAGE_IN_LINK = re.compile(r"!\[[^\[\]]*\]\(\s*<?([^()\s<>]+)>?\s*\)")
 REFERENCE = re.compile(r"^ {0,3}\[[^\]]+\]:\s*<?([^\s>]+)>?", re.MULTILINE)
 HTML = re.compile(r"<(?:a|img)\b[^>]*?(?:href|src)=[\"']([^\"']+)[\"']", re.IGNORECASE)
 EXPLICIT = re.compile(r"<a\b[^>]*?(?:id|name)=[\"']([^\"']+)[\"']", re.IGNORECASE)
-OWN_FILE = re.compile(r"(?:adapters|cmake|contract|docs|engine|results|runner|schema|templates|tests)/[\w./-]*\w\.[a-z]{1,5}")
+OWN_FILE = re.compile(
+    r"(?:adapters|cmake|contract|docs|engine|results|runner|schema|templates|tests)/[\w./-]*\w\.[a-z]{1,5}"
+)
 CODE_SPAN = re.compile(r"(`+)(?:(?!\n\n).)+?(?<!`)\1(?!`)", re.DOTALL)
 
 
@@ -123,8 +127,10 @@ def readme_faults(text):
 def width_faults(text):
     wide = [number for number, line in prose(text) if len(line) > PAGE_WIDTH and not line.lstrip().startswith("|")]
     if len(wide) > WIDE_LINES:
-        yield wide[0], (f"{len(wide)} lines of more than {PAGE_WIDTH} characters outside tables and code, at most {WIDE_LINES}: "
-                        + ", ".join(map(str, wide)))
+        yield wide[0], (
+            f"{len(wide)} lines of more than {PAGE_WIDTH} characters outside tables and code, at most {WIDE_LINES}: "
+            + ", ".join(map(str, wide))
+        )
 
 
 def faults(root):

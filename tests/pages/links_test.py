@@ -24,25 +24,53 @@ class Pages(unittest.TestCase):
 
 class Links(Pages):
     def test_that_lead_somewhere_pass(self):
-        for text in ("[a](docs/other.md)", "[a](docs/)", "[a](docs/other.md#other)",
-                     "[a](docs/other.md#a-code-heading-with-commas)",
-                     "[a](docs/other.md#twice-1)", "# Here\n[a](#here)", "[a\nb](docs/other.md)", "![a](README.md)", "[a](https://example.org/x)",
-                     '[a](docs/other.md "title")', "[a]: docs/other.md", "<img src='docs/other.md'>", "[![a](README.md)](docs/other.md)"):
+        for text in (
+            "[a](docs/other.md)",
+            "[a](docs/)",
+            "[a](docs/other.md#other)",
+            "[a](docs/other.md#a-code-heading-with-commas)",
+            "[a](docs/other.md#twice-1)",
+            "# Here\n[a](#here)",
+            "[a\nb](docs/other.md)",
+            "![a](README.md)",
+            "[a](https://example.org/x)",
+            '[a](docs/other.md "title")',
+            "[a]: docs/other.md",
+            "<img src='docs/other.md'>",
+            "[![a](README.md)](docs/other.md)",
+        ):
             with self.subTest(text):
                 self.assertEqual(self.faults(text), [])
 
     def test_that_lead_nowhere_are_noticed(self):
-        for text in ("[a](docs/none.md)", "[a](other.md)", "[a](docs/other.md#none)", "[a](docs/other.md#not-a-heading)",
-                     "[a](docs/other.md#twice-2)",
-                     "# Here\n[a](#there)", "[a\nb](none.md)", "![a](none.png)", "[a](/docs/other.md)", "[a]: none.md", "<img src='none.png'>",
-                     "[![a](none.png)](docs/other.md)",
-                     "- item\n\n  [a](none.md)", "| [a](none.md) |", "[`code`](none.md)"):
+        for text in (
+            "[a](docs/none.md)",
+            "[a](other.md)",
+            "[a](docs/other.md#none)",
+            "[a](docs/other.md#not-a-heading)",
+            "[a](docs/other.md#twice-2)",
+            "# Here\n[a](#there)",
+            "[a\nb](none.md)",
+            "![a](none.png)",
+            "[a](/docs/other.md)",
+            "[a]: none.md",
+            "<img src='none.png'>",
+            "[![a](none.png)](docs/other.md)",
+            "- item\n\n  [a](none.md)",
+            "| [a](none.md) |",
+            "[`code`](none.md)",
+        ):
             with self.subTest(text):
                 self.assertEqual(len(self.faults(text)), 1, text)
 
     def test_in_code_are_none(self):
-        for text in ("```\n[a](none.md)\n```", "text\n\n    [a](none.md)\n", "`[a](none.md)`", "``[a](none.md)``",
-                     "~~~\n[a](none.md)\n```\n~~~"):
+        for text in (
+            "```\n[a](none.md)\n```",
+            "text\n\n    [a](none.md)\n",
+            "`[a](none.md)`",
+            "``[a](none.md)``",
+            "~~~\n[a](none.md)\n```\n~~~",
+        ):
             with self.subTest(text):
                 self.assertEqual(self.faults(text), [])
 
@@ -52,8 +80,14 @@ class Links(Pages):
 
 class Paths(Pages):
     def test_of_the_source_lead_somewhere(self):
-        for text in ("`docs/other.md`", "`docs/`", "`docs/other.md --option`", "`my/own.py`",
-                     "`docs/NAME.md.`", "```\ndocs/none.md\n```"):
+        for text in (
+            "`docs/other.md`",
+            "`docs/`",
+            "`docs/other.md --option`",
+            "`my/own.py`",
+            "`docs/NAME.md.`",
+            "```\ndocs/none.md\n```",
+        ):
             with self.subTest(text):
                 self.assertEqual(self.faults(text, CMakeLists=""), [])
         for text in ("`docs/none.md`", "`tests/none.py BIN`", "`python3 tests/none.py`", "`tests/a/none.cpp`"):

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""readme_commands.py BIN: types what README.md says, as it stands there, and holds what comes out to what the page shows.
+"""readme_commands.py BIN: types what README.md says, and holds what comes out to what the page shows.
 
-The blocks marked ```bash run one after another in one shell, in an empty home, with BIN in the place of build/release/bin. Tables are
-compared in their headings, legends, points and verdicts; a viscosity must lie within the sum of both half-widths, because last digits
-differ between instruction sets.
+The blocks marked ```bash run one after another in one shell, in an empty home, with BIN in the place of
+build/release/bin. Tables are compared in their headings, legends, points and verdicts; a viscosity must lie within the
+sum of both half-widths, because last digits differ between instruction sets.
 """
 import os
 import re
@@ -21,7 +21,11 @@ def readme():
 
 
 def blocks(page, language):
-    return [text for found, text in re.findall(r"^```(\w*)\n(.*?)^```$", page, re.DOTALL | re.MULTILINE) if found == language]
+    return [
+        text
+        for found, text in re.findall(r"^```(\w*)\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
+        if found == language
+    ]
 
 
 def shown(page, campaign):
@@ -43,7 +47,11 @@ def rows(table):
 
 def fixed_text(table):
     """Headings, legend and the number of points; widths of columns and counts of seeds may differ."""
-    return [line.split() for line in table.splitlines() if not LOOK.search(line) and not re.match(r"\d+ seeds ended|predictions:", line)]
+    return [
+        line.split()
+        for line in table.splitlines()
+        if not LOOK.search(line) and not re.match(r"\d+ seeds ended|predictions:", line)
+    ]
 
 
 def compare(page, printed, whole):
@@ -55,12 +63,20 @@ def compare(page, printed, whole):
         assert verdict == other_verdict, f"{point}: {verdict} in README.md, {other_verdict} now"
         assert abs(look - other) <= half_width + other_half_width, f"{point}: {look} in README.md, {other} now"
     expected, found = fixed_text(page), fixed_text(printed)
-    assert expected == (found if whole else found[:len(expected)]), f"README.md shows\n{page}\nand the program prints\n{printed}"
+    assert expected == (
+        found if whole else found[: len(expected)]
+    ), f"README.md shows\n{page}\nand the program prints\n{printed}"
 
 
 def shell(script, home, folder):
-    done = subprocess.run(["bash", "-euo", "pipefail", "-c", script], cwd=folder, env={**os.environ, "HOME": home}, text=True,
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    done = subprocess.run(
+        ["bash", "-euo", "pipefail", "-c", script],
+        cwd=folder,
+        env={**os.environ, "HOME": home},
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
     assert done.returncode == 0, f"exit code {done.returncode} of\n{script}\n{done.stdout}\n{done.stderr}"
     return done.stdout
 
@@ -74,9 +90,11 @@ def main():
         os.symlink(programs, os.path.join(source, "build", "release", "bin"))
 
         tutorial = blocks(page, "bash")
-        printed = shell("\n".join(f"{block}\necho '== end of block'" for block in tutorial), home, source).split("== end of block\n")
+        printed = shell("\n".join(f"{block}\necho '== end of block'" for block in tutorial), home, source).split(
+            "== end of block\n"
+        )
         of_campaign = next(text for block, text in zip(tutorial, printed) if "peclet run" in block)
-        compare(shown(page, "friction"), of_campaign[of_campaign.rindex("friction: relative_viscosity"):], whole=False)
+        compare(shown(page, "friction"), of_campaign[of_campaign.rindex("friction: relative_viscosity") :], whole=False)
         print(f"{len(tutorial)} blocks of commands, and the table of friction.json")
 
         demo = f"{programs}/peclet run {SOURCE}/results/demo/campaign.json --directory {home}/demo.peclet --quiet"
