@@ -63,7 +63,8 @@ StepReport VelocityVerlet::advance_open(System& system) {
   } else {
     speed = move(system);
   }
-  // Beyond all bounds there are no neighbours to be found; whoever asked for the step sees why.
+  // Displacements beyond the range of the list: no neighbours are looked for, and the caller reports the
+  // cause.
   if (!(speed * timestep_ < system.list.ranges().largest())) {
     return {{}, speed * timestep_};
   }

@@ -61,7 +61,8 @@ class Bundles {
   // have gone without a result back.
   Settled settle();
 
-  // Submits again what was never seen to arrive: requires a settle() since, which has asked for it by name.
+  // Submits again the jobs that the batch system has never shown. Requires a settle() before, which asks for
+  // them by name.
   // The result is why the batch system refused, "" when it did not; the seeds are open again then.
   std::string submit_unconfirmed();
   // Hands the open seeds over. The result is as before; what was taken before the refusal stays out.

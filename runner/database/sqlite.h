@@ -65,8 +65,8 @@ class Connection {
   sqlite3* handle() const { return handle_; }
   const std::string& path() const { return path_; }
 
-  // A compiled statement that is nobody's; put_back() keeps it for the next one who asks for the same text,
-  // so that what is done for every result is compiled once. Throws DatabaseError.
+  // A compiled statement of this text. put_back() keeps it for the next call with the same text, so that the
+  // statements of every result are compiled once. Throws DatabaseError.
   sqlite3_stmt* take(std::string_view sql);
   void put_back(sqlite3_stmt* statement) noexcept;
 

@@ -17,7 +17,7 @@ namespace peclet::runner {
 class FileRemoval {
  public:
   FileRemoval();
-  // Once all are removed. What could not be is still there; nobody hears why any more.
+  // Returns when all removals have been tried. Files that could not be removed stay, without a message.
   ~FileRemoval();
   FileRemoval(const FileRemoval&) = delete;
   FileRemoval& operator=(const FileRemoval&) = delete;

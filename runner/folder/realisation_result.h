@@ -30,8 +30,8 @@ struct Observed {
   std::optional<double> first_quarter{}, first_half{};
 };
 
-// What a completed realisation says against itself: the codes of its warnings, those apart that its scene has
-// by itself ("inertia-..."), which `validate` shows.
+// Warning codes of a completed result, without those that the scene alone implies ("inertia-..."), which
+// `validate` shows.
 std::set<std::string> flags_of(const RealisationResult& result);
 
 // The cause of a completed realisation that has no number for the campaign's observable: it is lost to its

@@ -15,7 +15,8 @@ namespace peclet::runner {
 // Throws ResultError when it is absent, differs, is too large or is no result.
 RealisationResult read_spool_file(const std::filesystem::path& path, const std::string& sha256);
 
-// Whether the file bears the name of another point's or seed's result; any name that is none of ours will do.
+// Whether the file bears the name of another point's or seed's result. Files with names of other forms are
+// accepted.
 bool is_named_for_another(const std::filesystem::path& path, const RealisationResult& result);
 
 // Complete spool files, by name.

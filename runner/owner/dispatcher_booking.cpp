@@ -44,7 +44,7 @@ void Dispatcher::listen() {
       continue;
     }
     if (unbooked_ && std::holds_alternative<ShortOfRoom>(event)) continue;  // it will say so again
-    // Who has given its seed back must not have to wait for the booking to hear that it may leave.
+    // Tells a drained worker to leave now: booking may take long.
     if (const auto* const drained = std::get_if<Drained>(&event); unbooked_ && drained != nullptr) {
       pool_.drain(drained->worker);
     }

@@ -230,7 +230,7 @@ RunReport Ledger::report(int workers) const {
   }
   report.spent_seconds = spent_seconds_;
   report.budget_seconds = bounds_.budget_seconds;
-  // Of a run that is not to see every point decided nobody asks when it would.
+  // No forecast under a budget or a ceiling: not every point will be decided.
   if (bounds_.ceiling || bounds_.budget_seconds) return report;
   report.to_go = time_to_go(forecasts, campaign_.target, campaign_.minimum_realisations,
                             campaign_.maximum_realisations, workers);

@@ -6,8 +6,8 @@
 // the look after that: surplus, which costs nothing when the point goes on, and which does not count when it
 // stops.
 //
-// Under a budget nobody runs ahead, and only seeds go that the rest of it is expected to pay for. Under a
-// ceiling only the first seeds of each point go.
+// Under a budget no point runs ahead of its next look, and a seed is given out only while the expected cost
+// of what runs is within what is left. Under a ceiling only the first seeds of each point are given out.
 //
 // Priorities, costs and the allocation decide when a seed runs; what it counts for they cannot touch.
 #pragma once
