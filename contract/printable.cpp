@@ -106,7 +106,7 @@ std::string printable(std::string_view text, std::size_t longest) {
   const std::vector<std::string> last = fitting(tail.rbegin(), tail.rend(), room / 3);
   for (const std::string& shown : fitting(head.begin(), head.end(), room - room / 3)) line += shown;
   line += gap;
-  for (auto shown = last.rbegin(); shown != last.rend(); ++shown) line += *shown;
+  std::for_each(last.rbegin(), last.rend(), [&](const std::string& shown) { line += shown; });
   return line;
 }
 
