@@ -7,7 +7,8 @@ Prints every field of the results that differs: in how many runs, by how much of
 first. What tells of the build and the machine is left out.
 
 The exit code is 1 where trajectories differ, which is what `final_state_sha256` and `ending` say, or where a scene does
-not do what it is here for. Other fields are means and figures over the same trajectory; that they differ by rounding may be intended.
+not do what it is here for. Other fields are means and figures over the same trajectory; that they differ by rounding
+may be intended.
 """
 import argparse
 import concurrent.futures

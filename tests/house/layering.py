@@ -116,7 +116,7 @@ def too_large(source):
 def picture(source):
     """The folders from below to above and their includes, for dot."""
     text = (
-        'digraph layers {\n  rankdir=BT; node [shape=box, style=filled, fillcolor="#eef3f8", fontname="sans"]; '
+        'digraph layers {\n  node [shape=box, style=filled, fillcolor="#eef3f8", fontname="sans"]; '
         'edge [color="#7090b0"];\n'
     )
     for top, layers in LAYERS.items():
