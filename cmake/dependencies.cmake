@@ -58,7 +58,8 @@ endif()
 
 # Eigen would share large products among OpenMP's threads, unasked; and files of it under another licence than the MPL
 # are refused.
-target_compile_definitions(Eigen3::Eigen INTERFACE EIGEN_DONT_PARALLELIZE EIGEN_MPL2_ONLY)
+target_compile_definitions(Eigen3::Eigen INTERFACE EIGEN_DONT_PARALLELIZE EIGEN_MPL2_ONLY
+  $<$<CONFIG:Release>:EIGEN_NO_DEBUG>)
 
 # Debian has fmt and spdlog as shared libraries only. Their archives are compiled here, from the headers, which hold the
 # sources; everything else is compiled as it is for the shared ones.
