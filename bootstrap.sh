@@ -4,7 +4,8 @@
 #   ./bootstrap.sh demo     install what building needs, build, run the demonstration campaign, print its table
 #   ./bootstrap.sh package  the same, and make a .tar.gz for any Linux and a .deb of it
 #   ./bootstrap.sh test     install the packages, build, run every test
-#   ./bootstrap.sh lint     formatting, flake8 and clang-tidy of the whole source
+#   ./bootstrap.sh sanitize run the tests of contract/ and runner/ with sanitizers
+#   ./bootstrap.sh lint     look through the whole source with clang-tidy
 #   ./bootstrap.sh deps     install the packages only
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
@@ -20,8 +21,9 @@ to_test=(
   lammps openmpi-bin                                                      # another engine, which tests run, also with MPI
   slurm-wlm munge                                                         # a Slurm to be tested with
   python3-numpy python3-scipy gnuplot-nox                                 # numbers and pictures of the studies
+  clang-format black flake8                                               # the form of the sources
 )
-to_lint=(clang-format clang-tidy black flake8)
+to_lint=(clang-tidy)
 
 say() { printf '\n== %s\n' "$*"; }
 
@@ -53,7 +55,9 @@ build() {
   local tests=$1
   shift
   say "Building the release programs into build/release"
-  cmake --preset release -DBUILD_TESTING="$tests" >/dev/null
+  local options=(-DBUILD_TESTING="$tests")
+  [ "$tests" = OFF ] || options+=(-DPECLET_EVERY_TEST=ON)  # all that tests need is installed
+  cmake --preset release "${options[@]}" >/dev/null
   cmake --build --preset release "$@"
 }
 
@@ -82,13 +86,20 @@ run_tests() {
   ctest --preset release --parallel 2
 }
 
+# Sanitizers see what release builds do not. The engine's loops would take hours with a check at each access.
+sanitize() {
+  say "Building contract/ and runner/ with sanitizers into build/asan-ubsan"
+  cmake --preset asan-ubsan -DBUILD_TESTING=ON >/dev/null
+  cmake --build --preset asan-ubsan --target contract_tests runner_tests
+  say "Running their tests"
+  build/asan-ubsan/bin/contract_tests --gtest_brief=1
+  build/asan-ubsan/bin/runner_tests --gtest_brief=1
+}
+
 lint() {
-  say "Formatting"
-  git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run --Werror
-  git ls-files '*.py' | xargs black --check --quiet --diff
-  say "flake8"
-  git ls-files '*.py' | xargs flake8
   build ON
+  say "Form"
+  ctest --preset release -L format
   say "clang-tidy"
   git ls-files '*.cpp' | xargs -P "$(nproc)" -n 4 clang-tidy --quiet -p build/release
 }
@@ -97,10 +108,11 @@ case "${1:-}" in
   demo) deps "${to_build[@]}" && demo ;;
   package) deps "${to_build[@]}" && package ;;
   test) deps "${to_build[@]}" "${to_test[@]}" && run_tests ;;
+  sanitize) deps "${to_build[@]}" "${to_test[@]}" && sanitize ;;
   lint) deps "${to_build[@]}" "${to_test[@]}" "${to_lint[@]}" && lint ;;
   deps) deps "${to_build[@]}" "${to_test[@]}" "${to_lint[@]}" ;;
   *)
-    sed -n '2,8s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
+    sed -n '2,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
     exit 2
     ;;
 esac
