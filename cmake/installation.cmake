@@ -10,7 +10,7 @@ install(DIRECTORY docs DESTINATION ${own})
 # The other pages that these lead to; tests/pages/links.py is shown what was installed.
 foreach(page README.md CHANGELOG.md LICENSE CITATION.cff engine/PHYSICS.md runner/HANDOVER.md tests/bench/README.md
     tests/end_to_end/README.md tests/end_to_end/MISTAKES.md tests/mutations/mutations.md tests/physics/README.md
-    tests/reference/forces/README.md)
+    tests/reference/README.md tests/reference/forces/README.md)
   cmake_path(GET page PARENT_PATH folder)
   install(FILES ${page} DESTINATION ${own}/${folder})
 endforeach()

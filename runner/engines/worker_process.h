@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "contract/frames.h"
-#include "runner/engines/stop_signals.h"
 #include "runner/engines/engine_process.h"
+#include "runner/engines/stop_signals.h"
 #include "runner/engines/worker_pool.h"
 #include "runner/folder/campaign_directory.h"
 #include "runner/folder/rotating_file.h"
