@@ -170,9 +170,9 @@ void Ledger::leave(const Grant& grant) {
   if (takes_part(grant.id)) --running_[static_cast<std::size_t>(grant.id.point)];
 }
 
-void Ledger::renew_lease(const Grant& grant, int phase, std::int64_t step, std::int64_t steps,
-                         double strain) {
-  queue_.renew_lease(grant.job.attempt, phase_name(phase), step, steps, strain);
+void Ledger::renew_lease(const Grant& grant, const JobProgress& progress) {
+  queue_.renew_lease(grant.job.attempt, phase_name(progress.phase), progress.step, progress.steps,
+                     progress.strain);
 }
 
 std::int64_t Ledger::admit_engine(const Json& engine) {

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "runner/database/queue.h"
-#include "runner/engines/worker_pool.h"
+#include "runner/engines/worker_watch.h"
 #include "runner/events/run_listener.h"
 #include "runner/folder/campaign_directory.h"
 #include "runner/folder/file_removal.h"
@@ -74,7 +74,7 @@ class Ledger {
   std::optional<double> wall_seconds(const Grant& grant) const;
   // Books any other end of an attempt: the seed is queued again, or given up.
   void end_attempt(const Grant& grant, const AttemptEnd& end);
-  void renew_lease(const Grant& grant, int phase, std::int64_t step, std::int64_t steps, double strain);
+  void renew_lease(const Grant& grant, const JobProgress& progress);
 
   // The seeds that the next looks need and nobody runs, with `ahead` those of the looks after them, too. They
   // are out from now on; the caller hands them over.
