@@ -7,7 +7,6 @@
 #include <array>
 #include <csignal>
 #include <random>
-#include <tuple>
 #include <utility>
 
 #include "contract/durable_file.h"
@@ -18,9 +17,9 @@
 #include "runner/engines/attempt_report.h"
 #include "runner/engines/engine_error.h"
 #include "runner/engines/worker_process.h"
+#include "runner/engines/worker_watch.h"
 #include "runner/folder/room.h"
 #include "runner/folder/spool.h"
-#include "runner/owner/dispatcher.h"
 #include "runner/text/host_name.h"
 #include "runner/text/utc_time.h"
 
@@ -31,9 +30,6 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds longest_wait{500};
-// A turn that took longer was not this process's to use: it or the machine stood still.
-constexpr std::chrono::seconds longest_turn{5};
-constexpr std::chrono::seconds hello_patience{60};
 constexpr int the_worker = 0;
 
 struct Stopped {};
@@ -51,7 +47,9 @@ class BatchTask {
         folder_(std::move(folder)),
         index_(index),
         run_(name_of_this_run()),
-        pool_(1, command(), CampaignDirectory(folder_.task(index)), signals) {}
+        pool_(1, command(), CampaignDirectory(folder_.task(index)), signals),
+        lease_(manifest_.lease_seconds),
+        awake_(Clock::now(), lease_) {}
 
   void run() {
     fs::create_directories(CampaignDirectory(folder_.task(index_)).logs());
@@ -77,43 +75,57 @@ class BatchTask {
 
   void run_seed(int place);
   void start_engine();
-  void handle(const WorkerEvent& event);
+  void turn();
+  void handle(const Hello& event);
+  void handle(const Progressed& event);
+  void handle(const ResultSpooled& event);
+  void handle(const JobFailed& event);
+  void handle(const Drained& event);
+  void handle(const ShortOfRoom& event);
+  void handle(const Garbled& event) { condemn({AttemptOutcome::garbled, event.message}); }
+  void handle(const Exited& event);
+  void handle(const StopSignal& event);
+  bool is_in_hand(std::int64_t job) const { return watch_.is_busy() && job == job_.attempt; }
   void take_result(const ResultSpooled& result);
-  void exited(const ExitStatus& ending);
   void judge_lease();
-  void condemn(AttemptOutcome outcome, const std::string& message);
-  void note_running() const { write_report(folder_.running(index_), place_, report_); }
-  void end(AttemptOutcome outcome, const std::string& message = "", const ExitStatus& ending = {});
+  void condemn(AttemptReason reason);
+  void note_running();
+  void end(const AttemptReason& how, const ExitStatus& ending = {});
 
   Manifest manifest_;
   BundleFolder folder_;
   int index_;
   std::string run_;
   ProcessPool pool_;
-  bool engine_there_ = false, engine_ready_ = false, stopping_ = false;
+  Awake lease_;
+  AwakeClock awake_;
+  WorkerWatch watch_;
+  bool stopping_ = false;
 
   // Of the seed in hand.
   int place_ = 0;
   Job job_;
   AttemptReport report_;
-  int phase_ = 0;
-  bool busy_ = false, drained_ = false;
-  Clock::time_point noted_{}, heard_{};
-  // The time during which this process ran: a job that was suspended as a whole has lost none of its lease.
-  std::chrono::duration<double> awake_{}, renewed_{};
-  std::optional<std::pair<AttemptOutcome, std::string>> condemned_;
+  bool drained_ = false;
+  Clock::time_point noted_{};
 };
 
+void BatchTask::turn() {
+  for (const WorkerEvent& event : pool_.wait(longest_wait)) {
+    std::visit([this](const auto& happened) { handle(happened); }, event);
+  }
+  awake_.end_turn(Clock::now());
+}
+
 void BatchTask::start_engine() {
-  const auto patience = Clock::now() + hello_patience;
-  while (!engine_ready_) {
-    if (!engine_there_) {
+  while (!watch_.is_idle()) {
+    if (!watch_.is_there()) {
       if (stopping_) throw Stopped{};
       pool_.start(the_worker);
-      engine_there_ = true;
+      watch_.start(awake_.awake());
     }
-    for (const WorkerEvent& event : pool_.wait(longest_wait)) handle(event);
-    if (Clock::now() > patience) throw EngineError("the engine did not say hello");
+    turn();
+    if (watch_.is_overdue(awake_.awake(), lease_)) throw EngineError("the engine did not say hello");
   }
 }
 
@@ -138,67 +150,62 @@ void BatchTask::run_seed(int place) {
   report_.host = host_name();
   report_.process = pool_.process(the_worker);
   report_.started_at = utc_now();
-  phase_ = 0;
-  noted_ = heard_ = Clock::now();
-  renewed_ = awake_;
-  condemned_.reset();
-  busy_ = true;
+  watch_.begin_job(awake_.awake());
   note_running();
   pool_.assign(the_worker, job_);
-  while (busy_) {
-    for (const WorkerEvent& event : pool_.wait(longest_wait)) handle(event);
+  while (watch_.is_busy()) {
+    turn();
     judge_lease();
   }
   if (drained_) throw Stopped{};
 }
 
-void BatchTask::handle(const WorkerEvent& event) {
-  if (const auto* hello = std::get_if<Hello>(&event)) {
-    report_.engine = hello->engine;
-    std::string identity;
-    try {
-      identity = engine_identity(hello->engine);
-    } catch (const ResultError& error) {
-      throw EngineError(fmt::format("the engine's hello does not say what it is: {}", error.what()));
-    }
-    if (identity != manifest_.engine_identity) {
-      throw IntegrityError(
-          fmt::format("the engine is {}, the owner's is {}; PECLET_INSTRUCTION_SET makes machines of "
-                      "different kinds alike",
-                      identity, manifest_.engine_identity));
-    }
-    engine_ready_ = true;
-  } else if (const auto* progress = std::get_if<Progressed>(&event)) {
-    if (!busy_ || progress->job != job_.attempt) return;
-    // Steps count; being alive does not.
-    if (std::tie(progress->phase, progress->step) > std::tie(phase_, report_.step)) renewed_ = awake_;
-    phase_ = progress->phase;
-    report_.step = progress->step;
-    if (Clock::now() - noted_ > std::chrono::duration<double>(manifest_.checkpoint_seconds)) {
-      noted_ = Clock::now();
-      note_running();
-    }
-  } else if (const auto* result = std::get_if<ResultSpooled>(&event)) {
-    if (busy_ && result->job == job_.attempt) take_result(*result);
-  } else if (const auto* failed = std::get_if<JobFailed>(&event)) {
-    if (busy_ && failed->job == job_.attempt) end(AttemptOutcome::refused, failed->message);
-  } else if (const auto* drained = std::get_if<Drained>(&event)) {
-    if (busy_ && drained->job == job_.attempt) drained_ = true;
-    pool_.drain(the_worker);  // an idle engine leaves
-  } else if (const auto* garbled = std::get_if<Garbled>(&event)) {
-    condemn(AttemptOutcome::garbled, garbled->message);
-  } else if (const auto* gone = std::get_if<Exited>(&event)) {
-    exited(gone->ending);
-  } else if (const auto* shortage = std::get_if<ShortOfRoom>(&event)) {
-    // The engine keeps its work and stands still; as long as there really is no room, nobody blames it.
-    if (busy_ && shortage->job == job_.attempt && !has_room(job_.spool.parent_path(), shortage->bytes)) {
-      renewed_ = awake_;
-    }
-  } else if (!stopping_) {
-    // Only the first signal counts: a batch system sends several, and has the last word itself.
-    stopping_ = true;
-    pool_.drain(the_worker);
+void BatchTask::handle(const Hello& event) {
+  report_.engine = event.engine;
+  std::string identity;
+  try {
+    identity = engine_identity(event.engine);
+  } catch (const ResultError& error) {
+    throw EngineError(fmt::format("the engine's hello does not say what it is: {}", error.what()));
   }
+  if (identity != manifest_.engine_identity) {
+    throw IntegrityError(
+        fmt::format("the engine is {}, the owner's is {}; PECLET_INSTRUCTION_SET makes machines of "
+                    "different kinds alike",
+                    identity, manifest_.engine_identity));
+  }
+  if (watch_.is_starting()) watch_.rest(awake_.awake());
+}
+
+void BatchTask::handle(const Progressed& event) {
+  if (!is_in_hand(event.job)) return;
+  watch_.hear(event, awake_.awake());
+  report_.step = event.step;
+  if (Clock::now() - noted_ > std::chrono::duration<double>(manifest_.checkpoint_seconds)) note_running();
+}
+
+void BatchTask::handle(const ResultSpooled& event) {
+  if (is_in_hand(event.job)) take_result(event);
+}
+
+void BatchTask::handle(const JobFailed& event) {
+  if (is_in_hand(event.job)) end({AttemptOutcome::refused, event.message});
+}
+
+void BatchTask::handle(const Drained& event) {
+  if (is_in_hand(event.job)) drained_ = true;
+  pool_.drain(the_worker);  // an idle engine leaves
+}
+
+// The engine keeps its work and stands still; as long as there really is no room, that is not its fault.
+void BatchTask::handle(const ShortOfRoom& event) {
+  if (is_in_hand(event.job) && !has_room(job_.spool.parent_path(), event.bytes)) watch_.renew(awake_.awake());
+}
+
+// Only the first signal counts: a batch system sends several, and has the last word itself.
+void BatchTask::handle(const StopSignal&) {
+  if (std::exchange(stopping_, true)) return;
+  pool_.drain(the_worker);
 }
 
 void BatchTask::take_result(const ResultSpooled& result) {
@@ -210,62 +217,52 @@ void BatchTask::take_result(const ResultSpooled& result) {
     }
   } catch (const ResultError& error) {
     if (fs::exists(job_.spool)) reject(folder_.shared(), job_.spool);
-    condemn(AttemptOutcome::garbled, error.what());
+    condemn({AttemptOutcome::garbled, error.what()});
     return;
   }
-  end(AttemptOutcome::result);
+  end({AttemptOutcome::result});
   publish_results(folder_, manifest_, index_);
 }
 
-void BatchTask::exited(const ExitStatus& ending) {
-  const bool was_ready = std::exchange(engine_ready_, false);
-  engine_there_ = false;
-  if (!busy_) {
-    if (was_ready || stopping_) return;
-    throw EngineError("the engine ended before it said hello: " + to_string(ending));
-  }
-  if (condemned_) {
-    end(condemned_->first, condemned_->second, ending);
-    return;
+void BatchTask::handle(const Exited& event) {
+  const WorkerWatch watch = std::exchange(watch_, {});
+  if (!watch.is_busy()) {
+    if (watch.is_idle() || stopping_) return;
+    throw EngineError("the engine ended before it said hello: " + to_string(event.ending));
   }
   // A result may be durable although nobody could announce it any more.
-  publish_results(folder_, manifest_, index_);
-  if (fs::exists(folder_.ended(place_))) {
-    busy_ = false;
-  } else if (drained_ || (stopping_ && ending.status == 0)) {
-    drained_ = true;
-    busy_ = false;
-    report_.outcome = AttemptOutcome::drained;
-    note_running();
-  } else {
-    end(outcome_of(ending), to_string(ending), ending);
-  }
+  if (!watch.condemned()) publish_results(folder_, manifest_, index_);
+  if (fs::exists(folder_.ended(place_))) return;
+  const AttemptReason how = watch.ended(event.ending, stopping_);
+  if (!drained_ && how.outcome != AttemptOutcome::drained) return end(how, event.ending);
+  drained_ = true;
+  report_.outcome = AttemptOutcome::drained;
+  note_running();
 }
 
 void BatchTask::judge_lease() {
-  const auto now = Clock::now();
-  awake_ += std::min<std::chrono::duration<double>>(
-      {now - heard_, longest_turn, std::chrono::duration<double>(manifest_.lease_seconds / 2)});
-  heard_ = now;
-  if (!busy_ || condemned_ || stopping_ || (awake_ - renewed_).count() <= manifest_.lease_seconds) return;
-  const bool stopped = pool_.is_stopped(the_worker);
-  condemn(stopped ? AttemptOutcome::killed : AttemptOutcome::hung,
-          fmt::format("no new step after {} for {:g} s{}", report_.step, manifest_.lease_seconds,
-                      stopped ? ": its process has been stopped" : ""));
+  if (stopping_ || !watch_.is_busy() || !watch_.is_overdue(awake_.awake(), lease_)) return;
+  condemn(watch_.overdue(lease_, pool_.is_stopped(the_worker)));
 }
 
-void BatchTask::condemn(AttemptOutcome outcome, const std::string& message) {
-  if (!condemned_) condemned_.emplace(outcome, message);
+void BatchTask::condemn(AttemptReason reason) {
+  watch_.condemn(std::move(reason));
   pool_.kill(the_worker);
 }
 
-void BatchTask::end(AttemptOutcome outcome, const std::string& message, const ExitStatus& ending) {
-  report_.outcome = outcome;
-  report_.message = message;
+void BatchTask::note_running() {
+  noted_ = Clock::now();
+  write_report(folder_.running(index_), place_, report_);
+}
+
+// The seed in hand has ended; a worker that is still there rests.
+void BatchTask::end(const AttemptReason& how, const ExitStatus& ending) {
+  report_.outcome = how.outcome;
+  report_.message = how.message;
   report_.ending = ending;
   write_report(folder_.ended(place_), place_, report_);
   fs::remove(folder_.running(index_));
-  busy_ = false;
+  if (watch_.is_busy()) watch_.rest(awake_.awake());
 }
 
 }  // namespace

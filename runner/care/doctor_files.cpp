@@ -11,7 +11,7 @@
 #include "runner/care/doctor.h"
 #include "runner/database/backup_files.h"
 #include "runner/folder/spool.h"
-#include "runner/owner/request.h"
+#include "runner/requests/request.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {

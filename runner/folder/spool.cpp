@@ -55,6 +55,10 @@ bool is_named_for_another(const fs::path& path, const RealisationResult& result)
   return parts[1] != result.point.substr(0, 16) || std::stoi(parts[2]) != result.seed;
 }
 
+CampaignDirectory home_of_spool_file(const std::filesystem::path& path) {
+  return CampaignDirectory(path.parent_path().parent_path());
+}
+
 std::vector<fs::path> spool_files(const CampaignDirectory& directory) {
   return whole_files(directory.spool());
 }

@@ -19,6 +19,9 @@ RealisationResult read_spool_file(const std::filesystem::path& path, const std::
 // accepted.
 bool is_named_for_another(const std::filesystem::path& path, const RealisationResult& result);
 
+// The folder whose spool the file lies in: the campaign's own, or one that is shared with a batch system.
+CampaignDirectory home_of_spool_file(const std::filesystem::path& path);
+
 // Complete spool files, by name.
 std::vector<std::filesystem::path> spool_files(const CampaignDirectory& directory);
 

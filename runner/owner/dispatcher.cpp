@@ -15,16 +15,12 @@ namespace {
 
 using std::chrono::seconds;
 
-// A turn that takes longer was not working but stopped; no more of it than this counts, nor than half a
-// lease.
-constexpr Dispatcher::Awake longest_turn{1};
 constexpr seconds report_interval{1};
 constexpr seconds lease_display_interval{2};
 // Workers that have not checkpointed and left by then are killed; the seeds lose what came after the last
 // checkpoint.
 constexpr seconds drain_patience{60};
 constexpr seconds surplus_patience{10};
-constexpr seconds hello_patience{60};
 // An engine that exits by itself this often before it is given anything to do will not do better the next
 // time.
 constexpr int most_early_exits = 3;
@@ -42,8 +38,8 @@ Dispatcher::Dispatcher(Database& database, Ledger& ledger, WorkerPool& pool, Run
       settings_(std::move(settings)),
       clock_(std::move(clock)),
       now_{std::vector<Worker>(static_cast<std::size_t>(pool.size()))},
-      started_(clock_()),
-      heard_(started_),
+      awake_(clock_(), settings_.lease),
+      started_(awake_.heard()),
       reported_(started_),
       leases_shown_(started_) {}
 
@@ -64,7 +60,7 @@ Dispatcher::Ending Dispatcher::run() {
 // A process that has ended is no longer there, even if that could not be booked yet.
 bool Dispatcher::anyone_there() const {
   const auto present = std::count_if(now_.workers.begin(), now_.workers.end(),
-                                     [](const Worker& worker) { return worker.stage != Stage::absent; });
+                                     [](const Worker& worker) { return worker.watch.is_there(); });
   const auto ended = std::count_if(news_.begin(), news_.end(), [](const WorkerEvent& event) {
     return std::holds_alternative<Exited>(event);
   });
@@ -74,7 +70,7 @@ bool Dispatcher::anyone_there() const {
 // Nobody here has work, there is none to give out, and yet some point is open.
 bool Dispatcher::has_nothing_to_do() const {
   const bool busy = std::any_of(now_.workers.begin(), now_.workers.end(),
-                                [](const Worker& worker) { return worker.stage == Stage::busy; });
+                                [](const Worker& worker) { return worker.watch.is_busy(); });
   return !busy && !unbooked_ && !ledger_.scheduler().finished() && !ledger_.next();
 }
 
@@ -100,50 +96,33 @@ void Dispatcher::turn() {
   report();
 }
 
-// Called when all news has been fetched: whatever happens until the next time, the news is never older than
-// the time by which it is judged.
-void Dispatcher::stay_awake() {
-  const Time now = clock_();
-  awake_ += std::min<Awake>({now - heard_, longest_turn, settings_.lease / 2});
-  heard_ = now;
-}
-
 void Dispatcher::start_workers() {
   if (stopping_ != Stopping::no || unbooked_) return;
   for (int number = 0; number < pool_.size(); ++number) {
-    if (at(number).stage != Stage::absent) continue;
+    if (at(number).watch.is_there()) continue;
     pool_.start(number);
-    at(number) = Worker{Stage::starting, awake_};
+    at(number) = Worker{};
+    at(number).watch.start(awake_.awake());
   }
 }
 
 void Dispatcher::judge_leases() {
   for (int number = 0; number < pool_.size(); ++number) {
-    const Worker& worker = at(number);
-    if (worker.condemned) continue;
-    if (worker.stage == Stage::starting && awake_ - worker.since > hello_patience) {
-      condemn(number, AttemptOutcome::hung, "it did not say hello");
-    }
-    if (worker.stage == Stage::busy && awake_ - worker.assignment->renewed > settings_.lease) {
-      const bool stopped = pool_.is_stopped(number);
-      const char* const why = worker.recalled ? ": it was told to leave"
-                              : stopped       ? ": its process has been stopped"
-                                              : "";
-      condemn(number, worker.recalled || stopped ? AttemptOutcome::killed : AttemptOutcome::hung,
-              fmt::format("no new step after {} for {:g} s{}", worker.assignment->step,
-                          settings_.lease.count(), why));
-    }
+    const WorkerWatch& watch = at(number).watch;
+    if (!watch.is_overdue(awake_.awake(), settings_.lease)) continue;
+    condemn(number, watch.overdue(settings_.lease, pool_.is_stopped(number)));
   }
 }
 
 void Dispatcher::judge_time() {
-  if (settings_.time_limit && stopping_ == Stopping::no && heard_ - started_ >= *settings_.time_limit) {
+  if (settings_.time_limit && stopping_ == Stopping::no &&
+      awake_.heard() - started_ >= *settings_.time_limit) {
     listener_.note("the time limit is reached: workers checkpoint and stop");
     stop(Stopping::draining);
   }
   const seconds patience = stopping_ == Stopping::finished ? surplus_patience : drain_patience;
   if ((stopping_ == Stopping::finished || stopping_ == Stopping::draining) &&
-      awake_ - stopping_since_ > patience) {
+      awake_.awake() - stopping_since_ > patience) {
     stop(Stopping::at_once);
   }
 }
@@ -154,16 +133,16 @@ void Dispatcher::show_leases() {
   for (Worker& worker : now_.workers) {
     if (!worker.assignment || worker.assignment->shown) continue;
     Assignment& about = *worker.assignment;
-    ledger_.renew_lease(about.grant, about.phase, about.step, about.steps, about.strain);
+    ledger_.renew_lease(about.grant, worker.watch.progress());
     about.shown = true;
   }
 }
 
 void Dispatcher::stop(Stopping why) {
   stopping_ = why;
-  stopping_since_ = awake_;
+  stopping_since_ = awake_.awake();
   for (int number = 0; number < pool_.size(); ++number) {
-    if (at(number).stage == Stage::absent) continue;
+    if (!at(number).watch.is_there()) continue;
     if (why == Stopping::at_once) {
       pool_.kill(number);
     } else {
@@ -178,59 +157,51 @@ void Dispatcher::report() {
   reported_ = now;
   RunReport report = ledger_.report(pool_.size());
   report.workers = pool_.size();
-  report.busy =
-      static_cast<int>(std::count_if(now_.workers.begin(), now_.workers.end(),
-                                     [](const Worker& worker) { return worker.stage == Stage::busy; }));
+  report.busy = static_cast<int>(std::count_if(now_.workers.begin(), now_.workers.end(),
+                                               [](const Worker& worker) { return worker.watch.is_busy(); }));
   report.results = now_.results;
   report.elapsed = std::chrono::duration<double>(now - started_).count();
   listener_.report(report);
 }
 
-void Dispatcher::condemn(int number, AttemptOutcome outcome, const std::string& message) {
-  Worker& worker = at(number);
-  worker.condemned = outcome;
-  worker.message = message;
+void Dispatcher::condemn(int number, AttemptReason reason) {
+  at(number).watch.condemn(std::move(reason));
   pool_.kill(number);
 }
 
 void Dispatcher::handle(const Hello& event) {
   Worker& worker = at(event.worker);
-  if (worker.condemned) return;
-  if (worker.stage != Stage::starting) {
-    condemn(event.worker, AttemptOutcome::garbled, "said hello twice");
+  if (worker.watch.condemned()) return;
+  if (!worker.watch.is_starting()) {
+    condemn(event.worker, {AttemptOutcome::garbled, "said hello twice"});
     return;
   }
   worker.engine = ledger_.admit_engine(event.engine);
   worker.takes_ahead = event.ahead;
-  worker.stage = Stage::idle;
-  worker.since = awake_;
+  worker.watch.rest(awake_.awake());
 }
 
 void Dispatcher::handle(const Progressed& event) {
   if (!has_job(event.worker, event.job)) return;
-  Assignment& about = *at(event.worker).assignment;
-  // Steps count; being alive does not.
-  if (std::tie(event.phase, event.step) > std::tie(about.phase, about.step)) about.renewed = awake_;
-  about.phase = event.phase;
-  about.step = event.step;
-  about.steps = event.steps;
-  about.strain = event.strain;
-  about.shown = false;
+  Worker& worker = at(event.worker);
+  worker.watch.hear(event, awake_.awake());
+  worker.assignment->shown = false;
 }
 
 void Dispatcher::handle(const ResultSpooled& event) {
   if (!has_job(event.worker, event.job)) return;
-  const Assignment& about = *at(event.worker).assignment;
+  const Worker& worker = at(event.worker);
+  const Assignment& about = *worker.assignment;
   std::string why;
   if (event.spool != about.grant.job.spool) {
-    condemn(event.worker, AttemptOutcome::garbled, "spooled its result elsewhere");
-  } else if (ledger_.take_result(about.grant, event.sha256, about.step, processor_seconds_since(about.given),
-                                 why)) {
+    condemn(event.worker, {AttemptOutcome::garbled, "spooled its result elsewhere"});
+  } else if (ledger_.take_result(about.grant, event.sha256, worker.watch.progress().step,
+                                 processor_seconds_since(about.given), why)) {
     ++now_.results;
     now_.early_exits = 0;
     go_on(event.worker);
   } else {
-    condemn(event.worker, AttemptOutcome::garbled, why);
+    condemn(event.worker, {AttemptOutcome::garbled, why});
   }
 }
 
@@ -244,11 +215,11 @@ void Dispatcher::handle(const JobFailed& event) {
 void Dispatcher::handle(const Drained& event) {
   if (!has_job(event.worker, event.job)) return;
   Worker& worker = at(event.worker);
-  if (stopping_ == Stopping::no && !worker.recalled) {  // it could do so for ever
-    condemn(event.worker, AttemptOutcome::garbled, "gave back a job that nobody wanted back");
+  if (stopping_ == Stopping::no && !worker.watch.is_recalled()) {  // it could do so for ever
+    condemn(event.worker, {AttemptOutcome::garbled, "gave back a job that nobody wanted back"});
     return;
   }
-  worker.assignment->step = event.step;
+  worker.watch.leave_at(event.step);
   if (const auto waiting = std::exchange(worker.waiting, std::nullopt)) give_back(*waiting);
   end_assignment(event.worker, {AttemptOutcome::drained});
   pool_.drain(event.worker);  // an idle engine leaves
@@ -260,16 +231,16 @@ void Dispatcher::handle(const ShortOfRoom& event) {
   const Job& job = at(event.worker).assignment->grant.job;
   const std::filesystem::path folder = event.path.parent_path();
   if (event.path != job.spool && event.path != job.checkpoint && folder != job.failures) {
-    condemn(event.worker, AttemptOutcome::garbled, "wrote a file that is none of its job");
+    condemn(event.worker, {AttemptOutcome::garbled, "wrote a file that is none of its job"});
     return;
   }
   if (has_room(folder, event.bytes)) return;
   begin_shortage(folder, event.bytes);
-  at(event.worker).assignment->renewed = awake_;
+  at(event.worker).watch.renew(awake_.awake());
 }
 
 void Dispatcher::handle(const Garbled& event) {
-  condemn(event.worker, AttemptOutcome::garbled, event.message);
+  condemn(event.worker, {AttemptOutcome::garbled, event.message});
 }
 
 void Dispatcher::handle(const Exited& event) {
@@ -278,34 +249,30 @@ void Dispatcher::handle(const Exited& event) {
   if (worker.assignment) {
     exited_during_job(event.worker, event.ending);
   } else {
-    exited_without_job(event.worker, event.ending, worker.stage);
+    exited_without_job(event.worker, event.ending);
   }
-  if (waiting && !left_result(event.worker, *waiting)) give_back(*waiting);
+  if (waiting && !left_result(event.worker, *waiting, 0)) give_back(*waiting);
   worker = Worker{};
 }
 
 void Dispatcher::exited_during_job(int number, const ExitStatus& ending) {
   const Worker& worker = at(number);
-  if (left_result(number, *worker.assignment)) return;
-  AttemptEnd end{outcome_of(ending), 0, ending, to_string(ending)};
-  if (worker.condemned) {
-    end.outcome = *worker.condemned;
-    end.message = worker.message;
-  } else if (stopping_ == Stopping::at_once ||
-             ((stopping_ != Stopping::no || worker.recalled) && ending.status == 0) ||
-             (is_blamed(end.outcome) && lacked_room(number))) {
-    end.outcome = AttemptOutcome::drained;
+  if (left_result(number, *worker.assignment, worker.watch.progress().step)) return;
+  AttemptReason how = worker.watch.ended(ending, stopping_ != Stopping::no);
+  if (!worker.watch.condemned() &&
+      (stopping_ == Stopping::at_once || (is_blamed(how.outcome) && lacked_room(number)))) {
+    how.outcome = AttemptOutcome::drained;
   }
-  end_assignment(number, end);
+  end_assignment(number, {how.outcome, 0, ending, how.message});
 }
 
-void Dispatcher::exited_without_job(int number, const ExitStatus& ending, Stage stage) {
-  if (stopping_ != Stopping::no || at(number).recalled) return;
-  const bool own_doing = at(number).condemned || outcome_of(ending) != AttemptOutcome::killed;
-  const std::string how = at(number).message.empty() ? to_string(ending) : at(number).message;
+void Dispatcher::exited_without_job(int number, const ExitStatus& ending) {
+  const WorkerWatch& watch = at(number).watch;
+  if (stopping_ != Stopping::no || watch.is_recalled()) return;
+  const bool own_doing = watch.condemned() || outcome_of(ending) != AttemptOutcome::killed;
+  const std::string how = watch.condemned() ? watch.condemned()->message : to_string(ending);
   now_.warnings.push_back(fmt::format("worker {} ended {}: {}", number,
-                                      stage == Stage::starting ? "before it said hello" : "without a job",
-                                      how));
+                                      watch.is_starting() ? "before it said hello" : "without a job", how));
   now_.early_exits += own_doing ? most_early_kills / most_early_exits + 1 : 1;
   if (now_.early_exits > most_early_kills) {
     throw EngineError(

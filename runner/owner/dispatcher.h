@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "runner/engines/worker_pool.h"
+#include "runner/engines/worker_watch.h"
 #include "runner/folder/room.h"
 #include "runner/owner/ledger.h"
 
@@ -39,9 +39,6 @@ class Dispatcher {
  public:
   using Time = std::chrono::steady_clock::time_point;
   using Clock = std::function<Time()>;
-  // Time during which this process ran. Leases and patience are measured in it: an owner that was stopped, or
-  // frozen together with its workers, has heard nothing meanwhile and must not hold that against them.
-  using Awake = std::chrono::duration<double>;
 
   // All references must outlive the dispatcher.
   Dispatcher(Database& database, Ledger& ledger, WorkerPool& pool, RunListener& listener,
@@ -53,29 +50,20 @@ class Dispatcher {
   Ending run();
 
  private:
-  // A seed in the hands of a worker, and how far it is.
+  // A seed in the hands of a worker.
   struct Assignment {
     Grant grant;
-    int phase = 0;
-    std::int64_t step = 0, steps = 0;
-    double strain = 0;
     Time given{};        // when the worker got it
     Time begun{};        // when there was no other before it any more, as far as we know
-    Awake renewed{};     // when it last came forward
     bool shown = false;  // the database says how far it is
   };
-  enum class Stage { absent, starting, idle, busy };
   struct Worker {
-    Stage stage = Stage::absent;
-    Awake since{};  // of the stage
+    WorkerWatch watch{};
     std::int64_t engine = 0;
     bool takes_ahead = false;
-    std::optional<Assignment> assignment{};
-    std::optional<Assignment> waiting{};        // behind the assignment; only of a busy worker
-    std::int64_t finished_job = 0;              // the last one; attempts are numbered from 1
-    std::optional<AttemptOutcome> condemned{};  // killed by us, and why
-    bool recalled = false;                      // told to leave a seed that is not wanted any more
-    std::string message{};
+    std::optional<Assignment> assignment{};  // of a busy worker, and of no other
+    std::optional<Assignment> waiting{};     // behind the assignment
+    std::int64_t finished_job = 0;           // the last one; attempts are numbered from 1
   };
   // What booking changes here, to be taken back with it.
   struct Picture {
@@ -97,7 +85,6 @@ class Dispatcher {
   void handle(const StopSignal&) {}  // listen() has acted on it
 
   void turn();
-  void stay_awake();
   void listen();
   // Books what was heard. False: there is no room, and nothing has changed.
   bool book();
@@ -123,18 +110,18 @@ class Dispatcher {
   bool has_job(int worker, std::int64_t job);
   // Whether the worker may have failed because it could not write: no room, or no folder.
   bool lacked_room(int worker);
-  void condemn(int worker, AttemptOutcome outcome, const std::string& message);
+  void condemn(int worker, AttemptReason reason);
   // The worker is through with its job, and is at the one that waited or idle.
   void go_on(int worker);
   // Processor seconds that a worker can have spent since then.
   double processor_seconds_since(Time time) const;
   void end_assignment(int worker, const AttemptEnd& end);
-  // Takes the result of a worker that has exited. False: it left none for this.
-  bool left_result(int worker, const Assignment& about);
+  // Takes the result of a worker that has exited at this step of the job. False: it left none.
+  bool left_result(int worker, const Assignment& about, std::int64_t step);
   // Of an assignment that has waited in vain.
   void give_back(const Assignment& waiting);
   void exited_during_job(int worker, const ExitStatus& ending);
-  void exited_without_job(int worker, const ExitStatus& ending, Stage stage);
+  void exited_without_job(int worker, const ExitStatus& ending);
   Worker& at(int worker) { return now_.workers.at(static_cast<std::size_t>(worker)); }
   bool anyone_there() const;
   bool has_nothing_to_do() const;
@@ -154,8 +141,9 @@ class Dispatcher {
   bool request_waits_ = false;  // for the same
   bool told_of_shortage_ = false;
   Stopping stopping_ = Stopping::no;
-  Time started_, heard_, reported_, leases_shown_, requests_heard_{};
-  Awake awake_{}, stopping_since_{};
+  AwakeClock awake_;
+  Time started_, reported_, leases_shown_, requests_heard_{};
+  Awake stopping_since_{};
 };
 
 }  // namespace peclet::runner

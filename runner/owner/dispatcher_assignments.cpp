@@ -23,11 +23,10 @@ void Dispatcher::give_out_seeds() {
   if (stopping_ != Stopping::no || shortage_.lasts() || ledger_.scheduler().finished()) return;
   for (int number = 0; number < pool_.size(); ++number) {
     Worker& worker = at(number);
-    if (worker.stage != Stage::idle || worker.recalled) continue;
+    if (!worker.watch.is_idle() || worker.watch.is_recalled()) continue;
     worker.assignment = next_assignment(number);
     if (!worker.assignment) return;
-    worker.stage = Stage::busy;
-    worker.since = worker.assignment->renewed = awake_;
+    worker.watch.begin_job(awake_.awake());
   }
   for (int number = 0; number < pool_.size(); ++number) {
     Worker& worker = at(number);
@@ -53,18 +52,18 @@ std::optional<Dispatcher::Assignment> Dispatcher::next_assignment(int number) {
 }
 
 bool Dispatcher::takes_one_more(const Worker& worker) const {
-  if (worker.stage != Stage::busy || !worker.takes_ahead || worker.waiting) return false;
-  if (worker.condemned || worker.recalled) return false;
+  if (!worker.watch.is_busy() || !worker.takes_ahead || worker.waiting) return false;
+  if (worker.watch.condemned() || worker.watch.is_recalled()) return false;
   const std::optional<double> seconds = ledger_.wall_seconds(worker.assignment->grant);
   return seconds && *seconds < longest_brisk_job;
 }
 
 bool Dispatcher::has_job(int worker, std::int64_t job) {
   const Worker& about = at(worker);
-  if (about.condemned) return false;
+  if (about.watch.condemned()) return false;
   if (about.assignment && about.assignment->grant.job.attempt == job) return true;
   if (about.finished_job == job) return false;  // said once too often, which does no harm
-  condemn(worker, AttemptOutcome::garbled, fmt::format("spoke of job {}, which it does not have", job));
+  condemn(worker, {AttemptOutcome::garbled, fmt::format("spoke of job {}, which it does not have", job)});
   return false;
 }
 
@@ -72,11 +71,9 @@ void Dispatcher::go_on(int number) {
   Worker& worker = at(number);
   worker.finished_job = worker.assignment->grant.job.attempt;
   worker.assignment = std::exchange(worker.waiting, std::nullopt);
-  worker.stage = worker.assignment ? Stage::busy : Stage::idle;
-  worker.since = awake_;
-  if (!worker.assignment) return;
+  if (!worker.assignment) return worker.watch.rest(awake_.awake());
   worker.assignment->begun = clock_();
-  worker.assignment->renewed = awake_;
+  worker.watch.begin_job(awake_.awake());
 }
 
 double Dispatcher::processor_seconds_since(Time time) const {
@@ -86,17 +83,18 @@ double Dispatcher::processor_seconds_since(Time time) const {
 void Dispatcher::end_assignment(int number, const AttemptEnd& end) {
   const Assignment& about = *at(number).assignment;
   AttemptEnd complete = end;
-  complete.step = about.step;
+  complete.step = at(number).watch.progress().step;
   complete.held_seconds = processor_seconds_since(about.begun);
   ledger_.end_attempt(about.grant, complete);
   go_on(number);
 }
 
 // A result may be durable although nobody could announce it any more; one that was turned down stays so.
-bool Dispatcher::left_result(int number, const Assignment& about) {
+bool Dispatcher::left_result(int number, const Assignment& about, std::int64_t step) {
+  const std::optional<AttemptReason>& condemned = at(number).watch.condemned();
   std::string why;
-  if (at(number).condemned == AttemptOutcome::garbled || !is_there(about.grant.job.spool) ||
-      !ledger_.take_result(about.grant, "", about.step, processor_seconds_since(about.given), why)) {
+  if ((condemned && condemned->outcome == AttemptOutcome::garbled) || !is_there(about.grant.job.spool) ||
+      !ledger_.take_result(about.grant, "", step, processor_seconds_since(about.given), why)) {
     return false;
   }
   ++now_.results;

@@ -56,7 +56,7 @@ void Dispatcher::listen() {
       news_.push_back(std::move(event));
     }
   }
-  stay_awake();
+  awake_.end_turn(clock_());
 }
 
 bool Dispatcher::book() {
@@ -129,7 +129,7 @@ void Dispatcher::end_shortage() {
   listener_.note("there is room again: the campaign goes on");
   listener_.happened(ShortageEnded{});
   for (Worker& worker : now_.workers) {
-    if (worker.assignment) worker.assignment->renewed = awake_;  // nobody listened meanwhile
+    worker.watch.renew(awake_.awake());  // nobody listened meanwhile
   }
 }
 

@@ -30,8 +30,8 @@ void Dispatcher::mark_running_seeds() {
     for (std::optional<Assignment>* const about : {&worker.assignment, &worker.waiting}) {
       if (*about && !ledger_.keep_running((*about)->grant)) wanted = false;
     }
-    if (wanted || worker.recalled) continue;
-    worker.recalled = true;
+    if (wanted || worker.watch.is_recalled()) continue;
+    worker.watch.recall();
     pool_.drain(number);
   }
 }

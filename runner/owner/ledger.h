@@ -16,34 +16,20 @@
 #include <vector>
 
 #include "runner/database/queue.h"
-#include "runner/engines/worker_pool.h"
+#include "runner/engines/worker_watch.h"
 #include "runner/events/run_listener.h"
 #include "runner/folder/campaign_directory.h"
-#include "runner/folder/file_removal.h"
-#include "runner/statistics/scheduler.h"
+#include "runner/owner/after_commit.h"
+#include "runner/owner/board.h"
+#include "runner/owner/engine_admission.h"
 
 namespace peclet::runner {
-
-constexpr int nowhere = -1;
 
 // A seed that has been given to a worker.
 struct Grant {
   SeedId id;  // its place is `nowhere` when the point has left the sweep since
   std::int64_t point_id = 0;
   Job job;
-};
-
-// Points with results of one engine are to be run with another. what() names both.
-class OtherEngine : public IntegrityError {
- public:
-  using IntegrityError::IntegrityError;
-};
-
-// What bounds a run beside the campaign itself.
-struct Bounds {
-  std::optional<int> ceiling{};            // only so many seeds of each point
-  std::optional<double> budget_seconds{};  // processor time
-  std::map<std::string, double> work{};    // of a realisation, in any unit, by the point's hash
 };
 
 class Ledger {
@@ -74,7 +60,7 @@ class Ledger {
   std::optional<double> wall_seconds(const Grant& grant) const;
   // Books any other end of an attempt: the seed is queued again, or given up.
   void end_attempt(const Grant& grant, const AttemptEnd& end);
-  void renew_lease(const Grant& grant, int phase, std::int64_t step, std::int64_t steps, double strain);
+  void renew_lease(const Grant& grant, const JobProgress& progress);
 
   // The seeds that the next looks need and nobody runs, with `ahead` those of the looks after them, too. They
   // are out from now on; the caller hands them over.
@@ -89,13 +75,12 @@ class Ledger {
   // A seed that was handed over comes back without an attempt.
   void take_back(SeedId id);
 
-  // The engine's row. Throws OtherEngine when a point that is still to be run has results of another engine,
-  // IntegrityError when this run has started with another one.
+  // The engine's row. Throws as EngineAdmission::admit().
   std::int64_t admit_engine(const Json& engine);
   // Keeps the results of other engines apart at every point that is still to be run, in a transaction of its
   // own. Returns how many points these were.
   int accept_engine(const std::string& identity);
-  bool has_engine() const { return !identity_.empty(); }
+  bool has_engine() const { return engine_.has_engine(); }
 
   // The campaign is another one from now on. Throws InputError when finished realisations lack its
   // observable.
@@ -116,11 +101,11 @@ class Ledger {
   void after_commit();
 
   const Campaign& campaign() const { return campaign_; }
-  const PointRecord& point(int place) const { return points_.at(static_cast<std::size_t>(place)); }
-  const Scheduler& scheduler() const { return *scheduler_; }
+  const PointRecord& point(int place) const { return board_.point(place); }
+  const Scheduler& scheduler() const { return board_.scheduler(); }
   // Processor time that this run's attempts took: that of results, and of others the time times the threads.
   // A result that began in an earlier run counts with what it took in this one.
-  double spent_seconds() const { return spent_seconds_; }
+  double spent_seconds() const { return spending_.seconds(); }
   // Points, seeds and time to go with so many workers; the rest of the report is the caller's.
   RunReport report(int workers) const;
   // "peclet=10 seed 3", for people
@@ -129,19 +114,13 @@ class Ledger {
  private:
   void load();
   void read();
-  void read_points();
   void book_looks();
-  bool is_to_be_run(const PointRecord& about) const;
-  void refuse_other_engine(const std::string& identity) const;
   // Whether the seed has a part in the looks.
   bool takes_part(SeedId id) const { return id.point != nowhere && id.seed < campaign_.maximum_realisations; }
   void leave(const Grant& grant);
   std::string name_of(const Grant& grant) const;
   PointName told_name(int place) const;
   PointName told_name(const Grant& grant) const;
-  void apply_bounds();
-  void tell_cost(int place);
-  void add_cost(int place, std::optional<double> wall_seconds, std::optional<double> cpu_seconds);
   void leave_to_batch_system(int place);
   void ingest_spool_of(const CampaignDirectory& directory);
   void ingest(const std::filesystem::path& spool);
@@ -162,31 +141,12 @@ class Ledger {
   CampaignDirectory directory_;
   RunListener& listener_;
   int retries_;
-  std::vector<PointRecord> points_;
-  std::map<std::string, int> places_;  // of the points, by hash
-  struct Costs {
-    Cost wall, processor;
-  };
-  std::vector<Costs> costs_;
-  std::vector<int> running_;  // seeds of each point that workers have
-  Bounds bounds_;
-  double spent_seconds_ = 0, committed_seconds_ = 0;
-  std::optional<Scheduler> scheduler_;
-  std::string identity_;  // of this run's engine
-  std::string lacking_;   // what results have instead of the target's observable
-
-  // After the commit: what the next attempt must not find, what is left of seeds that have ended, results
-  // that are none; and what people and programs hear.
-  struct Note {
-    std::string text;
-  };
-  struct Warning {
-    std::string text;
-  };
-  std::vector<std::filesystem::path> to_discard_, to_remove_, to_reject_;
-  int turned_down_ = 0;  // of the spool files that are looked at together
-  std::vector<std::variant<RunEvent, Note, Warning>> to_tell_;
-  FileRemoval removal_;
+  Board board_;
+  Spending spending_;
+  EngineAdmission engine_;
+  AfterCommit after_;
+  std::string lacking_;         // what results have instead of the target's observable
+  int turned_down_ = 0;         // of the spool files that are looked at together
   std::set<std::string> away_;  // shared folders that are not there, as has been said
 };
 

@@ -33,7 +33,7 @@ std::string listed(const std::vector<std::string>& names) {
 }  // namespace
 
 void Ledger::ingest_spool() {
-  removal_.finish();  // of what has been taken already
+  after_.finish_removals();  // of what has been taken already
   ingest_spool_of(directory_);
   const BundleBook book(database_.connection());
   std::map<std::string, Out> shared;
@@ -59,32 +59,31 @@ void Ledger::ingest_spool() {
                       listed(out.bundles), out.bundles.front()));
     }
   }
-  removal_.finish();
+  after_.finish_removals();
 }
 
 void Ledger::leave_to_batch_system(int place) {
   const BundleBook book(database_.connection());
   for (const int seed : book.seeds_out_of_point(point(place).id)) {
     // A seed beyond the maximum (it was larger once) has no part in the looks.
-    if (seed < campaign_.maximum_realisations && !has_ended({place, seed})) scheduler_->begin({place, seed});
+    if (seed < campaign_.maximum_realisations && !has_ended({place, seed}))
+      board_.scheduler().begin({place, seed});
   }
 }
 
 std::vector<SeedId> Ledger::draw(bool ahead) {
   std::vector<SeedId> drawn;
-  while (const std::optional<SeedId> id = scheduler_->next()) {
-    if (!ahead && id->seed >= scheduler_->wanted(id->point)) break;
-    scheduler_->begin(*id);
+  while (const std::optional<SeedId> id = scheduler().next()) {
+    if (!ahead && id->seed >= scheduler().wanted(id->point)) break;
+    board_.scheduler().begin(*id);
     drawn.push_back(*id);
   }
   return drawn;
 }
 
 std::optional<SeedId> Ledger::identify(std::int64_t point_id, int seed) const {
-  const auto known = std::find_if(points_.begin(), points_.end(),
-                                  [&](const PointRecord& about) { return about.id == point_id; });
-  if (known == points_.end()) return std::nullopt;
-  return SeedId{*known->place, seed};
+  const std::optional<int> place = board_.place_of(point_id);
+  return place ? std::optional(SeedId{*place, seed}) : std::nullopt;
 }
 
 bool Ledger::has_ended(SeedId id) { return queue_.has_ended(point(id.point).id, id.seed); }
@@ -95,12 +94,11 @@ void Ledger::end_handed_over(SeedId id, int task, const AttemptReport& report,
   queue_.attempt_elsewhere(about.id, id.seed, task, report);
   if (has_ended(id)) return;
   const Sentence sentence = judge(queue_.history(about.id, id.seed), retries_);
-  if (sentence.discard_checkpoint) to_discard_.push_back(checkpoint);
+  if (sentence.discard_checkpoint) after_.discard(checkpoint);
   if (is_blamed(report.outcome)) {
-    to_tell_.emplace_back(
-        Warning{fmt::format("{} on {}: {}{}{}; {}", name(id), report.host, to_string(report.outcome),
+    after_.warn(fmt::format("{} on {}: {}{}{}; {}", name(id), report.host, to_string(report.outcome),
                             report.message.empty() ? "" : ": ", report.message,
-                            sentence.quarantine ? "it is given up" : "it is tried again")});
+                            sentence.quarantine ? "it is given up" : "it is tried again"));
   }
   if (!sentence.quarantine) {
     take_back(id);
@@ -111,7 +109,7 @@ void Ledger::end_handed_over(SeedId id, int task, const AttemptReport& report,
 }
 
 void Ledger::take_back(SeedId id) {
-  if (id.seed < campaign_.maximum_realisations && !has_ended(id)) scheduler_->give_back(id);
+  if (id.seed < campaign_.maximum_realisations && !has_ended(id)) board_.scheduler().give_back(id);
 }
 
 }  // namespace peclet::runner

@@ -16,33 +16,18 @@ void Ledger::take_over(const Campaign& campaign) {
 }
 
 void Ledger::refresh() {
-  read_points();
+  board_.read_points(database_);
   read();
   book_looks();
-  if (has_engine()) refuse_other_engine(identity_);
+  engine_.require_no_other(board_);
 }
 
 bool Ledger::keep_running(Grant& grant) {
-  const auto place = places_.find(grant.job.point);
-  grant.id.point = place == places_.end() ? nowhere : place->second;
+  grant.id.point = board_.place_of(grant.job.point).value_or(nowhere);
   if (!takes_part(grant.id)) return false;
-  scheduler_->begin(grant.id);
-  ++running_[static_cast<std::size_t>(grant.id.point)];
-  return !scheduler_->cancelled(grant.id.point);
-}
-
-bool Ledger::is_to_be_run(const PointRecord& about) const {
-  return !scheduler_->decided(*about.place) && !about.cancelled;
-}
-
-void Ledger::refuse_other_engine(const std::string& identity) const {
-  for (const PointRecord& about : points_) {
-    if (is_to_be_run(about) && !about.engine_identity.empty() && about.engine_identity != identity) {
-      throw OtherEngine(
-          fmt::format("{}: has results of engine {}, but the engine now is {}; one point never mixes two",
-                      about.label, about.engine_identity, identity));
-    }
-  }
+  board_.scheduler().begin(grant.id);
+  board_.add_running(grant.id.point, 1);
+  return !scheduler().cancelled(grant.id.point);
 }
 
 int Ledger::accept_engine(const std::string& identity) {
@@ -52,16 +37,16 @@ int Ledger::accept_engine(const std::string& identity) {
   if (const std::string shared = book.last_shared(); !shared.empty()) folders.insert(shared);
   for (const BundleRecord& bundle : book.open_bundles()) folders.insert(bundle.shared);
   Transaction booking(database_.connection());
-  for (const PointRecord& about : points_) {
-    if (!is_to_be_run(about) || about.engine_identity.empty() || about.engine_identity == identity) continue;
+  for (const PointRecord& about : board_.points()) {
+    if (!board_.is_to_be_run(about) || about.engine_identity.empty() || about.engine_identity == identity)
+      continue;
     queue_.keep_apart(about, identity);
-    to_tell_.emplace_back(
-        Note{fmt::format("{}: results of engine {} are kept apart", about.label, about.engine_identity)});
+    after_.note(fmt::format("{}: results of engine {} are kept apart", about.label, about.engine_identity));
     ++points;
     // Another engine could not go on from where they stand.
     for (const RealisationRecord& record : database_.realisations(about.id)) {
       for (const std::string& folder : folders) {
-        to_discard_.push_back(CampaignDirectory(folder).checkpoint(about.hash, record.seed));
+        after_.discard(CampaignDirectory(folder).checkpoint(about.hash, record.seed));
       }
     }
   }

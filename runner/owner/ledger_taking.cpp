@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -21,11 +22,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t files_at_a_time = 64;
 constexpr int most_told = 10;
-
-// The folder whose spool a file lies in: the campaign's own, or one that is shared with a batch system.
-CampaignDirectory home_of(const fs::path& spool_file) {
-  return CampaignDirectory(spool_file.parent_path().parent_path());
-}
 
 Outcome outcome_of(const Observed& observed) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -57,32 +53,18 @@ class Ledger::Taking {
   Taking(Ledger& ledger, const std::string& point)
       : ledger_(ledger),
         changes_(ledger.database_.connection()),
-        to_discard_(ledger.to_discard_.size()),
-        to_remove_(ledger.to_remove_.size()),
-        to_reject_(ledger.to_reject_.size()),
-        to_tell_(ledger.to_tell_.size()),
-        spent_seconds_(ledger.spent_seconds_),
+        after_(ledger.after_.mark()),
+        spent_seconds_(ledger.spending_.seconds()),
         lacking_(ledger.lacking_) {
-    const auto known = ledger.places_.find(point);
-    if (known == ledger.places_.end() || !ledger.scheduler_) return;
-    const auto place = static_cast<std::size_t>(known->second);
-    picture_ = Picture{known->second, ledger.scheduler_->kept(known->second), ledger.costs_[place],
-                       ledger.running_[place]};
+    const std::optional<int> place = ledger.board_.place_of(point);
+    if (place && ledger.board_.has_seeds()) standing_ = ledger.board_.standing(*place);
   }
   ~Taking() {
     if (kept_) return;
-    ledger_.to_discard_.resize(to_discard_);
-    ledger_.to_remove_.resize(to_remove_);
-    ledger_.to_reject_.resize(to_reject_);
-    ledger_.to_tell_.erase(ledger_.to_tell_.begin() + static_cast<std::ptrdiff_t>(to_tell_),
-                           ledger_.to_tell_.end());
-    ledger_.spent_seconds_ = spent_seconds_;
+    ledger_.after_.back_to(after_);
+    ledger_.spending_.back_to(spent_seconds_);
     ledger_.lacking_ = std::move(lacking_);
-    if (!picture_) return;
-    const auto place = static_cast<std::size_t>(picture_->place);
-    ledger_.scheduler_->put_back(picture_->place, std::move(picture_->point));
-    ledger_.costs_[place] = picture_->costs;
-    ledger_.running_[place] = picture_->running;
+    if (standing_) ledger_.board_.put_back(std::move(*standing_));
   }
   Taking(const Taking&) = delete;
   Taking& operator=(const Taking&) = delete;
@@ -93,19 +75,12 @@ class Ledger::Taking {
   }
 
  private:
-  struct Picture {
-    int place;
-    Scheduler::Point point;
-    Costs costs;
-    int running;
-  };
-
   Ledger& ledger_;
   Savepoint changes_;
-  std::size_t to_discard_, to_remove_, to_reject_, to_tell_;
+  AfterCommit::Mark after_;
   double spent_seconds_;
   std::string lacking_;
-  std::optional<Picture> picture_;
+  std::optional<Board::Standing> standing_;
   bool kept_ = false;
 };
 
@@ -129,15 +104,15 @@ Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
   const Stored stored = queue_.store(result, campaign_.target.observable);
   switch (stored) {
     case Stored::stored_apart:
-      to_remove_.push_back(spool);
+      after_.remove(spool);
       return stored;
     case Stored::stored:
     case Stored::duplicate:
-      to_remove_.push_back(spool);
-      to_remove_.push_back(directory_.checkpoint(result.point, result.seed));
-      if (const fs::path there = home_of(spool).checkpoint(result.point, result.seed);
-          there != to_remove_.back()) {
-        to_remove_.push_back(there);
+      after_.remove(spool);
+      for (const fs::path& checkpoint :
+           std::set{directory_.checkpoint(result.point, result.seed),
+                    home_of_spool_file(spool).checkpoint(result.point, result.seed)}) {
+        after_.remove(checkpoint);
       }
       break;
     case Stored::conflict:
@@ -150,23 +125,20 @@ Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
       turn_down(spool, "it belongs to no point of this campaign");
       return stored;
   }
-  const auto place = places_.find(result.point);
-  if (stored == Stored::duplicate || place == places_.end()) return stored;
+  const std::optional<int> place = board_.place_of(result.point);
+  if (stored == Stored::duplicate || !place) return stored;
   const Observed observed = observe(result.document, campaign_.target.observable);
   const std::string cause = cause_of(result, observed);
   if (result.completed() && !has_observable(result.document["mean"], campaign_.target.observable)) {
     lacking_ = names_of_numbers(result.document["mean"]);
     if (lacking_.empty()) lacking_ = "none";
   }
-  to_tell_.push_back(SeedEnded{told_name(place->second), result.seed, cause, observed.value,
-                               cost_of(result, "cpu_seconds")});
-  if (!scheduler_) return stored;  // load() finds it
-  add_cost(place->second, cost_of(result, "wall_seconds"), cost_of(result, "cpu_seconds"));
-  tell_cost(place->second);
-  if (!observed.value) {
-    to_tell_.emplace_back(Note{fmt::format("{}: ended with {}", name({place->second, result.seed}), cause)});
-  }
-  book_outcome({place->second, result.seed}, outcome_of(observed));
+  const std::optional<double> cpu_seconds = cost_of(result, "cpu_seconds");
+  after_.tell(SeedEnded{told_name(*place), result.seed, cause, observed.value, cpu_seconds});
+  if (!board_.has_seeds()) return stored;  // load() finds it
+  board_.add_cost(*place, cost_of(result, "wall_seconds"), cpu_seconds);
+  if (!observed.value) after_.note(fmt::format("{}: ended with {}", name({*place, result.seed}), cause));
+  book_outcome({*place, result.seed}, outcome_of(observed));
   return stored;
 }
 
@@ -174,10 +146,10 @@ void Ledger::turn_down(const fs::path& spool, const std::string& why) {
   const std::string message = fmt::format("{} is not taken: {}", plain_name(spool), why);
   queue_.event("rejected", std::nullopt, std::nullopt, message);
   // Of a crowd nobody reads every name.
-  if (++turned_down_ <= most_told)
-    to_tell_.emplace_back(
-        Warning{fmt::format("{}; it is kept in {}", message, home_of(spool).rejected().string())});
-  if (is_there(spool)) to_reject_.push_back(spool);
+  if (++turned_down_ <= most_told) {
+    after_.warn(fmt::format("{}; it is kept in {}", message, home_of_spool_file(spool).rejected().string()));
+  }
+  if (is_there(spool)) after_.reject(spool);
 }
 
 void Ledger::ingest_spool_of(const CampaignDirectory& directory) {
@@ -215,14 +187,14 @@ bool Ledger::take_result(const Grant& grant, const std::string& sha256, std::int
     if (result.point != grant.job.point || result.seed != grant.job.seed) {
       throw ResultError("it is of another point or seed than the job");
     }
-    if (engine_identity(result.document.at("engine")) != identity_) {
+    if (engine_identity(result.document.at("engine")) != engine_.identity()) {
       throw ResultError("it names another engine than the worker's hello");
     }
     return result;
   };
   why = take_whole(grant.job.spool, read, [&](const RealisationResult& result) {
     take(result, grant.job.spool);
-    spent_seconds_ += std::min(held_seconds, cost_of(result, "cpu_seconds").value_or(held_seconds));
+    spending_.add(std::min(held_seconds, cost_of(result, "cpu_seconds").value_or(held_seconds)));
     leave(grant);
     queue_.end_attempt(grant.job.attempt, {AttemptOutcome::result, step});
   });

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <map>
 
-#include "runner/owner/point_name.h"
 #include "runner/reports/explain_attempts.h"
 #include "runner/reports/explain_estimate.h"
 #include "runner/reports/prediction_text.h"
 #include "runner/reports/status.h"
+#include "runner/requests/point_name.h"
 #include "runner/statistics/forecast.h"
 #include "runner/statistics/look_json.h"
 #include "runner/text/number_text.h"

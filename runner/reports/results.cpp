@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "contract/input_error.h"
-#include "runner/owner/point_name.h"
+#include "runner/requests/point_name.h"
 
 namespace peclet::runner {
 namespace {

@@ -19,8 +19,8 @@
 #include "runner/events/progress.h"
 #include "runner/owner/dispatcher.h"
 #include "runner/owner/owned_campaign.h"
-#include "runner/owner/requests.h"
 #include "runner/reports/status.h"
+#include "runner/requests/request_handler.h"
 #include "runner/text/quoting.h"
 
 namespace peclet::runner {
@@ -98,7 +98,7 @@ BundleSettings bundle_settings(const HandOverOptions& options, OwnedCampaign& ow
 // Settles and hands over, turn by turn.
 class Follower {
  public:
-  Follower(Ledger& ledger, Bundles& bundles, Requests& requests, Progress& progress,
+  Follower(Ledger& ledger, Bundles& bundles, RequestHandler& requests, Progress& progress,
            const HandOverOptions& options)
       : ledger_(ledger),
         bundles_(bundles),
@@ -182,7 +182,7 @@ class Follower {
 
   Ledger& ledger_;
   Bundles& bundles_;
-  Requests& requests_;
+  RequestHandler& requests_;
   Progress& progress_;
   const HandOverOptions& options_;
   Clock::time_point started_;
@@ -247,7 +247,7 @@ int hand_over_campaign(const HandOverOptions& options) {
   {
     Progress progress(Progress::style_of_stderr(options.quiet));
     Ledger ledger(owned.database, owned.campaign, owned.directory, progress, retries);
-    Requests requests(owned.database, ledger, owned.directory, progress);
+    RequestHandler requests(owned.database, ledger, owned.directory, progress);
     if (!options.dry_run) requests.carry_out();
     admit(ledger, owned, options, progress);
     Bundles bundles(owned.database, ledger, owned.campaign, owned.directory, progress);
@@ -275,7 +275,7 @@ int ingest_campaign(const IngestOptions& options) {
   check_names(options.forget, owned.database);
   Progress progress(Progress::style_of_stderr(options.quiet));
   Ledger ledger(owned.database, owned.campaign, owned.directory, progress, retries);
-  Requests(owned.database, ledger, owned.directory, progress).carry_out();
+  RequestHandler(owned.database, ledger, owned.directory, progress).carry_out();
   Bundles bundles(owned.database, ledger, owned.campaign, owned.directory, progress);
   Bundles::Settled settled = bundles.settle();
   if (options.cancel) {

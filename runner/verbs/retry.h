@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/verbs/give_request.h"
+#include "runner/verbs/ask_owner.h"
 
 namespace peclet::runner {
 

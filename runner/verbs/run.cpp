@@ -22,8 +22,8 @@
 #include "runner/folder/room.h"
 #include "runner/owner/dispatcher.h"
 #include "runner/owner/folder_watch.h"
-#include "runner/owner/requests.h"
 #include "runner/reports/status.h"
+#include "runner/requests/request_handler.h"
 #include "runner/statistics/budget.h"
 #include "runner/text/duration_text.h"
 #include "runner/verbs/exit_code.h"
@@ -62,7 +62,7 @@ struct Opened {
 
   Database database;
   Ledger ledger;
-  Requests requests;
+  RequestHandler requests;
   SummedError before;  // the run
 };
 

@@ -28,6 +28,7 @@ RUNNER = [
             "database",
             "events",
             "owner",
+            "requests",
             "batch",
             "care",
             "reports",

@@ -10,7 +10,7 @@
 #include "contract/durable_file.h"
 #include "runner/folder/spool.h"
 #include "runner/owner/dispatcher.h"
-#include "runner/owner/requests.h"
+#include "runner/requests/request_handler.h"
 #include "tests/runner/owner/scripted_pool.h"
 #include "tests/runner/runner_fixture.h"
 
@@ -176,7 +176,7 @@ TEST_F(FullDatabase, TellsWhatIsCommittedAndNothingThatWasTakenBack) {
 }
 
 TEST_F(FullDatabase, KeepsARequestUntilThereIsRoom) {
-  Requests requests(database_, *ledger_, directory_, listener_);
+  RequestHandler requests(database_, *ledger_, directory_, listener_);
   DispatchSettings settings;
   settings.requests = [&] { return requests.carry_out(); };
   int turns = 0;

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "contract/sha256.h"
-#include "runner/owner/requests.h"
+#include "runner/requests/request_handler.h"
 #include "tests/runner/owner/dispatcher_fixture.h"
 
 namespace peclet::runner {
@@ -286,8 +286,8 @@ TEST_F(WorkingAhead, ResultsThatNobodyCouldAnnounceAreTakenBoth) {
 
 TEST_F(WorkingAhead, AWorkerWhoseNextSeedNobodyWantsLeaves) {
   become(plain_campaign(2, 8, 40, 0.05), {0.1, 0.1});
-  Requests requests(database_, ledger_.emplace(database_, campaign_, directory_, listener_, 2), directory_,
-                    listener_);
+  RequestHandler requests(database_, ledger_.emplace(database_, campaign_, directory_, listener_, 2),
+                          directory_, listener_);
   settings_.requests = [&] { return requests.carry_out(); };
   std::int64_t cancelled = 0;
   pool_.script = [&, this, turns = 0]() mutable {

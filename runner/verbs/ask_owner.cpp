@@ -1,4 +1,4 @@
-#include "runner/verbs/give_request.h"
+#include "runner/verbs/ask_owner.h"
 
 #include <fmt/format.h>
 
@@ -14,8 +14,8 @@
 #include "runner/folder/owner_lock.h"
 #include "runner/owner/open_campaign.h"
 #include "runner/owner/owned_campaign.h"
-#include "runner/owner/requests.h"
 #include "runner/reports/status.h"
+#include "runner/requests/request_handler.h"
 
 namespace peclet::runner {
 namespace {
@@ -35,7 +35,7 @@ bool carry_out_here(const CampaignDirectory& directory) {
     const Campaign campaign = parse_campaign(database.campaign().document, directory.database().string());
     Progress progress(Progress::style_of_stderr(true));
     Ledger ledger(database, campaign, directory, progress, retries);
-    Requests(database, ledger, directory, progress).carry_out();
+    RequestHandler(database, ledger, directory, progress).carry_out();
     return true;
   } catch (const OwnedByAnother&) {
     return false;

@@ -1,4 +1,4 @@
-#include "runner/owner/point_name.h"
+#include "runner/requests/point_name.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

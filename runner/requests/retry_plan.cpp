@@ -1,4 +1,4 @@
-#include "runner/owner/retry_plan.h"
+#include "runner/requests/retry_plan.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,4 @@
-#include "runner/owner/requests.h"
+#include "runner/requests/request_handler.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,9 +9,9 @@
 
 #include "contract/guarded_file.h"
 #include "contract/sha256.h"
-#include "runner/owner/campaign_changes.h"
-#include "runner/owner/point_name.h"
-#include "runner/owner/retry_plan.h"
+#include "runner/requests/campaign_changes.h"
+#include "runner/requests/point_name.h"
+#include "runner/requests/retry_plan.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {
@@ -46,7 +46,7 @@ std::optional<std::int64_t> only(const std::vector<PointRecord>& points) {
 
 }  // namespace
 
-bool Requests::carry_out() {
+bool RequestHandler::carry_out() {
   bool any = false;
   for (const fs::path& file : waiting_requests(directory_)) {
     if (left_alone_.contains(file)) continue;
@@ -71,7 +71,7 @@ bool Requests::carry_out() {
   return any;
 }
 
-void Requests::carry_out(const Request& request) {
+void RequestHandler::carry_out(const Request& request) {
   std::string why;
   try {
     Transaction booking(database_.connection());
@@ -91,14 +91,14 @@ void Requests::carry_out(const Request& request) {
   refuse(request, why);
 }
 
-void Requests::refuse(const Request& request, const std::string& why) {
+void RequestHandler::refuse(const Request& request, const std::string& why) {
   Transaction booking(database_.connection());
   queue_.event("refused", std::nullopt, std::nullopt, why, request.name);
   booking.commit();
   listener_.note("a request is refused: " + why);
 }
 
-Requests::Done Requests::apply(const TakeOver& wish) {
+RequestHandler::Done RequestHandler::apply(const TakeOver& wish) {
   std::string text;
   try {
     text = read_regular(wish.file, largest_campaign_file);
@@ -120,20 +120,20 @@ Requests::Done Requests::apply(const TakeOver& wish) {
   return {"set", changes};
 }
 
-Requests::Done Requests::apply(const Prioritise& wish) {
+RequestHandler::Done RequestHandler::apply(const Prioritise& wish) {
   const std::vector<PointRecord> points = named(database_.points(), wish.points);
   for (const PointRecord& point : points) queue_.set_priority(point.id, wish.priority);
   return {"set", fmt::format("priority {}: {}", wish.priority, labels(points)), only(points)};
 }
 
-Requests::Done Requests::apply(const Cancel& wish) {
+RequestHandler::Done RequestHandler::apply(const Cancel& wish) {
   const std::vector<PointRecord> points = named(database_.points(), wish.points);
   for (const PointRecord& point : points) queue_.set_cancelled(point.id, !wish.undo);
   return {"cancel", fmt::format("{}: {}", wish.undo ? "taken up again" : "no more seeds", labels(points)),
           only(points)};
 }
 
-Requests::Done Requests::apply(const Retry& wish) {
+RequestHandler::Done RequestHandler::apply(const Retry& wish) {
   const std::vector<PointRecord> all = database_.points();
   const std::vector<PointRecord> points = wish.points.empty() ? all : named(all, wish.points);
   const RetryPlan plan = plan_retry(database_, points, wish.seeds);

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "runner/folder/campaign_directory.h"
-#include "runner/owner/request.h"
+#include "runner/requests/request.h"
 
 namespace peclet::runner {
 

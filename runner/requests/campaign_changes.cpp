@@ -1,4 +1,4 @@
-#include "runner/owner/campaign_changes.h"
+#include "runner/requests/campaign_changes.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,5 +1,5 @@
 // Requests and the ledger without processes: what each changes, what is refused, and that it happens once.
-#include "runner/owner/requests.h"
+#include "runner/requests/request_handler.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -89,7 +89,7 @@ class CarryingOut : public testing::Test {
   }();
   SilentListener listener_;
   std::optional<Ledger> ledger_;
-  std::optional<Requests> requests_;
+  std::optional<RequestHandler> requests_;
 };
 
 TEST_F(CarryingOut, ANewTargetReopensWhatItDoesNotSatisfy) {

@@ -1,4 +1,4 @@
-#include "runner/owner/request.h"
+#include "runner/requests/request.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

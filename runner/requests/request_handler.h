@@ -9,14 +9,14 @@
 #include "runner/events/run_listener.h"
 #include "runner/folder/campaign_directory.h"
 #include "runner/owner/ledger.h"
-#include "runner/owner/request.h"
+#include "runner/requests/request.h"
 
 namespace peclet::runner {
 
-class Requests {
+class RequestHandler {
  public:
   // All references must outlive it.
-  Requests(Database& database, Ledger& ledger, CampaignDirectory directory, RunListener& listener)
+  RequestHandler(Database& database, Ledger& ledger, CampaignDirectory directory, RunListener& listener)
       : database_(database),
         queue_(database),
         ledger_(ledger),

@@ -1,0 +1,34 @@
+#include "runner/owner/after_commit.h"
+
+#include <utility>
+
+#include "runner/folder/spool.h"
+
+namespace peclet::runner {
+
+AfterCommit::Mark AfterCommit::mark() const {
+  return {to_discard_.size(), to_remove_.size(), to_reject_.size(), to_tell_.size()};
+}
+
+void AfterCommit::back_to(const Mark& mark) {
+  to_discard_.resize(mark.discard);
+  to_remove_.resize(mark.remove);
+  to_reject_.resize(mark.reject);
+  to_tell_.erase(to_tell_.begin() + static_cast<std::ptrdiff_t>(mark.tell), to_tell_.end());
+}
+
+void AfterCommit::carry_out(RunListener& listener) {
+  for (const std::filesystem::path& file : to_discard_) std::filesystem::remove(file);
+  removal_.add(to_remove_);
+  for (const std::filesystem::path& file : to_reject_) peclet::runner::reject(home_of_spool_file(file), file);
+  to_discard_.clear();
+  to_remove_.clear();
+  to_reject_.clear();
+  for (const auto& told : std::exchange(to_tell_, {})) {
+    if (const auto* const note = std::get_if<Note>(&told)) listener.note(note->text);
+    if (const auto* const warning = std::get_if<Warning>(&told)) listener.warn(warning->text);
+    if (const auto* const event = std::get_if<RunEvent>(&told)) listener.happened(*event);
+  }
+}
+
+}  // namespace peclet::runner

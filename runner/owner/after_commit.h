@@ -1,0 +1,57 @@
+// What may happen only when a transaction is committed: files go, and people and programs hear of it.
+//
+// A process that is killed in between leaves the files, which the next run finds and takes for what they are.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "runner/events/run_listener.h"
+#include "runner/folder/file_removal.h"
+
+namespace peclet::runner {
+
+class AfterCommit {
+ public:
+  // A checkpoint that the next attempt must not find: gone when carry_out() returns.
+  void discard(std::filesystem::path checkpoint) { to_discard_.push_back(std::move(checkpoint)); }
+  // What is left of a seed that has ended: removed in the background.
+  void remove(std::filesystem::path file) { to_remove_.push_back(std::move(file)); }
+  // A spool file that is no result: moved to the rejected ones of its folder.
+  void reject(std::filesystem::path spool) { to_reject_.push_back(std::move(spool)); }
+  void note(std::string text) { to_tell_.emplace_back(Note{std::move(text)}); }
+  void warn(std::string text) { to_tell_.emplace_back(Warning{std::move(text)}); }
+  void tell(RunEvent event) { to_tell_.emplace_back(std::move(event)); }
+
+  // How much there is to be done, and back to that.
+  struct Mark {
+    std::size_t discard = 0, remove = 0, reject = 0, tell = 0;
+  };
+  Mark mark() const;
+  void back_to(const Mark& mark);
+  // The transaction failed: nothing of it happens.
+  void forget() { back_to({}); }
+
+  // Does all of it, once. Throws std::filesystem::filesystem_error, and std::system_error for a file of an
+  // earlier call that could not be removed.
+  void carry_out(RunListener& listener);
+  // Returns when the files of earlier calls are removed. Throws std::system_error.
+  void finish_removals() { removal_.finish(); }
+
+ private:
+  struct Note {
+    std::string text;
+  };
+  struct Warning {
+    std::string text;
+  };
+
+  std::vector<std::filesystem::path> to_discard_, to_remove_, to_reject_;
+  std::vector<std::variant<RunEvent, Note, Warning>> to_tell_;
+  FileRemoval removal_;
+};
+
+}  // namespace peclet::runner

@@ -1,0 +1,110 @@
+#include "runner/owner/board.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace peclet::runner {
+
+void Board::read_points(Database& database) {
+  points_ = database.points();
+  places_.clear();
+  for (const PointRecord& known : points_) places_[known.hash] = *known.place;
+}
+
+void Board::read_seeds(Database& database, const Campaign& campaign) {
+  std::vector<std::vector<std::optional<Outcome>>> outcomes;
+  costs_.assign(points_.size(), {});
+  running_.assign(points_.size(), 0);
+  maximum_ = campaign.maximum_realisations;
+  for (const PointRecord& known : points_) {
+    outcomes.push_back(database.outcomes(known.id));
+    for (const RealisationRecord& record : database.realisations(known.id)) {
+      count_cost(*known.place, record.wall_seconds, record.cpu_seconds);
+    }
+  }
+  scheduler_.emplace(std::move(outcomes), campaign.target, campaign.minimum_realisations, maximum_);
+  for (const PointRecord& known : points_) {
+    scheduler_->set_priority(*known.place, known.priority);
+    scheduler_->set_cancelled(*known.place, known.cancelled);
+  }
+  apply_bounds();
+}
+
+void Board::set_bounds(Bounds bounds) {
+  bounds_ = std::move(bounds);
+  apply_bounds();
+}
+
+void Board::apply_bounds() {
+  scheduler_->set_allocation(bounds_.budget_seconds ? Allocation::steepest_first : Allocation::longest_first);
+  scheduler_->set_ceiling(bounds_.ceiling.value_or(maximum_));
+  // A point whose work is not known is taken for an average one.
+  double all = 0;
+  for (const auto& [hash, work] : bounds_.work) all += work;
+  const double average = bounds_.work.empty() ? 1 : all / static_cast<double>(bounds_.work.size());
+  for (const PointRecord& about : points_) {
+    const auto known = bounds_.work.find(about.hash);
+    scheduler_->set_work(*about.place, known == bounds_.work.end() ? average : known->second);
+    tell_cost(*about.place);
+  }
+}
+
+std::optional<int> Board::place_of(const std::string& hash) const {
+  const auto known = places_.find(hash);
+  return known == places_.end() ? std::nullopt : std::optional(known->second);
+}
+
+std::optional<int> Board::place_of(std::int64_t point_id) const {
+  const auto known = std::find_if(points_.begin(), points_.end(),
+                                  [&](const PointRecord& about) { return about.id == point_id; });
+  return known == points_.end() ? std::nullopt : known->place;
+}
+
+void Board::count_cost(int place, std::optional<double> wall_seconds, std::optional<double> cpu_seconds) {
+  Costs& costs = costs_[static_cast<std::size_t>(place)];
+  if (wall_seconds) costs.wall.add(*wall_seconds);
+  if (cpu_seconds) costs.processor.add(*cpu_seconds);
+}
+
+void Board::add_cost(int place, std::optional<double> wall_seconds, std::optional<double> cpu_seconds) {
+  count_cost(place, wall_seconds, cpu_seconds);
+  tell_cost(place);
+}
+
+// Workers are occupied for the wall time of a seed; a budget is of processor time.
+void Board::tell_cost(int place) {
+  const Costs& costs = costs_[static_cast<std::size_t>(place)];
+  const Cost& cost = bounds_.budget_seconds ? costs.processor : costs.wall;
+  if (cost.count > 0) scheduler_->set_cost(place, cost.sum / cost.count);
+}
+
+std::optional<double> Board::wall_seconds(int place) const {
+  const Cost& cost = costs_.at(static_cast<std::size_t>(place)).wall;
+  return cost.count > 0 ? std::optional(cost.sum / cost.count) : std::nullopt;
+}
+
+std::vector<PointForecast> Board::forecasts() const {
+  std::vector<PointForecast> forecasts;
+  for (int place = 0; place < size(); ++place) {
+    const int ended = scheduler_->all_ended(place);
+    forecasts.push_back({costs_[static_cast<std::size_t>(place)].wall, scheduler_->so_far(place), ended,
+                         scheduler_->begun(place) - ended,
+                         scheduler_->decided(place) || scheduler_->cancelled(place)});
+  }
+  return forecasts;
+}
+
+Board::Standing Board::standing(int place) const {
+  const Costs& costs = costs_[static_cast<std::size_t>(place)];
+  return {place, scheduler_->kept(place), costs.wall, costs.processor,
+          running_[static_cast<std::size_t>(place)]};
+}
+
+void Board::put_back(Standing&& standing) noexcept {
+  const auto place = static_cast<std::size_t>(standing.place);
+  scheduler_->put_back(standing.place, std::move(standing.point));
+  costs_[place] = {standing.wall, standing.processor};
+  running_[place] = standing.running;
+}
+
+}  // namespace peclet::runner

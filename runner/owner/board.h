@@ -1,0 +1,84 @@
+// Where every point of a running campaign stands: its record, the scheduler's picture, what its seeds cost
+// and how many of them workers have. In memory only; the ledger keeps it in step with the database.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/campaign/campaign.h"
+#include "runner/database/database.h"
+#include "runner/owner/bounds.h"
+#include "runner/statistics/forecast.h"
+#include "runner/statistics/scheduler.h"
+
+namespace peclet::runner {
+
+constexpr int nowhere = -1;
+
+class Board {
+ public:
+  // Reads the records of the points in the sweep, without what their seeds did.
+  void read_points(Database& database);
+  // Reads what the seeds did, and makes the scheduler's picture from it. Requires read_points(). Nobody has a
+  // seed: those that are out are to be marked with begin() and add_running().
+  void read_seeds(Database& database, const Campaign& campaign);
+  // Whether read_seeds() has been called.
+  bool has_seeds() const { return scheduler_.has_value(); }
+
+  // From now on, also after the next read_seeds().
+  void set_bounds(Bounds bounds);
+  const Bounds& bounds() const { return bounds_; }
+
+  int size() const { return static_cast<int>(points_.size()); }
+  const std::vector<PointRecord>& points() const { return points_; }
+  const PointRecord& point(int place) const { return points_.at(static_cast<std::size_t>(place)); }
+  // Nothing for a point that is not in the sweep.
+  std::optional<int> place_of(const std::string& hash) const;
+  std::optional<int> place_of(std::int64_t point_id) const;
+  bool is_to_be_run(const PointRecord& about) const {
+    return !scheduler_->decided(*about.place) && !about.cancelled;
+  }
+
+  Scheduler& scheduler() { return *scheduler_; }
+  const Scheduler& scheduler() const { return *scheduler_; }
+
+  // A seed of the point has ended that took so long; the scheduler hears of the new mean.
+  void add_cost(int place, std::optional<double> wall_seconds, std::optional<double> cpu_seconds);
+  // Mean wall time of the point's seeds; nothing while there are none.
+  std::optional<double> wall_seconds(int place) const;
+  // Workers have so many more seeds of the point.
+  void add_running(int place, int seeds) { running_[static_cast<std::size_t>(place)] += seeds; }
+  // Processor seconds that the seeds which workers have are expected to cost.
+  double expected_seconds() const { return scheduler_->expected_seconds(running_); }
+  std::vector<PointForecast> forecasts() const;
+
+  // One point's standing, to be put back when what changed it fails.
+  struct Standing {
+    int place;
+    Scheduler::Point point;
+    Cost wall, processor;
+    int running;
+  };
+  Standing standing(int place) const;
+  void put_back(Standing&& standing) noexcept;
+
+ private:
+  struct Costs {
+    Cost wall, processor;
+  };
+  void count_cost(int place, std::optional<double> wall_seconds, std::optional<double> cpu_seconds);
+  void tell_cost(int place);
+  void apply_bounds();
+
+  std::vector<PointRecord> points_;
+  std::map<std::string, int> places_;  // by hash
+  std::optional<Scheduler> scheduler_;
+  std::vector<Costs> costs_;
+  std::vector<int> running_;
+  Bounds bounds_;
+  int maximum_ = 0;  // realisations of a point
+};
+
+}  // namespace peclet::runner
