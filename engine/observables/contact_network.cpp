@@ -22,8 +22,8 @@ Json shares(const std::array<std::uint64_t, size>& counts, std::uint64_t all) {
 
 }  // namespace
 
-ContactNetwork::ContactNetwork(const Scene& scene, const System& system, std::uint64_t interval)
-    : Observable(interval),
+ContactNetwork::ContactNetwork(const Scene& scene, const System& system, const Window& window)
+    : Observable(interval_of(scene, contact_network(), window)),
       contact_(*scene.physics.contact),
       kinds_(make_pair_kinds(scene.physics, distinct_radii(system.particles.radius))) {}
 
@@ -59,6 +59,18 @@ void ContactNetwork::add_to(Json& mean) const {
   mean["contact_network"]["mobilisation"] = shares(sums_.by_mobilisation, sums_.contacts);
   mean["mobilised_friction"] = any ? Json(sums_.mobilised / contacts) : Json();
   mean["sliding_contacts"] = any ? Json(static_cast<double>(sums_.sliding) / contacts) : Json();
+}
+
+ObservableKind contact_network() {
+  return {"contact_network", seldom, [](const Scene&, const Window&, const std::string&) {},
+          [](const Scene& scene) {
+            return scene.physics.contact->friction > 0
+                       ? std::vector<std::string>{"mobilised_friction", "sliding_contacts"}
+                       : std::vector<std::string>{};
+          },
+          [](const Scene& scene, const System& system, const Window& window) -> std::unique_ptr<Observable> {
+            return std::make_unique<ContactNetwork>(scene, system, window);
+          }};
 }
 
 }  // namespace peclet::engine

@@ -10,8 +10,7 @@
 #include <vector>
 
 #include "engine/kernels/pairs/pair_kinds.h"
-#include "engine/observables/observable.h"
-#include "engine/scene/scene.h"
+#include "engine/observables/kinds.h"
 #include "engine/terms/interactions.h"
 
 namespace peclet::engine {
@@ -19,7 +18,7 @@ namespace peclet::engine {
 class ContactNetwork : public Observable {
  public:
   // Requires contacts in the scene.
-  ContactNetwork(const Scene& scene, const System& system, std::uint64_t interval);
+  ContactNetwork(const Scene& scene, const System& system, const Window& window);
 
   void sample(const System& system) override;
   void add_to(Json& mean) const override;

@@ -19,10 +19,10 @@ std::vector<Vector3> unwrapped_places(const System& system) {
 
 }  // namespace
 
-MeanSquaredDisplacement::MeanSquaredDisplacement(const Scene& scene, const System& system, double timestep,
-                                                 std::uint64_t interval, std::uint64_t steps)
-    : Observable(interval),
-      time_(timestep * static_cast<double>(interval)),
+MeanSquaredDisplacement::MeanSquaredDisplacement(const Scene& scene, const System& system,
+                                                 const Window& window)
+    : Observable(interval_of(scene, mean_squared_displacement(), window)),
+      time_(window.timestep * static_cast<double>(interval())),
       sheared_(scene.physics.shear_rate > 0),
       free_slope_(scene.physics.thermal_energy /
                   (std::numbers::pi * scene.physics.viscosity * scene.particles.reference_radius)),
@@ -34,7 +34,7 @@ MeanSquaredDisplacement::MeanSquaredDisplacement(const Scene& scene, const Syste
     count_of_class_[system.particles.size_class[i]] += 1;
   }
   // The lags 4 2^l to 7 2^l samples of the last level begin at a quarter of the window or before.
-  const std::uint64_t samples = samples_in(steps, interval);
+  const std::uint64_t samples = samples_in(window.steps, interval());
   for (std::uint64_t reach = 1; levels_.empty() || 16 * reach <= samples; reach *= 2) {
     Level level;
     level.squares.resize(kept * classes());
@@ -163,6 +163,20 @@ void MeanSquaredDisplacement::load(ArchiveReader& archive) {
     level.sums = archive.get<std::array<Sum, kept>>();
     level.squares = archive.get_vector<Vector3>(kept * classes());
   }
+}
+
+ObservableKind mean_squared_displacement() {
+  return {"mean_squared_displacement", every_step,
+          [](const Scene& scene, const Window& window, const std::string& file) {
+            need_samples(scene, mean_squared_displacement(), window, 8, file);
+          },
+          [](const Scene& scene) {
+            return scene.physics.thermal_energy > 0 ? std::vector<std::string>{"self_diffusion"}
+                                                    : std::vector<std::string>{};
+          },
+          [](const Scene& scene, const System& system, const Window& window) -> std::unique_ptr<Observable> {
+            return std::make_unique<MeanSquaredDisplacement>(scene, system, window);
+          }};
 }
 
 }  // namespace peclet::engine

@@ -19,16 +19,14 @@
 #include <array>
 #include <vector>
 
-#include "engine/observables/observable.h"
-#include "engine/scene/scene.h"
+#include "engine/observables/kinds.h"
 
 namespace peclet::engine {
 
 class MeanSquaredDisplacement : public Observable {
  public:
-  // `steps`: of the window. Requires 8 samples in it.
-  MeanSquaredDisplacement(const Scene& scene, const System& system, double timestep, std::uint64_t interval,
-                          std::uint64_t steps);
+  // Requires 8 samples in the window.
+  MeanSquaredDisplacement(const Scene& scene, const System& system, const Window& window);
 
   void sample(const System& system) override;
   void add_to(Json& mean) const override;

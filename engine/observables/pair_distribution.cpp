@@ -11,22 +11,31 @@
 
 namespace peclet::engine {
 
-void check_pair_distribution(const Scene& scene, double edge, const std::string& file) {
-  const double unit = scene.particles.reference_radius;
-  const double reach = scene.physics.shear_rate > 0 ? 0.5 : std::numbers::sqrt2 / 2;
-  if (scene.pair_distribution->range * unit <= reach * edge) return;
-  // The default is no part of a scene without the block.
-  throw InputError(
-      file, "/pair_distribution/range", fmt::format("{}", scene.pair_distribution->range),
-      fmt::format("must be at most {:.4g} in this box of {:.4g} radii", reach * edge / unit, edge / unit));
+namespace {
+
+double setting(const Scene& scene, const char* name) {
+  return scene.observables.at("pair_distribution").at(name).get<double>();
 }
 
-PairDistribution::PairDistribution(const Scene& scene, const System& system, std::uint64_t interval)
-    : Observable(interval),
+// Pairs within the range must not have other images in the box: it would be ambiguous which is meant.
+void check_range(const Scene& scene, const Window& window, const std::string& file) {
+  const double unit = scene.particles.reference_radius, range = setting(scene, "range");
+  const double reach = scene.physics.shear_rate > 0 ? 0.5 : std::numbers::sqrt2 / 2;
+  if (range * unit <= reach * window.edge) return;
+  // The default is no part of a scene without the block.
+  throw InputError(file, "/pair_distribution/range", fmt::format("{}", range),
+                   fmt::format("must be at most {:.4g} in this box of {:.4g} radii",
+                               reach * window.edge / unit, window.edge / unit));
+}
+
+}  // namespace
+
+PairDistribution::PairDistribution(const Scene& scene, const System& system, const Window& window)
+    : Observable(interval_of(scene, pair_distribution(), window)),
       unit_(scene.particles.reference_radius),
-      range_(scene.pair_distribution->range * unit_),
-      bin_(scene.pair_distribution->bin * unit_),
-      slab_(scene.pair_distribution->slab * unit_),
+      range_(setting(scene, "range") * unit_),
+      bin_(setting(scene, "bin") * unit_),
+      slab_(setting(scene, "slab") * unit_),
       edge_(system.box.lengths().x),
       particles_(static_cast<double>(system.particles.count())),
       bins_(static_cast<std::size_t>(std::llround(range_ / bin_))),
@@ -107,6 +116,13 @@ void PairDistribution::load(ArchiveReader& archive) {
   samples_ = archive.get<std::uint64_t>();
   radial_ = archive.get_vector<std::uint64_t>(radial_.size());
   slice_ = archive.get_vector<std::uint64_t>(slice_.size());
+}
+
+ObservableKind pair_distribution() {
+  return {"pair_distribution", seldom, check_range, [](const Scene&) { return std::vector<std::string>{}; },
+          [](const Scene& scene, const System& system, const Window& window) -> std::unique_ptr<Observable> {
+            return std::make_unique<PairDistribution>(scene, system, window);
+          }};
 }
 
 }  // namespace peclet::engine

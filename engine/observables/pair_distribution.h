@@ -16,18 +16,14 @@
 
 #include <vector>
 
-#include "engine/observables/observable.h"
-#include "engine/scene/scene.h"
+#include "engine/observables/kinds.h"
 
 namespace peclet::engine {
 
-// Throws InputError where pairs within the range have images in the cubic box, so that it is ambiguous.
-void check_pair_distribution(const Scene& scene, double edge, const std::string& file);
-
 class PairDistribution : public Observable {
  public:
-  // Throws InputError where the box is too small for the range.
-  PairDistribution(const Scene& scene, const System& system, std::uint64_t interval);
+  // Requires a box in which every pair within the range has one image.
+  PairDistribution(const Scene& scene, const System& system, const Window& window);
 
   void sample(const System& system) override;
   void add_to(Json& mean) const override;

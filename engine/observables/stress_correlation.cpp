@@ -16,15 +16,14 @@ std::size_t levels_of(std::uint64_t samples) {
 
 }  // namespace
 
-StressCorrelation::StressCorrelation(const Scene& scene, const System& system, double timestep,
-                                     std::uint64_t interval, std::uint64_t steps)
-    : Observable(interval),
-      time_(timestep * static_cast<double>(interval)),
+StressCorrelation::StressCorrelation(const Scene& scene, const System& system, const Window& window)
+    : Observable(interval_of(scene, stress_correlation(), window)),
+      time_(window.timestep * static_cast<double>(interval())),
       thermal_energy_(scene.physics.thermal_energy),
       viscosity_(scene.physics.viscosity),
       volume_(system.box.volume()),
       kinds_(make_pair_kinds(scene.physics, distinct_radii(system.particles.radius))),
-      correlators_(weights.size(), MultipleTau(levels_of(samples_in(steps, interval)))) {}
+      correlators_(weights.size(), MultipleTau(levels_of(samples_in(window.steps, interval())))) {}
 
 void StressCorrelation::sample(const System& system) {
   const SymmetricTensor s = structural_brownian_stress(system, kinds_, thermal_energy_);
@@ -61,6 +60,17 @@ void StressCorrelation::save(ArchiveWriter& archive) const {
 
 void StressCorrelation::load(ArchiveReader& archive) {
   for (MultipleTau& correlator : correlators_) correlator.load(archive);
+}
+
+ObservableKind stress_correlation() {
+  return {"stress_correlation", every_step,
+          [](const Scene& scene, const Window& window, const std::string& file) {
+            need_samples(scene, stress_correlation(), window, 16, file);
+          },
+          [](const Scene&) { return std::vector<std::string>{"green_kubo_viscosity"}; },
+          [](const Scene& scene, const System& system, const Window& window) -> std::unique_ptr<Observable> {
+            return std::make_unique<StressCorrelation>(scene, system, window);
+          }};
 }
 
 }  // namespace peclet::engine

@@ -139,7 +139,7 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
         ForceField(physics, system_.particles, schedule.timestep, seed, threads), system_.particles,
         schedule.timestep);
   }
-  observables_ = make_observables(scene, system_, schedule.timestep, schedule.production);
+  observables_ = make_observables(scene, system_, {schedule.timestep, schedule.production, edge});
 }
 
 void Simulation::start() {

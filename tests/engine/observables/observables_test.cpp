@@ -38,7 +38,7 @@ Scene scene_with(const char* observable, const Json& settings = Json::object(), 
 }
 
 std::unique_ptr<Observable> observable_of(const Scene& scene, const System& system, std::uint64_t steps) {
-  auto made = make_observables(scene, system, timestep, steps);
+  auto made = make_observables(scene, system, {timestep, steps, edge});
   EXPECT_EQ(made.size(), 1u);
   return std::move(made.front());
 }
@@ -237,7 +237,7 @@ TEST(PairDistribution, RefusesARangeWhoseImagesAreNotUnique) {
   const System system = loose_spheres(2);
   for (const auto& [shear_rate, range] : {std::pair{0.3, 6}, std::pair{0.0, 8}}) {
     const Scene scene = scene_with("pair_distribution", {{"range", range}}, shear_rate);
-    EXPECT_THROW(check_observables(scene, system.box.lengths().x, timestep, 256, "scene.json"), InputError);
+    EXPECT_THROW(check_observables(scene, {timestep, 256, edge}, "scene.json"), InputError);
   }
 }
 
@@ -332,13 +332,14 @@ TEST(StressCorrelation, IsIntegratedByTrapezia) {
 
 TEST(Observables, AreAbsentUnlessAskedFor) {
   const System system = loose_spheres(2);
-  EXPECT_TRUE(make_observables(read_scene(small_scene(), "scene.json"), system, timestep, 256).empty());
+  EXPECT_TRUE(
+      make_observables(read_scene(small_scene(), "scene.json"), system, {timestep, 256, edge}).empty());
 }
 
 TEST(Observables, NeedAWindowWithSamples) {
   const Scene scene = scene_with("mean_squared_displacement", {{"interval", 20}});
-  EXPECT_THROW(check_observables(scene, edge, timestep, 256, "scene.json"), InputError);  // 7 samples
-  EXPECT_NO_THROW(check_observables(scene, edge, timestep, 281, "scene.json"));           // 8
+  EXPECT_THROW(check_observables(scene, {timestep, 256, edge}, "scene.json"), InputError);  // 7 samples
+  EXPECT_NO_THROW(check_observables(scene, {timestep, 281, edge}, "scene.json"));           // 8
 }
 
 }  // namespace
