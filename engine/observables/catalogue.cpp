@@ -48,12 +48,12 @@ void check_observables(const Scene& scene, const Window& window, const std::stri
   for_each_kind(scene, [&](const ObservableKind& kind) { kind.check(scene, window, file); });
 }
 
-std::vector<std::string> names_of_numbers(const Scene& scene) {
-  std::vector<std::string> names;
+std::vector<Quantity> observed_quantities(const Scene& scene, const Window& window) {
+  std::vector<Quantity> quantities;
   for_each_kind(scene, [&](const ObservableKind& kind) {
-    for (std::string& name : kind.numbers(scene)) names.push_back(std::move(name));
+    for (Quantity& quantity : kind.quantities(scene, window)) quantities.push_back(std::move(quantity));
   });
-  return names;
+  return quantities;
 }
 
 std::vector<std::unique_ptr<Observable>> make_observables(const Scene& scene, const System& system,

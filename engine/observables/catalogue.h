@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "engine/observables/kinds.h"
@@ -12,8 +11,8 @@ namespace peclet::engine {
 // Throws InputError where box or window are too small for an observable that the scene asks for.
 void check_observables(const Scene& scene, const Window& window, const std::string& file);
 
-// Names of the numbers that they add to a result's mean, at which a campaign may aim.
-std::vector<std::string> names_of_numbers(const Scene& scene);
+// What they measure in a window that is completed.
+std::vector<Quantity> observed_quantities(const Scene& scene, const Window& window);
 
 // Those that the scene asks for, once it has been checked.
 std::vector<std::unique_ptr<Observable>> make_observables(const Scene& scene, const System& system,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/observables/observable.h"
+#include "engine/observables/quantity.h"
 #include "engine/scene/scene.h"
 
 namespace peclet::engine {
@@ -26,8 +27,8 @@ struct ObservableKind {
   std::uint64_t (*usual_interval)(const Window& window);
   // Throws InputError where box or window are too small for what the scene asks for.
   void (*check)(const Scene& scene, const Window& window, const std::string& file);
-  // Names of the numbers that it adds to a result's mean, at which a campaign may aim.
-  std::vector<std::string> (*numbers)(const Scene& scene);
+  // What a completed window has measured, with all values of the axes.
+  std::vector<Quantity> (*quantities)(const Scene& scene, const Window& window);
   // Requires a scene that has been checked.
   std::unique_ptr<Observable> (*make)(const Scene& scene, const System& system, const Window& window);
 };

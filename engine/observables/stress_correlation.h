@@ -25,8 +25,9 @@ class StressCorrelation : public Observable {
   // Requires a thermal energy > 0 and a fluid at rest.
   StressCorrelation(const Scene& scene, const System& system, const Window& window);
 
-  void sample(const System& system) override;
+  void sample(const System& system, std::size_t block) override;
   void add_to(Json& mean) const override;
+  void add_blocks_to(Json&) const override {}
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
 

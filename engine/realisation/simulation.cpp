@@ -257,7 +257,7 @@ void Simulation::observe(const StepReport& report) {
   for (const std::unique_ptr<Observable>& observable : observables_) {
     if (index % observable->interval() != 0) continue;
     integrator_->complete(system_);
-    observable->sample(system_);
+    observable->sample(system_, production_.block_at(index));
   }
 }
 
