@@ -4,6 +4,7 @@
 #include "contract/input_error.h"
 #include "runner/database/queue.h"
 #include "runner/database/result_text.h"
+#include "runner/statistics/quantities.h"
 
 namespace peclet::runner {
 namespace {
@@ -98,7 +99,7 @@ void Queue::observe_again(const Campaign& campaign) {
     const Observed observed = observe(document, campaign.target.observable);
     if (!done.is_null(4) && !has_observable(document.at("mean"), campaign.target.observable)) {
       throw InputError(campaign.name, "/target/observable", campaign.target.observable,
-                       "must be a number that the results have: " + names_of_numbers(document.at("mean")));
+                       "must be a number that the results have: " + names_of_targets(document));
     }
     change.bind(to_string(observed.value ? SeedState::done : SeedState::failed))
         .bind(observed.value ? "completed" : no_value)

@@ -13,6 +13,7 @@
 
 #include "runner/folder/spool.h"
 #include "runner/owner/ledger.h"
+#include "runner/statistics/quantities.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {
@@ -130,7 +131,7 @@ Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
   const Observed observed = observe(result.document, campaign_.target.observable);
   const std::string cause = cause_of(result, observed);
   if (result.completed() && !has_observable(result.document["mean"], campaign_.target.observable)) {
-    lacking_ = names_of_numbers(result.document["mean"]);
+    lacking_ = names_of_targets(result.document);
     if (lacking_.empty()) lacking_ = "none";
   }
   const std::optional<double> cpu_seconds = cost_of(result, "cpu_seconds");

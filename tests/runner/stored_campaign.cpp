@@ -35,8 +35,13 @@ void StoredCampaign::set_tolerance(double tolerance) {
 }
 
 void StoredCampaign::complete(int point, int seed, double viscosity, const Json& warnings) {
+  complete_with(point, seed, viscosity, [&](Json& result) { result["warnings"] = warnings; });
+}
+
+void StoredCampaign::complete_with(int point, int seed, double viscosity,
+                                   const std::function<void(Json&)>& change) {
   Json result = plain_result(campaign_.points.at(static_cast<std::size_t>(point)).hash, seed, viscosity);
-  result["warnings"] = warnings;
+  change(result);
   store(point, result);
 }
 

@@ -144,7 +144,8 @@ TEST_F(CarryingOut, AnObservableThatResultsLackIsRefusedAndNothingIsHalfDone) {
   document_["sweep"][0]["values"] = {1};
   write();
   const std::string said = ask(file_as_it_is());
-  EXPECT_NE(said.find("/target/observable: colour: must be a number that the results have: pressure"),
+  EXPECT_NE(said.find("/target/observable: colour: must be a number that the results have: "
+                      "control_variates/brownian_pairwise, pressure, "),
             std::string::npos)
       << said;
   EXPECT_EQ(database_.points().size(), 2U);
