@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "runner/database/database.h"
-#include "runner/database/queue.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {
@@ -40,7 +39,6 @@ class StoredCampaign {
   TemporaryFolder folder_;
   Campaign campaign_;
   Database database_;
-  Queue queue_;
 };
 
 }  // namespace peclet::runner
