@@ -2,21 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <span>
 #include <string>
 
 namespace peclet::engine {
-namespace {
-
-Json ratio(std::span<const double> sums, double weight) {
-  if (!(weight > 0)) return nullptr;
-  if (sums.size() == 1) return sums.front() / weight;
-  Json list = Json::array();
-  for (const double sum : sums) list.push_back(sum / weight);
-  return list;
-}
-
-}  // namespace
 
 Json rounded(const Json& number) {
   if (number.is_array()) {
@@ -28,8 +16,12 @@ Json rounded(const Json& number) {
   return std::stod(fmt::format("{:.5g}", number.get<double>()));
 }
 
-BlockedMean::BlockedMean(std::size_t elements)
-    : kept_(blocks_kept(elements)), sums_(elements), blocks_(kept_ * elements), block_weights_(kept_) {}
+BlockedMean::BlockedMean(std::size_t elements, bool is_list)
+    : is_list_(is_list),
+      kept_(is_list ? blocks_kept(elements) : count_of_blocks),
+      sums_(elements),
+      blocks_(kept_ * elements),
+      block_weights_(kept_) {}
 
 void BlockedMean::add(std::size_t block, std::size_t element, double value) {
   sums_[element] += value;
@@ -39,6 +31,14 @@ void BlockedMean::add(std::size_t block, std::size_t element, double value) {
 void BlockedMean::weigh(std::size_t block, double weight) {
   weight_ += weight;
   if (kept_ > 0) block_weights_[block * kept_ / count_of_blocks] += weight;
+}
+
+Json BlockedMean::ratio(std::span<const double> sums, double weight) const {
+  if (!(weight > 0)) return nullptr;
+  if (!is_list_) return sums.front() / weight;
+  Json list = Json::array();
+  for (const double sum : sums) list.push_back(sum / weight);
+  return list;
 }
 
 Json BlockedMean::value() const { return ratio(sums_, weight_); }

@@ -37,9 +37,11 @@ ObservableKind mean_squared_displacement();
 ObservableKind stress_correlation();
 ObservableKind pair_distribution();
 ObservableKind contact_network();
+ObservableKind profiles();
 
-inline std::array<ObservableKind, 4> observable_kinds() {
-  return {mean_squared_displacement(), stress_correlation(), pair_distribution(), contact_network()};
+inline std::array<ObservableKind, 5> observable_kinds() {
+  return {mean_squared_displacement(), stress_correlation(), pair_distribution(), contact_network(),
+          profiles()};
 }
 
 // Of an observable that is sampled at every step, or that costs a walk over all pairs and changes slowly.

@@ -61,6 +61,16 @@ std::vector<ObservableEntry> entries() {
        "a 256th of the production window",
        {},
        must_touch},
+      {"profiles",
+       "volume fraction and velocity by y",
+       "a 256th of the production window",
+       {with_default({.pointer = "/profiles/bins",
+                      .kind = KeyKind::integer,
+                      .meaning = "Equal bins of the box along y.",
+                      .minimum = 1,
+                      .maximum = most_bins},
+                     20)},
+       none},
   };
 }
 

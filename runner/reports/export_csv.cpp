@@ -6,9 +6,9 @@
 
 #include "runner/database/checked_look.h"
 #include "runner/database/database_summary.h"
-#include "runner/reports/csv_line.h"
 #include "runner/reports/export.h"
 #include "runner/reports/point_estimates.h"
+#include "runner/text/csv_line.h"
 
 namespace peclet::runner {
 namespace {

@@ -1,6 +1,6 @@
 #include "runner/reports/point_estimates.h"
 
-#include "runner/reports/csv_line.h"
+#include "runner/text/csv_line.h"
 
 namespace peclet::runner {
 

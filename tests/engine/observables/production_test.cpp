@@ -62,7 +62,7 @@ TEST(StatisticalInefficiency, OfAnAutoregressiveSeriesIsItsFormula) {
 }
 
 TEST(BlockedMean, OfOneNumberHas32BlocksOfAListFourAndOfALongOneNone) {
-  BlockedMean scalar, list(64), large(65);
+  BlockedMean scalar, list(64), large(65), single(1);
   for (std::size_t block = 0; block < 32; ++block) {
     const auto value = static_cast<double>(block);
     scalar.add(block, 0, 2 * value);
@@ -71,6 +71,8 @@ TEST(BlockedMean, OfOneNumberHas32BlocksOfAListFourAndOfALongOneNone) {
     list.weigh(block, 1);
     large.add(block, 64, value);
     large.weigh(block, 1);
+    single.add(block, 0, value);
+    single.weigh(block, 1);
   }
   EXPECT_EQ(scalar.value(), 15.5);
   EXPECT_EQ(list.value()[63], 15.5);
@@ -81,6 +83,8 @@ TEST(BlockedMean, OfOneNumberHas32BlocksOfAListFourAndOfALongOneNone) {
   EXPECT_EQ(list.blocks()[1][63], (8 + 15) / 2.0);
   EXPECT_EQ(list.blocks()[1][0], 0);
   EXPECT_TRUE(large.blocks().is_null());
+  EXPECT_EQ(single.value(), Json::array({15.5}));
+  EXPECT_EQ(single.blocks().size(), 4u);
 }
 
 TEST(BlockedMean, OfNothingIsNull) {

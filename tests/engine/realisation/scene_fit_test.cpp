@@ -106,8 +106,9 @@ void add_numbers(const Json& value, const std::string& path, std::set<std::strin
 // Values of axes, and the parts of ratios.
 bool is_no_target(const std::string& name) {
   const std::string last = name.substr(name.rfind('/') + 1);
-  return name.starts_with("pair_distribution/") || name == "mean_squared_displacement/time/*" ||
-         name == "stress_correlation/time/*" || last == "radius";
+  return name.starts_with("pair_distribution/") || name.starts_with("profiles/velocity/") ||
+         name == "mean_squared_displacement/time/*" || name == "stress_correlation/time/*" ||
+         last == "radius";
 }
 
 TEST(NamesOfTargets, AreThoseOfTheNumbersThatTheResultHas) {
@@ -116,7 +117,7 @@ TEST(NamesOfTargets, AreThoseOfTheNumbersThatTheResultHas) {
       Json::object(),
       {{"fluid", {{"thermal_energy", nullptr}}},
        {"observables", {"mean_squared_displacement", "contact_network"}}},
-      {{"observables", {"mean_squared_displacement", "pair_distribution", "contact_network"}},
+      {{"observables", {"mean_squared_displacement", "pair_distribution", "contact_network", "profiles"}},
        {"pair_distribution", {{"range", 3}}}},
       {{"contact", {{"friction", nullptr}, {"rolling_stiffness", nullptr}, {"rolling_friction", nullptr}}},
        {"observables", {"contact_network"}}},
