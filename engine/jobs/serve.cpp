@@ -102,7 +102,7 @@ class Worker {
       answer["steps"] = schedule.total();
       answer["particles"] = scene.particles.count;
       answer["derived"] = to_json(derived_groups(scene));
-      answer["observables"] = names_of_means(scene);
+      answer["observables"] = names_of_targets(scene, schedule);
       answer["warnings"] = Json::array();
       for (const Warning& warning : scene_warnings(scene)) {
         answer["warnings"].push_back({{"code", warning.code}, {"message", warning.message}});

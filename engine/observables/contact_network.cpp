@@ -10,24 +10,37 @@ namespace {
 // A spring that is cut at each step is as long as it may be but for what the step itself changes.
 constexpr double sliding_from = 0.99;
 
-template <std::size_t size>
-Json shares(const std::array<std::uint64_t, size>& counts, std::uint64_t all) {
-  if (all == 0) return nullptr;
-  Json list = Json::array();
-  for (const std::uint64_t count : counts) {
-    list.push_back(static_cast<double>(count) / static_cast<double>(all));
+// Particles by their contacts, the last with as many or more; contacts by equal parts of their mobilisation.
+constexpr std::size_t counts_of_contacts = 13, parts_of_mobilisation = 20;
+
+std::vector<Quantity> quantities(const Scene& scene, const Window&) {
+  Axis contacts{"contacts", "1", Json::array()}, mobilisation{"mobilisation", "1", Json::array()};
+  for (std::size_t k = 0; k < counts_of_contacts; ++k) contacts.values.push_back(k);
+  for (std::size_t k = 0; k < parts_of_mobilisation; ++k) {
+    mobilisation.values.push_back((static_cast<double>(k) + 0.5) / parts_of_mobilisation);
   }
-  return list;
+  std::vector<Quantity> all{
+      {.name = "contact_network/contacts", .symbol = "P(Z)", .unit = "1", .axes = {contacts}}};
+  if (!(scene.physics.contact->friction > 0)) return all;
+  all.push_back({.name = "contact_network/mobilisation",
+                 .symbol = "P(|F_t| / (mu F_n))",
+                 .unit = "1",
+                 .axes = {mobilisation}});
+  all.push_back({.name = "mobilised_friction", .symbol = "<|F_t| / (mu F_n)>", .unit = "1"});
+  all.push_back({.name = "sliding_contacts", .symbol = "P(|F_t| > 0.99 mu F_n)", .unit = "1"});
+  return all;
 }
 
 }  // namespace
 
-ContactNetwork::ContactNetwork(const Scene& scene, const System& system, std::uint64_t interval)
-    : Observable(interval),
+ContactNetwork::ContactNetwork(const Scene& scene, const System& system, const Window& window)
+    : Observable(interval_of(scene, contact_network(), window)),
       contact_(*scene.physics.contact),
-      kinds_(make_pair_kinds(scene.physics, distinct_radii(system.particles.radius))) {}
+      kinds_(make_pair_kinds(scene.physics, distinct_radii(system.particles.radius))),
+      by_contacts_(counts_of_contacts),
+      by_mobilisation_(parts_of_mobilisation) {}
 
-void ContactNetwork::sample(const System& system) {
+void ContactNetwork::sample(const System& system, std::size_t block) {
   const std::vector<ImageFrame> frames = image_frames(system.list, system.box);
   const std::vector<Pair>& pairs = system.list.pairs();
   std::vector<std::size_t> touching(system.particles.count());
@@ -38,27 +51,60 @@ void ContactNetwork::sample(const System& system) {
     if (!(overlap > 0)) continue;
     ++touching[pair.first];
     ++touching[pair.second];
-    ++sums_.contacts;
-    if (!(contact_.friction > 0)) continue;
-    const double mobilised = contact_.tangential_stiffness * norm(system.springs[p].tangential) /
-                             (contact_.friction * contact_.normal_stiffness * overlap);
-    sums_.mobilised += mobilised;
-    sums_.sliding += mobilised > sliding_from ? 1 : 0;
-    const auto twentieth = static_cast<std::size_t>(20 * std::min(mobilised, 1.0));
-    ++sums_.by_mobilisation[std::min<std::size_t>(twentieth, 19)];
+    if (contact_.friction > 0) add_contact(block, norm(system.springs[p].tangential), overlap);
   }
-  for (const std::size_t contacts : touching) ++sums_.by_contacts[std::min<std::size_t>(contacts, 12)];
-  sums_.particles += system.particles.count();
+  for (const std::size_t contacts : touching) {
+    by_contacts_.add(block, std::min<std::size_t>(contacts, counts_of_contacts - 1), 1);
+  }
+  by_contacts_.weigh(block, static_cast<double>(system.particles.count()));
+}
+
+void ContactNetwork::add_contact(std::size_t block, double spring, double overlap) {
+  const double mobilised =
+      contact_.tangential_stiffness * spring / (contact_.friction * contact_.normal_stiffness * overlap);
+  const auto part = static_cast<std::size_t>(parts_of_mobilisation * std::min(mobilised, 1.0));
+  by_mobilisation_.add(block, std::min<std::size_t>(part, parts_of_mobilisation - 1), 1);
+  by_mobilisation_.weigh(block, 1);
+  mobilised_friction_.add(block, 0, mobilised);
+  mobilised_friction_.weigh(block, 1);
+  sliding_contacts_.add(block, 0, mobilised > sliding_from ? 1 : 0);
+  sliding_contacts_.weigh(block, 1);
 }
 
 void ContactNetwork::add_to(Json& mean) const {
-  const auto contacts = static_cast<double>(sums_.contacts);
-  mean["contact_network"]["contacts"] = shares(sums_.by_contacts, sums_.particles);
+  mean["contact_network"]["contacts"] = by_contacts_.value();
   if (!(contact_.friction > 0)) return;
-  const bool any = sums_.contacts > 0;
-  mean["contact_network"]["mobilisation"] = shares(sums_.by_mobilisation, sums_.contacts);
-  mean["mobilised_friction"] = any ? Json(sums_.mobilised / contacts) : Json();
-  mean["sliding_contacts"] = any ? Json(static_cast<double>(sums_.sliding) / contacts) : Json();
+  mean["contact_network"]["mobilisation"] = by_mobilisation_.value();
+  mean["mobilised_friction"] = mobilised_friction_.value();
+  mean["sliding_contacts"] = sliding_contacts_.value();
+}
+
+void ContactNetwork::add_blocks_to(Json& blocks) const {
+  blocks["contact_network"]["contacts"] = by_contacts_.blocks();
+  if (!(contact_.friction > 0)) return;
+  blocks["contact_network"]["mobilisation"] = by_mobilisation_.blocks();
+  blocks["mobilised_friction"] = mobilised_friction_.blocks();
+  blocks["sliding_contacts"] = sliding_contacts_.blocks();
+}
+
+void ContactNetwork::save(ArchiveWriter& archive) const {
+  for (const BlockedMean* mean :
+       {&by_contacts_, &by_mobilisation_, &mobilised_friction_, &sliding_contacts_}) {
+    mean->save(archive);
+  }
+}
+
+void ContactNetwork::load(ArchiveReader& archive) {
+  for (BlockedMean* mean : {&by_contacts_, &by_mobilisation_, &mobilised_friction_, &sliding_contacts_}) {
+    mean->load(archive);
+  }
+}
+
+ObservableKind contact_network() {
+  return {"contact_network", seldom, [](const Scene&, const Window&, const std::string&) {}, quantities,
+          [](const Scene& scene, const System& system, const Window& window) -> std::unique_ptr<Observable> {
+            return std::make_unique<ContactNetwork>(scene, system, window);
+          }};
 }
 
 }  // namespace peclet::engine

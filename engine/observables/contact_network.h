@@ -6,12 +6,11 @@
 // sliding_contacts is the share of those above 0.99. Null where there was no contact at all.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "engine/kernels/pairs/pair_kinds.h"
-#include "engine/observables/observable.h"
-#include "engine/scene/scene.h"
+#include "engine/observables/blocked_mean.h"
+#include "engine/observables/kinds.h"
 #include "engine/terms/interactions.h"
 
 namespace peclet::engine {
@@ -19,24 +18,22 @@ namespace peclet::engine {
 class ContactNetwork : public Observable {
  public:
   // Requires contacts in the scene.
-  ContactNetwork(const Scene& scene, const System& system, std::uint64_t interval);
+  ContactNetwork(const Scene& scene, const System& system, const Window& window);
 
-  void sample(const System& system) override;
+  void sample(const System& system, std::size_t block) override;
   void add_to(Json& mean) const override;
-  void save(ArchiveWriter& archive) const override { archive.put(sums_); }
-  void load(ArchiveReader& archive) override { sums_ = archive.get<Sums>(); }
+  void add_blocks_to(Json& blocks) const override;
+  void save(ArchiveWriter& archive) const override;
+  void load(ArchiveReader& archive) override;
 
  private:
-  struct Sums {
-    std::uint64_t particles = 0, contacts = 0, sliding = 0;
-    double mobilised = 0;
-    std::array<std::uint64_t, 13> by_contacts{};
-    std::array<std::uint64_t, 20> by_mobilisation{};
-  };
+  // `spring`: length of the tangential one.
+  void add_contact(std::size_t block, double spring, double overlap);
 
   ContactParameters contact_;
   std::vector<PairKind> kinds_;
-  Sums sums_;
+  BlockedMean by_contacts_, by_mobilisation_;
+  BlockedMean mobilised_friction_, sliding_contacts_;
 };
 
 }  // namespace peclet::engine

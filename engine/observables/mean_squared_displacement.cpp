@@ -1,7 +1,11 @@
 #include "engine/observables/mean_squared_displacement.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+
 
 namespace peclet::engine {
 namespace {
@@ -17,12 +21,62 @@ std::vector<Vector3> unwrapped_places(const System& system) {
   return places;
 }
 
+// Levels of a window of so many samples. The lags 4 2^l to 7 2^l samples of the last one begin at a quarter
+// of the window or before.
+std::size_t levels_in(std::uint64_t samples) {
+  std::size_t levels = 1;
+  for (std::uint64_t reach = 2; 16 * reach <= samples; reach *= 2) ++levels;
+  return levels;
+}
+
+// Lags that a completed window has met, in samples.
+std::vector<std::uint64_t> lags_in(std::uint64_t samples) {
+  std::vector<std::uint64_t> lags;
+  for (std::size_t l = 0; l < levels_in(samples); ++l) {
+    const std::uint64_t pushed = ((samples - 1) >> l) + 1;
+    for (std::uint64_t k = l == 0 ? 1 : kept_places / 2; k < std::min<std::uint64_t>(kept_places, pushed);
+         ++k) {
+      lags.push_back(k << l);
+    }
+  }
+  return lags;
+}
+
+std::vector<Quantity> quantities(const Scene& scene, const Window& window) {
+  const std::uint64_t interval = interval_of(scene, mean_squared_displacement(), window);
+  const double between = window.timestep * static_cast<double>(interval);
+  Axis time{"time", "time", Json::array()};
+  for (const std::uint64_t lag : lags_in(samples_in(window.steps, interval))) {
+    time.values.push_back(between * static_cast<double>(lag));
+  }
+  std::vector<Quantity> all;
+  const auto squares = [&](const std::string& group, const char* symbol) {
+    for (const char* axis : {"x", "y", "z"}) {
+      if (*axis == 'x' && scene.physics.shear_rate > 0) continue;
+      all.push_back({.name = fmt::format("mean_squared_displacement/{}/{}", group, axis),
+                     .symbol = fmt::format("<{}_{}^2>", symbol, axis),
+                     .unit = "length^2",
+                     .axes = {time}});
+    }
+  };
+  squares("all", "dx");
+  squares("centre", "dX");
+  std::vector<double> radii;  // of every species there is a sphere
+  for (const Species& species : scene.particles.species) radii.push_back(species.radius);
+  const std::size_t species = distinct_radii(radii).size();
+  for (std::size_t s = 0; s < species; ++s) squares(fmt::format("species/{}", s), "dx");
+  if (scene.physics.thermal_energy > 0) {
+    all.push_back({.name = "self_diffusion", .symbol = "D / D_0", .unit = "1"});
+  }
+  return all;
+}
+
 }  // namespace
 
-MeanSquaredDisplacement::MeanSquaredDisplacement(const Scene& scene, const System& system, double timestep,
-                                                 std::uint64_t interval, std::uint64_t steps)
-    : Observable(interval),
-      time_(timestep * static_cast<double>(interval)),
+MeanSquaredDisplacement::MeanSquaredDisplacement(const Scene& scene, const System& system,
+                                                 const Window& window)
+    : Observable(interval_of(scene, mean_squared_displacement(), window)),
+      time_(window.timestep * static_cast<double>(interval())),
       sheared_(scene.physics.shear_rate > 0),
       free_slope_(scene.physics.thermal_energy /
                   (std::numbers::pi * scene.physics.viscosity * scene.particles.reference_radius)),
@@ -33,28 +87,23 @@ MeanSquaredDisplacement::MeanSquaredDisplacement(const Scene& scene, const Syste
     class_of_[system.particles.id[i]] = system.particles.size_class[i];
     count_of_class_[system.particles.size_class[i]] += 1;
   }
-  // The lags 4 2^l to 7 2^l samples of the last level begin at a quarter of the window or before.
-  const std::uint64_t samples = samples_in(steps, interval);
-  for (std::uint64_t reach = 1; levels_.empty() || 16 * reach <= samples; reach *= 2) {
-    Level level;
-    level.squares.resize(kept * classes());
-    levels_.push_back(std::move(level));
-  }
+  levels_.resize(levels_in(samples_in(window.steps, interval())));
+  for (Level& level : levels_) level.squares.resize(kept_places * classes());
 }
 
-void MeanSquaredDisplacement::sample(const System& system) {
+void MeanSquaredDisplacement::sample(const System& system, std::size_t) {
   const std::vector<Vector3> places = unwrapped_places(system);
   for (std::size_t l = 0; l < levels_.size() && samples_ % (std::uint64_t{1} << l) == 0; ++l) {
-    push(levels_[l], l == 0 ? 1 : kept / 2, places);
+    push(levels_[l], l == 0 ? 1 : kept_places / 2, places);
   }
   ++samples_;
 }
 
 void MeanSquaredDisplacement::push(Level& level, std::size_t first_lag, const std::vector<Vector3>& places) {
-  for (std::size_t k = first_lag; k < kept && k <= level.pushed; ++k) {
-    add(level, k, level.places[(level.pushed - k) % kept], places);
+  for (std::size_t k = first_lag; k < kept_places && k <= level.pushed; ++k) {
+    add(level, k, level.places[(level.pushed - k) % kept_places], places);
   }
-  level.places[level.pushed % kept] = places;
+  level.places[level.pushed % kept_places] = places;
   ++level.pushed;
 }
 
@@ -74,7 +123,7 @@ void MeanSquaredDisplacement::add(Level& level, std::size_t k, const std::vector
 std::vector<MeanSquaredDisplacement::Lag> MeanSquaredDisplacement::lags() const {
   std::vector<Lag> lags;
   for (std::size_t l = 0; l < levels_.size(); ++l) {
-    for (std::size_t k = l == 0 ? 1 : kept / 2; k < kept; ++k) {
+    for (std::size_t k = l == 0 ? 1 : kept_places / 2; k < kept_places; ++k) {
       if (levels_[l].sums[k].origins > 0) lags.push_back({k << l, &levels_[l], k});
     }
   }
@@ -147,7 +196,7 @@ void MeanSquaredDisplacement::save(ArchiveWriter& archive) const {
   archive.put(samples_);
   for (const Level& level : levels_) {
     archive.put(level.pushed);
-    for (std::size_t k = 0; k < kept && k < level.pushed; ++k) archive.put(level.places[k]);
+    for (std::size_t k = 0; k < kept_places && k < level.pushed; ++k) archive.put(level.places[k]);
     archive.put(level.sums);
     archive.put(level.squares);
   }
@@ -157,12 +206,23 @@ void MeanSquaredDisplacement::load(ArchiveReader& archive) {
   samples_ = archive.get<std::uint64_t>();
   for (Level& level : levels_) {
     level.pushed = archive.get<std::uint64_t>();
-    for (std::size_t k = 0; k < kept && k < level.pushed; ++k) {
+    for (std::size_t k = 0; k < kept_places && k < level.pushed; ++k) {
       level.places[k] = archive.get_vector<Vector3>(class_of_.size());
     }
-    level.sums = archive.get<std::array<Sum, kept>>();
-    level.squares = archive.get_vector<Vector3>(kept * classes());
+    level.sums = archive.get<std::array<Sum, kept_places>>();
+    level.squares = archive.get_vector<Vector3>(kept_places * classes());
   }
+}
+
+ObservableKind mean_squared_displacement() {
+  return {"mean_squared_displacement", every_step,
+          [](const Scene& scene, const Window& window, const std::string& file) {
+            need_samples(scene, mean_squared_displacement(), window, 8, file);
+          },
+          quantities,
+          [](const Scene& scene, const System& system, const Window& window) -> std::unique_ptr<Observable> {
+            return std::make_unique<MeanSquaredDisplacement>(scene, system, window);
+          }};
 }
 
 }  // namespace peclet::engine

@@ -19,33 +19,33 @@
 #include <array>
 #include <vector>
 
-#include "engine/observables/observable.h"
-#include "engine/scene/scene.h"
+#include "engine/observables/kinds.h"
 
 namespace peclet::engine {
 
+constexpr std::size_t kept_places = 8;  // of each level
+
 class MeanSquaredDisplacement : public Observable {
  public:
-  // `steps`: of the window. Requires 8 samples in it.
-  MeanSquaredDisplacement(const Scene& scene, const System& system, double timestep, std::uint64_t interval,
-                          std::uint64_t steps);
+  // Requires 8 samples in the window.
+  MeanSquaredDisplacement(const Scene& scene, const System& system, const Window& window);
 
-  void sample(const System& system) override;
+  void sample(const System& system, std::size_t block) override;
   void add_to(Json& mean) const override;
+  void add_blocks_to(Json&) const override {}
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
 
  private:
-  static constexpr std::size_t kept = 8;  // places of each level
-  struct Sum {                            // over origins, of one lag
+  struct Sum {  // over origins, of one lag
     std::uint64_t origins = 0;
     Vector3 centre;  // squares of the mean displacement
   };
   struct Level {
     std::uint64_t pushed = 0;
-    std::array<std::vector<Vector3>, kept> places;  // by id; a ring
-    std::array<Sum, kept> sums{};                   // by k
-    std::vector<Vector3> squares;                   // by k and size class: sums over particles and origins
+    std::array<std::vector<Vector3>, kept_places> places;  // by id; a ring
+    std::array<Sum, kept_places> sums{};                   // by k
+    std::vector<Vector3> squares;  // by k and size class: sums over particles and origins
   };
   // One line of the result.
   struct Lag {

@@ -1,5 +1,7 @@
 #include "engine/observables/multiple_tau.h"
 
+#include <algorithm>
+
 namespace peclet::engine {
 
 void MultipleTau::add(double value) {
@@ -28,6 +30,17 @@ std::vector<MultipleTau::Value> MultipleTau::values() const {
     }
   }
   return values;
+}
+
+std::vector<std::uint64_t> MultipleTau::lags(std::size_t levels, std::uint64_t samples) {
+  std::vector<std::uint64_t> lags;
+  for (std::size_t l = 0; l < levels; ++l) {
+    const std::uint64_t pushed = samples >> l;  // block is 2
+    for (std::size_t k = first_lag(l); k < std::min<std::uint64_t>(kept, pushed); ++k) {
+      lags.push_back(std::uint64_t{k} << l);
+    }
+  }
+  return lags;
 }
 
 }  // namespace peclet::engine

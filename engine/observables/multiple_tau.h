@@ -25,6 +25,8 @@ class MultipleTau {
   };
   // In order of the lags; those that were never met are left out.
   std::vector<Value> values() const;
+  // The lags of so many samples in so many levels, in the same order.
+  static std::vector<std::uint64_t> lags(std::size_t levels, std::uint64_t samples);
 
   void save(ArchiveWriter& archive) const { archive.put(levels_); }
   void load(ArchiveReader& archive) { levels_ = archive.get_vector<Level>(levels_.size()); }

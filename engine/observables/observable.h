@@ -15,11 +15,14 @@ class Observable {
   virtual ~Observable() = default;
 
   std::uint64_t interval() const { return interval_; }
-  // Requires a complete step (integrator.h) and the system that every other sample is of.
-  virtual void sample(const System& system) = 0;
-  // Adds an object of its own name to the result's mean, with lists of numbers, and beside it the numbers
-  // that a campaign may aim at. Requires a sample.
+  // Requires a complete step (integrator.h) and the system that every other sample is of. `block` counts the
+  // 32 blocks of the window from 0.
+  virtual void sample(const System& system, std::size_t block) = 0;
+  // Adds the values of its quantities to the result's means, at the paths that their names are. Requires a
+  // sample.
   virtual void add_to(Json& mean) const = 0;
+  // The same of the blocks that it keeps. A function of lags up to the whole window has none.
+  virtual void add_blocks_to(Json& blocks) const = 0;
 
   // Everything that samples have left, bit by bit.
   virtual void save(ArchiveWriter& archive) const = 0;

@@ -14,29 +14,30 @@
 // looked at.
 #pragma once
 
+#include <array>
 #include <vector>
 
-#include "engine/observables/observable.h"
-#include "engine/scene/scene.h"
+#include "engine/observables/blocked_mean.h"
+#include "engine/observables/kinds.h"
 
 namespace peclet::engine {
 
-// Throws InputError where pairs within the range have images in the cubic box, so that it is ambiguous.
-void check_pair_distribution(const Scene& scene, double edge, const std::string& file);
-
 class PairDistribution : public Observable {
  public:
-  // Throws InputError where the box is too small for the range.
-  PairDistribution(const Scene& scene, const System& system, std::uint64_t interval);
+  // Requires a box in which every pair within the range has one image.
+  PairDistribution(const Scene& scene, const System& system, const Window& window);
 
-  void sample(const System& system) override;
+  void sample(const System& system, std::size_t block) override;
   void add_to(Json& mean) const override;
+  void add_blocks_to(Json& blocks) const override;
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
 
  private:
-  void count(const Vector3& separation);
+  void count(const Vector3& separation, std::size_t quarter);
   double ideal_shell(std::size_t bin) const;
+  // Ordered pairs in a unit of volume, of so many samples without a structure.
+  double ideal_pairs(std::uint64_t samples) const;
 
   double unit_;                // the reference radius
   double range_, bin_, slab_;  // lengths
@@ -45,7 +46,10 @@ class PairDistribution : public Observable {
   std::size_t bins_;
   std::uint64_t samples_ = 0;
   std::vector<std::uint64_t> radial_;
-  std::vector<std::uint64_t> slice_;  // rows of 2 bins_
+  // Of the quarters of the window; without rows where there are too many bins.
+  std::array<std::uint64_t, count_of_quarters> quarter_samples_{};
+  std::vector<std::uint64_t> radial_quarters_;  // rows of bins_
+  std::vector<std::uint64_t> slice_;            // rows of 2 bins_
 };
 
 }  // namespace peclet::engine

@@ -23,6 +23,22 @@ void Production::add_sample(std::uint64_t index, const SymmetricTensor& structur
   block.temperature.rotational += temperature.rotational;
 }
 
+BlockSums sum_of(std::span<const BlockSums> blocks) {
+  BlockSums all;
+  for (const BlockSums& block : blocks) {
+    all.steps += block.steps;
+    all.samples += block.samples;
+    all.contacts += block.contacts;
+    for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
+      all.stress[t] += block.stress[t];
+    }
+    all.structural_brownian += block.structural_brownian;
+    all.temperature.translational += block.temperature.translational;
+    all.temperature.rotational += block.temperature.rotational;
+  }
+  return all;
+}
+
 double statistical_inefficiency(const std::vector<double>& series) {
   const auto count = static_cast<double>(series.size());
   const double mean = std::accumulate(series.begin(), series.end(), 0.0) / count;

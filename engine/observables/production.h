@@ -2,14 +2,14 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "engine/kernels/pair_pass.h"
+#include "engine/observables/blocked_mean.h"
 #include "engine/observables/structure.h"
 #include "engine/state/archive.h"
 
 namespace peclet::engine {
-
-constexpr std::size_t count_of_blocks = 32;
 
 struct BlockSums {
   std::uint64_t steps = 0;  // every step adds to the stress: thinning would destroy the Brownian part
@@ -19,6 +19,9 @@ struct BlockSums {
   SymmetricTensor structural_brownian;
   KineticTemperatures temperature{};
 };
+
+// Of several blocks together.
+BlockSums sum_of(std::span<const BlockSums> blocks);
 
 class Production {
  public:
@@ -31,12 +34,16 @@ class Production {
                   const KineticTemperatures& temperature);
 
   const std::array<BlockSums, count_of_blocks>& blocks() const { return blocks_; }
+  // The block that a step of the window belongs to.
+  std::size_t block_at(std::uint64_t index) const {
+    return static_cast<std::size_t>(index * count_of_blocks / steps_);
+  }
 
   void save(ArchiveWriter& archive) const { archive.put(blocks_); }
   void load(ArchiveReader& archive) { blocks_ = archive.get<std::array<BlockSums, count_of_blocks>>(); }
 
  private:
-  BlockSums& block_of(std::uint64_t index) { return blocks_[index * count_of_blocks / steps_]; }
+  BlockSums& block_of(std::uint64_t index) { return blocks_[block_at(index)]; }
 
   std::uint64_t steps_;
   std::array<BlockSums, count_of_blocks> blocks_{};

@@ -14,19 +14,31 @@ std::size_t levels_of(std::uint64_t samples) {
   return levels;
 }
 
+std::vector<Quantity> quantities(const Scene& scene, const Window& window) {
+  const std::uint64_t interval = interval_of(scene, stress_correlation(), window);
+  const std::uint64_t samples = samples_in(window.steps, interval);
+  const double between = window.timestep * static_cast<double>(interval);
+  Axis time{"time", "time", Json::array()};
+  for (const std::uint64_t lag : MultipleTau::lags(levels_of(samples), samples)) {
+    time.values.push_back(between * static_cast<double>(lag));
+  }
+  return {{.name = "stress_correlation/modulus", .symbol = "G(t)", .unit = "stress", .axes = {time}},
+          {.name = "stress_correlation/viscosity", .symbol = "eta_B(t) / eta", .unit = "1", .axes = {time}},
+          {.name = "green_kubo_viscosity", .symbol = "eta_B / eta", .unit = "1"}};
+}
+
 }  // namespace
 
-StressCorrelation::StressCorrelation(const Scene& scene, const System& system, double timestep,
-                                     std::uint64_t interval, std::uint64_t steps)
-    : Observable(interval),
-      time_(timestep * static_cast<double>(interval)),
+StressCorrelation::StressCorrelation(const Scene& scene, const System& system, const Window& window)
+    : Observable(interval_of(scene, stress_correlation(), window)),
+      time_(window.timestep * static_cast<double>(interval())),
       thermal_energy_(scene.physics.thermal_energy),
       viscosity_(scene.physics.viscosity),
       volume_(system.box.volume()),
       kinds_(make_pair_kinds(scene.physics, distinct_radii(system.particles.radius))),
-      correlators_(weights.size(), MultipleTau(levels_of(samples_in(steps, interval)))) {}
+      correlators_(weights.size(), MultipleTau(levels_of(samples_in(window.steps, interval())))) {}
 
-void StressCorrelation::sample(const System& system) {
+void StressCorrelation::sample(const System& system, std::size_t) {
   const SymmetricTensor s = structural_brownian_stress(system, kinds_, thermal_energy_);
   const std::array<double, 6> values = {s.xy, s.xz, s.yz, s.xx - s.yy, s.yy - s.zz, s.zz - s.xx};
   for (std::size_t c = 0; c < values.size(); ++c) correlators_[c].add(values[c]);
@@ -61,6 +73,17 @@ void StressCorrelation::save(ArchiveWriter& archive) const {
 
 void StressCorrelation::load(ArchiveReader& archive) {
   for (MultipleTau& correlator : correlators_) correlator.load(archive);
+}
+
+ObservableKind stress_correlation() {
+  return {"stress_correlation", every_step,
+          [](const Scene& scene, const Window& window, const std::string& file) {
+            need_samples(scene, stress_correlation(), window, 16, file);
+          },
+          quantities,
+          [](const Scene& scene, const System& system, const Window& window) -> std::unique_ptr<Observable> {
+            return std::make_unique<StressCorrelation>(scene, system, window);
+          }};
 }
 
 }  // namespace peclet::engine

@@ -14,21 +14,20 @@
 
 #include <array>
 
+#include "engine/observables/kinds.h"
 #include "engine/observables/multiple_tau.h"
-#include "engine/observables/observable.h"
 #include "engine/observables/structure.h"
-#include "engine/scene/scene.h"
 
 namespace peclet::engine {
 
 class StressCorrelation : public Observable {
  public:
   // Requires a thermal energy > 0 and a fluid at rest.
-  StressCorrelation(const Scene& scene, const System& system, double timestep, std::uint64_t interval,
-                    std::uint64_t steps);
+  StressCorrelation(const Scene& scene, const System& system, const Window& window);
 
-  void sample(const System& system) override;
+  void sample(const System& system, std::size_t block) override;
   void add_to(Json& mean) const override;
+  void add_blocks_to(Json&) const override {}
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
 

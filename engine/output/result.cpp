@@ -1,9 +1,6 @@
 #include "engine/output/result.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -11,151 +8,19 @@
 #include "contract/provenance.h"
 #include "contract/sha256.h"
 #include "engine/kernels/instruction_set.h"
-#include "engine/kernels/pairs/terms.h"
 #include "engine/observables/catalogue.h"
+#include "engine/output/stress_means.h"
 #include "engine/stability/derived_groups.h"
 #include "engine/stability/stability.h"
-#include "engine/terms/drag.h"
+#include "engine/start/packing.h"
 
 namespace peclet::engine {
 namespace {
 
-Json to_json(const SymmetricTensor& t) { return {t.xx, t.yy, t.zz, t.xy, t.xz, t.yz}; }
-
-double first_normal_difference(const SymmetricTensor& t) { return t.xx - t.yy; }
-double second_normal_difference(const SymmetricTensor& t) { return t.yy - t.zz; }
-double pressure(const SymmetricTensor& t) { return -(t.xx + t.yy + t.zz) / 3; }
-
-// Turns sums into means in the units of the result.
-class Reduction {
- public:
-  Reduction(const Scene& scene, const Simulation& simulation)
-      : physics_(scene.physics),
-        terms_(required_terms(scene.physics)),
-        volume_(simulation.system().box.volume()),
-        volume_fraction_(solid_volume(simulation.system().particles) / volume_),
-        particles_(static_cast<double>(simulation.system().particles.count())),
-        unit_(physics_.shear_rate > 0 ? physics_.viscosity * physics_.shear_rate : 1) {}
-
-  Json means(const BlockSums& sums) const {
-    Json stress = Json::object();
-    SymmetricTensor total;
-    const auto part = [&](const char* name, const SymmetricTensor& value) {
-      stress[name] = to_json(value);
-      total += value;
-    };
-    if (physics_.shear_rate > 0) {
-      const SymmetricTensor solvent = solvent_stress(1, 1);  // in units of itself
-      part("solvent", solvent);
-      part("stresslet", stresslet(volume_fraction_, solvent));
-    }
-    const double per_step = 1 / (static_cast<double>(sums.steps) * volume_ * unit_);
-    SymmetricTensor pairs, brownian;
-    for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
-      const auto term = static_cast<StressTerm>(t);
-      const SymmetricTensor mean = per_step * sums.stress[t];
-      if (term == StressTerm::brownian_lubrication) {
-        brownian = mean;  // of mean zero: never part of the total
-      } else if (has_stress_term(terms_, term)) {
-        part(name_of(term), mean);
-        pairs += mean;
-      }
-    }
-    stress["total"] = to_json(total);
-    const bool sheared = physics_.shear_rate > 0;
-    const double per_sample = 1 / static_cast<double>(sums.samples);
-    return {{"stress", stress},
-            {"brownian_pairwise", to_json(brownian)},
-            {"brownian_structural", to_json((per_sample / unit_) * sums.structural_brownian)},
-            {"relative_viscosity", sheared ? Json(total.xy) : Json()},
-            {"relative_viscosity_pair", sheared ? Json(pairs.xy) : Json()},
-            {"first_normal_difference", first_normal_difference(total)},
-            {"second_normal_difference", second_normal_difference(total)},
-            {"pressure", pressure(total)},
-            {"control_variates", control_variates(brownian)},
-            {"contacts_per_particle", 2 * sums.contacts / (static_cast<double>(sums.steps) * particles_)},
-            {"kinetic_temperature", per_sample * sums.temperature.translational},
-            {"rotational_temperature", per_sample * sums.temperature.rotational}};
-  }
-
- private:
-  // Of mean zero: the part that the stress of the pairwise noise would have in each observable. That of the
-  // relative viscosities is named after the stress.
-  Json control_variates(const SymmetricTensor& brownian) const {
-    const auto value = [&](double number) { return terms_.noise ? Json(number) : Json(); };
-    return {{"brownian_pairwise", value(brownian.xy)},
-            {"first_normal_difference", value(first_normal_difference(brownian))},
-            {"second_normal_difference", value(second_normal_difference(brownian))},
-            {"pressure", value(pressure(brownian))}};
-  }
-
-  const Physics& physics_;
-  Terms terms_;
-  double volume_, volume_fraction_, particles_, unit_;
-};
-
-BlockSums whole_window(const Production& production) {
-  BlockSums all;
-  for (const BlockSums& block : production.blocks()) {
-    all.steps += block.steps;
-    all.samples += block.samples;
-    all.contacts += block.contacts;
-    for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
-      all.stress[t] += block.stress[t];
-    }
-    all.structural_brownian += block.structural_brownian;
-    all.temperature.translational += block.temperature.translational;
-    all.temperature.rotational += block.temperature.rotational;
-  }
-  return all;
-}
-
-// Five significant digits: far below the scatter of a block, and less than half the room of all seventeen.
-Json rounded(const Json& number) {
-  if (!number.is_number()) return number;
-  return std::stod(fmt::format("{:.5g}", number.get<double>()));
-}
-
-// What is kept of each block's means: all that is one number, and xy of every stress that fluctuates. The
-// total is the relative viscosity.
-Json of_block(const Json& means) {
-  Json kept;
-  for (const auto& [name, value] : means.items()) {
-    if (!value.is_structured()) kept[name] = rounded(value);
-  }
-  for (const auto& [name, value] : means.at("control_variates").items()) {
-    kept["control_variates"][name] = rounded(value);
-  }
-  for (const auto& [term, stress] : means.at("stress").items()) {
-    if (term != "solvent" && term != "stresslet" && term != "total") {
-      kept["shear_stress"][term] = rounded(stress.at(3));
-    }
-  }
-  kept["shear_stress"]["brownian_structural"] = rounded(means.at("brownian_structural").at(3));
-  return kept;
-}
-
-// Turns a list of equal objects into one object of lists.
-Json transposed(const std::vector<Json>& rows) {
-  if (!rows.front().is_object()) {
-    return rows;
-  }
-  Json columns = Json::object();
-  for (const auto& [name, value] : rows.front().items()) {
-    std::vector<Json> column;
-    column.reserve(rows.size());
-    for (const Json& row : rows) {
-      column.push_back(row.at(name));
-    }
-    columns[name] = transposed(column);
-  }
-  return columns;
-}
-
 // Energy made by the step over the work of the flow on pairs, in the production window. Without flow there is
 // no work; noise does work by itself, so that the balance says nothing about the step.
 std::optional<double> energy_imbalance(const Scene& scene, const Simulation& simulation) {
-  const BlockSums window = whole_window(simulation.production());
+  const BlockSums window = sum_of(simulation.production().blocks());
   const StepErrors& errors = simulation.step_errors();
   double work_per_step = 0;
   for (const SymmetricTensor& stress : window.stress) {
@@ -186,7 +51,7 @@ constexpr double largest_mean_residual = 0.015;
 // How well implicit steps have solved their equations, in the production window.
 Json solver_json(const Scene& scene, const Simulation& simulation) {
   const StepErrors& errors = simulation.step_errors();
-  const auto steps = static_cast<double>(whole_window(simulation.production()).steps);
+  const auto steps = static_cast<double>(sum_of(simulation.production().blocks()).steps);
   if (scene.method != Method::implicit_steps || steps == 0) {
     return nullptr;
   }
@@ -230,9 +95,45 @@ Json common_part(const ResultHeader& header, const Scene& scene, const Schedule&
           {"units", rate > 0 ? "viscosity * shear_rate" : "scene"},
           {"mean", nullptr},
           {"blocks", nullptr},
+          {"quantities", nullptr},
+          {"inefficiencies", nullptr},
           {"statistical_inefficiency", nullptr},
           {"cost", {{"cpu_seconds", spent.processor_seconds}, {"wall_seconds", spent.wall_seconds}}},
           {"engine", engine_identity()}};
+}
+
+// 1 + 2 sum of the autocorrelation: statistical_inefficiency() of the block means of every scalar.
+Json inefficiencies(const Json& blocks, const std::vector<Quantity>& quantities) {
+  Json all = Json::object();
+  for (const Quantity& quantity : quantities) {
+    const Json::json_pointer place('/' + quantity.name);
+    if (!quantity.axes.empty() || !blocks.contains(place)) continue;
+    const Json& series = blocks.at(place);
+    const auto is_number = [](const Json& block) { return block.is_number(); };
+    if (!std::all_of(series.begin(), series.end(), is_number)) continue;
+    all[quantity.name] = statistical_inefficiency(series.get<std::vector<double>>());
+  }
+  return all;
+}
+
+void add_measurements(const Scene& scene, const Simulation& simulation, Json& result) {
+  const StressMeans stress(scene, simulation.system());
+  const std::vector<Quantity> quantities = quantities_of(scene, simulation.schedule());
+  Json &mean = result["mean"], &blocks = result["blocks"];
+  mean = stress.means(sum_of(simulation.production().blocks()));
+  blocks = stress.blocks(simulation.production());
+  const char* const usual = scene.physics.shear_rate > 0 ? "/relative_viscosity" : "/pressure";
+  for (const std::unique_ptr<Observable>& observable : simulation.observables()) {
+    observable->add_to(mean);
+    observable->add_blocks_to(blocks);
+  }
+  result["inefficiencies"] = inefficiencies(blocks, quantities);
+  std::vector<double> series;
+  for (const BlockSums& block : simulation.production().blocks()) {
+    series.push_back(stress.means(block).at(Json::json_pointer(usual)).get<double>());
+  }
+  result["statistical_inefficiency"] = statistical_inefficiency(series);
+  for (const Quantity& quantity : quantities) result["quantities"][quantity.name] = to_json(quantity);
 }
 
 }  // namespace
@@ -276,21 +177,7 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
   save(simulation.system(), state);
   result["final_state_sha256"] = sha256(state.bytes());
   if (ending.cause == Ending::Cause::completed) {
-    const Reduction reduction(scene, simulation);
-    std::vector<Json> blocks;
-    std::vector<double> series;
-    for (const BlockSums& block : simulation.production().blocks()) {
-      const Json means = reduction.means(block);
-      const Json& value = means.at(scene.physics.shear_rate > 0 ? "relative_viscosity" : "pressure");
-      series.push_back(value.get<double>());
-      blocks.push_back(of_block(means));
-    }
-    result["mean"] = reduction.means(whole_window(simulation.production()));
-    for (const std::unique_ptr<Observable>& observable : simulation.observables()) {
-      observable->add_to(result["mean"]);
-    }
-    result["blocks"] = transposed(blocks);
-    result["statistical_inefficiency"] = statistical_inefficiency(series);
+    add_measurements(scene, simulation, result);
   }
   return result;
 }
@@ -306,15 +193,20 @@ Json make_unpacked_result(const ResultHeader& header, const Scene& scene, const 
   return result;
 }
 
-std::vector<std::string> names_of_means(const Scene& scene) {
-  std::vector<std::string> names{"contacts_per_particle",  "first_normal_difference",
-                                 "kinetic_temperature",    "pressure",
-                                 "rotational_temperature", "second_normal_difference"};
-  if (scene.physics.shear_rate > 0) {
-    names.emplace_back("relative_viscosity");
-    names.emplace_back("relative_viscosity_pair");
+std::vector<Quantity> quantities_of(const Scene& scene, const Schedule& schedule) {
+  std::vector<Quantity> all = stress_quantities(scene);
+  const double edge = cube_edge(scene.particles, scene.volume_fraction);
+  for (Quantity& quantity : observed_quantities(scene, {schedule.timestep, schedule.production, edge})) {
+    all.push_back(std::move(quantity));
   }
-  for (const std::string& name : names_of_numbers(scene)) names.push_back(name);
+  return all;
+}
+
+std::vector<std::string> names_of_targets(const Scene& scene, const Schedule& schedule) {
+  std::vector<std::string> names;
+  for (const Quantity& quantity : quantities_of(scene, schedule)) {
+    for (std::string& name : targets_in(quantity)) names.push_back(std::move(name));
+  }
   std::sort(names.begin(), names.end());
   return names;
 }

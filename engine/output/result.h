@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "contract/json.h"
+#include "engine/observables/quantity.h"
 #include "engine/realisation/checkpoint.h"
 #include "engine/realisation/simulation.h"
 #include "engine/scene/scene.h"
@@ -26,9 +27,12 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
 Json make_unpacked_result(const ResultHeader& header, const Scene& scene, const Schedule& schedule,
                           const std::string& message, const Spent& spent);
 
-// Names of the numbers that the mean of a completed realisation of the scene has, sorted: what a campaign may
-// aim at. One that the configuration may leave undefined (friction without a contact) is among them.
-std::vector<std::string> names_of_means(const Scene& scene);
+// What the result of a completed realisation describes under "quantities".
+std::vector<Quantity> quantities_of(const Scene& scene, const Schedule& schedule);
+
+// Names of the numbers in it at which a campaign may aim, sorted (targets_in()). One that the configuration
+// may leave undefined (friction without a contact) is among them.
+std::vector<std::string> names_of_targets(const Scene& scene, const Schedule& schedule);
 
 // Provenance of this engine with the instruction set that its results depend on.
 const Json& engine_identity();

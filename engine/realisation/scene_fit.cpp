@@ -44,7 +44,7 @@ void check_fit(const Scene& scene, const Schedule& schedule, const std::string& 
             "would be {:.4g})",
             range, edge));
   }
-  check_observables(scene, edge, schedule.timestep, schedule.production, file);
+  check_observables(scene, {schedule.timestep, schedule.production, edge}, file);
 }
 
 }  // namespace peclet::engine

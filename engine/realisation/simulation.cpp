@@ -139,7 +139,7 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
         ForceField(physics, system_.particles, schedule.timestep, seed, threads), system_.particles,
         schedule.timestep);
   }
-  observables_ = make_observables(scene, system_, schedule.timestep, schedule.production);
+  observables_ = make_observables(scene, system_, {schedule.timestep, schedule.production, edge});
 }
 
 void Simulation::start() {
@@ -257,7 +257,7 @@ void Simulation::observe(const StepReport& report) {
   for (const std::unique_ptr<Observable>& observable : observables_) {
     if (index % observable->interval() != 0) continue;
     integrator_->complete(system_);
-    observable->sample(system_);
+    observable->sample(system_, production_.block_at(index));
   }
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "contract/input_error.h"
+#include "engine/scene/observable_keys.h"
 
 namespace peclet::engine {
 
@@ -50,9 +51,6 @@ class Reading {
   ContactParameters contact() const;
   LubricationParameters lubrication() const;
   void set_flow_from_peclet(double radius, Physics& physics) const;
-  bool asks_for(const char* observable) const;
-  template <class Settings>
-  void set_observable(const char* name, std::optional<Settings>& settings) const;
 
   const Json& document_;
   std::string file_;
@@ -214,47 +212,22 @@ Duration Reading::duration(const std::string& pointer, const Physics& physics) c
   return duration;
 }
 
-// Whether the scene lists the observable. Its block of settings alone would be measured by nobody.
-bool Reading::asks_for(const char* observable) const {
-  const Json& list = at("/observables");
-  if (std::find(list.begin(), list.end(), observable) != list.end()) return true;
-  const std::string pointer = fmt::format("/{}", observable);
-  if (has(pointer.c_str())) refuse(pointer, "must be left out unless /observables lists it");
-  return false;
-}
-
-template <class Settings>
-void Reading::set_observable(const char* name, std::optional<Settings>& settings) const {
-  if (!asks_for(name)) return;
-  settings.emplace();
-  const std::string interval = fmt::format("/{}/interval", name);
-  if (has(interval.c_str())) settings->interval = number(interval);
-}
-
+// A block of settings alone would be measured by nobody.
 void Reading::set_observables(Scene& scene) const {
-  set_observable("mean_squared_displacement", scene.mean_squared_displacement);
-  set_observable("stress_correlation", scene.stress_correlation);
-  if (scene.stress_correlation && (scene.physics.shear_rate > 0 || scene.physics.thermal_energy <= 0)) {
-    refuse("/observables",
-           "must not list stress_correlation unless the thermal energy is > 0 and the shear rate 0");
-  }
-  set_observable("pair_distribution", scene.pair_distribution);
-  if (scene.pair_distribution && has("/pair_distribution")) {
-    PairDistributionSettings& settings = *scene.pair_distribution;
-    settings.range = number("/pair_distribution/range");
-    settings.bin = number("/pair_distribution/bin");
-    settings.slab = number("/pair_distribution/slab");
-    const double bins = settings.range / settings.bin;
-    constexpr double most_bins = 1000;
-    if (std::abs(bins - std::round(bins)) > 1e-9 * bins || bins < 1 || bins > most_bins) {
-      refuse("/pair_distribution/bin",
-             fmt::format("must divide /pair_distribution/range, which is {}, into 1 to {} equal parts",
-                         shortened(at("/pair_distribution/range")), most_bins));
+  const Json& list = at("/observables");
+  for (const ObservableEntry& entry : observable_entries()) {
+    const std::string pointer = '/' + entry.name;
+    const bool has_settings = has(pointer.c_str());
+    if (std::find(list.begin(), list.end(), entry.name) == list.end()) {
+      if (has_settings) refuse(pointer, "must be left out unless /observables lists it");
+      continue;
     }
-  }
-  set_observable("contact_network", scene.contact_network);
-  if (scene.contact_network && !scene.physics.contact) {
-    refuse("/observables", "must not list contact_network without /contact");
+    // The defaults of a block that is left out are no part of the scene.
+    const Json& settings = scene.observables[entry.name] =
+        has_settings ? at(pointer) : scene_keys().validate(Json::object(), file_, pointer);
+    if (const std::optional<ObservableFault> fault = entry.fault(scene, settings)) {
+      refuse(fault->pointer, fault->allowed);
+    }
   }
 }
 

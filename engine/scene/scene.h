@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,26 +63,6 @@ struct Warning {
   std::string message;
 };
 
-// What is measured besides the stress. An interval is the time between samples; absent: as observables/
-// catalogue.cpp has it.
-struct MeanSquaredDisplacementSettings {
-  std::optional<double> interval;
-};
-
-struct StressCorrelationSettings {
-  std::optional<double> interval;
-};
-
-// Lengths in units of the reference radius.
-struct PairDistributionSettings {
-  std::optional<double> interval;
-  double range = 4, bin = 0.1, slab = 0.1;
-};
-
-struct ContactNetworkSettings {
-  std::optional<double> interval;
-};
-
 // How the equations of motion are solved.
 enum class Method { explicit_steps, implicit_steps };
 
@@ -93,10 +74,7 @@ struct Scene {
   std::optional<double> timestep;  // absent: "auto"
   double solver_tolerance = 1e-3;  // of implicit steps
   Duration equilibration, production;
-  std::optional<MeanSquaredDisplacementSettings> mean_squared_displacement;
-  std::optional<StressCorrelationSettings> stress_correlation;
-  std::optional<PairDistributionSettings> pair_distribution;
-  std::optional<ContactNetworkSettings> contact_network;
+  std::map<std::string, Json> observables;  // asked for besides the stress: name, settings with defaults
   Guard guard;
   Json document;  // as given, defaults filled
 };

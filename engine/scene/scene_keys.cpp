@@ -1,6 +1,8 @@
 // Every key of a scene: the one list behind validation, schema/scene.schema.json and the manual's page.
 #include <utility>
 
+#include "engine/scene/key_makers.h"
+#include "engine/scene/observable_keys.h"
 #include "engine/scene/scene.h"
 
 namespace peclet::engine {
@@ -9,57 +11,6 @@ namespace {
 
 // Each pair of sizes has constants of its own.
 constexpr std::size_t most_species = 256;
-
-constexpr bool required = true;
-
-Key positive(std::string pointer, std::string unit, std::string meaning, bool is_required = false) {
-  return {.pointer = std::move(pointer),
-          .kind = KeyKind::number,
-          .meaning = std::move(meaning),
-          .unit = std::move(unit),
-          .required = is_required,
-          .minimum = 0,
-          .above_minimum = true};
-}
-
-Key not_negative(std::string pointer, std::string unit, std::string meaning, bool is_required = false) {
-  Key key = positive(std::move(pointer), std::move(unit), std::move(meaning), is_required);
-  key.above_minimum = false;
-  return key;
-}
-
-Key block(std::string pointer, std::string meaning, bool is_required = false) {
-  return {.pointer = std::move(pointer),
-          .kind = KeyKind::object,
-          .meaning = std::move(meaning),
-          .required = is_required};
-}
-
-Key choice(std::string pointer, std::string meaning, std::vector<std::string> choices) {
-  return {.pointer = std::move(pointer),
-          .kind = KeyKind::choice,
-          .meaning = std::move(meaning),
-          .choices = std::move(choices)};
-}
-
-// A number strictly between 0 and `below`.
-Key fraction(Key key, double below) {
-  key.maximum = below;
-  key.below_maximum = true;
-  return key;
-}
-
-Key with_default(Key key, Json value) {
-  key.default_value = std::move(value);
-  return key;
-}
-
-Key must_be_given(Key key) {
-  key.required = true;
-  return key;
-}
-
-using Keys = std::vector<Key>;
 
 Keys particle_keys() {
   return {
@@ -200,34 +151,9 @@ Keys run_keys() {
        .meaning = "What is measured.",
        .default_value = Json::array({"stress"}),
        .minimum_items = 1},
-      choice("/observables/*",
-             "stress: the tensor, split by term, which is always there. mean_squared_displacement: of each "
-             "species. stress_correlation: of the structural Brownian stress of a fluid at rest, and the "
-             "viscosity by Green and Kubo. pair_distribution: g(r) and g(x, y). contact_network: contacts of "
-             "a particle, mobilised friction.",
-             {"stress", "mean_squared_displacement", "stress_correlation", "pair_distribution",
-              "contact_network"}),
-      block("/mean_squared_displacement", "How the observable of that name is measured."),
-      positive("/mean_squared_displacement/interval", "time",
-               "Time between samples, in whole steps; one step unless given."),
-      block("/stress_correlation", "How the observable of that name is measured."),
-      positive("/stress_correlation/interval", "time",
-               "Time between samples, in whole steps; one step unless given."),
-      block("/pair_distribution", "How the observable of that name is measured."),
-      positive("/pair_distribution/interval", "time",
-               "Time between samples, in whole steps; a 256th of the production window unless given."),
-      with_default(positive("/pair_distribution/range", "reference radius",
-                            "Largest distance; at most half of the box, at rest 0.707 of it."),
-                   4),
-      with_default(positive("/pair_distribution/bin", "reference radius",
-                            "Width of a bin; a whole number of them, at most 1000, makes up the range."),
-                   0.1),
-      with_default(positive("/pair_distribution/slab", "reference radius",
-                            "Distance |z| below which a pair counts for g(x, y)."),
-                   0.1),
-      block("/contact_network", "How the observable of that name is measured."),
-      positive("/contact_network/interval", "time",
-               "Time between samples, in whole steps; a 256th of the production window unless given."),
+  });
+  append(observable_keys());
+  append({
       with_default(block("/guard", "Limits that end a realisation as failed, or flag its result."),
                    Json::object()),
       with_default(positive("/guard/largest_overlap", "", "Overlap over the smaller radius of the pair."),

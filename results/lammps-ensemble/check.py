@@ -61,9 +61,9 @@ def main():
     for point in json.load(sys.stdin)["points"]:
         rate = point["scene"]["variables"]["weissenberg"]
         viscosity, normal = with_step(rate)
-        estimates = point["estimates"]
-        cells = [f"{rate:g}", point["look"]["seeds"], *cells_of(estimates["/viscosity"], viscosity)]
-        print(markdown_row([*cells, *cells_of(estimates["/first_normal_difference"], normal)]))
+        quantities = point["quantities"]
+        cells = [f"{rate:g}", point["look"]["seeds"], *cells_of(quantities["viscosity"], viscosity)]
+        print(markdown_row([*cells, *cells_of(quantities["first_normal_difference"], normal)]))
     print(f"\nWith the step: viscosity {viscosity:.4f}, normal stress {normal:.4f}")
 
 

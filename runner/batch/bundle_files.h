@@ -21,9 +21,9 @@
 #include <vector>
 
 #include "contract/json.h"
-#include "runner/database/bundle_book.h"
 #include "runner/engines/attempt_report.h"
 #include "runner/folder/campaign_directory.h"
+#include "runner/stores/bundle_book.h"
 
 namespace peclet::runner {
 

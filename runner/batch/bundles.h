@@ -15,8 +15,10 @@
 
 #include "runner/batch/batch_system.h"
 #include "runner/batch/bundle_files.h"
-#include "runner/database/bundle_book.h"
 #include "runner/owner/ledger.h"
+#include "runner/stores/bundle_book.h"
+#include "runner/stores/event_log.h"
+#include "runner/stores/seed_store.h"
 
 namespace peclet::runner {
 
@@ -107,7 +109,8 @@ class Bundles {
   CampaignDirectory directory_;
   RunListener& listener_;
   BundleBook book_;
-  Queue queue_;
+  SeedStore seeds_;
+  EventLog events_;
   std::map<std::string, std::string>
       told_;  // the last complaint about each bundle: the same is not made twice
 };

@@ -62,7 +62,7 @@ bool Bundles::forget(const std::string& name) {
     const std::string message = fmt::format(
         "{} (job {}): {} seeds are queued again; results that its tasks leave are taken in, and count once",
         name, bundle.job.empty() ? "not confirmed" : bundle.job, seeds);
-    queue_.event("bundle-forgotten", std::nullopt, std::nullopt, message);
+    events_.write("bundle-forgotten", std::nullopt, std::nullopt, message);
     booking.commit();
     listener_.note("forgotten: " + message);
     fence_forgotten();

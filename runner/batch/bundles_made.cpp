@@ -48,7 +48,8 @@ Bundles::Bundles(Database& database, Ledger& ledger, const Campaign& campaign, C
       directory_(std::move(directory)),
       listener_(listener),
       book_(database.connection()),
-      queue_(database) {}
+      seeds_(database),
+      events_(database) {}
 
 std::string Bundles::hand_over(const BundleSettings& settings) {
   // What is not mounted now must not be made anew below it.
@@ -150,10 +151,10 @@ std::string Bundles::make(const BundleSettings& settings, const std::vector<Seed
     }
   }
   Transaction booking(database_.connection());
-  for (const BundleSeedRecord& row : rows) queue_.enqueue(row.point, row.seed + 1);
+  for (const BundleSeedRecord& row : rows) seeds_.enqueue(row.point, row.seed + 1);
   bundle.id = book_.prepare(bundle, rows);
-  queue_.event("handed-over", std::nullopt, std::nullopt,
-               fmt::format("{} seeds in {} tasks as {}", rows.size(), bundle.tasks, bundle.name));
+  events_.write("handed-over", std::nullopt, std::nullopt,
+                fmt::format("{} seeds in {} tasks as {}", rows.size(), bundle.tasks, bundle.name));
   booking.commit();
   return submit(bundle, settings.options);
 }

@@ -105,7 +105,7 @@ void Bundles::book(const BundleRecord& bundle, const BundleFolder& folder, const
     const BundledSeed& named = manifest.seeds.at(static_cast<std::size_t>(seed.place));
     const std::optional<SeedId> id = ledger_.identify(seed.point, seed.seed);
     const bool gone = answer != nullptr && !answer->alive(seed.task);
-    const bool has_result = queue_.has_ended(seed.point, seed.seed);
+    const bool has_result = seeds_.has_ended(seed.point, seed.seed);
     if (!reports[i] || (reports[i]->report.outcome == AttemptOutcome::result && !has_result)) {
       if (gone && has_result) {
         book_.seed_ended(bundle.id, seed.place, "result");
@@ -177,7 +177,7 @@ void Bundles::close(const BundleRecord& bundle, const BundleFolder& folder) {
   const int without = book_.without_result(bundle.id);
   Transaction booking(database_.connection());
   book_.close(bundle.id);
-  queue_.event(
+  events_.write(
       "bundle-closed", std::nullopt, std::nullopt,
       fmt::format("{} (job {}): {} seeds came back without a result", bundle.name, bundle.job, without));
   booking.commit();

@@ -7,10 +7,12 @@
 #include "contract/integrity_error.h"
 #include "runner/care/doctor.h"
 #include "runner/database/checked_look.h"
-#include "runner/database/queue.h"
 #include "runner/database/result_text.h"
 #include "runner/folder/realisation_result.h"
 #include "runner/statistics/cohorts.h"
+#include "runner/stores/event_log.h"
+#include "runner/stores/result_store.h"
+#include "runner/stores/seed_store.h"
 
 namespace peclet::runner {
 namespace {
@@ -45,8 +47,8 @@ void run_again(Database& owner, const CampaignDirectory& directory, std::int64_t
                                 "final_state_sha256 = NULL WHERE point_id = ? AND seed = ?"}) {
     Statement(connection, sql).bind(point).bind(seed).run();
   }
-  Queue(owner).event("repaired", point, seed,
-                     "its stored result was not what its hash says: it is run again");
+  EventLog(owner).write("repaired", point, seed,
+                        "its stored result was not what its hash says: it is run again");
   booking.commit();
 }
 
@@ -78,8 +80,8 @@ void remove_impossible_seeds(Database& owner, const CampaignDirectory& directory
         .bind(most_realisations)
         .run();
   }
-  Queue(owner).event("repaired", std::nullopt, std::nullopt,
-                     "seeds that no campaign can have are removed; their results are in spool/rejected/");
+  EventLog(owner).write("repaired", std::nullopt, std::nullopt,
+                        "seeds that no campaign can have are removed; their results are in spool/rejected/");
   booking.commit();
 }
 
@@ -180,17 +182,17 @@ void examine_looks(Database& database, Findings& findings) {
     try {
       checked_look(database, point, target);
     } catch (const IntegrityError& error) {
-      findings.push_back({"look-differs", Severity::integrity, error.what(),
-                          "`peclet doctor --repair` looks again at the stored results",
-                          [id = point.id, target](Database& owner) {
-                            const std::vector<Look> looks = replay_looks(owner.outcomes(id), target.target,
-                                                                         target.minimum, target.maximum);
-                            Transaction booking(owner.connection());
-                            Queue queue(owner);
-                            queue.store_looks(id, looks);
-                            queue.event("repaired", id, std::nullopt, "looked again at the stored results");
-                            booking.commit();
-                          }});
+      findings.push_back(
+          {"look-differs", Severity::integrity, error.what(),
+           "`peclet doctor --repair` looks again at the stored results",
+           [id = point.id, target](Database& owner) {
+             const std::vector<Look> looks =
+                 replay_looks(owner.outcomes(id), target.target, target.minimum, target.maximum);
+             Transaction booking(owner.connection());
+             ResultStore(owner).store_looks(id, looks);
+             EventLog(owner).write("repaired", id, std::nullopt, "looked again at the stored results");
+             booking.commit();
+           }});
     }
   }
 }
@@ -211,7 +213,7 @@ void examine_states(Database& database, const Patient& patient, Findings& findin
       "(SELECT count(*) FROM realisation LEFT JOIN lease USING (point_id, seed) WHERE state = 'running' AND "
       "attempt_id IS NULL)");
   const std::int64_t running = connection.integer("SELECT count(*) FROM realisation WHERE state = 'running'");
-  const auto recover = [](Database& owner) { Queue(owner).recover(); };
+  const auto recover = [](Database& owner) { SeedStore(owner).recover(); };
   if (adrift > 0) {
     Finding finding{"lease-adrift", Severity::integrity,
                     fmt::format("{} leases and running seeds do not belong together", adrift),

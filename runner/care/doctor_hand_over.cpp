@@ -3,7 +3,7 @@
 
 #include "runner/batch/bundle_files.h"
 #include "runner/care/doctor.h"
-#include "runner/database/bundle_book.h"
+#include "runner/stores/bundle_book.h"
 
 namespace peclet::runner {
 

@@ -13,9 +13,9 @@
 #include "runner/care/backup.h"
 #include "runner/database/backup_files.h"
 #include "runner/database/database_copy.h"
-#include "runner/database/queue.h"
 #include "runner/folder/owner_lock.h"
 #include "runner/folder/spool.h"
+#include "runner/stores/event_log.h"
 #include "runner/text/quoting.h"
 
 namespace peclet::runner {
@@ -130,7 +130,7 @@ Place place_of(const RestoreOptions& options) {
 void record(const CampaignDirectory& directory, const Source& source) {
   Database database = Database::open_owner(directory.database());
   Transaction booking(database.connection());
-  Queue(database).event("restored", std::nullopt, std::nullopt, "from " + source.file.string());
+  EventLog(database).write("restored", std::nullopt, std::nullopt, "from " + source.file.string());
   booking.commit();
 }
 

@@ -75,9 +75,18 @@ int deliver(const std::string& text, const std::filesystem::path& output, bool q
 
 int perform(const ExportOptions& options) {
   OpenCampaign open = open_campaign(options.campaign, options.directory);
-  return deliver(options.format == ExportFormat::csv ? export_csv(open.database, options.canonical)
-                                                     : export_json(open.database, options.canonical),
-                 options.output, options.quiet);
+  const auto text = [&] {
+    switch (options.format) {
+      case ExportFormat::json:
+        return export_json(open.database, options.canonical);
+      case ExportFormat::csv:
+        return export_csv(open.database, options.canonical);
+      case ExportFormat::long_csv:
+        return export_long_csv(open.database);
+    }
+    return std::string();
+  };
+  return deliver(text(), options.output, options.quiet);
 }
 
 int perform(const ResultsOptions& options) {

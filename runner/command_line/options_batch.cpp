@@ -37,6 +37,8 @@ void add_hand_over(VerbSet& verbs) {
   verb->add_flag("--follow", options->follow,
                  "Take results in and hand over what the next looks need, until every point is decided");
   add_seconds(verb, "--interval", options->interval, "Seconds between two turns of --follow");
+  add_seconds(verb, "--backup", options->backup_seconds,
+              "Seconds between backups of the database, with --follow");
   add_seconds(verb, "--lease", options->lease_seconds,
               "Seconds without a new step after which an engine counts as hung");
   add_seconds(verb, "--checkpoint", options->checkpoint_seconds,

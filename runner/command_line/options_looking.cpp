@@ -55,8 +55,14 @@ void add_export(VerbSet& verbs) {
       "--json", [options] { options->format = ExportFormat::json; },
       "Everything, seed by seed (the default)");
   CLI::Option* const csv = verb->add_flag_callback(
-      "--csv", [options] { options->format = ExportFormat::csv; }, "One row per point");
+      "--csv", [options] { options->format = ExportFormat::csv; },
+      "One row per point, with the mean of every scalar");
   csv->excludes(json);
+  verb->add_flag_callback(
+          "--long", [options] { options->format = ExportFormat::long_csv; },
+          "CSV with one row per point, quantity and element: profiles and distributions, too")
+      ->excludes(json)
+      ->excludes(csv);
   verb->add_flag("--canonical", options->canonical,
                  "Only what depends on campaign, seeds and engine: equal runs give equal bytes");
   verb->add_option("--output", options->output,

@@ -100,8 +100,12 @@ The canonical form holds what depends on campaign, seeds and engine alone, so th
 campaign can be compared byte by byte, however many workers they had and whatever killed them.
 --output replaces a file whole, follows a link, writes to a device, a FIFO or /dev/stdout, and says on
 standard error where it wrote, unless --quiet.
+
+Estimates are of the seeds of each point's last look. --csv has a column for every scalar that was
+measured, --long a row for every number, with names, units and axes as the engine gives them.
 )",
-            {{"peclet export flow-curve.json --canonical | sha256sum", "one number for all results"}},
+            {{"peclet export flow-curve.json --canonical | sha256sum", "one number for all results"},
+             {"peclet export flow-curve.json --long --output all.csv", "profiles and distributions, too"}},
             {0, 1, 2, 6})},
       {"results",
        page(R"(

@@ -34,7 +34,9 @@ std::optional<Look> checked_look(Database& database, const PointRecord& point, c
                     database.connection().path(), stored[i].look.seeds, point.label));
   }
   if (stored.empty()) return std::nullopt;
-  return stored.back().look;
+  Look look = stored.back().look;
+  look.untested = replayed[stored.size() - 1].untested;
+  return look;
 }
 
 }  // namespace peclet::runner

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "runner/statistics/transient.h"
+
 namespace peclet::runner {
 namespace {
 
@@ -100,6 +102,15 @@ std::map<std::int64_t, int> read_largest_earlier_looks(Connection& connection) {
   return largest;
 }
 
+// Whether the look could not be tested for transients, from its first few seeds with blocks.
+bool is_untested(Connection& connection, std::int64_t point, const Look& look) {
+  Statement query(connection,
+                  "SELECT count(*) FROM (SELECT 1 FROM realisation WHERE point_id = ? AND seed < ? AND value "
+                  "IS NOT NULL AND first_half IS NOT NULL LIMIT ?)");
+  query.bind(point).bind(look.seeds).bind(fewest_contrasts).step();
+  return lacks_blocks(look.estimate.count, static_cast<int>(query.integer(0)));
+}
+
 }  // namespace
 
 std::vector<PointSummary> summarise_points(Database& database, const TargetRecord& target) {
@@ -122,6 +133,9 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
     summary.losses = std::move(losses[point.id]);
     summary.flags = std::move(flags[point.id]);
     for (LookRecord& record : database.looks(point.id)) summary.looks.push_back(record.look);
+    if (!summary.looks.empty()) {
+      summary.looks.back().untested = is_untested(connection, point.id, summary.looks.back());
+    }
     summary.decided = !summary.looks.empty() && summary.looks.back().verdict != Verdict::more;
     const int seen = summary.looks.empty() ? 0 : summary.looks.back().seeds;
     if (summary.decided && earlier[point.id] > seen) summary.earlier_look = earlier[point.id];

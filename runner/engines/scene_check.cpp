@@ -22,6 +22,7 @@
 #include "contract/printable.h"
 #include "runner/engines/blame.h"
 #include "runner/folder/result_shape.h"
+#include "runner/statistics/quantities.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {
@@ -172,12 +173,13 @@ std::string of_point(const Campaign& campaign, const StatePoint& point) {
 void check_observable(const Json& answer, const Campaign& campaign, const StatePoint& point,
                       const std::filesystem::path& campaign_file) {
   if (!answer.contains("observables")) return;
-  const auto names = answer.at("observables").get<std::vector<std::string>>();
+  const auto known = answer.at("observables").get<std::vector<std::string>>();
   const std::string& wanted = campaign.target.observable;
-  if (std::find(names.begin(), names.end(), wanted) != names.end()) return;
+  const auto is_it = [&](const std::string& pattern) { return matches(pattern, wanted); };
+  if (std::any_of(known.begin(), known.end(), is_it)) return;
   throw InputError(campaign_file.string(), "/target/observable", wanted,
                    fmt::format("must be a number that the results{} will have: {}{}",
-                               of_point(campaign, point), fmt::join(names, ", "), suggestion(wanted, names)));
+                               of_point(campaign, point), fmt::join(known, ", "), suggestion(wanted, known)));
 }
 
 double number_in(const Json& message, const char* key) {

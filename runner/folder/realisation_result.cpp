@@ -4,11 +4,10 @@
 
 #include "contract/input_error.h"
 #include "contract/sha256.h"
+#include "runner/statistics/quantities.h"
 
 namespace peclet::runner {
 namespace {
-
-constexpr const char* control_name = "brownian_pairwise";
 
 // Time is no part of the physics; the machine, and where it keeps the state of a blow-up, is none either.
 std::string content_hash(Json& document) {
@@ -28,41 +27,52 @@ std::string content_hash(Json& document) {
   return hash;
 }
 
-std::optional<double> number_in(const Json& object, const std::string& key) {
-  const auto found = object.find(key);
-  if (found == object.end() || !found->is_number()) return std::nullopt;
-  return found->get<double>();
+std::optional<double> number_at(const Json& document, const std::string& path) {
+  const Json* const value = at_path(document, path);
+  if (value == nullptr || !value->is_number()) return std::nullopt;
+  return value->get<double>();
+}
+
+// The list of blocks that has the number at a path in each of its elements, and the rest of the path there.
+struct Series {
+  const Json* blocks = nullptr;
+  std::string element;
+};
+
+Series series_of(const Json& blocks, const std::string& path) {
+  for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
+    const Json* const found = at_path(blocks, std::string_view(path).substr(0, end));
+    if (found == nullptr) return {};
+    if (found->is_array()) return {found, end == std::string::npos ? "" : path.substr(end)};
+    if (end == std::string::npos) return {};
+  }
 }
 
 // The mean of the first `parts` of 4 equal parts of a series of blocks; none where it is no such series.
-std::optional<double> mean_of_first(const Json& blocks, const std::string& key, int parts) {
-  const auto found = blocks.find(key);
-  if (found == blocks.end() || !found->is_array() || found->empty() || found->size() % 4 != 0) {
+std::optional<double> mean_of_first(const Json& blocks, const std::string& path, int parts) {
+  const Series series = series_of(blocks, path);
+  if (series.blocks == nullptr || series.blocks->empty() || series.blocks->size() % 4 != 0) {
     return std::nullopt;
   }
-  const std::size_t count = found->size() * static_cast<std::size_t>(parts) / 4;
+  const std::size_t count = series.blocks->size() * static_cast<std::size_t>(parts) / 4;
   double sum = 0;
   for (std::size_t block = 0; block < count; ++block) {
-    if (!(*found)[block].is_number()) return std::nullopt;
-    sum += (*found)[block].get<double>();
+    const std::optional<double> value = number_at((*series.blocks)[block], series.element);
+    if (!value) return std::nullopt;
+    sum += *value;
   }
   return sum / static_cast<double>(count);
 }
 
-std::optional<double> sum_of(std::optional<double> value, std::optional<double> control) {
-  if (!value || !control) return std::nullopt;
-  return *value + *control;
-}
-
 // value + control in the first `parts` of 4 parts of the window.
-std::optional<double> beginning(const Json& blocks, const std::string& observable, bool controlled,
-                                int parts) {
+std::optional<double> beginning(const Json& blocks, const std::string& observable,
+                                const std::optional<ControlVariate>& control, int parts) {
   if (!blocks.is_object()) return std::nullopt;
   const std::optional<double> value = mean_of_first(blocks, observable, parts);
-  if (!controlled) return value;
-  const auto controls = blocks.find("control_variates");
-  if (controls == blocks.end() || !controls->is_object()) return std::nullopt;
-  return sum_of(value, mean_of_first(*controls, control_name, parts));
+  if (!control || !value) return value;
+  const std::optional<double> controlling = mean_of_first(blocks, control->quantity, parts);
+  if (!controlling) return std::nullopt;
+  return *value + *controlling - control->mean;
 }
 
 }  // namespace
@@ -98,30 +108,24 @@ std::set<std::string> flags_of(const RealisationResult& result) {
 }
 
 bool has_observable(const Json& mean, const std::string& observable) {
-  const auto found = mean.find(observable);
-  return found != mean.end() && (found->is_number() || found->is_null());
-}
-
-std::string names_of_numbers(const Json& mean) {
-  std::string names;
-  for (const auto& [name, value] : mean.items()) {
-    if (value.is_number()) names += (names.empty() ? "" : ", ") + name;
-  }
-  return names;
+  const Json* const found = at_path(mean, observable);
+  return found != nullptr && (found->is_number() || found->is_null());
 }
 
 Observed observe(const Json& result, const std::string& observable) {
   Observed observed;
   const Json& mean = result.at("mean");
   if (!mean.is_object()) return observed;
-  observed.value = number_in(mean, observable);
-  const auto controls = mean.find("control_variates");
-  if (observable.starts_with("relative_viscosity") && controls != mean.end()) {
-    observed.control = number_in(*controls, control_name);
+  observed.value = number_at(mean, observable);
+  std::optional<ControlVariate> control = control_of(result, observable);
+  if (control) {
+    const std::optional<double> value = number_at(mean, control->quantity);
+    if (value) observed.control = *value - control->mean;
+    if (!value) control.reset();
   }
   const Json& blocks = result.at("blocks");
-  observed.first_quarter = beginning(blocks, observable, observed.control.has_value(), 1);
-  observed.first_half = beginning(blocks, observable, observed.control.has_value(), 2);
+  observed.first_quarter = beginning(blocks, observable, control, 1);
+  observed.first_half = beginning(blocks, observable, control, 2);
   return observed;
 }
 

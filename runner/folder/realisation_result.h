@@ -42,10 +42,8 @@ inline constexpr const char* no_value = "no-value";
 // realisation.
 bool has_observable(const Json& mean, const std::string& observable);
 
-// "pressure, relative_viscosity": what a campaign may aim at.
-std::string names_of_numbers(const Json& mean);
-
-// The pairwise Brownian stress is the control variate of the relative viscosities and of nothing else.
+// `observable` is the path of a number in "mean": see runner/statistics/quantities.h. Its control variate is
+// the one that the result names.
 Observed observe(const Json& result, const std::string& observable);
 
 // How the realisation counts for a campaign that has seen this in it.

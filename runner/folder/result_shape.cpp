@@ -6,8 +6,10 @@
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
+#include <vector>
 
 #include "runner/campaign/campaign.h"
+#include "runner/statistics/quantities.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {
@@ -125,21 +127,108 @@ void check_members(const Place& object, void (*judge)(const Place&)) {
   for (const auto& [key, value] : object.value.items()) judge({value, object.pointer + '/' + key});
 }
 
-// What a mean consists of is the engine's business; the runner takes numbers from it by name, and shows the
-// names.
+// What a mean consists of is the engine's business; the runner takes numbers from it by their paths, and
+// shows these.
 void check_mean(const Place& mean) {
   for (const auto& [name, value] : mean.value.items()) {
-    const bool may_be = value.is_number() || value.is_null() || value.is_structured();
-    if (!may_be) refuse(mean.pointer + '/' + name, "must be a number, null, a list or an object");
+    if (value.is_number()) continue;
+    const std::string pointer = mean.pointer + '/' + name;
+    if (!value.is_null() && !value.is_structured()) {
+      refuse(pointer, "must be a number, null, a list or an object");
+    }
+    if (value.is_structured()) check_mean({value, pointer});
+  }
+  if (!mean.value.is_object()) return;
+  for (const auto& [name, value] : mean.value.items()) {
     if (plain(name, longest_name) != name) {
       refuse(mean.pointer + '/' + name,
              fmt::format("must have a name of at most {} bytes without control characters", longest_name));
     }
   }
-  mean.with("control_variates", [](const Place& variates) {
-    must_be_object(variates);
-    variates.with("brownian_pairwise", must_be_number_or_null);
+}
+
+void check_axes(const Place& axes) {
+  if (!axes.value.is_array()) refuse(axes.pointer, "must be a list");
+  for (std::size_t i = 0; i < axes.value.size(); ++i) {
+    const Place axis{axes.value[i], fmt::format("{}/{}", axes.pointer, i)};
+    const Place values = axis.at("values");
+    for (const char* const key : {"name", "unit"}) must_be_name(axis.at(key));
+    if (!values.value.is_array() || values.value.empty())
+      refuse(values.pointer, "must be a list of one or more");
+    for (std::size_t k = 0; k < values.value.size(); ++k) {
+      const Place value{values.value[k], fmt::format("{}/{}", values.pointer, k)};
+      if (!value.value.is_number()) must_be_name(value);
+    }
+  }
+}
+
+// Lists within lists as long as the axes from `axis` on, of numbers and nulls.
+bool has_shape(const Json& value, const std::vector<QuantityAxis>& axes, std::size_t axis = 0) {
+  if (axis == axes.size()) return value.is_number() || value.is_null();
+  return value.is_array() && value.size() == axes[axis].values.size() &&
+         std::all_of(value.begin(), value.end(),
+                     [&](const Json& element) { return has_shape(element, axes, axis + 1); });
+}
+
+void check_description(const Place& about) {
+  for (const char* const key : {"symbol", "unit"}) must_be_name(about.at(key));
+  about.with("axes", check_axes);
+  const std::string& estimator = text_at(about.at("estimator"));
+  if (estimator != "mean" && estimator != "ratio")
+    refuse(about.pointer + "/estimator", "must be mean or ratio");
+  if (estimator == "ratio") {
+    for (const char* const key : {"numerator", "denominator"}) must_be_name(about.at(key));
+  }
+  about.with("control", [](const Place& control) {
+    text_at(control.at("quantity"));
+    must_be_number(control.at("mean"));
   });
+}
+
+// Whether its values in the mean are what the description says.
+void check_values(const Quantity& quantity, const std::vector<Quantity>& all, const Json& mean) {
+  const auto must_be_there = [&](const std::string& path, bool or_scalar) {
+    const Json* const value = at_path(mean, path);
+    if (value == nullptr) refuse("/mean/" + path, "is missing, though it is among the quantities");
+    if (value->is_null() || (or_scalar && value->is_number()) || has_shape(*value, quantity.axes)) return;
+    refuse("/mean/" + path, "must be a number, or lists of them, as the axes of its quantity say");
+  };
+  if (!quantity.ratio) {
+    must_be_there(quantity.name, false);
+  } else {
+    must_be_there(quantity.name + '/' + quantity.ratio->numerator, true);
+    must_be_there(quantity.name + '/' + quantity.ratio->denominator, true);
+  }
+  if (!quantity.control) return;
+  const auto control = std::find_if(all.begin(), all.end(), [&](const Quantity& other) {
+    return other.name == quantity.control->quantity && !other.ratio;
+  });
+  const auto sizes = [](const Quantity& of) {
+    std::vector<std::size_t> lengths;
+    for (const QuantityAxis& axis : of.axes) lengths.push_back(axis.values.size());
+    return lengths;
+  };
+  if (control == all.end() || quantity.ratio || sizes(*control) != sizes(quantity)) {
+    refuse(fmt::format("/quantities/{}/control/quantity", quantity.name),
+           "must be another quantity of the same shape, both of the estimator mean");
+  }
+}
+
+void check_quantities(const Place& quantities, const Json& document) {
+  if (quantities.value.is_null()) return;
+  must_be_object(quantities);
+  if (!document.at("mean").is_object()) refuse(quantities.pointer, "must be null after this ending");
+  for (const auto& [name, value] : quantities.value.items()) {
+    const Place about{value, quantities.pointer + '/' + name};
+    if (name.empty() || plain(name, longest_name) != name) {
+      refuse(about.pointer,
+             fmt::format("must have a name of at most {} bytes without control characters", longest_name));
+    }
+    must_be_object(about);
+    check_description(about);
+  }
+  const std::vector<Quantity> all = quantities_of(document);
+  for (const Quantity& quantity : all) check_values(quantity, all, document.at("mean"));
 }
 
 void check_ending(const Place& document) {
@@ -218,6 +307,7 @@ void check_shape(const Json& document) {
   whole.with("method", must_be_text_or_null);
   whole.with("units", must_be_text);
   whole.with("warnings", check_warnings);
+  whole.with("quantities", [&](const Place& quantities) { check_quantities(quantities, document); });
   whole.with("gate", [](const Place& gate) {
     if (!gate.value.is_null()) must_be_object(gate);
   });

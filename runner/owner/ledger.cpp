@@ -9,6 +9,7 @@
 #include "contract/input_error.h"
 #include "runner/folder/intruders.h"
 #include "runner/folder/spool.h"
+#include "runner/stores/engine_row.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {
@@ -23,7 +24,10 @@ constexpr std::size_t longest_list = 350;
 Ledger::Ledger(Database& database, const Campaign& campaign, CampaignDirectory directory,
                RunListener& listener, int retries)
     : database_(database),
-      queue_(database),
+      seeds_(database),
+      results_(database),
+      rows_(database),
+      events_(database),
       campaign_(campaign),
       directory_(std::move(directory)),
       listener_(listener),
@@ -31,7 +35,7 @@ Ledger::Ledger(Database& database, const Campaign& campaign, CampaignDirectory d
   move_intruders_aside(directory_, [&](const std::string& text) { listener_.warn(text); });
   board_.read_points(database_);
   ingest_spool();
-  if (const int recovered = queue_.recover(); recovered > 0) {
+  if (const int recovered = seeds_.recover(); recovered > 0) {
     listener_.note(fmt::format("{} seeds that an earlier run left unfinished go on", recovered));
   }
   load();
@@ -54,7 +58,7 @@ void Ledger::load() {
 void Ledger::book_looks() {
   for (int place = 0; place < board_.size(); ++place) {
     store_looks(place, database_.looks(point(place).id).size());
-    if (!scheduler().decided(place)) queue_.enqueue(point(place).id, scheduler().wanted(place));
+    if (!scheduler().decided(place)) seeds_.enqueue(point(place).id, scheduler().wanted(place));
   }
 }
 
@@ -75,7 +79,7 @@ void Ledger::roll_back() {
 // `known` looks of the point are stored already.
 void Ledger::store_looks(int place, std::size_t known) {
   const std::vector<Look>& looks = scheduler().looks(place);
-  queue_.store_looks(point(place).id, looks);
+  results_.store_looks(point(place).id, looks);
   for (std::size_t i = known; i < looks.size(); ++i) after_.tell(Looked{told_name(place), looks[i]});
   if (looks.size() > known && scheduler().decided(place)) {
     after_.tell(Decided{told_name(place), looks.back()});
@@ -88,12 +92,12 @@ void Ledger::book_outcome(SeedId id, const Outcome& outcome) {
   const PointRecord& about = point(id.point);
   store_looks(id.point, known);
   if (!scheduler().decided(id.point)) {
-    queue_.enqueue(about.id, scheduler().wanted(id.point));
+    seeds_.enqueue(about.id, scheduler().wanted(id.point));
     return;
   }
   const Look& last = scheduler().looks(id.point).back();
   const std::string message = fmt::format("{} after {} seeds", to_string(last.verdict), last.seeds);
-  queue_.event("decided", about.id, std::nullopt, message);
+  events_.write("decided", about.id, std::nullopt, message);
   after_.note(fmt::format("{}: {}", about.label, message));
 }
 
@@ -102,7 +106,7 @@ std::optional<Grant> Ledger::give_out(int worker, std::int64_t process, std::int
   if (!id) return std::nullopt;
   const PointRecord& about = point(id->point);
   Grant grant{*id, about.id, {}};
-  grant.job.attempt = queue_.begin_attempt(about.id, id->seed, worker, process, engine);
+  grant.job.attempt = seeds_.begin_attempt(about.id, id->seed, worker, process, engine);
   grant.job.point = about.hash;
   grant.job.seed = id->seed;
   grant.job.scene = about.scene;
@@ -117,8 +121,8 @@ std::optional<Grant> Ledger::give_out(int worker, std::int64_t process, std::int
 void Ledger::end_attempt(const Grant& grant, const AttemptEnd& end) {
   leave(grant);
   spending_.add(end.held_seconds);
-  queue_.end_attempt(grant.job.attempt, end);
-  const Sentence sentence = judge(queue_.history(grant.point_id, grant.id.seed), retries_);
+  seeds_.end_attempt(grant.job.attempt, end);
+  const Sentence sentence = judge(seeds_.history(grant.point_id, grant.id.seed), retries_);
   if (sentence.discard_checkpoint) after_.discard(grant.job.checkpoint);
   if (is_blamed(end.outcome)) {
     after_.warn(fmt::format("{}: {}{}{}; {}", name_of(grant), to_string(end.outcome),
@@ -127,11 +131,11 @@ void Ledger::end_attempt(const Grant& grant, const AttemptEnd& end) {
   }
   after_.tell(AttemptFailed{told_name(grant), grant.id.seed, end.outcome, end.message, sentence.quarantine});
   if (!sentence.quarantine) {
-    queue_.requeue(grant.point_id, grant.id.seed);
+    seeds_.requeue(grant.point_id, grant.id.seed);
     if (takes_part(grant.id)) board_.scheduler().give_back(grant.id);
     return;
   }
-  queue_.quarantine(grant.point_id, grant.id.seed, sentence.cause);
+  seeds_.quarantine(grant.point_id, grant.id.seed, sentence.cause);
   after_.tell(SeedEnded{told_name(grant), grant.id.seed, sentence.cause, std::nullopt, std::nullopt});
   if (takes_part(grant.id)) book_outcome(grant.id, Outcome{});
 }
@@ -141,13 +145,13 @@ void Ledger::leave(const Grant& grant) {
 }
 
 void Ledger::renew_lease(const Grant& grant, const JobProgress& progress) {
-  queue_.renew_lease(grant.job.attempt, phase_name(progress.phase), progress.step, progress.steps,
+  seeds_.renew_lease(grant.job.attempt, phase_name(progress.phase), progress.step, progress.steps,
                      progress.strain);
 }
 
 std::int64_t Ledger::admit_engine(const Json& engine) {
   engine_.admit(engine, board_);
-  return queue_.engine(engine);
+  return engine_row(database_, engine);
 }
 
 void Ledger::after_commit() {

@@ -15,13 +15,15 @@
 #include <variant>
 #include <vector>
 
-#include "runner/database/queue.h"
 #include "runner/engines/worker_watch.h"
 #include "runner/events/run_listener.h"
 #include "runner/folder/campaign_directory.h"
 #include "runner/owner/after_commit.h"
 #include "runner/owner/board.h"
 #include "runner/owner/engine_admission.h"
+#include "runner/stores/point_store.h"
+#include "runner/stores/result_store.h"
+#include "runner/stores/seed_store.h"
 
 namespace peclet::runner {
 
@@ -129,13 +131,16 @@ class Ledger {
   using Booking = std::function<void(const RealisationResult&)>;
   // Reads a result and books it, wholly or not at all. Returns why it is turned down; "" when it is not.
   std::string take_whole(const std::filesystem::path& spool, const Reading& read, const Booking& book);
-  Stored take(const RealisationResult& result, const std::filesystem::path& spool);
+  void take(const RealisationResult& result, const std::filesystem::path& spool);
   void book_outcome(SeedId id, const Outcome& outcome);
   void store_looks(int place, std::size_t known);
   void turn_down(const std::filesystem::path& spool, const std::string& why);
 
   Database& database_;
-  Queue queue_;
+  SeedStore seeds_;
+  ResultStore results_;
+  PointStore rows_;
+  EventLog events_;
   Campaign campaign_;
   std::optional<Campaign> former_;  // until the transaction that changed it is committed
   CampaignDirectory directory_;

@@ -6,9 +6,9 @@
 #include <map>
 #include <system_error>
 
-#include "runner/database/bundle_book.h"
 #include "runner/engines/attempt_report.h"
 #include "runner/owner/ledger.h"
+#include "runner/stores/bundle_book.h"
 
 namespace peclet::runner {
 
@@ -86,14 +86,14 @@ std::optional<SeedId> Ledger::identify(std::int64_t point_id, int seed) const {
   return place ? std::optional(SeedId{*place, seed}) : std::nullopt;
 }
 
-bool Ledger::has_ended(SeedId id) { return queue_.has_ended(point(id.point).id, id.seed); }
+bool Ledger::has_ended(SeedId id) { return seeds_.has_ended(point(id.point).id, id.seed); }
 
 void Ledger::end_handed_over(SeedId id, int task, const AttemptReport& report,
                              const std::filesystem::path& checkpoint) {
   const PointRecord& about = point(id.point);
-  queue_.attempt_elsewhere(about.id, id.seed, task, report);
+  seeds_.attempt_elsewhere(about.id, id.seed, task, report);
   if (has_ended(id)) return;
-  const Sentence sentence = judge(queue_.history(about.id, id.seed), retries_);
+  const Sentence sentence = judge(seeds_.history(about.id, id.seed), retries_);
   if (sentence.discard_checkpoint) after_.discard(checkpoint);
   if (is_blamed(report.outcome)) {
     after_.warn(fmt::format("{} on {}: {}{}{}; {}", name(id), report.host, to_string(report.outcome),
@@ -104,7 +104,7 @@ void Ledger::end_handed_over(SeedId id, int task, const AttemptReport& report,
     take_back(id);
     return;
   }
-  queue_.quarantine(about.id, id.seed, sentence.cause);
+  seeds_.quarantine(about.id, id.seed, sentence.cause);
   book_outcome(id, Outcome{});
 }
 

@@ -4,13 +4,13 @@
 
 #include <set>
 
-#include "runner/database/bundle_book.h"
 #include "runner/owner/ledger.h"
+#include "runner/stores/bundle_book.h"
 
 namespace peclet::runner {
 
 void Ledger::take_over(const Campaign& campaign) {
-  queue_.take_over(campaign);
+  rows_.take_over(campaign);
   if (!former_) former_ = campaign_;
   campaign_ = campaign;
 }
@@ -40,7 +40,7 @@ int Ledger::accept_engine(const std::string& identity) {
   for (const PointRecord& about : board_.points()) {
     if (!board_.is_to_be_run(about) || about.engine_identity.empty() || about.engine_identity == identity)
       continue;
-    queue_.keep_apart(about, identity);
+    rows_.keep_apart(about, identity);
     after_.note(fmt::format("{}: results of engine {} are kept apart", about.label, about.engine_identity));
     ++points;
     // Another engine could not go on from where they stand.

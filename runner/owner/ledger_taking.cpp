@@ -13,6 +13,7 @@
 
 #include "runner/folder/spool.h"
 #include "runner/owner/ledger.h"
+#include "runner/statistics/quantities.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {
@@ -100,12 +101,12 @@ std::string Ledger::take_whole(const fs::path& spool, const Reading& read, const
   return why;
 }
 
-Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
-  const Stored stored = queue_.store(result, campaign_.target.observable);
-  switch (stored) {
+void Ledger::take(const RealisationResult& result, const fs::path& spool) {
+  const StoredResult stored = results_.store(result, campaign_.target.observable);
+  switch (stored.what) {
     case Stored::stored_apart:
       after_.remove(spool);
-      return stored;
+      return;
     case Stored::stored:
     case Stored::duplicate:
       after_.remove(spool);
@@ -117,34 +118,33 @@ Stored Ledger::take(const RealisationResult& result, const fs::path& spool) {
       break;
     case Stored::conflict:
       turn_down(spool, "another run of the same seed gave another result");
-      return stored;
+      return;
     case Stored::mixed_engine:
       turn_down(spool, "its point has results of another engine");
-      return stored;
+      return;
     case Stored::unknown_point:
       turn_down(spool, "it belongs to no point of this campaign");
-      return stored;
+      return;
   }
   const std::optional<int> place = board_.place_of(result.point);
-  if (stored == Stored::duplicate || !place) return stored;
-  const Observed observed = observe(result.document, campaign_.target.observable);
-  const std::string cause = cause_of(result, observed);
+  if (stored.what == Stored::duplicate || !place) return;
   if (result.completed() && !has_observable(result.document["mean"], campaign_.target.observable)) {
-    lacking_ = names_of_numbers(result.document["mean"]);
+    lacking_ = names_of_targets(result.document);
     if (lacking_.empty()) lacking_ = "none";
   }
   const std::optional<double> cpu_seconds = cost_of(result, "cpu_seconds");
-  after_.tell(SeedEnded{told_name(*place), result.seed, cause, observed.value, cpu_seconds});
-  if (!board_.has_seeds()) return stored;  // load() finds it
+  after_.tell(SeedEnded{told_name(*place), result.seed, stored.cause, stored.observed.value, cpu_seconds});
+  if (!board_.has_seeds()) return;  // load() finds it
   board_.add_cost(*place, cost_of(result, "wall_seconds"), cpu_seconds);
-  if (!observed.value) after_.note(fmt::format("{}: ended with {}", name({*place, result.seed}), cause));
-  book_outcome({*place, result.seed}, outcome_of(observed));
-  return stored;
+  if (!stored.observed.value) {
+    after_.note(fmt::format("{}: ended with {}", name({*place, result.seed}), stored.cause));
+  }
+  book_outcome({*place, result.seed}, outcome_of(stored.observed));
 }
 
 void Ledger::turn_down(const fs::path& spool, const std::string& why) {
   const std::string message = fmt::format("{} is not taken: {}", plain_name(spool), why);
-  queue_.event("rejected", std::nullopt, std::nullopt, message);
+  events_.write("rejected", std::nullopt, std::nullopt, message);
   // Of a crowd nobody reads every name.
   if (++turned_down_ <= most_told) {
     after_.warn(fmt::format("{}; it is kept in {}", message, home_of_spool_file(spool).rejected().string()));
@@ -196,7 +196,7 @@ bool Ledger::take_result(const Grant& grant, const std::string& sha256, std::int
     take(result, grant.job.spool);
     spending_.add(std::min(held_seconds, cost_of(result, "cpu_seconds").value_or(held_seconds)));
     leave(grant);
-    queue_.end_attempt(grant.job.attempt, {AttemptOutcome::result, step});
+    seeds_.end_attempt(grant.job.attempt, {AttemptOutcome::result, step});
   });
   return why.empty();
 }

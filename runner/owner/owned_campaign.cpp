@@ -7,10 +7,10 @@
 
 #include "contract/guarded_file.h"
 #include "runner/database/backup_files.h"
-#include "runner/database/queue.h"
 #include "runner/folder/realisation_result.h"
 #include "runner/folder/spool.h"
 #include "runner/owner/renamed_file.h"
+#include "runner/stores/point_store.h"
 #include "runner/text/quoting.h"
 
 namespace peclet::runner {
@@ -126,7 +126,7 @@ Database open_for_owner(const ClaimedCampaign& claimed, const std::function<void
   try {
     Database database = Database::open_owner(directory.database());
     refuse_older_copy(directory, database);
-    Queue(database).adopt(claimed.campaign);
+    PointStore(database).adopt(claimed.campaign);
     tell_of_points_left_behind(database, tell);
     return database;
   } catch (const IntegrityError& error) {

@@ -52,7 +52,14 @@ std::string interval_text(const Look& look, const std::vector<Outcome>& outcomes
   return text;
 }
 
-std::string transient_text(const Look& look, const std::vector<Outcome>& outcomes) {
+std::string transient_text(const Look& look, const std::vector<Outcome>& outcomes,
+                           const std::string& observable) {
+  if (look.untested) {
+    return fmt::format(
+        "  transient: no test was possible, because the results have no blocks of {}: nothing tells whether "
+        "the\n    windows begin before the equilibration is over\n",
+        observable);
+  }
   if (!look.transient) return "";
   std::vector<double> quarters, halves;
   for (const Outcome& outcome : outcomes) {
@@ -137,8 +144,8 @@ std::string estimate_text(Database& database, const PointSummary& point, const T
   if (point.looks.empty()) return "";
   const Look& look = point.looks.back();
   const std::vector<Outcome> outcomes = completed(database, point);
-  return interval_text(look, outcomes, target) + transient_text(look, outcomes) + control_text(outcomes) +
-         window_text(database, point, outcomes);
+  return interval_text(look, outcomes, target) + transient_text(look, outcomes, target.target.observable) +
+         control_text(outcomes) + window_text(database, point, outcomes);
 }
 
 }  // namespace peclet::runner

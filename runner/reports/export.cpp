@@ -8,7 +8,7 @@
 
 #include "runner/database/checked_look.h"
 #include "runner/statistics/look_json.h"
-#include "runner/statistics/mean_estimates.h"
+#include "runner/statistics/quantity_estimates.h"
 
 namespace peclet::runner {
 namespace {
@@ -53,7 +53,8 @@ class PointExport {
       : database_(database),
         point_(point),
         canonical_(canonical),
-        look_(checked_look(database, point, target)) {
+        look_(checked_look(database, point, target)),
+        confidence_(target.target.confidence) {
     if (!canonical_) {
       for (const AttemptRecord& attempt : database.attempts(point.id)) {
         attempts_[attempt.seed].push_back(attempt_json(attempt));
@@ -74,7 +75,7 @@ class PointExport {
                   look_ && look_->verdict != Verdict::more ? Json(to_string(look_->verdict)) : Json(nullptr)},
                  {"derived", derived_},
                  {"warnings", warnings_},
-                 {"estimates", estimates_.estimates()},
+                 {"quantities", estimates_.json(confidence_)},
                  {"realisations", realisations_}};
     if (!canonical_) {
       json["suspect"] = point_.suspect;
@@ -93,7 +94,7 @@ class PointExport {
   void read_results() {
     const int end = canonical_ ? seeds() : std::numeric_limits<int>::max();
     database_.for_each_result(point_.id, end, [this](int seed, const Json& result) {
-      if (seed < seeds()) estimates_.add(result["mean"]);
+      if (seed < seeds()) estimates_.add(result);
       if (derived_.is_null()) {
         derived_ = result.value("derived", Json());
         warnings_ = result.value("warnings", Json());
@@ -129,7 +130,8 @@ class PointExport {
   std::map<int, Json> attempts_, results_;
   Json derived_, warnings_;
   Json realisations_ = Json::array(), surplus_ = Json::array();
-  MeanEstimates estimates_;
+  double confidence_;
+  QuantityEstimates estimates_;
 };
 
 Json heading(Database& database, const CampaignRecord& campaign, bool canonical) {

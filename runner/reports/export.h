@@ -14,7 +14,7 @@
 
 namespace peclet::runner {
 
-enum class ExportFormat { json, csv };
+enum class ExportFormat { json, csv, long_csv };
 
 struct ExportOptions {
   std::filesystem::path campaign;  // file or folder
@@ -28,6 +28,9 @@ struct ExportOptions {
 // Documents as schema/README.md describes them. Throw IntegrityError when stored looks are not what the
 // stored results say.
 std::string export_json(Database& database, bool canonical);
+// One row per point, with the mean of every scalar quantity.
 std::string export_csv(Database& database, bool canonical);
+// One row per point, quantity and element: "long" or "tidy" data.
+std::string export_long_csv(Database& database);
 
 }  // namespace peclet::runner

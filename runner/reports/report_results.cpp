@@ -147,6 +147,9 @@ std::string meaning(const std::string& mark) {
       {"transient",
        "the beginning of the measured windows differs from their end: they begin before the equilibration is "
        "over, which more seeds do not mend"},
+      {"no-transient-test",
+       "the results have no blocks of the observable, so that nothing can tell whether the windows begin "
+       "before the equilibration is over"},
       {"skewed",
        "some values are far from the rest on one side, and the interval holds the mean less often than it "
        "says"},

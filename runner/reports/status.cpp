@@ -111,6 +111,7 @@ std::string verdict_text(const PointSummary& point) {
 std::vector<std::string> reservations(const PointSummary& point) {
   std::vector<std::string> found;
   if (!point.looks.empty() && point.looks.back().transient) found.emplace_back("transient");
+  if (!point.looks.empty() && point.looks.back().untested) found.emplace_back("no-transient-test");
   if (point.decided && is_skewed(point.looks.back(), point.confidence)) found.emplace_back("skewed");
   if (point.earlier_look > 0) found.emplace_back("earlier-look");
   for (const auto& [code, count] : point.flags) found.push_back(fmt::format("{} flagged {}", count, code));

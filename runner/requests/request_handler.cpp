@@ -52,7 +52,7 @@ bool RequestHandler::carry_out() {
     if (left_alone_.contains(file)) continue;
     try {
       const Request request = read_request(file);
-      if (!queue_.has_answered(request.name)) {
+      if (!events_.has_answered(request.name)) {
         carry_out(request);
         any = true;
       }
@@ -77,7 +77,7 @@ void RequestHandler::carry_out(const Request& request) {
     Transaction booking(database_.connection());
     Done done = std::visit([&](const auto& wish) { return apply(wish); }, request.wish);
     ledger_.refresh();
-    queue_.event(done.kind, done.point, std::nullopt, done.message, request.name);
+    events_.write(done.kind, done.point, std::nullopt, done.message, request.name);
     booking.commit();
     ledger_.after_commit();
     listener_.note(fmt::format("{}: {}", done.kind, done.message));
@@ -93,7 +93,7 @@ void RequestHandler::carry_out(const Request& request) {
 
 void RequestHandler::refuse(const Request& request, const std::string& why) {
   Transaction booking(database_.connection());
-  queue_.event("refused", std::nullopt, std::nullopt, why, request.name);
+  events_.write("refused", std::nullopt, std::nullopt, why, request.name);
   booking.commit();
   listener_.note("a request is refused: " + why);
 }
@@ -122,13 +122,13 @@ RequestHandler::Done RequestHandler::apply(const TakeOver& wish) {
 
 RequestHandler::Done RequestHandler::apply(const Prioritise& wish) {
   const std::vector<PointRecord> points = named(database_.points(), wish.points);
-  for (const PointRecord& point : points) queue_.set_priority(point.id, wish.priority);
+  for (const PointRecord& point : points) rows_.set_priority(point.id, wish.priority);
   return {"set", fmt::format("priority {}: {}", wish.priority, labels(points)), only(points)};
 }
 
 RequestHandler::Done RequestHandler::apply(const Cancel& wish) {
   const std::vector<PointRecord> points = named(database_.points(), wish.points);
-  for (const PointRecord& point : points) queue_.set_cancelled(point.id, !wish.undo);
+  for (const PointRecord& point : points) rows_.set_cancelled(point.id, !wish.undo);
   return {"cancel", fmt::format("{}: {}", wish.undo ? "taken up again" : "no more seeds", labels(points)),
           only(points)};
 }
@@ -138,7 +138,7 @@ RequestHandler::Done RequestHandler::apply(const Retry& wish) {
   const std::vector<PointRecord> points = wish.points.empty() ? all : named(all, wish.points);
   const RetryPlan plan = plan_retry(database_, points, wish.seeds);
   for (const auto& [point, seeds] : plan.seeds) {
-    for (const int seed : seeds) queue_.retry(point, seed);
+    for (const int seed : seeds) seeds_.retry(point, seed);
   }
   return {"retry", plan.message, only(points)};
 }

@@ -10,6 +10,9 @@
 #include "runner/folder/campaign_directory.h"
 #include "runner/owner/ledger.h"
 #include "runner/requests/request.h"
+#include "runner/stores/event_log.h"
+#include "runner/stores/point_store.h"
+#include "runner/stores/seed_store.h"
 
 namespace peclet::runner {
 
@@ -18,7 +21,9 @@ class RequestHandler {
   // All references must outlive it.
   RequestHandler(Database& database, Ledger& ledger, CampaignDirectory directory, RunListener& listener)
       : database_(database),
-        queue_(database),
+        seeds_(database),
+        rows_(database),
+        events_(database),
         ledger_(ledger),
         directory_(std::move(directory)),
         listener_(listener) {}
@@ -45,7 +50,9 @@ class RequestHandler {
   void refuse(const Request& request, const std::string& why);
 
   Database& database_;
-  Queue queue_;
+  SeedStore seeds_;
+  PointStore rows_;
+  EventLog events_;
   Ledger& ledger_;
   CampaignDirectory directory_;
   RunListener& listener_;

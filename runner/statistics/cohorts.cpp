@@ -18,10 +18,12 @@ bool is_closed(const std::vector<std::optional<Outcome>>& outcomes, int seeds) {
 
 Look look_at(std::span<const std::optional<Outcome>> cohort, StopRule& rule) {
   std::vector<double> values, controlled;
+  int contrasts = 0;
   for (const std::optional<Outcome>& outcome : cohort) {
     if (outcome->kind == Outcome::Kind::lost) continue;
     values.push_back(outcome->value);
     controlled.push_back(outcome->value + outcome->control);
+    if (std::isfinite(outcome->first_half)) ++contrasts;
   }
   Look look;
   look.seeds = static_cast<int>(cohort.size());
@@ -34,6 +36,7 @@ Look look_at(std::span<const std::optional<Outcome>> cohort, StopRule& rule) {
   look.verdict = judgement.verdict;
   look.skewness = skewness(controlled);
   look.transient = has_transient(cohort);
+  look.untested = lacks_blocks(look.estimate.count, contrasts);
   return look;
 }
 

@@ -36,6 +36,7 @@ struct Look {
   double controlled_half_width = 0;  // the rule's: see stop_rule.h
   double skewness = std::numeric_limits<double>::quiet_NaN();  // of value + control
   bool transient = false;  // the beginning of the window differs from its end: see transient.h
+  bool untested = false;   // for transients: lacks_blocks(), see transient.h; made again, never stored
   Verdict verdict = Verdict::more;
 };
 

@@ -20,7 +20,7 @@ Json look_json(const Look& look) {
   json["uncontrolled"] = estimate_json(look.estimate);
   json["uncontrolled"]["half_width"] = number_json(look.half_width);
   json["skewness"] = number_json(look.skewness);
-  json["transient"] = look.transient;
+  json["transient"] = look.untested ? Json(nullptr) : Json(look.transient);
   json["verdict"] = to_string(look.verdict);
   return json;
 }

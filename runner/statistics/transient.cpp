@@ -9,13 +9,12 @@
 namespace peclet::runner {
 namespace {
 
-constexpr int fewest_seeds = 5;
 constexpr double confidence_of_each = 1 - 0.0005;
 
 // `scale` is the size of what was subtracted: a difference that rounding can make is none.
 bool differs_from_zero(const std::vector<double>& contrasts, double scale) {
   const Estimate mean = estimate(contrasts);
-  if (mean.count < fewest_seeds) return false;
+  if (mean.count < fewest_contrasts) return false;
   return std::abs(mean.mean) > student_half_width(mean, confidence_of_each) + 1e-9 * std::abs(scale);
 }
 

@@ -20,4 +20,13 @@ namespace peclet::runner {
 // (two tests at 0.05 % each). False for fewer than five seeds whose contrasts are known.
 bool has_transient(std::span<const std::optional<Outcome>> cohort);
 
+// Seeds whose contrasts must be known for a test.
+constexpr int fewest_contrasts = 5;
+
+// Whether there was no test because results have no blocks of the observable: of `values` realisations with a
+// value so few have `contrasts`. More seeds would not help.
+constexpr bool lacks_blocks(int values, int contrasts) {
+  return contrasts < fewest_contrasts && contrasts < values;
+}
+
 }  // namespace peclet::runner

@@ -14,6 +14,7 @@
 #include "contract/input_error.h"
 #include "runner/batch/bundles.h"
 #include "runner/campaign/campaign_file.h"
+#include "runner/care/periodic_backup.h"
 #include "runner/engines/engine_error.h"
 #include "runner/engines/stop_signals.h"
 #include "runner/events/progress.h"
@@ -99,16 +100,24 @@ BundleSettings bundle_settings(const HandOverOptions& options, OwnedCampaign& ow
 class Follower {
  public:
   Follower(Ledger& ledger, Bundles& bundles, RequestHandler& requests, Progress& progress,
-           const HandOverOptions& options)
+           const CampaignDirectory& directory, const HandOverOptions& options)
       : ledger_(ledger),
         bundles_(bundles),
         requests_(requests),
         progress_(progress),
         options_(options),
-        started_(Clock::now()) {}
+        started_(Clock::now()),
+        backup_(directory, std::chrono::duration<double>(options.backup_seconds), progress, started_) {}
 
   // True when every point is decided, false when a signal came first.
   bool run(const BundleSettings& settings) {
+    const bool finished = follow(settings);
+    backup_.finish();
+    return finished;
+  }
+
+ private:
+  bool follow(const BundleSettings& settings) {
     StopSignals signals;
     for (;;) {
       const Bundles::Settled settled = bundles_.settle();
@@ -117,6 +126,7 @@ class Follower {
       if (ledger_.scheduler().finished()) break;
       give_up_on_refusals(submit(settings));
       report(settled);
+      backup_.attend(Clock::now());
       if (wait(signals)) {
         progress_.note("stopped; jobs go on, and the same command or `peclet ingest` takes their results in");
         return false;
@@ -125,7 +135,6 @@ class Follower {
     return call_back(signals);
   }
 
- private:
   std::string submit(const BundleSettings& settings) {
     const std::string refusal = bundles_.submit_unconfirmed();
     return refusal.empty() ? bundles_.hand_over(settings) : refusal;
@@ -186,6 +195,7 @@ class Follower {
   Progress& progress_;
   const HandOverOptions& options_;
   Clock::time_point started_;
+  PeriodicBackup backup_;
   int results_ = 0, lifeless_turns_ = 0;
   std::string refusal_;
 };
@@ -263,7 +273,7 @@ int hand_over_campaign(const HandOverOptions& options) {
       if (!refusal.empty()) throw SubmissionRefused(refusal);
       return 0;
     }
-    finished = Follower(ledger, bundles, requests, progress, options).run(settings);
+    finished = Follower(ledger, bundles, requests, progress, owned.directory, options).run(settings);
     code = ending(read_status(owned.database), finished);
   }
   std::fputs(status_table(owned.database, getpid()).c_str(), stdout);

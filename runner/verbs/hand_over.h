@@ -23,7 +23,8 @@ struct HandOverOptions {
   bool ahead = false;
   bool dry_run = false;
   bool follow = false;
-  double interval = 30;  // seconds between two turns of --follow
+  double interval = 30;         // seconds between two turns of --follow
+  double backup_seconds = 600;  // between two backups of the database, with --follow
   bool quiet = false;
   bool force = false;  // use a network file system for the database all the same
 };

@@ -26,6 +26,7 @@ RUNNER = [
             "folder",
             "engines",
             "database",
+            "stores",
             "events",
             "owner",
             "requests",

@@ -2,41 +2,52 @@
 
 #include <algorithm>
 
+#include "runner/stores/engine_row.h"
+#include "runner/stores/point_store.h"
+#include "runner/stores/result_store.h"
+#include "runner/stores/seed_store.h"
+
 namespace peclet::runner {
 
 StoredCampaign::StoredCampaign(int points, int minimum, int maximum)
     : campaign_(plain_campaign(points, minimum, maximum, 0.05)),
-      database_(Database::open_owner(CampaignDirectory(folder_.path()).database())),
-      queue_(database_) {
-  queue_.adopt(campaign_);
+      database_(Database::open_owner(CampaignDirectory(folder_.path()).database())) {
+  PointStore(database_).adopt(campaign_);
 }
 
 void StoredCampaign::store(int point, const Json& result) {
   Transaction booking(database_.connection());
-  const std::int64_t engine = queue_.engine(plain_engine());
-  const std::int64_t attempt = queue_.begin_attempt(id(point), result["seed"].get<int>(), 1, 4711, engine);
-  queue_.store(parse_result(result.dump()), campaign_.target.observable);
-  queue_.end_attempt(attempt, {AttemptOutcome::result, 100});
+  const std::int64_t engine = engine_row(database_, plain_engine());
+  const std::int64_t attempt =
+      SeedStore(database_).begin_attempt(id(point), result["seed"].get<int>(), 1, 4711, engine);
+  ResultStore(database_).store(parse_result(result.dump()), campaign_.target.observable);
+  SeedStore(database_).end_attempt(attempt, {AttemptOutcome::result, 100});
   look(point);
   booking.commit();
 }
 
 void StoredCampaign::look(int point) {
-  queue_.store_looks(id(point), replay_looks(database_.outcomes(id(point)), campaign_.target,
-                                             campaign_.minimum_realisations, campaign_.maximum_realisations));
+  ResultStore(database_).store_looks(
+      id(point), replay_looks(database_.outcomes(id(point)), campaign_.target, campaign_.minimum_realisations,
+                              campaign_.maximum_realisations));
 }
 
 void StoredCampaign::set_tolerance(double tolerance) {
   campaign_.target.tolerance = tolerance;
-  queue_.adopt(campaign_);
+  PointStore(database_).adopt(campaign_);
   Transaction booking(database_.connection());
   for (int point = 0; point < static_cast<int>(campaign_.points.size()); ++point) look(point);
   booking.commit();
 }
 
 void StoredCampaign::complete(int point, int seed, double viscosity, const Json& warnings) {
+  complete_with(point, seed, viscosity, [&](Json& result) { result["warnings"] = warnings; });
+}
+
+void StoredCampaign::complete_with(int point, int seed, double viscosity,
+                                   const std::function<void(Json&)>& change) {
   Json result = plain_result(campaign_.points.at(static_cast<std::size_t>(point)).hash, seed, viscosity);
-  result["warnings"] = warnings;
+  change(result);
   store(point, result);
 }
 
@@ -52,7 +63,8 @@ void StoredCampaign::complete_in_halves(int point, int seed, double first, doubl
 
 void StoredCampaign::repeat(int point, int seed, double viscosity) {
   const std::string& hash = campaign_.points.at(static_cast<std::size_t>(point)).hash;
-  queue_.store(parse_result(plain_result(hash, seed, viscosity).dump()), campaign_.target.observable);
+  ResultStore(database_).store(parse_result(plain_result(hash, seed, viscosity).dump()),
+                               campaign_.target.observable);
 }
 
 void StoredCampaign::blow_up(int point, int seed) {
@@ -64,9 +76,11 @@ void StoredCampaign::blow_up(int point, int seed) {
 
 void StoredCampaign::crash(int point, int seed) {
   Transaction booking(database_.connection());
-  const std::int64_t attempt = queue_.begin_attempt(id(point), seed, 1, 4711, queue_.engine(plain_engine()));
-  queue_.end_attempt(attempt, {AttemptOutcome::crashed, 42, {}, "signal 11 (Segmentation fault)"});
-  queue_.quarantine(id(point), seed, "crashed");
+  const std::int64_t attempt =
+      SeedStore(database_).begin_attempt(id(point), seed, 1, 4711, engine_row(database_, plain_engine()));
+  SeedStore(database_).end_attempt(attempt,
+                                   {AttemptOutcome::crashed, 42, {}, "signal 11 (Segmentation fault)"});
+  SeedStore(database_).quarantine(id(point), seed, "crashed");
   look(point);
   booking.commit();
 }

@@ -1,10 +1,10 @@
 // A campaign whose database is filled by hand, for tests of those who only read it.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "runner/database/database.h"
-#include "runner/database/queue.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {
@@ -16,6 +16,8 @@ class StoredCampaign {
 
   // A result of plain_result(), with an attempt of its own, and the looks that it allows.
   void complete(int point, int seed, double viscosity, const Json& warnings = Json::array());
+  // The same after a change of the result.
+  void complete_with(int point, int seed, double viscosity, const std::function<void(Json&)>& change);
   // The same with a window whose halves differ; its control variate is zero.
   void complete_in_halves(int point, int seed, double first, double second);
   // As `peclet set --tolerance`, with the looks that follow.
@@ -37,7 +39,6 @@ class StoredCampaign {
   TemporaryFolder folder_;
   Campaign campaign_;
   Database database_;
-  Queue queue_;
 };
 
 }  // namespace peclet::runner

@@ -91,7 +91,25 @@ for name, change in {
     "mean NaN in words": setting("mean", "relative_viscosity", "NaN"),
     "mean with a name that moves the cursor": setting("mean", ESCAPE, 1),
     "mean with a name without end": setting("mean", "a" * 1_000_000, 1),
-    "control variates in a list": setting("mean", "control_variates", [1]),
+    "quantities in a list": setting("quantities", [1]),
+    "quantities in words": setting("quantities", {"relative_viscosity": "eta_r"}),
+    "quantity that is not there": setting(
+        "quantities", {"pressure": {"symbol": "P", "unit": "1", "estimator": "mean"}}
+    ),
+    "quantity whose unit moves the cursor": setting(
+        "quantities", {"relative_viscosity": {"symbol": "x", "unit": ESCAPE, "estimator": "mean"}}
+    ),
+    "quantity with an axis that its value lacks": setting(
+        "quantities",
+        {
+            "relative_viscosity": {
+                "symbol": "x",
+                "unit": "1",
+                "estimator": "mean",
+                "axes": [{"name": "r", "unit": "1", "values": [1, 2]}],
+            }
+        },
+    ),
     "control variate in words": setting("mean", "control_variates", "brownian_pairwise", "0"),
     "blocks in a list": setting("blocks", []),
     "blocks null": setting("blocks", None),

@@ -38,7 +38,7 @@ Scene scene_with(const char* observable, const Json& settings = Json::object(), 
 }
 
 std::unique_ptr<Observable> observable_of(const Scene& scene, const System& system, std::uint64_t steps) {
-  auto made = make_observables(scene, system, timestep, steps);
+  auto made = make_observables(scene, system, {timestep, steps, edge});
   EXPECT_EQ(made.size(), 1u);
   return std::move(made.front());
 }
@@ -101,7 +101,7 @@ class Flight : public testing::Test {
         system.particles.image[i] = {};
       }
       wrap_into_cell(system.particles, system.box);
-      observable.sample(system);
+      observable.sample(system, 0);
     }
   }
 };
@@ -181,7 +181,7 @@ TEST(PairDistribution, OfUniformPointsIsIdeal) {
     for (std::size_t i = 0; i < system.particles.count(); ++i) {
       system.particles.position.set(i, place_in_box(draws));
     }
-    observable->sample(system);
+    observable->sample(system, 0);
   }
   const Json mean = mean_of(*observable)["pair_distribution"];
   for (std::size_t k = 0; k < 40; ++k) {
@@ -206,7 +206,7 @@ TEST(PairDistribution, OfAPairInASmallBoxIsIdealUpToTheCornerOfItsFaces) {
     for (std::size_t i = 0; i < 2; ++i) {
       system.particles.position.set(i, place_in_box(draws));
     }
-    observable->sample(system);
+    observable->sample(system, 0);
   }
   const Json radial = mean_of(*observable)["pair_distribution"]["radial"];
   for (std::size_t k = 4; k < 28; ++k) {
@@ -221,7 +221,7 @@ TEST(PairDistribution, CountsAPairFromBothEnds) {
       observable_of(scene_with("pair_distribution", {{"range", 4}, {"bin", 1}, {"slab", 0.5}}), system, 256);
   system.particles.position.set(0, {9.5, 1, 0.2});
   system.particles.position.set(1, {1, 9.3, 9.8});  // across three faces: (1.5, -1.7, -0.4) from the first
-  observable->sample(system);
+  observable->sample(system, 0);
   const Json mean = mean_of(*observable)["pair_distribution"];
   EXPECT_EQ(mean["radial"]["counts"], Json({0, 0, 2, 0}));
   // Seen from the second it is (-1.5, 1.7, 0.4).
@@ -237,7 +237,7 @@ TEST(PairDistribution, RefusesARangeWhoseImagesAreNotUnique) {
   const System system = loose_spheres(2);
   for (const auto& [shear_rate, range] : {std::pair{0.3, 6}, std::pair{0.0, 8}}) {
     const Scene scene = scene_with("pair_distribution", {{"range", range}}, shear_rate);
-    EXPECT_THROW(check_observables(scene, system.box.lengths().x, timestep, 256, "scene.json"), InputError);
+    EXPECT_THROW(check_observables(scene, {timestep, 256, edge}, "scene.json"), InputError);
   }
 }
 
@@ -259,7 +259,7 @@ TEST(ContactNetwork, CountsContactsAndTheirMobilisation) {
     system.springs.set(p, {{0, first ? 0.175 : 0.0875, 0}, {}});  // all of 0.175, a quarter of 0.35
   }
   const auto observable = observable_of(scene, system, 256);
-  observable->sample(system);
+  observable->sample(system, 0);
   const Json mean = mean_of(*observable);
   EXPECT_NEAR(mean["mobilised_friction"].get<double>(), (1 + 0.25) / 2, 1e-12);
   EXPECT_EQ(mean["sliding_contacts"], 0.5);
@@ -267,6 +267,135 @@ TEST(ContactNetwork, CountsContactsAndTheirMobilisation) {
   const Json& mobilisation = mean["contact_network"]["mobilisation"];
   EXPECT_EQ(mobilisation[5].get<double>() + mobilisation[4].get<double>(), 0.5);  // 0.25 but for rounding
   EXPECT_EQ(mobilisation[19], 0.5);
+}
+
+// Contacts whose springs are half as long as they may be in the first quarter of the window, and all in the
+// others: their mean, and each block's.
+TEST(ContactNetwork, HasBlocks) {
+  const Scene scene = scene_with("contact_network");
+  System system = loose_spheres(2);
+  system.particles.position.set(0, {1, 1, 1});
+  system.particles.position.set(1, {3.9, 1, 1});
+  system.list = NeighbourList(range_table(make_pair_kinds(scene.physics, {1, 2}), 2), 0.1);
+  system.list.build(system.particles, system.box);
+  system.springs = SpringField(SpringKinds::tangential, system.list.pairs().size());
+  const auto observable = observable_of(scene, system, 256);
+  for (std::size_t block = 0; block < 32; ++block) {
+    system.springs.set(0, {{0, block < 8 ? 0.0875 : 0.175, 0}, {}});  // of 1.75 overlaps
+    if (block != 31) observable->sample(system, block);
+  }
+  Json blocks;
+  observable->add_blocks_to(blocks);
+  ASSERT_EQ(blocks["mobilised_friction"].size(), 32u);
+  EXPECT_NEAR(blocks["mobilised_friction"][7].get<double>(), 0.5, 1e-12);
+  EXPECT_NEAR(blocks["mobilised_friction"][8].get<double>(), 1, 1e-12);
+  EXPECT_TRUE(blocks["mobilised_friction"][31].is_null());  // without a sample
+  EXPECT_EQ(blocks["sliding_contacts"][7], 0);
+  EXPECT_EQ(blocks["sliding_contacts"][8], 1);
+  ASSERT_EQ(blocks["contact_network"]["mobilisation"].size(), 4u);
+  const Json& first = blocks["contact_network"]["mobilisation"][0];
+  EXPECT_EQ(first[9].get<double>() + first[10].get<double>(), 1);  // 0.5 but for rounding
+  EXPECT_EQ(blocks["contact_network"]["mobilisation"][3][19], 1);
+  EXPECT_EQ(blocks["contact_network"]["contacts"][0][1], 1);
+  EXPECT_NEAR(mean_of(*observable)["mobilised_friction"].get<double>(), (8 * 0.5 + 23) / 31, 1e-12);
+}
+
+TEST(PairDistribution, HasTheQuartersOfTheWindowUnlessTheyAreLong) {
+  System system = loose_spheres(2);
+  const auto blocks_of = [&](double bin) {
+    const auto observable = observable_of(
+        scene_with("pair_distribution", {{"range", 4}, {"bin", bin}, {"slab", 0.5}}), system, 256);
+    system.particles.position.set(0, {1, 1, 1});
+    system.particles.position.set(1, {3.5, 1, 1});
+    observable->sample(system, 0);
+    observable->sample(system, 7);
+    observable->sample(system, 24);
+    Json blocks = Json::object();
+    observable->add_blocks_to(blocks);
+    return blocks;
+  };
+  const Json radial = blocks_of(1)["pair_distribution"]["radial"];
+  EXPECT_EQ(radial["counts"], Json({{0, 0, 4, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 2, 0}}));
+  // N (N - 1) / V times the shell's volume and the number of samples.
+  const double shell = 4 * std::numbers::pi / 3 * (27 - 8);
+  EXPECT_NEAR(radial["ideal"][0][2].get<double>(), 2 * 2.0 / 1000 * shell, 1e-4 * shell);
+  EXPECT_EQ(radial["ideal"][1][2], 0);
+  EXPECT_TRUE(blocks_of(0.05).empty());  // 80 bins
+}
+
+double sphere(double radius) { return 4 * std::numbers::pi / 3 * radius * radius * radius; }
+
+// Bins of the box of edge 10 that are 2 wide: 200 of volume.
+Json profiles_of(const System& system, int bins = 5, double shear_rate = 0) {
+  const auto observable = observable_of(scene_with("profiles", {{"bins", bins}}, shear_rate), system, 256);
+  observable->sample(system, 0);
+  return mean_of(*observable)["profiles"];
+}
+
+// A sphere of radius 1 within one bin; one of radius 2 whose middle slab between -1 and 1 has the volume
+// pi (a^2 2 - 2 / 3), the rest in two equal caps.
+TEST(Profiles, GiveEachBinItsSlabOfASphere) {
+  System system = loose_spheres(2);
+  system.particles.position.set(0, {3, 1, 3});
+  system.particles.position.set(1, {7, 5, 7});
+  const Json phi = profiles_of(system)["volume_fraction"];
+  const double middle = std::numbers::pi * (8 - 2.0 / 3), cap = (sphere(2) - middle) / 2;
+  const double expected[] = {sphere(1), cap, middle, cap, 0};
+  for (std::size_t k = 0; k < 5; ++k) {
+    EXPECT_NEAR(phi[k].get<double>(), expected[k] / 200, 1e-14) << k;
+  }
+}
+
+TEST(Profiles, GoOnAtTheOtherSideOfTheBox) {
+  System system = loose_spheres(1);
+  system.particles.position.set(0, {3, 0, 3});
+  const Json phi = profiles_of(system)["volume_fraction"];
+  EXPECT_NEAR(phi[0].get<double>(), sphere(1) / 2 / 200, 1e-14);
+  EXPECT_NEAR(phi[4].get<double>(), sphere(1) / 2 / 200, 1e-14);
+  EXPECT_EQ(phi[2], 0);
+}
+
+TEST(Profiles, OfSpheresAnywhereAddUpToTheirVolume) {
+  System system = loose_spheres(40);
+  Draws draws(6);
+  for (std::size_t i = 0; i < 40; ++i) system.particles.position.set(i, place_in_box(draws));
+  for (const int bins : {1, 5, 7, 100}) {
+    double sum = 0;
+    const Json phi = profiles_of(system, bins)["volume_fraction"];
+    for (const Json& share : phi) sum += share.get<double>() / bins;
+    EXPECT_NEAR(sum, 20 * (sphere(1) + sphere(2)) / 1000, 1e-13) << bins;
+  }
+}
+
+// Layers of equal spheres two apart, whatever their height in the bins: every bin has one layer's volume.
+TEST(Profiles, OfAUniformLatticeAreUniform) {
+  for (const double offset : {0.0, 0.3, 1.7}) {
+    System system;
+    system.particles = make_particles(std::vector<double>(25, 1), 1);
+    system.box = ShearedBox({edge, edge, edge}, 0);
+    for (std::size_t i = 0; i < 25; ++i) {
+      system.particles.position.set(
+          i, {2.0 * static_cast<double>(i % 5), offset + 2.0 * static_cast<double>(i / 5), 5});
+    }
+    const Json phi = profiles_of(system)["volume_fraction"];
+    for (const Json& share : phi) {
+      EXPECT_NEAR(share.get<double>(), 5 * sphere(1) / 200, 1e-14) << offset;
+    }
+  }
+}
+
+// Relative to the flow the smaller sphere moves with 3, the larger one with -1; their volumes are 1 : 8.
+TEST(Profiles, HaveTheVelocityRelativeToTheFlowByVolume) {
+  constexpr double rate = 0.3;
+  System system = loose_spheres(2, rate);
+  system.particles.position.set(0, {3, 5, 3});
+  system.particles.position.set(1, {7, 5, 7});
+  for (std::size_t i = 0; i < 2; ++i) {
+    system.particles.velocity.set(i, {rate * 5 + (system.particles.radius[i] == 1 ? 3 : -1), 7, 8});
+  }
+  const Json velocity = profiles_of(system, 1, rate)["velocity"];
+  EXPECT_NEAR(velocity["flux"][0].get<double>() / velocity["volume_fraction"][0].get<double>(),
+              (3 * 1 - 1 * 8) / 9.0, 1e-13);
 }
 
 // A pair that both shells see has the stress -A n n with A = 2 * 20 kT / V, wherever n points: its traceless
@@ -283,7 +412,7 @@ TEST(StressCorrelation, OfAFrozenPairIsTheSquareOfItsTracelessStress) {
     system.list = NeighbourList(range_table(make_pair_kinds(scene.physics, {1, 2}), 2), 0.1);
     system.list.build(system.particles, system.box);
     const auto observable = observable_of(scene, system, 256);
-    for (int k = 0; k < 256; ++k) observable->sample(system);
+    for (int k = 0; k < 256; ++k) observable->sample(system, 0);
     const Json mean = mean_of(*observable);
     const Json& found = mean["stress_correlation"];
     EXPECT_GT(found["time"].size(), 16u);
@@ -315,8 +444,8 @@ TEST(StressCorrelation, IsIntegratedByTrapezia) {
   const System near = with_gap(0.01), far = with_gap(0.5);
   const auto observable = observable_of(scene, near, 256);
   for (int k = 0; k < 128; ++k) {
-    observable->sample(near);
-    observable->sample(far);
+    observable->sample(near, 0);
+    observable->sample(far, 0);
   }
   const Json found = mean_of(*observable)["stress_correlation"];
   const double sample = found["time"][1];
@@ -332,13 +461,14 @@ TEST(StressCorrelation, IsIntegratedByTrapezia) {
 
 TEST(Observables, AreAbsentUnlessAskedFor) {
   const System system = loose_spheres(2);
-  EXPECT_TRUE(make_observables(read_scene(small_scene(), "scene.json"), system, timestep, 256).empty());
+  EXPECT_TRUE(
+      make_observables(read_scene(small_scene(), "scene.json"), system, {timestep, 256, edge}).empty());
 }
 
 TEST(Observables, NeedAWindowWithSamples) {
   const Scene scene = scene_with("mean_squared_displacement", {{"interval", 20}});
-  EXPECT_THROW(check_observables(scene, edge, timestep, 256, "scene.json"), InputError);  // 7 samples
-  EXPECT_NO_THROW(check_observables(scene, edge, timestep, 281, "scene.json"));           // 8
+  EXPECT_THROW(check_observables(scene, {timestep, 256, edge}, "scene.json"), InputError);  // 7 samples
+  EXPECT_NO_THROW(check_observables(scene, {timestep, 281, edge}, "scene.json"));           // 8
 }
 
 }  // namespace

@@ -129,9 +129,91 @@ TEST(Result, BlocksHoldWhatFluctuatesAndNothingElse) {
   for (const auto& [term, series] : blocks.at("shear_stress").items()) terms.push_back(term);
   EXPECT_EQ(terms, (std::vector<std::string>{"brownian_structural", "contact_damping", "contact_normal",
                                              "friction", "lubrication", "repulsion"}));
-  EXPECT_EQ(blocks.size(), 10u);  // eight numbers, shear_stress and control_variates
+  // Eight numbers, shear_stress and control_variates; in quarters stress and both Brownian stresses.
+  EXPECT_EQ(blocks.size(), 13u);
   for (const Json& pressure : blocks.at("pressure")) {
     EXPECT_EQ(pressure.get<double>(), std::stod(fmt::format("{:.4e}", pressure.get<double>())));
+  }
+}
+
+// The quarters are eight blocks each, here of ten steps: xy in quarters is the mean of eight blocks.
+TEST(Result, TensorsHaveTheQuartersOfTheWindow) {
+  const Json& blocks = usual_result().at("blocks");
+  ASSERT_EQ(blocks.at("stress").at("total").size(), 4u);
+  for (std::size_t quarter = 0; quarter < 4; ++quarter) {
+    double sum = 0, largest_error = 0;
+    for (std::size_t k = 8 * quarter; k < 8 * quarter + 8; ++k) {
+      sum += blocks.at("relative_viscosity")[k].get<double>() / 8;
+      largest_error += 1e-4 / 8 * std::abs(blocks.at("relative_viscosity")[k].get<double>());
+    }
+    const Json& total = blocks.at("stress").at("total")[quarter];
+    ASSERT_EQ(total.size(), 6u);
+    EXPECT_NEAR(total[3].get<double>(), sum, largest_error) << quarter;
+  }
+  EXPECT_FALSE(blocks.at("stress").contains("solvent"));  // the same in every block
+}
+
+// Numbers along each axis of a value, and what it would be without them.
+std::vector<std::size_t> shape_of(const Json& value) {
+  std::vector<std::size_t> shape;
+  for (const Json* list = &value; list->is_array(); list = &list->front()) shape.push_back(list->size());
+  return shape;
+}
+
+const Json& at_path(const Json& document, const std::string& name) {
+  return document.at(Json::json_pointer('/' + name));
+}
+
+TEST(Result, DescribesItsQuantitiesAsTheyAre) {
+  const Json sheared = result_of(
+      {{"observables", {"stress", "mean_squared_displacement", "pair_distribution", "contact_network"}},
+       {"pair_distribution", {{"range", 3}}}});
+  const Json at_rest = result_of(
+      {{"flow", {{"shear_rate", 0}}}, {"observables", {"mean_squared_displacement", "stress_correlation"}}});
+  for (const Json& result : {sheared, at_rest}) {
+    for (const auto& [name, quantity] : result.at("quantities").items()) {
+      const Json& value = at_path(result.at("mean"), name);
+      const bool is_ratio = quantity.at("estimator") == "ratio";
+      std::vector<std::size_t> shape;
+      for (const Json& axis : quantity.value("axes", Json::array()))
+        shape.push_back(axis.at("values").size());
+      EXPECT_EQ(shape_of(is_ratio ? value.at(quantity.at("numerator")) : value), shape) << name;
+      EXPECT_FALSE(quantity.at("symbol").get<std::string>().empty()) << name;
+      EXPECT_FALSE(quantity.at("unit").get<std::string>().empty()) << name;
+      if (quantity.contains("control")) {
+        EXPECT_EQ(shape_of(at_path(result.at("mean"), quantity.at("control").at("quantity"))), shape) << name;
+      }
+      if (shape.empty() && result.at("blocks").contains(Json::json_pointer('/' + name))) {
+        EXPECT_GE(result.at("inefficiencies").at(name).get<double>(), 1) << name;
+      }
+    }
+  }
+  EXPECT_EQ(sheared.at("quantities").at("relative_viscosity"),
+            (Json{{"symbol", "eta_r"},
+                  {"unit", "1"},
+                  {"estimator", "mean"},
+                  {"control", {{"quantity", "control_variates/brownian_pairwise"}, {"mean", 0.0}}}}));
+  EXPECT_EQ(sheared.at("quantities").at("pressure").at("unit"), "viscosity * shear_rate");
+  EXPECT_EQ(at_rest.at("quantities").at("pressure").at("unit"), "stress");
+  EXPECT_FALSE(at_rest.at("quantities").contains("relative_viscosity"));
+}
+
+TEST(Result, AxesAreThoseOfTheLags) {
+  const Json result = result_of(
+      {{"flow", {{"shear_rate", 0}}}, {"observables", {"mean_squared_displacement", "stress_correlation"}}});
+  for (const char* name : {"mean_squared_displacement", "stress_correlation"}) {
+    const std::string vector = std::string(name) + (name[0] == 'm' ? "/all/y" : "/modulus");
+    EXPECT_EQ(result.at("quantities").at(vector).at("axes")[0].at("values"),
+              result.at("mean").at(name).at("time"))
+        << name;
+  }
+}
+
+TEST(Result, WithoutNoiseNothingHasAControlVariate) {
+  const Json result = result_of({{"fluid", {{"thermal_energy", 0}}}});
+  for (const auto& [name, quantity] : result.at("quantities").items()) {
+    EXPECT_FALSE(quantity.contains("control")) << name;
+    EXPECT_FALSE(name.starts_with("control_variates")) << name;
   }
 }
 

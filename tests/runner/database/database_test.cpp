@@ -8,8 +8,9 @@
 #include "contract/input_error.h"
 #include "contract/sha256.h"
 #include "runner/database/database_copy.h"
-#include "runner/database/queue.h"
 #include "runner/folder/being_set_up.h"
+#include "runner/stores/point_store.h"
+#include "runner/stores/result_store.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {
@@ -66,7 +67,7 @@ TEST_F(Databases, ANewerVersionAsksForANewerProgram) {
 TEST_F(Databases, DamageIsFoundWhenTheOwnerOpens) {
   {
     Database database = Database::open_owner(path());
-    Queue(database).adopt(plain_campaign(200, 4, 40, 0.05));
+    PointStore(database).adopt(plain_campaign(200, 4, 40, 0.05));
   }
   {
     std::fstream file(path(), std::ios::in | std::ios::out | std::ios::binary);
@@ -117,7 +118,7 @@ TEST_F(Databases, AViewInThePlaceOfATableIsDamage) {
 
 TEST_F(Databases, ViewsOfPeopleDoNoHarm) {
   Database owner = Database::open_owner(path());
-  Queue(owner).adopt(plain_campaign(1, 4, 40, 0.05));
+  PointStore(owner).adopt(plain_campaign(1, 4, 40, 0.05));
   owner.connection().execute("CREATE VIEW mine AS SELECT label FROM point");
   EXPECT_EQ(Database::open_reader(path()).points().size(), 1U);
 }
@@ -125,7 +126,7 @@ TEST_F(Databases, ViewsOfPeopleDoNoHarm) {
 // SQLite cannot begin its log anew while somebody reads an earlier state.
 TEST_F(Databases, TheLogShrinksWhenAReaderThatHeldItUpHasGone) {
   Database owner = Database::open_owner(path());
-  Queue(owner).adopt(plain_campaign(1, 4, 40, 0.05));
+  PointStore(owner).adopt(plain_campaign(1, 4, 40, 0.05));
   const auto write = [&owner](std::size_t bytes) {
     Statement(owner.connection(), "INSERT INTO event (at, kind, message) VALUES ('now', 'test', ?)")
         .bind(noise(bytes))
@@ -148,13 +149,13 @@ TEST_F(Databases, AReaderOfWhatIsOnlyJustBeingSetUpMayWait) {
   EXPECT_THROW(Database::open_reader(path()), BeingSetUp);
   Database owner = Database::open_owner(path());  // the tables, and no campaign yet
   EXPECT_THROW(Database::open_reader(path()), BeingSetUp);
-  Queue(owner).adopt(plain_campaign(1, 4, 40, 0.05));
+  PointStore(owner).adopt(plain_campaign(1, 4, 40, 0.05));
   EXPECT_NO_THROW(Database::open_reader(path()));
 }
 
 TEST_F(Databases, AReaderCannotWrite) {
   Database owner = Database::open_owner(path());
-  Queue(owner).adopt(plain_campaign(1, 4, 40, 0.05));
+  PointStore(owner).adopt(plain_campaign(1, 4, 40, 0.05));
   Database reader = Database::open_reader(path());
   EXPECT_THROW(reader.connection().execute("DELETE FROM point"), DatabaseError);
 }
@@ -167,12 +168,12 @@ TEST_F(Databases, AReaderOfNothingIsToldHowToStart) {
 TEST_F(Databases, AReaderSeesOneMomentWhileTheOwnerGoesOn) {
   Database owner = Database::open_owner(path());
   const Campaign campaign = plain_campaign(1, 4, 40, 0.05);
-  Queue queue(owner);
-  queue.adopt(campaign);
+  PointStore(owner).adopt(campaign);
   Database reader = Database::open_reader(path());
   const std::int64_t point = reader.points().at(0).id;
   EXPECT_EQ(reader.counts(point).done, 0);
-  queue.store(parse_result(plain_result(campaign.points[0].hash, 0, 11).dump()), "relative_viscosity");
+  ResultStore(owner).store(parse_result(plain_result(campaign.points[0].hash, 0, 11).dump()),
+                           "relative_viscosity");
   EXPECT_EQ(reader.counts(point).done, 0);
   EXPECT_EQ(Database::open_reader(path()).counts(point).done, 1);
 }
@@ -197,8 +198,7 @@ TEST_F(Databases, AnUncommittedTransactionLeavesNothing) {
 
 TEST_F(Databases, NumbersThatDoNotExistAreNull) {
   Database owner = Database::open_owner(path());
-  Queue queue(owner);
-  queue.adopt(plain_campaign(1, 4, 40, 0.05));
+  PointStore(owner).adopt(plain_campaign(1, 4, 40, 0.05));
   Look look;
   look.seeds = 4;
   look.lost = 3;
@@ -207,7 +207,7 @@ TEST_F(Databases, NumbersThatDoNotExistAreNull) {
   look.controlled = look.estimate;
   look.controlled_half_width = std::nan("");
   look.verdict = Verdict::more;
-  queue.store_looks(1, {look});
+  ResultStore(owner).store_looks(1, {look});
   EXPECT_EQ(owner.connection().integer(
                 "SELECT half_width IS NULL AND uncontrolled_half_width IS NULL FROM estimates"),
             1);

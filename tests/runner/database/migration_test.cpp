@@ -8,7 +8,6 @@
 #include "contract/input_error.h"
 #include "runner/database/campaign_sql.h"
 #include "runner/database/checked_look.h"
-#include "runner/database/queue.h"
 #include "runner/reports/export.h"
 #include "tests/runner/runner_fixture.h"
 

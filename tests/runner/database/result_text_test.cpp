@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "contract/integrity_error.h"
-#include "runner/database/queue.h"
+#include "runner/stores/point_store.h"
+#include "runner/stores/seed_store.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {
@@ -57,9 +58,8 @@ TEST(ResultText, OfABombIsAnErrorBeforeItHasGoneOff) {
 class StoredTexts : public testing::Test {
  protected:
   StoredTexts() {
-    Queue queue(database_);
-    queue.adopt(plain_campaign(1, 4, 40, 0.05));
-    queue.enqueue(1, 4);
+    PointStore(database_).adopt(plain_campaign(1, 4, 40, 0.05));
+    SeedStore(database_).enqueue(1, 4);
   }
   std::string text_of(int seed) {
     Statement query(

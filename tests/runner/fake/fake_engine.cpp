@@ -316,6 +316,7 @@ class Engine {
         {"units", "scene"},
         {"mean", {{"relative_viscosity", viscosity}, {"control_variates", {{"brownian_pairwise", nullptr}}}}},
         {"blocks", {{"relative_viscosity", std::vector<double>(32, viscosity)}}},
+        {"quantities", {{"relative_viscosity", {{"symbol", "eta_r"}, {"unit", "1"}, {"estimator", "mean"}}}}},
         {"statistical_inefficiency", 1},
         {"largest_overlap", 0},
         {"gate", nullptr},
@@ -332,7 +333,7 @@ class Engine {
     if (blown_up) {
       result["ending"] = {
           {"cause", "overlap"}, {"step", state.step}, {"message", "as asked"}, {"state", nullptr}};
-      result["mean"] = result["blocks"] = nullptr;
+      result["mean"] = result["blocks"] = result["quantities"] = nullptr;
     }
     return result;
   }

@@ -11,6 +11,7 @@
 #include "runner/folder/spool.h"
 #include "runner/owner/dispatcher.h"
 #include "runner/requests/request_handler.h"
+#include "runner/stores/point_store.h"
 #include "tests/runner/owner/scripted_pool.h"
 #include "tests/runner/runner_fixture.h"
 
@@ -52,7 +53,7 @@ class FullDatabase : public testing::Test {
  protected:
   FullDatabase() {
     create_folders(directory_);
-    Queue(database_).adopt(campaign_);
+    PointStore(database_).adopt(campaign_);
     ledger_.emplace(database_, campaign_, directory_, listener_, 2);
     pool_.result_size = 40'000;  // more than what is free in a page of the table of results
   }

@@ -5,6 +5,8 @@
 
 #include "contract/sha256.h"
 #include "runner/requests/request_handler.h"
+#include "runner/stores/point_store.h"
+#include "runner/stores/result_store.h"
 #include "tests/runner/owner/dispatcher_fixture.h"
 
 namespace peclet::runner {
@@ -22,13 +24,12 @@ class WorkingAhead : public Dispatching {
   // A campaign whose points are known to take so many seconds each.
   void become(const Campaign& campaign, const std::vector<double>& wall_seconds) {
     campaign_ = campaign;
-    Queue queue(database_);
-    queue.adopt(campaign_);
+    PointStore(database_).adopt(campaign_);
     for (std::size_t point = 0; point < wall_seconds.size(); ++point) {
       Json result = plain_result(campaign_.points[point].hash, 0, steady(0));
       result["cost"]["wall_seconds"] = wall_seconds[point];
       Transaction booking(database_.connection());
-      queue.store(parse_result(result.dump()), "relative_viscosity");
+      ResultStore(database_).store(parse_result(result.dump()), "relative_viscosity");
       booking.commit();
     }
   }
@@ -112,7 +113,7 @@ TEST_F(WorkingAhead, OnlyBehindJobsThatAreKnownToBeShort) {
 TEST_F(WorkingAhead, AWorkerAtALongPointHasNone) {
   become(plain_campaign(2, 8, 40, 0.05), {0.1, 3600});
   // Its seven seeds go first, so that the last of them runs beside a brief one.
-  Queue(database_).set_priority(database_.points()[1].id, 1);
+  PointStore(database_).set_priority(database_.points()[1].id, 1);
   const std::string& brief = campaign_.points[0].hash;
   bool saw_both = false;
   pool_.script = [&, this] {

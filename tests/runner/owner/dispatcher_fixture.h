@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runner/owner/dispatcher.h"
+#include "runner/stores/point_store.h"
 #include "tests/runner/owner/scripted_pool.h"
 #include "tests/runner/runner_fixture.h"
 
@@ -21,7 +22,7 @@ class Dispatching : public testing::Test {
  protected:
   Dispatching() {
     create_folders(directory_);
-    Queue(database_).adopt(campaign_);
+    PointStore(database_).adopt(campaign_);
   }
 
   Dispatcher::Ending run() {

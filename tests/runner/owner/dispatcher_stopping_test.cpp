@@ -1,6 +1,7 @@
 // How runs end: by signals, by the time limit, and when everything is decided.
 #include <chrono>
 
+#include "runner/stores/point_store.h"
 #include "tests/runner/owner/dispatcher_fixture.h"
 
 namespace peclet::runner {
@@ -72,7 +73,7 @@ TEST_F(Dispatching, AResultThatComesDuringADrainIsStored) {
 
 TEST_F(Dispatching, SurplusSeedsAreCheckpointedWhenTheCampaignIsDecided) {
   campaign_ = plain_campaign(1, 2, 40, 0.05);
-  Queue(database_).adopt(campaign_);
+  PointStore(database_).adopt(campaign_);
   // One at a time: the worker that is free first runs ahead.
   pool_.script = [this] {
     for (int worker = 0; worker < 2; ++worker) {

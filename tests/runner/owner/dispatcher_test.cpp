@@ -5,6 +5,8 @@
 #include "contract/input_error.h"
 #include "runner/engines/engine_error.h"
 #include "runner/folder/spool.h"
+#include "runner/stores/point_store.h"
+#include "runner/stores/result_store.h"
 #include "tests/runner/owner/dispatcher_fixture.h"
 
 namespace peclet::runner {
@@ -142,8 +144,8 @@ TEST_F(Dispatching, WordsAboutSomebodyElsesJobEndTheWorker) {
 }
 
 TEST_F(Dispatching, AnotherEngineIsRefusedForAPointWithResults) {
-  Queue(database_).store(parse_result(plain_result(campaign_.points[0].hash, 0, 10, "old").dump()),
-                         "relative_viscosity");
+  ResultStore(database_).store(parse_result(plain_result(campaign_.points[0].hash, 0, 10, "old").dump()),
+                               "relative_viscosity");
   pool_.identity = "new";
   try {
     run();
@@ -178,7 +180,7 @@ TEST_F(Dispatching, AnEngineThatNeverSaysHelloEndsTheRun) {
 
 TEST_F(Dispatching, AMissingObservableIsSaidAfterTheResultIsSafe) {
   campaign_.target.observable = "colour";
-  Queue(database_).adopt(campaign_);
+  PointStore(database_).adopt(campaign_);
   pool_.script = [this] { finish_all(); };
   try {
     run();

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "contract/input_error.h"
+#include "runner/reports/export.h"
 #include "runner/reports/status.h"
 #include "tests/runner/stored_campaign.h"
 
@@ -88,6 +89,22 @@ TEST(Explain, AWindowThatBeginsTooEarlyIsATransient) {
   const std::string steady = explain(campaign.database(), campaign.directory(), "point=1");
   EXPECT_FALSE(says(steady, "transient")) << steady;
   EXPECT_TRUE(status_json(read_status(campaign.database()))["points"][0]["look"]["transient"]);
+}
+
+// Results whose blocks are gone: the verdict stands, and says what could not be looked at.
+TEST(Explain, WithoutBlocksNoTransientTestIsSaidNotToHaveBeenPossible) {
+  StoredCampaign campaign(1, 4, 20);
+  for (int seed = 0; seed < 4; ++seed) {
+    campaign.complete_with(0, seed, 10 + 0.1 * (seed % 2),
+                           [](Json& result) { result["blocks"] = Json::object(); });
+  }
+  const std::string text = explain(campaign.database(), campaign.directory(), "point=0");
+  EXPECT_TRUE(says(text, "converged, no-transient-test")) << text;
+  EXPECT_TRUE(says(text, "no test was possible, because the results have no blocks of relative_viscosity"))
+      << text;
+  EXPECT_TRUE(status_json(read_status(campaign.database()))["points"][0]["look"]["transient"].is_null());
+  EXPECT_TRUE(parse_json(export_json(campaign.database(), true), "export")["points"][0]["look"]["transient"]
+                  .is_null());
 }
 
 TEST(Explain, AnEstimateHasABootstrapIntervalAndAdviceOnItsWindow) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <sstream>
 
 #include "tests/runner/stored_campaign.h"
 
@@ -81,13 +82,14 @@ TEST(Export, EstimatesAreOverTheSeedsOfTheLook) {
   EXPECT_EQ(point["realisations"].size(), 4U);
   // Sample variance (0.1^2 + 0.1^2) / 3; plain_result() has the pressure at twice the viscosity.
   const double standard_error = std::sqrt(0.02 / 3 / 4);
-  const Json& viscosity = point["estimates"]["/relative_viscosity"];
+  const Json& viscosity = point["quantities"]["relative_viscosity"];
   EXPECT_EQ(viscosity["count"], 4);
-  EXPECT_NEAR(viscosity["mean"].get<double>(), 10, 1e-12);
+  EXPECT_NEAR(viscosity["mean"].get<double>(), 10.25, 1e-12);
+  EXPECT_NEAR(viscosity["uncontrolled"]["mean"].get<double>(), 10, 1e-12);
   EXPECT_NEAR(viscosity["standard_error"].get<double>(), standard_error, 1e-12);
-  EXPECT_NEAR(point["estimates"]["/pressure"]["mean"].get<double>(), 20, 1e-12);
-  EXPECT_NEAR(point["estimates"]["/pressure"]["standard_error"].get<double>(), 2 * standard_error, 1e-12);
-  EXPECT_EQ(point["estimates"]["/control_variates/brownian_pairwise"]["mean"], 0.25);
+  EXPECT_NEAR(point["quantities"]["pressure"]["mean"].get<double>(), 20, 1e-12);
+  EXPECT_NEAR(point["quantities"]["pressure"]["standard_error"].get<double>(), 2 * standard_error, 1e-12);
+  EXPECT_EQ(point["quantities"]["control_variates/brownian_pairwise"]["mean"], 0.25);
   EXPECT_EQ(exported(campaign, false)["points"][0]["surplus"][0]["seed"], 4);
 }
 
@@ -102,7 +104,7 @@ TEST(Export, LostSeedsAreThereWithTheirCauseAndWithoutNumbers) {
   EXPECT_EQ(point["realisations"][4]["ending"]["cause"], "overlap");
   EXPECT_TRUE(point["realisations"][4]["mean"].is_null());
   EXPECT_EQ(point["realisations"][5]["ending"]["cause"], "crashed");
-  EXPECT_EQ(point["estimates"]["/relative_viscosity"]["count"], 4);
+  EXPECT_EQ(point["quantities"]["relative_viscosity"]["count"], 4);
 }
 
 TEST(Export, APointBeforeItsFirstLookHasNoEstimates) {
@@ -112,7 +114,7 @@ TEST(Export, APointBeforeItsFirstLookHasNoEstimates) {
   EXPECT_TRUE(canonical["look"].is_null());
   EXPECT_TRUE(canonical["verdict"].is_null());
   EXPECT_TRUE(canonical["realisations"].empty());
-  EXPECT_TRUE(canonical["estimates"].empty());
+  EXPECT_TRUE(canonical["quantities"].empty());
   EXPECT_EQ(exported(campaign, false)["points"][0]["surplus"].size(), 3U);
 }
 
@@ -141,11 +143,11 @@ TEST(Export, TheEstimateThatDecidesIsTheMeanEverywhere) {
   const std::string csv = export_csv(database, true);
   const std::string row = csv.substr(csv.find('\n') + 1);
   const std::string wanted =
-      fmt::format(",converged,4,0,4,{},{},{},{},{},{}\n", canonical_json(look.controlled.mean),
+      fmt::format(",converged,4,0,4,{},{},{},{},{},{},", canonical_json(look.controlled.mean),
                   canonical_json(look.controlled.standard_error), canonical_json(look.controlled_half_width),
                   canonical_json(look.estimate.mean), canonical_json(look.estimate.standard_error),
                   canonical_json(look.half_width));
-  EXPECT_TRUE(row.ends_with(wanted)) << row << wanted;
+  EXPECT_NE(row.find(wanted), std::string::npos) << row << wanted;
   const Json json = exported(campaign, true)["points"][0]["look"];
   EXPECT_EQ(json["mean"], look.controlled.mean);
   EXPECT_EQ(json["half_width"], look.controlled_half_width);
@@ -159,12 +161,73 @@ TEST(Export, CsvHasARowPerPointWithEmptyFieldsForWhatDoesNotExist) {
   const std::string csv = export_csv(campaign.database(), true);
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "label,hash,/point,verdict,seeds,lost,count,mean,standard_error,half_width,uncontrolled_mean,"
-            "uncontrolled_standard_error,uncontrolled_half_width");
+            "uncontrolled_standard_error,uncontrolled_half_width,"
+            "control_variates/brownian_pairwise,control_variates/brownian_pairwise standard_error,"
+            "control_variates/brownian_pairwise count,pressure,pressure standard_error,pressure count,"
+            "relative_viscosity,relative_viscosity standard_error,relative_viscosity count");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
   EXPECT_NE(csv.find("\npoint=0,"), std::string::npos);
   EXPECT_NE(csv.find(",0,converged,4,0,4,"), std::string::npos) << csv;
   EXPECT_NE(csv.find("\n\"a, \"\"b\"\"\","), std::string::npos) << csv;
-  EXPECT_TRUE(csv.ends_with(",1,,,,,,,,,,\n")) << csv;
+  EXPECT_TRUE(csv.ends_with(",1,,,,,,,,,,,,,,,,,,,\n")) << csv;
+  EXPECT_NE(csv.find(",0.25,0,4,20,"), std::string::npos) << csv;  // control variate and pressure
+}
+
+// Seeds whose profile is (v, 2 v) and whose ratio is v over 2, all with the same unit but the ratio.
+TEST(Export, TheLongTableHasARowForEveryNumber) {
+  StoredCampaign campaign(2, 4, 20);
+  const auto add = [](Json& result, double v) {
+    result["mean"]["profile"] = {v, 2 * v};
+    result["mean"]["g"] = {{"counts", {v}}, {"ideal", 2}};
+    const Json y = {{{"name", "y"}, {"unit", "length"}, {"values", {0.5, 1.5}}}};
+    const Json r = {{{"name", "r"}, {"unit", "radius"}, {"values", {"all"}}}};
+    result["quantities"] = {
+        {"relative_viscosity", {{"symbol", "eta_r"}, {"unit", "1"}, {"estimator", "mean"}}},
+        {"pressure", {{"symbol", "P"}, {"unit", "stress"}, {"estimator", "mean"}}},
+        {"profile", {{"symbol", "u"}, {"unit", "length / time"}, {"estimator", "mean"}, {"axes", y}}},
+        {"g",
+         {{"symbol", "g(r)"},
+          {"unit", "1"},
+          {"estimator", "ratio"},
+          {"numerator", "counts"},
+          {"denominator", "ideal"},
+          {"axes", r}}}};
+  };
+  for (int seed = 0; seed < 4; ++seed) {
+    campaign.complete_with(0, seed, viscosities[seed], [&](Json& result) { add(result, viscosities[seed]); });
+  }
+  const std::string table = export_long_csv(campaign.database());
+  const std::string hash = campaign.database().points().at(0).hash;
+  // Sample variance 0.02 / 3 of four values of mean 10.
+  const double error = std::sqrt(0.02 / 3 / 4), half = 3.182446305 * error;
+  std::istringstream lines(table);
+  std::vector<std::vector<std::string>> rows;
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<std::string> fields;
+    std::istringstream cells(line + ",");
+    for (std::string cell; std::getline(cells, cell, ',');) fields.push_back(cell);
+    rows.push_back(fields);
+  }
+  EXPECT_EQ(rows.at(0), (std::vector<std::string>{"label", "hash", "/point", "quantity", "symbol", "unit",
+                                                  "estimator", "axis_1", "axis_1_unit", "axis_1_value",
+                                                  "count", "mean", "standard_error", "half_width",
+                                                  "uncontrolled_mean", "uncontrolled_standard_error"}));
+  ASSERT_EQ(rows.size(), 1U + 5U);  // g, pressure, profile twice, viscosity
+  const std::vector<std::string>& profile = rows[4];
+  EXPECT_EQ((std::vector<std::string>(profile.begin(), profile.begin() + 11)),
+            (std::vector<std::string>{"point=0", hash, "0", "profile", "u", "length / time", "mean", "y",
+                                      "length", "1.5", "4"}));
+  EXPECT_NEAR(std::stod(profile[11]), 20, 1e-12);
+  EXPECT_NEAR(std::stod(profile[12]), 2 * error, 1e-12);
+  EXPECT_NEAR(std::stod(profile[13]), 2 * half, 1e-8);
+  EXPECT_EQ(rows[1][3], "g");
+  EXPECT_EQ(rows[1][6], "ratio");
+  EXPECT_EQ(rows[1][9], "all");
+  EXPECT_NEAR(std::stod(rows[1][11]), 5, 1e-12);
+  EXPECT_NEAR(std::stod(rows[1][12]), error / 2, 1e-12);
+  const std::string csv = export_csv(campaign.database(), true);
+  EXPECT_NE(csv.find(",pressure [stress],pressure [stress] standard_error,"), std::string::npos) << csv;
+  EXPECT_EQ(csv.find("profile"), std::string::npos);
 }
 
 TEST(Export, NoTextOfACsvIsAFormulaOfASpreadsheet) {

@@ -51,7 +51,7 @@ class Elsewhere(unittest.TestCase):
                 self.assertEqual((int(seeds), verdict), (point["look"]["seeds"], "converged"))
                 # Of the same seeds, summed in another order.
                 self.assertAlmostEqual(
-                    float(mean) / point["estimates"]["/" + OBSERVABLE]["mean"], 1, places=12, msg=label
+                    float(mean) / point["quantities"][OBSERVABLE]["uncontrolled"]["mean"], 1, places=12, msg=label
                 )
 
 

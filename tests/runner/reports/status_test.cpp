@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "runner/reports/explain.h"
+#include "runner/stores/point_store.h"
 #include "tests/runner/stored_campaign.h"
 
 namespace peclet::runner {
@@ -53,7 +54,7 @@ TEST(Status, APointThatWasCancelledIsNeitherOpenNorASuccess) {
   StoredCampaign campaign(2, 4, 20);
   four_values(campaign, 0, 0.1);
   const std::int64_t second = campaign.database().points().at(1).id;
-  Queue(campaign.database()).set_cancelled(second, true);
+  PointStore(campaign.database()).set_cancelled(second, true);
   const CampaignStatus status = read_status(campaign.database());
   EXPECT_EQ(standing(status), 3);
   EXPECT_EQ(verdict_text(status.points.at(1)), "cancelled");
@@ -65,7 +66,7 @@ TEST(Status, APointThatWasCancelledIsNeitherOpenNorASuccess) {
 TEST(Status, ACancelledPointThatHadConvergedIsASuccess) {
   StoredCampaign campaign(1, 4, 20);
   four_values(campaign, 0, 0.1);
-  Queue(campaign.database()).set_cancelled(1, true);
+  PointStore(campaign.database()).set_cancelled(1, true);
   const CampaignStatus status = read_status(campaign.database());
   EXPECT_EQ(standing(status), 0);
   EXPECT_EQ(verdict_text(status.points.at(0)), "converged, cancelled");

@@ -13,6 +13,10 @@
 #include "runner/reports/explain.h"
 #include "runner/reports/export.h"
 #include "runner/reports/status.h"
+#include "runner/stores/engine_row.h"
+#include "runner/stores/point_store.h"
+#include "runner/stores/result_store.h"
+#include "runner/stores/seed_store.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {
@@ -30,7 +34,7 @@ class CarryingOut : public testing::Test {
                  {"target", {{"relative_tolerance", 0.05}}},
                  {"realisations", {{"minimum", 8}, {"maximum", 40}}}};
     write();
-    Queue(database_).adopt(read_campaign(file()));
+    PointStore(database_).adopt(read_campaign(file()));
     begin();
   }
 
@@ -61,23 +65,22 @@ class CarryingOut : public testing::Test {
   std::string hash(int place) { return database_.points().at(static_cast<std::size_t>(place)).hash; }
 
   void store(int place, int seed, double viscosity, const std::string& engine = "engine") {
-    Queue(database_).store(parse_result(plain_result(hash(place), seed, viscosity, engine).dump()),
-                           "relative_viscosity");
+    ResultStore(database_).store(parse_result(plain_result(hash(place), seed, viscosity, engine).dump()),
+                                 "relative_viscosity");
   }
   void crash_three_times(int place, int seed) {
-    Queue queue(database_);
     for (int i = 0; i < 3; ++i) {
       const std::int64_t attempt =
-          queue.begin_attempt(id(place), seed, 0, 4711, queue.engine(plain_engine()));
-      queue.end_attempt(attempt, {AttemptOutcome::crashed, 5});
+          SeedStore(database_).begin_attempt(id(place), seed, 0, 4711, engine_row(database_, plain_engine()));
+      SeedStore(database_).end_attempt(attempt, {AttemptOutcome::crashed, 5});
     }
-    queue.quarantine(id(place), seed, "crashed");
+    SeedStore(database_).quarantine(id(place), seed, "crashed");
   }
   void blow_up(int place, int seed) {
     Json result = plain_result(hash(place), seed, 0);
     result["ending"]["cause"] = "overlap";
     result["mean"] = result["blocks"] = nullptr;
-    Queue(database_).store(parse_result(result.dump()), "relative_viscosity");
+    ResultStore(database_).store(parse_result(result.dump()), "relative_viscosity");
   }
 
   TemporaryFolder folder_;
@@ -144,7 +147,8 @@ TEST_F(CarryingOut, AnObservableThatResultsLackIsRefusedAndNothingIsHalfDone) {
   document_["sweep"][0]["values"] = {1};
   write();
   const std::string said = ask(file_as_it_is());
-  EXPECT_NE(said.find("/target/observable: colour: must be a number that the results have: pressure"),
+  EXPECT_NE(said.find("/target/observable: colour: must be a number that the results have: "
+                      "control_variates/brownian_pairwise, pressure, "),
             std::string::npos)
       << said;
   EXPECT_EQ(database_.points().size(), 2U);
@@ -211,7 +215,7 @@ TEST_F(CarryingOut, ARetryQueuesWhatWasGivenUpWithACleanRecord) {
   EXPECT_EQ(count("realisation WHERE state = 'quarantined'"), 0);
   EXPECT_EQ(count("realisation WHERE state = 'failed'"), 1);
   EXPECT_EQ(count("attempt WHERE pardoned = 1"), 6);
-  EXPECT_TRUE(Queue(database_).history(id(0), 2).empty());
+  EXPECT_TRUE(SeedStore(database_).history(id(0), 2).empty());
   EXPECT_EQ(database_.attempts(id(0)).size(), 3U);  // nothing is erased
   EXPECT_EQ(ask(Retry{{"peclet=1"}, {}}), "retry: no seed was given up: there is nothing to retry");
 }
@@ -332,7 +336,7 @@ TEST_F(CarryingOut, RequestsAreInOrderOfTime) {
 TEST_F(CarryingOut, AnEngineThatIsAcceptedStartsAfreshBesideTheOld) {
   for (int seed = 0; seed < 3; ++seed) store(0, seed, 10, "old");
   for (int seed = 0; seed < 8; ++seed) store(1, seed, seed % 2 == 0 ? 10 : 10.5, "old");
-  Queue(database_).set_priority(id(0), 4);
+  PointStore(database_).set_priority(id(0), 4);
   begin();
   EXPECT_THROW(ledger_->admit_engine(plain_engine("new")), OtherEngine);
   write_durably(directory_.checkpoint(hash(0), 5), "of the old engine");

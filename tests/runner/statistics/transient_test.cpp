@@ -65,5 +65,14 @@ TEST(Transient, OfLostOrUnknownSeedsIsNone) {
   EXPECT_FALSE(has_transient(Outcomes(20, Outcome{Outcome::Kind::value, 0.3, 0, 0.1 + 0.2, 0.3})));
 }
 
+TEST(Transient, CannotBeTestedWhereFewResultsHaveBlocks) {
+  EXPECT_TRUE(lacks_blocks(20, 0));
+  EXPECT_TRUE(lacks_blocks(20, 4));
+  EXPECT_TRUE(lacks_blocks(3, 0));
+  EXPECT_FALSE(lacks_blocks(20, 5));
+  EXPECT_FALSE(lacks_blocks(3, 3));  // more seeds will do
+  EXPECT_FALSE(lacks_blocks(0, 0));
+}
+
 }  // namespace
 }  // namespace peclet::runner

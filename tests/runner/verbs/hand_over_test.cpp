@@ -95,6 +95,19 @@ TEST_F(HandOver, WhoFollowsCarriesOutWhatIsAskedForWithoutWaitingForTheNextTurn)
   EXPECT_EQ(count("SELECT total(blamed) FROM attempt"), 0);
 }
 
+TEST_F(HandOver, WhoFollowsMakesBackups) {
+  ASSERT_EQ(hand_over(), 0);
+  for (int index = 0; index < tasks; ++index) ASSERT_EQ(run_task(1, index), 0);
+  options.follow = true;
+  options.interval = 0.01;
+  ASSERT_EQ(hand_over(), 0);
+  const fs::path backup = campaign_directory(options.campaign, {}).backup() / "backup.db";
+  ASSERT_TRUE(fs::exists(backup));
+  EXPECT_EQ(Database::open_reader(backup).connection().integer(
+                "SELECT count(*) FROM realisation WHERE state = 'done'"),
+            10);
+}
+
 TEST_F(HandOver, AnArrayIsNotLargerThanAsked) {
   options.largest_array = 2;
   ASSERT_EQ(hand_over(), 0);

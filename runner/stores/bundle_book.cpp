@@ -1,4 +1,4 @@
-#include "runner/database/bundle_book.h"
+#include "runner/stores/bundle_book.h"
 
 namespace peclet::runner {
 

@@ -1,9 +1,11 @@
-// Queue::adopt(): what a campaign file means for a database that may have seen earlier versions of it.
+#include "runner/stores/point_store.h"
+
 #include <fmt/format.h>
 
 #include "contract/input_error.h"
-#include "runner/database/queue.h"
 #include "runner/database/result_text.h"
+#include "runner/folder/realisation_result.h"
+#include "runner/statistics/quantities.h"
 
 namespace peclet::runner {
 namespace {
@@ -17,13 +19,13 @@ std::string describe(const Campaign& campaign) {
 
 }  // namespace
 
-void Queue::adopt(const Campaign& campaign) {
+void PointStore::adopt(const Campaign& campaign) {
   Transaction adoption(connection_);
   take_over(campaign);
   adoption.commit();
 }
 
-void Queue::take_over(const Campaign& campaign) {
+void PointStore::take_over(const Campaign& campaign) {
   const std::string before =
       connection_.text("SELECT observable FROM campaign JOIN target USING (target_id)");
   const std::int64_t target = adopt_target(campaign);
@@ -41,10 +43,10 @@ void Queue::take_over(const Campaign& campaign) {
       .bind(document)
       .bind(target)
       .run();
-  if (!unchanged) event("campaign", std::nullopt, std::nullopt, describe(campaign));
+  if (!unchanged) events_.write("campaign", std::nullopt, std::nullopt, describe(campaign));
 }
 
-std::int64_t Queue::adopt_target(const Campaign& campaign) {
+std::int64_t PointStore::adopt_target(const Campaign& campaign) {
   const Target& target = campaign.target;
   const char* const parts[] = {
       "INSERT OR IGNORE INTO target (observable, criterion, confidence, minimum, maximum, "
@@ -65,7 +67,7 @@ std::int64_t Queue::adopt_target(const Campaign& campaign) {
   return id;
 }
 
-void Queue::adopt_points(const Campaign& campaign) {
+void PointStore::adopt_points(const Campaign& campaign) {
   connection_.execute("UPDATE point SET place = NULL");
   Statement place(
       connection_,
@@ -83,7 +85,7 @@ void Queue::adopt_points(const Campaign& campaign) {
 }
 
 // Another observable: its value is taken from the results that are there.
-void Queue::observe_again(const Campaign& campaign) {
+void PointStore::observe_again(const Campaign& campaign) {
   Statement done(
       connection_,
       "SELECT point_id, seed, document, dictionary.text, place FROM result JOIN realisation USING (point_id, "
@@ -98,7 +100,7 @@ void Queue::observe_again(const Campaign& campaign) {
     const Observed observed = observe(document, campaign.target.observable);
     if (!done.is_null(4) && !has_observable(document.at("mean"), campaign.target.observable)) {
       throw InputError(campaign.name, "/target/observable", campaign.target.observable,
-                       "must be a number that the results have: " + names_of_numbers(document.at("mean")));
+                       "must be a number that the results have: " + names_of_targets(document));
     }
     change.bind(to_string(observed.value ? SeedState::done : SeedState::failed))
         .bind(observed.value ? "completed" : no_value)
@@ -110,6 +112,41 @@ void Queue::observe_again(const Campaign& campaign) {
         .bind(done.integer(1))
         .run();
   }
+}
+
+void PointStore::set_priority(std::int64_t point, int priority) {
+  Statement(connection_, "UPDATE point SET priority = ? WHERE point_id = ?").bind(priority).bind(point).run();
+}
+
+void PointStore::set_cancelled(std::int64_t point, bool cancelled) {
+  Statement(connection_, "UPDATE point SET cancelled = ? WHERE point_id = ?")
+      .bind(cancelled)
+      .bind(point)
+      .run();
+}
+
+void PointStore::keep_apart(const PointRecord& point, const std::string& engine) {
+  Statement(connection_, "UPDATE point SET place = NULL, kept_apart = 1 WHERE point_id = ?")
+      .bind(point.id)
+      .run();
+  // What the engine did for the scene before, if it did, is the campaign's again. The row is the engine's
+  // from now on, not only from its first result on: the one that was replaced must not take it up.
+  Statement(connection_,
+            "INSERT INTO point (hash, scene, settings, label, place, engine_identity, priority, cancelled) "
+            "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8) ON CONFLICT (hash, engine_identity) DO UPDATE SET "
+            "kept_apart = 0, settings = ?3, label = ?4, place = ?5, priority = ?7, cancelled = ?8")
+      .bind(point.hash)
+      .bind(canonical_json(point.scene))
+      .bind(canonical_json(point.settings))
+      .bind(point.label)
+      .bind(*point.place)
+      .bind(engine)
+      .bind(point.priority)
+      .bind(point.cancelled)
+      .run();
+  events_.write("engine-accepted", point.id, std::nullopt,
+                fmt::format("results of engine {} are kept apart; engine {} takes the point up",
+                            point.engine_identity, engine));
 }
 
 }  // namespace peclet::runner

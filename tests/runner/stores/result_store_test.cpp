@@ -1,33 +1,38 @@
-#include "runner/database/queue.h"
+
+#include "runner/stores/result_store.h"
 
 #include <gtest/gtest.h>
 
 #include "contract/input_error.h"
 #include "runner/database/result_text.h"
+#include "runner/stores/engine_row.h"
+#include "runner/stores/point_store.h"
+#include "runner/stores/seed_store.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {
 namespace {
 
-class Queues : public testing::Test {
+class Stores : public testing::Test {
  protected:
-  Queues() { queue_.adopt(campaign_); }
+  Stores() { PointStore(database_).adopt(campaign_); }
 
-  Stored offer(const Json& result) { return queue_.store(parse_result(result.dump()), "relative_viscosity"); }
+  Stored offer(const Json& result) {
+    return ResultStore(database_).store(parse_result(result.dump()), "relative_viscosity").what;
+  }
   const std::string& hash(int point = 0) const {
     return campaign_.points[static_cast<std::size_t>(point)].hash;
   }
   std::int64_t begin(int seed) {
-    return queue_.begin_attempt(1, seed, 0, 4711, queue_.engine(plain_engine()));
+    return SeedStore(database_).begin_attempt(1, seed, 0, 4711, engine_row(database_, plain_engine()));
   }
 
   TemporaryFolder folder_;
   Campaign campaign_ = plain_campaign(2, 4, 40, 0.05);
   Database database_ = Database::open_owner(folder_.path() / "campaign.db");
-  Queue queue_{database_};
 };
 
-TEST_F(Queues, AResultIsStoredWholeAndInColumns) {
+TEST_F(Stores, AResultIsStoredWholeAndInColumns) {
   const Json result = plain_result(hash(), 3, 12.5);
   EXPECT_EQ(offer(result), Stored::stored);
   const RealisationRecord record = database_.realisations(1).at(0);
@@ -40,7 +45,7 @@ TEST_F(Queues, AResultIsStoredWholeAndInColumns) {
   EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM realisations WHERE label = 'point=0'"), 1);
 }
 
-TEST_F(Queues, ABlowUpIsAnOutcomeAndNeverANumber) {
+TEST_F(Stores, ABlowUpIsAnOutcomeAndNeverANumber) {
   Json result = plain_result(hash(), 0, 12.5);
   result["ending"]["cause"] = "overlap";
   result["mean"] = result["blocks"] = nullptr;
@@ -50,7 +55,7 @@ TEST_F(Queues, ABlowUpIsAnOutcomeAndNeverANumber) {
   EXPECT_EQ(database_.outcomes(1).at(0)->kind, Outcome::Kind::lost);
 }
 
-TEST_F(Queues, ADuplicateCountsOnce) {
+TEST_F(Stores, ADuplicateCountsOnce) {
   Json result = plain_result(hash(), 3, 12.5);
   offer(result);
   result["cost"]["cpu_seconds"] = 77.0;
@@ -59,7 +64,7 @@ TEST_F(Queues, ADuplicateCountsOnce) {
   EXPECT_EQ(database_.realisations(1).at(0).cpu_seconds, 2.0);
 }
 
-TEST_F(Queues, ADifferentResultOfTheSameSeedMakesThePointSuspect) {
+TEST_F(Stores, ADifferentResultOfTheSameSeedMakesThePointSuspect) {
   offer(plain_result(hash(), 3, 12.5));
   EXPECT_EQ(offer(plain_result(hash(), 3, 12.6)), Stored::conflict);
   EXPECT_TRUE(database_.points().at(0).suspect);
@@ -68,18 +73,18 @@ TEST_F(Queues, ADifferentResultOfTheSameSeedMakesThePointSuspect) {
   EXPECT_EQ(database_.events(1).at(0).kind, "suspect");
 }
 
-TEST_F(Queues, OnePointNeverMixesTwoEngines) {
+TEST_F(Stores, OnePointNeverMixesTwoEngines) {
   offer(plain_result(hash(), 0, 12.5, "old"));
   EXPECT_EQ(offer(plain_result(hash(), 1, 12.5, "new")), Stored::mixed_engine);
   EXPECT_EQ(offer(plain_result(hash(1), 1, 12.5, "new")), Stored::stored);
   EXPECT_EQ(database_.counts(1).done, 1);
 }
 
-TEST_F(Queues, AResultOfAnUnknownPointIsNotTaken) {
+TEST_F(Stores, AResultOfAnUnknownPointIsNotTaken) {
   EXPECT_EQ(offer(plain_result(std::string(64, 'f'), 0, 12.5)), Stored::unknown_point);
 }
 
-TEST_F(Queues, ProvenanceIsStoredOnce) {
+TEST_F(Stores, ProvenanceIsStoredOnce) {
   for (int seed = 0; seed < 5; ++seed) offer(plain_result(hash(), seed, 12.5));
   EXPECT_EQ(database_.engines().size(), 1U);
   Statement stored(database_.connection(),
@@ -91,24 +96,24 @@ TEST_F(Queues, ProvenanceIsStoredOnce) {
   EXPECT_EQ(results, 5);
 }
 
-TEST_F(Queues, SeedsOfADeadOwnerAreQueuedAgainWithoutBlame) {
+TEST_F(Stores, SeedsOfADeadOwnerAreQueuedAgainWithoutBlame) {
   begin(2);
   begin(3);
-  EXPECT_EQ(queue_.recover(), 2);
+  EXPECT_EQ(SeedStore(database_).recover(), 2);
   EXPECT_EQ(database_.counts(1).queued, 2);
   EXPECT_TRUE(database_.leases(1).empty());
   EXPECT_EQ(database_.attempts(1).at(0).outcome, "abandoned");
   EXPECT_FALSE(database_.attempts(1).at(0).blamed);
-  EXPECT_EQ(queue_.recover(), 0);
+  EXPECT_EQ(SeedStore(database_).recover(), 0);
 }
 
-TEST_F(Queues, AttemptsKeepTheirCause) {
+TEST_F(Stores, AttemptsKeepTheirCause) {
   const std::int64_t attempt = begin(2);
   EXPECT_EQ(database_.leases(1).at(0).phase, "starting");
-  queue_.renew_lease(attempt, "production", 50, 100, 0.5);
+  SeedStore(database_).renew_lease(attempt, "production", 50, 100, 0.5);
   EXPECT_EQ(database_.leases(1).at(0).step, 50);
-  queue_.end_attempt(attempt, {AttemptOutcome::crashed, 57, {{}, 11}, "signal 11"});
-  queue_.requeue(1, 2);
+  SeedStore(database_).end_attempt(attempt, {AttemptOutcome::crashed, 57, {{}, 11}, "signal 11"});
+  SeedStore(database_).requeue(1, 2);
   EXPECT_TRUE(database_.leases(1).empty());
   const AttemptRecord record = database_.attempts(1).at(0);
   EXPECT_EQ(record.outcome, "crashed");
@@ -119,49 +124,49 @@ TEST_F(Queues, AttemptsKeepTheirCause) {
   EXPECT_EQ(database_.counts(1).queued, 1);
 }
 
-TEST_F(Queues, ALateResultLiftsAQuarantine) {
+TEST_F(Stores, ALateResultLiftsAQuarantine) {
   begin(2);
-  queue_.quarantine(1, 2, "hung");
+  SeedStore(database_).quarantine(1, 2, "hung");
   EXPECT_EQ(database_.outcomes(1).at(2)->kind, Outcome::Kind::lost);
   EXPECT_EQ(offer(plain_result(hash(), 2, 12.5)), Stored::stored);
   EXPECT_EQ(database_.outcomes(1).at(2)->kind, Outcome::Kind::value);
 }
 
-TEST_F(Queues, PointsThatLeaveTheSweepStayAndComeBack) {
+TEST_F(Stores, PointsThatLeaveTheSweepStayAndComeBack) {
   offer(plain_result(hash(1), 0, 12.5));
-  queue_.adopt(plain_campaign(1, 4, 40, 0.05));
+  PointStore(database_).adopt(plain_campaign(1, 4, 40, 0.05));
   EXPECT_EQ(database_.points().size(), 1U);
   ASSERT_EQ(database_.inactive_points().size(), 1U);
   EXPECT_EQ(database_.inactive_points().at(0).hash, hash(1));
-  queue_.adopt(plain_campaign(3, 4, 40, 0.05));
+  PointStore(database_).adopt(plain_campaign(3, 4, 40, 0.05));
   ASSERT_EQ(database_.points().size(), 3U);
   EXPECT_EQ(database_.counts(database_.points().at(1).id).done, 1);
 }
 
-TEST_F(Queues, LooksOfAnOlderTargetStayInTheHistory) {
+TEST_F(Stores, LooksOfAnOlderTargetStayInTheHistory) {
   Look look;
   look.seeds = 4;
   look.estimate = {4, 12, 0.1};
   look.half_width = 0.3;
   look.verdict = Verdict::converged;
-  queue_.store_looks(1, {look});
-  queue_.adopt(plain_campaign(2, 4, 40, 0.01));
+  ResultStore(database_).store_looks(1, {look});
+  PointStore(database_).adopt(plain_campaign(2, 4, 40, 0.01));
   EXPECT_TRUE(database_.looks(1).empty());
-  queue_.adopt(plain_campaign(2, 4, 40, 0.05));
+  PointStore(database_).adopt(plain_campaign(2, 4, 40, 0.05));
   ASSERT_EQ(database_.looks(1).size(), 1U);
   EXPECT_EQ(database_.looks(1)[0].target.target.tolerance, Tolerance(0.05));
 }
 
-TEST_F(Queues, AnotherObservableIsTakenFromTheResultsThatAreThere) {
+TEST_F(Stores, AnotherObservableIsTakenFromTheResultsThatAreThere) {
   offer(plain_result(hash(), 0, 12.5));
   Campaign other = campaign_;
   other.target.observable = "pressure";
-  queue_.adopt(other);
+  PointStore(database_).adopt(other);
   EXPECT_EQ(database_.realisations(1).at(0).value, 25);
   EXPECT_EQ(database_.realisations(1).at(0).control, std::nullopt);
 }
 
-TEST_F(Queues, ACompletedSeedWithoutTheNumberIsLostUntilAnotherObservableFindsIt) {
+TEST_F(Stores, ACompletedSeedWithoutTheNumberIsLostUntilAnotherObservableFindsIt) {
   Json result = plain_result(hash(), 0, 12.5);
   result["mean"]["relative_viscosity"] = nullptr;
   EXPECT_EQ(offer(result), Stored::stored);
@@ -170,32 +175,32 @@ TEST_F(Queues, ACompletedSeedWithoutTheNumberIsLostUntilAnotherObservableFindsIt
   EXPECT_EQ(database_.outcomes(1).at(0)->kind, Outcome::Kind::lost);
   Campaign other = campaign_;
   other.target.observable = "pressure";
-  queue_.adopt(other);
+  PointStore(database_).adopt(other);
   EXPECT_EQ(database_.realisations(1).at(0).state, SeedState::done);
   EXPECT_EQ(database_.realisations(1).at(0).cause, "completed");
   EXPECT_EQ(database_.realisations(1).at(0).value, 25);
-  queue_.adopt(campaign_);
+  PointStore(database_).adopt(campaign_);
   EXPECT_EQ(database_.realisations(1).at(0).state, SeedState::failed);
 }
 
-TEST_F(Queues, ResultsKeptApartNeedNotHaveAnotherObservable) {
+TEST_F(Stores, ResultsKeptApartNeedNotHaveAnotherObservable) {
   Json bare = plain_result(hash(), 0, 12.5, "old");
   bare["mean"].erase("pressure");
   offer(bare);
-  queue_.keep_apart(database_.points().at(0), engine_identity(plain_engine("new")));
+  PointStore(database_).keep_apart(database_.points().at(0), engine_identity(plain_engine("new")));
   Campaign other = campaign_;
   other.target.observable = "pressure";
-  queue_.adopt(other);
+  PointStore(database_).adopt(other);
   EXPECT_EQ(database_.campaign().target.target.observable, "pressure");
 }
 
-TEST_F(Queues, AnObservableThatResultsLackChangesNothing) {
+TEST_F(Stores, AnObservableThatResultsLackChangesNothing) {
   offer(plain_result(hash(), 0, 12.5));
   // The second is there, but no number.
   for (const char* const name : {"colour", "control_variates"}) {
     Campaign other = campaign_;
     other.target.observable = name;
-    EXPECT_THROW(queue_.adopt(other), InputError) << name;
+    EXPECT_THROW(PointStore(database_).adopt(other), InputError) << name;
     EXPECT_EQ(database_.campaign().target.target.observable, "relative_viscosity") << name;
     EXPECT_EQ(database_.realisations(1).at(0).value, 12.5) << name;
   }

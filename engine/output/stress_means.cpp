@@ -1,0 +1,203 @@
+#include "engine/output/stress_means.h"
+
+#include <span>
+#include <string>
+
+#include "engine/start/packing.h"
+#include "engine/terms/drag.h"
+
+namespace peclet::engine {
+namespace {
+
+Json to_json(const SymmetricTensor& t) { return {t.xx, t.yy, t.zz, t.xy, t.xz, t.yz}; }
+
+double first_normal_difference(const SymmetricTensor& t) { return t.xx - t.yy; }
+double second_normal_difference(const SymmetricTensor& t) { return t.yy - t.zz; }
+double pressure(const SymmetricTensor& t) { return -(t.xx + t.yy + t.zz) / 3; }
+
+// Terms of the stress that are the same in every configuration.
+bool is_constant(const std::string& term) { return term == "solvent" || term == "stresslet"; }
+
+// What is kept of each of the 32 blocks. The total's xy is the relative viscosity.
+Json of_block(const Json& means) {
+  Json kept;
+  for (const auto& [name, value] : means.items()) {
+    if (!value.is_structured()) kept[name] = rounded(value);
+  }
+  for (const auto& [name, value] : means.at("control_variates").items()) {
+    kept["control_variates"][name] = rounded(value);
+  }
+  for (const auto& [term, stress] : means.at("stress").items()) {
+    if (!is_constant(term) && term != "total") kept["shear_stress"][term] = rounded(stress.at(3));
+  }
+  kept["shear_stress"]["brownian_structural"] = rounded(means.at("brownian_structural").at(3));
+  return kept;
+}
+
+// What is kept of each quarter of the window.
+Json of_quarter(const Json& means) {
+  Json kept;
+  for (const auto& [term, stress] : means.at("stress").items()) {
+    if (!is_constant(term)) kept["stress"][term] = rounded(stress);
+  }
+  for (const char* name : {"brownian_pairwise", "brownian_structural"}) kept[name] = rounded(means.at(name));
+  return kept;
+}
+
+// Turns a list of equal objects into one object of lists.
+Json transposed(const std::vector<Json>& rows) {
+  if (!rows.front().is_object()) {
+    return rows;
+  }
+  Json columns = Json::object();
+  for (const auto& [name, value] : rows.front().items()) {
+    std::vector<Json> column;
+    column.reserve(rows.size());
+    for (const Json& row : rows) {
+      column.push_back(row.at(name));
+    }
+    columns[name] = transposed(column);
+  }
+  return columns;
+}
+
+// Descriptions of the stress and its parts.
+class Described {
+ public:
+  explicit Described(const Scene& scene)
+      : unit_(scene.physics.shear_rate > 0 ? "viscosity * shear_rate" : "stress") {}
+
+  void scalar(const char* name, const char* symbol, const char* unit) {
+    all_.push_back({.name = name, .symbol = symbol, .unit = unit});
+  }
+  void stress(const std::string& name, const std::string& symbol) {
+    all_.push_back({.name = name,
+                    .symbol = symbol,
+                    .unit = unit_,
+                    .axes = {{"component", "1", {"xx", "yy", "zz", "xy", "xz", "yz"}}}});
+  }
+  // The last one varies with a quantity of mean zero.
+  void with_control(const char* control) { all_.back().control = ControlVariate{control, 0}; }
+  // A part of the stress in one number, with its control variate; it is written before it where there is one.
+  void part(const char* name, const char* symbol, const char* unit, const char* control, bool noise) {
+    scalar(name, symbol, unit);
+    if (noise) with_control(control);
+  }
+
+  const char* unit() const { return unit_; }
+  std::vector<Quantity> take() { return std::move(all_); }
+
+ private:
+  const char* unit_;
+  std::vector<Quantity> all_;
+};
+
+}  // namespace
+
+StressMeans::StressMeans(const Scene& scene, const System& system)
+    : physics_(scene.physics),
+      terms_(required_terms(scene.physics)),
+      volume_(system.box.volume()),
+      volume_fraction_(solid_volume(system.particles) / volume_),
+      particles_(static_cast<double>(system.particles.count())),
+      unit_(physics_.shear_rate > 0 ? physics_.viscosity * physics_.shear_rate : 1) {}
+
+Json StressMeans::means(const BlockSums& sums) const {
+  Json stress = Json::object();
+  SymmetricTensor total;
+  const auto part = [&](const char* name, const SymmetricTensor& value) {
+    stress[name] = to_json(value);
+    total += value;
+  };
+  if (physics_.shear_rate > 0) {
+    const SymmetricTensor solvent = solvent_stress(1, 1);  // in units of itself
+    part("solvent", solvent);
+    part("stresslet", stresslet(volume_fraction_, solvent));
+  }
+  const double per_step = 1 / (static_cast<double>(sums.steps) * volume_ * unit_);
+  SymmetricTensor pairs, brownian;
+  for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
+    const auto term = static_cast<StressTerm>(t);
+    const SymmetricTensor mean = per_step * sums.stress[t];
+    if (term == StressTerm::brownian_lubrication) {
+      brownian = mean;  // of mean zero: never part of the total
+    } else if (has_stress_term(terms_, term)) {
+      part(name_of(term), mean);
+      pairs += mean;
+    }
+  }
+  stress["total"] = to_json(total);
+  const bool sheared = physics_.shear_rate > 0;
+  const double per_sample = 1 / static_cast<double>(sums.samples);
+  return {{"stress", stress},
+          {"brownian_pairwise", to_json(brownian)},
+          {"brownian_structural", to_json((per_sample / unit_) * sums.structural_brownian)},
+          {"relative_viscosity", sheared ? Json(total.xy) : Json()},
+          {"relative_viscosity_pair", sheared ? Json(pairs.xy) : Json()},
+          {"first_normal_difference", first_normal_difference(total)},
+          {"second_normal_difference", second_normal_difference(total)},
+          {"pressure", pressure(total)},
+          {"control_variates", control_variates(brownian)},
+          {"contacts_per_particle", 2 * sums.contacts / (static_cast<double>(sums.steps) * particles_)},
+          {"kinetic_temperature", per_sample * sums.temperature.translational},
+          {"rotational_temperature", per_sample * sums.temperature.rotational}};
+}
+
+Json StressMeans::control_variates(const SymmetricTensor& brownian) const {
+  const auto value = [&](double number) { return terms_.noise ? Json(number) : Json(); };
+  return {{"brownian_pairwise", value(brownian.xy)},
+          {"first_normal_difference", value(first_normal_difference(brownian))},
+          {"second_normal_difference", value(second_normal_difference(brownian))},
+          {"pressure", value(pressure(brownian))}};
+}
+
+Json StressMeans::blocks(const Production& production) const {
+  const std::span<const BlockSums> all = production.blocks();
+  std::vector<Json> blocks, quarters;
+  for (const BlockSums& block : all) blocks.push_back(of_block(means(block)));
+  constexpr std::size_t in_a_quarter = count_of_blocks / count_of_quarters;
+  for (std::size_t quarter = 0; quarter < count_of_quarters; ++quarter) {
+    quarters.push_back(of_quarter(means(sum_of(all.subspan(quarter * in_a_quarter, in_a_quarter)))));
+  }
+  Json kept = transposed(blocks);
+  kept.update(transposed(quarters));
+  return kept;
+}
+
+std::vector<Quantity> stress_quantities(const Scene& scene) {
+  const Terms terms = required_terms(scene.physics);
+  const bool sheared = scene.physics.shear_rate > 0, noise = terms.noise;
+  Described described(scene);
+  const char* const unit = described.unit();
+  if (sheared) {
+    described.part("relative_viscosity", "eta_r", "1", "control_variates/brownian_pairwise", noise);
+    described.part("relative_viscosity_pair", "eta_r - 1 - 5 phi / 2", "1",
+                   "control_variates/brownian_pairwise", noise);
+    described.stress("stress/solvent", "sigma^S");
+    described.stress("stress/stresslet", "sigma^E");
+  }
+  described.part("first_normal_difference", "N_1", unit, "control_variates/first_normal_difference", noise);
+  described.part("second_normal_difference", "N_2", unit, "control_variates/second_normal_difference", noise);
+  described.part("pressure", "P", unit, "control_variates/pressure", noise);
+  for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
+    const auto term = static_cast<StressTerm>(t);
+    if (term == StressTerm::brownian_lubrication || !has_stress_term(terms, term)) continue;
+    described.stress(std::string("stress/") + name_of(term), std::string("sigma^") + name_of(term));
+  }
+  described.stress("stress/total", "sigma");
+  if (noise) described.with_control("brownian_pairwise");
+  described.stress("brownian_pairwise", "sigma^noise");
+  described.stress("brownian_structural", "sigma^B");
+  if (noise) {
+    described.scalar("control_variates/brownian_pairwise", "sigma^noise_xy", unit);
+    described.scalar("control_variates/first_normal_difference", "N_1^noise", unit);
+    described.scalar("control_variates/second_normal_difference", "N_2^noise", unit);
+    described.scalar("control_variates/pressure", "P^noise", unit);
+  }
+  described.scalar("contacts_per_particle", "Z", "1");
+  described.scalar("kinetic_temperature", "k_B T", "energy");
+  described.scalar("rotational_temperature", "k_B T_rot", "energy");
+  return described.take();
+}
+
+}  // namespace peclet::engine

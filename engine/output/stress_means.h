@@ -1,0 +1,39 @@
+// The stress and what is measured with it at every step: means in the units of the result, their blocks, and
+// the descriptions of all of them.
+#pragma once
+
+#include <vector>
+
+#include "contract/json.h"
+#include "engine/kernels/pairs/terms.h"
+#include "engine/observables/production.h"
+#include "engine/observables/quantity.h"
+#include "engine/realisation/simulation.h"
+#include "engine/scene/scene.h"
+
+namespace peclet::engine {
+
+class StressMeans {
+ public:
+  StressMeans(const Scene& scene, const System& system);
+
+  // Of these sums. Stresses are divided by viscosity * shear_rate, or in the scene's units at rest.
+  Json means(const BlockSums& sums) const;
+  // Of all blocks: what is one number, and xy of every stress that fluctuates, in 32 of them; whole tensors
+  // in the quarters of the window. Five digits.
+  Json blocks(const Production& production) const;
+
+ private:
+  // Of mean zero: the part that the stress of the pairwise noise would have in each observable. That of the
+  // relative viscosities is named after the stress.
+  Json control_variates(const SymmetricTensor& brownian) const;
+
+  const Physics& physics_;
+  Terms terms_;
+  double volume_, volume_fraction_, particles_, unit_;
+};
+
+// Those that means() of the scene have as numbers.
+std::vector<Quantity> stress_quantities(const Scene& scene);
+
+}  // namespace peclet::engine

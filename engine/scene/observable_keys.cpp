@@ -1,0 +1,101 @@
+#include "engine/scene/observable_keys.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "engine/scene/key_makers.h"
+#include "engine/scene/scene.h"
+
+namespace peclet::engine {
+namespace {
+
+constexpr double most_bins = 1000;
+
+std::optional<ObservableFault> none(const Scene&, const Json&) { return std::nullopt; }
+
+std::optional<ObservableFault> must_rest(const Scene& scene, const Json&) {
+  if (scene.physics.shear_rate == 0 && scene.physics.thermal_energy > 0) return std::nullopt;
+  return ObservableFault{
+      "/observables",
+      "must not list stress_correlation unless the thermal energy is > 0 and the shear rate 0"};
+}
+
+std::optional<ObservableFault> must_have_whole_bins(const Scene&, const Json& settings) {
+  const double bins = settings.at("range").get<double>() / settings.at("bin").get<double>();
+  if (std::abs(bins - std::round(bins)) <= 1e-9 * bins && bins >= 1 && bins <= most_bins) return std::nullopt;
+  return ObservableFault{"/pair_distribution/bin",
+                         fmt::format("must divide /pair_distribution/range, which is {}, into 1 to {} equal "
+                                     "parts",
+                                     shortened(settings.at("range")), most_bins)};
+}
+
+std::optional<ObservableFault> must_touch(const Scene& scene, const Json&) {
+  if (scene.physics.contact) return std::nullopt;
+  return ObservableFault{"/observables", "must not list contact_network without /contact"};
+}
+
+std::vector<ObservableEntry> entries() {
+  return {
+      {"mean_squared_displacement", "of each species", "one step", {}, none},
+      {"stress_correlation",
+       "of the structural Brownian stress of a fluid at rest, and the viscosity by Green and Kubo",
+       "one step",
+       {},
+       must_rest},
+      {"pair_distribution",
+       "g(r) and g(x, y)",
+       "a 256th of the production window",
+       {with_default(positive("/pair_distribution/range", "reference radius",
+                              "Largest distance; at most half of the box, at rest 0.707 of it."),
+                     4),
+        with_default(positive("/pair_distribution/bin", "reference radius",
+                              "Width of a bin; a whole number of them, at most 1000, makes up the range."),
+                     0.1),
+        with_default(positive("/pair_distribution/slab", "reference radius",
+                              "Distance |z| below which a pair counts for g(x, y)."),
+                     0.1)},
+       must_have_whole_bins},
+      {"contact_network",
+       "contacts of a particle, mobilised friction",
+       "a 256th of the production window",
+       {},
+       must_touch},
+      {"profiles",
+       "volume fraction and velocity by y",
+       "a 256th of the production window",
+       {with_default({.pointer = "/profiles/bins",
+                      .kind = KeyKind::integer,
+                      .meaning = "Equal bins of the box along y.",
+                      .minimum = 1,
+                      .maximum = most_bins},
+                     20)},
+       none},
+  };
+}
+
+}  // namespace
+
+const std::vector<ObservableEntry>& observable_entries() {
+  static const std::vector<ObservableEntry> all = entries();
+  return all;
+}
+
+std::vector<Key> observable_keys() {
+  std::string meaning = "stress: the tensor, split by term, which is always there.";
+  std::vector<std::string> names{"stress"};
+  Keys blocks;
+  for (const ObservableEntry& entry : observable_entries()) {
+    meaning += fmt::format(" {}: {}.", entry.name, entry.meaning);
+    names.push_back(entry.name);
+    blocks.push_back(block('/' + entry.name, "How the observable of that name is measured."));
+    blocks.push_back(positive(
+        fmt::format("/{}/interval", entry.name), "time",
+        fmt::format("Time between samples, in whole steps; {} unless given.", entry.usual_interval)));
+    blocks.insert(blocks.end(), entry.settings.begin(), entry.settings.end());
+  }
+  blocks.insert(blocks.begin(), choice("/observables/*", meaning, names));
+  return blocks;
+}
+
+}  // namespace peclet::engine

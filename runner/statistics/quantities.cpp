@@ -1,0 +1,164 @@
+#include "runner/statistics/quantities.h"
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+namespace peclet::runner {
+namespace {
+
+std::string_view without_slash(std::string_view path) {
+  return path.starts_with('/') ? path.substr(1) : path;
+}
+
+// Takes the part before the first slash off the path.
+std::string_view take_part(std::string_view& path) {
+  const std::size_t slash = path.find('/');
+  const std::string_view part = path.substr(0, slash);
+  path = slash == std::string_view::npos ? std::string_view() : path.substr(slash + 1);
+  return part;
+}
+
+std::optional<std::size_t> index_in(std::string_view part) {
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
+  if (error != std::errc() || end != part.data() + part.size()) return std::nullopt;
+  return index;
+}
+
+const Json* member(const Json& value, std::string_view part) {
+  if (value.is_object()) {
+    const auto found = value.find(part);
+    return found == value.end() ? nullptr : &*found;
+  }
+  const std::optional<std::size_t> index = value.is_array() ? index_in(part) : std::nullopt;
+  return index && *index < value.size() ? &value[*index] : nullptr;
+}
+
+Quantity described(const std::string& name, const Json& about) {
+  Quantity quantity{name, about.at("symbol").get<std::string>(), about.at("unit").get<std::string>()};
+  for (const Json& axis : about.value("axes", Json::array())) {
+    quantity.axes.push_back({axis.at("name"), axis.at("unit"), axis.at("values")});
+  }
+  if (about.at("estimator") == "ratio") {
+    quantity.ratio = RatioOfMeans{about.at("numerator"), about.at("denominator")};
+  }
+  if (const auto control = about.find("control"); control != about.end()) {
+    quantity.control = ControlVariate{control->at("quantity"), control->at("mean").get<double>()};
+  }
+  return quantity;
+}
+
+// Numbers along each axis of lists within lists that are equally long; nothing where they are not, or hold
+// anything else.
+std::optional<std::vector<std::size_t>> shape_of(const Json& value) {
+  if (value.is_number()) return std::vector<std::size_t>();
+  if (!value.is_array() || value.empty()) return std::nullopt;
+  std::optional<std::vector<std::size_t>> inner;
+  for (const Json& element : value) {
+    const std::optional<std::vector<std::size_t>> shape = shape_of(element);
+    if (!shape || (inner && *inner != *shape)) return std::nullopt;
+    inner = shape;
+  }
+  inner->insert(inner->begin(), value.size());
+  return inner;
+}
+
+// Engines before descriptions had one control variate, and it belonged to the viscosities.
+std::optional<ControlVariate> undescribed_control(const Json& mean, std::string_view path) {
+  constexpr const char* control = "control_variates/brownian_pairwise";
+  if (!path.starts_with("relative_viscosity")) return std::nullopt;
+  const Json* const value = at_path(mean, control);
+  if (value == nullptr || !value->is_number()) return std::nullopt;
+  return ControlVariate{control, 0};
+}
+
+void add_undescribed(const Json& mean, const Json& value, const std::string& name,
+                     std::vector<Quantity>& all) {
+  const std::optional<std::vector<std::size_t>> shape = shape_of(value);
+  if (shape) {
+    Quantity quantity{name, "", ""};
+    for (const std::size_t count : *shape) {
+      Json indices = Json::array();
+      for (std::size_t index = 0; index < count; ++index) indices.push_back(index);
+      quantity.axes.push_back({"index", "1", std::move(indices)});
+    }
+    if (shape->empty()) quantity.control = undescribed_control(mean, name);
+    all.push_back(std::move(quantity));
+    return;
+  }
+  if (!value.is_structured()) return;
+  for (const auto& [key, inner] : value.items()) {
+    add_undescribed(mean, inner, name.empty() ? key : name + '/' + key, all);
+  }
+}
+
+// Null: the result says nothing of its numbers.
+const Json* descriptions(const Json& result) {
+  const auto found = result.find("quantities");
+  return found == result.end() || found->is_null() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::size_t Quantity::elements() const {
+  std::size_t product = 1;
+  for (const QuantityAxis& axis : axes) product *= axis.values.size();
+  return product;
+}
+
+std::vector<Quantity> quantities_of(const Json& result) {
+  std::vector<Quantity> all;
+  if (const Json* const about = descriptions(result)) {
+    for (const auto& [name, description] : about->items()) all.push_back(described(name, description));
+  } else if (const Json& mean = result.at("mean"); mean.is_object()) {
+    add_undescribed(mean, mean, "", all);
+  }
+  return all;
+}
+
+const Json* at_path(const Json& document, std::string_view path) {
+  const Json* value = &document;
+  for (path = without_slash(path); value != nullptr && !path.empty();) {
+    value = member(*value, take_part(path));
+  }
+  return value;
+}
+
+std::optional<ControlVariate> control_of(const Json& result, std::string_view path) {
+  path = without_slash(path);
+  const Json* const about = descriptions(result);
+  if (about == nullptr) return undescribed_control(result.at("mean"), path);
+  // The quantity itself, or the list that the path is an element of.
+  for (std::string_view name = path;; name = name.substr(0, name.rfind('/'))) {
+    if (const auto found = about->find(name); found != about->end()) {
+      const auto control = found->find("control");
+      if (control == found->end()) return std::nullopt;
+      return ControlVariate{
+          control->at("quantity").get<std::string>() + std::string(path.substr(name.size())),
+          control->at("mean").get<double>()};
+    }
+    if (name.find('/') == std::string_view::npos) return std::nullopt;
+  }
+}
+
+bool matches(std::string_view pattern, std::string_view path) {
+  path = without_slash(path);
+  while (!pattern.empty() && !path.empty()) {
+    const std::string_view wanted = take_part(pattern), part = take_part(path);
+    if (wanted != part && !(wanted == "*" && index_in(part))) return false;
+  }
+  return pattern.empty() && path.empty();
+}
+
+std::string names_of_targets(const Json& result) {
+  std::string text;
+  for (const Quantity& quantity : quantities_of(result)) {
+    if (quantity.ratio) continue;
+    text += (text.empty() ? "" : ", ") + quantity.name;
+    for (std::size_t axis = 0; axis < quantity.axes.size(); ++axis) text += "/*";
+  }
+  return text;
+}
+
+}  // namespace peclet::runner

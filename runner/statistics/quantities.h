@@ -1,0 +1,62 @@
+// What results say of their numbers ("quantities" in schema/result.schema.json), so that the runner needs to
+// know none by name.
+//
+// A quantity's name is its path in the result's "mean", an element's the path to it: "pressure",
+// "stress/total", "stress/total/3". A leading slash may be there.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "contract/json.h"
+
+namespace peclet::runner {
+
+// Another quantity of the same shape, of which the mean is known: value + control - mean has the mean of the
+// value.
+struct ControlVariate {
+  std::string quantity;
+  double mean = 0;
+};
+
+// Members of the quantity's object whose means over the seeds are divided.
+struct RatioOfMeans {
+  std::string numerator, denominator;
+};
+
+struct QuantityAxis {
+  std::string name, unit;
+  Json values;  // numbers or words
+};
+
+struct Quantity {
+  std::string name;
+  std::string symbol, unit;  // "" where the engine says nothing, "1" for a pure number
+  std::vector<QuantityAxis> axes{};
+  std::optional<RatioOfMeans> ratio{};
+  std::optional<ControlVariate> control{};
+
+  std::size_t elements() const;
+};
+
+// Those of a completed result, in the order of their names. Of a result without descriptions every number and
+// every list of numbers in "mean" is one, without symbol and unit, its axes counted from 0. Requires a result
+// that check_shape() has passed.
+std::vector<Quantity> quantities_of(const Json& result);
+
+// The value at a path, or null (the pointer) where there is none. Indices of lists are whole numbers.
+const Json* at_path(const Json& document, std::string_view path);
+
+// The control variate of the number at a path of "mean", and the path to the control's own number; none for
+// most.
+std::optional<ControlVariate> control_of(const Json& result, std::string_view path);
+
+// Whether the pattern names the path: "stress/total/*" names any element of the list.
+bool matches(std::string_view pattern, std::string_view path);
+
+// "pressure, stress/total/*": what a campaign may aim at.
+std::string names_of_targets(const Json& result);
+
+}  // namespace peclet::runner

@@ -1,0 +1,202 @@
+#include "runner/statistics/quantity_estimates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "runner/statistics/look_json.h"
+
+namespace peclet::runner {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+void flatten(const Json& value, std::vector<double>& numbers) {
+  if (value.is_array()) {
+    for (const Json& element : value) flatten(element, numbers);
+  } else {
+    numbers.push_back(value.is_number() ? value.get<double>() : nan);
+  }
+}
+
+// The numbers at a path of the means; one alone, or a null, stands for all `elements`.
+std::vector<double> numbers_at(const Json& mean, const std::string& path, std::size_t elements) {
+  std::vector<double> numbers;
+  if (const Json* const value = at_path(mean, path)) flatten(*value, numbers);
+  if (numbers.size() == elements) return numbers;
+  return std::vector<double>(elements, numbers.size() == 1 ? numbers.front() : nan);
+}
+
+bool is_like(const Quantity& one, const Quantity& other) {
+  const auto same_axis = [](const QuantityAxis& a, const QuantityAxis& b) {
+    return a.name == b.name && a.unit == b.unit && a.values == b.values;
+  };
+  return one.unit == other.unit && one.ratio.has_value() == other.ratio.has_value() &&
+         one.control.has_value() == other.control.has_value() &&
+         std::equal(one.axes.begin(), one.axes.end(), other.axes.begin(), other.axes.end(), same_axis);
+}
+
+// The list of numbers as lists over the axes from `axis` on.
+Json over_axes(const std::vector<Json>& numbers, const std::vector<QuantityAxis>& axes, std::size_t axis,
+               std::size_t& next) {
+  if (axis == axes.size()) return numbers[next++];
+  Json list = Json::array();
+  for (std::size_t k = 0; k < axes[axis].values.size(); ++k) {
+    list.push_back(over_axes(numbers, axes, axis + 1, next));
+  }
+  return list;
+}
+
+template <typename Value>
+Json column(const std::vector<Estimate>& estimates, const Quantity& quantity, const Value& value) {
+  std::vector<Json> numbers;
+  numbers.reserve(estimates.size());
+  for (const Estimate& estimate : estimates) numbers.push_back(value(estimate));
+  std::size_t next = 0;
+  return over_axes(numbers, quantity.axes, 0, next);
+}
+
+Json columns(const std::vector<Estimate>& estimates, const Quantity& quantity, double confidence) {
+  const auto of = [&](const auto& value) { return column(estimates, quantity, value); };
+  return {
+      {"count", of([](const Estimate& e) { return Json(e.count); })},
+      {"mean", of([](const Estimate& e) { return number_json(e.mean); })},
+      {"standard_error", of([](const Estimate& e) { return number_json(e.standard_error); })},
+      {"half_width", of([&](const Estimate& e) { return number_json(student_half_width(e, confidence)); })}};
+}
+
+}  // namespace
+
+Estimate ratio_of_means(const std::vector<double>& numerators, const std::vector<double>& denominators) {
+  const auto n = static_cast<double>(numerators.size());
+  const double above = std::accumulate(numerators.begin(), numerators.end(), 0.0);
+  const double below = std::accumulate(denominators.begin(), denominators.end(), 0.0);
+  Estimate found{static_cast<int>(numerators.size()), below == 0 ? nan : above / below, nan};
+  if (numerators.size() < 2) return found;
+  std::vector<double> without(numerators.size());
+  for (std::size_t i = 0; i < without.size(); ++i) {
+    const double rest = below - denominators[i];
+    without[i] = rest == 0 ? nan : (above - numerators[i]) / rest;
+  }
+  const double mean = std::accumulate(without.begin(), without.end(), 0.0) / n;
+  double squares = 0;
+  for (const double ratio : without) squares += (ratio - mean) * (ratio - mean);
+  found.standard_error = std::sqrt((n - 1) / n * squares);
+  return found;
+}
+
+void QuantityEstimates::Running::add(double value) {
+  if (std::isnan(value)) return;
+  const double before = mean;
+  mean += (value - before) / ++count;
+  squares += (value - before) * (value - mean);
+}
+
+Estimate QuantityEstimates::Running::estimate() const {
+  if (count == 0) return {0, nan, nan};
+  return {count, mean, count < 2 ? nan : std::sqrt(squares / (count - 1) / count)};
+}
+
+QuantityEstimates::Sums& QuantityEstimates::sums_of(const Quantity& quantity) {
+  const auto place =
+      std::lower_bound(sums_.begin(), sums_.end(), quantity.name,
+                       [](const Sums& sums, const std::string& name) { return sums.quantity.name < name; });
+  if (place != sums_.end() && place->quantity.name == quantity.name) return *place;
+  Sums sums{quantity, {}, {}, {}, {}};
+  if (!quantity.ratio) sums.plain.resize(quantity.elements());
+  if (quantity.control) sums.controlled.resize(quantity.elements());
+  return *sums_.insert(place, std::move(sums));
+}
+
+void QuantityEstimates::add(Sums& sums, const Json& mean) {
+  const Quantity& quantity = sums.quantity;
+  const std::size_t elements = quantity.elements();
+  if (quantity.ratio) {
+    const std::string object = quantity.name + '/';
+    sums.numerators.push_back(numbers_at(mean, object + quantity.ratio->numerator, elements));
+    sums.denominators.push_back(numbers_at(mean, object + quantity.ratio->denominator, elements));
+    return;
+  }
+  const std::vector<double> values = numbers_at(mean, quantity.name, elements);
+  for (std::size_t k = 0; k < elements; ++k) sums.plain[k].add(values[k]);
+  if (!quantity.control) return;
+  const std::vector<double> controls = numbers_at(mean, quantity.control->quantity, elements);
+  for (std::size_t k = 0; k < elements; ++k) {
+    sums.controlled[k].add(values[k] + controls[k] - quantity.control->mean);
+  }
+}
+
+void QuantityEstimates::add(const Json& result) {
+  const Json& mean = result.at("mean");
+  if (!mean.is_object()) return;
+  const Json descriptions = result.value("quantities", Json());
+  if (!descriptions.is_null() && descriptions == descriptions_) {
+    for (Sums& sums : sums_) {
+      if (descriptions.contains(sums.quantity.name)) add(sums, mean);
+    }
+    return;
+  }
+  for (const Quantity& quantity : quantities_of(result)) {
+    Sums& sums = sums_of(quantity);
+    if (is_like(sums.quantity, quantity)) {
+      add(sums, mean);
+    } else {
+      ++sums.unlike;
+    }
+  }
+  // Those of the first result are those of the sums.
+  if (descriptions_.is_null()) descriptions_ = descriptions;
+}
+
+std::vector<QuantityEstimate> QuantityEstimates::estimates() const {
+  std::vector<QuantityEstimate> all;
+  for (const Sums& sums : sums_) {
+    QuantityEstimate found{sums.quantity, {}, {}, sums.unlike};
+    const auto estimates_of = [](const std::vector<Running>& running) {
+      std::vector<Estimate> estimates;
+      for (const Running& element : running) estimates.push_back(element.estimate());
+      return estimates;
+    };
+    if (sums.quantity.control) {
+      found.estimates = estimates_of(sums.controlled);
+      found.uncontrolled = estimates_of(sums.plain);
+    } else if (!sums.quantity.ratio) {
+      found.estimates = estimates_of(sums.plain);
+    } else {
+      for (std::size_t k = 0; k < sums.quantity.elements(); ++k) {
+        std::vector<double> above, below;
+        for (std::size_t seed = 0; seed < sums.numerators.size(); ++seed) {
+          if (std::isnan(sums.numerators[seed][k]) || std::isnan(sums.denominators[seed][k])) continue;
+          above.push_back(sums.numerators[seed][k]);
+          below.push_back(sums.denominators[seed][k]);
+        }
+        found.estimates.push_back(ratio_of_means(above, below));
+      }
+    }
+    all.push_back(std::move(found));
+  }
+  return all;
+}
+
+Json QuantityEstimates::json(double confidence) const {
+  Json all = Json::object();
+  for (const QuantityEstimate& found : estimates()) {
+    const Quantity& quantity = found.quantity;
+    Json json = columns(found.estimates, quantity, confidence);
+    json["symbol"] = quantity.symbol;
+    json["unit"] = quantity.unit;
+    json["estimator"] = quantity.ratio ? "ratio" : "mean";
+    json["axes"] = Json::array();
+    for (const QuantityAxis& axis : quantity.axes) {
+      json["axes"].push_back({{"name", axis.name}, {"unit", axis.unit}, {"values", axis.values}});
+    }
+    if (quantity.control) json["uncontrolled"] = columns(found.uncontrolled, quantity, confidence);
+    if (found.unlike > 0) json["unlike"] = found.unlike;
+    all[quantity.name] = std::move(json);
+  }
+  return all;
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,67 @@
+// What the results of a point say together: for every quantity, element by element, the mean over the seeds
+// and its standard error.
+//
+// A mean is that of value + control variate - its known mean where the quantity has one, as in a look, and
+// beside it stands the one without. A ratio of means R = sum N / sum D has the standard error of the
+// jackknife (Efron & Tibshirani, An Introduction to the Bootstrap, 1993, eq. 11.5),
+//   s^2 = (n - 1) / n sum_i (R_i - mean of R_i)^2,
+// R_i the ratio without seed i. Both errors are those of independent seeds; s of a constant D is the standard
+// error of a mean.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "contract/json.h"
+#include "runner/statistics/quantities.h"
+#include "runner/statistics/statistics.h"
+
+namespace peclet::runner {
+
+// Lists of as many as the quantity has elements, the last axis running fastest.
+struct QuantityEstimate {
+  Quantity quantity;
+  std::vector<Estimate> estimates;     // NaN where there are no values
+  std::vector<Estimate> uncontrolled;  // empty without a control variate
+  int unlike = 0;                      // results that describe it otherwise than the first one; left out
+};
+
+class QuantityEstimates {
+ public:
+  // One more result, in the order of the seeds; one that has not completed adds nothing. Memory: a few
+  // numbers for each element of a mean, two for each element and seed of a ratio.
+  void add(const Json& result);
+
+  // In the order of the names.
+  std::vector<QuantityEstimate> estimates() const;
+  // {"NAME": {"symbol", "unit", "estimator", "axes", "count", "mean", "standard_error", "half_width",
+  // "uncontrolled"}}, the numbers as lists over the axes; half-widths of Student's interval.
+  Json json(double confidence) const;
+
+ private:
+  // Welford's sums.
+  struct Running {
+    int count = 0;
+    double mean = 0, squares = 0;
+    void add(double value);
+    Estimate estimate() const;
+  };
+  struct Sums {
+    Quantity quantity;
+    std::vector<Running> plain, controlled;
+    std::vector<std::vector<double>> numerators, denominators;  // by seed
+    int unlike = 0;
+  };
+
+  Sums& sums_of(const Quantity& quantity);
+  static void add(Sums& sums, const Json& mean);
+
+  Json descriptions_;
+  std::vector<Sums> sums_;  // in the order of the names
+};
+
+// Sum of N over sum of D with the jackknife's error; NaN where a sum of D is zero.
+Estimate ratio_of_means(const std::vector<double>& numerators, const std::vector<double>& denominators);
+
+}  // namespace peclet::runner

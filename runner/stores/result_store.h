@@ -1,0 +1,52 @@
+// Results, and the looks at them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "runner/database/database.h"
+#include "runner/folder/realisation_result.h"
+#include "runner/stores/event_log.h"
+
+namespace peclet::runner {
+
+// What became of a result that was offered.
+enum class Stored {
+  stored,
+  stored_apart,  // in the row of an engine that another one has replaced, now or before: no part of the
+                 // campaign
+  duplicate,     // the seed has this very content already
+  conflict,      // the seed has another content: the point is now suspect
+  mixed_engine,  // the point has results of another engine
+  unknown_point
+};
+
+// The same, and what the result counts for; of a result that is stored only.
+struct StoredResult {
+  Stored what;
+  Observed observed;
+  std::string cause;  // see cause_of()
+};
+
+class ResultStore {
+ public:
+  // Requires a Database of open_owner, which must outlive it. All is for use inside a Transaction of the
+  // caller.
+  explicit ResultStore(Database& database)
+      : database_(database), connection_(database.connection()), events_(database) {}
+
+  // One without a number for the observable is lost with the cause no_value.
+  StoredResult store(const RealisationResult& result, const std::string& observable);
+  // The looks at a point for the present target, in place of those that are stored.
+  void store_looks(std::int64_t point, const std::vector<Look>& looks);
+
+ private:
+  void store_numbers(std::int64_t point, const RealisationResult& result, const StoredResult& stored);
+
+  Database& database_;
+  Connection& connection_;
+  EventLog events_;
+};
+
+}  // namespace peclet::runner
