@@ -4,7 +4,7 @@ What is broken; file, text in it that occurs once, what takes its place; program
 """
 
 IMPLICIT = "engine/integrators/implicit.cpp"
-SIMULATION, RESULT = "engine/realisation/simulation.cpp", "engine/output/result.cpp"
+SIMULATION, STRESS = "engine/realisation/simulation.cpp", "engine/output/stress_means.cpp"
 LINE = "engine_tests:NoisyStep.OfTwoSpheresOnALineIsThatOfItsEquations"
 
 NAMED = [
@@ -208,14 +208,14 @@ NAMED = [
     ),
     (
         "N1 with the other sign",
-        RESULT,
+        STRESS,
         "return t.xx - t.yy; }",
         "return t.yy - t.xx; }",
         "engine_tests:Result.ViscosityAndNormalStressesAreThoseOfTheTotal",
     ),
     (
         "control variate of the pressure with the other sign",
-        RESULT,
+        STRESS,
         "value(pressure(brownian))",
         "value(-pressure(brownian))",
         "engine_tests:Result.AtRestThePressureHasBlocksAndAControlVariate",

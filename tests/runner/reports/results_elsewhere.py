@@ -50,9 +50,7 @@ class Elsewhere(unittest.TestCase):
             for (label, seeds, verdict, mean), point in zip(rows, points):
                 self.assertEqual((int(seeds), verdict), (point["look"]["seeds"], "converged"))
                 # Of the same seeds, summed in another order.
-                self.assertAlmostEqual(
-                    float(mean) / point["quantities"][OBSERVABLE]["uncontrolled"]["mean"], 1, places=12, msg=label
-                )
+                self.assertAlmostEqual(float(mean) / point["quantities"][OBSERVABLE]["mean"], 1, places=12, msg=label)
 
 
 if __name__ == "__main__":
