@@ -77,6 +77,18 @@ TEST(Catalogue, GivesGroupsWholeAndContestantsAlone) {
   EXPECT_GT(chosen_groups({}).size(), 8u);
 }
 
+TEST(Catalogue, TakesImplicitStepsOnlyWhereTheirNameSaysSo) {
+  std::size_t implicit = 0;
+  for (const Group& group : chosen_groups({})) {
+    for (const Contestant& each : group.contestants) {
+      const bool named = each.name.starts_with("implicit");
+      EXPECT_EQ(each.scene.method == Method::implicit_steps, named) << each.name;
+      implicit += named ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(implicit, 3u);
+}
+
 TEST(Catalogue, SaysWhatItHasWhenAskedForSomethingElse) {
   try {
     chosen_groups({"frictionless", "fast"});
