@@ -101,7 +101,7 @@ StepReport Implicit::advance_open(System& system) {
   move(system, timestep_);
   ++system.step;
   displacement_bound_ +=
-      report.largest_displacement + timestep_ * system.box.shear_rate() * displacement_bound_;
+      report.largest_displacement + timestep_ * norm(system.box.velocity_gradient()) * displacement_bound_;
   const double allowed = system.list.allowed_displacement(system.box);
   // With room for half of the next step, should it be as large as this one.
   const double next = 0.5 * report.largest_displacement;
@@ -218,7 +218,8 @@ bool Implicit::move_half_a_step(System& system) {
 void Implicit::move(System& system, double time) {
   ParticleState& particles = system.particles;
   array(particles.position) = array(origin_.position) + time * array(particles.velocity);
-  system.box.set_strain(system.box.shear_rate() * (static_cast<double>(system.step) * timestep_ + time));
+  system.box.deform(
+      simple_shear(system.box.shear_rate() * (static_cast<double>(system.step) * timestep_ + time)));
 }
 
 // The largest one of a step at the present velocities, relative to the streaming flow; NaN if one is not

@@ -52,7 +52,7 @@ void VelocityVerlet::start(System& system) {
 
 StepReport VelocityVerlet::advance_open(System& system) {
   ++system.step;
-  system.box.set_strain(system.box.shear_rate() * timestep_ * static_cast<double>(system.step));
+  system.box.deform(simple_shear(system.box.shear_rate() * timestep_ * static_cast<double>(system.step)));
   // One walk instead of two, with the same numbers. Whether the list still holds is known only after it;
   // where it does not, the pairs are computed again with another one. Springs would then have advanced twice.
   const bool in_one_walk = field_.threads() <= 1 && system.springs.kinds() == SpringKinds::none;
@@ -175,8 +175,8 @@ std::pair<double, PairSums> VelocityVerlet::move_and_evaluate(System& system) {
 
 // Whether the list is another one.
 bool VelocityVerlet::keep_list(System& system, double speed) {
-  // A displacement d grows by dt (u - rate y_reference) = dt (peculiar velocity + rate d_y).
-  displacement_bound_ += timestep_ * (speed + system.box.shear_rate() * displacement_bound_);
+  // A displacement d grows by dt (u - L x_reference) = dt (peculiar velocity + L d).
+  displacement_bound_ += timestep_ * (speed + norm(system.box.velocity_gradient()) * displacement_bound_);
   const double allowed = system.list.allowed_displacement(system.box);
   if (displacement_bound_ < allowed) {
     return false;

@@ -126,7 +126,7 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
   kinds_ = make_pair_kinds(physics, sizes);
   smallest_radius_ = sizes.front();
   system_.particles = make_particles(radius, scene.particles.density);
-  system_.box = ShearedBox({edge, edge, edge}, physics.shear_rate);
+  system_.box = PeriodicCell({edge, edge, edge}, simple_shear(physics.shear_rate));
   const double skin =
       scene.method == Method::implicit_steps ? skin_of_implicit_steps : skin_of_explicit_steps;
   system_.list = NeighbourList(range_table(kinds_, sizes.size()), skin);

@@ -19,8 +19,8 @@ void relax(System& system, const Scene& scene, int threads) {
     still.contact->friction = 0;
     still.contact->rolling_stiffness = 0;
   }
-  const ShearedBox sheared = system.box;
-  system.box = ShearedBox(sheared.lengths(), 0);
+  const PeriodicCell sheared = system.box;
+  system.box.set_velocity_gradient({});
   double step = timestep;
   for (int made = 0; made < most_steps; ++made) {
     System trial = system;

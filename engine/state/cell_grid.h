@@ -1,4 +1,4 @@
-// Cells along the lattice vectors of a sheared box, for finding what is near.
+// Cells along the lattice vectors of the periodic cell, for finding what is near.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/state/sheared_box.h"
+#include "engine/state/periodic_cell.h"
 #include "engine/state/vector_field.h"
 
 namespace peclet::engine {
@@ -18,14 +18,14 @@ struct LatticePlaces {
   std::vector<LatticeShift> offset;
 };
 
-LatticePlaces lattice_places(const VectorField& position, const ShearedBox& box);
+LatticePlaces lattice_places(const VectorField& position, const PeriodicCell& box);
 
 // Some of the particles, sorted into cells.
 class CellGrid {
  public:
   // `members` in the order in which they are visited. Cells at least `range` wide where the box is wide
   // enough.
-  CellGrid(const LatticePlaces& places, std::span<const std::uint32_t> members, const ShearedBox& box,
+  CellGrid(const LatticePlaces& places, std::span<const std::uint32_t> members, const PeriodicCell& box,
            double range);
 
   // Calls visit(member, wrap, separation) for every member in every image whose cell is within `range` of the
@@ -93,7 +93,7 @@ class CellGrid {
            static_cast<std::size_t>(c.x);
   }
 
-  ShearedBox box_;
+  PeriodicCell box_;
   LatticeShift cells_;
   Vector3 per_length_;                // cells between two parallel planes a unit of length apart
   std::vector<std::uint32_t> first_;  // counting sort by cell

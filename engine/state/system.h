@@ -8,14 +8,14 @@ namespace peclet::engine {
 
 struct System {
   ParticleState particles;
-  ShearedBox box;
+  PeriodicCell box;
   NeighbourList list;
   SpringField springs;  // of each pair of the list
   std::uint64_t step = 0;
 };
 
-// Brings the basis of the box back to a small tilt, the particles into the cell, neighbours close together in
-// memory and the list up to date. Springs and unwrapped places are kept.
+// Brings the basis of the box back to a compact one, the particles into the cell, neighbours close together
+// in memory and the list up to date. Springs and unwrapped places are kept.
 void rebuild_neighbours(System& system, int threads = 1);
 
 // Everything above that the scene does not fix, bit by bit; load() also restores the list in its order.

@@ -21,7 +21,7 @@ void scatter(System& system, Draws& draws) {
     if (draws.whole(0, 2) == 0) {
       const LatticeShift shift = {draws.whole(-2, 2), draws.whole(-2, 2), draws.whole(-2, 2)};
       particles.position.set(i, place + system.box.displacement(shift));
-      particles.velocity.add(i, {system.box.velocity_offset(shift), 0, 0});
+      particles.velocity.add(i, system.box.velocity(shift));
     }
   }
 }
@@ -79,7 +79,7 @@ System dense_suspension(const Physics& physics, std::size_t count, std::uint64_t
   const double edge = cube_edge(radius, 0.52);
   System system;
   system.particles = make_particles(radius, 0.1);
-  system.box = ShearedBox({edge, edge, edge}, physics.shear_rate, 0.31 * edge);
+  system.box = PeriodicCell({edge, edge, edge}, simple_shear(physics.shear_rate), 0.31 * edge);
   place_randomly(system.particles, system.box, seed);
   scatter(system, draws);
   const std::vector<double> sizes = distinct_radii(radius);

@@ -53,7 +53,7 @@ Laboratory single_spheres(std::size_t count, double thermal_energy, double times
   experiment.physics.thermal_energy = thermal_energy;
   experiment.radius.assign(count, 1.0);
   const double edge = cube_edge(experiment.radius, 5e-4);
-  experiment.box = ShearedBox({edge, edge, edge}, 0);
+  experiment.box = PeriodicCell({edge, edge, edge}, Matrix3{});
   experiment.timestep = timestep;
   experiment.skin = skin;
   experiment.solver_tolerance = solver_tolerance;

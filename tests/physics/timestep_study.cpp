@@ -62,7 +62,7 @@ System packed(const Arguments& arguments) {
   const double edge = cube_edge(radius, arguments.volume_fraction);
   System system;
   system.particles = make_particles(radius, density);
-  system.box = ShearedBox({edge, edge, edge}, rate);
+  system.box = PeriodicCell({edge, edge, edge}, simple_shear(rate));
   system.list = NeighbourList(range_table(make_pair_kinds(physics_of(arguments), sizes), sizes.size()), 0.03);
   place_randomly(system.particles, system.box, arguments.seed);
   for (std::size_t i = 0; i < radius.size(); ++i) {

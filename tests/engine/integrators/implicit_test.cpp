@@ -21,7 +21,7 @@ constexpr double tight = 1e-5;
 System system_of(const Physics& physics, const std::vector<double>& radius, double density, double edge) {
   System system;
   system.particles = make_particles(radius, density);
-  system.box = ShearedBox({edge, edge, edge}, physics.shear_rate);
+  system.box = PeriodicCell({edge, edge, edge}, simple_shear(physics.shear_rate));
   const std::vector<double> sizes = distinct_radii(radius);
   system.list = NeighbourList(range_table(make_pair_kinds(physics, sizes), sizes.size()), 0.1);
   return system;
@@ -146,9 +146,9 @@ TEST_P(AgainstExplicit, TheStressAfterAReversalIsTheSame) {
   simulation.start();
   ASSERT_FALSE(simulation.advance(400));
   System reversed = simulation.system();
-  const ShearedBox& box = reversed.box;
+  const PeriodicCell& box = reversed.box;
   const double rate = scene.physics.shear_rate;
-  reversed.box = ShearedBox(box.lengths(), -rate, box.tilt());
+  reversed.box = PeriodicCell(box.lengths(), simple_shear(-rate), box.tilt());
   reversed.step = 0;
   ParticleState& particles = reversed.particles;
   for (std::size_t i = 0; i < particles.count(); ++i) {

@@ -21,7 +21,7 @@ constexpr double viscosity = 0.1;
 System system_of(const Physics& physics, const std::vector<double>& radius, double density) {
   System system;
   system.particles = make_particles(radius, density);
-  system.box = ShearedBox({30, 30, 30}, physics.shear_rate);
+  system.box = PeriodicCell({30, 30, 30}, simple_shear(physics.shear_rate));
   const std::vector<double> sizes = distinct_radii(radius);
   system.list = NeighbourList(range_table(make_pair_kinds(physics, sizes), sizes.size()), 0.1);
   return system;
@@ -246,7 +246,7 @@ System placed(const Encounter& encounter) {
   system.particles.position.set(1, encounter.second);
   followed(encounter.physics, system, 0.01);
   system.step = 0;
-  system.box = ShearedBox(system.box.lengths(), encounter.physics.shear_rate);
+  system.box = PeriodicCell(system.box.lengths(), simple_shear(encounter.physics.shear_rate));
   return system;
 }
 

@@ -189,7 +189,7 @@ TEST_P(LinkKernelsOf, TakeTheChangeOfTheSqueezingResistanceIntoAccount) {
     const double gap = one.gap, velocity = one.closing;
     System system;
     system.particles = make_particles({1, 1}, 0.1);
-    system.box = ShearedBox({20, 20, 20}, 0);
+    system.box = PeriodicCell({20, 20, 20}, Matrix3{});
     system.list = NeighbourList(range_table(make_pair_kinds(physics, {1.0}), 1), 0.1);
     system.particles.position.set(0, {5, 5, 5});
     system.particles.position.set(1, {7 + gap, 5, 5});

@@ -99,7 +99,7 @@ TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
     const ContactSprings before = held[{i, j, seen.image}];
     PairSpringsOf<double> springs = {before.tangential, before.rolling};
     Vector3 velocity = all.velocity[j] - all.velocity[i];
-    velocity.x += system.box.velocity_offset(seen.image);
+    velocity += system.box.velocity(seen.image);
     const PairMotion motion = {velocity, all.angular_velocity[i], all.angular_velocity[j]};
     const TermLoadsOf<double> t =
         pair_terms<terms>(parameters, kind, geometry(seen.separation, kind), motion, springs, [&] {

@@ -33,7 +33,7 @@ System packed(const Scene& scene) {
   const std::vector<double> radius = species_radii(scene.particles);
   system.particles = make_particles(radius, scene.particles.density);
   const double edge = cube_edge(radius, scene.volume_fraction);
-  system.box = ShearedBox({edge, edge, edge}, scene.physics.shear_rate);
+  system.box = PeriodicCell({edge, edge, edge}, simple_shear(scene.physics.shear_rate));
   const std::vector<double> sizes = distinct_radii(radius);
   system.list = NeighbourList(range_table(make_pair_kinds(scene.physics, sizes), sizes.size()), 0.1);
   system.springs = SpringField(spring_kinds(required_terms(scene.physics)), 0);
