@@ -64,7 +64,7 @@ const Warm& warmed_up(const Contestant& contestant) {
   const std::string key = scene.document.dump();
   if (!known.contains(key)) {
     Simulation simulation(scene, make_schedule(scene, contestant.name), 0, 1, contestant.name);
-    const auto half = static_cast<std::uint64_t>(0.5 * warm_up_strain / scene.physics.shear_rate /
+    const auto half = static_cast<std::uint64_t>(0.5 * warm_up_strain / scene.physics.flow.rate() /
                                                  simulation.schedule().timestep);
     simulation.start();
     advance(simulation, half);

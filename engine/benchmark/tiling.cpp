@@ -7,6 +7,7 @@ System tiled(const System& system, int times) {
   const PeriodicCell& box = system.box;
   System result;
   result.step = system.step;
+  result.clock = system.clock;
   result.box = box.enlarged(times);
 
   const auto copies =

@@ -70,7 +70,7 @@ class Reader {
     particles.angular_velocity = field("/state/angular_velocity", radius.size());
     check_three("/state/box/lengths");
     configuration.box = PeriodicCell(vector_from(state.at("box").at("lengths")),
-                                     simple_shear(configuration.physics.shear_rate),
+                                     configuration.physics.flow.deformation().velocity_gradient(0),
                                      state.at("box").at("tilt").get<double>());
     for (std::size_t k = 0; k < state.value("springs", Json::array()).size(); ++k) {
       const std::string at = fmt::format("/state/springs/{}", k);

@@ -203,6 +203,7 @@ class Evaluation {
   void add_one_body() {
     System system;
     system.particles = configuration_.particles;
+    system.box = configuration_.box;
     const std::size_t count = system.particles.count();
     const ForceField field(configuration_.physics, system.particles,
                            configuration_.noise ? configuration_.noise->timestep : 0, /*seed=*/0,
@@ -221,7 +222,8 @@ class Evaluation {
 
   void add_uniform_flow() {
     const Physics& physics = configuration_.physics;
-    const SymmetricTensor solvent = solvent_stress(physics.viscosity, physics.shear_rate);
+    const SymmetricTensor solvent =
+        solvent_stress(physics.viscosity, BackgroundFlow(configuration_.box.velocity_gradient()));
     by_term_.add_stress("solvent", solvent);
     by_term_.add_stress(
         "stresslet",

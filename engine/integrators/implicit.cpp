@@ -73,6 +73,7 @@ void Implicit::start(System& system) {
   if (system.springs.kinds() != kinds) {
     system.springs = SpringField(kinds, system.list.pairs().size());
   }
+  system.clock.count_in(timestep_);
   rebuild_neighbours(system, field_.threads());
   displacement_bound_ = 0;
 }
@@ -91,6 +92,7 @@ StepReport Implicit::advance_open(System& system) {
     // Not even a new list holds. Whoever asked for the step sees why.
     report.largest_displacement = std::max(report.largest_displacement, system.list.ranges().largest());
     ++system.step;
+    ++system.clock.steps;
     return report;
   }
   const ParticleState& particles = system.particles;
@@ -100,6 +102,7 @@ StepReport Implicit::advance_open(System& system) {
   }
   move(system, timestep_);
   ++system.step;
+  ++system.clock.steps;
   displacement_bound_ +=
       report.largest_displacement + timestep_ * norm(system.box.velocity_gradient()) * displacement_bound_;
   const double allowed = system.list.allowed_displacement(system.box);
@@ -218,18 +221,18 @@ bool Implicit::move_half_a_step(System& system) {
 void Implicit::move(System& system, double time) {
   ParticleState& particles = system.particles;
   array(particles.position) = array(origin_.position) + time * array(particles.velocity);
-  system.box.deform(
-      simple_shear(system.box.shear_rate() * (static_cast<double>(system.step) * timestep_ + time)));
+  physics_.flow.deformation().drive(system.box, system.clock.time() + time);
 }
 
 // The largest one of a step at the present velocities, relative to the streaming flow; NaN if one is not
 // finite.
 double Implicit::displacement(const System& system) const {
   const ParticleState& particles = system.particles;
+  const BackgroundFlow flow(system.box.velocity_gradient());
   double largest = 0, sum = 0;
   for (std::size_t i = 0; i < particles.count(); ++i) {
-    const Row peculiar =
-        particles.velocity.row(i) - Row{physics_.shear_rate * origin_.position.row(i)[1], 0, 0, 0};
+    const Vector3 streaming = flow.velocity(origin_.position[i]);
+    const Row peculiar = particles.velocity.row(i) - Row{streaming.x, streaming.y, streaming.z, 0};
     const Row squares = peculiar * peculiar;
     const double squared = squares[0] + squares[1] + squares[2];
     largest = std::max(largest, squared);
@@ -259,8 +262,7 @@ Implicit::Residual Implicit::set_residual(const System& system, bool with_noise)
                          .noise_torque = with_noise ? noise_torque_.data() : nullptr,
                          .inertia = inertia_.data(),
                          .timestep = timestep_,
-                         .shear_rate = physics_.shear_rate,
-                         .streaming_spin = streaming_spin(physics_.shear_rate).z};
+                         .flow = plain(BackgroundFlow(system.box.velocity_gradient()))};
   const LinkSystem matrix = links(system);
   link_.set_residual(matrix, rows, residual_.data());
   const SquaredMotion motion = link_.squared_motion(matrix, rows, direction_.data(), product_.data());
@@ -297,7 +299,7 @@ Integrator::HalfSteps Implicit::compare_half_steps(const System& system, int ste
   const auto stress = [&](int every) {
     System copy = system;
     Implicit integrator(physics_, copy.particles, timestep_ / every, tolerance_, 0, field_.threads());
-    copy.step *= static_cast<std::uint64_t>(every);  // the strain follows from it
+    copy.clock = system.clock.with_parts(every);
     integrator.displacement_bound_ = displacement_bound_;
     double sum = 0;
     for (int step = 1; step <= every * steps; ++step) {

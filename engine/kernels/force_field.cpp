@@ -67,8 +67,7 @@ OneBodyInput ForceField::one_body_input(System& system, VectorField& force, Vect
           .size_class = particles.size_class.data(),
           .kicks = kicks,
           .drag = drag_.data(),
-          .shear_rate = physics_.shear_rate,
-          .streaming_spin = streaming_spin(physics_.shear_rate).z};
+          .flow = plain(BackgroundFlow(system.box.velocity_gradient()))};
 }
 
 PairSums ForceField::evaluate_blocks(System& system, VectorField& force, VectorField& torque) {

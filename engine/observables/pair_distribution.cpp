@@ -13,7 +13,7 @@ namespace peclet::engine {
 
 void check_pair_distribution(const Scene& scene, double edge, const std::string& file) {
   const double unit = scene.particles.reference_radius;
-  const double reach = scene.physics.shear_rate > 0 ? 0.5 : std::numbers::sqrt2 / 2;
+  const double reach = scene.physics.flow.rate() > 0 ? 0.5 : std::numbers::sqrt2 / 2;
   if (scene.pair_distribution->range * unit <= reach * edge) return;
   // The default is no part of a scene without the block.
   throw InputError(

@@ -1,7 +1,7 @@
 #include "engine/observables/structure.h"
 
+#include "engine/flow/background_flow.h"
 #include "engine/kernels/pairs/pair_access.h"
-#include "engine/terms/drag.h"
 
 namespace peclet::engine {
 
@@ -29,11 +29,11 @@ SymmetricTensor structural_brownian_stress(const System& system, const std::vect
 
 KineticTemperatures kinetic_temperatures(const System& system) {
   const ParticleState& particles = system.particles;
-  const double rate = system.box.shear_rate();
+  const BackgroundFlow flow(system.box.velocity_gradient());
   double translational = 0, rotational = 0;
   for (std::size_t i = 0; i < particles.count(); ++i) {
-    const Vector3 u = particles.velocity[i] - streaming_velocity(rate, particles.position[i].y);
-    const Vector3 w = particles.angular_velocity[i] - streaming_spin(rate);
+    const Vector3 u = particles.velocity[i] - flow.velocity(particles.position[i]);
+    const Vector3 w = particles.angular_velocity[i] - flow.spin();
     translational += particles.mass[i] * dot(u, u);
     rotational += particles.inertia[i] * dot(w, w);
   }

@@ -35,7 +35,7 @@ class Reduction {
         volume_(simulation.system().box.volume()),
         volume_fraction_(solid_volume(simulation.system().particles) / volume_),
         particles_(static_cast<double>(simulation.system().particles.count())),
-        unit_(physics_.shear_rate > 0 ? physics_.viscosity * physics_.shear_rate : 1) {}
+        unit_(physics_.flow.rate() > 0 ? physics_.viscosity * physics_.flow.rate() : 1) {}
 
   Json means(const BlockSums& sums) const {
     Json stress = Json::object();
@@ -44,8 +44,9 @@ class Reduction {
       stress[name] = to_json(value);
       total += value;
     };
-    if (physics_.shear_rate > 0) {
-      const SymmetricTensor solvent = solvent_stress(1, 1);  // in units of itself
+    if (physics_.flow.rate() > 0) {
+      const SymmetricTensor solvent =
+          solvent_stress(1, BackgroundFlow(simple_shear(1)));  // in units of itself
       part("solvent", solvent);
       part("stresslet", stresslet(volume_fraction_, solvent));
     }
@@ -62,7 +63,7 @@ class Reduction {
       }
     }
     stress["total"] = to_json(total);
-    const bool sheared = physics_.shear_rate > 0;
+    const bool sheared = physics_.flow.rate() > 0;
     const double per_sample = 1 / static_cast<double>(sums.samples);
     return {{"stress", stress},
             {"brownian_pairwise", to_json(brownian)},
@@ -159,7 +160,7 @@ std::optional<double> energy_imbalance(const Scene& scene, const Simulation& sim
   const StepErrors& errors = simulation.step_errors();
   double work_per_step = 0;
   for (const SymmetricTensor& stress : window.stress) {
-    work_per_step += simulation.schedule().timestep * scene.physics.shear_rate * stress.xy /
+    work_per_step += simulation.schedule().timestep * scene.physics.flow.rate() * stress.xy /
                      static_cast<double>(window.steps);
   }
   if (scene.physics.thermal_energy > 0 || errors.samples == 0 || !(work_per_step > 0)) {
@@ -212,7 +213,7 @@ Json warnings_json(const std::vector<Warning>& warnings) {
 
 Json common_part(const ResultHeader& header, const Scene& scene, const Schedule& schedule,
                  std::uint64_t steps, const Spent& spent) {
-  const double dt = schedule.timestep, rate = scene.physics.shear_rate;
+  const double dt = schedule.timestep, rate = scene.physics.flow.rate();
   const std::uint64_t before = std::min(steps, schedule.equilibration), after = steps - before;
   const auto of_phases = [&](double factor) {
     return Json{{"equilibration", factor * static_cast<double>(before)},
@@ -281,7 +282,7 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
     std::vector<double> series;
     for (const BlockSums& block : simulation.production().blocks()) {
       const Json means = reduction.means(block);
-      const Json& value = means.at(scene.physics.shear_rate > 0 ? "relative_viscosity" : "pressure");
+      const Json& value = means.at(scene.physics.flow.rate() > 0 ? "relative_viscosity" : "pressure");
       series.push_back(value.get<double>());
       blocks.push_back(of_block(means));
     }
@@ -310,7 +311,7 @@ std::vector<std::string> names_of_means(const Scene& scene) {
   std::vector<std::string> names{"contacts_per_particle",  "first_normal_difference",
                                  "kinetic_temperature",    "pressure",
                                  "rotational_temperature", "second_normal_difference"};
-  if (scene.physics.shear_rate > 0) {
+  if (scene.physics.flow.rate() > 0) {
     names.emplace_back("relative_viscosity");
     names.emplace_back("relative_viscosity_pair");
   }

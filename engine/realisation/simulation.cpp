@@ -33,10 +33,7 @@ constexpr double most_steps = 1e15;
 // The time after which the first of the limits is reached.
 double time_of(const Duration& duration, const Scene& scene) {
   const Physics& physics = scene.physics;
-  double time = duration.time;
-  if (physics.shear_rate > 0) {
-    time = std::min(time, duration.strain / physics.shear_rate);
-  }
+  double time = std::min(duration.time, physics.flow.deformation().time_of(duration.strain));
   if (physics.thermal_energy > 0) {
     const double a = scene.particles.reference_radius;
     time = std::min(time, duration.brownian_times * physics.viscosity * a * a * a / physics.thermal_energy);
@@ -57,11 +54,12 @@ std::uint64_t steps_of(const Duration& duration, const char* name, const Scene& 
 }
 
 // The streaming flow's velocities, and those of equilibrium where there is a temperature.
-void set_initial_velocities(ParticleState& particles, const Physics& physics, std::uint64_t seed) {
+void set_initial_velocities(ParticleState& particles, const BackgroundFlow& flow, const Physics& physics,
+                            std::uint64_t seed) {
   const KeyedRandom random(seed, Purpose::initial_velocity);
   for (std::uint32_t i = 0; i < particles.count(); ++i) {
-    Vector3 velocity = streaming_velocity(physics.shear_rate, particles.position[i].y);
-    Vector3 spin = streaming_spin(physics.shear_rate);
+    Vector3 velocity = flow.velocity(particles.position[i]);
+    Vector3 spin = flow.spin();
     if (physics.thermal_energy > 0) {
       const NormalPair normals = random.normals(0, particles.id[i]);
       velocity += std::sqrt(physics.thermal_energy / particles.mass[i]) * normals.first;
@@ -126,7 +124,7 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
   kinds_ = make_pair_kinds(physics, sizes);
   smallest_radius_ = sizes.front();
   system_.particles = make_particles(radius, scene.particles.density);
-  system_.box = PeriodicCell({edge, edge, edge}, simple_shear(physics.shear_rate));
+  system_.box = PeriodicCell({edge, edge, edge}, physics.flow.deformation().velocity_gradient(0));
   const double skin =
       scene.method == Method::implicit_steps ? skin_of_implicit_steps : skin_of_explicit_steps;
   system_.list = NeighbourList(range_table(kinds_, sizes.size()), skin);
@@ -147,7 +145,8 @@ void Simulation::start() {
   if (scene_.physics.repulsion && scene_.physics.repulsion->strength > 0) {
     relax(system_, scene_, threads_);
   }
-  set_initial_velocities(system_.particles, scene_.physics, seed_);
+  set_initial_velocities(system_.particles, BackgroundFlow(system_.box.velocity_gradient()), scene_.physics,
+                         seed_);
   integrator_->start(system_);
 }
 
@@ -159,6 +158,7 @@ void Simulation::start(const System& placed) {
   system_.particles = placed.particles;
   system_.box = placed.box;
   system_.step = placed.step;
+  system_.clock = placed.clock;
   integrator_->start(system_);
 }
 
@@ -242,7 +242,7 @@ void Simulation::observe(const StepReport& report) {
     }
   }
   const std::uint64_t between = std::max(schedule_.production / comparisons, intervals.comparison);
-  const bool smooth = scene_.physics.thermal_energy == 0 && scene_.physics.shear_rate > 0;
+  const bool smooth = scene_.physics.thermal_energy == 0 && scene_.physics.flow.rate() > 0;
   if (smooth && (index + 1) % between == 0) {
     integrator_->complete(system_);
     const Integrator::HalfSteps sample = integrator_->compare_half_steps(system_, intervals.compared_steps);

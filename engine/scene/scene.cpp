@@ -149,7 +149,7 @@ Physics Reading::physics() const {
   Physics physics;
   physics.viscosity = number("/fluid/viscosity");
   physics.thermal_energy = number_or("/fluid/thermal_energy", 0);
-  physics.shear_rate = number_or("/flow/shear_rate", 0);
+  physics.flow = steady_shear(number_or("/flow/shear_rate", 0));
   if (has("/contact")) physics.contact = contact();
   if (has("/lubrication")) physics.lubrication = lubrication();
   if (has("/repulsion") && number("/repulsion/strength") > 0) {
@@ -167,14 +167,14 @@ void Reading::set_flow_from_peclet(double radius, Physics& physics) const {
   const double largest_energy = number("/limits/thermal_energy");
   const double rate_at_largest_energy = peclet * largest_energy / scale;
   if (rate_at_largest_energy <= largest_rate) {
-    physics.shear_rate = rate_at_largest_energy;
+    physics.flow = steady_shear(rate_at_largest_energy);
     physics.thermal_energy = largest_energy;
   } else {
-    physics.shear_rate = largest_rate;
+    physics.flow = steady_shear(largest_rate);
     physics.thermal_energy = scale * largest_rate / peclet;
   }
   const auto is_usable = [](double value) { return std::isnormal(value) && value > 0; };
-  if (!is_usable(physics.shear_rate) || !is_usable(physics.thermal_energy)) {
+  if (!is_usable(physics.flow.rate()) || !is_usable(physics.thermal_energy)) {
     refuse("/peclet", "leaves no shear rate and thermal energy above 0 within /limits");
   }
 }
@@ -202,7 +202,7 @@ Duration Reading::duration(const std::string& pointer, const Physics& physics) c
   for (const auto& [name, limit] : limits.items()) {
     if (limit == 0) return {unlimited, unlimited, 0};  // over before it starts, whatever the flow
   }
-  if (physics.shear_rate > 0) duration.strain = limits.value("strain", unlimited);
+  if (physics.flow.rate() > 0) duration.strain = limits.value("strain", unlimited);
   if (physics.thermal_energy > 0) duration.brownian_times = limits.value("brownian_times", unlimited);
   duration.time = limits.value("time", unlimited);
   if (duration.strain == unlimited && duration.brownian_times == unlimited && duration.time == unlimited) {
@@ -234,7 +234,7 @@ void Reading::set_observable(const char* name, std::optional<Settings>& settings
 void Reading::set_observables(Scene& scene) const {
   set_observable("mean_squared_displacement", scene.mean_squared_displacement);
   set_observable("stress_correlation", scene.stress_correlation);
-  if (scene.stress_correlation && (scene.physics.shear_rate > 0 || scene.physics.thermal_energy <= 0)) {
+  if (scene.stress_correlation && (scene.physics.flow.rate() > 0 || scene.physics.thermal_energy <= 0)) {
     refuse("/observables",
            "must not list stress_correlation unless the thermal energy is > 0 and the shear rate 0");
   }

@@ -178,10 +178,10 @@ double automatic_implicit_timestep(const Scene& scene) {
     smallest = std::min(smallest, species.radius);
     largest = std::max(largest, species.radius);
   }
-  if (physics.shear_rate > 0) {
+  if (physics.flow.rate() > 0) {
     const double stokes =
-        scene.particles.density * largest * largest * physics.shear_rate / physics.viscosity;
-    step = strain / ((1 + 2 * stokes) * physics.shear_rate);
+        scene.particles.density * largest * largest * physics.flow.rate() / physics.viscosity;
+    step = strain / ((1 + 2 * stokes) * physics.flow.rate());
   }
   if (physics.thermal_energy > 0) {
     step =

@@ -13,7 +13,7 @@ void relax(System& system, const Scene& scene, int threads) {
   const double timestep = automatic_implicit_timestep(scene);
   const double far = 0.05 * *std::min_element(system.particles.radius.begin(), system.particles.radius.end());
   Physics still = scene.physics;
-  still.shear_rate = 0;
+  still.flow = {};
   still.thermal_energy = 0;
   if (still.contact) {
     still.contact->friction = 0;
@@ -40,6 +40,7 @@ void relax(System& system, const Scene& scene, int threads) {
     step = std::min(2 * step, timestep);
   }
   system.step = 0;
+  system.clock = {};
   system.box = sheared;
 }
 

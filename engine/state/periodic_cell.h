@@ -65,13 +65,14 @@ class PeriodicCell {
   double volume() const;
   Vector3 lengths() const { return frame().lengths; }
   double tilt() const { return frame().tilt_xy; }
-  double shear_rate() const { return velocity_gradient_.column[1].x; }
   // Of a simple shear, x along y, since the start.
   double strain() const { return displacement_gradient_.column[1].x; }
 
   // Deforms the cell, keeping its basis, to this displacement gradient since the start.
-  void deform(const Matrix3& displacement_gradient) {
+  void deform(const Matrix3& displacement_gradient) { deform(displacement_gradient, velocity_gradient_); }
+  void deform(const Matrix3& displacement_gradient, const Matrix3& velocity_gradient) {
     displacement_gradient_ = displacement_gradient;
+    velocity_gradient_ = velocity_gradient;
     place();
   }
   void set_velocity_gradient(const Matrix3& gradient) {

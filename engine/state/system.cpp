@@ -25,6 +25,7 @@ void rebuild_neighbours(System& system, int threads) {
 void save(const System& system, ArchiveWriter& archive) {
   const ParticleState& particles = system.particles;
   archive.put(system.step);
+  archive.put(system.clock);
   archive.put(system.box.displacement_gradient());
   archive.put(system.box.velocity_gradient());
   archive.put(system.box.basis());
@@ -45,6 +46,7 @@ void load(System& system, ArchiveReader& archive) {
   ParticleState& particles = system.particles;
   const std::size_t count = particles.count();
   system.step = archive.get<std::uint64_t>();
+  system.clock = archive.get<Clock>();
   const auto displacement_gradient = archive.get<Matrix3>();
   system.box.set_velocity_gradient(archive.get<Matrix3>());
   system.box.set_basis(archive.get<BasisChange>());

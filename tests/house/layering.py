@@ -42,6 +42,7 @@ ENGINE = [
         "engine/" + room
         for room in (
             "state",
+            "flow",
             "random",
             "terms",
             "scene",

@@ -76,9 +76,9 @@ MUTATIONS = [
     ),
     (
         "spheres carried round the wrong way",
-        "engine/terms/drag.h",
-        "{0, 0, -0.5 * shear_rate}",
-        "{0, 0, 0.5 * shear_rate}",
+        "engine/flow/background_flow.h",
+        "0.5 * (x.y - y.x)};",
+        "-0.5 * (x.y - y.x)};",
     ),
     (
         "drag of a slip sphere",

@@ -89,16 +89,16 @@ NAMED = [
     ),
     (
         "strain of explicit steps one step late",
-        "engine/integrators/velocity_verlet.cpp",
-        "timestep_ * static_cast<double>(system.step)",
-        "timestep_ * static_cast<double>(system.step - 1)",
+        "engine/flow/deformation.cpp",
+        "clock.timestep * static_cast<double>(clock.steps)",
+        "clock.timestep * static_cast<double>(clock.steps - 1)",
         "engine_tests:VelocityVerlet.StrainAfterNStepsIsNTimesRateAndStep",
     ),
     (
         "strain of implicit steps one step late",
         IMPLICIT,
-        "(static_cast<double>(system.step) * timestep_ + time)",
-        "(static_cast<double>(system.step) * timestep_)",
+        "drive(system.box, system.clock.time() + time)",
+        "drive(system.box, system.clock.time())",
         "engine_tests:Implicit.StrainAfterNStepsIsNTimesRateAndStep",
     ),
     (
@@ -125,8 +125,8 @@ NAMED = [
     (
         "displacement of implicit steps in the laboratory",
         IMPLICIT,
-        "Row{physics_.shear_rate * origin_.position.row(i)[1], 0, 0, 0}",
-        "Row{0 * physics_.shear_rate * origin_.position.row(i)[1], 0, 0, 0}",
+        "= flow.velocity(origin_.position[i]);",
+        "= 0 * flow.velocity(origin_.position[i]);",
         "engine_tests:Implicit.ReportsTheLargestDisplacementRelativeToTheFlow",
     ),
     (
@@ -181,8 +181,8 @@ NAMED = [
     (
         "spheres of the start that do not turn with the flow",
         SIMULATION,
-        "    Vector3 spin = streaming_spin(physics.shear_rate);",
-        "    Vector3 spin = 0 * streaming_spin(physics.shear_rate);",
+        "    Vector3 spin = flow.spin();",
+        "    Vector3 spin = 0 * flow.spin();",
         "engine_tests:InitialVelocities.AreThoseOfEquilibriumAboutTheFlow",
     ),
     (
@@ -272,7 +272,7 @@ NAMED = [
     (
         "relaxation before the start in a flow",
         "engine/start/relaxation.cpp",
-        "  still.shear_rate = 0;\n",
+        "  still.flow = {};\n",
         "",
         "engine_tests:Relaxation.LeavesAPackingWithoutForcesWhereItIs",
     ),

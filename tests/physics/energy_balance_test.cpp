@@ -26,7 +26,7 @@ constexpr double stiffness = 500, repulsion_strength = 1e-3, relative_length = 0
 Physics sheared_physics() {
   Physics physics;
   physics.viscosity = natural_viscosity;
-  physics.shear_rate = rate;
+  physics.flow = steady_shear(rate);
   physics.contact = ContactParameters{.normal_stiffness = stiffness};
   physics.lubrication = LubricationParameters{inner_gap, outer_gap};
   physics.repulsion = RepulsionParameters{repulsion_strength, relative_length, 20};
@@ -220,8 +220,7 @@ class StepsTakenApart {
       all.position.set(i, all.position[i] + timestep_ * all.velocity[i]);
     }
     ++system_.step;
-    system_.box.deform(
-        simple_shear(system_.box.shear_rate() * timestep_ * static_cast<double>(system_.step)));
+    system_.box.deform(simple_shear(rate * timestep_ * static_cast<double>(system_.step)));
     if (!system_.list.holds(all, system_.box)) {
       rebuild_neighbours(system_);
     }

@@ -25,7 +25,7 @@ const double edge = cube_edge(radii(), 0.5);
 Laboratory sheared_suspension(double tilt) {
   Experiment experiment;
   experiment.physics.viscosity = natural_viscosity;
-  experiment.physics.shear_rate = rate;
+  experiment.physics.flow = steady_shear(rate);
   experiment.physics.contact = ContactParameters{.normal_stiffness = 500,
                                                  .normal_damping = 0.2,
                                                  .friction = 0.5,

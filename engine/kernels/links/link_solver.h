@@ -5,6 +5,7 @@
 // another.
 #pragma once
 
+#include "engine/kernels/bodies/streaming.h"
 #include "engine/kernels/links/link_motions.h"
 
 namespace peclet::engine {
@@ -107,10 +108,11 @@ void set_residual(const LinkSystem& system, const StepRows& step, MotionRow* res
 
 SquaredMotion squared_motion(const LinkSystem& system, const StepRows& step, MotionRow* motion,
                              MotionRow* product) {
-  const Row spin = {0, 0, step.streaming_spin, 0};
+  const Row& spin = streaming_spin(step.flow);
   Row inertial{};
   for (std::size_t i = 0; i < system.particles; ++i) {
-    const Row streaming = {step.shear_rate * vector_row(step.position, i)[1], 0, 0, 0};
+    Row streaming;
+    set_streaming<false>(step.flow, vector_row(step.position, i), streaming);
     const Row u = vector_row(step.velocity, i) - streaming, w = vector_row(step.spin, i) - spin;
     const OneBodyFactors& inertia = step.inertia[system.size_class[i]];
     inertial += inertia.translational * u * u + inertia.rotational * w * w;

@@ -15,7 +15,7 @@ namespace {
 TEST(Tiling, LeavesEveryParticleTheForcesThatItHas) {
   const Physics physics = physics_with({.lubrication = true, .contact = true, .damping = true});
   System small = dense_suspension(physics, 150, 3);
-  small.box = PeriodicCell(small.box.lengths(), simple_shear(physics.shear_rate));
+  small.box = PeriodicCell(small.box.lengths(), simple_shear(physics.flow.rate()));
   small.box.deform(simple_shear(1.3));
   small.box.change_basis(flips(1));
   rebuild_neighbours(small);

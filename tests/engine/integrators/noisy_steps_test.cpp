@@ -21,7 +21,7 @@ constexpr double viscosity = 0.1;
 System system_of(const Physics& physics, const std::vector<double>& radius, double density) {
   System system;
   system.particles = make_particles(radius, density);
-  system.box = PeriodicCell({30, 30, 30}, simple_shear(physics.shear_rate));
+  system.box = PeriodicCell({30, 30, 30}, simple_shear(physics.flow.rate()));
   const std::vector<double> sizes = distinct_radii(radius);
   system.list = NeighbourList(range_table(make_pair_kinds(physics, sizes), sizes.size()), 0.1);
   return system;
@@ -221,7 +221,7 @@ struct Encounter {
 std::vector<Encounter> encounters() {
   Physics sheared;
   sheared.viscosity = viscosity;
-  sheared.shear_rate = 1;
+  sheared.flow = steady_shear(1);
   Physics contact = sheared, lubricated = sheared;
   contact.contact = ContactParameters{.normal_stiffness = 5};
   lubricated.lubrication = LubricationParameters{1e-3, 0.9};
@@ -246,7 +246,8 @@ System placed(const Encounter& encounter) {
   system.particles.position.set(1, encounter.second);
   followed(encounter.physics, system, 0.01);
   system.step = 0;
-  system.box = PeriodicCell(system.box.lengths(), simple_shear(encounter.physics.shear_rate));
+  system.clock = {};
+  system.box = PeriodicCell(system.box.lengths(), simple_shear(encounter.physics.flow.rate()));
   return system;
 }
 

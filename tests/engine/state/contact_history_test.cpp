@@ -101,7 +101,7 @@ TEST(ContactHistory, SurvivesManyPassagesThroughTheBoundaries) {
   for (int step = 0; step < 12; ++step) {
     for (std::size_t i = 0; i < 200; ++i) {
       system.particles.position.set(i, system.particles.position[i] + way);
-      system.particles.velocity.add(i, {physics.shear_rate * way.y, 0, 0});
+      system.particles.velocity.add(i, {physics.flow.rate() * way.y, 0, 0});
     }
     rebuild_neighbours(system);
     expect_same_springs(start, system);
