@@ -130,8 +130,8 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
   system_.list = NeighbourList(range_table(kinds_, sizes.size()), skin);
   system_.springs = SpringField(spring_kinds(required_terms(physics)), 0);
   if (scene.method == Method::implicit_steps) {
-    integrator_ = std::make_unique<Implicit>(physics, system_.particles, schedule.timestep,
-                                             scene.solver_tolerance, seed, threads);
+    integrator_ = implicit_steps(physics, system_.particles, schedule.timestep, scene.solver_tolerance, seed,
+                                 threads);
   } else {
     integrator_ = std::make_unique<VelocityVerlet>(
         ForceField(physics, system_.particles, schedule.timestep, seed, threads), system_.particles,

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/integrators/implicit.h"
+#include "engine/integrators/midpoint.h"
 #include "engine/stability/stability.h"
 
 namespace peclet::engine {
@@ -26,7 +26,7 @@ void relax(System& system, const Scene& scene, int threads) {
     System trial = system;
     trial.particles.velocity = VectorField(trial.particles.count(), threads);
     trial.particles.angular_velocity = VectorField(trial.particles.count(), threads);
-    Implicit integrator(still, trial.particles, step, scene.solver_tolerance, 0, threads);
+    Midpoint integrator(still, trial.particles, step, scene.solver_tolerance, 0, threads);
     integrator.start(trial);
     const StepReport report = integrator.advance(trial);
     if (!(report.largest_displacement <= far) || !report.sums.finite) {

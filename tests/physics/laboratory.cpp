@@ -17,8 +17,8 @@ System empty_system(const Experiment& experiment) {
 
 std::unique_ptr<Integrator> make_integrator(const Experiment& experiment, const ParticleState& particles) {
   if (experiment.solver_tolerance) {
-    return std::make_unique<Implicit>(experiment.physics, particles, experiment.timestep,
-                                      *experiment.solver_tolerance, experiment.seed, /*threads=*/1);
+    return implicit_steps(experiment.physics, particles, experiment.timestep, *experiment.solver_tolerance,
+                          experiment.seed, /*threads=*/1);
   }
   return std::make_unique<VelocityVerlet>(
       ForceField(experiment.physics, particles, experiment.timestep, experiment.seed, /*threads=*/1),

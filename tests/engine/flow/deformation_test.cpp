@@ -92,7 +92,7 @@ System carried(const std::shared_ptr<const Deformation>& deformation, bool impli
   }
   std::unique_ptr<Integrator> integrator;
   if (implicit) {
-    integrator = std::make_unique<Implicit>(physics, system.particles, step, 1e-6, 1, 1);
+    integrator = implicit_steps(physics, system.particles, step, 1e-6, 1, 1);
   } else {
     integrator = std::make_unique<VelocityVerlet>(ForceField(physics, system.particles, step, 1, 1),
                                                   system.particles, step);
