@@ -61,7 +61,7 @@ NAMED = [
     ),
     (
         "Brownian times with 6 pi",
-        "engine/realisation/simulation.cpp",
+        "engine/realisation/schedule.cpp",
         "duration.brownian_times * physics.viscosity",
         "duration.brownian_times * 18.85 * physics.viscosity",
         "engine_tests:Schedule.ABrownianTimeIsEtaACubedOverTheThermalEnergy",
@@ -160,7 +160,7 @@ NAMED = [
     (
         "checkpoint without the errors of the steps",
         SIMULATION,
-        "  archive.put(step_errors_);",
+        "  gate_.save(archive);",
         "  archive.put(StepErrors{});",
         "engine_tests:ResumedJob.ResultEqualsTheUncutOneButForItsCost",
     ),
