@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "engine/flow/background_flow.h"
 #include "engine/state/system.h"
 
 namespace peclet::engine {
@@ -53,15 +54,24 @@ class SteadyShear final : public Deformation {
 class ImposedFlow {
  public:
   ImposedFlow() : ImposedFlow(std::make_shared<SteadyShear>(0)) {}
-  explicit ImposedFlow(std::shared_ptr<const Deformation> deformation)
-      : deformation_(std::move(deformation)) {}
+  explicit ImposedFlow(std::shared_ptr<const Deformation> deformation,
+                       std::shared_ptr<const FlowVariation> variation = nullptr)
+      : deformation_(std::move(deformation)), variation_(std::move(variation)) {}
 
   const Deformation& deformation() const { return *deformation_; }
-  // The largest shear rate, which sets times and stresses; 0 for a fluid at rest.
+  // The shear rate of the cell, which sets times and stresses; 0 where it keeps its shape.
   double rate() const { return deformation_->largest_rate(); }
+  bool varies() const { return variation_ != nullptr; }
+  // At least that of the strongest gradient anywhere in this cell.
+  double largest_rate(const PeriodicCell& cell) const {
+    return rate() + (varies() ? variation_->largest_rate(cell) : 0);
+  }
+  // The flow of this moment. The cell must outlive it.
+  BackgroundFlow at(const PeriodicCell& cell) const { return BackgroundFlow(cell, variation_.get()); }
 
  private:
   std::shared_ptr<const Deformation> deformation_;
+  std::shared_ptr<const FlowVariation> variation_;  // of the flow within the cell, if it varies
 };
 
 inline ImposedFlow steady_shear(double rate) { return ImposedFlow(std::make_shared<SteadyShear>(rate)); }

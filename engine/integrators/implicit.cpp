@@ -6,6 +6,7 @@
 
 #include "engine/integrators/midpoint.h"
 #include "engine/integrators/noisy_midpoint.h"
+#include "engine/kernels/bodies/streaming.h"
 #include "engine/state/field_array.h"
 
 namespace peclet::engine {
@@ -14,6 +15,22 @@ namespace {
 Physics without_noise(Physics physics) {
   physics.thermal_energy = 0;
   return physics;
+}
+
+// Of the velocities relative to the flow; NaN if one is not finite.
+template <bool is_simple_shear>
+double largest_square(const UniformFlow& flow, const VectorField& position, const VectorField& velocity) {
+  double largest = 0, sum = 0;
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    Row streaming;
+    set_streaming<is_simple_shear>(flow, position.row(i), streaming);
+    const Row peculiar = velocity.row(i) - streaming;
+    const Row squares = peculiar * peculiar;
+    const double squared = squares[0] + squares[1] + squares[2];
+    largest = std::max(largest, squared);
+    sum += squared;
+  }
+  return std::isfinite(sum) ? largest : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace
@@ -115,20 +132,14 @@ void Implicit::move(System& system, double time) {
   physics_.flow.deformation().drive(system.box, system.clock.time() + time);
 }
 
-// The largest one of a step at the present velocities, relative to the flow; NaN if one is not finite.
+// The largest one of a step at the present velocities, relative to the uniform flow; NaN if one is not
+// finite.
 double Implicit::displacement(const System& system) const {
-  const ParticleState& particles = system.particles;
-  const BackgroundFlow flow(system.box.velocity_gradient());
-  double largest = 0, sum = 0;
-  for (std::size_t i = 0; i < particles.count(); ++i) {
-    const Vector3 streaming = flow.velocity(origin_.position[i]);
-    const Row peculiar = particles.velocity.row(i) - Row{streaming.x, streaming.y, streaming.z, 0};
-    const Row squares = peculiar * peculiar;
-    const double squared = squares[0] + squares[1] + squares[2];
-    largest = std::max(largest, squared);
-    sum += squared;
-  }
-  return std::isfinite(sum) ? timestep_ * std::sqrt(largest) : std::numeric_limits<double>::quiet_NaN();
+  const UniformFlow flow = plain_flow(system.box.velocity_gradient());
+  const double squared = flow.is_simple_shear
+                             ? largest_square<true>(flow, origin_.position, system.particles.velocity)
+                             : largest_square<false>(flow, origin_.position, system.particles.velocity);
+  return timestep_ * std::sqrt(squared);
 }
 
 Integrator::HalfSteps Implicit::compare_half_steps(const System& system, int steps) const {

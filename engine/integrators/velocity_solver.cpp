@@ -23,7 +23,11 @@ VelocitySolver::VelocitySolver(const Physics& physics, const ParticleState& part
       solution_(particles.count()),
       residual_(particles.count()),
       direction_(particles.count()),
-      product_(particles.count()) {
+      product_(particles.count()),
+      flow_(physics.flow) {
+  if (flow_.varies()) {
+    varying_velocity_ = varying_spin_ = VectorField(particles.count());
+  }
   const std::size_t classes = distinct_radii(particles.radius).size();
   inertia_.resize(classes);
   diagonal_.resize(classes);
@@ -48,6 +52,13 @@ void VelocitySolver::assemble(System& system, ForceField& field, double resistan
 VelocitySolver::Residual VelocitySolver::set_residual(const System& system, const StepOrigin& origin,
                                                       const Loads& loads, const Loads* noise) {
   const ParticleState& particles = system.particles;
+  if (flow_.varies()) {
+    const BackgroundFlow flow = flow_.at(system.box);
+    for (std::size_t i = 0; i < particles.count(); ++i) {
+      varying_velocity_.set(i, flow.varying_velocity(particles.position[i], particles.radius[i]));
+      varying_spin_.set(i, flow.varying_spin(particles.position[i]));
+    }
+  }
   const StepRows rows = {.velocity_before = origin.velocity.data(),
                          .spin_before = origin.spin.data(),
                          .position = particles.position.data(),
@@ -59,7 +70,9 @@ VelocitySolver::Residual VelocitySolver::set_residual(const System& system, cons
                          .noise_torque = noise != nullptr ? noise->torque.data() : nullptr,
                          .inertia = inertia_.data(),
                          .timestep = timestep_,
-                         .flow = plain(BackgroundFlow(system.box.velocity_gradient()))};
+                         .flow = plain_flow(system.box.velocity_gradient()),
+                         .varying_velocity = flow_.varies() ? varying_velocity_.data() : nullptr,
+                         .varying_spin = flow_.varies() ? varying_spin_.data() : nullptr};
   const LinkSystem matrix = links(system);
   link_.set_residual(matrix, rows, residual_.data());
   const SquaredMotion motion = link_.squared_motion(matrix, rows, direction_.data(), product_.data());

@@ -58,6 +58,8 @@ class VelocitySolver {
   std::vector<LinkGroup> groups_;
   std::size_t count_of_groups_ = 0;
   std::vector<MotionRow> inverse_blocks_, scratch_, solution_, residual_, direction_, product_;
+  ImposedFlow flow_;
+  VectorField varying_velocity_, varying_spin_;  // of each particle, where the flow varies
 };
 
 }  // namespace peclet::engine

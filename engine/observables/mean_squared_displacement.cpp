@@ -23,7 +23,7 @@ MeanSquaredDisplacement::MeanSquaredDisplacement(const Scene& scene, const Syste
                                                  std::uint64_t interval, std::uint64_t steps)
     : Observable(interval),
       time_(timestep * static_cast<double>(interval)),
-      sheared_(scene.physics.flow.rate() > 0),
+      sheared_(scene.physics.flow.rate() > 0 || scene.physics.flow.varies()),
       free_slope_(scene.physics.thermal_energy /
                   (std::numbers::pi * scene.physics.viscosity * scene.particles.reference_radius)),
       radius_of_class_(distinct_radii(system.particles.radius)),

@@ -15,10 +15,12 @@ void Production::add_step(std::uint64_t index, const PairSums& sums) {
 }
 
 void Production::add_sample(std::uint64_t index, const SymmetricTensor& structural_brownian,
+                            const SymmetricTensor& varying_stresslet,
                             const KineticTemperatures& temperature) {
   BlockSums& block = block_of(index);
   ++block.samples;
   block.structural_brownian += structural_brownian;
+  block.varying_stresslet += varying_stresslet;
   block.temperature.translational += temperature.translational;
   block.temperature.rotational += temperature.rotational;
 }

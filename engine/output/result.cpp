@@ -45,10 +45,11 @@ class Reduction {
       total += value;
     };
     if (physics_.flow.rate() > 0) {
-      const SymmetricTensor solvent =
-          solvent_stress(1, BackgroundFlow(simple_shear(1)));  // in units of itself
+      const SymmetricTensor solvent = solvent_stress(1, simple_shear(1));  // in units of itself
       part("solvent", solvent);
-      part("stresslet", stresslet(volume_fraction_, solvent));
+      part("stresslet", stresslet(volume_fraction_, solvent) + varying_stresslet(sums));
+    } else if (physics_.flow.varies()) {
+      part("stresslet", varying_stresslet(sums));
     }
     const double per_step = 1 / (static_cast<double>(sums.steps) * volume_ * unit_);
     SymmetricTensor pairs, brownian;
@@ -80,6 +81,11 @@ class Reduction {
   }
 
  private:
+  SymmetricTensor varying_stresslet(const BlockSums& sums) const {
+    if (!physics_.flow.varies()) return {};
+    return (1 / (static_cast<double>(sums.samples) * unit_)) * sums.varying_stresslet;
+  }
+
   // Of mean zero: the part that the stress of the pairwise noise would have in each observable. That of the
   // relative viscosities is named after the stress.
   Json control_variates(const SymmetricTensor& brownian) const {
@@ -105,6 +111,7 @@ BlockSums whole_window(const Production& production) {
       all.stress[t] += block.stress[t];
     }
     all.structural_brownian += block.structural_brownian;
+    all.varying_stresslet += block.varying_stresslet;
     all.temperature.translational += block.temperature.translational;
     all.temperature.rotational += block.temperature.rotational;
   }
@@ -163,7 +170,9 @@ std::optional<double> energy_imbalance(const Scene& scene, const Simulation& sim
     work_per_step += simulation.schedule().timestep * scene.physics.flow.rate() * stress.xy /
                      static_cast<double>(window.steps);
   }
-  if (scene.physics.thermal_energy > 0 || errors.samples == 0 || !(work_per_step > 0)) {
+  // Where the flow varies it works on spheres one by one too.
+  if (scene.physics.flow.varies() || scene.physics.thermal_energy > 0 || errors.samples == 0 ||
+      !(work_per_step > 0)) {
     return std::nullopt;
   }
   return errors.spurious_energy / static_cast<double>(errors.samples) / work_per_step;

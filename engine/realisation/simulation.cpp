@@ -25,8 +25,8 @@ void set_initial_velocities(ParticleState& particles, const BackgroundFlow& flow
                             std::uint64_t seed) {
   const KeyedRandom random(seed, Purpose::initial_velocity);
   for (std::uint32_t i = 0; i < particles.count(); ++i) {
-    Vector3 velocity = flow.velocity(particles.position[i]);
-    Vector3 spin = flow.spin();
+    Vector3 velocity = flow.velocity(particles.position[i], particles.radius[i]);
+    Vector3 spin = flow.spin(particles.position[i]);
     if (physics.thermal_energy > 0) {
       const NormalPair normals = random.normals(0, particles.id[i]);
       velocity += std::sqrt(physics.thermal_energy / particles.mass[i]) * normals.first;
@@ -76,8 +76,7 @@ void Simulation::start() {
   if (scene_.physics.repulsion && scene_.physics.repulsion->strength > 0) {
     relax(system_, scene_, threads_);
   }
-  set_initial_velocities(system_.particles, BackgroundFlow(system_.box.velocity_gradient()), scene_.physics,
-                         seed_);
+  set_initial_velocities(system_.particles, scene_.physics.flow.at(system_.box), scene_.physics, seed_);
   integrator_->start(system_);
 }
 
@@ -125,7 +124,8 @@ void Simulation::observe(const StepReport& report) {
   if (index % std::min(integrator_->intervals().sampling, longest_interval) == 0) {
     integrator_->complete(system_);
     production_.add_sample(index, structural_brownian_stress(system_, kinds_, scene_.physics.thermal_energy),
-                           kinetic_temperatures(system_));
+                           varying_stresslet(system_.particles, system_.box, scene_.physics),
+                           kinetic_temperatures(system_, scene_.physics.flow));
   }
   for (const std::unique_ptr<Observable>& observable : observables_) {
     if (index % observable->interval() != 0) continue;

@@ -234,9 +234,10 @@ void Reading::set_observable(const char* name, std::optional<Settings>& settings
 void Reading::set_observables(Scene& scene) const {
   set_observable("mean_squared_displacement", scene.mean_squared_displacement);
   set_observable("stress_correlation", scene.stress_correlation);
-  if (scene.stress_correlation && (scene.physics.flow.rate() > 0 || scene.physics.thermal_energy <= 0)) {
+  if (scene.stress_correlation &&
+      (scene.physics.flow.rate() > 0 || scene.physics.flow.varies() || scene.physics.thermal_energy <= 0)) {
     refuse("/observables",
-           "must not list stress_correlation unless the thermal energy is > 0 and the shear rate 0");
+           "must not list stress_correlation unless the thermal energy is > 0 and the fluid at rest");
   }
   set_observable("pair_distribution", scene.pair_distribution);
   if (scene.pair_distribution && has("/pair_distribution")) {

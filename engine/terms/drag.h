@@ -22,11 +22,16 @@ inline double rotational_drag(double viscosity, double radius) {
 inline double drag_noise_amplitude(double amplitude, double zeta) { return amplitude * std::sqrt(zeta); }
 
 // 2 eta E of the solvent.
-inline SymmetricTensor solvent_stress(double viscosity, const BackgroundFlow& flow) {
-  return (2 * viscosity) * flow.rate_of_strain();
+inline SymmetricTensor solvent_stress(double viscosity, const Matrix3& velocity_gradient) {
+  return (2 * viscosity) * strain_of(velocity_gradient);
 }
 
-// 20/3 pi eta a^3 E of each sphere as if it were alone, over V: 2.5 phi times the solvent's.
+// 20/3 pi eta a^3 (1 + a^2/10 lap) E, of a sphere as if it were alone.
+inline SymmetricTensor stresslet_of_sphere(double viscosity, double radius, const SymmetricTensor& strain) {
+  return (20.0 / 3.0 * std::numbers::pi * viscosity * radius * radius * radius) * strain;
+}
+
+// Of all spheres in a uniform E, over V: 2.5 phi times the solvent's.
 inline SymmetricTensor stresslet(double volume_fraction, const SymmetricTensor& solvent) {
   return (2.5 * volume_fraction) * solvent;
 }

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "engine/flow/background_flow.h"
+#include "engine/flow/uniform_flow.h"
 
 namespace peclet::engine {
 

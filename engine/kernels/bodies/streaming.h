@@ -3,7 +3,7 @@
 // Static for the same reason as one_body.h.
 #pragma once
 
-#include "engine/flow/background_flow.h"
+#include "engine/flow/uniform_flow.h"
 #include "engine/state/real.h"
 #include "engine/state/row.h"
 

@@ -66,6 +66,7 @@ struct StepRows {
   const OneBodyFactors* inertia;             // of each size class
   double timestep;
   UniformFlow flow;
+  const double *varying_velocity, *varying_spin;  // added to the flow, or null
 };
 
 // (V - U).A (V - U) with the streaming flow U, and the part of it that is inertia.

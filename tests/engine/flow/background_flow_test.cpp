@@ -10,6 +10,8 @@
 namespace peclet::engine {
 namespace {
 
+PeriodicCell cell_with(const Matrix3& gradient) { return {{10, 10, 10}, gradient}; }
+
 void expect_near(const Vector3& a, const Vector3& b, double tolerance) {
   EXPECT_NEAR(a.x, b.x, tolerance);
   EXPECT_NEAR(a.y, b.y, tolerance);
@@ -18,10 +20,12 @@ void expect_near(const Vector3& a, const Vector3& b, double tolerance) {
 
 // U = (rate y, 0, 0), Omega = (0, 0, -rate / 2), E_xy = rate / 2.
 TEST(BackgroundFlow, OfSimpleShearGoesAlongXAndTurnsTheOtherWay) {
-  const BackgroundFlow flow(simple_shear(0.7));
+  const PeriodicCell cell = cell_with(simple_shear(0.7));
+  const BackgroundFlow flow(cell);
   expect_near(flow.velocity({3, 2, 5}), {1.4, 0, 0}, 0);
-  expect_near(flow.spin(), {0, 0, -0.35}, 0);
-  const SymmetricTensor strain = flow.rate_of_strain();
+  expect_near(flow.velocity({3, 2, 5}, 2), {1.4, 0, 0}, 0);
+  expect_near(flow.spin({3, 2, 5}), {0, 0, -0.35}, 0);
+  const SymmetricTensor strain = strain_of(cell.velocity_gradient());
   EXPECT_EQ(strain.xy, 0.35);
   for (const double rest : {strain.xx, strain.yy, strain.zz, strain.xz, strain.yz}) EXPECT_EQ(rest, 0);
 }
@@ -30,12 +34,13 @@ TEST(BackgroundFlow, OfSimpleShearGoesAlongXAndTurnsTheOtherWay) {
 TEST(BackgroundFlow, OfARotationIsThatRotation) {
   Draws draws(1);
   const Vector3 turning = draws.vector();
-  const BackgroundFlow flow(
-      {cross(turning, Vector3{1, 0, 0}), cross(turning, Vector3{0, 1, 0}), cross(turning, Vector3{0, 0, 1})});
+  const Matrix3 gradient = {cross(turning, Vector3{1, 0, 0}), cross(turning, Vector3{0, 1, 0}),
+                            cross(turning, Vector3{0, 0, 1})};
+  const PeriodicCell cell = cell_with(gradient);
   const Vector3 place = draws.vector(5);
-  expect_near(flow.velocity(place), cross(turning, place), 1e-15);
-  expect_near(flow.spin(), turning, 1e-15);
-  const SymmetricTensor strain = flow.rate_of_strain();
+  expect_near(BackgroundFlow(cell).velocity(place), cross(turning, place), 1e-15);
+  expect_near(BackgroundFlow(cell).spin(place), turning, 1e-15);
+  const SymmetricTensor strain = strain_of(gradient);
   for (const double each : {strain.xx, strain.yy, strain.zz, strain.xy, strain.xz, strain.yz}) {
     EXPECT_NEAR(each, 0, 1e-15);
   }
@@ -45,20 +50,49 @@ TEST(BackgroundFlow, OfARotationIsThatRotation) {
 TEST(BackgroundFlow, IsItsRotationAndItsStrain) {
   Draws draws(2);
   for (int n = 0; n < 10; ++n) {
-    const BackgroundFlow flow({draws.vector(), draws.vector(), draws.vector()});
+    const PeriodicCell cell = cell_with({draws.vector(), draws.vector(), draws.vector()});
+    const BackgroundFlow flow(cell);
     const Vector3 x = draws.vector(5);
-    const SymmetricTensor e = flow.rate_of_strain();
+    const SymmetricTensor e = strain_of(cell.velocity_gradient());
     const Vector3 strained = {e.xx * x.x + e.xy * x.y + e.xz * x.z, e.xy * x.x + e.yy * x.y + e.yz * x.z,
                               e.xz * x.x + e.yz * x.y + e.zz * x.z};
-    expect_near(flow.velocity(x), cross(flow.spin(), x) + strained, 1e-13);
+    expect_near(flow.velocity(x), cross(flow.spin(x), x) + strained, 1e-13);
   }
+}
+
+// u'_x = c y^3 has the Laplacian 6 c y and its gradient 3 c y^2 the Laplacian 6 c.
+class Cubic final : public FlowVariation {
+ public:
+  Local at(const Vector3& x, const PeriodicCell& /*cell*/) const override {
+    return {.velocity = {c * x.y * x.y * x.y, 0, 0},
+            .laplacian = {6 * c * x.y, 0, 0},
+            .gradient = simple_shear(3 * c * x.y * x.y),
+            .laplacian_of_gradient = simple_shear(6 * c)};
+  }
+  double largest_rate(const PeriodicCell& /*cell*/) const override { return 3 * c * 100; }
+
+  static constexpr double c = 0.3;
+};
+
+// The uniform part needs no correction; of the other, a^2/6 and a^2/10 of the Laplacians.
+TEST(BackgroundFlow, IsFeltByASphereAsFaxenSays) {
+  const PeriodicCell cell = cell_with(simple_shear(0.7));
+  const Cubic cubic;
+  const BackgroundFlow flow(cell, &cubic);
+  constexpr double y = 1.3, a = 1.7, c = Cubic::c;
+  const Vector3 x = {4, y, 6};
+  expect_near(flow.velocity(x), {0.7 * y + c * y * y * y, 0, 0}, 1e-14);
+  expect_near(flow.velocity(x, a), {0.7 * y + c * y * (y * y + a * a), 0, 0}, 1e-14);
+  expect_near(flow.spin(x), {0, 0, -0.5 * (0.7 + 3 * c * y * y)}, 1e-14);
+  EXPECT_NEAR(flow.varying_strain(x, a).xy, 0.5 * (3 * c * y * y + 0.6 * c * a * a), 1e-14);
+  EXPECT_EQ(flow.varying_strain(x, a).xx, 0);
 }
 
 // 2 eta E of planar extension: eta_E = (xx - yy) / (4 rate) is eta.
 TEST(BackgroundFlow, OfExtensionHasTheSolventsNormalStresses) {
   const double rate = 0.3, viscosity = 1.7;
   const SymmetricTensor stress =
-      solvent_stress(viscosity, BackgroundFlow({Vector3{rate, 0, 0}, Vector3{0, -rate, 0}, Vector3{}}));
+      solvent_stress(viscosity, {Vector3{rate, 0, 0}, Vector3{0, -rate, 0}, Vector3{}});
   EXPECT_NEAR((stress.xx - stress.yy) / (4 * rate), viscosity, 1e-15);
   EXPECT_EQ(stress.zz, 0);
   EXPECT_EQ(stress.xy, 0);
@@ -70,7 +104,6 @@ TEST(BackgroundFlow, OfAnyGradientDragsTheParticles) {
   for (const bool sheared : {false, true}) {
     const Matrix3 gradient =
         sheared ? simple_shear(0.4) : Matrix3{draws.vector(), draws.vector(), draws.vector()};
-    const BackgroundFlow flow(gradient);
     constexpr std::size_t count = 5;
     VectorField position(count), velocity(count), spin(count), force(count), torque(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -90,7 +123,7 @@ TEST(BackgroundFlow, OfAnyGradientDragsTheParticles) {
                                .size_class = size_class.data(),
                                .kicks = &kick,
                                .drag = &drag,
-                               .flow = plain(flow)};
+                               .flow = plain_flow(gradient)};
       const Speeds speeds = one_body_kernels(set).kick_and_drift(in, 0, count, false, 0);
       one_body_kernels(set).set_drag(in, 0, count);
       double sum = 0, largest = 0;

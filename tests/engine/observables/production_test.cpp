@@ -84,7 +84,7 @@ TEST(KineticTemperatures, AreThoseOfMotionRelativeToTheStreamingFlow) {
   system.particles.angular_velocity.set(0, {0, 0, -0.35});
   system.particles.angular_velocity.set(1, {0, 3, 4 - 0.35});  // 25
   const double m0 = 0.1 * 4 * std::numbers::pi / 3, m1 = m0 * 1.4 * 1.4 * 1.4;
-  const KineticTemperatures t = kinetic_temperatures(system);
+  const KineticTemperatures t = kinetic_temperatures(system, steady_shear(0.7));
   EXPECT_NEAR(t.translational, m0 * 9 / 6, 1e-14);
   EXPECT_NEAR(t.rotational, 0.4 * m1 * 1.96 * 25 / 6, 1e-14);
 }

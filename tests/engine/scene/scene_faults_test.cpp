@@ -105,7 +105,7 @@ const Fault faults[] = {
     {R"({"observables": ["mean_squared_displacement"], "mean_squared_displacement": {"interval": 0}})",
      "/mean_squared_displacement/interval", "0", "must be a number > 0"},
     {R"({"observables": ["stress_correlation"]})", "/observables", R"(["stress_correlation"])",
-     "unless the thermal energy is > 0 and the shear rate 0"},
+     "unless the thermal energy is > 0 and the fluid at rest"},
     {R"({"contact": null, "observables": ["contact_network"]})", "/observables", R"(["contact_network"])",
      "without /contact"},
     {R"({"guard": {"largest_overlap": 0}})", "/guard/largest_overlap", "0", "must be a number > 0"},
