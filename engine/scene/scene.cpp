@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "contract/input_error.h"
+#include "engine/flow/waves.h"
 
 namespace peclet::engine {
 
@@ -49,6 +50,8 @@ class Reading {
   void check_sizes(const Particles& particles) const;
   ContactParameters contact() const;
   LubricationParameters lubrication() const;
+  // Of this shear rate, with the scene's waves.
+  ImposedFlow flow(double rate) const;
   void set_flow_from_peclet(double radius, Physics& physics) const;
   bool asks_for(const char* observable) const;
   template <class Settings>
@@ -145,11 +148,26 @@ LubricationParameters Reading::lubrication() const {
   return lubrication;
 }
 
+ImposedFlow Reading::flow(double rate) const {
+  if (!has("/flow/waves")) {
+    if (has("/flow/faxen")) refuse("/flow/faxen", "must be left out without /flow/waves");
+    return steady_shear(rate);
+  }
+  if (!has("/flow/faxen")) miss("/flow/faxen", "must be true or false where there are /flow/waves");
+  std::vector<Wave> waves;
+  for (const Json& wave : at("/flow/waves")) {
+    waves.push_back(
+        {wave.at("periods").get<int>(), wave.at("sine").get<double>(), wave.at("cosine").get<double>()});
+  }
+  return ImposedFlow(std::make_shared<SteadyShear>(rate),
+                     std::make_shared<Waves>(std::move(waves), at("/flow/faxen").get<bool>()));
+}
+
 Physics Reading::physics() const {
   Physics physics;
   physics.viscosity = number("/fluid/viscosity");
   physics.thermal_energy = number_or("/fluid/thermal_energy", 0);
-  physics.flow = steady_shear(number_or("/flow/shear_rate", 0));
+  physics.flow = flow(number_or("/flow/shear_rate", 0));
   if (has("/contact")) physics.contact = contact();
   if (has("/lubrication")) physics.lubrication = lubrication();
   if (has("/repulsion") && number("/repulsion/strength") > 0) {
@@ -167,10 +185,10 @@ void Reading::set_flow_from_peclet(double radius, Physics& physics) const {
   const double largest_energy = number("/limits/thermal_energy");
   const double rate_at_largest_energy = peclet * largest_energy / scale;
   if (rate_at_largest_energy <= largest_rate) {
-    physics.flow = steady_shear(rate_at_largest_energy);
+    physics.flow = flow(rate_at_largest_energy);
     physics.thermal_energy = largest_energy;
   } else {
-    physics.flow = steady_shear(largest_rate);
+    physics.flow = flow(largest_rate);
     physics.thermal_energy = scale * largest_rate / peclet;
   }
   const auto is_usable = [](double value) { return std::isnormal(value) && value > 0; };
