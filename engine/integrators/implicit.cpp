@@ -6,7 +6,6 @@
 
 #include "engine/integrators/midpoint.h"
 #include "engine/integrators/noisy_midpoint.h"
-#include "engine/kernels/bodies/streaming.h"
 #include "engine/state/field_array.h"
 
 namespace peclet::engine {
@@ -19,14 +18,16 @@ Physics without_noise(Physics physics) {
 
 // Of the velocities relative to the flow; NaN if one is not finite.
 template <bool is_simple_shear>
-double largest_square(const UniformFlow& flow, const VectorField& position, const VectorField& velocity) {
+double largest_square(const Matrix3& gradient, const VectorField& position, const VectorField& velocity) {
   double largest = 0, sum = 0;
   for (std::size_t i = 0; i < position.size(); ++i) {
-    Row streaming;
-    set_streaming<is_simple_shear>(flow, position.row(i), streaming);
-    const Row peculiar = velocity.row(i) - streaming;
-    const Row squares = peculiar * peculiar;
-    const double squared = squares[0] + squares[1] + squares[2];
+    Vector3 peculiar = velocity[i];
+    if constexpr (is_simple_shear) {
+      peculiar.x -= gradient.column[1].x * position.row(i)[1];
+    } else {
+      peculiar -= gradient * position[i];
+    }
+    const double squared = dot(peculiar, peculiar);
     largest = std::max(largest, squared);
     sum += squared;
   }
@@ -135,10 +136,10 @@ void Implicit::move(System& system, double time) {
 // The largest one of a step at the present velocities, relative to the uniform flow; NaN if one is not
 // finite.
 double Implicit::displacement(const System& system) const {
-  const UniformFlow flow = plain_flow(system.box.velocity_gradient());
-  const double squared = flow.is_simple_shear
-                             ? largest_square<true>(flow, origin_.position, system.particles.velocity)
-                             : largest_square<false>(flow, origin_.position, system.particles.velocity);
+  const Matrix3& gradient = system.box.velocity_gradient();
+  const double squared = gradient == simple_shear(gradient.column[1].x)
+                             ? largest_square<true>(gradient, origin_.position, system.particles.velocity)
+                             : largest_square<false>(gradient, origin_.position, system.particles.velocity);
   return timestep_ * std::sqrt(squared);
 }
 
