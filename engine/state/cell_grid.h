@@ -37,10 +37,13 @@ class CellGrid {
                  along_y = layers(fractional.y, cells_.y, range * per_length_.y),
                  along_z = layers(fractional.z, cells_.z, range * per_length_.z);
     const Vector3 point = box_.point_at(fractional);
+    const auto& [edge_x, edge_y, edge_z] = box_.edges().column;
     for (std::int32_t layer_z = along_z.begin; layer_z < along_z.end; ++layer_z) {
       const Wrapped z = wrapped(layer_z, cells_.z);
+      const Vector3 shift_z = static_cast<double>(z.wrap) * edge_z;
       for (std::int32_t layer_y = along_y.begin; layer_y < along_y.end; ++layer_y) {
         const Wrapped y = wrapped(layer_y, cells_.y);
+        const Vector3 shift_yz = static_cast<double>(y.wrap) * edge_y + shift_z;
         const std::size_t row = (static_cast<std::size_t>(z.cell) * static_cast<std::size_t>(cells_.y) +
                                  static_cast<std::size_t>(y.cell)) *
                                 static_cast<std::size_t>(cells_.x);
@@ -50,7 +53,7 @@ class CellGrid {
           const std::int32_t count = std::min(along_x.end - x, cells_.x - first.cell);
           const std::size_t begin = row + static_cast<std::size_t>(first.cell);
           const LatticeShift wrap = {first.wrap, y.wrap, z.wrap};
-          const Vector3 shift = box_.displacement(wrap) - point;
+          const Vector3 shift = static_cast<double>(first.wrap) * edge_x + shift_yz - point;
           for (std::uint32_t k = first_[begin]; k < first_[begin + static_cast<std::size_t>(count)]; ++k) {
             visit(content_[k].particle, wrap, content_[k].point + shift);
           }
