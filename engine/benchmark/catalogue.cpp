@@ -67,6 +67,21 @@ Group size() {
   return group;
 }
 
+// The solver's share: links, preconditioner, iterations; with noise two systems for each step.
+Group implicit() {
+  Group group{"implicit",
+              "What does an implicit step cost?",
+              {contestant("implicit", "contact and lubrication", 1000),
+               contestant("implicit-friction", "and sliding friction with history", 1000,
+                          R"({ "contact": { "friction": 0.5 } })"),
+               contestant("implicit-brownian", "without friction, with noise at Pe = 10", 1000, brownian)}};
+  for (Contestant& each : group.contestants) {
+    each.scene.document["integrator"] = {{"method", "implicit"}};
+    each.scene = read_scene(each.scene.document, each.name);
+  }
+  return group;
+}
+
 Group species() {
   return {"species",
           "What does a near pair cost among small and large spheres?",
@@ -99,6 +114,7 @@ Group term(const std::string& name, const char* without, const char* zero, const
 std::vector<Group> catalogue() {
   return {
       reference(),
+      implicit(),
       size(),
       species(),
       threads(),

@@ -4,11 +4,11 @@ namespace peclet::engine {
 
 System tiled(const System& system, int times) {
   const ParticleState& small = system.particles;
-  const ShearedBox& box = system.box;
+  const PeriodicCell& box = system.box;
   System result;
   result.step = system.step;
-  result.box = ShearedBox(times * box.lengths(), box.shear_rate());
-  result.box.place(box.strain(), box.flips());
+  result.clock = system.clock;
+  result.box = box.enlarged(times);
 
   const auto copies =
       static_cast<std::size_t>(times) * static_cast<std::size_t>(times) * static_cast<std::size_t>(times);
@@ -22,7 +22,7 @@ System tiled(const System& system, int times) {
     for (shift.y = 0; shift.y < times; ++shift.y) {
       for (shift.x = 0; shift.x < times; ++shift.x) {
         const Vector3 displacement = box.displacement(shift);
-        const Vector3 velocity = {box.velocity_offset(shift), 0, 0};
+        const Vector3 velocity = box.velocity(shift);
         for (std::size_t k = 0; k < small.count(); ++k, ++i) {
           large.radius.push_back(small.radius[k]);
           large.mass.push_back(small.mass[k]);

@@ -69,9 +69,9 @@ class Reader {
     particles.velocity = field("/state/velocity", radius.size());
     particles.angular_velocity = field("/state/angular_velocity", radius.size());
     check_three("/state/box/lengths");
-    configuration.box =
-        ShearedBox(vector_from(state.at("box").at("lengths")), configuration.physics.shear_rate,
-                   state.at("box").at("tilt").get<double>());
+    configuration.box = PeriodicCell(vector_from(state.at("box").at("lengths")),
+                                     configuration.physics.flow.deformation().velocity_gradient(0),
+                                     state.at("box").at("tilt").get<double>());
     for (std::size_t k = 0; k < state.value("springs", Json::array()).size(); ++k) {
       const std::string at = fmt::format("/state/springs/{}", k);
       const PairName name = pair_name(at, radius.size());

@@ -28,7 +28,7 @@ struct GivenNoise {
 struct Configuration {
   Physics physics;
   ParticleState particles;  // of unit density: masses do not enter forces
-  ShearedBox box;
+  PeriodicCell box;
   std::vector<HeldContact> springs;  // image: the shift added to the second particle's position as given
   std::optional<GivenNoise> noise;
   std::optional<double> advance;  // time by which the springs are to be advanced

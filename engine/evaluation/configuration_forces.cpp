@@ -6,6 +6,7 @@
 #include "engine/evaluation/configuration.h"
 #include "engine/kernels/force_field.h"
 #include "engine/kernels/pairs/pair_access.h"
+#include "engine/observables/structure.h"
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {
@@ -203,12 +204,14 @@ class Evaluation {
   void add_one_body() {
     System system;
     system.particles = configuration_.particles;
+    system.box = configuration_.box;
     const std::size_t count = system.particles.count();
     const ForceField field(configuration_.physics, system.particles,
                            configuration_.noise ? configuration_.noise->timestep : 0, /*seed=*/0,
                            /*threads=*/1, set_);
     VectorField force(count), torque(count), noise_force(count), noise_torque(count);
     field.one_body().set_drag(field.one_body_input(system, force, torque), 0, count);
+    field.add_varying_drag(system, 0, count, force, torque);
     for (std::size_t i = 0; i < count; ++i) {
       by_term_.add_single("drag", i, force[i], torque[i]);
       if (configuration_.noise) {
@@ -221,11 +224,12 @@ class Evaluation {
 
   void add_uniform_flow() {
     const Physics& physics = configuration_.physics;
-    const SymmetricTensor solvent = solvent_stress(physics.viscosity, physics.shear_rate);
+    const SymmetricTensor solvent = solvent_stress(physics.viscosity, configuration_.box.velocity_gradient());
     by_term_.add_stress("solvent", solvent);
     by_term_.add_stress(
         "stresslet",
-        stresslet(solid_volume(configuration_.particles) / configuration_.box.volume(), solvent));
+        stresslet(solid_volume(configuration_.particles) / configuration_.box.volume(), solvent) +
+            varying_stresslet(configuration_.particles, configuration_.box, physics));
   }
 
   const Configuration& configuration_;

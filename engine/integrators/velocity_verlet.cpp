@@ -44,6 +44,7 @@ void VelocityVerlet::start(System& system) {
   if (system.springs.kinds() != kinds) {
     system.springs = SpringField(kinds, system.list.pairs().size());
   }
+  system.clock.count_in(timestep_);
   rebuild_neighbours(system, field_.threads());
   displacement_bound_ = 0;
   field_.evaluate(system, force_, torque_);
@@ -52,7 +53,8 @@ void VelocityVerlet::start(System& system) {
 
 StepReport VelocityVerlet::advance_open(System& system) {
   ++system.step;
-  system.box.set_strain(system.box.shear_rate() * timestep_ * static_cast<double>(system.step));
+  ++system.clock.steps;
+  field_.physics().flow.deformation().drive(system.box, system.clock);
   // One walk instead of two, with the same numbers. Whether the list still holds is known only after it;
   // where it does not, the pairs are computed again with another one. Springs would then have advanced twice.
   const bool in_one_walk = field_.threads() <= 1 && system.springs.kinds() == SpringKinds::none;
@@ -93,7 +95,7 @@ Integrator::HalfSteps VelocityVerlet::compare_half_steps(const System& system, i
     const double timestep = timestep_ / every;
     VelocityVerlet integrator(ForceField(field_.physics(), copy.particles, timestep, 0, field_.threads()),
                               copy.particles, timestep);
-    copy.step *= static_cast<std::uint64_t>(every);  // the strain follows from it
+    copy.clock = system.clock.with_parts(every);
     integrator.force_ = force_;
     integrator.torque_ = torque_;
     integrator.displacement_bound_ = displacement_bound_;
@@ -175,8 +177,8 @@ std::pair<double, PairSums> VelocityVerlet::move_and_evaluate(System& system) {
 
 // Whether the list is another one.
 bool VelocityVerlet::keep_list(System& system, double speed) {
-  // A displacement d grows by dt (u - rate y_reference) = dt (peculiar velocity + rate d_y).
-  displacement_bound_ += timestep_ * (speed + system.box.shear_rate() * displacement_bound_);
+  // A displacement d grows by dt (u - L x_reference) = dt (peculiar velocity + L d).
+  displacement_bound_ += timestep_ * (speed + norm(system.box.velocity_gradient()) * displacement_bound_);
   const double allowed = system.list.allowed_displacement(system.box);
   if (displacement_bound_ < allowed) {
     return false;

@@ -67,8 +67,7 @@ OneBodyInput ForceField::one_body_input(System& system, VectorField& force, Vect
           .size_class = particles.size_class.data(),
           .kicks = kicks,
           .drag = drag_.data(),
-          .shear_rate = physics_.shear_rate,
-          .streaming_spin = streaming_spin(physics_.shear_rate).z};
+          .flow = plain_flow(system.box.velocity_gradient())};
 }
 
 PairSums ForceField::evaluate_blocks(System& system, VectorField& force, VectorField& torque) {
@@ -83,10 +82,25 @@ PairSums ForceField::evaluate_blocks(System& system, VectorField& force, VectorF
   return pair_pass_.add_pairs(pair_input(system), system.springs, force, torque,
                               [&](const ParticleBlock& block) {
                                 set_drag(block);
+                                if (physics_.flow.varies()) {
+                                  add_varying_drag(system, block.begin, block.end, force, torque);
+                                }
                                 if (physics_.thermal_energy > 0) {
                                   add_drag_noise(system, block.begin, block.end, force, torque);
                                 }
                               });
+}
+
+void ForceField::add_varying_drag(const System& system, std::size_t begin, std::size_t end,
+                                  VectorField& force, VectorField& torque) const {
+  const ParticleState& particles = system.particles;
+  const BackgroundFlow flow = physics_.flow.at(system.box);
+  for (std::size_t i = begin; i < end; ++i) {
+    const OneBodyFactors& drag = drag_[particles.size_class[i]];
+    const Vector3 x = particles.position[i];
+    force.add(i, drag.translational * flow.varying_velocity(x, particles.radius[i]));
+    torque.add(i, drag.rotational * flow.varying_spin(x));
+  }
 }
 
 void ForceField::add_drag_noise(const System& system, std::size_t begin, std::size_t end, VectorField& force,

@@ -39,6 +39,11 @@ class ForceField {
   OneBodyInput one_body_input(System& system, VectorField& force, VectorField& torque,
                               const OneBodyFactors* kicks = nullptr) const;
 
+  // Adds to the rows of particles [begin, end) the drag of what varies within the cell: zeta u' and zeta_r
+  // spin', as each sphere feels them.
+  void add_varying_drag(const System& system, std::size_t begin, std::size_t end, VectorField& force,
+                        VectorField& torque) const;
+
   // Adds to a particle's rows the noise of its drag that belongs to these standard normals.
   void add_drag_noise(const System& system, std::size_t i, const NormalPair& normals, VectorField& force,
                       VectorField& torque) const {

@@ -41,19 +41,26 @@ SpringKinds spring_kinds(const Terms& terms) {
 }
 
 PairKernelInput PairPass::kernel_input(const PairPassInput& input, SpringField& springs) {
-  frames_ = image_frames(input.list, input.box);
+  const std::vector<ImageFrame> frames = image_frames(input.list, input.box);
+  if (image_displacement_.size() != frames.size()) {
+    image_displacement_ = image_velocity_ = VectorField(frames.size());
+  }
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    image_displacement_.set(k, frames[k].displacement);
+    image_velocity_.set(k, frames[k].velocity);
+  }
   image_keys_.clear();
   for (const LatticeShift image : input.list.images()) {
     image_keys_.push_back(image_identity(image));
   }
-  static_assert(sizeof(ImageFrame) == 4 * sizeof(double));
   static_assert(sizeof(NormalPair) == 6 * sizeof(double));
   PairKernelInput kernel{};
   kernel.position = input.particles.position.data();
   kernel.velocity = input.particles.velocity.data();
   kernel.spin = input.particles.angular_velocity.data();
   kernel.pairs = input.list.pairs().data();
-  kernel.images = &frames_.front().displacement.x;
+  kernel.image_displacement = image_displacement_.data();
+  kernel.image_velocity = image_velocity_.data();
   kernel.kinds = input.kinds.data();
   kernel.parameters = input.parameters;
   for (std::size_t c = 0; c < springs.components(); ++c) {

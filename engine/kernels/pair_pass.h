@@ -24,7 +24,7 @@ SpringKinds spring_kinds(const Terms& terms);
 struct PairPassInput {
   const ParticleState& particles;
   const NeighbourList& list;
-  const ShearedBox& box;
+  const PeriodicCell& box;
   const std::vector<PairKind>& kinds;
   PairParameters parameters;
   NoiseKey noise;                                        // of pairs
@@ -68,7 +68,7 @@ class PairPass {
   FillNormals fill_normals_;
   SpringKinds spring_kinds_;
   // Storage that is kept from step to step.
-  std::vector<ImageFrame> frames_;
+  VectorField image_displacement_, image_velocity_;
   std::vector<std::uint64_t> image_keys_;
   VectorField crossing_;        // force and torque on the away particle of each crossing pair
   std::vector<PairSums> sums_;  // two of each block

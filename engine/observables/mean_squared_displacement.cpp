@@ -51,7 +51,7 @@ std::vector<Quantity> quantities(const Scene& scene, const Window& window) {
   std::vector<Quantity> all;
   const auto squares = [&](const std::string& group, const char* symbol) {
     for (const char* axis : {"x", "y", "z"}) {
-      if (*axis == 'x' && scene.physics.shear_rate > 0) continue;
+      if (*axis == 'x' && (scene.physics.flow.rate() > 0 || scene.physics.flow.varies())) continue;
       all.push_back({.name = fmt::format("mean_squared_displacement/{}/{}", group, axis),
                      .symbol = fmt::format("<{}_{}^2>", symbol, axis),
                      .unit = "length^2",
@@ -76,7 +76,7 @@ MeanSquaredDisplacement::MeanSquaredDisplacement(const Scene& scene, const Syste
                                                  const Window& window)
     : Observable(interval_of(scene, mean_squared_displacement(), window)),
       time_(window.timestep * static_cast<double>(interval())),
-      sheared_(scene.physics.shear_rate > 0),
+      sheared_(scene.physics.flow.rate() > 0 || scene.physics.flow.varies()),
       free_slope_(scene.physics.thermal_energy /
                   (std::numbers::pi * scene.physics.viscosity * scene.particles.reference_radius)),
       radius_of_class_(distinct_radii(system.particles.radius)),

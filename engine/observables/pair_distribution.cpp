@@ -20,7 +20,7 @@ double setting(const Scene& scene, const char* name) {
 // Pairs within the range must not have other images in the box: it would be ambiguous which is meant.
 void check_range(const Scene& scene, const Window& window, const std::string& file) {
   const double unit = scene.particles.reference_radius, range = setting(scene, "range");
-  const double reach = scene.physics.shear_rate > 0 ? 0.5 : std::numbers::sqrt2 / 2;
+  const double reach = scene.physics.flow.rate() > 0 ? 0.5 : std::numbers::sqrt2 / 2;
   if (range * unit <= reach * window.edge) return;
   // The default is no part of a scene without the block.
   throw InputError(file, "/pair_distribution/range", fmt::format("{}", range),

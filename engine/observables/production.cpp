@@ -15,10 +15,12 @@ void Production::add_step(std::uint64_t index, const PairSums& sums) {
 }
 
 void Production::add_sample(std::uint64_t index, const SymmetricTensor& structural_brownian,
+                            const SymmetricTensor& varying_stresslet,
                             const KineticTemperatures& temperature) {
   BlockSums& block = block_of(index);
   ++block.samples;
   block.structural_brownian += structural_brownian;
+  block.varying_stresslet += varying_stresslet;
   block.temperature.translational += temperature.translational;
   block.temperature.rotational += temperature.rotational;
 }
@@ -33,6 +35,7 @@ BlockSums sum_of(std::span<const BlockSums> blocks) {
       all.stress[t] += block.stress[t];
     }
     all.structural_brownian += block.structural_brownian;
+    all.varying_stresslet += block.varying_stresslet;
     all.temperature.translational += block.temperature.translational;
     all.temperature.rotational += block.temperature.rotational;
   }

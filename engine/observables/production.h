@@ -17,6 +17,7 @@ struct BlockSums {
   double contacts = 0;
   std::uint64_t samples = 0;  // the rest is sampled
   SymmetricTensor structural_brownian;
+  SymmetricTensor varying_stresslet;
   KineticTemperatures temperature{};
 };
 
@@ -31,7 +32,7 @@ class Production {
   // `index` counts the steps of the window from 0.
   void add_step(std::uint64_t index, const PairSums& sums);
   void add_sample(std::uint64_t index, const SymmetricTensor& structural_brownian,
-                  const KineticTemperatures& temperature);
+                  const SymmetricTensor& varying_stresslet, const KineticTemperatures& temperature);
 
   const std::array<BlockSums, count_of_blocks>& blocks() const { return blocks_; }
   // The block that a step of the window belongs to.

@@ -1,5 +1,6 @@
 #include "engine/observables/structure.h"
 
+#include "engine/flow/deformation.h"
 #include "engine/kernels/pairs/pair_access.h"
 #include "engine/terms/drag.h"
 
@@ -27,18 +28,32 @@ SymmetricTensor structural_brownian_stress(const System& system, const std::vect
   return (-thermal_energy / (structural_shell * system.box.volume())) * sum;
 }
 
-KineticTemperatures kinetic_temperatures(const System& system) {
+KineticTemperatures kinetic_temperatures(const System& system, const ImposedFlow& imposed) {
   const ParticleState& particles = system.particles;
-  const double rate = system.box.shear_rate();
+  const BackgroundFlow flow = imposed.at(system.box);
   double translational = 0, rotational = 0;
   for (std::size_t i = 0; i < particles.count(); ++i) {
-    const Vector3 u = particles.velocity[i] - streaming_velocity(rate, particles.position[i].y);
-    const Vector3 w = particles.angular_velocity[i] - streaming_spin(rate);
+    const Vector3 u = particles.velocity[i] - flow.velocity(particles.position[i], particles.radius[i]);
+    const Vector3 w = particles.angular_velocity[i] - flow.spin(particles.position[i]);
     translational += particles.mass[i] * dot(u, u);
     rotational += particles.inertia[i] * dot(w, w);
   }
   const double degrees = 3 * static_cast<double>(particles.count());
   return {translational / degrees, rotational / degrees};
+}
+
+SymmetricTensor varying_stresslet(const ParticleState& particles, const PeriodicCell& box,
+                                  const Physics& physics) {
+  SymmetricTensor sum;
+  if (!physics.flow.varies()) {
+    return sum;
+  }
+  const BackgroundFlow flow = physics.flow.at(box);
+  for (std::size_t i = 0; i < particles.count(); ++i) {
+    const double a = particles.radius[i];
+    sum += stresslet_of_sphere(physics.viscosity, a, flow.varying_strain(particles.position[i], a));
+  }
+  return (1 / box.volume()) * sum;
 }
 
 }  // namespace peclet::engine

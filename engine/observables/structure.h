@@ -18,6 +18,11 @@ struct KineticTemperatures {
   double translational, rotational;
 };
 
-KineticTemperatures kinetic_temperatures(const System& system);
+KineticTemperatures kinetic_temperatures(const System& system, const ImposedFlow& imposed);
+
+// What the variation of the flow within the cell adds to the stresslets of isolated spheres, over V: the sum
+// of 20/3 pi eta a^3 (1 + a^2/10 lap) E'.
+SymmetricTensor varying_stresslet(const ParticleState& particles, const PeriodicCell& box,
+                                  const Physics& physics);
 
 }  // namespace peclet::engine

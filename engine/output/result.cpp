@@ -24,10 +24,12 @@ std::optional<double> energy_imbalance(const Scene& scene, const Simulation& sim
   const StepErrors& errors = simulation.step_errors();
   double work_per_step = 0;
   for (const SymmetricTensor& stress : window.stress) {
-    work_per_step += simulation.schedule().timestep * scene.physics.shear_rate * stress.xy /
+    work_per_step += simulation.schedule().timestep * scene.physics.flow.rate() * stress.xy /
                      static_cast<double>(window.steps);
   }
-  if (scene.physics.thermal_energy > 0 || errors.samples == 0 || !(work_per_step > 0)) {
+  // Where the flow varies it works on spheres one by one too.
+  if (scene.physics.flow.varies() || scene.physics.thermal_energy > 0 || errors.samples == 0 ||
+      !(work_per_step > 0)) {
     return std::nullopt;
   }
   return errors.spurious_energy / static_cast<double>(errors.samples) / work_per_step;
@@ -77,7 +79,7 @@ Json warnings_json(const std::vector<Warning>& warnings) {
 
 Json common_part(const ResultHeader& header, const Scene& scene, const Schedule& schedule,
                  std::uint64_t steps, const Spent& spent) {
-  const double dt = schedule.timestep, rate = scene.physics.shear_rate;
+  const double dt = schedule.timestep, rate = scene.physics.flow.rate();
   const std::uint64_t before = std::min(steps, schedule.equilibration), after = steps - before;
   const auto of_phases = [&](double factor) {
     return Json{{"equilibration", factor * static_cast<double>(before)},
@@ -122,7 +124,7 @@ void add_measurements(const Scene& scene, const Simulation& simulation, Json& re
   Json &mean = result["mean"], &blocks = result["blocks"];
   mean = stress.means(sum_of(simulation.production().blocks()));
   blocks = stress.blocks(simulation.production());
-  const char* const usual = scene.physics.shear_rate > 0 ? "/relative_viscosity" : "/pressure";
+  const char* const usual = scene.physics.flow.rate() > 0 ? "/relative_viscosity" : "/pressure";
   for (const std::unique_ptr<Observable>& observable : simulation.observables()) {
     observable->add_to(mean);
     observable->add_blocks_to(blocks);

@@ -15,7 +15,7 @@ double first_normal_difference(const SymmetricTensor& t) { return t.xx - t.yy; }
 double second_normal_difference(const SymmetricTensor& t) { return t.yy - t.zz; }
 double pressure(const SymmetricTensor& t) { return -(t.xx + t.yy + t.zz) / 3; }
 
-// Terms of the stress that are the same in every configuration.
+// Terms of the stress that are the same in every configuration, or nearly so where the flow varies.
 bool is_constant(const std::string& term) { return term == "solvent" || term == "stresslet"; }
 
 // What is kept of each of the 32 blocks. The total's xy is the relative viscosity.
@@ -65,7 +65,7 @@ Json transposed(const std::vector<Json>& rows) {
 class Described {
  public:
   explicit Described(const Scene& scene)
-      : unit_(scene.physics.shear_rate > 0 ? "viscosity * shear_rate" : "stress") {}
+      : unit_(scene.physics.flow.rate() > 0 ? "viscosity * shear_rate" : "stress") {}
 
   void scalar(const char* name, const char* symbol, const char* unit) {
     all_.push_back({.name = name, .symbol = symbol, .unit = unit});
@@ -100,7 +100,7 @@ StressMeans::StressMeans(const Scene& scene, const System& system)
       volume_(system.box.volume()),
       volume_fraction_(solid_volume(system.particles) / volume_),
       particles_(static_cast<double>(system.particles.count())),
-      unit_(physics_.shear_rate > 0 ? physics_.viscosity * physics_.shear_rate : 1) {}
+      unit_(physics_.flow.rate() > 0 ? physics_.viscosity * physics_.flow.rate() : 1) {}
 
 Json StressMeans::means(const BlockSums& sums) const {
   Json stress = Json::object();
@@ -109,10 +109,13 @@ Json StressMeans::means(const BlockSums& sums) const {
     stress[name] = to_json(value);
     total += value;
   };
-  if (physics_.shear_rate > 0) {
-    const SymmetricTensor solvent = solvent_stress(1, 1);  // in units of itself
+  const SymmetricTensor varying = (1 / (static_cast<double>(sums.samples) * unit_)) * sums.varying_stresslet;
+  if (physics_.flow.rate() > 0) {
+    const SymmetricTensor solvent = solvent_stress(1, simple_shear(1));  // in units of itself
     part("solvent", solvent);
-    part("stresslet", stresslet(volume_fraction_, solvent));
+    part("stresslet", stresslet(volume_fraction_, solvent) + varying);
+  } else if (physics_.flow.varies()) {
+    part("stresslet", varying);
   }
   const double per_step = 1 / (static_cast<double>(sums.steps) * volume_ * unit_);
   SymmetricTensor pairs, brownian;
@@ -127,7 +130,7 @@ Json StressMeans::means(const BlockSums& sums) const {
     }
   }
   stress["total"] = to_json(total);
-  const bool sheared = physics_.shear_rate > 0;
+  const bool sheared = physics_.flow.rate() > 0;
   const double per_sample = 1 / static_cast<double>(sums.samples);
   return {{"stress", stress},
           {"brownian_pairwise", to_json(brownian)},
@@ -166,7 +169,7 @@ Json StressMeans::blocks(const Production& production) const {
 
 std::vector<Quantity> stress_quantities(const Scene& scene) {
   const Terms terms = required_terms(scene.physics);
-  const bool sheared = scene.physics.shear_rate > 0, noise = terms.noise;
+  const bool sheared = scene.physics.flow.rate() > 0, noise = terms.noise;
   Described described(scene);
   const char* const unit = described.unit();
   if (sheared) {
@@ -174,8 +177,8 @@ std::vector<Quantity> stress_quantities(const Scene& scene) {
     described.part("relative_viscosity_pair", "eta_r - 1 - 5 phi / 2", "1",
                    "control_variates/brownian_pairwise", noise);
     described.stress("stress/solvent", "sigma^S");
-    described.stress("stress/stresslet", "sigma^E");
   }
+  if (sheared || scene.physics.flow.varies()) described.stress("stress/stresslet", "sigma^E");
   described.part("first_normal_difference", "N_1", unit, "control_variates/first_normal_difference", noise);
   described.part("second_normal_difference", "N_2", unit, "control_variates/second_normal_difference", noise);
   described.part("pressure", "P", unit, "control_variates/pressure", noise);

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "engine/random/normal_block.h"
-#include "engine/state/sheared_box.h"
+#include "engine/state/periodic_cell.h"
 #include "engine/state/vector3.h"
 
 namespace peclet::engine {

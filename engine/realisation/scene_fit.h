@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "engine/realisation/simulation.h"
+#include "engine/realisation/schedule.h"
 
 namespace peclet::engine {
 

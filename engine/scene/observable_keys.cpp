@@ -15,10 +15,11 @@ constexpr double most_bins = 1000;
 std::optional<ObservableFault> none(const Scene&, const Json&) { return std::nullopt; }
 
 std::optional<ObservableFault> must_rest(const Scene& scene, const Json&) {
-  if (scene.physics.shear_rate == 0 && scene.physics.thermal_energy > 0) return std::nullopt;
+  const bool rests = scene.physics.flow.rate() == 0 && !scene.physics.flow.varies();
+  if (rests && scene.physics.thermal_energy > 0) return std::nullopt;
   return ObservableFault{
       "/observables",
-      "must not list stress_correlation unless the thermal energy is > 0 and the shear rate 0"};
+      "must not list stress_correlation unless the thermal energy is > 0 and the fluid at rest"};
 }
 
 std::optional<ObservableFault> must_have_whole_bins(const Scene&, const Json& settings) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "contract/input_error.h"
+#include "engine/flow/waves.h"
 #include "engine/scene/observable_keys.h"
 
 namespace peclet::engine {
@@ -50,6 +51,8 @@ class Reading {
   void check_sizes(const Particles& particles) const;
   ContactParameters contact() const;
   LubricationParameters lubrication() const;
+  // Of this shear rate, with the scene's waves.
+  ImposedFlow flow(double rate) const;
   void set_flow_from_peclet(double radius, Physics& physics) const;
 
   const Json& document_;
@@ -143,11 +146,26 @@ LubricationParameters Reading::lubrication() const {
   return lubrication;
 }
 
+ImposedFlow Reading::flow(double rate) const {
+  if (!has("/flow/waves")) {
+    if (has("/flow/faxen")) refuse("/flow/faxen", "must be left out without /flow/waves");
+    return steady_shear(rate);
+  }
+  if (!has("/flow/faxen")) miss("/flow/faxen", "must be true or false where there are /flow/waves");
+  std::vector<Wave> waves;
+  for (const Json& wave : at("/flow/waves")) {
+    waves.push_back(
+        {wave.at("periods").get<int>(), wave.at("sine").get<double>(), wave.at("cosine").get<double>()});
+  }
+  return ImposedFlow(std::make_shared<SteadyShear>(rate),
+                     std::make_shared<Waves>(std::move(waves), at("/flow/faxen").get<bool>()));
+}
+
 Physics Reading::physics() const {
   Physics physics;
   physics.viscosity = number("/fluid/viscosity");
   physics.thermal_energy = number_or("/fluid/thermal_energy", 0);
-  physics.shear_rate = number_or("/flow/shear_rate", 0);
+  physics.flow = flow(number_or("/flow/shear_rate", 0));
   if (has("/contact")) physics.contact = contact();
   if (has("/lubrication")) physics.lubrication = lubrication();
   if (has("/repulsion") && number("/repulsion/strength") > 0) {
@@ -165,14 +183,14 @@ void Reading::set_flow_from_peclet(double radius, Physics& physics) const {
   const double largest_energy = number("/limits/thermal_energy");
   const double rate_at_largest_energy = peclet * largest_energy / scale;
   if (rate_at_largest_energy <= largest_rate) {
-    physics.shear_rate = rate_at_largest_energy;
+    physics.flow = flow(rate_at_largest_energy);
     physics.thermal_energy = largest_energy;
   } else {
-    physics.shear_rate = largest_rate;
+    physics.flow = flow(largest_rate);
     physics.thermal_energy = scale * largest_rate / peclet;
   }
   const auto is_usable = [](double value) { return std::isnormal(value) && value > 0; };
-  if (!is_usable(physics.shear_rate) || !is_usable(physics.thermal_energy)) {
+  if (!is_usable(physics.flow.rate()) || !is_usable(physics.thermal_energy)) {
     refuse("/peclet", "leaves no shear rate and thermal energy above 0 within /limits");
   }
 }
@@ -200,7 +218,7 @@ Duration Reading::duration(const std::string& pointer, const Physics& physics) c
   for (const auto& [name, limit] : limits.items()) {
     if (limit == 0) return {unlimited, unlimited, 0};  // over before it starts, whatever the flow
   }
-  if (physics.shear_rate > 0) duration.strain = limits.value("strain", unlimited);
+  if (physics.flow.rate() > 0) duration.strain = limits.value("strain", unlimited);
   if (physics.thermal_energy > 0) duration.brownian_times = limits.value("brownian_times", unlimited);
   duration.time = limits.value("time", unlimited);
   if (duration.strain == unlimited && duration.brownian_times == unlimited && duration.time == unlimited) {

@@ -12,6 +12,7 @@
 
 #include "contract/json.h"
 #include "contract/key_table.h"
+#include "engine/flow/deformation.h"
 #include "engine/terms/interactions.h"
 
 namespace peclet::engine {
@@ -20,7 +21,7 @@ namespace peclet::engine {
 struct Physics {
   double viscosity = 0;
   double thermal_energy = 0;  // k_B T
-  double shear_rate = 0;      // of the streaming flow (rate y, 0, 0)
+  ImposedFlow flow;
   std::optional<ContactParameters> contact;
   std::optional<LubricationParameters> lubrication;
   std::optional<RepulsionParameters> repulsion;

@@ -43,15 +43,47 @@ Keys particle_keys() {
   };
 }
 
+constexpr std::size_t most_waves = 64;
+
 Keys flow_keys() {
   return {
       block("/fluid", "The solvent.", required),
       positive("/fluid/viscosity", "mass / (length time)", "Viscosity eta of the solvent.", required),
       not_negative("/fluid/thermal_energy", "energy",
                    "k_B T; absent (or 0): no Brownian motion. Not together with peclet."),
-      block("/flow", "The streaming flow (rate y, 0, 0). A scene has flow.shear_rate or peclet."),
+      block("/flow",
+            "The streaming flow (rate y, 0, 0), and waves in it. A scene has flow.shear_rate or peclet."),
       not_negative("/flow/shear_rate", "1 / time",
                    "Shear rate; 0: a fluid at rest. Not together with peclet."),
+      {.pointer = "/flow/waves",
+       .kind = KeyKind::array,
+       .meaning =
+           "Waves along y that the flow has besides: u_x = sum of sine sin(k y) + cosine cos(k y) with k "
+           "= 2 pi periods / L.",
+       .minimum_items = 1,
+       .maximum_items = most_waves},
+      block("/flow/waves/*", "One wave."),
+      {.pointer = "/flow/waves/*/periods",
+       .kind = KeyKind::integer,
+       .meaning = "Periods of the wave along the edge of the box.",
+       .required = true,
+       .minimum = 1,
+       .maximum = 1000},
+      {.pointer = "/flow/waves/*/sine",
+       .kind = KeyKind::number,
+       .meaning = "Amplitude of the sine.",
+       .unit = "length / time",
+       .default_value = 0},
+      {.pointer = "/flow/waves/*/cosine",
+       .kind = KeyKind::number,
+       .meaning = "Amplitude of the cosine.",
+       .unit = "length / time",
+       .default_value = 0},
+      {.pointer = "/flow/faxen",
+       .kind = KeyKind::boolean,
+       .meaning =
+           "Whether spheres feel the curvature of the waves: their velocity with the factor 1 - a^2 k^2 / "
+           "6, the strain of their stresslet with 1 - a^2 k^2 / 10. Given with waves, and only with them."},
       positive("/peclet", "",
                "Pe = 6 pi eta a^3 rate / k_B T, in place of shear_rate and thermal_energy; needs limits."),
       block("/limits",

@@ -31,17 +31,17 @@ DerivedGroups derived_groups(const Scene& scene) {
 
   DerivedGroups groups;
   groups.inertial_time = inertial_time;
-  groups.stokes = inertial_time * physics.shear_rate;
-  if (physics.shear_rate > 0) groups.shear_time = 1 / physics.shear_rate;
+  groups.stokes = inertial_time * physics.flow.rate();
+  if (physics.flow.rate() > 0) groups.shear_time = 1 / physics.flow.rate();
   if (physics.thermal_energy > 0) {
     groups.brownian_time = physics.viscosity * a_cubed / physics.thermal_energy;
-    groups.peclet = 6 * std::numbers::pi * *groups.brownian_time * physics.shear_rate;
+    groups.peclet = 6 * std::numbers::pi * *groups.brownian_time * physics.flow.rate();
   }
   if (physics.contact) {
     groups.contact_time = std::sqrt(density * a_cubed / physics.contact->normal_stiffness);
-    if (physics.shear_rate > 0) {
+    if (physics.flow.rate() > 0) {
       groups.relative_stiffness =
-          physics.contact->normal_stiffness / (physics.viscosity * a * physics.shear_rate);
+          physics.contact->normal_stiffness / (physics.viscosity * a * physics.flow.rate());
     }
   }
   return groups;

@@ -15,8 +15,8 @@ class HalfStepMotion {
       : particles_(particles), force_(force), torque_(torque), half_step_(0.5 * timestep) {}
 
   PairMotion of(const Pair& pair, const ImageFrame& frame) const {
-    const Vector3 image = {frame.velocity, 0, 0};
-    return {velocity(pair.second) - velocity(pair.first) + image, spin(pair.first), spin(pair.second)};
+    return {velocity(pair.second) - velocity(pair.first) + frame.velocity, spin(pair.first),
+            spin(pair.second)};
   }
 
  private:

@@ -167,6 +167,20 @@ PairRates stiffest_pair(const Scene& scene) {
 
 double largest_timestep(const Scene& scene) { return stable_step(stiffest_pair(scene)); }
 
+// As large as the scene's, but for the whole numbers of spheres.
+PeriodicCell cell_of(const Scene& scene) {
+  double shares = 0, volumes = 0;  // number and volume of the spheres, both in the same units
+  for (const Species& species : scene.particles.species) {
+    const double a = species.radius, volume = 4.0 / 3.0 * std::numbers::pi * a * a * a;
+    const bool by_volume = scene.particles.shares == Particles::Shares::volume;
+    shares += by_volume ? species.share / volume : species.share;
+    volumes += by_volume ? species.share : species.share * volume;
+  }
+  const double volume = static_cast<double>(scene.particles.count) * volumes / shares;
+  const double edge = std::cbrt(volume / scene.volume_fraction);
+  return {{edge, edge, edge}, Matrix3{}};
+}
+
 double automatic_implicit_timestep(const Scene& scene) {
   const Physics& physics = scene.physics;
   const bool friction = physics.contact && physics.contact->friction > 0;
@@ -178,10 +192,9 @@ double automatic_implicit_timestep(const Scene& scene) {
     smallest = std::min(smallest, species.radius);
     largest = std::max(largest, species.radius);
   }
-  if (physics.shear_rate > 0) {
-    const double stokes =
-        scene.particles.density * largest * largest * physics.shear_rate / physics.viscosity;
-    step = strain / ((1 + 2 * stokes) * physics.shear_rate);
+  if (const double rate = physics.flow.largest_rate(cell_of(scene)); rate > 0) {
+    const double stokes = scene.particles.density * largest * largest * rate / physics.viscosity;
+    step = strain / ((1 + 2 * stokes) * rate);
   }
   if (physics.thermal_energy > 0) {
     step =

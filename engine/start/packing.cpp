@@ -27,7 +27,7 @@ struct Overlaps {
 
 class Quench {
  public:
-  Quench(ParticleState& particles, const ShearedBox& box)
+  Quench(ParticleState& particles, const PeriodicCell& box)
       : particles_(particles), box_(box), force_(particles.count()) {
     const std::vector<double> sizes = distinct_radii(particles.radius);
     RangeTable ranges(sizes.size());
@@ -136,7 +136,7 @@ class Quench {
   }
 
   ParticleState& particles_;
-  const ShearedBox& box_;
+  const PeriodicCell& box_;
   NeighbourList list_;
   VectorField force_;
   double step_;
@@ -144,7 +144,7 @@ class Quench {
 
 // The largest volume fraction, to 0.005, at which the spheres were brought apart starting from where they
 // stand, free of overlap at `scale` times their radii: these shrink and grow again by bisection.
-double reached_volume_fraction(ParticleState particles, const ShearedBox& box, double scale) {
+double reached_volume_fraction(ParticleState particles, const PeriodicCell& box, double scale) {
   const std::vector<double> radius = particles.radius;
   const double wanted = solid_volume(particles) / box.volume();
   double free = wanted * scale * scale * scale, jammed = wanted;
@@ -220,12 +220,10 @@ double cube_edge(const Particles& particles, double volume_fraction) {
   return std::cbrt(volume / volume_fraction);
 }
 
-void place_randomly(ParticleState& particles, const ShearedBox& box, std::uint64_t seed) {
+void place_randomly(ParticleState& particles, const PeriodicCell& box, std::uint64_t seed) {
   const KeyedRandom random(seed, Purpose::packing);
-  const Vector3& edge = box.lengths();
   for (std::uint32_t i = 0; i < particles.count(); ++i) {
-    const Vector3 place = random.uniforms(0, i);
-    particles.position.set(i, {edge.x * place.x, edge.y * place.y, edge.z * place.z});
+    particles.position.set(i, box.point_at(random.uniforms(0, i)));
   }
   const double closest = Quench(particles, box).run();
   if (!(closest > 1)) {

@@ -36,6 +36,6 @@ double cube_edge(const Particles& particles, double volume_fraction);
 // 0.63 for 1:1.4 in equal volumes (0.64 from two seeds in five). Velocities are left at zero. Throws
 // PackingError when the overlaps cannot be removed, std::invalid_argument when a sphere overlaps its own
 // image.
-void place_randomly(ParticleState& particles, const ShearedBox& box, std::uint64_t seed);
+void place_randomly(ParticleState& particles, const PeriodicCell& box, std::uint64_t seed);
 
 }  // namespace peclet::engine

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/integrators/implicit.h"
+#include "engine/integrators/midpoint.h"
 #include "engine/stability/stability.h"
 
 namespace peclet::engine {
@@ -13,20 +13,20 @@ void relax(System& system, const Scene& scene, int threads) {
   const double timestep = automatic_implicit_timestep(scene);
   const double far = 0.05 * *std::min_element(system.particles.radius.begin(), system.particles.radius.end());
   Physics still = scene.physics;
-  still.shear_rate = 0;
+  still.flow = {};
   still.thermal_energy = 0;
   if (still.contact) {
     still.contact->friction = 0;
     still.contact->rolling_stiffness = 0;
   }
-  const ShearedBox sheared = system.box;
-  system.box = ShearedBox(sheared.lengths(), 0);
+  const PeriodicCell sheared = system.box;
+  system.box.set_velocity_gradient({});
   double step = timestep;
   for (int made = 0; made < most_steps; ++made) {
     System trial = system;
     trial.particles.velocity = VectorField(trial.particles.count(), threads);
     trial.particles.angular_velocity = VectorField(trial.particles.count(), threads);
-    Implicit integrator(still, trial.particles, step, scene.solver_tolerance, 0, threads);
+    Midpoint integrator(still, trial.particles, step, scene.solver_tolerance, 0, threads);
     integrator.start(trial);
     const StepReport report = integrator.advance(trial);
     if (!(report.largest_displacement <= far) || !report.sums.finite) {
@@ -40,6 +40,7 @@ void relax(System& system, const Scene& scene, int threads) {
     step = std::min(2 * step, timestep);
   }
   system.step = 0;
+  system.clock = {};
   system.box = sheared;
 }
 

@@ -24,22 +24,23 @@ std::int32_t cell_of(double rest, std::int32_t cells) {
 
 }  // namespace
 
-LatticePlaces lattice_places(const VectorField& position, const ShearedBox& box) {
+LatticePlaces lattice_places(const VectorField& position, const PeriodicCell& box) {
   LatticePlaces places;
   places.fractional.reserve(position.size());
   places.offset.reserve(position.size());
+  const CellFrame frame = box.frame();
   for (std::size_t i = 0; i < position.size(); ++i) {
-    Vector3 place = box.fractional(position[i]);
+    Vector3 place = frame.fractional(position[i]);
     places.offset.push_back({whole(place.x), whole(place.y), whole(place.z)});
     places.fractional.push_back(place);
   }
   return places;
 }
 
-CellGrid::CellGrid(const LatticePlaces& places, std::span<const std::uint32_t> members, const ShearedBox& box,
-                   double range)
+CellGrid::CellGrid(const LatticePlaces& places, std::span<const std::uint32_t> members,
+                   const PeriodicCell& box, double range)
     : box_(box) {
-  const Vector3 widths = box.widths();
+  const Vector3 widths = box.frame().widths();
   cells_ = {divide(widths.x, range, members.size()), divide(widths.y, range, members.size()),
             divide(widths.z, range, members.size())};
   per_length_ = {cells_.x / widths.x, cells_.y / widths.y, cells_.z / widths.z};

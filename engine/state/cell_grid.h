@@ -1,4 +1,4 @@
-// Cells along the lattice vectors of a sheared box, for finding what is near.
+// Cells along the lattice vectors of the periodic cell, for finding what is near.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/state/sheared_box.h"
+#include "engine/state/periodic_cell.h"
 #include "engine/state/vector_field.h"
 
 namespace peclet::engine {
@@ -18,14 +18,14 @@ struct LatticePlaces {
   std::vector<LatticeShift> offset;
 };
 
-LatticePlaces lattice_places(const VectorField& position, const ShearedBox& box);
+LatticePlaces lattice_places(const VectorField& position, const PeriodicCell& box);
 
 // Some of the particles, sorted into cells.
 class CellGrid {
  public:
   // `members` in the order in which they are visited. Cells at least `range` wide where the box is wide
   // enough.
-  CellGrid(const LatticePlaces& places, std::span<const std::uint32_t> members, const ShearedBox& box,
+  CellGrid(const LatticePlaces& places, std::span<const std::uint32_t> members, const PeriodicCell& box,
            double range);
 
   // Calls visit(member, wrap, separation) for every member in every image whose cell is within `range` of the
@@ -37,10 +37,13 @@ class CellGrid {
                  along_y = layers(fractional.y, cells_.y, range * per_length_.y),
                  along_z = layers(fractional.z, cells_.z, range * per_length_.z);
     const Vector3 point = box_.point_at(fractional);
+    const auto& [edge_x, edge_y, edge_z] = box_.edges().column;
     for (std::int32_t layer_z = along_z.begin; layer_z < along_z.end; ++layer_z) {
       const Wrapped z = wrapped(layer_z, cells_.z);
+      const Vector3 shift_z = static_cast<double>(z.wrap) * edge_z;
       for (std::int32_t layer_y = along_y.begin; layer_y < along_y.end; ++layer_y) {
         const Wrapped y = wrapped(layer_y, cells_.y);
+        const Vector3 shift_yz = static_cast<double>(y.wrap) * edge_y + shift_z;
         const std::size_t row = (static_cast<std::size_t>(z.cell) * static_cast<std::size_t>(cells_.y) +
                                  static_cast<std::size_t>(y.cell)) *
                                 static_cast<std::size_t>(cells_.x);
@@ -50,7 +53,7 @@ class CellGrid {
           const std::int32_t count = std::min(along_x.end - x, cells_.x - first.cell);
           const std::size_t begin = row + static_cast<std::size_t>(first.cell);
           const LatticeShift wrap = {first.wrap, y.wrap, z.wrap};
-          const Vector3 shift = box_.displacement(wrap) - point;
+          const Vector3 shift = static_cast<double>(first.wrap) * edge_x + shift_yz - point;
           for (std::uint32_t k = first_[begin]; k < first_[begin + static_cast<std::size_t>(count)]; ++k) {
             visit(content_[k].particle, wrap, content_[k].point + shift);
           }
@@ -93,7 +96,7 @@ class CellGrid {
            static_cast<std::size_t>(c.x);
   }
 
-  ShearedBox box_;
+  PeriodicCell box_;
   LatticeShift cells_;
   Vector3 per_length_;                // cells between two parallel planes a unit of length apart
   std::vector<std::uint32_t> first_;  // counting sort by cell

@@ -7,7 +7,7 @@
 
 namespace peclet::engine {
 
-ListBuilder::ListBuilder(NeighbourList& list, const ParticleState& particles, const ShearedBox& box,
+ListBuilder::ListBuilder(NeighbourList& list, const ParticleState& particles, const PeriodicCell& box,
                          int threads)
     : list_(list),
       particles_(particles),

@@ -15,7 +15,7 @@ namespace peclet::engine {
 
 class ListBuilder {
  public:
-  ListBuilder(NeighbourList& list, const ParticleState& particles, const ShearedBox& box, int threads);
+  ListBuilder(NeighbourList& list, const ParticleState& particles, const PeriodicCell& box, int threads);
 
   void run();
 
@@ -47,7 +47,7 @@ class ListBuilder {
 
   NeighbourList& list_;
   const ParticleState& particles_;
-  const ShearedBox& box_;
+  const PeriodicCell& box_;
   int threads_;
   LatticePlaces places_;
   std::vector<std::optional<CellGrid>> grids_;  // of each class; none without members

@@ -6,7 +6,7 @@
 // them in proportion to their distance. With d_i the displacement of particle i relative to the affine
 // deformation since then, a pair that was left out is at least
 //   s reach - |d_i| - |d_j|
-// apart, s the smallest singular value of the deformation gradient of the strain since the build. The list
+// apart, s the smallest singular value of the deformation gradient since the build. The list
 // holds as long as that stays above `range` for the two largest displacements and every range; it is
 // rebuilt exactly when this can no longer be guaranteed. The same two particles may be listed under several
 // images (small boxes), never with themselves.
@@ -49,23 +49,23 @@ class NeighbourList {
 
   // Lists the pairs at the positions as they stand; images are relative to them, wrapped or not.
   // Throws std::invalid_argument when a particle interacts with its own image.
-  void build(const ParticleState& particles, const ShearedBox& box, int threads = 1);
+  void build(const ParticleState& particles, const PeriodicCell& box, int threads = 1);
 
   // Rebuilds the list of an earlier moment: the reference positions and the box as they were at the build.
-  void rebuild_from(VectorField reference, const ParticleState& particles, const ShearedBox& box_then,
+  void rebuild_from(VectorField reference, const ParticleState& particles, const PeriodicCell& box_then,
                     int threads = 1);
 
   // The distance below which pairs of this range are listed.
   double reach(double range) const;
 
   // Whether the list still holds every interacting pair.
-  bool holds(const ParticleState& particles, const ShearedBox& box) const;
+  bool holds(const ParticleState& particles, const PeriodicCell& box) const;
 
-  // Largest d_i at which holds() is true at this strain, by the criterion above; negative when the strain
+  // Largest d_i at which holds() is true in this cell, by the criterion above; negative when its deformation
   // alone has used up the skin.
-  double allowed_displacement(const ShearedBox& box) const;
+  double allowed_displacement(const PeriodicCell& box) const;
   // The largest |d_i|.
-  double largest_displacement(const ParticleState& particles, const ShearedBox& box) const;
+  double largest_displacement(const ParticleState& particles, const PeriodicCell& box) const;
 
   const std::vector<Pair>& pairs() const { return pairs_; }
   const std::vector<LatticeShift>& images() const { return images_; }  // the first is none
@@ -76,12 +76,17 @@ class NeighbourList {
 
   const RangeTable& ranges() const { return ranges_; }
   const VectorField& reference() const { return reference_; }
-  double strain_at_build() const { return strain_at_build_; }
+  const Matrix3& displacement_gradient_at_build() const { return gradient_at_build_; }
   std::uint64_t builds() const { return builds_; }
   void set_builds(std::uint64_t builds) { builds_ = builds; }
 
  private:
   friend class ListBuilder;
+
+  // Displacement gradient of the cell since the build: D' - D seen from the cell as it was then.
+  Matrix3 since_build(const PeriodicCell& box) const {
+    return (box.displacement_gradient() - gradient_at_build_) * inverse(identity() + gradient_at_build_);
+  }
 
   RangeTable ranges_;
   double skin_ = 0;
@@ -91,7 +96,7 @@ class NeighbourList {
   std::vector<ParticleBlock> blocks_;
   std::vector<IncomingPair> incoming_;
   VectorField reference_;
-  double strain_at_build_ = 0;
+  Matrix3 gradient_at_build_;  // of the displacement of the cell
   std::uint64_t builds_ = 0;
 };
 

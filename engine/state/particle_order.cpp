@@ -60,14 +60,15 @@ void permute(ParticleState& particles, const std::vector<std::uint32_t>& order, 
 
 }  // namespace
 
-void arrange_along_curve(ParticleState& particles, const ShearedBox& box, int threads) {
+void arrange_along_curve(ParticleState& particles, const PeriodicCell& box, int threads) {
   if (count_of_particle_blocks(particles.count()) == 1) {
     return;
   }
+  const CellFrame frame = box.frame();
   std::vector<std::uint32_t> code, order(particles.count());
   code.reserve(particles.count());
   for (std::size_t i = 0; i < particles.count(); ++i) {
-    code.push_back(morton_code(box.fractional(particles.position[i])));
+    code.push_back(morton_code(frame.fractional(particles.position[i])));
   }
   std::iota(order.begin(), order.end(), 0U);
   std::stable_sort(order.begin(), order.end(),

@@ -31,9 +31,10 @@ ParticleState make_particles(const std::vector<double>& radius, double density) 
   return particles;
 }
 
-void wrap_into_cell(ParticleState& particles, const ShearedBox& box) {
+void wrap_into_cell(ParticleState& particles, const PeriodicCell& box) {
+  const CellFrame frame = box.frame();
   for (std::size_t i = 0; i < particles.count(); ++i) {
-    const Vector3 place = box.fractional(particles.position[i]);
+    const Vector3 place = frame.fractional(particles.position[i]);
     const LatticeShift removed = {static_cast<std::int32_t>(std::floor(place.x)),
                                   static_cast<std::int32_t>(std::floor(place.y)),
                                   static_cast<std::int32_t>(std::floor(place.z))};
@@ -41,7 +42,7 @@ void wrap_into_cell(ParticleState& particles, const ShearedBox& box) {
       continue;
     }
     particles.position.set(i, particles.position[i] - box.displacement(removed));
-    particles.velocity.add(i, {-box.velocity_offset(removed), 0, 0});
+    particles.velocity.add(i, -box.velocity(removed));
     particles.image[i] = particles.image[i] + removed;
   }
 }

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/state/sheared_box.h"
+#include "engine/state/periodic_cell.h"
 #include "engine/state/vector_field.h"
 
 namespace peclet::engine {
@@ -29,9 +29,9 @@ ParticleState make_particles(const std::vector<double>& radius, double density);
 // The distinct values of `radius` in ascending order.
 std::vector<double> distinct_radii(const std::vector<double>& radius);
 
-// Moves every particle into the cell by lattice vectors and its velocity along with it: u_x -= rate Ly ky for
-// ky removed vectors A2.
-void wrap_into_cell(ParticleState& particles, const ShearedBox& box);
+// Moves every particle into the cell by lattice vectors and its velocity along with it: u -= L H k for k
+// removed vectors.
+void wrap_into_cell(ParticleState& particles, const PeriodicCell& box);
 
 // Total volume of the spheres.
 double solid_volume(const ParticleState& particles);

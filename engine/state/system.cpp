@@ -7,13 +7,13 @@ namespace peclet::engine {
 void rebuild_neighbours(System& system, int threads) {
   ParticleState& particles = system.particles;
   std::vector<HeldContact> held = held_contacts(system.list, particles, system.springs);
-  if (const std::int32_t flips = system.box.due_flips(); flips != 0) {
-    system.box.flip(flips);
+  if (const BasisChange change = system.box.due_change(); change != BasisChange{}) {
+    system.box.change_basis(change);
     for (LatticeShift& image : particles.image) {
-      image = ShearedBox::rebased(image, flips);
+      image = change.after(image);
     }
     for (HeldContact& contact : held) {
-      contact.image = ShearedBox::rebased(contact.image, flips);
+      contact.image = change.after(contact.image);
     }
   }
   wrap_into_cell(particles, system.box);
@@ -25,15 +25,17 @@ void rebuild_neighbours(System& system, int threads) {
 void save(const System& system, ArchiveWriter& archive) {
   const ParticleState& particles = system.particles;
   archive.put(system.step);
-  archive.put(system.box.strain());
-  archive.put(system.box.flips());
+  archive.put(system.clock);
+  archive.put(system.box.displacement_gradient());
+  archive.put(system.box.velocity_gradient());
+  archive.put(system.box.basis());
   archive.put(particles.id);
   for (const VectorField* field : {&particles.position, &particles.velocity, &particles.angular_velocity}) {
     archive.put(*field);
   }
   archive.put(particles.image);
   archive.put(system.list.reference());
-  archive.put(system.list.strain_at_build());
+  archive.put(system.list.displacement_gradient_at_build());
   archive.put(system.list.builds());
   for (std::size_t c = 0; c < system.springs.components(); ++c) {
     archive.put(system.springs.values(c));
@@ -44,21 +46,23 @@ void load(System& system, ArchiveReader& archive) {
   ParticleState& particles = system.particles;
   const std::size_t count = particles.count();
   system.step = archive.get<std::uint64_t>();
-  const auto strain = archive.get<double>();
-  const auto flips = archive.get<std::int32_t>();
+  system.clock = archive.get<Clock>();
+  const auto displacement_gradient = archive.get<Matrix3>();
+  system.box.set_velocity_gradient(archive.get<Matrix3>());
+  system.box.set_basis(archive.get<BasisChange>());
   arrange_by_id(particles, archive.get_vector<std::uint32_t>(count));
   for (VectorField* field : {&particles.position, &particles.velocity, &particles.angular_velocity}) {
     *field = archive.get_field(count);
   }
   particles.image = archive.get_vector<LatticeShift>(count);
   VectorField reference = archive.get_field(count);
-  const auto strain_at_build = archive.get<double>();
+  const auto gradient_at_build = archive.get<Matrix3>();
   const auto builds = archive.get<std::uint64_t>();
-  // A flip always comes with a build, so the basis is still that of the build.
-  system.box.place(strain_at_build, flips);
+  // A change of basis always comes with a build, so the basis is still that of the build.
+  system.box.deform(gradient_at_build);
   system.list.rebuild_from(std::move(reference), particles, system.box);
   system.list.set_builds(builds);
-  system.box.place(strain, flips);
+  system.box.deform(displacement_gradient);
   system.springs = SpringField(system.springs.kinds(), system.list.pairs().size());
   for (std::size_t c = 0; c < system.springs.components(); ++c) {
     system.springs.set_values(c, archive.get_vector<double>(system.list.pairs().size()));

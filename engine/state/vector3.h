@@ -12,6 +12,7 @@ struct Vector3Of {
   Vector3Of& operator+=(const Vector3Of& b) { return x += b.x, y += b.y, z += b.z, *this; }
   Vector3Of& operator-=(const Vector3Of& b) { return x -= b.x, y -= b.y, z -= b.z, *this; }
 
+  friend bool operator==(const Vector3Of&, const Vector3Of&) = default;
   friend Vector3Of operator+(const Vector3Of& a, const Vector3Of& b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
   }

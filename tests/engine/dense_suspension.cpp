@@ -16,12 +16,12 @@ void scatter(System& system, Draws& draws) {
   for (std::size_t i = 0; i < particles.count(); ++i) {
     const Vector3 place = particles.position[i] + draws.vector(0.02);
     particles.position.set(i, place);
-    particles.velocity.set(i, streaming_velocity(system.box.shear_rate(), place.y) + draws.vector(0.5));
-    particles.angular_velocity.set(i, streaming_spin(system.box.shear_rate()) + draws.vector(0.5));
+    particles.velocity.set(i, Vector3{shear_rate * place.y, 0, 0} + draws.vector(0.5));
+    particles.angular_velocity.set(i, Vector3{0, 0, -0.5 * shear_rate} + draws.vector(0.5));
     if (draws.whole(0, 2) == 0) {
       const LatticeShift shift = {draws.whole(-2, 2), draws.whole(-2, 2), draws.whole(-2, 2)};
       particles.position.set(i, place + system.box.displacement(shift));
-      particles.velocity.add(i, {system.box.velocity_offset(shift), 0, 0});
+      particles.velocity.add(i, system.box.velocity(shift));
     }
   }
 }
@@ -51,7 +51,7 @@ void stretch_springs(System& system, const Physics& physics, Draws& draws) {
 Physics physics_with(const Terms& terms) {
   Physics physics;
   physics.viscosity = 0.1;
-  physics.shear_rate = shear_rate;
+  physics.flow = steady_shear(shear_rate);
   physics.thermal_energy = terms.noise ? 0.017 : 0;
   if (terms.contact) {
     physics.contact = ContactParameters{.normal_stiffness = 1e4,
@@ -79,7 +79,7 @@ System dense_suspension(const Physics& physics, std::size_t count, std::uint64_t
   const double edge = cube_edge(radius, 0.52);
   System system;
   system.particles = make_particles(radius, 0.1);
-  system.box = ShearedBox({edge, edge, edge}, physics.shear_rate, 0.31 * edge);
+  system.box = PeriodicCell({edge, edge, edge}, simple_shear(physics.flow.rate()), 0.31 * edge);
   place_randomly(system.particles, system.box, seed);
   scatter(system, draws);
   const std::vector<double> sizes = distinct_radii(radius);

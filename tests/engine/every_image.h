@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "engine/state/sheared_box.h"
+#include "engine/state/periodic_cell.h"
 #include "engine/state/vector_field.h"
 
 namespace peclet::engine {

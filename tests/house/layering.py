@@ -44,6 +44,7 @@ ENGINE = [
         "engine/" + room
         for room in (
             "state",
+            "flow",
             "random",
             "terms",
             "scene",

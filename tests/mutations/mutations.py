@@ -40,9 +40,9 @@ MUTATIONS = [
     ),
     (
         "image velocity missing",
-        "engine/state/sheared_box.h",
-        "return shear_rate_ * lengths_.y * k.y;",
-        "return 0 * shear_rate_ * lengths_.y * k.y;",
+        "engine/state/periodic_cell.cpp",
+        "edge_velocities_ = velocity_gradient_ * edges_;",
+        "edge_velocities_ = 0 * (velocity_gradient_ * edges_);",
     ),
     (
         "torque coupling of lubrication omitted",
@@ -76,9 +76,9 @@ MUTATIONS = [
     ),
     (
         "spheres carried round the wrong way",
-        "engine/terms/drag.h",
-        "{0, 0, -0.5 * shear_rate}",
-        "{0, 0, 0.5 * shear_rate}",
+        "engine/flow/background_flow.h",
+        "0.5 * (x.y - y.x)};",
+        "-0.5 * (x.y - y.x)};",
     ),
     (
         "drag of a slip sphere",

@@ -3,52 +3,52 @@
 What is broken; file, text in it that occurs once, what takes its place; program and test.
 """
 
-IMPLICIT = "engine/integrators/implicit.cpp"
+IMPLICIT, NOISY = "engine/integrators/implicit.cpp", "engine/integrators/noisy_midpoint.cpp"
 SIMULATION, STRESS = "engine/realisation/simulation.cpp", "engine/output/stress_means.cpp"
 LINE = "engine_tests:NoisyStep.OfTwoSpheresOnALineIsThatOfItsEquations"
 
 NAMED = [
     (
         "with noise the stiffness counts for the whole step",
-        IMPLICIT,
-        ".normal_time = half, .resistance_time = noisy_ ? 0 : half",
-        ".normal_time = noisy_ ? timestep_ : half, .resistance_time = noisy_ ? 0 : half",
+        "engine/integrators/velocity_solver.cpp",
+        ".normal_time = 0.5 * timestep_, ",
+        ".normal_time = (resistance_time > 0 ? 0.5 : 1) * timestep_, ",
         LINE,
     ),
     (
         "with noise contacts are looked for a whole step ahead",
-        IMPLICIT,
-        "const double ahead = 0.5 * timestep;",
-        "const double ahead = timestep;",
+        NOISY,
+        "with_noise_(physics, particles, timestep, seed, threads, set, 0.5 * timestep)",
+        "with_noise_(physics, particles, timestep, seed, threads, set, timestep)",
         LINE,
     ),
     (
         "with noise the stress is that of the predicted middle",
-        IMPLICIT,
+        NOISY,
         "  if (!move_half_a_step(system)) {\n    return std::nullopt;\n  }\n  report.sums = field_",
         "  report.sums = field_",
         LINE,
     ),
     (
         "stress of the noise at the middle of the step",
-        IMPLICIT,
+        NOISY,
         "report.sums.of(StressTerm::brownian_lubrication) = drawn.of(",
-        "report.sums.of(StressTerm::brownian_lubrication) = (drawn.finite ? noisy_->with.evaluate(system, force_, "
-        "torque_) : drawn).of(",
+        "report.sums.of(StressTerm::brownian_lubrication) = (drawn.finite ? with_noise_.evaluate(system, "
+        "loads_.force, loads_.torque) : drawn).of(",
         "engine_tests:NoisyStep.HasTheStressOfItsNoiseWhereItWasDrawn",
     ),
     (
         "predictor without noise",
-        IMPLICIT,
-        "  const bool predicted = solve(false);",
-        "  for (std::size_t i = 0; i < system.particles.count(); ++i) force_.row(i) = force_.row(i) - "
-        "noise_force_.row(i);\n  const bool predicted = solve(false);",
+        NOISY,
+        "  const bool predicted = solve(system, nullptr, report);",
+        "  for (std::size_t i = 0; i < system.particles.count(); ++i) loads_.force.row(i) = loads_.force.row(i) - "
+        "noise_.force.row(i);\n  const bool predicted = solve(system, nullptr, report);",
         "physics_tests:NoisyDrift.OfALubricatedPairIsTheDivergenceOfItsMobility",
     ),
     (
         "target of Newton's iterations ten times too loose",
-        IMPLICIT,
-        "const double target = tolerance_ * tolerance_ * motion;",
+        "engine/integrators/midpoint.cpp",
+        "const double target = solver_.tolerance() * solver_.tolerance() * motion;",
         "const double target = 100 * tolerance_ * tolerance_ * motion;",
         "engine_tests:Implicit.LeavesNoLargerResidualThanItsTolerance",
     ),
@@ -61,7 +61,7 @@ NAMED = [
     ),
     (
         "Brownian times with 6 pi",
-        "engine/realisation/simulation.cpp",
+        "engine/realisation/schedule.cpp",
         "duration.brownian_times * physics.viscosity",
         "duration.brownian_times * 18.85 * physics.viscosity",
         "engine_tests:Schedule.ABrownianTimeIsEtaACubedOverTheThermalEnergy",
@@ -69,8 +69,8 @@ NAMED = [
     (
         "half steps that are whole ones",
         IMPLICIT,
-        "Implicit integrator(physics_, copy.particles, timestep_ / every,",
-        "Implicit integrator(physics_, copy.particles, timestep_,",
+        "copy.particles, timestep_ / every,",
+        "copy.particles, timestep_,",
         "engine_tests:Implicit.ComparesStepsWithHalfSteps",
     ),
     (
@@ -89,57 +89,57 @@ NAMED = [
     ),
     (
         "strain of explicit steps one step late",
-        "engine/integrators/velocity_verlet.cpp",
-        "timestep_ * static_cast<double>(system.step));",
-        "timestep_ * static_cast<double>(system.step - 1));",
+        "engine/flow/deformation.cpp",
+        "clock.timestep * static_cast<double>(clock.steps)",
+        "clock.timestep * static_cast<double>(clock.steps - 1)",
         "engine_tests:VelocityVerlet.StrainAfterNStepsIsNTimesRateAndStep",
     ),
     (
         "strain of implicit steps one step late",
         IMPLICIT,
-        "(static_cast<double>(system.step) * timestep_ + time)",
-        "(static_cast<double>(system.step) * timestep_)",
+        "drive(system.box, system.clock.time() + time)",
+        "drive(system.box, system.clock.time())",
         "engine_tests:Implicit.StrainAfterNStepsIsNTimesRateAndStep",
     ),
     (
         "noise torque missing from implicit steps",
-        IMPLICIT,
-        "with_noise ? noise_torque_.data() : nullptr",
-        "false ? noise_torque_.data() : nullptr",
+        "engine/integrators/velocity_solver.cpp",
+        "noise != nullptr ? noise->torque.data() : nullptr",
+        "nullptr",
         "physics_tests:StepsOverDecayTimes/ImplicitSpheres.DiffuseAsTheNoiseSays/Tenths10",
     ),
     (
         "springs stretched twice in a step with noise",
-        IMPLICIT,
-        "  field_.evaluate(system, force_, torque_);\n  restore_springs(system);\n  const bool solved",
-        "  field_.evaluate(system, force_, torque_);\n  const bool solved",
+        NOISY,
+        "  field_.evaluate(system, loads_.force, loads_.torque);\n  restore_springs(system);\n  const bool solved",
+        "  field_.evaluate(system, loads_.force, loads_.torque);\n  const bool solved",
         "engine_tests:Implicit.StretchesSpringsOnceAStep",
     ),
     (
         "noise of pairs for steps of half the length",
-        IMPLICIT,
-        ".with = ForceField(physics, particles, timestep, seed",
-        ".with = ForceField(physics, particles, 0.5 * timestep, seed",
+        NOISY,
+        "      with_noise_(physics, particles, timestep, seed",
+        "      with_noise_(physics, particles, 0.5 * timestep, seed",
         "engine_tests:NoisyStep.HasTheStressOfItsNoiseWhereItWasDrawn",
     ),
     (
         "displacement of implicit steps in the laboratory",
         IMPLICIT,
-        "Row{physics_.shear_rate * origin_.position.row(i)[1], 0, 0, 0}",
-        "Row{0 * physics_.shear_rate * origin_.position.row(i)[1], 0, 0, 0}",
+        "peculiar.x -= gradient.column[1].x * position.row(i)[1];",
+        "peculiar.x -= 0 * gradient.column[1].x * position.row(i)[1];",
         "engine_tests:Implicit.ReportsTheLargestDisplacementRelativeToTheFlow",
     ),
     (
         "inertia of the prediction instead of the step's beginning",
-        IMPLICIT,
-        ".velocity_before = origin_.velocity.data()",
+        "engine/integrators/velocity_solver.cpp",
+        ".velocity_before = origin.velocity.data()",
         ".velocity_before = particles.velocity.data()",
         LINE,
     ),
     (
         "checkpoint of implicit steps without the last change of spins",
-        IMPLICIT,
-        "    archive.put(spin_change_);",
+        "engine/integrators/midpoint.cpp",
+        "  archive.put(spin_change_);",
         "    archive.put(velocity_change_);",
         "engine_tests:EveryWay/ResumedRun.EndsAsTheUncutOneWhereverItWasCut/implicit_without_noise",
     ),
@@ -160,7 +160,7 @@ NAMED = [
     (
         "checkpoint without the errors of the steps",
         SIMULATION,
-        "  archive.put(step_errors_);",
+        "  gate_.save(archive);",
         "  archive.put(StepErrors{});",
         "engine_tests:ResumedJob.ResultEqualsTheUncutOneButForItsCost",
     ),
@@ -181,8 +181,8 @@ NAMED = [
     (
         "spheres of the start that do not turn with the flow",
         SIMULATION,
-        "    Vector3 spin = streaming_spin(physics.shear_rate);",
-        "    Vector3 spin = 0 * streaming_spin(physics.shear_rate);",
+        "    Vector3 spin = flow.spin(particles.position[i]);",
+        "    Vector3 spin = 0 * flow.spin(particles.position[i]);",
         "engine_tests:InitialVelocities.AreThoseOfEquilibriumAboutTheFlow",
     ),
     (
@@ -258,8 +258,8 @@ NAMED = [
     (
         "images of contacts kept through a flip",
         "engine/state/system.cpp",
-        "contact.image = ShearedBox::rebased(contact.image, flips);",
-        "contact.image = ShearedBox::rebased(contact.image, 0);",
+        "contact.image = change.after(contact.image);",
+        "contact.image = contact.image;",
         "engine_tests:ContactHistory.SurvivesFlipsInEitherDirection",
     ),
     (
@@ -272,7 +272,7 @@ NAMED = [
     (
         "relaxation before the start in a flow",
         "engine/start/relaxation.cpp",
-        "  still.shear_rate = 0;\n",
+        "  still.flow = {};\n",
         "",
         "engine_tests:Relaxation.LeavesAPackingWithoutForcesWhereItIs",
     ),

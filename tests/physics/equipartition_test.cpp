@@ -57,7 +57,7 @@ Laboratory free_spheres(double timestep) {
   experiment.physics.thermal_energy = thermal_energy;
   experiment.radius.assign(200, 1.0);
   experiment.radius.resize(400, 1.4);
-  experiment.box = ShearedBox({130, 130, 130}, 0);
+  experiment.box = PeriodicCell({130, 130, 130}, Matrix3{});
   experiment.timestep = timestep;
   experiment.skin = 10;
   Laboratory laboratory(experiment);
@@ -143,7 +143,7 @@ TEST_P(DenseSuspension, HasTheTemperatureOfItsNoise) {
   experiment.physics = scene.physics;
   experiment.radius = species_radii(scene.particles);
   const double edge = cube_edge(experiment.radius, scene.volume_fraction);
-  experiment.box = ShearedBox({edge, edge, edge}, 0);
+  experiment.box = PeriodicCell({edge, edge, edge}, Matrix3{});
   experiment.timestep = GetParam() * largest_timestep(scene);
   Laboratory laboratory(experiment);
   place_randomly(laboratory.particles(), experiment.box, /*seed=*/5);

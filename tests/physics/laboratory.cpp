@@ -17,8 +17,8 @@ System empty_system(const Experiment& experiment) {
 
 std::unique_ptr<Integrator> make_integrator(const Experiment& experiment, const ParticleState& particles) {
   if (experiment.solver_tolerance) {
-    return std::make_unique<Implicit>(experiment.physics, particles, experiment.timestep,
-                                      *experiment.solver_tolerance, experiment.seed, /*threads=*/1);
+    return implicit_steps(experiment.physics, particles, experiment.timestep, *experiment.solver_tolerance,
+                          experiment.seed, /*threads=*/1);
   }
   return std::make_unique<VelocityVerlet>(
       ForceField(experiment.physics, particles, experiment.timestep, experiment.seed, /*threads=*/1),
@@ -53,7 +53,7 @@ Laboratory single_spheres(std::size_t count, double thermal_energy, double times
   experiment.physics.thermal_energy = thermal_energy;
   experiment.radius.assign(count, 1.0);
   const double edge = cube_edge(experiment.radius, 5e-4);
-  experiment.box = ShearedBox({edge, edge, edge}, 0);
+  experiment.box = PeriodicCell({edge, edge, edge}, Matrix3{});
   experiment.timestep = timestep;
   experiment.skin = skin;
   experiment.solver_tolerance = solver_tolerance;

@@ -22,7 +22,7 @@ struct Experiment {
   Physics physics;
   std::vector<double> radius;
   double density = natural_density;
-  ShearedBox box;
+  PeriodicCell box;
   double timestep = 0;
   std::uint64_t seed = 1;
   double skin = 0.1;                            // of the neighbour list, a length

@@ -50,7 +50,7 @@ Laboratory many_pairs(double thermal_energy, double timestep, double distance) {
   experiment.density = 1e-9 * natural_density;  // the velocity is that of the forces at once
   constexpr std::size_t row = 16;               // pairs in each direction: 16^3 places
   constexpr double spacing = 6;
-  experiment.box = ShearedBox({row * spacing, row * spacing, row * spacing}, 0);
+  experiment.box = PeriodicCell({row * spacing, row * spacing, row * spacing}, Matrix3{});
   experiment.timestep = timestep;
   experiment.solver_tolerance = 1e-5;
   Laboratory laboratory(experiment);

@@ -56,7 +56,7 @@ Laboratory make_pair(const PairDensityRun& run, std::uint64_t seed) {
       ContactParameters{.normal_stiffness = run.stiffness_over_thermal_energy * run.thermal_energy};
   experiment.physics.lubrication = LubricationParameters{run.inner_gap, pair_density_outer_gap};
   experiment.radius = {1, 1};
-  experiment.box = ShearedBox({cell_edge, cell_edge, cell_edge}, 0);
+  experiment.box = PeriodicCell({cell_edge, cell_edge, cell_edge}, Matrix3{});
   experiment.timestep = run.timestep;
   experiment.seed = seed;
   experiment.skin = 0.5;

@@ -35,7 +35,7 @@ class NoisyPair {
     physics_.lubrication = LubricationParameters{inner_gap, outer_gap};
     system_.particles = make_particles({radius_i, radius_j_}, 1);
     const double edge = 20 * (radius_i + radius_j_);
-    system_.box = ShearedBox({edge, edge, edge}, 0);
+    system_.box = PeriodicCell({edge, edge, edge}, Matrix3{});
     kinds_ = make_pair_kinds(physics_, {radius_i, radius_j_});
     system_.list = NeighbourList(range_table(kinds_, 2), 0.1);
     // Across the face of the periodic cell.

@@ -47,7 +47,7 @@ struct Outcome {
 Physics physics_of(const Arguments& arguments) {
   Physics physics;
   physics.viscosity = viscosity;
-  physics.shear_rate = rate;
+  physics.flow = steady_shear(rate);
   physics.contact = ContactParameters{
       .normal_stiffness = 1e4, .friction = arguments.friction, .tangential_stiffness = 2.0 / 7.0 * 1e4};
   physics.lubrication = LubricationParameters{.inner_gap = 1e-3, .outer_gap = 0.05};
@@ -62,7 +62,7 @@ System packed(const Arguments& arguments) {
   const double edge = cube_edge(radius, arguments.volume_fraction);
   System system;
   system.particles = make_particles(radius, density);
-  system.box = ShearedBox({edge, edge, edge}, rate);
+  system.box = PeriodicCell({edge, edge, edge}, simple_shear(rate));
   system.list = NeighbourList(range_table(make_pair_kinds(physics_of(arguments), sizes), sizes.size()), 0.03);
   place_randomly(system.particles, system.box, arguments.seed);
   for (std::size_t i = 0; i < radius.size(); ++i) {
@@ -107,8 +107,6 @@ Outcome run(System system, const Physics& physics, double step, double strain) {
   Outcome outcome;
   VelocityVerlet integrator(ForceField(physics, system.particles, step, /*seed=*/0, /*threads=*/1),
                             system.particles, step);
-  // The strain of the box is that of its step.
-  system.step = static_cast<std::uint64_t>(steps_of(system.box.strain(), step));
   integrator.start(system);
   Sums sums;
   for (long k = 0; k < steps_of(strain, step); ++k) {

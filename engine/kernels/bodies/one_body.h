@@ -6,7 +6,7 @@
 #pragma once
 
 #include "engine/kernels/bodies/one_body_kernels.h"
-#include "engine/state/row.h"
+#include "engine/kernels/bodies/streaming.h"
 
 namespace peclet::engine {
 namespace {
@@ -23,14 +23,16 @@ void kick(const OneBodyInput& in, std::size_t begin, std::size_t end) {
 }
 
 // The drag on a particle in its flow.
+template <bool is_simple_shear>
 void set_drag(const OneBodyInput& in, const OneBodyFactors& drag, std::size_t i, const Row& position,
               const Row& velocity, const Row& spin) {
-  const Row streaming = {in.shear_rate * position[1], 0, 0, 0}, streaming_spin = {0, 0, in.streaming_spin, 0};
+  Row streaming;
+  set_streaming<is_simple_shear>(in.flow, position, streaming);
   row(in.force, i) = drag.translational * (streaming - velocity);
-  row(in.torque, i) = drag.rotational * (streaming_spin - spin);
+  row(in.torque, i) = drag.rotational * (streaming_spin(in.flow) - spin);
 }
 
-template <bool twice, bool dragged>
+template <bool twice, bool dragged, bool is_simple_shear>
 Speeds kick_and_drift(const OneBodyInput& in, std::size_t begin, std::size_t end, double timestep) {
   Speeds speeds;
   Row sum{};
@@ -43,7 +45,9 @@ Speeds kick_and_drift(const OneBodyInput& in, std::size_t begin, std::size_t end
       w += turn;
     }
     const Row x = row(in.position, i);
-    const Row peculiar = u - Row{in.shear_rate * x[1], 0, 0, 0};
+    Row streaming;
+    set_streaming<is_simple_shear>(in.flow, x, streaming);
+    const Row peculiar = u - streaming;
     const Row squares = peculiar * peculiar;
     const double squared = squares[0] + squares[1] + squares[2];
     speeds.largest = speeds.largest > squared ? speeds.largest : squared;
@@ -53,7 +57,7 @@ Speeds kick_and_drift(const OneBodyInput& in, std::size_t begin, std::size_t end
     const Row drifted = x + timestep * u;
     row(in.position, i) = drifted;
     if constexpr (dragged) {
-      set_drag(in, in.drag[in.size_class[i]], i, drifted, u, w);
+      set_drag<is_simple_shear>(in, in.drag[in.size_class[i]], i, drifted, u, w);
     }
   }
   speeds.sum = sum[0] + sum[1] + sum[2];
@@ -63,14 +67,24 @@ Speeds kick_and_drift(const OneBodyInput& in, std::size_t begin, std::size_t end
 template <bool dragged>
 Speeds kick_and_drift(const OneBodyInput& in, std::size_t begin, std::size_t end, bool twice,
                       double timestep) {
-  return twice ? kick_and_drift<true, dragged>(in, begin, end, timestep)
-               : kick_and_drift<false, dragged>(in, begin, end, timestep);
+  if (in.flow.is_simple_shear) {
+    return twice ? kick_and_drift<true, dragged, true>(in, begin, end, timestep)
+                 : kick_and_drift<false, dragged, true>(in, begin, end, timestep);
+  }
+  return twice ? kick_and_drift<true, dragged, false>(in, begin, end, timestep)
+               : kick_and_drift<false, dragged, false>(in, begin, end, timestep);
+}
+
+template <bool is_simple_shear>
+void set_drags(const OneBodyInput& in, std::size_t begin, std::size_t end) {
+  for (std::size_t i = begin; i < end; ++i) {
+    set_drag<is_simple_shear>(in, in.drag[in.size_class[i]], i, row(in.position, i), row(in.velocity, i),
+                              row(in.spin, i));
+  }
 }
 
 void set_drag(const OneBodyInput& in, std::size_t begin, std::size_t end) {
-  for (std::size_t i = begin; i < end; ++i) {
-    set_drag(in, in.drag[in.size_class[i]], i, row(in.position, i), row(in.velocity, i), row(in.spin, i));
-  }
+  in.flow.is_simple_shear ? set_drags<true>(in, begin, end) : set_drags<false>(in, begin, end);
 }
 
 }  // namespace

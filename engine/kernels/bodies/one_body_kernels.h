@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/flow/uniform_flow.h"
+
 namespace peclet::engine {
 
 struct OneBodyFactors {
@@ -19,7 +21,7 @@ struct OneBodyInput {
   double *force, *torque;
   const std::uint16_t* size_class;
   const OneBodyFactors *kicks, *drag;
-  double shear_rate, streaming_spin;  // of the flow; the spin along z
+  UniformFlow flow;
 };
 
 // Squared speeds relative to the streaming flow.

@@ -32,12 +32,8 @@ class LinkedPairs {
     Vector3Of<Real> r = gather_rows(in.position, second_, Real{}) - gather_rows(in.position, first_, Real{});
     motion_.velocity = gather_rows(in.velocity, second_, Real{}) - gather_rows(in.velocity, first_, Real{});
     if (run.imaged) {
-      r += gather_rows(in.images, image_, Real{});
-      Real image_velocity{};
-      for (int k = 0; k < width_of<Real>; ++k) {
-        set_lane(image_velocity, k, in.images[4 * std::size_t{image_[k]} + 3]);
-      }
-      motion_.velocity.x += image_velocity;
+      r += gather_rows(in.image_displacement, image_, Real{});
+      motion_.velocity += gather_rows(in.image_velocity, image_, Real{});
     }
     motion_.spin_first = gather_rows(in.spin, first_, Real{});
     motion_.spin_second = gather_rows(in.spin, second_, Real{});

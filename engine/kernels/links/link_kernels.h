@@ -64,7 +64,9 @@ struct StepRows {
   const double *force, *torque;
   const double *noise_force, *noise_torque;  // added to the forces, or null
   const OneBodyFactors* inertia;             // of each size class
-  double timestep, shear_rate, streaming_spin;
+  double timestep;
+  UniformFlow flow;
+  const double *varying_velocity, *varying_spin;  // added to the flow, or null
 };
 
 // (V - U).A (V - U) with the streaming flow U, and the part of it that is inertia.

@@ -5,6 +5,7 @@
 // another.
 #pragma once
 
+#include "engine/kernels/bodies/streaming.h"
 #include "engine/kernels/links/link_motions.h"
 
 namespace peclet::engine {
@@ -105,17 +106,30 @@ void set_residual(const LinkSystem& system, const StepRows& step, MotionRow* res
   }
 }
 
-SquaredMotion squared_motion(const LinkSystem& system, const StepRows& step, MotionRow* motion,
-                             MotionRow* product) {
-  const Row spin = {0, 0, step.streaming_spin, 0};
+// Motions relative to the flow; returns the sums of m u u + I w w.
+template <bool is_simple_shear>
+Row set_motions(const LinkSystem& system, const StepRows& step, MotionRow* motion) {
+  const Row& spin = streaming_spin(step.flow);
   Row inertial{};
   for (std::size_t i = 0; i < system.particles; ++i) {
-    const Row streaming = {step.shear_rate * vector_row(step.position, i)[1], 0, 0, 0};
-    const Row u = vector_row(step.velocity, i) - streaming, w = vector_row(step.spin, i) - spin;
+    Row streaming;
+    set_streaming<is_simple_shear>(step.flow, vector_row(step.position, i), streaming);
+    Row u = vector_row(step.velocity, i) - streaming, w = vector_row(step.spin, i) - spin;
+    if (step.varying_velocity != nullptr) {
+      u -= vector_row(step.varying_velocity, i);
+      w -= vector_row(step.varying_spin, i);
+    }
     const OneBodyFactors& inertia = step.inertia[system.size_class[i]];
     inertial += inertia.translational * u * u + inertia.rotational * w * w;
     set_motion(motion[i], u, w);
   }
+  return inertial;
+}
+
+SquaredMotion squared_motion(const LinkSystem& system, const StepRows& step, MotionRow* motion,
+                             MotionRow* product) {
+  const Row inertial = step.flow.is_simple_shear ? set_motions<true>(system, step, motion)
+                                                 : set_motions<false>(system, step, motion);
   multiply(system, motion, product);
   const double whole =
       summed(system.particles, [&](std::size_t i, Floats& sum) { sum += motion[i].v * product[i].v; });

@@ -2,10 +2,10 @@
 
 namespace peclet::engine {
 
-std::vector<ImageFrame> image_frames(const NeighbourList& list, const ShearedBox& box) {
+std::vector<ImageFrame> image_frames(const NeighbourList& list, const PeriodicCell& box) {
   std::vector<ImageFrame> frames;
   for (const LatticeShift image : list.images()) {
-    frames.push_back({box.displacement(image), box.velocity_offset(image)});
+    frames.push_back({box.displacement(image), box.velocity(image)});
   }
   return frames;
 }

@@ -1,4 +1,4 @@
-// separation() and relative_velocity(): how a pair of the list is seen through the sheared box.
+// separation() and relative_velocity(): how a pair of the list is seen through the periodic cell.
 #pragma once
 
 #include <vector>
@@ -9,12 +9,11 @@
 namespace peclet::engine {
 
 // Displacement and velocity of every image that the list uses, at one moment.
-struct alignas(32) ImageFrame {
-  Vector3 displacement;
-  double velocity;  // along x
+struct ImageFrame {
+  Vector3 displacement, velocity;
 };
 
-std::vector<ImageFrame> image_frames(const NeighbourList& list, const ShearedBox& box);
+std::vector<ImageFrame> image_frames(const NeighbourList& list, const PeriodicCell& box);
 
 // r = x_j + image - x_i.
 inline Vector3 separation(const ParticleState& particles, const Pair& pair, const ImageFrame& frame) {
@@ -23,9 +22,7 @@ inline Vector3 separation(const ParticleState& particles, const Pair& pair, cons
 
 // U_j + image's own velocity - U_i.
 inline Vector3 relative_velocity(const ParticleState& particles, const Pair& pair, const ImageFrame& frame) {
-  Vector3 velocity = particles.velocity[pair.second] - particles.velocity[pair.first];
-  velocity.x += frame.velocity;
-  return velocity;
+  return particles.velocity[pair.second] - particles.velocity[pair.first] + frame.velocity;
 }
 
 inline PairGeometry geometry(const Vector3& separation, const PairKind& kind) {

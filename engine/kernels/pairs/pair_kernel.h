@@ -46,12 +46,8 @@ class PairGroup {
   PECLET_ALWAYS_INLINE void add(const PairKernelOutput& out, LaneSumsOf<Real>& sums) {
     Vector3Of<Real> r =
         gather_rows(in_.position, second_, Real{}) - gather_rows(in_.position, first_, Real{});
-    Real image_velocity{};
     if (run_.imaged) {
-      r += gather_rows(in_.images, image_, Real{});
-      for (int k = 0; k < width_of<Real>; ++k) {
-        set_lane(image_velocity, k, in_.images[4 * std::size_t{image_[k]} + 3]);
-      }
+      r += gather_rows(in_.image_displacement, image_, Real{});
     }
     const auto listed = listed_lanes(count_, Real{});
     const Real squared = dot(r, r);
@@ -70,7 +66,9 @@ class PairGroup {
     shape.sum_of_radii = kind_.sum_of_radii;
     PairMotionOf<Real> motion;
     motion.velocity = gather_rows(in_.velocity, second_, Real{}) - gather_rows(in_.velocity, first_, Real{});
-    motion.velocity.x += image_velocity;
+    if (run_.imaged) {
+      motion.velocity += gather_rows(in_.image_velocity, image_, Real{});
+    }
     motion.spin_first = gather_rows(in_.spin, first_, Real{});
     motion.spin_second = gather_rows(in_.spin, second_, Real{});
 

@@ -16,7 +16,7 @@ namespace peclet::engine {
 struct PairKernelInput {
   const double *position, *velocity, *spin;
   const Pair* pairs;
-  const double* images;  // rows: displacement and velocity along x of each image
+  const double *image_displacement, *image_velocity;  // rows of each image
   const PairKind* kinds;
   PairParameters parameters;
   double* springs[6];  // components, see SpringField; advanced in place

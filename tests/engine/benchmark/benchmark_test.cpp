@@ -15,8 +15,9 @@ namespace {
 TEST(Tiling, LeavesEveryParticleTheForcesThatItHas) {
   const Physics physics = physics_with({.lubrication = true, .contact = true, .damping = true});
   System small = dense_suspension(physics, 150, 3);
-  small.box = ShearedBox(small.box.lengths(), physics.shear_rate);
-  small.box.place(1.3, 1);
+  small.box = PeriodicCell(small.box.lengths(), simple_shear(physics.flow.rate()));
+  small.box.deform(simple_shear(1.3));
+  small.box.change_basis(flips(1));
   rebuild_neighbours(small);
   const NeighbourList unbuilt = small.list;
   System large = tiled(small, 3);
@@ -75,6 +76,18 @@ TEST(Catalogue, GivesGroupsWholeAndContestantsAlone) {
   ASSERT_EQ(one[0].contestants.size(), 1u);
   EXPECT_EQ(one[0].contestants[0].scene.physics.contact->friction, 0.5);
   EXPECT_GT(chosen_groups({}).size(), 8u);
+}
+
+TEST(Catalogue, TakesImplicitStepsOnlyWhereTheirNameSaysSo) {
+  std::size_t implicit = 0;
+  for (const Group& group : chosen_groups({})) {
+    for (const Contestant& each : group.contestants) {
+      const bool named = each.name.starts_with("implicit");
+      EXPECT_EQ(each.scene.method == Method::implicit_steps, named) << each.name;
+      implicit += named ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(implicit, 3u);
 }
 
 TEST(Catalogue, SaysWhatItHasWhenAskedForSomethingElse) {

@@ -5,7 +5,7 @@
 #include <array>
 #include <numbers>
 
-#include "engine/integrators/implicit.h"
+#include "engine/integrators/noisy_midpoint.h"
 #include "engine/integrators/velocity_verlet.h"
 
 namespace peclet::engine {
@@ -21,7 +21,7 @@ constexpr double viscosity = 0.1;
 System system_of(const Physics& physics, const std::vector<double>& radius, double density) {
   System system;
   system.particles = make_particles(radius, density);
-  system.box = ShearedBox({30, 30, 30}, physics.shear_rate);
+  system.box = PeriodicCell({30, 30, 30}, simple_shear(physics.flow.rate()));
   const std::vector<double> sizes = distinct_radii(radius);
   system.list = NeighbourList(range_table(make_pair_kinds(physics, sizes), sizes.size()), 0.1);
   return system;
@@ -135,7 +135,7 @@ TEST(NoisyStep, OfTwoSpheresOnALineIsThatOfItsEquations) {
     const double changed = expected.velocity[1] - expected.velocity[0] - given.closing;
     ASSERT_GT(std::abs(changed), 0.05 * std::abs(given.closing)) << given.name;
 
-    Implicit integrator(given.physics, system.particles, given.timestep, tight, 1, 1);
+    NoisyMidpoint integrator(given.physics, system.particles, given.timestep, tight, 1, 1);
     integrator.start(system);
     const StepReport report = integrator.advance(system);
     const ParticleState& p = system.particles;
@@ -168,7 +168,7 @@ TEST(NoisyStep, HasTheStressOfItsNoiseWhereItWasDrawn) {
   system.particles.velocity.set(1, {0.5, 3, -1});
   constexpr double dt = 0.05;
   constexpr std::uint64_t seed = 8, step = 41;
-  Implicit integrator(physics, system.particles, dt, tight, seed, 1);
+  NoisyMidpoint integrator(physics, system.particles, dt, tight, seed, 1);
   integrator.start(system);
   ASSERT_EQ(system.particles.id[0], 0u);
   system.step = step;
@@ -221,7 +221,7 @@ struct Encounter {
 std::vector<Encounter> encounters() {
   Physics sheared;
   sheared.viscosity = viscosity;
-  sheared.shear_rate = 1;
+  sheared.flow = steady_shear(1);
   Physics contact = sheared, lubricated = sheared;
   contact.contact = ContactParameters{.normal_stiffness = 5};
   lubricated.lubrication = LubricationParameters{1e-3, 0.9};
@@ -246,7 +246,8 @@ System placed(const Encounter& encounter) {
   system.particles.position.set(1, encounter.second);
   followed(encounter.physics, system, 0.01);
   system.step = 0;
-  system.box = ShearedBox(system.box.lengths(), encounter.physics.shear_rate);
+  system.clock = {};
+  system.box = PeriodicCell(system.box.lengths(), simple_shear(encounter.physics.flow.rate()));
   return system;
 }
 
@@ -260,7 +261,7 @@ TEST(NoisyStep, IsOfSecondOrderWithoutTemperature) {
       physics.thermal_energy = cold;
       const double step = encounter.time / steps;
       System found = begin, middle = begin, end = begin;
-      Implicit integrator(physics, found.particles, step, tight, 1, 1);
+      NoisyMidpoint integrator(physics, found.particles, step, tight, 1, 1);
       const double stress = mean_stress(integrator, found, steps);
       followed(encounter.physics, middle, encounter.time - 0.5 * step);
       const double exact = followed(encounter.physics, end, encounter.time);

@@ -72,11 +72,11 @@ class Links {
     std::vector<double> result;
     for (std::size_t i = 0; i < change.size(); ++i) {
       const double a = moved.particles.radius[i], pi = std::numbers::pi;
-      const Vector3 streaming = {physics.shear_rate * moved.particles.position[i].y, 0, 0};
+      const Vector3 streaming = {physics.flow.rate() * moved.particles.position[i].y, 0, 0};
       const Vector3 f = force[i] - 6 * pi * physics.viscosity * a * (streaming - moved.particles.velocity[i]);
       const Vector3 t =
           torque[i] - 8 * pi * physics.viscosity * a * a * a *
-                          (Vector3{0, 0, -0.5 * physics.shear_rate} - moved.particles.angular_velocity[i]);
+                          (Vector3{0, 0, -0.5 * physics.flow.rate()} - moved.particles.angular_velocity[i]);
       result.insert(result.end(), {f.x, f.y, f.z, t.x, t.y, t.z});
     }
     return result;
@@ -174,7 +174,7 @@ TEST_P(LinkKernelsOf, MultiplyByTheDerivativeOfTheLoads) {
 // A pair along x: the load that the approach changes, X_A(r + t v) v, has the derivative X_A + t v dX_A/dr.
 TEST_P(LinkKernelsOf, TakeTheChangeOfTheSqueezingResistanceIntoAccount) {
   Physics physics = physics_with({.lubrication = true});
-  physics.shear_rate = 0;
+  physics.flow = steady_shear(0);
   const double inner = physics.lubrication->inner_gap;
   const auto squeezing = [&](double h) {  // of equal spheres of radius 1
     const double gap = std::max(h, inner);
@@ -189,7 +189,7 @@ TEST_P(LinkKernelsOf, TakeTheChangeOfTheSqueezingResistanceIntoAccount) {
     const double gap = one.gap, velocity = one.closing;
     System system;
     system.particles = make_particles({1, 1}, 0.1);
-    system.box = ShearedBox({20, 20, 20}, 0);
+    system.box = PeriodicCell({20, 20, 20}, Matrix3{});
     system.list = NeighbourList(range_table(make_pair_kinds(physics, {1.0}), 1), 0.1);
     system.particles.position.set(0, {5, 5, 5});
     system.particles.position.set(1, {7 + gap, 5, 5});

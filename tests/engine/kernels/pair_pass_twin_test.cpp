@@ -99,7 +99,7 @@ TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
     const ContactSprings before = held[{i, j, seen.image}];
     PairSpringsOf<double> springs = {before.tangential, before.rolling};
     Vector3 velocity = all.velocity[j] - all.velocity[i];
-    velocity.x += system.box.velocity_offset(seen.image);
+    velocity += system.box.velocity(seen.image);
     const PairMotion motion = {velocity, all.angular_velocity[i], all.angular_velocity[j]};
     const TermLoadsOf<double> t =
         pair_terms<terms>(parameters, kind, geometry(seen.separation, kind), motion, springs, [&] {
@@ -122,8 +122,8 @@ TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
     const double zeta_r = 8 * std::numbers::pi * physics.viscosity * a * a * a;
     const NormalPair normals = single.normals(system.step, i);
     const double c = parameters.noise_amplitude;
-    const Vector3 streaming = {physics.shear_rate * all.position[i].y, 0, 0};
-    const Vector3 spin = {0, 0, -0.5 * physics.shear_rate};
+    const Vector3 streaming = {physics.flow.rate() * all.position[i].y, 0, 0};
+    const Vector3 spin = {0, 0, -0.5 * physics.flow.rate()};
     force.add(i, zeta * (streaming - all.velocity[i]) + c * std::sqrt(zeta) * normals.first);
     torque.add(i, zeta_r * (spin - all.angular_velocity[i]) + c * std::sqrt(zeta_r) * normals.second);
   }

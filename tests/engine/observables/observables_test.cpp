@@ -23,7 +23,7 @@ System loose_spheres(std::size_t count, double shear_rate = 0) {
   std::vector<double> radius(count);
   for (std::size_t i = 0; i < count; ++i) radius[i] = i % 2 == 0 ? 1 : 2;
   system.particles = make_particles(radius, 1);
-  system.box = ShearedBox({edge, edge, edge}, shear_rate);
+  system.box = PeriodicCell({edge, edge, edge}, simple_shear(shear_rate));
   return system;
 }
 

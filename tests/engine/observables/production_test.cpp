@@ -103,7 +103,7 @@ SymmetricTensor structural_stress_at(double h, double skin = 0.1) {
   system.particles = make_particles({1, 1.4}, 0.1);
   system.particles.position.set(0, {5, 5, 5});
   system.particles.position.set(1, {5 + 2.4 + h, 5, 5});
-  system.box = ShearedBox({10, 10, 10}, 0);
+  system.box = PeriodicCell({10, 10, 10}, Matrix3{});
   const std::vector<PairKind> kinds = make_pair_kinds(physics, {1, 1.4});
   system.list = NeighbourList(range_table(kinds, 2), skin);
   system.list.build(system.particles, system.box);
@@ -127,14 +127,14 @@ TEST(StructuralBrownianStress, SeesTheWholeShellOfTheLargerSphere) {
 TEST(KineticTemperatures, AreThoseOfMotionRelativeToTheStreamingFlow) {
   System system;
   system.particles = make_particles({1, 1.4}, 0.1);
-  system.box = ShearedBox({10, 10, 10}, 0.7);
+  system.box = PeriodicCell({10, 10, 10}, simple_shear(0.7));
   system.particles.position.set(1, {0, 3, 0});
   system.particles.velocity.set(0, {1, 2, 2});        // 9
   system.particles.velocity.set(1, {0.7 * 3, 0, 0});  // at rest in the flow
   system.particles.angular_velocity.set(0, {0, 0, -0.35});
   system.particles.angular_velocity.set(1, {0, 3, 4 - 0.35});  // 25
   const double m0 = 0.1 * 4 * std::numbers::pi / 3, m1 = m0 * 1.4 * 1.4 * 1.4;
-  const KineticTemperatures t = kinetic_temperatures(system);
+  const KineticTemperatures t = kinetic_temperatures(system, steady_shear(0.7));
   EXPECT_NEAR(t.translational, m0 * 9 / 6, 1e-14);
   EXPECT_NEAR(t.rotational, 0.4 * m1 * 1.96 * 25 / 6, 1e-14);
 }

@@ -283,6 +283,34 @@ TEST(Result, SameSeedSameBytesButForTheCost) {
   EXPECT_EQ(again.dump(), first.dump());
 }
 
+// The stresslets of spheres in waves depend on where they are: the mean over the samples, one every ten steps
+// of this window, each evaluated once more.
+TEST(Result, HasTheStressletsOfSpheresWhereTheWavesAre) {
+  const Json waves =
+      Json::parse(R"([{"periods": 1, "sine": 0.5}, {"periods": 2, "sine": 0.3, "cosine": -0.4}])");
+  const Json patch = {{"flow", {{"waves", waves}, {"faxen", true}}}, {"fluid", {{"thermal_energy", 0}}}};
+  const Scene scene = read_scene(small_scene(patch), "scene.json");
+  Simulation simulation(scene, make_schedule(scene, ""), seed, 1, "");
+  simulation.start();
+  simulation.advance(100);
+  double sum = 0;
+  for (int step = 0; step < 320; ++step) {
+    simulation.advance(1);
+    if (step % 10 != 0) continue;
+    Configuration configuration;
+    configuration.physics = scene.physics;
+    configuration.particles = simulation.system().particles;
+    configuration.box = simulation.system().box;
+    sum += evaluate_configuration(configuration).at("stress").at("stresslet")[0][1].get<double>();
+  }
+  const Json result = result_of(patch);
+  const double found = result.at("mean").at("stress").at("stresslet")[3];
+  constexpr double unit = 0.1 * 2;  // viscosity, rate
+  EXPECT_NEAR(found, sum / 32 / unit, 1e-12 * std::abs(found));
+  EXPECT_GT(std::abs(found - 2.5 * 0.45), 1e-3);
+  EXPECT_TRUE(result.at("gate").at("energy_imbalance").is_null());
+}
+
 // Contact and repulsion depend on positions alone: every step of the production window is evaluated here once
 // more, one configuration at a time.
 TEST(Result, MeansAreTakenOverEveryStepOfTheProductionWindow) {

@@ -84,7 +84,7 @@ TEST(Scene, GivenValuesAreKept) {
   EXPECT_EQ(scene.particles.reference_radius, 1.5);
   EXPECT_EQ(scene.physics.viscosity, 0.1);
   EXPECT_EQ(scene.physics.thermal_energy, 0.017);
-  EXPECT_EQ(scene.physics.shear_rate, 0.009);
+  EXPECT_EQ(scene.physics.flow.rate(), 0.009);
   EXPECT_EQ(scene.physics.contact->normal_stiffness, 1e4);
   EXPECT_EQ(scene.physics.contact->normal_damping, 0.04);
   EXPECT_EQ(scene.physics.contact->tangential_stiffness, 2857);
@@ -149,13 +149,13 @@ TEST(Scene, PecletNumberWithinLimitsGivesThePublishedRatesAndTemperatures) {
                                     {"peclet", row.peclet},
                                     {"limits", {{"shear_rate", 0.009}, {"thermal_energy", 0.017}}}});
     const Physics& physics = scene.physics;
-    EXPECT_NEAR(physics.shear_rate / row.shear_rate, 1, rounding) << row.peclet;
+    EXPECT_NEAR(physics.flow.rate() / row.shear_rate, 1, rounding) << row.peclet;
     EXPECT_NEAR(physics.thermal_energy / row.thermal_energy, 1, rounding) << row.peclet;
-    EXPECT_NEAR(6 * std::numbers::pi * 0.1 * physics.shear_rate / physics.thermal_energy, row.peclet,
+    EXPECT_NEAR(6 * std::numbers::pi * 0.1 * physics.flow.rate() / physics.thermal_energy, row.peclet,
                 1e-12 * row.peclet);
-    EXPECT_LE(physics.shear_rate, 0.009);
+    EXPECT_LE(physics.flow.rate(), 0.009);
     EXPECT_LE(physics.thermal_energy, 0.017);
-    EXPECT_TRUE(physics.shear_rate == 0.009 || physics.thermal_energy == 0.017);  // as large as allowed
+    EXPECT_TRUE(physics.flow.rate() == 0.009 || physics.thermal_energy == 0.017);  // as large as allowed
   }
 }
 
@@ -165,7 +165,7 @@ TEST(Scene, AConfigurationsBlocksAreReadByTheSameKeys) {
       "repulsion": {"form": "exponential", "strength": 1.7}})");
   const Physics physics = read_physics(blocks, "c.json", "/scene");
   EXPECT_EQ(physics.thermal_energy, 0.017);
-  EXPECT_EQ(physics.shear_rate, 0);
+  EXPECT_EQ(physics.flow.rate(), 0);
   EXPECT_EQ(physics.contact->tangential_stiffness, 2);
   EXPECT_EQ(physics.lubrication->outer_gap, 0.05);
   EXPECT_EQ(physics.repulsion->cutoff_lengths, 20);

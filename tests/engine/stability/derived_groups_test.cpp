@@ -15,7 +15,7 @@ Scene scene_of(double shear_rate, double thermal_energy) {
   scene.particles.density = 0.1;
   scene.particles.reference_radius = 1;
   scene.physics.viscosity = 0.1;
-  scene.physics.shear_rate = shear_rate;
+  scene.physics.flow = steady_shear(shear_rate);
   scene.physics.thermal_energy = thermal_energy;
   scene.physics.contact = ContactParameters{.normal_stiffness = 1e4};
   return scene;

@@ -182,7 +182,7 @@ TEST(SpectralBound, OfOnePairIsItsAnalyticRate) {
   constexpr double overlap = 1e-3;
   System system;
   system.particles = make_particles({1, 1}, 0.1);
-  system.box = ShearedBox({20, 20, 20}, 0);
+  system.box = PeriodicCell({20, 20, 20}, Matrix3{});
   system.particles.position.set(0, {9, 9, 9});
   system.particles.position.set(1, {9 + (2 - overlap) * 0.6, 9, 9 + (2 - overlap) * 0.8});
   Physics physics;
@@ -252,7 +252,7 @@ TEST(SpectralBound, OfAMatrixThatIsNotFiniteIsNotANumber) {
 TEST(SpectralBound, OfSpheresWithoutNeighboursIsTheirDrag) {
   System system;
   system.particles = make_particles({1, 1.4}, 0.1);
-  system.box = ShearedBox({20, 20, 20}, 0);
+  system.box = PeriodicCell({20, 20, 20}, Matrix3{});
   system.particles.position.set(1, {9, 9, 9});
   Physics physics;
   physics.viscosity = 0.1;

@@ -104,14 +104,14 @@ class PressedPacking {
     const std::vector<double> sizes = distinct_radii(radius);
     const double edge = cube_edge(radius, scene.volume_fraction);
     system_.particles = make_particles(radius, scene.particles.density);
-    system_.box = ShearedBox({edge, edge, edge}, 0);
+    system_.box = PeriodicCell({edge, edge, edge}, Matrix3{});
     system_.list = NeighbourList(range_table(make_pair_kinds(scene.physics, sizes), sizes.size()), 0.1);
     place_randomly(system_.particles, system_.box, 1);
     constexpr double pressed = 0.995;
     for (std::size_t i = 0; i < radius.size(); ++i) {
       system_.particles.position.set(i, pressed * system_.particles.position[i]);
     }
-    system_.box = ShearedBox({pressed * edge, pressed * edge, pressed * edge}, 0);
+    system_.box = PeriodicCell({pressed * edge, pressed * edge, pressed * edge}, Matrix3{});
     run(system_, 0.2 * largest_timestep(scene), 1000);
   }
 

@@ -22,13 +22,13 @@ Particles equal_volumes(std::size_t count) {
 
 struct Packing {
   ParticleState particles;
-  ShearedBox box;
+  PeriodicCell box;
 };
 
 Packing packed(const Particles& wanted, double volume_fraction, std::uint64_t seed) {
   const std::vector<double> radius = species_radii(wanted);
   const double edge = cube_edge(radius, volume_fraction);
-  Packing packing{make_particles(radius, wanted.density), ShearedBox({edge, edge, edge}, 0)};
+  Packing packing{make_particles(radius, wanted.density), PeriodicCell({edge, edge, edge}, Matrix3{})};
   place_randomly(packing.particles, packing.box, seed);
   return packing;
 }
@@ -101,7 +101,7 @@ TEST(Packing, AcceptsNoOverlapHoweverSmall) {
   const auto pack_at = [](double distance_over_contact) {
     const double edge = 2 * distance_over_contact / (0.5 * std::sqrt(3.0));
     ParticleState particles = make_particles({1, 1}, 1);
-    place_randomly(particles, ShearedBox({edge, edge, edge}, 0), 1);
+    place_randomly(particles, PeriodicCell({edge, edge, edge}, Matrix3{}), 1);
   };
   for (const double overlap : {0.02, 0.009, 0.003}) {
     EXPECT_THROW(pack_at(1 - overlap), PackingError) << overlap;
@@ -123,7 +123,7 @@ Scaled packed_in_units(double unit, double volume_fraction) {
   }
   ParticleState particles = make_particles(radius, 1);
   try {
-    place_randomly(particles, ShearedBox({edge, edge, edge}, 0), 3);
+    place_randomly(particles, PeriodicCell({edge, edge, edge}, Matrix3{}), 3);
   } catch (const PackingError& error) {
     return {{}, error.reached()};
   }

@@ -33,7 +33,7 @@ System packed(const Scene& scene) {
   const std::vector<double> radius = species_radii(scene.particles);
   system.particles = make_particles(radius, scene.particles.density);
   const double edge = cube_edge(radius, scene.volume_fraction);
-  system.box = ShearedBox({edge, edge, edge}, scene.physics.shear_rate);
+  system.box = PeriodicCell({edge, edge, edge}, simple_shear(scene.physics.flow.rate()));
   const std::vector<double> sizes = distinct_radii(radius);
   system.list = NeighbourList(range_table(make_pair_kinds(scene.physics, sizes), sizes.size()), 0.1);
   system.springs = SpringField(spring_kinds(required_terms(scene.physics)), 0);
@@ -49,7 +49,7 @@ TEST(Relaxation, MovesSpheresAndNothingElse) {
   EXPECT_FALSE(system.particles.position == before.particles.position);
   EXPECT_EQ(system.step, 0u);
   EXPECT_EQ(system.box.strain(), 0);
-  EXPECT_EQ(system.box.shear_rate(), scene.physics.shear_rate);
+  EXPECT_EQ(system.box.velocity_gradient(), simple_shear(scene.physics.flow.rate()));
   std::vector<std::uint32_t> id = system.particles.id;
   std::sort(id.begin(), id.end());
   for (std::uint32_t i = 0; i < id.size(); ++i) {

@@ -28,7 +28,7 @@ RangeTable ranges_of(const std::vector<double>& radius) {
 }
 
 // Spheres of these sizes at random places, most of them outside the cell, overlapping as they will.
-ParticleState scattered(std::size_t count, const std::vector<double>& sizes, const ShearedBox& box,
+ParticleState scattered(std::size_t count, const std::vector<double>& sizes, const PeriodicCell& box,
                         Draws& draws) {
   std::vector<double> radius;
   for (std::size_t i = 0; i < count; ++i) {
@@ -44,7 +44,7 @@ ParticleState scattered(std::size_t count, const std::vector<double>& sizes, con
   return particles;
 }
 
-std::vector<SeenPair> near(const ParticleState& particles, const ShearedBox& box, double factor) {
+std::vector<SeenPair> near(const ParticleState& particles, const PeriodicCell& box, double factor) {
   return every_image(particles.position, box.lengths(), box.tilt(), [&](std::uint32_t i, std::uint32_t j) {
     return factor * (particles.radius[i] + particles.radius[j]);
   });
@@ -52,7 +52,7 @@ std::vector<SeenPair> near(const ParticleState& particles, const ShearedBox& box
 
 // Nearer than outer (a_i + a_j) and the skin: of the smallest range of all, and of a tenth of what the pair's
 // range is more.
-std::vector<SeenPair> near_with_skin(const ParticleState& particles, const ShearedBox& box, double skin) {
+std::vector<SeenPair> near_with_skin(const ParticleState& particles, const PeriodicCell& box, double skin) {
   const double least = 2 * *std::min_element(particles.radius.begin(), particles.radius.end());
   return every_image(particles.position, box.lengths(), box.tilt(), [&](std::uint32_t i, std::uint32_t j) {
     const double sum = particles.radius[i] + particles.radius[j];
@@ -88,7 +88,7 @@ TEST(NeighbourList, HoldsEveryPairInEveryImageAndNoOther) {
   std::size_t pairs = 0;
   for (const Case& each : cases) {
     for (const double tilt : {-0.5, -0.31, 0.0, 0.17, 0.4999, 0.5}) {
-      const ShearedBox box(each.edges, 1, tilt * each.edges.x);
+      const PeriodicCell box(each.edges, simple_shear(1), tilt * each.edges.x);
       const ParticleState particles = scattered(each.count, each.sizes, box, draws);
       for (const double skin : {0.0, 0.15}) {
         NeighbourList list(ranges_of(particles.radius), skin);
@@ -102,9 +102,51 @@ TEST(NeighbourList, HoldsEveryPairInEveryImageAndNoOther) {
   EXPECT_GT(pairs, 10000u);
 }
 
+// Cells of any shape and handedness, against all images of up to six lattice vectors along each.
+TEST(NeighbourList, HoldsEveryPairOfACellOfAnyShape) {
+  Draws draws(21);
+  std::size_t pairs = 0;
+  for (int n = 0; n < 12; ++n) {
+    Matrix3 edges = 7 * identity() + Matrix3{draws.vector(3), draws.vector(3), draws.vector(3)};
+    if (n % 2 == 1) std::swap(edges.column[0], edges.column[2]);
+    const PeriodicCell box = PeriodicCell::with_edges(edges, Matrix3{});
+    ParticleState particles = make_particles(std::vector<double>(25, 1.0), 1);
+    for (std::size_t i = 0; i < particles.count(); ++i) particles.position.set(i, draws.vector(9));
+    constexpr double skin = 0.1, reach = 2 * outer * (1 + skin);
+    std::vector<std::tuple<std::uint32_t, std::uint32_t, double>> expected, found;
+    for (std::uint32_t i = 0; i < particles.count(); ++i) {
+      for (std::uint32_t j = i + 1; j < particles.count(); ++j) {
+        for (int k = 0; k < 13 * 13 * 13; ++k) {
+          const Vector3 whole = {k / 169 - 6.0, k / 13 % 13 - 6.0, k % 13 - 6.0};
+          const double distance = norm(particles.position[j] + edges * whole - particles.position[i]);
+          if (distance < reach) expected.emplace_back(i, j, distance);
+        }
+      }
+    }
+    NeighbourList list(ranges_of(particles.radius), skin);
+    list.build(particles, box);
+    for (const Pair& pair : list.pairs()) {
+      const auto [i, j] = std::minmax(pair.first, pair.second);
+      const Vector3 image = box.displacement(list.images()[pair.image]);
+      found.emplace_back(i, j,
+                         norm(particles.position[pair.second] + image - particles.position[pair.first]));
+    }
+    std::sort(expected.begin(), expected.end());
+    std::sort(found.begin(), found.end());
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t p = 0; p < found.size(); ++p) {
+      EXPECT_EQ(std::get<0>(found[p]), std::get<0>(expected[p]));
+      EXPECT_EQ(std::get<1>(found[p]), std::get<1>(expected[p]));
+      EXPECT_NEAR(std::get<2>(found[p]), std::get<2>(expected[p]), 1e-12);
+    }
+    pairs += found.size();
+  }
+  EXPECT_GT(pairs, 500u);
+}
+
 TEST(NeighbourList, KnowsTheSizesOfEachPair) {
   Draws draws(12);
-  const ShearedBox box({9, 9, 9}, 0, 1);
+  const PeriodicCell box({9, 9, 9}, Matrix3{}, 1);
   const ParticleState particles = scattered(60, {1, 1.4, 2}, box, draws);
   NeighbourList list(ranges_of(particles.radius), 0.1);
   list.build(particles, box);
@@ -118,7 +160,7 @@ TEST(NeighbourList, KnowsTheSizesOfEachPair) {
 
 // In a cube of four radii a sphere touches two images of the other at once.
 TEST(NeighbourList, TwoSpheresMayMeetUnderSeveralImages) {
-  const ShearedBox box({4, 4, 4}, 0);
+  const PeriodicCell box({4, 4, 4}, Matrix3{});
   ParticleState particles = make_particles({1, 1}, 1);
   particles.position.set(1, {2, 0, 0});
   NeighbourList list(ranges_of(particles.radius), 0.05);
@@ -171,7 +213,7 @@ void expect_arranged(const NeighbourList& list) {
 
 TEST(NeighbourList, IsArrangedInBlocksAndRunsOfOneKind) {
   Draws draws(13);
-  const ShearedBox box({7, 7, 7}, 0);
+  const PeriodicCell box({7, 7, 7}, Matrix3{});
   const ParticleState particles = scattered(50, {1, 1.4}, box, draws);
   NeighbourList list(ranges_of(particles.radius), 0.05);
   list.build(particles, box);
@@ -183,7 +225,7 @@ TEST(NeighbourList, IsArrangedInBlocksAndRunsOfOneKind) {
 // wrong end.
 TEST(NeighbourList, HoldsEveryPairOfSeveralBlocksOnAnyNumberOfThreads) {
   Draws draws(16);
-  const ShearedBox box({22, 21, 23}, 1, 4);
+  const PeriodicCell box({22, 21, 23}, simple_shear(1), 4);
   ParticleState particles = scattered(2 * most_particles_per_block + 100, {0.5, 0.7}, box, draws);
   std::reverse(particles.id.begin(), particles.id.begin() + 1000);
   NeighbourList one(ranges_of(particles.radius), 0.05), two = one;
@@ -208,19 +250,19 @@ TEST(NeighbourList, HoldsEveryPairOfSeveralBlocksOnAnyNumberOfThreads) {
 }
 
 TEST(NeighbourList, RefusesAParticleThatInteractsWithItsOwnImage) {
-  const ShearedBox box({5, 2, 5}, 0);
+  const PeriodicCell box({5, 2, 5}, Matrix3{});
   ParticleState particles = make_particles({1}, 1);
   NeighbourList list(ranges_of(particles.radius), 0.05);
   EXPECT_THROW(list.build(particles, box), std::invalid_argument);
 }
 
 // Affine motion with the flow and random steps of up to `step` in each component.
-void move(ParticleState& particles, ShearedBox& box, double strain, double step, Draws& draws) {
+void move(ParticleState& particles, PeriodicCell& box, double strain, double step, Draws& draws) {
   for (std::size_t i = 0; i < particles.count(); ++i) {
     const Vector3 x = particles.position[i];
     particles.position.set(i, x + Vector3{strain * x.y, 0, 0} + draws.vector(step));
   }
-  box.set_strain(box.strain() + strain);
+  box.deform(simple_shear(box.strain() + strain));
 }
 
 class NeighbourListOfSizes : public testing::TestWithParam<std::vector<double>> {};
@@ -229,7 +271,7 @@ INSTANTIATE_TEST_SUITE_P(AlikeAndEightfold, NeighbourListOfSizes,
 
 TEST_P(NeighbourListOfSizes, MissesNoInteractingPairForAsLongAsItHolds) {
   Draws draws(14);
-  ShearedBox box({12, 11, 10}, 1, -5);
+  PeriodicCell box({12, 11, 10}, simple_shear(1), -5);
   ParticleState particles = scattered(150, GetParam(), box, draws);
   NeighbourList list(ranges_of(particles.radius), 0.15);
   list.build(particles, box);
@@ -262,7 +304,7 @@ TEST_P(NeighbourListOfSizes, MissesNoInteractingPairForAsLongAsItHolds) {
 TEST(NeighbourList, IsRebuiltOnlyWhenAPairCouldBeMissing) {
   constexpr double skin = 0.15, range = 2 * outer;
   for (const double strain : {0.0, 0.02, -0.05, 0.1}) {
-    ShearedBox box({20, 20, 20}, 1);
+    PeriodicCell box({20, 20, 20}, simple_shear(1));
     ParticleState particles = make_particles({1, 1}, 1);
     // F = [[1, g], [0, 1]] compresses most, by the factor s, the eigenvector (g, s^2 - 1) of F^T F.
     const double s = std::sqrt(1 + 0.25 * strain * strain) - 0.5 * std::abs(strain);
@@ -272,7 +314,7 @@ TEST(NeighbourList, IsRebuiltOnlyWhenAPairCouldBeMissing) {
     NeighbourList list(ranges_of(particles.radius), skin);
     list.build(particles, box);
     ASSERT_TRUE(list.pairs().empty());
-    box.set_strain(strain);
+    box.deform(simple_shear(strain));
     const Vector3 carried = particles.position[1] + Vector3{strain * particles.position[1].y, 0, 0};
     ASSERT_NEAR(norm(carried), s * range * (1 + skin), 1e-8) << strain;
     const Vector3 direction = (1 / norm(carried)) * carried;
@@ -289,7 +331,7 @@ TEST(NeighbourList, IsRebuiltOnlyWhenAPairCouldBeMissing) {
 
 // As strain grows, even a particle at rest in the flow uses up the skin: s (1 + skin) = 1.
 TEST(NeighbourList, StrainAloneUsesUpTheSkin) {
-  ShearedBox box({20, 20, 20}, 1);
+  PeriodicCell box({20, 20, 20}, simple_shear(1));
   ParticleState particles = make_particles({1, 1}, 1);
   particles.position.set(1, {0, 10, 0});
   NeighbourList list(ranges_of(particles.radius), 0.15);
@@ -297,7 +339,7 @@ TEST(NeighbourList, StrainAloneUsesUpTheSkin) {
   const double stretch = 1 / 1.15;
   const double largest = 1 / stretch - stretch;  // s(g) = stretch
   const auto carried_to = [&](double strain) {
-    box.set_strain(strain);
+    box.deform(simple_shear(strain));
     particles.position.set(1, {strain * 10, 10, 0});
     return list.holds(particles, box);
   };
@@ -305,13 +347,33 @@ TEST(NeighbourList, StrainAloneUsesUpTheSkin) {
   EXPECT_FALSE(carried_to(1.001 * largest));
 }
 
+// In planar extension by e that of the compression is 1 / e, from whatever extension the list was built at.
+TEST(NeighbourList, ExtensionAloneUsesUpTheSkin) {
+  for (const double before : {1.0, 1.6}) {
+    PeriodicCell box({20, 20, 20}, Matrix3{});
+    ParticleState particles = make_particles({1, 1}, 1);
+    NeighbourList list(ranges_of(particles.radius), 0.15);
+    const auto carry_to = [&](double e) {
+      box.deform({Vector3{e - 1, 0, 0}, Vector3{0, 1 / e - 1, 0}, Vector3{}});
+      particles.position.set(1, {3 * e, 9 / e, 0});
+    };
+    carry_to(before);
+    list.build(particles, box);
+    carry_to(before * 1.149);
+    EXPECT_TRUE(list.holds(particles, box)) << before;
+    EXPECT_NEAR(list.largest_displacement(particles, box), 0, 1e-13) << before;
+    carry_to(before * 1.151);
+    EXPECT_FALSE(list.holds(particles, box)) << before;
+  }
+}
+
 TEST(NeighbourList, IsTheSameAgainFromItsReference) {
   Draws draws(15);
-  ShearedBox box({9, 8, 10}, 1, 3);
+  PeriodicCell box({9, 8, 10}, simple_shear(1), 3);
   ParticleState particles = scattered(80, {1, 1.4}, box, draws);
   NeighbourList list(ranges_of(particles.radius), 0.15);
   list.build(particles, box);
-  const ShearedBox box_then = box;
+  const PeriodicCell box_then = box;
   move(particles, box, 0.01, 0.02, draws);
   NeighbourList again(ranges_of(particles.radius), 0.15);
   again.rebuild_from(list.reference(), particles, box_then);
@@ -323,7 +385,7 @@ TEST(NeighbourList, IsTheSameAgainFromItsReference) {
     EXPECT_EQ(again.pairs()[p].kind, list.pairs()[p].kind);
   }
   EXPECT_EQ(again.images(), list.images());
-  EXPECT_EQ(again.strain_at_build(), list.strain_at_build());
+  EXPECT_EQ(again.displacement_gradient_at_build(), list.displacement_gradient_at_build());
   EXPECT_EQ(again.allowed_displacement(box), list.allowed_displacement(box));
   EXPECT_EQ(again.largest_displacement(particles, box), list.largest_displacement(particles, box));
 }

@@ -1,0 +1,69 @@
+// Waves along y in the flow, as Monti, Rathee, Shen & Rosti (2021), Phys. Fluids 33, 103314, drive theirs:
+//   u'_x(y) = sum over waves of S sin(k y) + C cos(k y),   k = 2 pi periods / Ly.
+// Each is an eigenfunction of the Laplacian: for a sphere of radius a, (1 + a^2/6 lap) takes the factor
+// 1 - a^2 k^2 / 6 from its velocity, and (1 + a^2/10 lap) the factor 1 - a^2 k^2 / 10 from its gradient.
+// Powers of sines are sums of such waves, sin^3 t = (3 sin t - sin 3 t) / 4.
+//
+// Ly is the height of the cell over its first lattice vector, which simple shear along x leaves alone.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "engine/flow/background_flow.h"
+
+namespace peclet::engine {
+
+struct Wave {
+  int periods = 1;              // along y, whole ones
+  double sine = 0, cosine = 0;  // amplitudes, velocities
+};
+
+class Waves final : public FlowVariation {
+ public:
+  // `faxen`: whether spheres feel the curvature of the flow.
+  Waves(std::vector<Wave> waves, bool faxen) : waves_(std::move(waves)), faxen_(faxen) {}
+
+  Local at(const Vector3& x, const PeriodicCell& cell) const override {
+    double velocity = 0, gradient = 0, laplacian = 0, laplacian_of_gradient = 0;
+    for (const Wave& wave : waves_) {
+      const double k = wavenumber(wave, cell);
+      const double sine = std::sin(k * x.y), cosine = std::cos(k * x.y);
+      const double u = wave.sine * sine + wave.cosine * cosine;
+      const double slope = k * (wave.sine * cosine - wave.cosine * sine);
+      velocity += u;
+      gradient += slope;
+      laplacian -= k * k * u;
+      laplacian_of_gradient -= k * k * slope;
+    }
+    Local local{.velocity = {velocity, 0, 0},
+                .laplacian = {},
+                .gradient = simple_shear(gradient),
+                .laplacian_of_gradient = {}};
+    if (faxen_) {
+      local.laplacian = {laplacian, 0, 0};
+      local.laplacian_of_gradient = simple_shear(laplacian_of_gradient);
+    }
+    return local;
+  }
+
+  double largest_rate(const PeriodicCell& cell) const override {
+    double sum = 0;
+    for (const Wave& wave : waves_) {
+      sum += wavenumber(wave, cell) * std::hypot(wave.sine, wave.cosine);
+    }
+    return sum;
+  }
+
+ private:
+  static double wavenumber(const Wave& wave, const PeriodicCell& cell) {
+    return 2 * std::numbers::pi * wave.periods / cell.edges().column[1].y;
+  }
+
+  std::vector<Wave> waves_;
+  bool faxen_;
+};
+
+}  // namespace peclet::engine

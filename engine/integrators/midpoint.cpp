@@ -1,0 +1,75 @@
+#include "engine/integrators/midpoint.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/state/field_array.h"
+
+namespace peclet::engine {
+namespace {
+
+constexpr int most_newton_iterations = 3;
+// An iteration of Newton's method need not solve its system better than the next one's residual will be.
+constexpr double forcing = 0.1;
+
+}  // namespace
+
+Midpoint::Midpoint(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,
+                   std::uint64_t seed, int threads, InstructionSet set)
+    : Implicit(physics, particles, timestep, tolerance, seed, threads, set),
+      velocity_change_(particles.count(), threads),
+      spin_change_(particles.count(), threads) {}
+
+std::optional<StepReport> Midpoint::find_velocities(System& system) {
+  ParticleState& particles = system.particles;
+  array(particles.velocity) += array(velocity_change_)(Eigen::all, particles.id);
+  array(particles.angular_velocity) += array(spin_change_)(Eigen::all, particles.id);
+  StepReport report;
+  for (int iteration = 0;; ++iteration) {
+    if (!move_half_a_step(system)) {
+      return std::nullopt;
+    }
+    if (iteration == 0) {
+      solver_.assemble(system, field_, 0.5 * timestep_);
+    }
+    report.sums = field_.evaluate(system, loads_.force, loads_.torque);
+    const VelocitySolver::Residual residual = solver_.set_residual(system, origin_, loads_, nullptr);
+    // A packing that starts with the streaming flow's velocities has no motion yet but what it is about to
+    // do.
+    const double motion = residual.squared_motion + (iteration == 0 ? residual.squared : 0);
+    const double target = solver_.tolerance() * solver_.tolerance() * motion;
+    report.solver_residual = motion > 0 ? std::sqrt(residual.squared / motion) : 0;
+    report.sums.finite = report.sums.finite && std::isfinite(residual.squared) && std::isfinite(motion);
+    if (!(residual.squared > target) || iteration == most_newton_iterations) {
+      return report;
+    }
+    restore_springs(system);
+    if (iteration > 0) {
+      solver_.assemble(system, field_, 0.5 * timestep_);
+    }
+    if (!solver_.correct(system, std::max(0.25 * target, forcing * forcing * residual.squared), report)) {
+      report.sums.finite = false;
+      return report;
+    }
+  }
+}
+
+void Midpoint::keep_change(const System& system) {
+  const ParticleState& particles = system.particles;
+  array(velocity_change_)(Eigen::all, particles.id) = array(particles.velocity) - array(origin_.velocity);
+  array(spin_change_)(Eigen::all, particles.id) = array(particles.angular_velocity) - array(origin_.spin);
+}
+
+void Midpoint::save(ArchiveWriter& archive) const {
+  archive.put(velocity_change_);
+  archive.put(spin_change_);
+  Implicit::save(archive);
+}
+
+void Midpoint::load(const System& system, ArchiveReader& archive) {
+  velocity_change_ = archive.get_field(system.particles.count());
+  spin_change_ = archive.get_field(system.particles.count());
+  Implicit::load(system, archive);
+}
+
+}  // namespace peclet::engine

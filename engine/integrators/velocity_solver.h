@@ -1,0 +1,65 @@
+// The equations of an implicit step at given forces, M (V - V_n) = dt F, and the correction of V that takes
+// their residual away: couplings of near pairs ("links"), the particles' own blocks, conjugate gradients.
+//
+// The matrix is symmetric and positive definite: friction that slides enters with its secant stiffness, the
+// resistance with what the approach changes of its squeezing part.
+#pragma once
+
+#include "engine/integrators/integrator.h"
+#include "engine/kernels/force_field.h"
+
+namespace peclet::engine {
+
+// What a step starts from.
+struct StepOrigin {
+  VectorField position, velocity, spin;
+  SpringField springs;
+};
+
+// Forces and torques on all particles.
+struct Loads {
+  Loads() = default;
+  Loads(std::size_t particles, int threads) : force(particles, threads), torque(particles, threads) {}
+
+  VectorField force, torque;
+};
+
+class VelocitySolver {
+ public:
+  // Velocities are found until the residual is below `tolerance`, relative to the motion.
+  VelocitySolver(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,
+                 InstructionSet set);
+
+  double tolerance() const { return tolerance_; }
+
+  // The matrix at the system's places and velocities, whose springs must be those of the origin. The
+  // resistance changes during `resistance_time` of the approach; 0: it stays.
+  void assemble(System& system, ForceField& field, double resistance_time);
+
+  struct Residual {
+    double squared;         // r.C r with the inverse C of the particles' own blocks
+    double squared_motion;  // of what a step changes, in the same norm
+  };
+  // Of M (V - V_n) = dt (loads + noise), kept for correct(). The motion is that relative to the flow.
+  Residual set_residual(const System& system, const StepOrigin& origin, const Loads& loads,
+                        const Loads* noise);
+
+  // Adds to the velocities what takes the residual away, down to the squared residual `target`, and to the
+  // report what it took. Returns whether the result is finite.
+  [[nodiscard]] bool correct(System& system, double target, StepReport& report);
+
+ private:
+  LinkSystem links(const System& system) const;
+
+  double timestep_, tolerance_;
+  LinkKernels link_;
+  std::vector<OneBodyFactors> inertia_;  // of each size class
+  std::vector<MotionRow> diagonal_;
+  std::vector<LinkGroup> groups_;
+  std::size_t count_of_groups_ = 0;
+  std::vector<MotionRow> inverse_blocks_, scratch_, solution_, residual_, direction_, product_;
+  ImposedFlow flow_;
+  VectorField varying_velocity_, varying_spin_;  // of each particle, where the flow varies
+};
+
+}  // namespace peclet::engine

@@ -1,0 +1,66 @@
+#include "engine/realisation/schedule.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "contract/input_error.h"
+#include "engine/observables/production.h"
+#include "engine/stability/stability.h"
+
+namespace peclet::engine {
+namespace {
+
+// Thousands of years of computing; step counters hold far more.
+constexpr double most_steps = 1e15;
+
+// The time after which the first of the limits is reached.
+double time_of(const Duration& duration, const Scene& scene) {
+  const Physics& physics = scene.physics;
+  double time = std::min(duration.time, physics.flow.deformation().time_of(duration.strain));
+  if (physics.thermal_energy > 0) {
+    const double a = scene.particles.reference_radius;
+    time = std::min(time, duration.brownian_times * physics.viscosity * a * a * a / physics.thermal_energy);
+  }
+  return time;
+}
+
+// Steps of the phase called `name`. Throws InputError when there are too many to count.
+std::uint64_t steps_of(const Duration& duration, const char* name, const Scene& scene, double timestep,
+                       const std::string& file) {
+  // A duration that is a whole number of steps must not gain one by rounding.
+  const double steps = std::ceil(time_of(duration, scene) / timestep * (1 - 1e-12));
+  if (!(steps <= most_steps)) {
+    throw InputError(file, std::string("/duration/") + name, scene.document.at("duration").at(name).dump(),
+                     fmt::format("must last at most {:g} steps of {:.4g}", most_steps, timestep));
+  }
+  return static_cast<std::uint64_t>(steps);
+}
+
+}  // namespace
+
+Schedule make_schedule(const Scene& scene, const std::string& file) {
+  Schedule schedule;
+  schedule.timestep = resolved_timestep(scene, file);
+  if (!scene.timestep) {
+    // A short window is divided into as many steps as it needs.
+    schedule.timestep = std::min(schedule.timestep, time_of(scene.production, scene) / count_of_blocks);
+  }
+  if (!std::isnormal(schedule.timestep)) {
+    throw InputError(
+        file, "/integrator/timestep", fmt::format("{}", schedule.timestep),
+        "must come out as a number above 0: sizes, forces or durations of the scene are beyond what "
+        "can be computed with; choose other units");
+  }
+  schedule.equilibration = steps_of(scene.equilibration, "equilibration", scene, schedule.timestep, file);
+  schedule.production = steps_of(scene.production, "production", scene, schedule.timestep, file);
+  if (schedule.production < count_of_blocks) {
+    throw InputError(file, "/duration/production", scene.document.at("duration").at("production").dump(),
+                     fmt::format("must last at least {} steps of {:.4g}, one for each block", count_of_blocks,
+                                 schedule.timestep));
+  }
+  return schedule;
+}
+
+}  // namespace peclet::engine
