@@ -106,7 +106,10 @@ const KeyTable& scene_keys();
 // Reads and checks a scene. `file` names it in messages. Throws InputError.
 Scene read_scene(const Json& document, const std::string& file);
 
-// Reads the blocks fluid, flow, contact, lubrication, repulsion alone (a configuration's "scene").
+// The blocks that read_physics() reads: fluid, flow and those of the laws.
+std::vector<std::string> blocks_of_physics();
+
+// Reads these blocks alone (a configuration's "scene").
 Physics read_physics(const Json& document, const std::string& file, const std::string& pointer);
 
 }  // namespace peclet::engine

@@ -1,7 +1,7 @@
 // Every key of a scene: the one list behind validation, schema/scene.schema.json and the manual's page.
 #include <utility>
 
-#include "engine/scene/scene.h"
+#include "engine/scene/law_blocks.h"
 
 namespace peclet::engine {
 
@@ -9,57 +9,6 @@ namespace {
 
 // Each pair of sizes has constants of its own.
 constexpr std::size_t most_species = 256;
-
-constexpr bool required = true;
-
-Key positive(std::string pointer, std::string unit, std::string meaning, bool is_required = false) {
-  return {.pointer = std::move(pointer),
-          .kind = KeyKind::number,
-          .meaning = std::move(meaning),
-          .unit = std::move(unit),
-          .required = is_required,
-          .minimum = 0,
-          .above_minimum = true};
-}
-
-Key not_negative(std::string pointer, std::string unit, std::string meaning, bool is_required = false) {
-  Key key = positive(std::move(pointer), std::move(unit), std::move(meaning), is_required);
-  key.above_minimum = false;
-  return key;
-}
-
-Key block(std::string pointer, std::string meaning, bool is_required = false) {
-  return {.pointer = std::move(pointer),
-          .kind = KeyKind::object,
-          .meaning = std::move(meaning),
-          .required = is_required};
-}
-
-Key choice(std::string pointer, std::string meaning, std::vector<std::string> choices) {
-  return {.pointer = std::move(pointer),
-          .kind = KeyKind::choice,
-          .meaning = std::move(meaning),
-          .choices = std::move(choices)};
-}
-
-// A number strictly between 0 and `below`.
-Key fraction(Key key, double below) {
-  key.maximum = below;
-  key.below_maximum = true;
-  return key;
-}
-
-Key with_default(Key key, Json value) {
-  key.default_value = std::move(value);
-  return key;
-}
-
-Key must_be_given(Key key) {
-  key.required = true;
-  return key;
-}
-
-using Keys = std::vector<Key>;
 
 Keys particle_keys() {
   return {
@@ -107,52 +56,6 @@ Keys flow_keys() {
             "Of the scene with a given peclet: the largest rate and temperature that Pe allows are used."),
       positive("/limits/shear_rate", "1 / time", "Shear rate that is not exceeded.", required),
       positive("/limits/thermal_energy", "energy", "k_B T that is not exceeded.", required),
-  };
-}
-
-Keys contact_keys() {
-  return {
-      block("/contact", "Forces between overlapping spheres; absent: none."),
-      positive("/contact/normal_stiffness", "force / length", "Normal stiffness k_n.", required),
-      with_default(not_negative("/contact/normal_damping", "force time / length", "Normal damping."), 0),
-      not_negative("/contact/friction", "", "Coefficient of sliding friction; absent (or 0): frictionless."),
-      positive("/contact/tangential_stiffness", "force / length",
-               "Tangential stiffness, with friction only; 2/7 of the normal one unless given."),
-      not_negative(
-          "/contact/rolling_stiffness", "force / length",
-          "Stiffness against rolling; absent (or 0): free rolling. Above 0 it needs friction above 0."),
-      not_negative(
-          "/contact/rolling_friction", "",
-          "Coefficient that caps rolling resistance, with rolling_stiffness only; that of sliding unless "
-          "given."),
-  };
-}
-
-Keys lubrication_keys() {
-  return {
-      block("/lubrication", "Squeeze, shear and pump modes between near spheres; absent: none."),
-      must_be_given(choice("/lubrication/form", "The resistance functions.", {"kim-karrila"})),
-      with_default(
-          fraction(positive("/lubrication/inner_gap", "",
-                            "Gap 2 (r - a_i - a_j) / (a_i + a_j) below which the resistance stays constant."),
-                   1),
-          1e-3),
-      with_default(fraction(positive("/lubrication/outer_gap", "",
-                                     "Gap beyond which there is none; must be larger than inner_gap."),
-                            1),
-                   0.05),
-  };
-}
-
-Keys repulsion_keys() {
-  return {
-      block("/repulsion", "Repulsion of the surfaces, at distance h; absent: none."),
-      must_be_given(
-          choice("/repulsion/form", "exponential: energy strength * exp(-h / kappa).", {"exponential"})),
-      not_negative("/repulsion/strength", "energy", "Energy of a pair that touches.", required),
-      with_default(positive("/repulsion/relative_length", "", "kappa / (a_i + a_j)."), 0.01),
-      with_default(
-          positive("/repulsion/cutoff_lengths", "", "Distance h / kappa beyond which there is none."), 20),
   };
 }
 
@@ -252,10 +155,11 @@ Keys run_keys() {
 const KeyTable& scene_keys() {
   static const KeyTable table = [] {
     Keys keys;
-    for (const Keys& part :
-         {particle_keys(), flow_keys(), contact_keys(), lubrication_keys(), repulsion_keys(), run_keys()}) {
-      keys.insert(keys.end(), part.begin(), part.end());
-    }
+    const auto append = [&](const Keys& more) { keys.insert(keys.end(), more.begin(), more.end()); };
+    append(particle_keys());
+    append(flow_keys());
+    for (const LawBlock& law : law_blocks) append(law.keys());
+    append(run_keys());
     return KeyTable("Scene of a peclet simulation", std::move(keys));
   }();
   return table;
