@@ -12,7 +12,7 @@
 #include "engine/kernels/pairs/pair_kinds.h"
 #include "engine/observables/observable.h"
 #include "engine/scene/scene.h"
-#include "engine/terms/interactions.h"
+#include "engine/terms/contact.h"
 
 namespace peclet::engine {
 

@@ -56,7 +56,7 @@ class Reduction {
       const SymmetricTensor mean = per_step * sums.stress[t];
       if (term == StressTerm::brownian_lubrication) {
         brownian = mean;  // of mean zero: never part of the total
-      } else if (has_stress_term(terms_, term)) {
+      } else if (has_stress_term(physics_, term)) {
         part(name_of(term), mean);
         pairs += mean;
       }

@@ -3,7 +3,7 @@
 
 #include "engine/scene/keys.h"
 #include "engine/scene/scene_document.h"
-#include "engine/terms/interactions.h"
+#include "engine/terms/lubrication.h"
 
 namespace peclet::engine {
 

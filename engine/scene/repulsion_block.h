@@ -5,7 +5,7 @@
 
 #include "engine/scene/keys.h"
 #include "engine/scene/scene_document.h"
-#include "engine/terms/interactions.h"
+#include "engine/terms/repulsion.h"
 
 namespace peclet::engine {
 

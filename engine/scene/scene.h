@@ -11,18 +11,20 @@
 
 #include "contract/json.h"
 #include "contract/key_table.h"
-#include "engine/terms/interactions.h"
+#include "engine/terms/contact.h"
+#include "engine/terms/laws.h"
+#include "engine/terms/lubrication.h"
 
 namespace peclet::engine {
 
-// The physics of a scene without its particles: all that forces depend on.
-struct Physics {
+// The physics of a scene without its particles: all that forces depend on. Of each conservative law it has an
+// optional.
+struct Physics : EachConservativeLaw<std::optional> {
   double viscosity = 0;
   double thermal_energy = 0;  // k_B T
   double shear_rate = 0;      // of the streaming flow (rate y, 0, 0)
   std::optional<ContactParameters> contact;
   std::optional<LubricationParameters> lubrication;
-  std::optional<RepulsionParameters> repulsion;
 };
 
 struct Species {

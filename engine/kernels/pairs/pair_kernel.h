@@ -83,13 +83,17 @@ class PairGroup {
   }
 
  private:
-  PECLET_ALWAYS_INLINE static PairLoadOf<Real> total(const TermLoadsOf<Real>& loads) {
+  PECLET_ALWAYS_INLINE PairLoadOf<Real> total(const TermLoadsOf<Real>& loads) const {
     PairLoadOf<Real> sum = loads.lubrication;
     if constexpr (terms.noise) {
       sum += loads.noise;
     }
-    if constexpr (terms.repulsion) {
-      sum.force += loads.repulsion;
+    if constexpr (terms.conservative) {
+      for_each_conservative_law(
+          [&](StressTerm /*part*/, const auto& law, const auto& force) PECLET_INLINE_LAMBDA {
+            if (law.range > 0) sum.force += force;
+          },
+          kind_.conservative, loads.conservative);
     }
     if constexpr (terms.contact) {
       sum.force += loads.contact_normal;
@@ -118,8 +122,12 @@ class PairGroup {
     if constexpr (terms.noise) {
       add(StressTerm::brownian_lubrication, loads.noise.force);
     }
-    if constexpr (terms.repulsion) {
-      add(StressTerm::repulsion, loads.repulsion);
+    if constexpr (terms.conservative) {
+      for_each_conservative_law(
+          [&](StressTerm part, const auto& law, const auto& force) PECLET_INLINE_LAMBDA {
+            if (law.range > 0) add(part, force);
+          },
+          kind_.conservative, loads.conservative);
     }
     if constexpr (terms.contact) {
       const unsigned touching = bits(loads.overlap > Real{});

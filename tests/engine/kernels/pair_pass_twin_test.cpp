@@ -23,7 +23,7 @@ TEST(PairPass, HasTheSameBitsOnAnyNumberOfThreads) {
                                         .damping = true,
                                         .friction = true,
                                         .rolling = true,
-                                        .repulsion = true});
+                                        .conservative = true});
   System system = dense_suspension(physics, 8500, 8);
   rebuild_neighbours(system);
   EXPECT_EQ(system.list.blocks().size(), 4u);
@@ -76,7 +76,7 @@ TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
                            .damping = true,
                            .friction = true,
                            .rolling = true,
-                           .repulsion = true};
+                           .conservative = true};
   const Physics physics = physics_with(terms);
   System system = dense_suspension(physics, 150, 10);
   system.step = 3;
@@ -111,7 +111,7 @@ TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
     sum += t.noise;
     sum += t.friction;
     sum += t.rolling;
-    sum.force += t.contact_normal + t.contact_damping + t.repulsion;
+    sum.force += t.contact_normal + t.contact_damping + t.conservative.repulsion;
     force.add(i, sum.force);
     force.add(j, -sum.force);
     torque.add(i, sum.torque_first);
@@ -180,7 +180,7 @@ TEST(PairPass, DependsOnNoOrderOfTheParticlesInMemory) {
 // What crosses between blocks waits in memory that is used again: pairs that have parted leave nothing there.
 TEST(PairPass, RemembersNoForceOfPairsThatHaveParted) {
   const Physics physics =
-      physics_with({.lubrication = true, .contact = true, .friction = true, .repulsion = true});
+      physics_with({.lubrication = true, .contact = true, .friction = true, .conservative = true});
   System system = dense_suspension(physics, 8500, 14);
   rebuild_neighbours(system);
   ASSERT_GT(system.list.crossings(), 1000u);
@@ -208,7 +208,7 @@ TEST(PairPass, RemembersNoForceOfPairsThatHaveParted) {
 // Without noise, which knows particles by their number.
 TEST(PairPass, NumberingTheParticlesOtherwiseOnlyRenamesTheForces) {
   const Physics physics =
-      physics_with({.lubrication = true, .contact = true, .damping = true, .repulsion = true});
+      physics_with({.lubrication = true, .contact = true, .damping = true, .conservative = true});
   const System system = dense_suspension(physics, 150, 9);
   System reversed = system;
   const std::size_t count = system.particles.count();

@@ -29,7 +29,7 @@ constexpr Terms every_term = {.lubrication = true,
                               .damping = true,
                               .friction = true,
                               .rolling = true,
-                              .repulsion = true};
+                              .conservative = true};
 
 std::vector<PairKind> kinds_of(const System& system, const Physics& physics) {
   return make_pair_kinds(physics, distinct_radii(system.particles.radius));
