@@ -34,8 +34,9 @@ double largest_timestep(const Scene& scene);
 // - 5 X_A / k, with friction 2: the time in which lubrication at the inner gap holds up the stiffest contact
 //   and conservative law.
 // - 20 drag / k of the conservative laws from the outer gap on, where the drag of single spheres alone
-// resists it. Larger
-//   steps throw the spheres of unbalanced packings apart.
+//   resists them. Larger steps throw the spheres of unbalanced packings apart.
+// - Resistance / -V'' where the conservative laws together attract: the time in which the approach of a pair
+//   grows e-fold. Steps are explicit in that part.
 // - With noise and lubrication, the step at which five standard deviations of a leap out of the range of
 //   lubrication are twice the outer gap. No sphere is hit that was out of range before.
 // A scene without flow and temperature has those of contact and repulsion alone. Infinite where nothing sets

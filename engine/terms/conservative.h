@@ -53,9 +53,9 @@ PECLET_ALWAYS_INLINE Real positive_stiffness(const ConservativeLaws& laws, const
   return larger(sum, Real{0.0});
 }
 
-// V and V' of all laws together.
+// V, V' and V'' of all laws together.
 struct Potential {
-  double energy = 0, slope = 0;
+  double energy = 0, slope = 0, stiffness = 0;
 };
 inline Potential potential(const ConservativeLaws& laws, double distance, double sum_of_radii) {
   Potential sum;
@@ -64,6 +64,7 @@ inline Potential potential(const ConservativeLaws& laws, double distance, double
         if (!(distance < law.range)) return;
         sum.energy += law.energy(distance - sum_of_radii);
         sum.slope += law.slope(distance - sum_of_radii);
+        sum.stiffness += law.stiffness(distance - sum_of_radii);
       },
       laws);
   return sum;
