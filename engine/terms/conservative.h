@@ -47,7 +47,8 @@ PECLET_ALWAYS_INLINE Real positive_stiffness(const ConservativeLaws& laws, const
   for_each_conservative_law(
       [&](StressTerm /*part*/, const auto& law) PECLET_INLINE_LAMBDA {
         const auto within = pair.distance < law.range;
-        if (any(within)) sum += select(within, weight * law.stiffness(pair.surface_distance()), Real{0.0});
+        if (law.range > 0 && any(within))
+          sum += select(within, weight * law.stiffness(pair.surface_distance()), Real{0.0});
       },
       laws);
   return larger(sum, Real{0.0});

@@ -34,19 +34,13 @@ struct PairNormalsOf {
   Vector3Of<Real> theta, chi;
 };
 
-template <class Real>
-struct ForcesOf {
-  template <class Law>
-  using Of = Vector3Of<Real>;
-};
-
 // Absent terms stay zero and cost nothing: a sum over a zero constant is folded away by the compiler.
 template <class Real>
 struct TermLoadsOf {
   PairLoadOf<Real> lubrication, noise, friction, rolling;
   Vector3Of<Real> contact_normal, contact_damping;
-  EachConservativeLaw<ForcesOf<Real>::template Of> conservative;
-  Real overlap{};  // that contact forces belong to
+  Vector3Of<Real> conservative;  // of all conservative laws
+  Real overlap{};                // that contact forces belong to
 };
 
 template <Terms terms, class Real>
@@ -77,13 +71,14 @@ PECLET_ALWAYS_INLINE void add_contact_terms(const PairParameters& parameters, co
 }
 
 // Every pair lies within kind.range. `normals()` returns theta and chi and is called only where a pair is
-// lubricated and there is noise. The springs advance with the motion and are forgotten when the contact
-// opens.
-template <Terms terms, class Real, class Normals>
+// lubricated and there is noise. `of_law(part, force)` is told the force of each conservative law that acts
+// on any of the pairs. The springs advance with the motion and are forgotten when the contact opens.
+template <Terms terms, class Real, class Normals, class OfLaw>
 PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& parameters, const PairKind& kind,
                                                   const PairGeometryOf<Real>& pair,
                                                   const PairMotionOf<Real>& motion,
-                                                  PairSpringsOf<Real>& springs, Normals&& normals) {
+                                                  PairSpringsOf<Real>& springs, Normals&& normals,
+                                                  OfLaw&& of_law) {
   TermLoadsOf<Real> loads;
   PairGeometryOf<Real> ahead = pair;
   if constexpr (terms.contact || terms.conservative) {
@@ -105,11 +100,20 @@ PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& paramete
   }
   if constexpr (terms.conservative) {
     for_each_conservative_law(
-        [&](StressTerm /*part*/, const auto& law, auto& force) PECLET_INLINE_LAMBDA {
+        [&](StressTerm part, const auto& law) PECLET_INLINE_LAMBDA {
+          // The same for all pairs of a run. Laws after the first one are placed out of the way of kernels
+          // that have it alone.
+          if (part != StressTerm::repulsion) {
+            if (__builtin_expect(!(law.range > 0), 1)) return;
+          }
           const auto within = ahead.distance < law.range;
-          if (any(within)) force = where(within, conservative_force(law, ahead));
+          if (!any(within)) [[unlikely]]
+            return;
+          const Vector3Of<Real> force = where(within, conservative_force(law, ahead));
+          loads.conservative += force;
+          of_law(part, force);
         },
-        kind.conservative, loads.conservative);
+        kind.conservative);
   }
   if constexpr (terms.contact) {
     loads.overlap = ahead.overlap();

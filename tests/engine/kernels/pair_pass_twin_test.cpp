@@ -101,17 +101,19 @@ TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
     Vector3 velocity = all.velocity[j] - all.velocity[i];
     velocity.x += system.box.velocity_offset(seen.image);
     const PairMotion motion = {velocity, all.angular_velocity[i], all.angular_velocity[j]};
-    const TermLoadsOf<double> t =
-        pair_terms<terms>(parameters, kind, geometry(seen.separation, kind), motion, springs, [&] {
+    const TermLoadsOf<double> t = pair_terms<terms>(
+        parameters, kind, geometry(seen.separation, kind), motion, springs,
+        [&] {
           const NormalPair normals = random.normals(system.step, i, j, seen.image);
           return PairNormalsOf<double>{normals.first, normals.second};
-        });
+        },
+        [](StressTerm /*part*/, const Vector3& /*force*/) {});
     held[{i, j, seen.image}] = {springs.tangential, springs.rolling};
     PairLoad sum = t.lubrication;
     sum += t.noise;
     sum += t.friction;
     sum += t.rolling;
-    sum.force += t.contact_normal + t.contact_damping + t.conservative.repulsion;
+    sum.force += t.contact_normal + t.contact_damping + t.conservative;
     force.add(i, sum.force);
     force.add(j, -sum.force);
     torque.add(i, sum.torque_first);

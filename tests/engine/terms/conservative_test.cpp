@@ -1,0 +1,57 @@
+// Conservative laws: the force is the gradient of the energy, the stiffness that of the force.
+#include <gtest/gtest.h>
+
+#include "engine/terms/conservative.h"
+#include "tests/engine/two_spheres.h"
+
+namespace peclet::engine {
+namespace {
+
+PairGeometry pair_at_surface_distance(double first, double second, double h, const Vector3& normal) {
+  return pair_at(first, second, 2 * h / (first + second), normal);
+}
+
+template <class Function>
+double derivative(Function&& function, double x) {
+  const double step = 1e-6;
+  return (function(x + step) - function(x - step)) / (2 * step);
+}
+
+// `energy` is written by hand beside each law.
+template <class Law, class Energy>
+void expect_gradients(const Law& law, Energy&& energy, double first, double second) {
+  Draws draws(53);
+  for (const double h : {-0.02, -0.003, 0.002, 0.01, 0.04, 0.15}) {
+    const PairGeometry pair = pair_at_surface_distance(first, second, h, draws.direction());
+    const Vector3 force = conservative_force(law, pair);
+    const double slope = derivative(energy, h);
+    EXPECT_NEAR(law.energy(h), energy(h), 1e-12 * std::abs(energy(h))) << h;
+    EXPECT_NEAR(dot(force, pair.normal), slope, 1e-6 * std::abs(slope)) << h;
+    EXPECT_NEAR(norm(across(force, pair.normal)), 0, 1e-12 * norm(force)) << h;
+    const auto gradient = [&](double x) { return law.slope(x); };
+    EXPECT_NEAR(law.stiffness(h), derivative(gradient, h), 1e-5 * std::abs(law.slope(h)) / 0.02) << h;
+  }
+}
+
+TEST(Repulsion, HasTheGradientsOfTheExponential) {
+  const RepulsionOfPair law = of_pair(RepulsionParameters{.strength = 1.7, .relative_length = 0.01}, 1, 1.4);
+  expect_gradients(
+      law, [](double h) { return 1.7 * std::exp(-h / 0.024); }, 1, 1.4);
+  EXPECT_DOUBLE_EQ(law.range, 2.4 + 20 * 0.024);
+}
+
+// Stiffness of what has to stay positive: that of the repulsion within its range, nothing beyond.
+TEST(ConservativeLaws, GiveTheirStiffnessToMatricesWithinTheirRangeAlone) {
+  ConservativeLaws laws;
+  laws.repulsion = of_pair(RepulsionParameters{1.7, 0.01, 5}, 1, 1.4);
+  const auto stiffness = [&](double h) {
+    return positive_stiffness(laws, pair_at_surface_distance(1, 1.4, h, {0, 1, 0}), 3);
+  };
+  EXPECT_NEAR(stiffness(0.01), 3 * 1.7 / (0.024 * 0.024) * std::exp(-0.01 / 0.024), 1e-9);
+  EXPECT_EQ(stiffness(0.1201), 0);
+  EXPECT_NEAR(largest_stiffness(laws, 0, 2.4), 1.7 / (0.024 * 0.024), 1e-9);
+  EXPECT_EQ(largest_stiffness(laws, 0.1201, 2.4), 0);
+}
+
+}  // namespace
+}  // namespace peclet::engine
