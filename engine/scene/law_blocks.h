@@ -2,6 +2,7 @@
 // stand in its own header.
 #pragma once
 
+#include "engine/scene/attraction_block.h"
 #include "engine/scene/contact_block.h"
 #include "engine/scene/lubrication_block.h"
 #include "engine/scene/repulsion_block.h"
@@ -22,6 +23,8 @@ inline constexpr LawBlock law_blocks[] = {
      [](const SceneDocument& scene, Physics& physics) { physics.lubrication = read_lubrication(scene); }},
     {"repulsion", repulsion_keys,
      [](const SceneDocument& scene, Physics& physics) { physics.repulsion = read_repulsion(scene); }},
+    {"attraction", attraction_keys,
+     [](const SceneDocument& scene, Physics& physics) { physics.attraction = read_attraction(scene); }},
 };
 
 }  // namespace peclet::engine

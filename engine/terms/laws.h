@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include "engine/terms/attraction.h"
 #include "engine/terms/repulsion.h"
 
 namespace peclet::engine {
@@ -45,6 +46,7 @@ enum class StressTerm : std::size_t {
   contact_damping,
   friction,
   repulsion,
+  attraction,
   brownian_lubrication
 };
 
@@ -54,9 +56,10 @@ struct StressPart {
   bool Terms::*of;
 };
 constexpr StressPart stress_parts[] = {
-    {"lubrication", &Terms::lubrication}, {"contact_normal", &Terms::contact},
-    {"contact_damping", &Terms::damping}, {"friction", &Terms::friction},
-    {"repulsion", &Terms::conservative},  {"brownian_lubrication", &Terms::noise},
+    {"lubrication", &Terms::lubrication},    {"contact_normal", &Terms::contact},
+    {"contact_damping", &Terms::damping},    {"friction", &Terms::friction},
+    {"repulsion", &Terms::conservative},     {"attraction", &Terms::conservative},
+    {"brownian_lubrication", &Terms::noise},
 };
 constexpr std::size_t count_of_stress_terms = sizeof(stress_parts) / sizeof(stress_parts[0]);
 
@@ -66,12 +69,14 @@ constexpr const char* name_of(StressTerm term) { return stress_parts[static_cast
 template <template <class Parameters> class Of>
 struct EachConservativeLaw {
   Of<RepulsionParameters> repulsion{};
+  Of<AttractionParameters> attraction{};
 };
 
 // Calls body(part of the stress, what each of `each` has of the law) for every conservative law.
 template <class Body, class... Each>
 PECLET_ALWAYS_INLINE void for_each_conservative_law(Body&& body, Each&&... each) {
   body(StressTerm::repulsion, each.repulsion...);
+  body(StressTerm::attraction, each.attraction...);
 }
 
 }  // namespace peclet::engine

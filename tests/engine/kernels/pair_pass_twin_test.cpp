@@ -68,6 +68,22 @@ TEST(PairPass, EqualsItsSingleTwinOnEveryInstructionSetForEveryRecipe) {
   }
 }
 
+// Laws that few or all of eight pairs feel.
+TEST(PairPass, EqualsItsSingleTwinForEveryConservativeLaw) {
+  Physics both = physics_with({.lubrication = true, .contact = true, .conservative = true});
+  both.attraction = AttractionParameters{.hamaker = 0.6, .regularisation = 0.01, .cutoff = 0.3};
+  Physics attracting = both;
+  attracting.repulsion.reset();
+  for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512}) {
+    if (!is_available(set)) continue;
+    for (const Physics& physics : {both, attracting}) {
+      const System system = dense_suspension(physics, 200, 7);
+      expect_equal(evaluated(physics, system, 1, InstructionSet::baseline),
+                   evaluated(physics, system, 1, set), name_of(set));
+    }
+  }
+}
+
 // All terms at once over every pair in every image, one by one, with no list and no kernel.
 TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
   constexpr Terms terms = {.lubrication = true,

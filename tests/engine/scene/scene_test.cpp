@@ -1,11 +1,10 @@
-#include "engine/scene/scene.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "contract/input_error.h"
+#include "engine/scene/scene.h"
 
 namespace peclet::engine {
 namespace {
@@ -134,7 +133,8 @@ TEST(Scene, EquilibrationOfZeroIsOverBeforeItStarts) {
   EXPECT_EQ(scene.equilibration.time, 0);
 }
 
-// Table 4.1 of Li (2023): rate and k_B T at each Pe with eta = 0.1, a = 1, printed to two digits.
+// Table 4.1 of Li (2023): rate and k_B T at each Pe with eta = 0.1, a = 1,
+// printed to two digits.
 constexpr struct {
   double peclet, shear_rate, thermal_energy;
 } table_4_1[] = {{0.01, 9e-5, 0.017},  {0.046, 4.2e-4, 0.017}, {0.22, 1.9e-3, 0.017}, {1, 9e-3, 0.017},
@@ -157,6 +157,20 @@ TEST(Scene, PecletNumberWithinLimitsGivesThePublishedRatesAndTemperatures) {
     EXPECT_LE(physics.thermal_energy, 0.017);
     EXPECT_TRUE(physics.shear_rate == 0.009 || physics.thermal_energy == 0.017);  // as large as allowed
   }
+}
+
+Physics physics_of(const char* blocks) {
+  Json scene = Json::parse(blocks);
+  scene["fluid"] = {{"viscosity", 0.1}};
+  return read_physics(scene, "c.json", "/scene");
+}
+
+TEST(Scene, AttractionHasItsDefaultsAndIsAbsentWithAConstantOfZero) {
+  const Physics physics = physics_of(R"({"attraction": {"hamaker": 0.3, "cutoff": 4}})");
+  EXPECT_EQ(physics.attraction->hamaker, 0.3);
+  EXPECT_EQ(physics.attraction->regularisation, 0.01);
+  EXPECT_EQ(physics.attraction->cutoff, 4);
+  EXPECT_FALSE(physics_of(R"({"attraction": {"hamaker": 0, "cutoff": 4}})").attraction);
 }
 
 TEST(Scene, AConfigurationsBlocksAreReadByTheSameKeys) {

@@ -1,6 +1,8 @@
 // Conservative laws: the force is the gradient of the energy, the stiffness that of the force.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "engine/terms/conservative.h"
 #include "tests/engine/two_spheres.h"
 
@@ -33,11 +35,40 @@ void expect_gradients(const Law& law, Energy&& energy, double first, double seco
   }
 }
 
+// Of |V''|, by trying distances from h on.
+template <class Law>
+double largest_in(const Law& law, double h) {
+  double largest = 0;
+  for (double x = h; x < 0.3; x += 1e-5) largest = std::max(largest, std::abs(law.stiffness(x)));
+  return largest;
+}
+
 TEST(Repulsion, HasTheGradientsOfTheExponential) {
   const RepulsionOfPair law = of_pair(RepulsionParameters{.strength = 1.7, .relative_length = 0.01}, 1, 1.4);
   expect_gradients(
       law, [](double h) { return 1.7 * std::exp(-h / 0.024); }, 1, 1.4);
   EXPECT_DOUBLE_EQ(law.range, 2.4 + 20 * 0.024);
+}
+
+// Monti et al. (2021) eq. 7 with a = 2 1.4 / 2.4 between spheres of 1 and 1.4.
+TEST(Attraction, HasTheGradientsOfItsEnergyWhichEndsAtTheCutoff) {
+  const AttractionOfPair law = of_pair(AttractionParameters{.hamaker = 0.6, .cutoff = 0.5}, 1, 1.4);
+  const double mean = 2.8 / 2.4, c = 0.6 * mean / 12, width = 0.01 * mean;
+  const auto energy = [&](double h) {
+    return c / width * (h > 0 ? std::atan(h / width) : h / width) - c / width * std::atan(0.5 / width);
+  };
+  expect_gradients(law, energy, 1, 1.4);
+  EXPECT_DOUBLE_EQ(law.range, 2.9);
+  EXPECT_NEAR(law.energy(0.5), 0, 1e-15);
+  EXPECT_NEAR(largest_in(law, 0), law.largest_stiffness(0), 1e-4 * law.largest_stiffness(0));
+  EXPECT_NEAR(largest_in(law, 0.05), law.largest_stiffness(0.05), 1e-12);
+}
+
+TEST(Attraction, PullsSpheresInTouchByTheirRegularisedForce) {
+  const AttractionOfPair law = of_pair(AttractionParameters{.hamaker = 0.6, .cutoff = 0.5}, 1, 1);
+  const Vector3 force = conservative_force(law, pair_at(1, 1, 0, {1, 0, 0}));
+  EXPECT_NEAR(force.x, 0.6 / 12 / 1e-4, 1e-9);  // towards j
+  EXPECT_LT(symmetric_dyad({2, 0, 0}, -force).xx, 0);
 }
 
 // Stiffness of what has to stay positive: that of the repulsion within its range, nothing beyond.
@@ -51,6 +82,22 @@ TEST(ConservativeLaws, GiveTheirStiffnessToMatricesWithinTheirRangeAlone) {
   EXPECT_EQ(stiffness(0.1201), 0);
   EXPECT_NEAR(largest_stiffness(laws, 0, 2.4), 1.7 / (0.024 * 0.024), 1e-9);
   EXPECT_EQ(largest_stiffness(laws, 0.1201, 2.4), 0);
+}
+
+// Attraction takes its part of the sum, which never falls below zero.
+TEST(ConservativeLaws, GiveMatricesNoNegativeStiffness) {
+  ConservativeLaws laws;
+  laws.repulsion = of_pair(RepulsionParameters{1.7, 0.01, 5}, 1, 1);
+  laws.attraction = of_pair(AttractionParameters{.hamaker = 0.6, .cutoff = 0.5}, 1, 1);
+  const auto stiffness = [&](double h) {
+    return positive_stiffness(laws, pair_at_surface_distance(1, 1, h, {0, 1, 0}), 3);
+  };
+  const double width = 0.01, h = 0.03, squares = h * h + width * width;
+  const double both = 1.7 / 4e-4 * std::exp(-h / 0.02) - 2 * 0.05 * h / (squares * squares);
+  ASSERT_LT(both, 0);
+  EXPECT_EQ(stiffness(h), 0);
+  laws.repulsion = of_pair(RepulsionParameters{17, 0.01, 5}, 1, 1);
+  EXPECT_NEAR(stiffness(h), 3 * (both + 15.3 / 4e-4 * std::exp(-h / 0.02)), 1e-8);
 }
 
 }  // namespace
