@@ -74,9 +74,15 @@ TEST(PairPass, EqualsItsSingleTwinForEveryConservativeLaw) {
   both.attraction = AttractionParameters{.hamaker = 0.6, .regularisation = 0.01, .cutoff = 0.3};
   Physics attracting = both;
   attracting.repulsion.reset();
+  Physics screened = both;
+  screened.repulsion = RepulsionParameters{.cutoff_lengths = 6,
+                                           .form = RepulsionParameters::Form::screened,
+                                           .force = 1.3,
+                                           .debye_length = 0.02,
+                                           .reference_radius = 1};
   for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512}) {
     if (!is_available(set)) continue;
-    for (const Physics& physics : {both, attracting}) {
+    for (const Physics& physics : {both, attracting, screened}) {
       const System system = dense_suspension(physics, 200, 7);
       expect_equal(evaluated(physics, system, 1, InstructionSet::baseline),
                    evaluated(physics, system, 1, set), name_of(set));

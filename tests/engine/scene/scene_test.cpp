@@ -1,10 +1,11 @@
+#include "engine/scene/scene.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "contract/input_error.h"
-#include "engine/scene/scene.h"
 
 namespace peclet::engine {
 namespace {
@@ -133,8 +134,7 @@ TEST(Scene, EquilibrationOfZeroIsOverBeforeItStarts) {
   EXPECT_EQ(scene.equilibration.time, 0);
 }
 
-// Table 4.1 of Li (2023): rate and k_B T at each Pe with eta = 0.1, a = 1,
-// printed to two digits.
+// Table 4.1 of Li (2023): rate and k_B T at each Pe with eta = 0.1, a = 1, printed to two digits.
 constexpr struct {
   double peclet, shear_rate, thermal_energy;
 } table_4_1[] = {{0.01, 9e-5, 0.017},  {0.046, 4.2e-4, 0.017}, {0.22, 1.9e-3, 0.017}, {1, 9e-3, 0.017},
@@ -171,6 +171,19 @@ TEST(Scene, AttractionHasItsDefaultsAndIsAbsentWithAConstantOfZero) {
   EXPECT_EQ(physics.attraction->regularisation, 0.01);
   EXPECT_EQ(physics.attraction->cutoff, 4);
   EXPECT_FALSE(physics_of(R"({"attraction": {"hamaker": 0, "cutoff": 4}})").attraction);
+}
+
+TEST(Scene, ScreenedRepulsionHasKeysOfItsOwn) {
+  const Physics physics = physics_of(R"({"repulsion": {"form": "screened", "force": 1.3, "debye_length": 0.02,
+      "reference_radius": 0.5}})");
+  EXPECT_EQ(physics.repulsion->form, RepulsionParameters::Form::screened);
+  EXPECT_EQ(physics.repulsion->force, 1.3);
+  EXPECT_EQ(physics.repulsion->debye_length, 0.02);
+  EXPECT_EQ(physics.repulsion->reference_radius, 0.5);
+  EXPECT_EQ(physics.repulsion->cutoff_lengths, 20);
+  EXPECT_FALSE(physics_of(R"({"repulsion": {"form": "screened", "force": 0, "debye_length": 0.02,
+      "reference_radius": 0.5}})")
+                   .repulsion);
 }
 
 TEST(Scene, AConfigurationsBlocksAreReadByTheSameKeys) {

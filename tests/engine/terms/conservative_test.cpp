@@ -1,9 +1,10 @@
 // Conservative laws: the force is the gradient of the energy, the stiffness that of the force.
+#include "engine/terms/conservative.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "engine/terms/conservative.h"
 #include "tests/engine/two_spheres.h"
 
 namespace peclet::engine {
@@ -48,6 +49,21 @@ TEST(Repulsion, HasTheGradientsOfTheExponential) {
   expect_gradients(
       law, [](double h) { return 1.7 * std::exp(-h / 0.024); }, 1, 1.4);
   EXPECT_DOUBLE_EQ(law.range, 2.4 + 20 * 0.024);
+}
+
+// Monti et al. (2021) eq. 6: the force is that of contact in overlap.
+TEST(Repulsion, HasTheGradientsOfTheScreenedForm) {
+  const RepulsionOfPair law = of_pair(RepulsionParameters{.cutoff_lengths = 10,
+                                                          .form = RepulsionParameters::Form::screened,
+                                                          .force = 1.3,
+                                                          .debye_length = 0.02,
+                                                          .reference_radius = 0.5},
+                                      1, 1.4);
+  const double force = 1.3 * (2.8 / 2.4) / 0.5;
+  const auto energy = [&](double h) { return force * (h > 0 ? 0.02 * std::exp(-h / 0.02) : 0.02 - h); };
+  expect_gradients(law, energy, 1, 1.4);
+  EXPECT_DOUBLE_EQ(law.range, 2.6);
+  EXPECT_NEAR(norm(conservative_force(law, pair_at(1, 1.4, -0.01, {1, 0, 0}))), force, 1e-12);
 }
 
 // Monti et al. (2021) eq. 7 with a = 2 1.4 / 2.4 between spheres of 1 and 1.4.
