@@ -104,12 +104,7 @@ MUTATIONS = [
         "Vector3Of<Real> turned = across(spring, normal);",
         "Vector3Of<Real> turned = spring + Real{0.0} * across(spring, normal);",
     ),
-    (
-        "repulsion of twice the range",
-        "engine/terms/repulsion.h",
-        ".decay = 1 / length",
-        ".decay = 0.5 / length",
-    ),
+    ("repulsion of twice the range", "engine/terms/repulsion.h", ".decay = 1 / length", ".decay = 0.5 / length"),
     (
         "structural stress from one side of each pair",
         "engine/observables/structure.cpp",
