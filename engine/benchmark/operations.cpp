@@ -1,6 +1,7 @@
 #include "engine/benchmark/operations.h"
 
 #include "engine/kernels/pairs/pair_kernel.h"
+#include "engine/kernels/pairs/terms.h"
 
 namespace peclet::engine {
 

@@ -1,6 +1,7 @@
 #include "engine/evaluation/configuration.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "contract/input_error.h"
 
@@ -159,7 +160,7 @@ const KeyTable& configuration_keys() {
     std::vector<Key> keys = {
         {.pointer = "/scene",
          .kind = KeyKind::any,
-         .meaning = "the blocks fluid, flow, contact, lubrication, repulsion of a scene",
+         .meaning = fmt::format("the blocks {} of a scene", fmt::join(blocks_of_physics(), ", ")),
          .required = true},
         {.pointer = "/advance",
          .kind = KeyKind::number,

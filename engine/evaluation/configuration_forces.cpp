@@ -6,6 +6,7 @@
 #include "engine/evaluation/configuration.h"
 #include "engine/kernels/force_field.h"
 #include "engine/kernels/pairs/pair_access.h"
+#include "engine/kernels/pairs/terms.h"
 #include "engine/observables/structure.h"
 #include "engine/terms/drag.h"
 
@@ -66,18 +67,30 @@ class ByTerm {
   std::map<std::string, Sums> sums_;
 };
 
-// A term is what the pairs do with it less what they do without it.
+// A term is what the pairs of this physics do with it less what they do without it.
 struct TermRecipe {
   const char* name;
   Terms with, without;
+  Physics physics;
 };
 
-std::vector<TermRecipe> recipes_of(const Terms& terms) {
+// With one conservative law alone.
+Physics without_others(Physics physics, StressTerm kept) {
+  for_each_conservative_law(
+      [&](StressTerm part, auto& law) {
+        if (part != kept) law.reset();
+      },
+      physics);
+  return physics;
+}
+
+std::vector<TermRecipe> recipes_of(const Physics& physics) {
   std::vector<TermRecipe> recipes;
-  const Terms touching = {.contact = true}, sliding = {.contact = true, .friction = true};
+  const Terms terms = required_terms(physics), touching = {.contact = true};
+  const Terms sliding = {.contact = true, .friction = true};
   const auto add = [&](bool present, const char* name, const Terms& with, const Terms& without) {
     if (present) {
-      recipes.push_back({name, with, without});
+      recipes.push_back({name, with, without, physics});
     }
   };
   add(terms.lubrication, "lubrication", {.lubrication = true}, {});
@@ -86,7 +99,12 @@ std::vector<TermRecipe> recipes_of(const Terms& terms) {
   add(terms.damping, "contact_damping", {.contact = true, .damping = true}, touching);
   add(terms.friction, "friction", sliding, touching);
   add(terms.rolling, "rolling", {.contact = true, .friction = true, .rolling = true}, sliding);
-  add(terms.repulsion, "repulsion", {.repulsion = true}, {});
+  for_each_conservative_law(
+      [&](StressTerm part, const auto& law) {
+        if (law)
+          recipes.push_back({name_of(part), {.conservative = true}, {}, without_others(physics, part)});
+      },
+      physics);
   return recipes;
 }
 
@@ -112,7 +130,7 @@ class Evaluation {
   }
 
   Json run() {
-    for (const TermRecipe& recipe : recipes_of(terms_)) {
+    for (const TermRecipe& recipe : recipes_of(configuration_.physics)) {
       add_pairs(recipe);
     }
     add_one_body();
@@ -141,17 +159,20 @@ class Evaluation {
 
   PairName name_of(const Pair& pair) const { return {pair.first, pair.second, list_.images()[pair.image]}; }
 
-  Loads evaluate(const Terms& terms, double spring_timestep, SpringField& springs) const {
+  Loads evaluate(const Terms& terms, const Physics& physics, double spring_timestep,
+                 SpringField& springs) const {
     const std::size_t count = configuration_.particles.count();
     Loads loads = {VectorField(count), VectorField(count), {}};
     PairParameters parameters =
-        pair_parameters(configuration_.physics, configuration_.noise ? configuration_.noise->timestep : 0);
+        pair_parameters(physics, configuration_.noise ? configuration_.noise->timestep : 0);
     parameters.spring_timestep = spring_timestep;
+    const std::vector<PairKind> kinds =
+        make_pair_kinds(physics, distinct_radii(configuration_.particles.radius));
     const PairPassInput input = {
         .particles = configuration_.particles,
         .list = list_,
         .box = configuration_.box,
-        .kinds = kinds_,
+        .kinds = kinds,
         .parameters = parameters,
         .noise = {},
         .given_noise = &noise_,
@@ -164,7 +185,8 @@ class Evaluation {
 
   void add_pairs(const TermRecipe& recipe) {
     SpringField springs = springs_, untouched = springs_;
-    const Loads with = evaluate(recipe.with, 0, springs), without = evaluate(recipe.without, 0, untouched);
+    const Loads with = evaluate(recipe.with, recipe.physics, 0, springs),
+                without = evaluate(recipe.without, recipe.physics, 0, untouched);
     for (std::size_t i = 0; i < configuration_.particles.count(); ++i) {
       by_term_.add_single(recipe.name, i, with.force[i] - without.force[i],
                           with.torque[i] - without.torque[i]);
@@ -182,7 +204,7 @@ class Evaluation {
       return advanced;
     }
     SpringField springs = springs_;
-    evaluate(terms_, *configuration_.advance, springs);
+    evaluate(terms_, configuration_.physics, *configuration_.advance, springs);
     const std::vector<ImageFrame> frames = image_frames(list_, configuration_.box);
     for (std::size_t p = 0; p < list_.pairs().size(); ++p) {
       const Pair& pair = list_.pairs()[p];

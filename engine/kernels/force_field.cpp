@@ -1,5 +1,6 @@
 #include "engine/kernels/force_field.h"
 
+#include "engine/kernels/pairs/terms.h"
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {

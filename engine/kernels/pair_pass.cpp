@@ -27,7 +27,6 @@ PairParameters pair_parameters(const Physics& physics, double timestep) {
   PairParameters parameters;
   parameters.contact = physics.contact.value_or(ContactParameters{});
   parameters.lubrication = physics.lubrication.value_or(LubricationParameters{});
-  parameters.repulsion_strength = physics.repulsion ? physics.repulsion->strength : 0;
   parameters.spring_timestep = timestep;
   parameters.noise_amplitude = timestep > 0 ? std::sqrt(2 * physics.thermal_energy / timestep) : 0;
   return parameters;

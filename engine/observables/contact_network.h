@@ -11,7 +11,7 @@
 #include "engine/kernels/pairs/pair_kinds.h"
 #include "engine/observables/blocked_mean.h"
 #include "engine/observables/kinds.h"
-#include "engine/terms/interactions.h"
+#include "engine/terms/contact.h"
 
 namespace peclet::engine {
 

@@ -124,7 +124,7 @@ Json StressMeans::means(const BlockSums& sums) const {
     const SymmetricTensor mean = per_step * sums.stress[t];
     if (term == StressTerm::brownian_lubrication) {
       brownian = mean;  // of mean zero: never part of the total
-    } else if (has_stress_term(terms_, term)) {
+    } else if (has_stress_term(physics_, term)) {
       part(name_of(term), mean);
       pairs += mean;
     }
@@ -184,7 +184,7 @@ std::vector<Quantity> stress_quantities(const Scene& scene) {
   described.part("pressure", "P", unit, "control_variates/pressure", noise);
   for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
     const auto term = static_cast<StressTerm>(t);
-    if (term == StressTerm::brownian_lubrication || !has_stress_term(terms, term)) continue;
+    if (term == StressTerm::brownian_lubrication || !has_stress_term(scene.physics, term)) continue;
     described.stress(std::string("stress/") + name_of(term), std::string("sigma^") + name_of(term));
   }
   described.stress("stress/total", "sigma");

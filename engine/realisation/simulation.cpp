@@ -6,6 +6,7 @@
 
 #include "engine/integrators/implicit.h"
 #include "engine/integrators/velocity_verlet.h"
+#include "engine/kernels/pairs/terms.h"
 #include "engine/observables/catalogue.h"
 #include "engine/random/keyed_random.h"
 #include "engine/realisation/scene_fit.h"
@@ -73,7 +74,7 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
 
 void Simulation::start() {
   place_randomly(system_.particles, system_.box, seed_);
-  if (scene_.physics.repulsion && scene_.physics.repulsion->strength > 0) {
+  if (required_terms(scene_.physics).conservative) {
     relax(system_, scene_, threads_);
   }
   set_initial_velocities(system_.particles, scene_.physics.flow.at(system_.box), scene_.physics, seed_);

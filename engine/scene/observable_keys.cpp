@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "engine/scene/key_makers.h"
+#include "engine/scene/keys.h"
 #include "engine/scene/scene.h"
 
 namespace peclet::engine {

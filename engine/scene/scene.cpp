@@ -5,13 +5,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "contract/input_error.h"
 #include "engine/flow/waves.h"
+#include "engine/scene/law_blocks.h"
 #include "engine/scene/observable_keys.h"
 
 namespace peclet::engine {
@@ -20,10 +19,10 @@ namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-// The checks of one document. Pointers in its faults are from the document's top.
-class Reading {
+// The checks of one document.
+class Reading : private SceneDocument {
  public:
-  Reading(const Json& document, std::string file) : document_(document), file_(std::move(file)) {}
+  using SceneDocument::SceneDocument;
 
   Particles particles() const;
   Physics physics() const;
@@ -33,30 +32,11 @@ class Reading {
   void set_observables(Scene& scene) const;
 
  private:
-  bool has(const char* pointer) const { return document_.contains(Json::json_pointer(pointer)); }
-  const Json& at(const std::string& pointer) const { return document_.at(Json::json_pointer(pointer)); }
-  double number(const std::string& pointer) const { return at(pointer).get<double>(); }
-  double number_or(const char* pointer, double fallback) const {
-    return has(pointer) ? number(pointer) : fallback;
-  }
-
-  [[noreturn]] void refuse(const std::string& pointer, const std::string& allowed) const {
-    throw InputError(file_, pointer, shortened(at(pointer)), allowed);
-  }
-  [[noreturn]] void miss(const std::string& pointer, const std::string& allowed) const {
-    throw InputError(file_, pointer, "missing", allowed);
-  }
-
   void read_shares(Particles& particles) const;
   void check_sizes(const Particles& particles) const;
-  ContactParameters contact() const;
-  LubricationParameters lubrication() const;
   // Of this shear rate, with the scene's waves.
   ImposedFlow flow(double rate) const;
   void set_flow_from_peclet(double radius, Physics& physics) const;
-
-  const Json& document_;
-  std::string file_;
 };
 
 // Shares are relative: they are divided by their sum.
@@ -115,37 +95,6 @@ Particles Reading::particles() const {
   return particles;
 }
 
-ContactParameters Reading::contact() const {
-  ContactParameters contact;
-  contact.normal_stiffness = number("/contact/normal_stiffness");
-  contact.normal_damping = number("/contact/normal_damping");
-  contact.friction = number_or("/contact/friction", 0);
-  if (has("/contact/tangential_stiffness") && !has("/contact/friction")) {
-    refuse("/contact/tangential_stiffness", "must be left out without /contact/friction");
-  }
-  // 2/7: a homogeneous sphere's normal and tangential contact then oscillate with the same period.
-  contact.tangential_stiffness =
-      number_or("/contact/tangential_stiffness", 2.0 / 7.0 * contact.normal_stiffness);
-  contact.rolling_stiffness = number_or("/contact/rolling_stiffness", 0);
-  if (contact.rolling_stiffness > 0 && contact.friction <= 0) {
-    refuse("/contact/rolling_stiffness", "must be 0 or left out unless /contact/friction is > 0");
-  }
-  if (has("/contact/rolling_friction") && !has("/contact/rolling_stiffness")) {
-    refuse("/contact/rolling_friction", "must be left out without /contact/rolling_stiffness");
-  }
-  contact.rolling_friction = number_or("/contact/rolling_friction", contact.friction);
-  return contact;
-}
-
-LubricationParameters Reading::lubrication() const {
-  const LubricationParameters lubrication{number("/lubrication/inner_gap"), number("/lubrication/outer_gap")};
-  if (lubrication.inner_gap >= lubrication.outer_gap) {
-    refuse("/lubrication/inner_gap", "must be a number > 0 and < /lubrication/outer_gap, which is " +
-                                         shortened(at("/lubrication/outer_gap")));
-  }
-  return lubrication;
-}
-
 ImposedFlow Reading::flow(double rate) const {
   if (!has("/flow/waves")) {
     if (has("/flow/faxen")) refuse("/flow/faxen", "must be left out without /flow/waves");
@@ -166,11 +115,8 @@ Physics Reading::physics() const {
   physics.viscosity = number("/fluid/viscosity");
   physics.thermal_energy = number_or("/fluid/thermal_energy", 0);
   physics.flow = flow(number_or("/flow/shear_rate", 0));
-  if (has("/contact")) physics.contact = contact();
-  if (has("/lubrication")) physics.lubrication = lubrication();
-  if (has("/repulsion") && number("/repulsion/strength") > 0) {
-    physics.repulsion = {number("/repulsion/strength"), number("/repulsion/relative_length"),
-                         number("/repulsion/cutoff_lengths")};
+  for (const LawBlock& law : law_blocks) {
+    if (has("/" + std::string(law.name))) law.read(*this, physics);
   }
   return physics;
 }
@@ -242,7 +188,7 @@ void Reading::set_observables(Scene& scene) const {
     }
     // The defaults of a block that is left out are no part of the scene.
     const Json& settings = scene.observables[entry.name] =
-        has_settings ? at(pointer) : scene_keys().validate(Json::object(), file_, pointer);
+        has_settings ? at(pointer) : scene_keys().validate(Json::object(), file(), pointer);
     if (const std::optional<ObservableFault> fault = entry.fault(scene, settings)) {
       refuse(fault->pointer, fault->allowed);
     }
@@ -295,9 +241,15 @@ Scene read_scene(const Json& document, const std::string& file) {
   return scene;
 }
 
+std::vector<std::string> blocks_of_physics() {
+  std::vector<std::string> names = {"fluid", "flow"};
+  for (const LawBlock& law : law_blocks) names.emplace_back(law.name);
+  return names;
+}
+
 Physics read_physics(const Json& document, const std::string& file, const std::string& pointer) {
   if (!document.is_object()) throw InputError(file, pointer, shortened(document), "must be an object");
-  constexpr std::array blocks = {"fluid", "flow", "contact", "lubrication", "repulsion"};
+  const std::vector<std::string> blocks = blocks_of_physics();
   Json filled = Json::object();
   for (const auto& [name, block] : document.items()) {
     if (std::find(blocks.begin(), blocks.end(), name) == blocks.end()) {

@@ -13,18 +13,20 @@
 #include "contract/json.h"
 #include "contract/key_table.h"
 #include "engine/flow/deformation.h"
-#include "engine/terms/interactions.h"
+#include "engine/terms/contact.h"
+#include "engine/terms/laws.h"
+#include "engine/terms/lubrication.h"
 
 namespace peclet::engine {
 
-// The physics of a scene without its particles: all that forces depend on.
-struct Physics {
+// The physics of a scene without its particles: all that forces depend on. Of each conservative law it has an
+// optional.
+struct Physics : EachConservativeLaw<std::optional> {
   double viscosity = 0;
   double thermal_energy = 0;  // k_B T
   ImposedFlow flow;
   std::optional<ContactParameters> contact;
   std::optional<LubricationParameters> lubrication;
-  std::optional<RepulsionParameters> repulsion;
 };
 
 struct Species {
@@ -85,7 +87,10 @@ const KeyTable& scene_keys();
 // Reads and checks a scene. `file` names it in messages. Throws InputError.
 Scene read_scene(const Json& document, const std::string& file);
 
-// Reads the blocks fluid, flow, contact, lubrication, repulsion alone (a configuration's "scene").
+// The blocks that read_physics() reads: fluid, flow and those of the laws.
+std::vector<std::string> blocks_of_physics();
+
+// Reads these blocks alone (a configuration's "scene").
 Physics read_physics(const Json& document, const std::string& file, const std::string& pointer);
 
 }  // namespace peclet::engine

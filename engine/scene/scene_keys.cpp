@@ -1,7 +1,7 @@
 // Every key of a scene: the one list behind validation, schema/scene.schema.json and the manual's page.
 #include <utility>
 
-#include "engine/scene/key_makers.h"
+#include "engine/scene/law_blocks.h"
 #include "engine/scene/observable_keys.h"
 #include "engine/scene/scene.h"
 
@@ -93,52 +93,6 @@ Keys flow_keys() {
   };
 }
 
-Keys contact_keys() {
-  return {
-      block("/contact", "Forces between overlapping spheres; absent: none."),
-      positive("/contact/normal_stiffness", "force / length", "Normal stiffness k_n.", required),
-      with_default(not_negative("/contact/normal_damping", "force time / length", "Normal damping."), 0),
-      not_negative("/contact/friction", "", "Coefficient of sliding friction; absent (or 0): frictionless."),
-      positive("/contact/tangential_stiffness", "force / length",
-               "Tangential stiffness, with friction only; 2/7 of the normal one unless given."),
-      not_negative(
-          "/contact/rolling_stiffness", "force / length",
-          "Stiffness against rolling; absent (or 0): free rolling. Above 0 it needs friction above 0."),
-      not_negative(
-          "/contact/rolling_friction", "",
-          "Coefficient that caps rolling resistance, with rolling_stiffness only; that of sliding unless "
-          "given."),
-  };
-}
-
-Keys lubrication_keys() {
-  return {
-      block("/lubrication", "Squeeze, shear and pump modes between near spheres; absent: none."),
-      must_be_given(choice("/lubrication/form", "The resistance functions.", {"kim-karrila"})),
-      with_default(
-          fraction(positive("/lubrication/inner_gap", "",
-                            "Gap 2 (r - a_i - a_j) / (a_i + a_j) below which the resistance stays constant."),
-                   1),
-          1e-3),
-      with_default(fraction(positive("/lubrication/outer_gap", "",
-                                     "Gap beyond which there is none; must be larger than inner_gap."),
-                            1),
-                   0.05),
-  };
-}
-
-Keys repulsion_keys() {
-  return {
-      block("/repulsion", "Repulsion of the surfaces, at distance h; absent: none."),
-      must_be_given(
-          choice("/repulsion/form", "exponential: energy strength * exp(-h / kappa).", {"exponential"})),
-      not_negative("/repulsion/strength", "energy", "Energy of a pair that touches.", required),
-      with_default(positive("/repulsion/relative_length", "", "kappa / (a_i + a_j)."), 0.01),
-      with_default(
-          positive("/repulsion/cutoff_lengths", "", "Distance h / kappa beyond which there is none."), 20),
-  };
-}
-
 Keys duration_keys(const std::string& pointer, const std::string& meaning, bool zero_is_allowed) {
   const auto limit = zero_is_allowed ? not_negative : positive;
   return {
@@ -210,10 +164,11 @@ Keys run_keys() {
 const KeyTable& scene_keys() {
   static const KeyTable table = [] {
     Keys keys;
-    for (const Keys& part :
-         {particle_keys(), flow_keys(), contact_keys(), lubrication_keys(), repulsion_keys(), run_keys()}) {
-      keys.insert(keys.end(), part.begin(), part.end());
-    }
+    const auto append = [&](const Keys& more) { keys.insert(keys.end(), more.begin(), more.end()); };
+    append(particle_keys());
+    append(flow_keys());
+    for (const LawBlock& law : law_blocks) append(law.keys());
+    append(run_keys());
     return KeyTable("Scene of a peclet simulation", std::move(keys));
   }();
   return table;

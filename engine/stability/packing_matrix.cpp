@@ -1,47 +1,31 @@
 #include "engine/stability/packing_matrix.h"
 
+#include <algorithm>
+
 #include "engine/kernels/pairs/pair_access.h"
+#include "engine/kernels/pairs/pair_coupling.h"
+#include "engine/kernels/pairs/terms.h"
 #include "engine/state/eigen_vector.h"
 #include "engine/terms/drag.h"
-#include "engine/terms/friction.h"
 #include "engine/terms/lubrication.h"
 
 namespace peclet::engine {
 namespace {
 
-// As if every contact stuck.
-PairResistance contact_stiffness(const ContactParameters& contact, const PairKind& kind,
-                                 const PairGeometry& shape) {
-  PairResistance stiffness{};
-  if (contact.friction > 0) {
-    stiffness = tangential_coupling(
-        contact_levers(kind.radius_first, kind.radius_second, shape), contact.tangential_stiffness,
-        contact.rolling_stiffness * kind.reduced_diameter * kind.reduced_diameter);
-  }
-  stiffness.squeeze = contact.normal_stiffness;
-  return stiffness;
-}
-
-// d^2/dh^2 of the potential strength exp(-h / length).
-double repulsion_curvature(double strength, double length, const PairGeometry& shape) {
-  return strength / (length * length) * std::exp(-shape.surface_distance() / length);
-}
-
-PairResistance coupling_of(const Physics& physics, const PairKind& kind, const PairGeometry& shape,
-                           const MatrixWeights& weights) {
+PairResistance coupling_of(const Physics& physics, const Terms& terms, const PairKind& kind,
+                           const PairGeometry& shape, const MatrixWeights& weights) {
   PairResistance coupling{};
   if (physics.lubrication && shape.distance <= kind.lubrication_range) {
     add_scaled(coupling, weights.resistance,
                pair_resistance(kind.resistance, physics.lubrication->inner_gap, shape));
   }
-  if (physics.repulsion && shape.distance < kind.repulsion_range) {
-    coupling.squeeze +=
-        weights.stiffness * repulsion_curvature(physics.repulsion->strength, kind.repulsion_length, shape);
-  }
-  if (physics.contact && shape.overlap() > 0) {
-    coupling.squeeze += weights.resistance * physics.contact->normal_damping;
-    add_scaled(coupling, weights.stiffness, contact_stiffness(*physics.contact, kind, shape));
-  }
+  add_stiffness(coupling, terms, physics.contact.value_or(ContactParameters{}), kind, shape,
+                {weights.resistance, weights.stiffness, weights.stiffness}, [] {
+                  return HeldSprings<double>{1, 1};
+                });
+  // Spheres that pull turn back with n: V' / r across it.
+  const double slope = potential(kind.conservative, shape.distance, shape.sum_of_radii).slope;
+  coupling.shear += weights.stiffness * std::max(slope, 0.0) / shape.distance;
   return coupling;
 }
 
@@ -60,12 +44,13 @@ PackingMatrix::PackingMatrix(const System& system, const std::vector<PairKind>& 
     drag_rate_.segment<2>(row) << weights.resistance * translational_drag(physics.viscosity, radius) / mass,
         weights.resistance * rotational_drag(physics.viscosity, radius) / inertia;
   }
+  const Terms terms = required_terms(physics);
   const std::vector<ImageFrame> frames = image_frames(system.list, system.box);
   for (const Pair& pair : system.list.pairs()) {
     const PairKind& kind = kinds[pair.kind];
     const PairGeometry shape = geometry(separation(particles, pair, frames[pair.image]), kind);
     if (shape.distance <= kind.range) {
-      links_.push_back({pair.first, pair.second, shape, coupling_of(physics, kind, shape, weights)});
+      links_.push_back({pair.first, pair.second, shape, coupling_of(physics, terms, kind, shape, weights)});
     }
   }
 }

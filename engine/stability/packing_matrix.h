@@ -2,9 +2,9 @@
 //
 //   A = M^-1/2 (c_R R + c_K K) M^-1/2,  six rows for each particle: velocity and spin.
 // R is the resistance: lubrication, drag, damping of contacts. K is the stiffness: springs of contacts along
-// n and, as if every contact stuck, tangential and rolling ones, and the curvature of the repulsion. Both are
-// symmetric and positive semidefinite. Forces that push also turn with n, which only makes the packing softer
-// across n (by F/r): left out, K is a bound.
+// n and, as if every contact stuck, tangential and rolling ones, and the curvature of conservative laws. Both
+// are symmetric and positive semidefinite: forces that push also turn with n, which only makes the packing
+// softer across n (by F/r), and attraction curves to the other side; left out, K is a bound.
 #pragma once
 
 #include <Eigen/Core>

@@ -32,40 +32,30 @@ class HalfStepMotion {
   double half_step_;
 };
 
-// Of contact and repulsion at surface distance h, and its derivative.
-struct Potential {
-  double energy = 0, slope = 0;
-};
-
-Potential potential(const Physics& physics, const PairKind& kind, double h) {
-  Potential sum;
-  if (physics.contact && h < 0) {
-    const double stiffness = physics.contact->normal_stiffness;
-    sum = {0.5 * stiffness * h * h, stiffness * h};
-  }
-  if (physics.repulsion && kind.sum_of_radii + h < kind.repulsion_range) {
-    const double energy = physics.repulsion->strength * std::exp(-h / kind.repulsion_length);
-    sum.energy += energy;
-    sum.slope -= energy / kind.repulsion_length;
+// Of contact and conservative laws.
+Potential potential(const Physics& physics, const PairKind& kind, double distance) {
+  Potential sum = engine::potential(kind.conservative, distance, kind.sum_of_radii);
+  if (const double overlap = kind.sum_of_radii - distance; physics.contact && overlap > 0) {
+    sum.energy += contact_energy(physics.contact->normal_stiffness, overlap);
+    sum.slope -= contact_push(physics.contact->normal_stiffness, overlap);
   }
   return sum;
 }
 
 // A spring that is shorter than Coulomb's limit has grown by `stretch`; at the limit it slides.
 double energy_of_stretch(double stiffness, const Vector3& spring, const Vector3& stretch, double limit) {
-  const bool sticks = stiffness * norm(spring) < limit * (1 - 1e-9);
-  return sticks ? -0.5 * stiffness * dot(stretch, stretch) : 0;
+  return sticks(stiffness, spring, limit) ? -spring_energy(stiffness, stretch) : 0;
 }
 
 double energy_of_pair(const Physics& physics, const PairKind& kind, const PairGeometry& shape,
                       const PairMotion& motion, const ContactSprings& springs, double timestep) {
-  const double before = norm(shape.separation - timestep * motion.velocity) - shape.sum_of_radii;
-  const Potential now = potential(physics, kind, shape.surface_distance());
+  const double before = norm(shape.separation - timestep * motion.velocity);
+  const Potential now = potential(physics, kind, shape.distance);
   double sum = now.energy - potential(physics, kind, before).energy -
                timestep * dot(motion.velocity, shape.normal) * now.slope;
   if (shape.overlap() > 0 && physics.contact) {
     const ContactParameters& contact = *physics.contact;
-    const double pressing = contact.normal_stiffness * shape.overlap();
+    const double pressing = contact_push(contact.normal_stiffness, shape.overlap());
     const ContactLevers lever = contact_levers(kind.radius_first, kind.radius_second, shape);
     sum += energy_of_stretch(contact.tangential_stiffness, springs.tangential,
                              timestep * slip_velocity(lever, shape, motion), contact.friction * pressing);

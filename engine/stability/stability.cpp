@@ -7,8 +7,9 @@
 #include <numbers>
 
 #include "contract/input_error.h"
+#include "engine/kernels/pairs/pair_kinds.h"
 #include "engine/terms/drag.h"
-#include "engine/terms/pair_resistance.h"
+#include "engine/terms/rolling.h"
 
 namespace peclet::engine {
 namespace {
@@ -47,32 +48,20 @@ PairRates rates_of_pair(const Scene& scene, double first, double second) {
   const SpherePair pair = {first, second, mass_of(scene, first), mass_of(scene, second),
                            1 / mass_of(scene, first) + 1 / mass_of(scene, second)};
   const double mobility = pair.mobility, sum = first + second;
+  const PairKind kind = make_pair_kind(physics, first, second);
   PairResistance resistance{};
   if (physics.lubrication) {
     const PairGeometry touching = {{sum, 0, 0}, {1, 0, 0}, sum, sum};
-    resistance = pair_resistance(resistance_constants(physics.viscosity, first, second),
-                                 physics.lubrication->inner_gap, touching);
+    resistance = pair_resistance(kind.resistance, physics.lubrication->inner_gap, touching);
   }
   const double normal_damping = physics.contact ? physics.contact->normal_damping : 0;
   PairRates rates{};
   rates.damping = std::max(translational_damping(physics, resistance, normal_damping, pair),
                            rotational_damping(physics, resistance, pair));
   if (physics.contact) {
-    const ContactParameters& contact = *physics.contact;
-    // A tangential spring acts on centres and, through levers a, on spins with 2/5 m a^2: 1 + 5/2 times as
-    // stiff.
-    const double tangential = contact.friction > 0 ? 3.5 * contact.tangential_stiffness : 0;
-    // A rolling spring turns both spheres through the reduced diameter, at most the diameter of the smaller
-    // one.
-    const double reduced = 2 * first * second / sum;
-    const double smaller = std::min(first, second);
-    const double rolling = 2.5 * contact.rolling_stiffness * (reduced / smaller) * (reduced / smaller);
-    rates.frequency_squared = std::max({contact.normal_stiffness, tangential, rolling}) * mobility;
+    rates.frequency_squared = largest_contact_stiffness(*physics.contact, first, second) * mobility;
   }
-  if (physics.repulsion) {
-    const double length = physics.repulsion->relative_length * sum;
-    rates.frequency_squared += physics.repulsion->strength / (length * length) * mobility;
-  }
+  rates.frequency_squared += largest_stiffness(kind.conservative, 0, sum) * mobility;
   return rates;
 }
 
@@ -82,19 +71,38 @@ double stable_step(const PairRates& rates) {
   return 4 / (l + std::sqrt(l * l + 4 * w2));
 }
 
-// drag / stiffness of the repulsion where lubrication ends and the drag of single spheres alone resists it;
-// infinite where it does not reach that far.
-double repulsion_time_beyond_lubrication(const Physics& physics, double first, double second) {
+// drag / stiffness of the conservative laws where lubrication ends and the drag of single spheres alone
+// resists them; infinite where they do not reach that far.
+double time_beyond_lubrication(const Physics& physics, double first, double second) {
   const double sum = first + second;
-  const double length = physics.repulsion->relative_length * sum;
-  const double distance = 0.5 * physics.lubrication->outer_gap * sum;
-  if (!(distance < physics.repulsion->cutoff_lengths * length)) {
-    return std::numeric_limits<double>::infinity();
-  }
+  const PairKind kind = make_pair_kind(physics, first, second);
+  const double stiffness = largest_stiffness(kind.conservative, kind.lubrication_range - sum, sum);
   const double drag_first = translational_drag(physics.viscosity, first);
   const double drag_second = translational_drag(physics.viscosity, second);
-  const double stiffness = physics.repulsion->strength / (length * length) * std::exp(-distance / length);
   return drag_first * drag_second / (drag_first + drag_second) / stiffness;
+}
+
+// The shortest time in which attraction shortens its own distance: resistance / -V'' where V'' is negative,
+// the resistance being lubrication and the drag of both spheres. Infinite without attraction. Gaps from a
+// ten-thousandth to the range of all laws, at a twelfth of a decade.
+double time_of_pulling(const Physics& physics, double first, double second) {
+  const PairKind kind = make_pair_kind(physics, first, second);
+  const double drag_first = translational_drag(physics.viscosity, first);
+  const double drag_second = translational_drag(physics.viscosity, second);
+  const double drag = drag_first * drag_second / (drag_first + drag_second);
+  const double sum = kind.sum_of_radii, ratio = std::pow(10, 1.0 / 12);
+  double shortest = std::numeric_limits<double>::infinity();
+  for (double h = 1e-4 * sum; sum + h < kind.range; h *= ratio) {
+    const double pulling = -potential(kind.conservative, sum + h, sum).stiffness;
+    if (!(pulling > 0)) continue;
+    double resistance = drag;
+    if (physics.lubrication && sum + h <= kind.lubrication_range) {
+      const PairGeometry near = {{sum + h, 0, 0}, {1, 0, 0}, sum + h, sum};
+      resistance += pair_resistance(kind.resistance, physics.lubrication->inner_gap, near).squeeze;
+    }
+    shortest = std::min(shortest, resistance / pulling);
+  }
+  return shortest;
 }
 
 // X_A at the outer gap of the smallest sphere, with the partner that has most of it.
@@ -102,12 +110,11 @@ double largest_resistance_at_the_outer_gap(const Scene& scene, double smallest) 
   const Physics& physics = scene.physics;
   double largest = 0;
   for (const Species& partner : scene.particles.species) {
-    const double sum = smallest + partner.radius, distance = sum * (1 + 0.5 * physics.lubrication->outer_gap);
-    const PairGeometry parting = {{distance, 0, 0}, {1, 0, 0}, distance, sum};
+    const PairKind kind = make_pair_kind(physics, smallest, partner.radius);
+    const double distance = kind.lubrication_range;
+    const PairGeometry parting = {{distance, 0, 0}, {1, 0, 0}, distance, kind.sum_of_radii};
     largest =
-        std::max(largest, pair_resistance(resistance_constants(physics.viscosity, smallest, partner.radius),
-                                          physics.lubrication->inner_gap, parting)
-                              .squeeze);
+        std::max(largest, pair_resistance(kind.resistance, physics.lubrication->inner_gap, parting).squeeze);
   }
   return largest;
 }
@@ -185,7 +192,7 @@ double automatic_implicit_timestep(const Scene& scene) {
   const Physics& physics = scene.physics;
   const bool friction = physics.contact && physics.contact->friction > 0;
   const double strain = friction ? 0.0025 : 0.005, contact_times = friction ? 2 : 5;
-  constexpr double brownian_times = 0.0017, repulsion_times = 20, leaps = 5;
+  constexpr double brownian_times = 0.0017, pushing_times = 20, leaps = 5;
   double step = std::numeric_limits<double>::infinity();
   double smallest = scene.particles.species.front().radius, largest = smallest;
   for (const Species& species : scene.particles.species) {
@@ -203,12 +210,12 @@ double automatic_implicit_timestep(const Scene& scene) {
   if (const PairRates rates = stiffest_pair(scene); rates.frequency_squared > 0) {
     step = std::min(step, contact_times * rates.damping / rates.frequency_squared);
   }
-  if (physics.lubrication && physics.repulsion) {
-    for (const Species& first : scene.particles.species) {
-      for (const Species& second : scene.particles.species) {
-        step = std::min(
-            step, repulsion_times * repulsion_time_beyond_lubrication(physics, first.radius, second.radius));
+  for (const Species& first : scene.particles.species) {
+    for (const Species& second : scene.particles.species) {
+      if (physics.lubrication) {
+        step = std::min(step, pushing_times * time_beyond_lubrication(physics, first.radius, second.radius));
       }
+      step = std::min(step, time_of_pulling(physics, first.radius, second.radius));
     }
   }
   if (physics.lubrication && physics.thermal_energy > 0) {

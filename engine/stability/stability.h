@@ -11,7 +11,8 @@ struct PairRates {
   // 1/time: (X_A + gamma_n)(1/m_i + 1/m_j) plus the drag of the lighter sphere; the rate of its spin if that
   // is larger.
   double damping;
-  // 1/time^2: stiffness (1/m_i + 1/m_j) of the normal, tangential and rolling springs and the repulsion.
+  // 1/time^2: stiffness (1/m_i + 1/m_j) of the normal, tangential and rolling springs and, added to it, the
+  // largest one of the conservative laws at surface distances from 0 on.
   double frequency_squared;
 };
 
@@ -31,9 +32,11 @@ double largest_timestep(const Scene& scene);
 //   inertia are of first order only.
 // - 0.0017 eta a^3 / kT, a the smallest radius. Noise moves a pair through these gaps in many steps, too.
 // - 5 X_A / k, with friction 2: the time in which lubrication at the inner gap holds up the stiffest contact
-//   or repulsion.
-// - 20 drag / k of the repulsion at the outer gap, where the drag of single spheres alone resists it. Larger
-//   steps throw the spheres of unbalanced packings apart.
+//   and conservative law.
+// - 20 drag / k of the conservative laws from the outer gap on, where the drag of single spheres alone
+//   resists them. Larger steps throw the spheres of unbalanced packings apart.
+// - Resistance / -V'' where the conservative laws together attract: the time in which the approach of a pair
+//   grows e-fold. Steps are explicit in that part.
 // - With noise and lubrication, the step at which five standard deviations of a leap out of the range of
 //   lubrication are twice the outer gap. No sphere is hit that was out of range before.
 // A scene without flow and temperature has those of contact and repulsion alone. Infinite where nothing sets

@@ -9,6 +9,7 @@
 
 // The loop over pairs is one function with everything in it, or its lanes would travel through memory.
 #define PECLET_ALWAYS_INLINE [[gnu::always_inline]] inline
+#define PECLET_INLINE_LAMBDA __attribute__((always_inline))
 
 namespace peclet::engine {
 

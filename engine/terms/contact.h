@@ -1,16 +1,36 @@
-// Linear contact of overlapping spheres, with optional damping along the normal.
+// Contact of overlapping spheres: a linear spring along the normal, with optional damping. With friction > 0
+// there is a tangential spring too (friction.h), with rolling stiffness a rolling one (rolling.h).
 #pragma once
 
 #include "engine/terms/pair.h"
 
 namespace peclet::engine {
 
-// F_i = -k_n delta n, delta = a_i + a_j - r > 0.
+// Stiffnesses in force per length, damping in force per velocity.
+struct ContactParameters {
+  double normal_stiffness = 0;
+  double normal_damping = 0;
+  double friction = 0;
+  double tangential_stiffness = 0;  // 2/7 of the normal one unless given
+  double rolling_stiffness = 0;
+  double rolling_friction = 0;  // that of sliding unless given
+};
+
+// k_n delta, delta = a_i + a_j - r, the size of the force in overlap.
+template <class Real>
+PECLET_ALWAYS_INLINE Real contact_push(double normal_stiffness, const Real& overlap) {
+  return normal_stiffness * overlap;
+}
+
+// F_i = -k_n delta n for delta > 0, of the energy k_n delta^2 / 2.
 // Li, Royer & Ness (2023) eq. 3, which prints the force on j; sign as in Monti et al. (2021) eq. 4a.
 template <class Real>
 PECLET_ALWAYS_INLINE Vector3Of<Real> contact_normal_force(double normal_stiffness,
                                                           const PairGeometryOf<Real>& pair) {
-  return (-normal_stiffness * pair.overlap()) * pair.normal;
+  return -contact_push(normal_stiffness, pair.overlap()) * pair.normal;
+}
+inline double contact_energy(double normal_stiffness, double overlap) {
+  return overlap > 0 ? 0.5 * contact_push(normal_stiffness, overlap) * overlap : 0;
 }
 
 // F_i = gamma_n n n.(U_j - U_i). Monti et al. (2021) eq. 4a.
@@ -19,6 +39,12 @@ PECLET_ALWAYS_INLINE Vector3Of<Real> contact_damping_force(double normal_damping
                                                            const PairGeometryOf<Real>& pair,
                                                            const PairMotionOf<Real>& motion) {
   return (normal_damping * dot(motion.velocity, pair.normal)) * pair.normal;
+}
+
+// How a contact couples the normal velocities of its spheres: its stiffness and its damping by their weights.
+inline double contact_coupling(const ContactParameters& contact, double stiffness_weight,
+                               double damping_weight) {
+  return stiffness_weight * contact.normal_stiffness + damping_weight * contact.normal_damping;
 }
 
 }  // namespace peclet::engine

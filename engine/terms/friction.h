@@ -5,6 +5,7 @@
 // a_j do neither.)
 #pragma once
 
+#include "engine/terms/contact.h"
 #include "engine/terms/pair_resistance.h"
 #include "engine/terms/tangential_spring.h"
 
@@ -42,6 +43,12 @@ PECLET_ALWAYS_INLINE PairLoadOf<Real> friction_load(double tangential_stiffness,
   const Vector3Of<Real> force = Real{tangential_stiffness} * spring;
   const Vector3Of<Real> moment = cross(pair.normal, force);
   return {force, lever.first * moment, lever.second * moment};
+}
+
+// Coulomb's law: |F_i| <= mu k_n delta, as a length of the spring.
+template <class Real>
+PECLET_ALWAYS_INLINE Real longest_spring(const ContactParameters& contact, const Real& overlap) {
+  return (contact.friction / contact.tangential_stiffness) * contact_push(contact.normal_stiffness, overlap);
 }
 
 // Springs of a contact, as they couple velocities and spins: for slips T.(U_j - U_i) - (l_i Omega_i + l_j

@@ -1,6 +1,7 @@
 // Resistance against rolling: a second spring that gives a couple and no force.
 #pragma once
 
+#include "engine/terms/contact.h"
 #include "engine/terms/tangential_spring.h"
 
 namespace peclet::engine {
@@ -20,6 +21,30 @@ PECLET_ALWAYS_INLINE PairLoadOf<Real> rolling_load(double rolling_stiffness, con
                                                    const PairGeometryOf<Real>& pair) {
   const Vector3Of<Real> couple = Real{reduced_diameter * rolling_stiffness} * cross(pair.normal, spring);
   return {{}, couple, -couple};
+}
+
+// |k_r s_r| <= mu_r k_n delta, as a length of the spring.
+template <class Real>
+PECLET_ALWAYS_INLINE Real longest_rolling_spring(const ContactParameters& contact, const Real& overlap) {
+  return (contact.rolling_friction / contact.rolling_stiffness) *
+         contact_push(contact.normal_stiffness, overlap);
+}
+
+// The largest stiffness of a contact's springs, as if centres alone moved. A tangential spring acts on
+// centres and, through levers a, on spins with 2/5 m a^2: 1 + 5/2 times as stiff. A rolling spring turns both
+// spheres through the reduced diameter, at most the diameter of the smaller one.
+inline double largest_contact_stiffness(const ContactParameters& contact, double radius_first,
+                                        double radius_second) {
+  const double tangential = contact.friction > 0 ? 3.5 * contact.tangential_stiffness : 0;
+  const double reduced = 2 * radius_first * radius_second / (radius_first + radius_second);
+  const double smaller = radius_first < radius_second ? radius_first : radius_second;
+  const double rolling = 2.5 * contact.rolling_stiffness * (reduced / smaller) * (reduced / smaller);
+  return larger(larger(contact.normal_stiffness, tangential), rolling);
+}
+
+// The stiffness against Omega_i - Omega_j across n: a^2 k_r.
+inline double rolling_coupling(double rolling_stiffness, double reduced_diameter) {
+  return rolling_stiffness * reduced_diameter * reduced_diameter;
 }
 
 }  // namespace peclet::engine

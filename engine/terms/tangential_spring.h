@@ -24,4 +24,24 @@ PECLET_ALWAYS_INLINE Vector3Of<Real> advanced_spring(const Vector3Of<Real>& spri
   return select(length > longest, longest / length, Real{1.0}) * turned;
 }
 
+// The part of a spring's stretch that is left when it has been cut to `longest`: the secant stiffness of a
+// spring that slides is that part of its stiffness.
+template <class Real>
+PECLET_ALWAYS_INLINE Real held_share(const Vector3Of<Real>& spring, const Vector3Of<Real>& normal,
+                                     const Vector3Of<Real>& stretch, const Real& longest) {
+  const Real unlimited{1e300};
+  const Real length = norm(advanced_spring(spring, normal, stretch, unlimited));
+  return select(length > longest, longest / length, Real{1.0});
+}
+
+// Whether a spring is shorter than Coulomb's limit, the largest force that it can have.
+inline bool sticks(double stiffness, const Vector3& spring, double limit) {
+  return stiffness * norm(spring) < limit * (1 - 1e-9);
+}
+
+// k s^2 / 2.
+inline double spring_energy(double stiffness, const Vector3& spring) {
+  return 0.5 * stiffness * dot(spring, spring);
+}
+
 }  // namespace peclet::engine

@@ -19,14 +19,9 @@ std::vector<Terms> every_recipe() {
 
 std::string text(const Terms& terms) {
   std::string all;
-  const auto add = [&all](const char* name, bool present) { all += present ? std::string(name) + ' ' : ""; };
-  add("lubrication", terms.lubrication);
-  add("noise", terms.noise);
-  add("contact", terms.contact);
-  add("damping", terms.damping);
-  add("friction", terms.friction);
-  add("rolling", terms.rolling);
-  add("repulsion", terms.repulsion);
+  for (const NamedTerm& term : every_term) {
+    all += terms.*term.chosen ? std::string(term.name) + ' ' : "";
+  }
   return all;
 }
 

@@ -71,8 +71,8 @@ MUTATIONS = [
     (
         "contact half as stiff",
         "engine/terms/contact.h",
-        "(-normal_stiffness * pair.overlap())",
-        "(-0.5 * normal_stiffness * pair.overlap())",
+        "return normal_stiffness * overlap;",
+        "return 0.5 * normal_stiffness * overlap;",
     ),
     (
         "spheres carried round the wrong way",
@@ -94,9 +94,9 @@ MUTATIONS = [
     ),
     (
         "friction twice as strong",
-        "engine/kernels/pairs/pair_terms.h",
-        "(contact.friction / contact.tangential_stiffness) * normal_force",
-        "(2 * contact.friction / contact.tangential_stiffness) * normal_force",
+        "engine/terms/friction.h",
+        "return (contact.friction / contact.tangential_stiffness)",
+        "return (2 * contact.friction / contact.tangential_stiffness)",
     ),
     (
         "contact spring that is not turned",
@@ -104,12 +104,7 @@ MUTATIONS = [
         "Vector3Of<Real> turned = across(spring, normal);",
         "Vector3Of<Real> turned = spring + Real{0.0} * across(spring, normal);",
     ),
-    (
-        "repulsion of twice the range",
-        "engine/terms/repulsion.h",
-        "exponential((-1 / length)",
-        "exponential((-0.5 / length)",
-    ),
+    ("repulsion of twice the range", "engine/terms/repulsion.h", ".decay = 1 / length", ".decay = 0.5 / length"),
     (
         "structural stress from one side of each pair",
         "engine/observables/structure.cpp",

@@ -356,7 +356,7 @@ class Comparisons(unittest.TestCase):
 
     def test_every_term_acts(self):
         terms = {t for block in ("force", "torque") for t, v in self.expected[block].items() if np.any(v)}
-        self.assertEqual(len(terms), 9)
+        self.assertEqual(len(terms), 10)
         self.assertTrue(any(np.any(spring["tangential"]) for spring in self.expected["springs"]))
 
     def test_one_number_that_is_wrong_is_found(self):

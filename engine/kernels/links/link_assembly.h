@@ -3,18 +3,10 @@
 
 #include "engine/kernels/lanes/single_access.h"
 #include "engine/kernels/links/link_kernels.h"
+#include "engine/kernels/pairs/pair_coupling.h"
 #include "engine/kernels/pairs/pair_terms.h"
 
 namespace peclet::engine {
-
-// The part of a spring's stretch that is left when it has been cut to `longest`.
-template <class Real>
-PECLET_ALWAYS_INLINE Real held_share(const Vector3Of<Real>& spring, const Vector3Of<Real>& normal,
-                                     const Vector3Of<Real>& stretch, const Real& longest) {
-  const Real unlimited{1e300};
-  const Real length = norm(advanced_spring(spring, normal, stretch, unlimited));
-  return select(length > longest, longest / length, Real{1.0});
-}
 
 // Pairs of one run, as many as a number holds.
 template <class Real>
@@ -51,39 +43,20 @@ class LinkedPairs {
     PairResistanceOf<Real> sum{};
     const PairParameters& parameters = in_.parameters;
     if (terms.lubrication) {
-      const ResistanceModesOf<Real> modes =
-          resistance_modes(parameters.lubrication.inner_gap, kind_.lubrication_range, shape_);
+      const double inner_gap = parameters.lubrication.inner_gap;
+      const ResistanceModesOf<Real> modes = resistance_modes(inner_gap, kind_.lubrication_range, shape_);
       add_scaled(sum, Real{weights.timestep}, pair_resistance(kind_.resistance, modes));
       // The resistance at the distance that the velocities lead to: d/dv of X_A(r + t v) v.
-      const Real slope =
-          select(modes.inverse * parameters.lubrication.inner_gap < 1.0,
-                 (-2 / kind_.sum_of_radii) * modes.inverse *
-                     (kind_.resistance.squeeze_inverse * modes.inverse + kind_.resistance.squeeze_logarithm),
-                 Real{0.0});
+      const Real slope = squeeze_slope(kind_.resistance, inner_gap, kind_.sum_of_radii, modes);
       const Real closing = dot(motion_.velocity, shape_.normal);
       sum.squeeze = larger(sum.squeeze + (weights.timestep * weights.resistance_time) * slope * closing,
                            0.5 * sum.squeeze);
     }
-    const double normal_weight = weights.timestep * weights.normal_time;
-    if (terms.repulsion) {
-      // The curvature of strength exp(-h / length).
-      const double length = kind_.repulsion_length;
-      const Real curvature = (parameters.repulsion_strength / (length * length)) *
-                             exponential((-1 / length) * ahead_.surface_distance());
-      sum.squeeze += select(ahead_.distance < kind_.repulsion_range, normal_weight * curvature, Real{0.0});
-    }
-    const auto touching = ahead_.overlap() > 0.0;
-    if (terms.contact && any(touching)) {
-      const ContactParameters& contact = parameters.contact;
-      sum.squeeze +=
-          select(touching,
-                 Real{normal_weight * contact.normal_stiffness + weights.timestep * contact.normal_damping},
-                 Real{0.0});
-      if (terms.friction) {
-        add_scaled(sum, select(touching, Real{weights.timestep * weights.timestep}, Real{0.0}),
-                   springs_coupling(terms));
-      }
-    }
+    add_stiffness(sum, terms, parameters.contact, kind_, ahead_,
+                  {.resistance = weights.timestep,
+                   .normal = weights.timestep * weights.normal_time,
+                   .tangential = weights.timestep * weights.timestep},
+                  [&]() PECLET_INLINE_LAMBDA { return held_springs(terms); });
     return sum;
   }
 
@@ -113,29 +86,25 @@ class LinkedPairs {
   }
 
  private:
-  // Stiffness of the tangential and rolling springs of contacts.
-  PECLET_ALWAYS_INLINE PairResistanceOf<Real> springs_coupling(const Terms& terms) const {
+  PECLET_ALWAYS_INLINE HeldSprings<Real> held_springs(const Terms& terms) const {
     const PairParameters& parameters = in_.parameters;
-    const ContactParameters& contact = parameters.contact;
     const auto spring = [&](int c) {
       return Vector3Of<Real>{load_lanes(in_.springs[c] + begin_, count_, Real{}),
                              load_lanes(in_.springs[c + 1] + begin_, count_, Real{}),
                              load_lanes(in_.springs[c + 2] + begin_, count_, Real{})};
     };
-    const Real normal_force = contact.normal_stiffness * larger(ahead_.overlap(), Real{0.0});
+    const Real overlap = larger(ahead_.overlap(), Real{0.0});
     const Real elapsed{parameters.spring_timestep};
     const ContactLeversOf<Real> lever = contact_levers(kind_.radius_first, kind_.radius_second, ahead_);
-    const Real sliding = contact.tangential_stiffness *
-                         held_share(spring(0), shape_.normal, elapsed * slip_velocity(lever, shape_, motion_),
-                                    (contact.friction / contact.tangential_stiffness) * normal_force);
-    Real rolling{0.0};
+    HeldSprings<Real> held{};
+    held.tangential = held_share(spring(0), shape_.normal, elapsed * slip_velocity(lever, shape_, motion_),
+                                 longest_spring(parameters.contact, overlap));
     if (terms.rolling) {
-      rolling = (contact.rolling_stiffness * kind_.reduced_diameter * kind_.reduced_diameter) *
-                held_share(spring(3), shape_.normal,
-                           elapsed * rolling_velocity(kind_.reduced_diameter, shape_, motion_),
-                           (contact.rolling_friction / contact.rolling_stiffness) * normal_force);
+      held.rolling = held_share(spring(3), shape_.normal,
+                                elapsed * rolling_velocity(kind_.reduced_diameter, shape_, motion_),
+                                longest_rolling_spring(parameters.contact, overlap));
     }
-    return tangential_coupling(lever, sliding, rolling);
+    return held;
   }
 
   PairGeometryOf<Real> shape_, ahead_;

@@ -73,8 +73,10 @@ class PairGroup {
     motion.spin_second = gather_rows(in_.spin, second_, Real{});
 
     PairSpringsOf<Real> springs = load_springs();
-    const TermLoadsOf<Real> loads =
-        pair_terms<terms>(in_.parameters, kind_, shape, motion, springs, [this] { return normals(); });
+    const TermLoadsOf<Real> loads = pair_terms<terms>(
+        in_.parameters, kind_, shape, motion, springs, [this] { return normals(); },
+        [&](StressTerm part, const Vector3Of<Real>& force)
+            PECLET_INLINE_LAMBDA { add_stress(part, shape, force, sums); });
     store_springs(springs);
     add_sums(shape, loads, sums);
     leave(total(loads), out);
@@ -86,8 +88,8 @@ class PairGroup {
     if constexpr (terms.noise) {
       sum += loads.noise;
     }
-    if constexpr (terms.repulsion) {
-      sum.force += loads.repulsion;
+    if constexpr (terms.conservative) {
+      sum.force += loads.conservative;
     }
     if constexpr (terms.contact) {
       sum.force += loads.contact_normal;
@@ -105,19 +107,22 @@ class PairGroup {
     return sum;
   }
 
+  PECLET_ALWAYS_INLINE static void add_stress(StressTerm part, const PairGeometryOf<Real>& shape,
+                                              const Vector3Of<Real>& force, LaneSumsOf<Real>& sums) {
+    sums.stress[static_cast<std::size_t>(part)] += symmetric_dyad(shape.separation, force);
+  }
+
+  // Those of conservative laws apart.
   PECLET_ALWAYS_INLINE void add_sums(const PairGeometryOf<Real>& shape, const TermLoadsOf<Real>& loads,
                                      LaneSumsOf<Real>& sums) {
     const auto add = [&](StressTerm term, const Vector3Of<Real>& force) {
-      sums.stress[static_cast<std::size_t>(term)] += symmetric_dyad(shape.separation, force);
+      add_stress(term, shape, force, sums);
     };
     if constexpr (terms.lubrication) {
       add(StressTerm::lubrication, loads.lubrication.force);
     }
     if constexpr (terms.noise) {
       add(StressTerm::brownian_lubrication, loads.noise.force);
-    }
-    if constexpr (terms.repulsion) {
-      add(StressTerm::repulsion, loads.repulsion);
     }
     if constexpr (terms.contact) {
       const unsigned touching = bits(loads.overlap > Real{});

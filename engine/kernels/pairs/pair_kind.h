@@ -1,6 +1,7 @@
 // Everything that is the same for all pairs of two radii.
 #pragma once
 
+#include "engine/terms/conservative.h"
 #include "engine/terms/pair_resistance.h"
 
 namespace peclet::engine {
@@ -10,11 +11,11 @@ struct PairKind {
   double range;              // centre distance beyond which every term is zero
   double listed_range;       // up to which observables want to see the pair too
   double lubrication_range;  // outer gap as a centre distance; 0 without lubrication
-  double repulsion_range, repulsion_length;
   double smaller_radius;
   double reduced_diameter;  // 2 a_i a_j / (a_i + a_j)
   ResistanceConstants resistance;
   RootConstants roots;
+  ConservativeLaws conservative;
 };
 
 }  // namespace peclet::engine

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 namespace peclet::engine {
-namespace {
 
 PairKind make_pair_kind(const Physics& physics, double first, double second) {
   PairKind kind{};
@@ -15,21 +14,19 @@ PairKind make_pair_kind(const Physics& physics, double first, double second) {
   if (physics.lubrication) {
     kind.resistance = resistance_constants(physics.viscosity, first, second);
     kind.roots = root_constants(kind.resistance);
-    kind.lubrication_range = kind.sum_of_radii * (1 + 0.5 * physics.lubrication->outer_gap);
+    kind.lubrication_range = engine::lubrication_range(*physics.lubrication, kind.sum_of_radii);
   }
-  if (physics.repulsion) {
-    kind.repulsion_length = physics.repulsion->relative_length * kind.sum_of_radii;
-    kind.repulsion_range = kind.sum_of_radii + physics.repulsion->cutoff_lengths * kind.repulsion_length;
-  }
-  kind.range = std::max({kind.sum_of_radii, kind.lubrication_range, kind.repulsion_range});
+  kind.range = std::max(kind.sum_of_radii, kind.lubrication_range);
+  kind.conservative = of_pair(physics, first, second);
+  for_each_conservative_law(
+      [&](StressTerm /*part*/, const auto& law) { kind.range = std::max(kind.range, law.range); },
+      kind.conservative);
   kind.listed_range = kind.range;
   if (physics.thermal_energy > 0) {
     kind.listed_range = std::max(kind.range, kind.sum_of_radii + structural_shell * std::max(first, second));
   }
   return kind;
 }
-
-}  // namespace
 
 std::vector<PairKind> make_pair_kinds(const Physics& physics, const std::vector<double>& distinct_radii) {
   std::vector<PairKind> kinds;

@@ -12,6 +12,8 @@ namespace peclet::engine {
 // Thickness of the shell, in radii, in which neighbours count for the structural Brownian stress.
 constexpr double structural_shell = 0.05;
 
+PairKind make_pair_kind(const Physics& physics, double radius_first, double radius_second);
+
 // Indexed like Pair::kind: class of the first times the number of classes plus class of the second.
 std::vector<PairKind> make_pair_kinds(const Physics& physics, const std::vector<double>& distinct_radii);
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "engine/kernels/pairs/terms.h"
 #include "engine/state/vector3.h"
+#include "engine/terms/laws.h"
 
 namespace peclet::engine {
 

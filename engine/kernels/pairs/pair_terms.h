@@ -3,13 +3,12 @@
 #pragma once
 
 #include "engine/kernels/pairs/pair_kind.h"
-#include "engine/kernels/pairs/terms.h"
+#include "engine/terms/conservative.h"
 #include "engine/terms/contact.h"
 #include "engine/terms/friction.h"
-#include "engine/terms/interactions.h"
+#include "engine/terms/laws.h"
 #include "engine/terms/lubrication.h"
 #include "engine/terms/pair_noise.h"
-#include "engine/terms/repulsion.h"
 #include "engine/terms/rolling.h"
 
 namespace peclet::engine {
@@ -18,7 +17,6 @@ namespace peclet::engine {
 struct PairParameters {
   ContactParameters contact;
   LubricationParameters lubrication;
-  double repulsion_strength = 0;
   double spring_timestep = 0;  // by which the springs advance; 0: the springs are taken as they are
   // Forces that depend on the distance are those at the distance that the present motion leads to in this
   // time; their direction stays.
@@ -40,8 +38,9 @@ struct PairNormalsOf {
 template <class Real>
 struct TermLoadsOf {
   PairLoadOf<Real> lubrication, noise, friction, rolling;
-  Vector3Of<Real> contact_normal, contact_damping, repulsion;
-  Real overlap{};  // that contact forces belong to
+  Vector3Of<Real> contact_normal, contact_damping;
+  Vector3Of<Real> conservative;  // of all conservative laws
+  Real overlap{};                // that contact forces belong to
 };
 
 template <Terms terms, class Real>
@@ -56,16 +55,15 @@ PECLET_ALWAYS_INLINE void add_contact_terms(const PairParameters& parameters, co
     loads.contact_damping = where(touching, contact_damping_force(contact.normal_damping, pair, motion));
   }
   if constexpr (terms.friction) {
-    const Real normal_force = contact.normal_stiffness * pair.overlap();
     const ContactLeversOf<Real> lever = contact_levers(kind.radius_first, kind.radius_second, pair);
     const Vector3Of<Real> slip = Real{parameters.spring_timestep} * slip_velocity(lever, pair, motion);
-    const Real longest = (contact.friction / contact.tangential_stiffness) * normal_force;
+    const Real longest = longest_spring(contact, pair.overlap());
     springs.tangential = where(touching, advanced_spring(springs.tangential, pair.normal, slip, longest));
     loads.friction = friction_load(contact.tangential_stiffness, springs.tangential, lever, pair);
     if constexpr (terms.rolling) {
       const Vector3Of<Real> turn =
           Real{parameters.spring_timestep} * rolling_velocity(kind.reduced_diameter, pair, motion);
-      const Real longest_turn = (contact.rolling_friction / contact.rolling_stiffness) * normal_force;
+      const Real longest_turn = longest_rolling_spring(contact, pair.overlap());
       springs.rolling = where(touching, advanced_spring(springs.rolling, pair.normal, turn, longest_turn));
       loads.rolling = rolling_load(contact.rolling_stiffness, springs.rolling, kind.reduced_diameter, pair);
     }
@@ -73,16 +71,17 @@ PECLET_ALWAYS_INLINE void add_contact_terms(const PairParameters& parameters, co
 }
 
 // Every pair lies within kind.range. `normals()` returns theta and chi and is called only where a pair is
-// lubricated and there is noise. The springs advance with the motion and are forgotten when the contact
-// opens.
-template <Terms terms, class Real, class Normals>
+// lubricated and there is noise. `of_law(part, force)` is told the force of each conservative law that acts
+// on any of the pairs. The springs advance with the motion and are forgotten when the contact opens.
+template <Terms terms, class Real, class Normals, class OfLaw>
 PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& parameters, const PairKind& kind,
                                                   const PairGeometryOf<Real>& pair,
                                                   const PairMotionOf<Real>& motion,
-                                                  PairSpringsOf<Real>& springs, Normals&& normals) {
+                                                  PairSpringsOf<Real>& springs, Normals&& normals,
+                                                  OfLaw&& of_law) {
   TermLoadsOf<Real> loads;
   PairGeometryOf<Real> ahead = pair;
-  if constexpr (terms.contact || terms.repulsion) {
+  if constexpr (terms.contact || terms.conservative) {
     ahead.distance += parameters.approach_time * dot(motion.velocity, pair.normal);
   }
   if constexpr (terms.lubrication) {
@@ -99,9 +98,22 @@ PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& paramete
       }
     }
   }
-  if constexpr (terms.repulsion) {
-    loads.repulsion = where(ahead.distance < kind.repulsion_range,
-                            repulsion_force(parameters.repulsion_strength, kind.repulsion_length, ahead));
+  if constexpr (terms.conservative) {
+    for_each_conservative_law(
+        [&](StressTerm part, const auto& law) PECLET_INLINE_LAMBDA {
+          // The same for all pairs of a run. Laws after the first one are placed out of the way of kernels
+          // that have it alone.
+          if (part != StressTerm::repulsion) {
+            if (__builtin_expect(!(law.range > 0), 1)) return;
+          }
+          const auto within = ahead.distance < law.range;
+          if (!any(within)) [[unlikely]]
+            return;
+          const Vector3Of<Real> force = where(within, conservative_force(law, ahead));
+          loads.conservative += force;
+          of_law(part, force);
+        },
+        kind.conservative);
   }
   if constexpr (terms.contact) {
     loads.overlap = ahead.overlap();

@@ -1,28 +1,28 @@
 // Every combination of terms that is compiled, in one place.
 //
-// Two independent choices (repulsion; lubrication without or with noise or none) times the ways in which
-// spheres can touch make 42 recipes.
+// Two independent choices (conservative laws; lubrication without or with noise or none) times the ways in
+// which spheres can touch make 42 recipes.
 #pragma once
 
-#include "engine/kernels/pairs/terms.h"
+#include "engine/terms/laws.h"
 
 namespace peclet::engine {
 
-// The bits of `code` are the terms in the order of the struct.
+// The bits of `code` are the terms in the order of every_term.
 constexpr Terms decoded_terms(unsigned code) {
-  return {.lubrication = (code & 1) != 0,
-          .noise = (code & 2) != 0,
-          .contact = (code & 4) != 0,
-          .damping = (code & 8) != 0,
-          .friction = (code & 16) != 0,
-          .rolling = (code & 32) != 0,
-          .repulsion = (code & 64) != 0};
+  Terms terms;
+  for (unsigned bit = 0; bit < count_of_terms; ++bit) {
+    terms.*every_term[bit].chosen = (code >> bit & 1U) != 0;
+  }
+  return terms;
 }
 
 constexpr unsigned code_of(const Terms& terms) {
-  return (terms.lubrication ? 1U : 0U) | (terms.noise ? 2U : 0U) | (terms.contact ? 4U : 0U) |
-         (terms.damping ? 8U : 0U) | (terms.friction ? 16U : 0U) | (terms.rolling ? 32U : 0U) |
-         (terms.repulsion ? 64U : 0U);
+  unsigned code = 0;
+  for (unsigned bit = 0; bit < count_of_terms; ++bit) {
+    code |= terms.*every_term[bit].chosen ? 1U << bit : 0U;
+  }
+  return code;
 }
 
 constexpr unsigned count_of_codes = 1U << count_of_terms;

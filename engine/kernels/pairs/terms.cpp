@@ -8,7 +8,11 @@ Terms required_terms(const Physics& physics) {
   Terms terms;
   terms.lubrication = physics.lubrication.has_value();
   terms.noise = terms.lubrication && physics.thermal_energy > 0;
-  terms.repulsion = physics.repulsion.has_value();
+  for_each_conservative_law(
+      [&](StressTerm /*part*/, const auto& law) {
+        terms.conservative = terms.conservative || law.has_value();
+      },
+      physics);
   if (physics.contact) {
     terms.contact = true;
     terms.damping = physics.contact->normal_damping > 0;
@@ -18,40 +22,12 @@ Terms required_terms(const Physics& physics) {
   return terms;
 }
 
-const char* name_of(StressTerm term) {
-  switch (term) {
-    case StressTerm::lubrication:
-      return "lubrication";
-    case StressTerm::contact_normal:
-      return "contact_normal";
-    case StressTerm::contact_damping:
-      return "contact_damping";
-    case StressTerm::friction:
-      return "friction";
-    case StressTerm::repulsion:
-      return "repulsion";
-    case StressTerm::brownian_lubrication:
-      return "brownian_lubrication";
-  }
-  return "";
-}
-
-bool has_stress_term(const Terms& terms, StressTerm term) {
-  switch (term) {
-    case StressTerm::lubrication:
-      return terms.lubrication;
-    case StressTerm::contact_normal:
-      return terms.contact;
-    case StressTerm::contact_damping:
-      return terms.damping;
-    case StressTerm::friction:
-      return terms.friction;
-    case StressTerm::repulsion:
-      return terms.repulsion;
-    case StressTerm::brownian_lubrication:
-      return terms.noise;
-  }
-  return false;
+bool has_stress_term(const Physics& physics, StressTerm term) {
+  bool absent = false;
+  for_each_conservative_law(
+      [&](StressTerm part, const auto& law) { absent = absent || (part == term && !law.has_value()); },
+      physics);
+  return !absent && required_terms(physics).*stress_parts[static_cast<std::size_t>(term)].of;
 }
 
 }  // namespace peclet::engine

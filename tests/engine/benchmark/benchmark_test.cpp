@@ -64,7 +64,7 @@ TEST(Operations, OfEachNearPairAreOneLogarithmAndTheRootsOfItsFormulas) {
 }
 
 TEST(Operations, AreNotMadeUpForTermsThatAreNotCounted) {
-  const Physics physics = physics_with({.repulsion = true});
+  const Physics physics = physics_with({.conservative = true});
   EXPECT_FALSE(count_operations(physics, dense_suspension(physics, 50, 5), timestep));
 }
 

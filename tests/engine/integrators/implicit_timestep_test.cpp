@@ -65,6 +65,17 @@ TEST(ImplicitTimestep, IsBoundByARepulsionBeyondLubrication) {
   EXPECT_GT(automatic_timestep(short_scene), 1.2 * automatic_timestep(scene));
 }
 
+// Where attraction alone moves spheres it grows by -V'' / drag, at most by 9 c / (8 sqrt(3) eps^3) / drag
+// with c = A_H a / 12: the step is that time, within the one percent of a twelfth of a decade of distances.
+TEST(ImplicitTimestep, IsBoundByTheGrowthOfAttraction) {
+  const Scene scene = scene_with(Json::parse(R"({
+    "particles": {"species": [{"radius": 1}]}, "contact": null, "lubrication": null, "repulsion": null,
+    "attraction": {"hamaker": 120, "regularisation": 0.05, "cutoff": 1}})"));
+  const double drag = 0.5 * 6 * pi * 0.1, steepest = 9 / (8 * std::sqrt(3.0)) * 10 / 1.25e-4;
+  EXPECT_GE(automatic_timestep(scene), drag / steepest * (1 - 1e-12));
+  EXPECT_LE(automatic_timestep(scene), drag / steepest * 1.01);
+}
+
 // Spheres with hardly any inertia, Pe = 1; of one radius, X_A = 6 pi eta a (1 / (4 xi) + 9/40 ln(1 / xi)).
 Json light_spheres(double density, double outer_gap, const Json& species) {
   return {{"particles", {{"count", 150}, {"density", density}, {"species", species}}},

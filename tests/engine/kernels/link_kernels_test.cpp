@@ -134,7 +134,7 @@ constexpr Terms tried[] = {
     {.lubrication = true, .contact = true, .damping = true},
     {.contact = true, .friction = true},
     {.lubrication = true, .contact = true, .friction = true, .rolling = true},
-    {.lubrication = true, .contact = true, .repulsion = true},
+    {.lubrication = true, .contact = true, .conservative = true},
 };
 
 std::vector<InstructionSet> available_sets() {

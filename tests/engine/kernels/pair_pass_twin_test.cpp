@@ -23,7 +23,7 @@ TEST(PairPass, HasTheSameBitsOnAnyNumberOfThreads) {
                                         .damping = true,
                                         .friction = true,
                                         .rolling = true,
-                                        .repulsion = true});
+                                        .conservative = true});
   System system = dense_suspension(physics, 8500, 8);
   rebuild_neighbours(system);
   EXPECT_EQ(system.list.blocks().size(), 4u);
@@ -68,6 +68,28 @@ TEST(PairPass, EqualsItsSingleTwinOnEveryInstructionSetForEveryRecipe) {
   }
 }
 
+// Laws that few or all of eight pairs feel.
+TEST(PairPass, EqualsItsSingleTwinForEveryConservativeLaw) {
+  Physics both = physics_with({.lubrication = true, .contact = true, .conservative = true});
+  both.attraction = AttractionParameters{.hamaker = 0.6, .regularisation = 0.01, .cutoff = 0.3};
+  Physics attracting = both;
+  attracting.repulsion.reset();
+  Physics screened = both;
+  screened.repulsion = RepulsionParameters{.cutoff_lengths = 6,
+                                           .form = RepulsionParameters::Form::screened,
+                                           .force = 1.3,
+                                           .debye_length = 0.02,
+                                           .reference_radius = 1};
+  for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512}) {
+    if (!is_available(set)) continue;
+    for (const Physics& physics : {both, attracting, screened}) {
+      const System system = dense_suspension(physics, 200, 7);
+      expect_equal(evaluated(physics, system, 1, InstructionSet::baseline),
+                   evaluated(physics, system, 1, set), name_of(set));
+    }
+  }
+}
+
 // All terms at once over every pair in every image, one by one, with no list and no kernel.
 TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
   constexpr Terms terms = {.lubrication = true,
@@ -76,7 +98,7 @@ TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
                            .damping = true,
                            .friction = true,
                            .rolling = true,
-                           .repulsion = true};
+                           .conservative = true};
   const Physics physics = physics_with(terms);
   System system = dense_suspension(physics, 150, 10);
   system.step = 3;
@@ -101,17 +123,19 @@ TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
     Vector3 velocity = all.velocity[j] - all.velocity[i];
     velocity += system.box.velocity(seen.image);
     const PairMotion motion = {velocity, all.angular_velocity[i], all.angular_velocity[j]};
-    const TermLoadsOf<double> t =
-        pair_terms<terms>(parameters, kind, geometry(seen.separation, kind), motion, springs, [&] {
+    const TermLoadsOf<double> t = pair_terms<terms>(
+        parameters, kind, geometry(seen.separation, kind), motion, springs,
+        [&] {
           const NormalPair normals = random.normals(system.step, i, j, seen.image);
           return PairNormalsOf<double>{normals.first, normals.second};
-        });
+        },
+        [](StressTerm /*part*/, const Vector3& /*force*/) {});
     held[{i, j, seen.image}] = {springs.tangential, springs.rolling};
     PairLoad sum = t.lubrication;
     sum += t.noise;
     sum += t.friction;
     sum += t.rolling;
-    sum.force += t.contact_normal + t.contact_damping + t.repulsion;
+    sum.force += t.contact_normal + t.contact_damping + t.conservative;
     force.add(i, sum.force);
     force.add(j, -sum.force);
     torque.add(i, sum.torque_first);
@@ -180,7 +204,7 @@ TEST(PairPass, DependsOnNoOrderOfTheParticlesInMemory) {
 // What crosses between blocks waits in memory that is used again: pairs that have parted leave nothing there.
 TEST(PairPass, RemembersNoForceOfPairsThatHaveParted) {
   const Physics physics =
-      physics_with({.lubrication = true, .contact = true, .friction = true, .repulsion = true});
+      physics_with({.lubrication = true, .contact = true, .friction = true, .conservative = true});
   System system = dense_suspension(physics, 8500, 14);
   rebuild_neighbours(system);
   ASSERT_GT(system.list.crossings(), 1000u);
@@ -208,7 +232,7 @@ TEST(PairPass, RemembersNoForceOfPairsThatHaveParted) {
 // Without noise, which knows particles by their number.
 TEST(PairPass, NumberingTheParticlesOtherwiseOnlyRenamesTheForces) {
   const Physics physics =
-      physics_with({.lubrication = true, .contact = true, .damping = true, .repulsion = true});
+      physics_with({.lubrication = true, .contact = true, .damping = true, .conservative = true});
   const System system = dense_suspension(physics, 150, 9);
   System reversed = system;
   const std::size_t count = system.particles.count();

@@ -372,7 +372,7 @@ TEST(Profiles, OfAUniformLatticeAreUniform) {
   for (const double offset : {0.0, 0.3, 1.7}) {
     System system;
     system.particles = make_particles(std::vector<double>(25, 1), 1);
-    system.box = ShearedBox({edge, edge, edge}, 0);
+    system.box = PeriodicCell({edge, edge, edge}, simple_shear(0));
     for (std::size_t i = 0; i < 25; ++i) {
       system.particles.position.set(
           i, {2.0 * static_cast<double>(i % 5), offset + 2.0 * static_cast<double>(i / 5), 5});

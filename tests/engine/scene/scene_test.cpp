@@ -159,6 +159,33 @@ TEST(Scene, PecletNumberWithinLimitsGivesThePublishedRatesAndTemperatures) {
   }
 }
 
+Physics physics_of(const char* blocks) {
+  Json scene = Json::parse(blocks);
+  scene["fluid"] = {{"viscosity", 0.1}};
+  return read_physics(scene, "c.json", "/scene");
+}
+
+TEST(Scene, AttractionHasItsDefaultsAndIsAbsentWithAConstantOfZero) {
+  const Physics physics = physics_of(R"({"attraction": {"hamaker": 0.3, "cutoff": 4}})");
+  EXPECT_EQ(physics.attraction->hamaker, 0.3);
+  EXPECT_EQ(physics.attraction->regularisation, 0.01);
+  EXPECT_EQ(physics.attraction->cutoff, 4);
+  EXPECT_FALSE(physics_of(R"({"attraction": {"hamaker": 0, "cutoff": 4}})").attraction);
+}
+
+TEST(Scene, ScreenedRepulsionHasKeysOfItsOwn) {
+  const Physics physics = physics_of(R"({"repulsion": {"form": "screened", "force": 1.3, "debye_length": 0.02,
+      "reference_radius": 0.5}})");
+  EXPECT_EQ(physics.repulsion->form, RepulsionParameters::Form::screened);
+  EXPECT_EQ(physics.repulsion->force, 1.3);
+  EXPECT_EQ(physics.repulsion->debye_length, 0.02);
+  EXPECT_EQ(physics.repulsion->reference_radius, 0.5);
+  EXPECT_EQ(physics.repulsion->cutoff_lengths, 20);
+  EXPECT_FALSE(physics_of(R"({"repulsion": {"form": "screened", "force": 0, "debye_length": 0.02,
+      "reference_radius": 0.5}})")
+                   .repulsion);
+}
+
 TEST(Scene, AConfigurationsBlocksAreReadByTheSameKeys) {
   const Json blocks = Json::parse(R"({"fluid": {"viscosity": 0.1, "thermal_energy": 0.017},
       "contact": {"normal_stiffness": 7, "friction": 0.5}, "lubrication": {"form": "kim-karrila"},

@@ -29,7 +29,7 @@ constexpr Terms every_term = {.lubrication = true,
                               .damping = true,
                               .friction = true,
                               .rolling = true,
-                              .repulsion = true};
+                              .conservative = true};
 
 std::vector<PairKind> kinds_of(const System& system, const Physics& physics) {
   return make_pair_kinds(physics, distinct_radii(system.particles.radius));
@@ -122,9 +122,21 @@ Dense stiffness_by_extensions(const System& system, const Physics& physics) {
     const Vector3 t = across(std::abs(n.x) < 0.5 ? Vector3{1, 0, 0} : Vector3{0, 1, 0}, n);
     const Vector3 tangents[] = {(1 / norm(t)) * t, (1 / norm(t)) * cross(n, t)};
     const double length = physics.repulsion->relative_length * (first + second);
+    double curvature = 0, pull = 0;
     if (h < physics.repulsion->cutoff_lengths * length) {
-      sum.add(physics.repulsion->strength * std::exp(-h / length) / (length * length), pair.first,
-              pair.second, n, {}, {});
+      curvature = physics.repulsion->strength * std::exp(-h / length) / (length * length);
+      pull = -physics.repulsion->strength * std::exp(-h / length) / length;
+    }
+    if (physics.attraction && h < physics.attraction->cutoff) {
+      const double mean = 2 * first * second / (first + second), gap = std::max(h, 0.0);
+      const double c = physics.attraction->hamaker * mean / 12;
+      const double squares = gap * gap + std::pow(physics.attraction->regularisation * mean, 2);
+      curvature -= 2 * c * gap / (squares * squares);
+      pull += c / squares;
+    }
+    sum.add(std::max(curvature, 0.0), pair.first, pair.second, n, {}, {});
+    for (const Vector3& tangent : tangents) {
+      sum.add(std::max(pull, 0.0) / distance, pair.first, pair.second, tangent, {}, {});
     }
     if (h >= 0) {
       continue;
@@ -153,6 +165,14 @@ TEST(PackingMatrix, ResistanceIsWhatForcesLoseToUnitMotions) {
 
 TEST(PackingMatrix, StiffnessIsThatOfTheSpringsExtensions) {
   const Physics physics = physics_with(every_term);
+  const System system = dense_suspension(physics, count, 3);
+  const PackingMatrix matrix(system, kinds_of(system, physics), physics, {0, 1});
+  expect_equal(dense(matrix), stiffness_by_extensions(system, physics));
+}
+
+TEST(PackingMatrix, StiffnessOfAttractionIsThatOfTurningPairs) {
+  Physics physics = physics_with(every_term);
+  physics.attraction = AttractionParameters{.hamaker = 3, .regularisation = 0.01, .cutoff = 0.1};
   const System system = dense_suspension(physics, count, 3);
   const PackingMatrix matrix(system, kinds_of(system, physics), physics, {0, 1});
   expect_equal(dense(matrix), stiffness_by_extensions(system, physics));

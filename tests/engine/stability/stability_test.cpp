@@ -93,6 +93,10 @@ TEST(Stability, EveryPartOfTheSceneCounts) {
   const Json repulsion = {
       {"repulsion", {{"form", "exponential"}, {"strength", 1.7}, {"relative_length", 0.01}}}};
   EXPECT_NEAR(rates(repulsion).frequency_squared - plain.frequency_squared, 1.7 / 4e-4 * mobility, 1e-4);
+  // Where it is steepest, at a distance of eps / sqrt(3).
+  const Json attraction = {{"attraction", {{"hamaker", 0.6}, {"regularisation", 0.01}, {"cutoff", 1}}}};
+  const double steepest = 9 / (8 * std::sqrt(3.0)) * 0.05 / 1e-6;
+  EXPECT_NEAR(rates(attraction).frequency_squared - plain.frequency_squared, steepest * mobility, 1e-3);
 }
 
 // A packing that is pressed together by 0.5 %, so that most near pairs overlap or touch, and has almost

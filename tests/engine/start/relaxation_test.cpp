@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/kernels/pairs/terms.h"
 #include "engine/realisation/simulation.h"
 #include "engine/stability/stability.h"
 #include "engine/start/packing.h"

@@ -17,7 +17,7 @@ const Physics physics = physics_with({.lubrication = true,
                                       .damping = true,
                                       .friction = true,
                                       .rolling = true,
-                                      .repulsion = true});
+                                      .conservative = true});
 
 // With a timestep of 0 the springs act as they are.
 std::vector<double> loads_of(System system) {

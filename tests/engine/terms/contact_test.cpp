@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/terms/repulsion.h"
+#include "engine/terms/conservative.h"
 #include "tests/engine/two_spheres.h"
 
 namespace peclet::engine {
@@ -40,11 +40,12 @@ TEST(Contact, DampingOpposesTheNormalVelocityAlone) {
 
 TEST(Repulsion, ForceIsTheGradientOfTheExponentialAlsoInOverlap) {
   constexpr double strength = 1.7, length = 0.024, sum = 2.4;
+  const RepulsionOfPair law = of_pair(RepulsionParameters{strength, length / sum, 20}, 1, 1.4);
   Draws draws(52);
   const auto energy = [&](double r) { return strength * std::exp(-(r - sum) / length); };
   for (const double gap : {-0.01, 0.0, 0.02, 0.1}) {
     const PairGeometry pair = pair_at(1, 1.4, gap, draws.direction());
-    const Vector3 force = repulsion_force(strength, length, pair);
+    const Vector3 force = conservative_force(law, pair);
     EXPECT_NEAR(dot(force, pair.normal), slope(energy, pair.distance), 1e-6 * norm(force));
     EXPECT_NEAR(norm(across(force, pair.normal)), 0, 1e-12 * norm(force));
     EXPECT_LT(dot(force, pair.normal), 0);
@@ -53,14 +54,17 @@ TEST(Repulsion, ForceIsTheGradientOfTheExponentialAlsoInOverlap) {
 
 // Energy of a touching pair: the force there is strength over length.
 TEST(Repulsion, StrengthIsTheEnergyAtContact) {
-  EXPECT_NEAR(norm(repulsion_force(1.7, 0.02, pair_at(1, 1, 0, {1, 0, 0}))), 1.7 / 0.02, 1e-9);
+  const RepulsionOfPair law = of_pair(RepulsionParameters{1.7, 0.01, 20}, 1, 1);
+  EXPECT_NEAR(norm(conservative_force(law, pair_at(1, 1, 0, {1, 0, 0}))), 1.7 / 0.02, 1e-9);
+  EXPECT_EQ(law.energy(0), 1.7);
 }
 
 TEST(Contact, CompressiveQuadrantGivesPositiveShearStress) {
   const Vector3 n = {std::sqrt(0.5), -std::sqrt(0.5), 0};
   const PairGeometry touching = pair_at(1, 1.4, -0.01, n), near = pair_at(1, 1.4, 0.01, n);
   EXPECT_GT(symmetric_dyad(touching.separation, contact_normal_force(1e4, touching)).xy, 0);
-  EXPECT_GT(symmetric_dyad(near.separation, repulsion_force(1, 0.02, near)).xy, 0);
+  const RepulsionOfPair repulsion = of_pair(RepulsionParameters{1, 0.01, 20}, 1, 1.4);
+  EXPECT_GT(symmetric_dyad(near.separation, conservative_force(repulsion, near)).xy, 0);
 }
 
 // Compression is positive pressure: the trace of r F is negative.

@@ -121,8 +121,9 @@ class ContactOfTwo : public testing::Test {
 
   TermLoadsOf<double> after_step(double gap, const PairMotion& motion) {
     const auto no_noise = [] { return PairNormalsOf<double>{}; };
+    const auto no_law = [](StressTerm /*part*/, const Vector3& /*force*/) {};
     return pair_terms<terms>(pair_parameters(physics_, 1e-3), kind_, pair_at(1, 1, gap, n), motion, springs_,
-                             no_noise);
+                             no_noise, no_law);
   }
 
   Physics physics_ = [] {

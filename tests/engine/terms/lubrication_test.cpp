@@ -120,11 +120,12 @@ TEST(Lubrication, EndsWithTheKnownJumpsAtTheOuterGap) {
     const auto force_at = [&](double gap, const Vector3& velocity) {
       const PairGeometry pair = pair_at(1, 1, gap, {1, 0, 0});
       const auto no_noise = [] { return PairNormalsOf<double>{}; };
+      const auto no_law = [](StressTerm /*part*/, const Vector3& /*force*/) {};
       const PairMotion motion = {velocity, {}, {}};
       PairSpringsOf<double> springs;
       return (1 / (6 * std::numbers::pi * viscosity)) *
              pair_terms<Terms{.lubrication = true}>(pair_parameters(physics, 0), kind, pair, motion, springs,
-                                                    no_noise)
+                                                    no_noise, no_law)
                  .lubrication.force;
     };
     const double inside = each.outer_gap * (1 - 1e-9), outside = each.outer_gap * (1 + 1e-9);

@@ -24,6 +24,7 @@ SCENE = {
     },
     "lubrication": {"form": "kim-karrila", "inner_gap": 1e-3, "outer_gap": 0.05},
     "repulsion": {"form": "exponential", "strength": 0.17, "relative_length": 0.01, "cutoff_lengths": 20},
+    "attraction": {"hamaker": 0.3, "regularisation": 0.01, "cutoff": 1.0},
 }
 
 

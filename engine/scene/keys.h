@@ -1,4 +1,4 @@
-// Short ways to write the keys of a table.
+// How keys of a scene are written down.
 #pragma once
 
 #include <string>

@@ -1,0 +1,30 @@
+// The block attraction of a scene.
+#pragma once
+
+#include <optional>
+
+#include "engine/scene/keys.h"
+#include "engine/scene/scene_document.h"
+#include "engine/terms/attraction.h"
+
+namespace peclet::engine {
+
+inline Keys attraction_keys() {
+  return {
+      block("/attraction",
+            "Van der Waals attraction of the surfaces, at distance h: force A_H a / (12 (h^2 + eps^2)), in "
+            "overlap as at h = 0, with a = 2 a_i a_j / (a_i + a_j); absent: none."),
+      not_negative("/attraction/hamaker", "energy", "Hamaker constant A_H.", required),
+      with_default(positive("/attraction/regularisation", "", "eps / a."), 0.01),
+      positive("/attraction/cutoff", "length", "Distance h beyond which there is none.", required),
+  };
+}
+
+// None with a constant of 0.
+inline std::optional<AttractionParameters> read_attraction(const SceneDocument& scene) {
+  if (!(scene.number("/attraction/hamaker") > 0)) return std::nullopt;
+  return AttractionParameters{scene.number("/attraction/hamaker"), scene.number("/attraction/regularisation"),
+                              scene.number("/attraction/cutoff")};
+}
+
+}  // namespace peclet::engine
