@@ -4,8 +4,8 @@
 // several gives each its slab,
 //   V(y) = pi h^2 (3 a - h) / 3 below the height y, h = y - (y_i - a) between 0 and 2 a.
 // `velocity` is the mean of u_x - U(y_i), with each sphere's part V_i of the bin as its weight; U is the
-// uniform part of the flow. A ratio of means: numerator sum V_i (u_x - U) and denominator sum V_i, both over the bin's
-// volume.
+// uniform part of the flow. A ratio of means: numerator sum V_i (u_x - U) and denominator sum V_i, both over
+// the bin's volume.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -41,8 +41,7 @@ class Profiles : public Observable {
     const ParticleState& particles = system.particles;
     for (std::size_t i = 0; i < particles.count(); ++i) {
       const Vector3 place = particles.position[i];
-      const double velocity =
-          particles.velocity[i].x - (system.box.velocity_gradient() * place).x;
+      const double velocity = particles.velocity[i].x - (system.box.velocity_gradient() * place).x;
       const double a = particles.radius[i];
       const auto count = static_cast<std::int64_t>(bins_);
       const auto last = static_cast<std::int64_t>(std::floor((place.y + a) / width));
