@@ -15,11 +15,13 @@ double first_normal_difference(const SymmetricTensor& t) { return t.xx - t.yy; }
 double second_normal_difference(const SymmetricTensor& t) { return t.yy - t.zz; }
 double pressure(const SymmetricTensor& t) { return -(t.xx + t.yy + t.zz) / 3; }
 
-// Terms of the stress that are the same in every configuration, or nearly so where the flow varies.
-bool is_constant(const std::string& term) { return term == "solvent" || term == "stresslet"; }
+// Terms of the stress that are the same in every configuration.
+bool is_constant(const std::string& term, bool flow_varies) {
+  return term == "solvent" || (term == "stresslet" && !flow_varies);
+}
 
 // What is kept of each of the 32 blocks. The total's xy is the relative viscosity.
-Json of_block(const Json& means) {
+Json of_block(const Json& means, bool flow_varies) {
   Json kept;
   for (const auto& [name, value] : means.items()) {
     if (!value.is_structured()) kept[name] = rounded(value);
@@ -28,17 +30,18 @@ Json of_block(const Json& means) {
     kept["control_variates"][name] = rounded(value);
   }
   for (const auto& [term, stress] : means.at("stress").items()) {
-    if (!is_constant(term) && term != "total") kept["shear_stress"][term] = rounded(stress.at(3));
+    if (!is_constant(term, flow_varies) && term != "total")
+      kept["shear_stress"][term] = rounded(stress.at(3));
   }
   kept["shear_stress"]["brownian_structural"] = rounded(means.at("brownian_structural").at(3));
   return kept;
 }
 
 // What is kept of each quarter of the window.
-Json of_quarter(const Json& means) {
+Json of_quarter(const Json& means, bool flow_varies) {
   Json kept;
   for (const auto& [term, stress] : means.at("stress").items()) {
-    if (!is_constant(term)) kept["stress"][term] = rounded(stress);
+    if (!is_constant(term, flow_varies)) kept["stress"][term] = rounded(stress);
   }
   for (const char* name : {"brownian_pairwise", "brownian_structural"}) kept[name] = rounded(means.at(name));
   return kept;
@@ -156,11 +159,13 @@ Json StressMeans::control_variates(const SymmetricTensor& brownian) const {
 
 Json StressMeans::blocks(const Production& production) const {
   const std::span<const BlockSums> all = production.blocks();
+  const bool varies = physics_.flow.varies();
   std::vector<Json> blocks, quarters;
-  for (const BlockSums& block : all) blocks.push_back(of_block(means(block)));
+  for (const BlockSums& block : all) blocks.push_back(of_block(means(block), varies));
   constexpr std::size_t in_a_quarter = count_of_blocks / count_of_quarters;
   for (std::size_t quarter = 0; quarter < count_of_quarters; ++quarter) {
-    quarters.push_back(of_quarter(means(sum_of(all.subspan(quarter * in_a_quarter, in_a_quarter)))));
+    const BlockSums sums = sum_of(all.subspan(quarter * in_a_quarter, in_a_quarter));
+    quarters.push_back(of_quarter(means(sums), varies));
   }
   Json kept = transposed(blocks);
   kept.update(transposed(quarters));
@@ -174,8 +179,8 @@ std::vector<Quantity> stress_quantities(const Scene& scene) {
   const char* const unit = described.unit();
   if (sheared) {
     described.part("relative_viscosity", "eta_r", "1", "control_variates/brownian_pairwise", noise);
-    described.part("relative_viscosity_pair", "eta_r - 1 - 5 phi / 2", "1",
-                   "control_variates/brownian_pairwise", noise);
+    described.part("relative_viscosity_pair", "eta_r^pairs", "1", "control_variates/brownian_pairwise",
+                   noise);
     described.stress("stress/solvent", "sigma^S");
   }
   if (sheared || scene.physics.flow.varies()) described.stress("stress/stresslet", "sigma^E");

@@ -15,7 +15,9 @@ constexpr std::uint64_t comparisons = 8;
 }  // namespace
 
 StepGate::StepGate(const Physics& physics, const Schedule& schedule)
-    : production_(schedule.production), is_smooth_(physics.thermal_energy == 0 && physics.flow.rate() > 0) {}
+    : production_(
+          schedule.production),  // The stress of waves cancels over the cell: no measure of its error.
+      is_smooth_(physics.thermal_energy == 0 && physics.flow.rate() > 0 && !physics.flow.varies()) {}
 
 std::optional<Ending> StepGate::check(Integrator& integrator, System& system) {
   if (system.step % integrator.intervals().stability != 0) {

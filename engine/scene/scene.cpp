@@ -103,9 +103,10 @@ ImposedFlow Reading::flow(double rate) const {
   if (!has("/flow/faxen")) miss("/flow/faxen", "must be true or false where there are /flow/waves");
   std::vector<Wave> waves;
   for (const Json& wave : at("/flow/waves")) {
-    waves.push_back(
-        {wave.at("periods").get<int>(), wave.at("sine").get<double>(), wave.at("cosine").get<double>()});
+    const double sine = wave.at("sine").get<double>(), cosine = wave.at("cosine").get<double>();
+    if (sine != 0 || cosine != 0) waves.push_back({wave.at("periods").get<int>(), sine, cosine});
   }
+  if (waves.empty()) return steady_shear(rate);
   return ImposedFlow(std::make_shared<SteadyShear>(rate),
                      std::make_shared<Waves>(std::move(waves), at("/flow/faxen").get<bool>()));
 }

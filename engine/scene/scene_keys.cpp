@@ -53,8 +53,7 @@ Keys flow_keys() {
                    "k_B T; absent (or 0): no Brownian motion. Not together with peclet."),
       block("/flow",
             "The streaming flow (rate y, 0, 0), and waves in it. A scene has flow.shear_rate or peclet."),
-      not_negative("/flow/shear_rate", "1 / time",
-                   "Shear rate; 0: a fluid at rest. Not together with peclet."),
+      not_negative("/flow/shear_rate", "1 / time", "Shear rate; 0: no mean shear. Not together with peclet."),
       {.pointer = "/flow/waves",
        .kind = KeyKind::array,
        .meaning =
@@ -145,7 +144,7 @@ Keys run_keys() {
       with_default(positive("/guard/largest_overlap", "", "Overlap over the smaller radius of the pair."),
                    0.05),
       positive("/guard/largest_displacement", "",
-               "Displacement in one step, relative to the flow, over the smallest radius; 0.05 with explicit "
+               "Displacement in one step, relative to rate y, over the smallest radius; 0.05 with explicit "
                "and 0.3 with implicit steps unless given."),
       with_default(positive("/guard/energy_imbalance", "",
                             "Energy that the finite step makes over the work of the flow; beyond it the "

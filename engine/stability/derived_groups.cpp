@@ -83,16 +83,20 @@ std::vector<Warning> scene_warnings(const Scene& scene) {
                        ratio, *groups.inertial_time, *groups.brownian_time, largest_inertia_over_brownian)});
     }
   }
-  // Of smooth motion half steps tell the error.
+  // Of smooth motion in uniform shear half steps tell the error.
   const bool noise = scene.physics.thermal_energy > 0;
   const bool friction = scene.physics.contact && scene.physics.contact->friction > 0;
-  if (scene.method == Method::implicit_steps && scene.timestep && (noise || friction)) {
+  if (scene.method == Method::implicit_steps && scene.timestep &&
+      (noise || friction || scene.physics.flow.varies())) {
     if (const double excess = *scene.timestep / automatic_timestep(scene); excess > 1) {
       warnings.push_back(
           {"timestep",
            fmt::format("the step is {:.3g} times the automatic one; with {} nothing else tells its "
                        "error: see results/speed-accuracy and results/stability",
-                       excess, noise ? "noise" : "friction")});
+                       excess,
+                       noise      ? "noise"
+                       : friction ? "friction"
+                                  : "waves")});
     }
   }
   return warnings;

@@ -83,8 +83,9 @@ double time_beyond_lubrication(const Physics& physics, double first, double seco
 }
 
 // The shortest time in which attraction shortens its own distance: resistance / -V'' where V'' is negative,
-// the resistance being lubrication and the drag of both spheres. Infinite without attraction. Gaps from a
-// ten-thousandth to the range of all laws, at a twelfth of a decade.
+// the resistance being lubrication and the drag of both spheres. Infinite without attraction. Gaps from 1e-8
+// of the sum of radii, below any width that a law may have, to the range of all laws, at a twelfth of a
+// decade.
 double time_of_pulling(const Physics& physics, double first, double second) {
   const PairKind kind = make_pair_kind(physics, first, second);
   const double drag_first = translational_drag(physics.viscosity, first);
@@ -92,7 +93,7 @@ double time_of_pulling(const Physics& physics, double first, double second) {
   const double drag = drag_first * drag_second / (drag_first + drag_second);
   const double sum = kind.sum_of_radii, ratio = std::pow(10, 1.0 / 12);
   double shortest = std::numeric_limits<double>::infinity();
-  for (double h = 1e-4 * sum; sum + h < kind.range; h *= ratio) {
+  for (double h = 1e-8 * sum; sum + h < kind.range; h *= ratio) {
     const double pulling = -potential(kind.conservative, sum + h, sum).stiffness;
     if (!(pulling > 0)) continue;
     double resistance = drag;

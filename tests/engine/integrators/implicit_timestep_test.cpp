@@ -1,10 +1,12 @@
 // The automatic implicit step: which of its bounds a scene meets.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "contract/input_error.h"
 #include "engine/realisation/simulation.h"
+#include "engine/stability/derived_groups.h"
 #include "engine/stability/stability.h"
 #include "tests/engine/small_scene.h"
 
@@ -76,6 +78,16 @@ TEST(ImplicitTimestep, IsBoundByTheGrowthOfAttraction) {
   EXPECT_LE(automatic_timestep(scene), drag / steepest * 1.01);
 }
 
+// Steepest at 0.6e-5 radii, with -V'' = 9/(8 sqrt 3) c / eps^3.
+TEST(ImplicitTimestep, IsBoundByTheGrowthOfNarrowAttraction) {
+  const Scene scene = scene_with(Json::parse(R"({
+    "particles": {"species": [{"radius": 1}]}, "contact": null, "lubrication": null, "repulsion": null,
+    "attraction": {"hamaker": 120, "regularisation": 1e-5, "cutoff": 1}})"));
+  const double drag = 0.5 * 6 * pi * 0.1, steepest = 9 / (8 * std::sqrt(3.0)) * 10 / 1e-15;
+  EXPECT_GE(automatic_timestep(scene), drag / steepest * (1 - 1e-12));
+  EXPECT_LE(automatic_timestep(scene), drag / steepest * 1.02);
+}
+
 // Spheres with hardly any inertia, Pe = 1; of one radius, X_A = 6 pi eta a (1 / (4 xi) + 9/40 ln(1 / xi)).
 Json light_spheres(double density, double outer_gap, const Json& species) {
   return {{"particles", {{"count", 150}, {"density", density}, {"species", species}}},
@@ -134,6 +146,25 @@ TEST(ImplicitTimestep, IsRefusedBeyondFourTimesTheAutomaticOne) {
   };
   EXPECT_EQ(resolved(3.99), 3.99 * automatic);
   EXPECT_THROW(resolved(4.01), InputError);
+}
+
+// Of smooth motion in uniform shear half steps tell the error; in waves, with noise and with friction nothing
+// does.
+TEST(ImplicitTimestep, IsWarnedOfBeyondTheAutomaticOneWhereNothingElseTellsItsError) {
+  const Json smooth = {
+      {"contact", {{"friction", nullptr}, {"rolling_stiffness", nullptr}, {"rolling_friction", nullptr}}},
+      {"fluid", {{"thermal_energy", 0}}}};
+  Json wavy = smooth;
+  wavy["flow"] = {{"waves", {{{"periods", 1}, {"sine", 0.1}}}}, {"faxen", true}};
+  const auto warns = [](Json patch, double factor) {
+    patch["integrator"] = {{"timestep", factor * automatic_timestep(scene_with(patch))}};
+    const std::vector<Warning> all = scene_warnings(scene_with(patch));
+    return std::any_of(all.begin(), all.end(),
+                       [](const Warning& warning) { return warning.code == "timestep"; });
+  };
+  EXPECT_FALSE(warns(smooth, 3));
+  EXPECT_TRUE(warns(wavy, 3));
+  EXPECT_FALSE(warns(wavy, 0.9));
 }
 
 TEST(ImplicitTimestep, MustBeGivenWhereNothingSetsATime) {

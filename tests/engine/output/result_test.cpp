@@ -309,6 +309,8 @@ TEST(Result, HasTheStressletsOfSpheresWhereTheWavesAre) {
   EXPECT_NEAR(found, sum / 32 / unit, 1e-12 * std::abs(found));
   EXPECT_GT(std::abs(found - 2.5 * 0.45), 1e-3);
   EXPECT_TRUE(result.at("gate").at("energy_imbalance").is_null());
+  EXPECT_TRUE(result.at("gate").at("half_step_difference").is_null());
+  EXPECT_EQ(result.at("blocks").at("stress").at("stresslet").size(), 4U);
 }
 
 // Contact and repulsion depend on positions alone: every step of the production window is evaluated here once

@@ -1,5 +1,6 @@
 #include "engine/scene/scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -127,6 +128,16 @@ TEST(Scene, WhatCanNeverBeReachedIsNoLimit) {
   EXPECT_EQ(at_rest.equilibration.strain, unlimited);
   EXPECT_EQ(at_rest.equilibration.brownian_times, 4);
   EXPECT_EQ(at_rest.production.brownian_times, 8);
+}
+
+TEST(Scene, AWaveOfAmplitudeZeroIsNone) {
+  const auto varies = [](const char* sine) {
+    return scene_with(Json::parse(fmt::format(
+                          R"({{"flow": {{"waves": [{{"periods": 1, "sine": {}}}], "faxen": true}}}})", sine)))
+        .physics.flow.varies();
+  };
+  EXPECT_FALSE(varies("0"));
+  EXPECT_TRUE(varies("0.1"));
 }
 
 TEST(Scene, EquilibrationOfZeroIsOverBeforeItStarts) {

@@ -83,8 +83,8 @@ TEST(Attraction, HasTheGradientsOfItsEnergyWhichEndsAtTheCutoff) {
 TEST(Attraction, PullsSpheresInTouchByTheirRegularisedForce) {
   const AttractionOfPair law = of_pair(AttractionParameters{.hamaker = 0.6, .cutoff = 0.5}, 1, 1);
   const Vector3 force = conservative_force(law, pair_at(1, 1, 0, {1, 0, 0}));
-  EXPECT_NEAR(force.x, 0.6 / 12 / 1e-4, 1e-9);  // towards j
-  EXPECT_LT(symmetric_dyad({2, 0, 0}, -force).xx, 0);
+  EXPECT_NEAR(force.x, 0.6 / 12 / 1e-4, 1e-9);        // towards j
+  EXPECT_GT(symmetric_dyad({2, 0, 0}, force).xx, 0);  // tension
 }
 
 // Stiffness of what has to stay positive: that of the repulsion within its range, nothing beyond.
