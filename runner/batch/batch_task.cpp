@@ -193,6 +193,9 @@ void BatchTask::handle(const JobFailed& event) {
 }
 
 void BatchTask::handle(const Drained& event) {
+  if (is_in_hand(event.job) && !stopping_) {  // it could do so for ever
+    return condemn({AttemptOutcome::garbled, "gave back a job that nobody wanted back"});
+  }
   if (is_in_hand(event.job)) drained_ = true;
   pool_.drain(the_worker);  // an idle engine leaves
 }
@@ -227,14 +230,15 @@ void BatchTask::take_result(const ResultSpooled& result) {
 void BatchTask::handle(const Exited& event) {
   const WorkerWatch watch = std::exchange(watch_, {});
   if (!watch.is_busy()) {
-    if (watch.is_idle() || stopping_) return;
+    if (!watch.is_starting() || stopping_) return;
     throw EngineError("the engine ended before it said hello: " + to_string(event.ending));
   }
   // A result may be durable although nobody could announce it any more.
   if (!watch.condemned()) publish_results(folder_, manifest_, index_);
   if (fs::exists(folder_.ended(place_))) return;
   const AttemptReason how = watch.ended(event.ending, stopping_);
-  if (!drained_ && how.outcome != AttemptOutcome::drained) return end(how, event.ending);
+  if (watch.condemned() || (!drained_ && how.outcome != AttemptOutcome::drained))
+    return end(how, event.ending);
   drained_ = true;
   report_.outcome = AttemptOutcome::drained;
   note_running();

@@ -55,7 +55,8 @@ class WorkerWatch {
  public:
   bool is_there() const { return stage_ != Stage::absent; }
   bool is_starting() const { return stage_ == Stage::starting; }
-  bool is_idle() const { return stage_ == Stage::idle; }
+  // And fit for a job: not one that is being killed.
+  bool is_idle() const { return stage_ == Stage::idle && !condemned_; }
   bool is_busy() const { return stage_ == Stage::busy; }
 
   // Its process was started. Whatever was known of an earlier one is forgotten.

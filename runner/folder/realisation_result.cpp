@@ -42,8 +42,8 @@ struct Series {
 Series series_of(const Json& blocks, const std::string& path) {
   for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
     const Json* const found = at_path(blocks, std::string_view(path).substr(0, end));
-    if (found == nullptr) return {};
-    if (found->is_array()) return {found, end == std::string::npos ? "" : path.substr(end)};
+    if (found != nullptr && found->is_array())
+      return {found, end == std::string::npos ? "" : path.substr(end)};
     if (end == std::string::npos) return {};
   }
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
+#include <set>
+#include <string_view>
 #include <vector>
 
 #include "runner/campaign/campaign.h"
@@ -101,12 +103,12 @@ void must_be_hash(const Place& place) {
   }
 }
 
+bool is_name(const std::string& text) { return !text.empty() && plain(text, longest_name) == text; }
+
 void must_be_name(const Place& place) {
-  const std::string& name = text_at(place);
-  if (name.empty() || plain(name, longest_name) != name) {
-    refuse(place.pointer,
-           fmt::format("must be a name of at most {} bytes without control characters", longest_name));
-  }
+  if (is_name(text_at(place))) return;
+  refuse(place.pointer,
+         fmt::format("must be a name of 1 to {} bytes without control characters", longest_name));
 }
 
 void must_be_warning(const Place& place) {
@@ -140,10 +142,9 @@ void check_mean(const Place& mean) {
   }
   if (!mean.value.is_object()) return;
   for (const auto& [name, value] : mean.value.items()) {
-    if (plain(name, longest_name) != name) {
-      refuse(mean.pointer + '/' + name,
-             fmt::format("must have a name of at most {} bytes without control characters", longest_name));
-    }
+    if (is_name(name)) continue;
+    refuse(mean.pointer + '/' + name,
+           fmt::format("must have a name of 1 to {} bytes without control characters", longest_name));
   }
 }
 
@@ -171,7 +172,8 @@ bool has_shape(const Json& value, const std::vector<QuantityAxis>& axes, std::si
 }
 
 void check_description(const Place& about) {
-  for (const char* const key : {"symbol", "unit"}) must_be_name(about.at(key));
+  must_be_name(about.at("unit"));
+  if (const Place symbol = about.at("symbol"); !text_at(symbol).empty()) must_be_name(symbol);
   about.with("axes", check_axes);
   const std::string& estimator = text_at(about.at("estimator"));
   if (estimator != "mean" && estimator != "ratio")
@@ -183,6 +185,30 @@ void check_description(const Place& about) {
     text_at(control.at("quantity"));
     must_be_number(control.at("mean"));
   });
+}
+
+// Estimates have room for as many numbers as the axes say, whatever the mean has.
+void check_sizes(const std::vector<Quantity>& all) {
+  std::size_t together = 0;
+  for (const Quantity& quantity : all) {
+    std::size_t elements = 1;
+    for (const QuantityAxis& axis : quantity.axes)
+      elements = std::min(elements * axis.values.size(), most_values + 1);
+    together += elements;
+    if (together <= most_values) continue;
+    refuse(fmt::format("/quantities/{}/axes", quantity.name),
+           fmt::format("must not make more than {} numbers, together with the quantities before it",
+                       most_values));
+  }
+}
+
+// A campaign aims at a number by its path: no two may have the same.
+void check_paths(const std::vector<Quantity>& all) {
+  std::set<std::string_view> paths;
+  for (const Quantity& quantity : all) {
+    if (!paths.insert(quantity.name).second)
+      refuse("/mean/" + quantity.name, "must not be there by two ways");
+  }
 }
 
 // Whether its values in the mean are what the description says.
@@ -200,15 +226,17 @@ void check_values(const Quantity& quantity, const std::vector<Quantity>& all, co
     must_be_there(quantity.name + '/' + quantity.ratio->denominator, true);
   }
   if (!quantity.control) return;
-  const auto control = std::find_if(all.begin(), all.end(), [&](const Quantity& other) {
-    return other.name == quantity.control->quantity && !other.ratio;
-  });
+  const std::string& wanted = quantity.control->quantity;
+  const auto control =
+      std::lower_bound(all.begin(), all.end(), wanted,
+                       [](const Quantity& other, const std::string& name) { return other.name < name; });
+  const bool is_another = control != all.end() && control->name == wanted && wanted != quantity.name;
   const auto sizes = [](const Quantity& of) {
     std::vector<std::size_t> lengths;
     for (const QuantityAxis& axis : of.axes) lengths.push_back(axis.values.size());
     return lengths;
   };
-  if (control == all.end() || quantity.ratio || sizes(*control) != sizes(quantity)) {
+  if (!is_another || control->ratio || quantity.ratio || sizes(*control) != sizes(quantity)) {
     refuse(fmt::format("/quantities/{}/control/quantity", quantity.name),
            "must be another quantity of the same shape, both of the estimator mean");
   }
@@ -217,17 +245,19 @@ void check_values(const Quantity& quantity, const std::vector<Quantity>& all, co
 void check_quantities(const Place& quantities, const Json& document) {
   if (quantities.value.is_null()) return;
   must_be_object(quantities);
+  if (quantities.value.empty()) return;  // the engine does not say
   if (!document.at("mean").is_object()) refuse(quantities.pointer, "must be null after this ending");
   for (const auto& [name, value] : quantities.value.items()) {
     const Place about{value, quantities.pointer + '/' + name};
-    if (name.empty() || plain(name, longest_name) != name) {
+    if (!is_name(name)) {
       refuse(about.pointer,
-             fmt::format("must have a name of at most {} bytes without control characters", longest_name));
+             fmt::format("must have a name of 1 to {} bytes without control characters", longest_name));
     }
     must_be_object(about);
     check_description(about);
   }
   const std::vector<Quantity> all = quantities_of(document);
+  check_sizes(all);
   for (const Quantity& quantity : all) check_values(quantity, all, document.at("mean"));
 }
 
@@ -247,7 +277,11 @@ void check_ending(const Place& document) {
       refuse(about.pointer, completed ? "must be an object" : "must be null after this ending");
     }
   }
-  if (completed) check_mean(document.at("mean"));
+  if (!completed) return;
+  check_mean(document.at("mean"));
+  const auto descriptions = document.value.find("quantities");
+  if (descriptions == document.value.end() || descriptions->empty())
+    check_paths(quantities_of(document.value));
 }
 
 // The pointer of a number that is too large, or ""; the reader has refused those that are not finite.

@@ -1,6 +1,7 @@
 // `peclet export --csv`: one row per point.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -42,20 +43,21 @@ class ScalarColumns {
  public:
   void add(std::size_t row, const std::vector<QuantityEstimate>& estimates) {
     for (const QuantityEstimate& found : estimates) {
-      if (!found.quantity.axes.empty()) continue;
-      columns_[with_unit(found.quantity)][row] = found.estimates.front();
+      columns_[{found.quantity.name, found.quantity.unit}][row] = found.estimates.front();
     }
   }
-  std::vector<std::string> titles() const {
+  // `others` are the titles of the columns before these.
+  std::vector<std::string> titles(const std::vector<std::string>& others) const {
     std::vector<std::string> titles;
-    for (const auto& [title, rows] : columns_) {
+    for (const auto& [quantity, rows] : columns_) {
+      const std::string title = title_of(quantity.first, quantity.second, others);
       append(titles, {title, title + " standard_error", title + " count"});
     }
     return titles;
   }
   std::vector<std::string> fields(std::size_t row) const {
     std::vector<std::string> fields;
-    for (const auto& [title, rows] : columns_) {
+    for (const auto& [quantity, rows] : columns_) {
       const auto found = rows.find(row);
       if (found == rows.end()) {
         append(fields, {"", "", ""});
@@ -69,13 +71,15 @@ class ScalarColumns {
   }
 
  private:
-  static std::string with_unit(const Quantity& quantity) {
-    const std::string& unit = quantity.unit;
-    return csv_text(unit.empty() || unit == "1" ? quantity.name
-                                                : fmt::format("{} [{}]", quantity.name, unit));
+  static std::string title_of(const std::string& name, const std::string& unit,
+                              const std::vector<std::string>& others) {
+    const bool is_taken = std::find(others.begin(), others.end(), name) != others.end();
+    const std::string unambiguous = is_taken ? "quantity " + name : name;
+    return csv_text(unit.empty() || unit == "1" ? unambiguous : fmt::format("{} [{}]", unambiguous, unit));
   }
 
-  std::map<std::string, std::map<std::size_t, Estimate>> columns_;
+  std::map<std::pair<std::string, std::string>, std::map<std::size_t, Estimate>>
+      columns_;  // by name and unit
 };
 
 }  // namespace
@@ -100,10 +104,11 @@ std::string export_csv(Database& database, bool canonical) {
     const std::optional<Look> look = checked_look(database, point.point, target);
     append(fields, look_fields(look));
     if (!canonical) append(fields, full_fields(point));
-    scalars.add(rows.size(), point_estimates(database, point.point, look));
+    scalars.add(rows.size(),
+                point_estimates(database, point.point, look, QuantityEstimates::Wanted::scalars));
     rows.push_back(std::move(fields));
   }
-  append(titles, scalars.titles());
+  append(titles, scalars.titles(titles));
   std::string text = csv_line(titles);
   for (std::size_t row = 0; row < rows.size(); ++row) {
     append(rows[row], scalars.fields(row));

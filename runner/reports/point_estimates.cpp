@@ -5,8 +5,9 @@
 namespace peclet::runner {
 
 std::vector<QuantityEstimate> point_estimates(Database& database, const PointRecord& point,
-                                              const std::optional<Look>& look) {
-  QuantityEstimates estimates;
+                                              const std::optional<Look>& look,
+                                              QuantityEstimates::Wanted wanted) {
+  QuantityEstimates estimates(wanted);
   if (look) {
     database.for_each_result(point.id, look->seeds, [&](int, const Json& result) { estimates.add(result); });
   }

@@ -12,8 +12,9 @@
 namespace peclet::runner {
 
 // Of the seeds of the look; nothing before the first one.
-std::vector<QuantityEstimate> point_estimates(Database& database, const PointRecord& point,
-                                              const std::optional<Look>& look);
+std::vector<QuantityEstimate> point_estimates(
+    Database& database, const PointRecord& point, const std::optional<Look>& look,
+    QuantityEstimates::Wanted wanted = QuantityEstimates::Wanted::all);
 
 // One column for each pointer that the sweep has set at any point.
 class SettingColumns {

@@ -93,10 +93,10 @@ void add_undescribed(const Json& mean, const Json& value, const std::string& nam
   }
 }
 
-// Null: the result says nothing of its numbers.
+// Null, or empty: the result says nothing of its numbers.
 const Json* descriptions(const Json& result) {
   const auto found = result.find("quantities");
-  return found == result.end() || found->is_null() ? nullptr : &*found;
+  return found == result.end() || found->empty() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -120,6 +120,10 @@ std::vector<Quantity> quantities_of(const Json& result) {
 const Json* at_path(const Json& document, std::string_view path) {
   const Json* value = &document;
   for (path = without_slash(path); value != nullptr && !path.empty();) {
+    // Names may hold slashes.
+    if (value->is_object()) {
+      if (const auto whole = value->find(path); whole != value->end()) return &*whole;
+    }
     value = member(*value, take_part(path));
   }
   return value;

@@ -19,11 +19,13 @@ namespace peclet::runner {
 struct ControlVariate {
   std::string quantity;
   double mean = 0;
+  friend bool operator==(const ControlVariate&, const ControlVariate&) = default;
 };
 
 // Members of the quantity's object whose means over the seeds are divided.
 struct RatioOfMeans {
   std::string numerator, denominator;
+  friend bool operator==(const RatioOfMeans&, const RatioOfMeans&) = default;
 };
 
 struct QuantityAxis {

@@ -33,8 +33,7 @@ bool is_like(const Quantity& one, const Quantity& other) {
   const auto same_axis = [](const QuantityAxis& a, const QuantityAxis& b) {
     return a.name == b.name && a.unit == b.unit && a.values == b.values;
   };
-  return one.unit == other.unit && one.ratio.has_value() == other.ratio.has_value() &&
-         one.control.has_value() == other.control.has_value() &&
+  return one.unit == other.unit && one.ratio == other.ratio && one.control == other.control &&
          std::equal(one.axes.begin(), one.axes.end(), other.axes.begin(), other.axes.end(), same_axis);
 }
 
@@ -123,22 +122,25 @@ void QuantityEstimates::add(Sums& sums, const Json& mean) {
   for (std::size_t k = 0; k < elements; ++k) sums.plain[k].add(values[k]);
   if (!quantity.control) return;
   const std::vector<double> controls = numbers_at(mean, quantity.control->quantity, elements);
+  // As in a look: a value without its control counts as it is.
   for (std::size_t k = 0; k < elements; ++k) {
-    sums.controlled[k].add(values[k] + controls[k] - quantity.control->mean);
+    sums.controlled[k].add(values[k] + (std::isnan(controls[k]) ? 0 : controls[k] - quantity.control->mean));
   }
 }
 
 void QuantityEstimates::add(const Json& result) {
   const Json& mean = result.at("mean");
   if (!mean.is_object()) return;
-  const Json descriptions = result.value("quantities", Json());
-  if (!descriptions.is_null() && descriptions == descriptions_) {
+  const bool is_first = sums_.empty();
+  const auto descriptions = result.find("quantities");
+  if (descriptions != result.end() && !descriptions->empty() && *descriptions == descriptions_) {
     for (Sums& sums : sums_) {
-      if (descriptions.contains(sums.quantity.name)) add(sums, mean);
+      if (descriptions->contains(sums.quantity.name)) add(sums, mean);
     }
     return;
   }
   for (const Quantity& quantity : quantities_of(result)) {
+    if (wanted_ == Wanted::scalars && !quantity.axes.empty()) continue;
     Sums& sums = sums_of(quantity);
     if (is_like(sums.quantity, quantity)) {
       add(sums, mean);
@@ -146,8 +148,7 @@ void QuantityEstimates::add(const Json& result) {
       ++sums.unlike;
     }
   }
-  // Those of the first result are those of the sums.
-  if (descriptions_.is_null()) descriptions_ = descriptions;
+  if (is_first && descriptions != result.end()) descriptions_ = *descriptions;
 }
 
 std::vector<QuantityEstimate> QuantityEstimates::estimates() const {

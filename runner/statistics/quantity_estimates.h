@@ -29,6 +29,9 @@ struct QuantityEstimate {
 
 class QuantityEstimates {
  public:
+  enum class Wanted { all, scalars };
+  explicit QuantityEstimates(Wanted wanted = Wanted::all) : wanted_(wanted) {}
+
   // One more result, in the order of the seeds; one that has not completed adds nothing. Memory: a few
   // numbers for each element of a mean, two for each element and seed of a ratio.
   void add(const Json& result);
@@ -57,7 +60,8 @@ class QuantityEstimates {
   Sums& sums_of(const Quantity& quantity);
   static void add(Sums& sums, const Json& mean);
 
-  Json descriptions_;
+  Wanted wanted_;
+  Json descriptions_;       // of the first result, which the sums follow
   std::vector<Sums> sums_;  // in the order of the names
 };
 

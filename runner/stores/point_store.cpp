@@ -6,9 +6,12 @@
 #include "runner/database/result_text.h"
 #include "runner/folder/realisation_result.h"
 #include "runner/statistics/quantities.h"
+#include "runner/text/plain_text.h"
 
 namespace peclet::runner {
 namespace {
+
+constexpr std::size_t longest_list = 350;
 
 std::string describe(const Campaign& campaign) {
   return fmt::format("{}: {} points, {} to {} at {:g} confidence, {} to {} seeds", campaign.name,
@@ -99,8 +102,9 @@ void PointStore::observe_again(const Campaign& campaign) {
     const Json document = Json::parse(result_text(done, 2, 3));
     const Observed observed = observe(document, campaign.target.observable);
     if (!done.is_null(4) && !has_observable(document.at("mean"), campaign.target.observable)) {
-      throw InputError(campaign.name, "/target/observable", campaign.target.observable,
-                       "must be a number that the results have: " + names_of_targets(document));
+      throw InputError(
+          campaign.name, "/target/observable", campaign.target.observable,
+          "must be a number that the results have: " + plain(names_of_targets(document), longest_list));
     }
     change.bind(to_string(observed.value ? SeedState::done : SeedState::failed))
         .bind(observed.value ? "completed" : no_value)

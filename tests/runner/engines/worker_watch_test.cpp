@@ -78,6 +78,16 @@ TEST(WorkerWatch, TheFirstReasonForWhichItIsKilledStays) {
   EXPECT_EQ(watch.ended({{}, SIGKILL}, false).message, "first");
 }
 
+TEST(WorkerWatch, AnIdleWorkerThatIsBeingKilledGetsNoJob) {
+  WorkerWatch watch;
+  watch.start(Awake(0));
+  watch.rest(Awake(1));
+  EXPECT_TRUE(watch.is_idle());
+  watch.condemn({AttemptOutcome::garbled, "rubbish after its result"});
+  EXPECT_FALSE(watch.is_idle());
+  EXPECT_FALSE(watch.is_starting());
+}
+
 TEST(WorkerWatch, AnExitIsADrainOnlyWhereItWasAskedFor) {
   WorkerWatch watch = busy_since(Awake(0));
   EXPECT_EQ(watch.ended({0, {}}, false).outcome, AttemptOutcome::crashed);

@@ -289,7 +289,9 @@ TEST(RealisationResult, ItsDescriptionsAreThoseOfItsNumbers) {
       {"/quantities/alone/control",
        {{"quantity", "noise"}, {"mean", 0}},
        "/quantities/alone/control/quantity"},
-      {"/quantities/noise/control", {{"quantity", "nothing"}, {"mean", 0}}, "must be another quantity"}};
+      {"/quantities/noise/control", {{"quantity", "nothing"}, {"mean", 0}}, "must be another quantity"},
+      {"/quantities/alone/control", {{"quantity", "alone"}, {"mean", 0}}, "must be another quantity"},
+      {"/quantities/alone/symbol", "a\nb", "/quantities/alone/symbol: must be a name of 1 to 120 bytes"}};
   for (const Fault& fault : faults) {
     Json result = described_result();
     result[Json::json_pointer(fault.place)] = fault.value;
@@ -303,6 +305,64 @@ TEST(RealisationResult, ItsDescriptionsAreThoseOfItsNumbers) {
   Json empty = described_result();
   empty["mean"]["profile"]["velocity"] = nullptr;  // nothing was there to measure
   EXPECT_EQ(observe(parse_result(empty.dump()).document, "profile/velocity/1").value, std::nullopt);
+}
+
+// 64 axes of two values each are 2^64 numbers, which a product of 64 bits takes for none.
+TEST(RealisationResult, ADescriptionMayNotAskForMoreRoomThanThereIs) {
+  for (const std::size_t axes : {3U, 64U}) {
+    Json result = described_result();
+    const Json values(std::vector<int>(axes == 3 ? 1000 : 2, 1));
+    result["mean"]["alone"] = nullptr;
+    result["quantities"]["alone"] = {
+        {"symbol", ""}, {"unit", "1"}, {"estimator", "mean"}, {"axes", Json::array()}};
+    for (std::size_t axis = 0; axis < axes; ++axis) {
+      result["quantities"]["alone"]["axes"].push_back({{"name", "x"}, {"unit", "1"}, {"values", values}});
+    }
+    try {
+      parse_result(result.dump());
+      ADD_FAILURE() << axes;
+    } catch (const ResultError& error) {
+      EXPECT_NE(std::string(error.what()).find("must not make more than 4194304 numbers"), std::string::npos)
+          << error.what();
+    }
+  }
+}
+
+TEST(RealisationResult, WithoutDescriptionsIsWithEmptyOnes) {
+  Json lost = plain_result("point", 0, 10);
+  lost["ending"]["cause"] = "overlap";
+  lost["mean"] = lost["blocks"] = nullptr;
+  lost["quantities"] = Json::object();
+  Json result = plain_result(lost["point"], 0, 10);
+  result["quantities"] = Json::object();
+  lost["point"] = result["point"] = std::string(64, 'a');
+  EXPECT_EQ(parse_result(lost.dump()).cause, "overlap");
+  EXPECT_EQ(quantities_of(parse_result(result.dump()).document).size(),
+            quantities_of([&] {
+              result.erase("quantities");
+              return parse_result(result.dump()).document;
+            }())
+                .size());
+}
+
+// As another engine may call it.
+TEST(RealisationResult, ANameMayHoldASlash) {
+  Json result = plain_result(std::string(64, 'a'), 0, 10);
+  result.erase("quantities");
+  result["mean"]["P/P0"] = 3.5;
+  result["blocks"]["P/P0"] = {1, 2, 3, 8};
+  const Json document = parse_result(result.dump()).document;
+  EXPECT_TRUE(has_observable(document["mean"], "P/P0"));
+  EXPECT_EQ(observe(document, "P/P0").value, 3.5);
+  EXPECT_EQ(observe(document, "P/P0").first_half, 1.5);
+  result["mean"]["P"] = {{"P0", 4}};
+  try {
+    parse_result(result.dump());
+    ADD_FAILURE();
+  } catch (const ResultError& error) {
+    EXPECT_NE(std::string(error.what()).find("/mean/P/P0: must not be there by two ways"), std::string::npos)
+        << error.what();
+  }
 }
 
 class Spool : public testing::Test {

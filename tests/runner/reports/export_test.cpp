@@ -174,6 +174,21 @@ TEST(Export, CsvHasARowPerPointWithEmptyFieldsForWhatDoesNotExist) {
 }
 
 // Seeds whose profile is (v, 2 v) and whose ratio is v over 2, all with the same unit but the ratio.
+TEST(Export, ColumnsOfACsvAreNotCalledAlike) {
+  StoredCampaign campaign(1, 4, 40);
+  for (int seed = 0; seed < 4; ++seed) {
+    campaign.complete_with(0, seed, viscosities[seed], [](Json& result) {
+      result.erase("quantities");
+      result["mean"]["count"] = 3;  // another engine's
+    });
+  }
+  const std::string csv = export_csv(campaign.database(), false);
+  std::stringstream titles(csv.substr(0, csv.find('\n')));
+  std::set<std::string> seen;
+  for (std::string title; std::getline(titles, title, ',');) EXPECT_TRUE(seen.insert(title).second) << title;
+  EXPECT_TRUE(seen.count("quantity count"));
+}
+
 TEST(Export, TheLongTableHasARowForEveryNumber) {
   StoredCampaign campaign(2, 4, 20);
   const auto add = [](Json& result, double v) {

@@ -134,5 +134,41 @@ TEST(QuantityEstimates, LeaveOutWhatIsLostAndWhatIsUnlike) {
   EXPECT_EQ(estimates.json(0.95)["noise"]["count"], 4);
 }
 
+TEST(QuantityEstimates, OfAnotherControlAreUnlikeWhateverComesFirst) {
+  Json undescribed = result_of({{"pressure", 5}, {"noise", 1}, {"g", nullptr}});
+  undescribed.erase("quantities");
+  Json other = result_of({{"pressure", 7}, {"noise", 1}, {"g", nullptr}});
+  other["quantities"]["pressure"]["control"]["mean"] = 3;
+  QuantityEstimates first_undescribed, first_described;
+  first_undescribed.add(undescribed);
+  for (QuantityEstimates* const estimates : {&first_undescribed, &first_described}) {
+    for (const double value : {1, 2}) {
+      estimates->add(result_of({{"pressure", value}, {"noise", 1}, {"g", nullptr}}));
+    }
+    estimates->add(other);
+  }
+  EXPECT_EQ(first_undescribed.json(0.95)["pressure"]["count"], 1);
+  EXPECT_EQ(first_undescribed.json(0.95)["pressure"]["mean"], 5);
+  EXPECT_EQ(first_undescribed.json(0.95)["pressure"]["unlike"], 3);
+  EXPECT_EQ(first_described.json(0.95)["pressure"]["count"], 2);
+  EXPECT_EQ(first_described.json(0.95)["pressure"]["unlike"], 1);
+}
+
+// As in a look: value + 0. The control has the mean 1.
+TEST(QuantityEstimates, AValueWithoutItsControlCountsAsItIs) {
+  const QuantityEstimates estimates = of({{{"pressure", 10}, {"noise", 3}, {"g", nullptr}},
+                                          {{"pressure", 20}, {"noise", nullptr}, {"g", nullptr}}});
+  const Json pressure = estimates.json(0.95)["pressure"];
+  EXPECT_EQ(pressure["count"], 2);
+  EXPECT_EQ(pressure["mean"], 16);
+}
+
+TEST(QuantityEstimates, OfScalarsAloneLeaveListsOut) {
+  QuantityEstimates estimates(QuantityEstimates::Wanted::scalars);
+  estimates.add(result_of({{"pressure", 10}, {"noise", 3}, {"g", {{"counts", {1, 5}}, {"ideal", {1, 0}}}}}));
+  EXPECT_TRUE(estimates.json(0.95).contains("pressure"));
+  EXPECT_FALSE(estimates.json(0.95).contains("g"));
+}
+
 }  // namespace
 }  // namespace peclet::runner
