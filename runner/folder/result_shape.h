@@ -6,12 +6,11 @@
 // need not ask again.
 #pragma once
 
-#include <cstddef>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 
 #include "contract/json.h"
+#include "runner/folder/result_bounds.h"
 
 namespace peclet::runner {
 
@@ -21,18 +20,8 @@ class ResultError : public std::runtime_error {
   explicit ResultError(const std::string& message);
 };
 
-// Of a result's text. Most have some ten thousand bytes and a few thousand values; a pair distribution in the
-// plane of shear may have four million numbers. Lists, objects and keys take more memory than numbers do.
-constexpr std::size_t largest_result = std::size_t{64} << 20;
-constexpr std::size_t most_values = std::size_t{1} << 22;
-constexpr std::size_t most_structures = std::size_t{1} << 19;
-constexpr int deepest_result = 200;
-
 // No number of a result is larger: so no sum, square or cube of a campaign's values overflows.
 constexpr double largest_number = 1e100;
-
-// "" when the text keeps within these bounds, otherwise what it exceeds. It need not be JSON.
-std::string excess_of(std::string_view text);
 
 // Throws ResultError naming the first value that is not as it must be, and what is allowed. `completed`
 // realisations have means, others none. Members that engines did not always write may be absent.
