@@ -32,7 +32,7 @@ std::string nearest_name(std::string_view typed, const std::vector<std::string>&
   for (const std::string& name : names) {
     const std::size_t most = std::max<std::size_t>(1, name.size() / 3);
     // Each letter more or less is a mistake: nobody need count those of a name that is far too long.
-    const auto [shorter, longer] = std::minmax(typed.size(), name.size());
+    const auto [shorter, longer] = std::minmax({typed.size(), name.size()});
     if (longer - shorter > most) continue;
     const std::size_t mistakes = mistakes_between(typed, name);
     if (mistakes > most || (!nearest.empty() && mistakes >= fewest)) continue;
