@@ -256,7 +256,8 @@ TEST(DoctorOfARunningCampaign, IsNotAlarmed) {
   options.campaign = campaign.directory().root();
   options.json = true;
   // The run makes its first backup after ten minutes.
-  for (const Json& finding : Json::parse(examine_campaign(options).text).at("findings")) {
+  const Json report = Json::parse(examine_campaign(options).text);
+  for (const Json& finding : report.at("findings")) {
     EXPECT_EQ(finding.at("code"), "no-backup") << finding.dump();
   }
   campaign.release();
