@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "runner/command_line/verb_page.h"
+
 namespace peclet::runner {
 
 // What options.cpp calls the values of options; completion offers files by them.
@@ -32,6 +34,7 @@ struct CommandVerb {
   std::string summary;  // one line
   std::string example;
   std::vector<CommandOption> options;
+  VerbPage page;
 
   std::vector<CommandOption> positionals() const;
   std::vector<CommandOption> named() const;
@@ -42,5 +45,8 @@ struct CommandTree {
   std::vector<CommandOption> options;  // before any verb
   std::vector<CommandVerb> verbs;
 };
+
+// Of `peclet`: all verbs and options.
+CommandTree command_tree();
 
 }  // namespace peclet::runner

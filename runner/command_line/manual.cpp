@@ -9,7 +9,6 @@
 
 #include "contract/input_error.h"
 #include "contract/provenance.h"
-#include "runner/command_line/verb_pages.h"
 #include "runner/text/roff.h"
 
 namespace peclet::runner {
@@ -113,7 +112,7 @@ std::string synopsis(const CommandVerb& verb) {
 }
 
 std::string verb_manual(const CommandTree& tree, const CommandVerb& verb) {
-  const VerbPage& page = verb_page(verb.name);
+  const VerbPage& page = verb.page;
   std::string text = heading("peclet-" + verb.name, verb.summary) + synopsis(verb);
   text += ".SH DESCRIPTION\n" + roff_text(verb.summary) + ".\n";
   for (const std::string& paragraph : page.paragraphs) text += ".PP\n" + roff_text(paragraph) + '\n';

@@ -14,7 +14,6 @@
 #include "contract/provenance.h"
 #include "runner/command_line/parser_tree.h"
 #include "runner/command_line/usage_fault.h"
-#include "runner/command_line/verb_pages.h"
 #include "runner/command_line/verb_set.h"
 
 namespace peclet::runner {
@@ -56,21 +55,20 @@ class Reader {
     } catch (const CLI::ParseError& end) {
       const bool is_known =
           words.empty() || words.front().starts_with("-") || verb_called(verbs_.app(), words) != nullptr;
-      if (end.get_exit_code() == 0 && is_known)
-        return {std::nullopt, verbs_.app().exit(end)};  // help or version
+      if (end.get_exit_code() == 0 && is_known) return {nullptr, verbs_.app().exit(end)};  // help or version
       return complain(usage_fault(verbs_.app(), words, end));
     } catch (const InputError& fault) {
       return complain(fmt::format("{}: {}", words.front(), fault.what()));
     }
-    return {verbs_.named(), 0};
+    return {verbs_.action(), 0};
   }
 
-  CommandTree tree() const { return describe(verbs_.app(), verbs_.examples()); }
+  CommandTree tree() const { return describe(verbs_.app(), verbs_.texts()); }
 
  private:
   static CommandLine complain(const std::string& fault) {
     fmt::print(stderr, "peclet: {}\n", fault);
-    return {std::nullopt, ExitCode::usage};
+    return {nullptr, ExitCode::usage};
   }
 
   VerbSet verbs_;

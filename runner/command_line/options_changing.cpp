@@ -1,7 +1,12 @@
 // Verbs that change what a campaign is to do.
 #include <memory>
 
+#include "runner/campaign/campaign.h"
+#include "runner/command_line/print.h"
 #include "runner/command_line/verb_set.h"
+#include "runner/verbs/cancel.h"
+#include "runner/verbs/retry.h"
+#include "runner/verbs/set.h"
 
 namespace peclet::runner {
 namespace {
@@ -13,11 +18,25 @@ void add_patience(CLI::App* verb, double& seconds) {
       ->capture_default_str();
 }
 
+int tell(const Reply& reply) {
+  print(reply.text);
+  return reply.exit_code;
+}
+
 void add_set(VerbSet& verbs) {
   const auto options = std::make_shared<SetOptions>();
   CLI::App* const verb =
       verbs.add("set", "Change target, points or priorities of a campaign, also while it runs",
-                "peclet set flow-curve.json --tolerance 0.03 --maximum 2000");
+                "peclet set flow-curve.json --tolerance 0.03 --maximum 2000",
+                page(R"(
+Changes target, numbers of seeds or priorities. The values are changed in the campaign's file, of which every
+other byte stays, and the campaign takes the file over as it is; without options it does only that, with
+points that you have added to the sweep, for instance. A running campaign does so within seconds, and this
+verb waits for it; points of a finished one that are no longer decided go on with `peclet run`.
+)",
+                     {{"peclet set flow-curve.json", "take over a file that was edited"},
+                      {"peclet set flow-curve.json --point peclet=10 --priority 1", "this point first"}},
+                     {0, 1, 2, 4, 6}));
   add_file(verb, options->campaign);
   add_directory(verb, options->directory);
   add_number(verb, "--tolerance", options->tolerance, *campaign_keys().find("/target/relative_tolerance"),
@@ -36,13 +55,19 @@ void add_set(VerbSet& verbs) {
   add_number(verb, "--priority", options->priority, whole_number(-1'000'000, 1'000'000),
              "Points of a higher one are served first; 0 unless set");
   add_patience(verb, options->patience);
-  verbs.choose(verb, options);
+  verbs.choose(verb, options, [](const SetOptions& given) { return tell(set_campaign(given)); });
 }
 
 void add_cancel(VerbSet& verbs) {
   const auto options = std::make_shared<CancelOptions>();
-  CLI::App* const verb = verbs.add("cancel", "Give points no more seeds, also while the campaign runs",
-                                   "peclet cancel flow-curve.json peclet=10");
+  CLI::App* const verb = verbs.add(
+      "cancel", "Give points no more seeds, also while the campaign runs",
+      "peclet cancel flow-curve.json peclet=10",
+      page(R"(
+The points get no more seeds and hold nothing up; seeds that run are saved and put back. What has been done
+is kept and shown.
+)",
+           {{"peclet cancel flow-curve.json peclet=10 --undo", "take it up again"}}, {0, 1, 2, 4, 6}));
   add_file_or_folder(verb, options->campaign);
   verb->add_option("point", options->points,
                    "Labels of points, their values alone, or 4 or more digits of their hashes")
@@ -50,13 +75,18 @@ void add_cancel(VerbSet& verbs) {
   add_directory(verb, options->directory);
   verb->add_flag("--undo", options->undo, "Take them up again");
   add_patience(verb, options->patience);
-  verbs.choose(verb, options);
+  verbs.choose(verb, options, [](const CancelOptions& given) { return tell(cancel_points(given)); });
 }
 
 void add_retry(VerbSet& verbs) {
   const auto options = std::make_shared<RetryOptions>();
   CLI::App* const verb = verbs.add("retry", "Queue seeds again that were given up, with a clean record",
-                                   "peclet retry flow-curve.json peclet=10 --seed 17");
+                                   "peclet retry flow-curve.json peclet=10 --seed 17",
+                                   page(R"(
+Seeds are given up after three failures that were their own: crashes, or no progress. What the engine itself
+called failed (an overlap, a step too large) would fail again, and is not retried.
+)",
+                                        {}, {0, 1, 2, 4, 6}));
   add_file_or_folder(verb, options->campaign);
   verb->add_option(
       "point", options->points,
@@ -66,7 +96,7 @@ void add_retry(VerbSet& verbs) {
              "Of the one point that is named; may be repeated; all unless given")
       ->allow_extra_args(false);
   add_patience(verb, options->patience);
-  verbs.choose(verb, options);
+  verbs.choose(verb, options, [](const RetryOptions& given) { return tell(retry_seeds(given)); });
 }
 
 }  // namespace

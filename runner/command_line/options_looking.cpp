@@ -1,15 +1,45 @@
 // Verbs that look at a campaign and change nothing.
+#include <fmt/format.h>
+
 #include <memory>
 
+#include "runner/command_line/print.h"
 #include "runner/command_line/verb_set.h"
+#include "runner/folder/owner_lock.h"
+#include "runner/owner/open_campaign.h"
+#include "runner/reports/explain.h"
+#include "runner/reports/export.h"
+#include "runner/reports/report.h"
+#include "runner/reports/results.h"
+#include "runner/reports/status.h"
+#include "runner/verbs/plan_campaign.h"
+#include "runner/verbs/watch.h"
 
 namespace peclet::runner {
 namespace {
 
+int show_status(const StatusOptions& options) {
+  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  CampaignStatus status = read_status(open.database);
+  status.owner = current_owner(open.directory);
+  print(options.json ? status_json(status).dump(2) + '\n' : status_table(status) + workers_text(status));
+  if (const std::string note = difference_from_file(options.campaign, options.directory, status.campaign);
+      !note.empty()) {
+    say(fmt::format("note: {}\n", note));
+  }
+  return options.check ? standing(status) : 0;
+}
+
 void add_status(VerbSet& verbs) {
   const auto options = std::make_shared<StatusOptions>();
-  CLI::App* const verb = verbs.add("status", "Show how far every point is, also while it runs",
-                                   "peclet status flow-curve.json --check");
+  CLI::App* const verb = verbs.add(
+      "status", "Show how far every point is, also while it runs", "peclet status flow-curve.json --check",
+      page(R"(
+Shows the seeds that have ended, the mean and its standard error so far, the interval at the last look
+and the verdict of every point. It only reads, and may be used at any time.
+)",
+           {{"peclet status flow-curve.json --json", "for programs; schema/README.md describes it"}},
+           {0, 1, 2, 3, 4, 6}));
   add_file_or_folder(verb, options->campaign);
   add_directory(verb, options->directory);
   verb->add_flag("--json", options->json, "For programs");
@@ -17,38 +47,87 @@ void add_status(VerbSet& verbs) {
       "--check", options->check,
       "Leave with 0 (every point converged), 3 (decided, but not all converged), 4 (not finished) or "
       "6 (suspect)");
-  verbs.choose(verb, options);
+  verbs.choose(verb, options, show_status);
 }
 
 void add_watch(VerbSet& verbs) {
   const auto options = std::make_shared<WatchOptions>();
   CLI::App* const verb =
-      verbs.add("watch", "Show the status in a terminal, kept up to date", "peclet watch flow-curve.json");
+      verbs.add("watch", "Show the status in a terminal, kept up to date", "peclet watch flow-curve.json",
+                page(R"(
+Ends when every point is decided, with the exit code that `status --check` would have, or at Ctrl-C,
+which does nothing to the campaign. A campaign that has not been run yet is waited for. Off a terminal it
+prints the table whenever it changes.
+)",
+                     {}, {0, 1, 2, 3, 4, 6}));
   add_file_or_folder(verb, options->campaign);
   add_directory(verb, options->directory);
   add_number(verb, "--interval", options->interval_seconds, number_from(0.1, 86'400), "Seconds between looks")
       ->type_name("SECONDS")
       ->capture_default_str();
-  verbs.choose(verb, options);
+  verbs.choose(verb, options, watch_campaign);
+}
+
+void show_explanation(const ExplainOptions& options) {
+  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  print(options.json ? explain_json(open.database, open.directory, options.point).dump(2) + '\n'
+                     : explain(open.database, open.directory, options.point));
 }
 
 void add_explain(VerbSet& verbs) {
   const auto options = std::make_shared<ExplainOptions>();
   CLI::App* const verb = verbs.add("explain", "Say why points are where they are, and what comes next",
-                                   "peclet explain flow-curve.json peclet=10");
+                                   "peclet explain flow-curve.json peclet=10",
+                                   page(R"(
+A point is named by its label (peclet=10 volume_fraction=0.5), by its values alone as in a row of the
+tables ("10 0.5"), or by the beginning of its hash.
+
+Lists the looks at a point, a bootstrap interval beside Student's, lost seeds with what their engines
+said last, whether the window is long enough, and what would bring the point further.
+)",
+                                        {{"peclet explain flow-curve.peclet", "all points"}}, {0, 1, 2, 6}));
   add_file_or_folder(verb, options->campaign);
   verb->add_option("point", options->point,
                    "Label of a point, its values alone, or 4 or more digits of its hash; all unless given")
       ->type_name("POINT");
   add_directory(verb, options->directory);
   verb->add_flag("--json", options->json, "For programs");
-  verbs.choose(verb, options);
+  verbs.choose(verb, options, show_explanation);
+}
+
+void export_campaign(const ExportOptions& options) {
+  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  const auto text = [&] {
+    switch (options.format) {
+      case ExportFormat::json:
+        return export_json(open.database, options.canonical);
+      case ExportFormat::csv:
+        return export_csv(open.database, options.canonical);
+      case ExportFormat::long_csv:
+        return export_long_csv(open.database);
+    }
+    return std::string();
+  };
+  deliver(text(), options.output, options.quiet);
 }
 
 void add_export(VerbSet& verbs) {
   const auto options = std::make_shared<ExportOptions>();
-  CLI::App* const verb = verbs.add("export", "Print the results for programs to read",
-                                   "peclet export flow-curve.json --csv --output flow-curve.csv");
+  CLI::App* const verb = verbs.add(
+      "export", "Print the results for programs to read",
+      "peclet export flow-curve.json --csv --output flow-curve.csv",
+      page(R"(
+The canonical form holds what depends on campaign, seeds and engine alone, so that two runs of one
+campaign can be compared byte by byte, however many workers they had and whatever killed them.
+--output replaces a file whole, follows a link, writes to a device, a FIFO or /dev/stdout, and says on
+standard error where it wrote, unless --quiet.
+
+Estimates are of the seeds of each point's last look. --csv has a column for every scalar that was
+measured, --long a row for every number, with names, units and axes as the engine gives them.
+)",
+           {{"peclet export flow-curve.json --canonical | sha256sum", "one number for all results"},
+            {"peclet export flow-curve.json --long --output all.csv", "profiles and distributions, too"}},
+           {0, 1, 2, 6}));
   add_file_or_folder(verb, options->campaign);
   add_directory(verb, options->directory);
   CLI::Option* const json = verb->add_flag_callback(
@@ -69,13 +148,29 @@ void add_export(VerbSet& verbs) {
                    "File to write, whole or not at all; standard output unless given")
       ->type_name(value_name::file);
   verb->add_flag("--quiet", options->quiet, "Do not say on stderr where it was written");
-  verbs.choose(verb, options);
+  verbs.choose(verb, options, export_campaign);
+}
+
+void print_results(const ResultsOptions& options) {
+  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  for_each_result_line(open.database, options.point, options.seed,
+                       [](const std::string& line) { print(line + '\n'); });
 }
 
 void add_results(VerbSet& verbs) {
   const auto options = std::make_shared<ResultsOptions>();
-  CLI::App* const verb = verbs.add("results", "Print every stored result whole, one JSON object a line",
-                                   "peclet results flow-curve.json peclet=10 > runs.jsonl");
+  CLI::App* const verb = verbs.add(
+      "results", "Print every stored result whole, one JSON object a line",
+      "peclet results flow-curve.json peclet=10 > runs.jsonl",
+      page(R"(
+The database holds results deflated; this prints them as their engines wrote them, with blocks, costs and where
+they come from, and with the point and whether its last look counts the seed ("deciding"). One that is surplus
+must not enter a mean: which seeds end first depends on the machine. Also while the campaign runs.
+)",
+           {{"peclet results flow-curve.json | jq -c 'select(.deciding) | .result.mean.relative_viscosity'",
+             "the values of all points, for R, Julia and others: schema/README.md"},
+            {"peclet results flow-curve.json peclet=10 --seed 3 | jq .result", "one realisation"}},
+           {0, 1, 2, 6}));
   add_file_or_folder(verb, options->campaign);
   verb->add_option("point", options->point,
                    "Label of a point, or 4 or more digits of its hash; all unless given")
@@ -84,21 +179,33 @@ void add_results(VerbSet& verbs) {
   verb->add_option("--seed", options->seed, "Of this seed only")
       ->type_name("SEED")
       ->check(CLI::NonNegativeNumber);
-  verbs.choose(verb, options);
+  verbs.choose(verb, options, print_results);
+}
+
+void write_report(const ReportOptions& options) {
+  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  deliver(report_html(open.database), options.output, options.quiet);
 }
 
 void add_report(VerbSet& verbs) {
   const auto options = std::make_shared<ReportOptions>();
   CLI::App* const verb =
       verbs.add("report", "Make one HTML page of a campaign, for a colleague or a notebook",
-                "peclet report flow-curve.json --output flow-curve.html");
+                "peclet report flow-curve.json --output flow-curve.html",
+                page(R"(
+The page holds what was asked, the table of estimates with their intervals, a chart over the swept
+variable, lost seeds by cause, what every mark means, where the numbers come from and the commands that
+make them again. It needs no other file and no network, reads well on paper, and depends on the database
+alone: the same one gives the same bytes.
+)",
+                     {}, {0, 1, 2, 6}));
   add_file_or_folder(verb, options->campaign);
   add_directory(verb, options->directory);
   verb->add_option("--output", options->output,
                    "File to write, whole or not at all; standard output unless given")
       ->type_name(value_name::file);
   verb->add_flag("--quiet", options->quiet, "Do not say on stderr where it was written");
-  verbs.choose(verb, options);
+  verbs.choose(verb, options, write_report);
 }
 
 }  // namespace

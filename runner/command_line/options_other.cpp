@@ -1,15 +1,29 @@
 // Verbs that are about no campaign.
 #include <memory>
 
+#include "contract/output_file.h"
+#include "runner/command_line/completion.h"
+#include "runner/command_line/manual.h"
+#include "runner/command_line/print.h"
 #include "runner/command_line/verb_set.h"
+#include "runner/verbs/study.h"
 
 namespace peclet::runner {
 namespace {
 
 void add_study(VerbSet& verbs) {
   const auto options = std::make_shared<StudyOptions>();
-  CLI::App* const verb = verbs.add("study", "List the studies of published statements, or make one again",
-                                   "peclet study pair-potential --quick");
+  CLI::App* const verb = verbs.add(
+      "study", "List the studies of published statements, or make one again",
+      "peclet study pair-potential --quick",
+      page(R"(
+A study remakes published figures with error bars and answers each published statement with a number and a
+criterion that can fail. The list shows what was found, when and at what cost; a study takes minutes to hours,
+its quick form half a minute.
+)",
+           {{"peclet study --list", "all of them, with their verdicts"},
+            {"peclet study zero-shear --folder /scratch/zero-shear", "hours, which may be interrupted"}},
+           {0, 1, 2}));
   CLI::Option* const name =
       verb->add_option("study", options->name, "Which; the list unless given")->type_name("STUDY");
   verb->add_flag("--list", options->list, "List them with their verdicts, as without a name")->excludes(name);
@@ -34,14 +48,24 @@ void add_study(VerbSet& verbs) {
   verb->add_option("--results", options->results,
                    "Folder of the studies; those that came with peclet unless given")
       ->type_name(value_name::folder);
-  verbs.choose(verb, options);
+  verbs.choose(verb, options, perform_study);
+}
+
+void write_completion(const CompletionOptions& options) {
+  deliver(completion(command_tree(), options.shell), options.output, options.quiet);
 }
 
 void add_completion(VerbSet& verbs) {
   const auto options = std::make_shared<CompletionOptions>();
-  CLI::App* const verb =
-      verbs.add("completion", "Print a script with which a shell completes verbs, options and files",
-                "eval \"$(peclet completion bash)\"");
+  CLI::App* const verb = verbs.add(
+      "completion", "Print a script with which a shell completes verbs, options and files",
+      "eval \"$(peclet completion bash)\"",
+      page(R"(
+For bash and zsh, put the line of the example (with the name of the shell) into ~/.bashrc or ~/.zshrc;
+for fish, write the script to ~/.config/fish/completions/peclet.fish. `cmake --install` puts all three
+where the shells find them by themselves.
+)",
+           {{"peclet completion fish --output ~/.config/fish/completions/peclet.fish", ""}}, {0, 1, 2}));
   verb->add_option("shell", options->shell, "The shell")
       ->required()
       ->type_name("SHELL")
@@ -50,20 +74,33 @@ void add_completion(VerbSet& verbs) {
                    "File to write, whole or not at all; standard output unless given")
       ->type_name(value_name::file);
   verb->add_flag("--quiet", options->quiet, "Do not say on stderr where it was written");
-  verbs.choose(verb, options);
+  verbs.choose(verb, options, write_completion);
+}
+
+void write_manual(const ManualOptions& options) {
+  if (options.folder.empty()) {
+    print(manual_page(command_tree(), options.verb));
+    return;
+  }
+  for (const auto& [name, page] : manual_pages(command_tree())) write_output(options.folder / name, page);
 }
 
 void add_manual(VerbSet& verbs) {
   const auto options = std::make_shared<ManualOptions>();
-  CLI::App* const verb =
-      verbs.add("manual", "Print a page of the manual for man(1)", "peclet manual run | man -l -");
+  CLI::App* const verb = verbs.add(
+      "manual", "Print a page of the manual for man(1)", "peclet manual run | man -l -",
+      page(R"(
+The pages are made of the same verbs and options as --help. `cmake --install` puts them where man(1)
+finds them.
+)",
+           {{"peclet manual --folder ~/.local/share/man/man1", "then `man peclet-run`"}}, {0, 1, 2}));
   CLI::Option* const name =
       verb->add_option("verb", options->verb, "Which; that of peclet itself unless given")->type_name("VERB");
   verb->add_option("--folder", options->folder, "Folder to write all pages to")
       ->type_name(value_name::folder)
       ->check(CLI::ExistingDirectory)
       ->excludes(name);
-  verbs.choose(verb, options);
+  verbs.choose(verb, options, write_manual);
 }
 
 }  // namespace

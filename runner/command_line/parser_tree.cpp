@@ -38,12 +38,13 @@ CommandOption describe(const CLI::Option& option) {
 
 }  // namespace
 
-CommandTree describe(const CLI::App& app, const std::map<std::string, std::string>& examples) {
+CommandTree describe(const CLI::App& app, const std::map<std::string, VerbText>& texts) {
   CommandTree tree;
   tree.summary = app.get_description();
   for (const CLI::Option* option : app.get_options()) tree.options.push_back(describe(*option));
   for (const CLI::App* verb : app.get_subcommands(std::function<bool(const CLI::App*)>())) {
-    CommandVerb described{verb->get_name(), verb->get_description(), examples.at(verb->get_name()), {}};
+    const auto& [example, page] = texts.at(verb->get_name());
+    CommandVerb described{verb->get_name(), verb->get_description(), example, {}, page};
     for (const CLI::Option* option : verb->get_options()) described.options.push_back(describe(*option));
     tree.verbs.push_back(std::move(described));
   }

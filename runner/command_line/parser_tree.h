@@ -9,8 +9,8 @@
 
 namespace peclet::runner {
 
-// `examples` by verb.
-CommandTree describe(const CLI::App& app, const std::map<std::string, std::string>& examples);
+// `texts` by verb.
+CommandTree describe(const CLI::App& app, const std::map<std::string, VerbText>& texts);
 
 // Prints values without the parser's own words for their checks: "--threads NUMBER=1".
 class HelpFormatter : public CLI::Formatter {

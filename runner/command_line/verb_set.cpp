@@ -5,7 +5,6 @@
 #include <system_error>
 
 #include "contract/input_error.h"
-#include "runner/command_line/verb_pages.h"
 
 namespace peclet::runner {
 namespace {
@@ -34,10 +33,10 @@ std::string named_file(const std::string& word) {
 
 }  // namespace
 
-CLI::App* VerbSet::add(const char* name, const char* description, const char* example) {
+CLI::App* VerbSet::add(const char* name, const char* description, const char* example, const VerbPage& page) {
   CLI::App* const verb = app_.add_subcommand(name, description);
-  verb->footer(help_footer(name, example));
-  examples_[name] = example;
+  verb->footer(help_footer(page, example));
+  texts_[name] = {example, page};
   return verb;
 }
 

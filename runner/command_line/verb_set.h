@@ -1,15 +1,18 @@
-// What the functions that add verbs to the command line share.
+// What the functions that add verbs to the command line share. A verb is one such function: its options, what
+// is said of it, and what it does.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
+#include <type_traits>
 
 #include "contract/key_table.h"
-#include "runner/command_line/options.h"
+#include "runner/command_line/command_tree.h"
+#include "runner/command_line/verb_page.h"
 
 namespace peclet::runner {
 
@@ -22,21 +25,32 @@ class VerbSet {
 
   CLI::App& app() { return app_; }
   const CLI::App& app() const { return app_; }
-  const std::map<std::string, std::string>& examples() const { return examples_; }  // by verb
-  const std::optional<Verb>& named() const { return named_; }
+  const std::map<std::string, VerbText>& texts() const { return texts_; }  // by verb
+  // What the verb that was named does; it gives an exit code. Nothing before the parser has parsed.
+  const std::function<int()>& action() const { return action_; }
 
-  CLI::App* add(const char* name, const char* description, const char* example);
+  CLI::App* add(const char* name, const char* description, const char* example, const VerbPage& page);
 
-  // `options`, into which the parser writes, become the command when the verb is the one that was named.
-  template <typename Options>
-  void choose(CLI::App* verb, const std::shared_ptr<Options>& options) {
-    verb->callback([this, options] { named_ = *options; });
+  // `perform`, a function of the options into which the parser writes, is the action when the verb is the one
+  // that was named. It gives an exit code, or nothing for 0.
+  template <typename Options, typename Perform>
+  void choose(CLI::App* verb, const std::shared_ptr<Options>& options, Perform perform) {
+    verb->callback([this, options, perform] {
+      action_ = [options, perform] {
+        if constexpr (std::is_void_v<std::invoke_result_t<Perform, const Options&>>) {
+          perform(*options);
+          return 0;
+        } else {
+          return perform(*options);
+        }
+      };
+    });
   }
 
  private:
   CLI::App app_{"Campaigns of dense-suspension simulations: from a scene to converged averages", "peclet"};
-  std::optional<Verb> named_;
-  std::map<std::string, std::string> examples_;
+  std::function<int()> action_;
+  std::map<std::string, VerbText> texts_;
 };
 
 // One function a verb, in the file of its group. In the order in which help lists them.

@@ -18,12 +18,17 @@ struct VerbPage {
   std::vector<int> exit_codes;        // that it can leave with; empty: any
 };
 
-// An empty page for a verb that one line says everything about.
-const VerbPage& verb_page(const std::string& verb);
+struct VerbText {
+  std::string example;
+  VerbPage page;
+};
+
+// Paragraphs of `prose` are separated by empty lines; where its lines end means nothing.
+VerbPage page(const std::string& prose, std::vector<VerbExample> examples, std::vector<int> exit_codes);
 
 const std::map<int, std::string>& exit_codes();
 
 // What follows the options in --help.
-std::string help_footer(const std::string& verb, const std::string& example);
+std::string help_footer(const VerbPage& page, const std::string& example);
 
 }  // namespace peclet::runner
