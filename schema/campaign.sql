@@ -1,11 +1,11 @@
--- The database of one campaign, version 5; its views are in views.sql. One process writes it (the one that holds
+-- The database of one campaign, version 6; its views are in views.sql. One process writes it (the one that holds
 -- campaign.lock); everybody else opens it read-only. schema/README.md explains the tables and views to pandas
 -- users. A version-N.sql makes version N of the one before it and leaves the same tables as this file.
 --
 -- Times ending in _at are wall-clock times in UTC, for people to look at: no decision is made from them.
 
 PRAGMA application_id = 1346587724;  -- "PCLL" as a big-endian integer
-PRAGMA user_version = 5;
+PRAGMA user_version = 6;
 
 -- What a verdict was reached for. Old targets stay, with the looks that were made for them.
 CREATE TABLE target (
@@ -76,6 +76,7 @@ CREATE TABLE realisation (
   engine_id                INTEGER REFERENCES engine,
   first_quarter            REAL,     -- value + control over this part of the window; NULL without blocks
   first_half               REAL,
+  further                  TEXT CHECK (further IS NULL OR json_valid(further)),  -- of the target's other observables
   PRIMARY KEY (point_id, seed),
   CHECK ((state IN ('done', 'failed')) = (content_sha256 IS NOT NULL)),
   CHECK ((state IN ('done', 'failed', 'quarantined')) = (cause IS NOT NULL))
@@ -157,6 +158,7 @@ CREATE TABLE look (
   made_at                     TEXT    NOT NULL,
   skewness                    REAL,     -- of the values that decide
   transient                   INTEGER NOT NULL DEFAULT 0 CHECK (transient IN (0, 1)),  -- the window is too early
+  observables                 TEXT CHECK (observables IS NULL OR json_valid(observables)),  -- each, if several
   PRIMARY KEY (point_id, target_id, seeds)
 ) STRICT, WITHOUT ROWID;
 

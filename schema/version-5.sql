@@ -1,6 +1,5 @@
--- From version 4 of the tables to version 5: the rule by which looks decide is part of the target, how narrow an
--- interval must be is a document, there is a verdict for points that the maximum is too near to, and the numbers
--- without the control variate have names that say so.
+-- From version 4 of the tables to version 5: the rule by which looks decide is part of the target, there is a verdict
+-- for points that the maximum is too near to, and the numbers without the control variate have names that say so.
 --
 -- SQLite cannot change a CHECK or a UNIQUE: both tables are made again. Requires foreign keys to be off and the views,
 -- which name them, to be gone.
@@ -8,16 +7,15 @@
 CREATE TABLE new_target (
   target_id          INTEGER PRIMARY KEY,
   observable         TEXT    NOT NULL,
-  criterion          TEXT    NOT NULL CHECK (json_valid(criterion)),
+  relative_tolerance REAL    NOT NULL,
   confidence         REAL    NOT NULL,
   minimum            INTEGER NOT NULL,
   maximum            INTEGER NOT NULL,
   rule               INTEGER NOT NULL,
-  UNIQUE (observable, criterion, confidence, minimum, maximum, rule)
+  UNIQUE (observable, relative_tolerance, confidence, minimum, maximum, rule)
 ) STRICT;
-INSERT INTO new_target (target_id, observable, criterion, confidence, minimum, maximum, rule)
-SELECT target_id, observable, json_object('relative_tolerance', relative_tolerance), confidence, minimum, maximum, 1
-FROM target;
+INSERT INTO new_target (target_id, observable, relative_tolerance, confidence, minimum, maximum, rule)
+SELECT target_id, observable, relative_tolerance, confidence, minimum, maximum, 1 FROM target;
 DROP TABLE target;
 ALTER TABLE new_target RENAME TO target;
 

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "contract/input_error.h"
 #include "contract/input_file.h"
 #include "runner/campaign/campaign_file.h"
@@ -16,7 +19,85 @@ constexpr int smallest_minimum = 8;
 // What goes into headings and names of files.
 constexpr std::size_t longest_name = 100;
 
+std::vector<Criterion> also_of(const Json& target, const std::string& leading, const std::string& file) {
+  std::vector<Criterion> also;
+  if (!target.contains("also")) return also;
+  for (const Json& written : target["also"]) {
+    const std::string pointer = fmt::format("/target/also/{}", also.size());
+    Criterion criterion{written.at("observable").get<std::string>(), tolerance_of(written, file, pointer)};
+    const auto is_it = [&](const Criterion& other) { return other.observable == criterion.observable; };
+    if (criterion.observable == leading || std::any_of(also.begin(), also.end(), is_it)) {
+      throw InputError(file, pointer + "/observable", criterion.observable,
+                       "must be another one than those before it");
+    }
+    also.push_back(std::move(criterion));
+  }
+  return also;
+}
+
 }  // namespace
+
+std::vector<Criterion> Target::criteria() const {
+  std::vector<Criterion> all{{observable, tolerance}};
+  all.insert(all.end(), also.begin(), also.end());
+  return all;
+}
+
+std::vector<std::string> Target::observables() const {
+  const std::vector<Criterion> all = criteria();
+  std::vector<std::string> names;
+  for (const Criterion& criterion : all) names.push_back(criterion.observable);
+  for (const Criterion& criterion : all) {
+    const std::string& measure = criterion.tolerance.relative_to;
+    if (!measure.empty() && std::count(names.begin(), names.end(), measure) == 0) names.push_back(measure);
+  }
+  return names;
+}
+
+std::string to_string(const Target& target) {
+  std::string text;
+  for (const Criterion& criterion : target.criteria()) {
+    text += fmt::format("{}{} to {}", text.empty() ? "" : ", ", criterion.observable,
+                        to_string(criterion.tolerance));
+  }
+  return text;
+}
+
+std::string pointer_of(const Target& target, const std::string& observable) {
+  const std::vector<Criterion> criteria = target.criteria();
+  for (const bool as_measure : {false, true}) {
+    for (std::size_t place = 0; place < criteria.size(); ++place) {
+      const Criterion& criterion = criteria[place];
+      if (observable != (as_measure ? criterion.tolerance.relative_to : criterion.observable)) continue;
+      return fmt::format("/target/{}{}", place == 0 ? "" : fmt::format("also/{}/", place - 1),
+                         as_measure ? "relative_to" : "observable");
+    }
+  }
+  return "/target";
+}
+
+Json criterion_json(const Target& target) {
+  Json json = to_json(target.tolerance);
+  for (const Criterion& criterion : target.also) {
+    Json& other = json["also"].emplace_back(to_json(criterion.tolerance));
+    other["observable"] = criterion.observable;
+  }
+  return json;
+}
+
+Json to_json(const Target& target) {
+  Json json = criterion_json(target);
+  json["observable"] = target.observable;
+  json["confidence"] = target.confidence;
+  return json;
+}
+
+Target target_of(const std::string& observable, const Json& criterion, double confidence,
+                 const std::string& file) {
+  Target target{observable, tolerance_of(criterion, file), confidence};
+  target.also = also_of(criterion, observable, file);
+  return target;
+}
 
 void check_campaign_name(const std::string& name, const std::string& file) {
   constexpr const char* allowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
@@ -40,8 +121,8 @@ Campaign parse_campaign(const Json& written, const std::string& file) {
   check_campaign_name(campaign.name, file);
 
   const Json& target = document["target"];
-  campaign.target = {target["observable"].get<std::string>(), tolerance_of(target),
-                     target["confidence"].get<double>()};
+  campaign.target =
+      target_of(target["observable"].get<std::string>(), target, target["confidence"].get<double>(), file);
   campaign.minimum_realisations = document["realisations"]["minimum"].get<int>();
   campaign.maximum_realisations = document["realisations"]["maximum"].get<int>();
   if (campaign.maximum_realisations < campaign.minimum_realisations) {

@@ -20,16 +20,46 @@ struct StatePoint {
   std::string label;  // for people: "peclet=10 volume_fraction=0.5"
 };
 
-struct Target {
+// How well one observable is to be known.
+struct Criterion {
   std::string observable;  // a number in the result's "mean"
   Tolerance tolerance;     // of the interval's half-width
-  double confidence;       // of the two-sided interval
+  friend bool operator==(const Criterion&, const Criterion&) = default;
+};
+
+struct Target {
+  std::string observable;  // the one that tables and charts show
+  Tolerance tolerance;
+  double confidence;  // of each two-sided interval
 
   // Of the rule by which looks decide. The first one took every look within the tolerance for converged;
   // looks that were made by it are read by it.
   static constexpr int first_rule = 1, newest_rule = 2;
   int rule = newest_rule;
+
+  std::vector<Criterion> also{};  // must be met, too
+
+  // What is taken from each result: the observable, those of `also`, then whatever else a tolerance is a
+  // share of. Each once.
+  std::vector<std::string> observables() const;
+  // Every criterion, the leading one first.
+  std::vector<Criterion> criteria() const;
+  friend bool operator==(const Target&, const Target&) = default;
 };
+
+// "relative_viscosity to 5 %, pressure to 0.1"
+std::string to_string(const Target& target);
+// Where a campaign names one of Target::observables(): "/target/also/0/observable".
+std::string pointer_of(const Target& target, const std::string& observable);
+
+// {"observable": ..., "relative_tolerance": 0.05, "confidence": 0.95, "also": [...]}: as the campaign file
+// has it, "also" only where it is not empty.
+Json to_json(const Target& target);
+// The same without observable and confidence.
+Json criterion_json(const Target& target);
+// A target of these. Throws InputError at /target of `file` for what is no criterion.
+Target target_of(const std::string& observable, const Json& criterion, double confidence,
+                 const std::string& file = "");
 
 struct Campaign {
   std::string name;

@@ -4,6 +4,29 @@
 namespace peclet::runner {
 namespace {
 
+constexpr std::size_t most_further_targets = 100;
+
+Key relative_tolerance(const char* pointer) {
+  return {.pointer = pointer,
+          .kind = KeyKind::number,
+          .meaning = "Half-width of the confidence interval over |mean| that is good enough; 0.05 is 5 %.",
+          .required = true,
+          .minimum = 0,
+          .maximum = 1,
+          .above_minimum = true,
+          .below_maximum = true};
+}
+
+Key absolute_tolerance(const char* pointer) {
+  return {.pointer = pointer,
+          .kind = KeyKind::number,
+          .meaning = "Half-width that is good enough, in the observable's own unit; for what may be zero.",
+          .instead_of = "relative_tolerance",
+          .minimum = 0,
+          .maximum = 1e100,
+          .above_minimum = true};
+}
+
 std::vector<Key> keys() {
   return {
       {.pointer = "/name",
@@ -33,21 +56,23 @@ std::vector<Key> keys() {
        .kind = KeyKind::string,
        .meaning = "A number in the result's mean.",
        .default_value = "relative_viscosity"},
-      {.pointer = "/target/relative_tolerance",
-       .kind = KeyKind::number,
-       .meaning = "Half-width of the confidence interval over |mean| that is good enough; 0.05 is 5 %.",
-       .required = true,
-       .minimum = 0,
-       .maximum = 1,
-       .above_minimum = true,
-       .below_maximum = true},
-      {.pointer = "/target/absolute_tolerance",
-       .kind = KeyKind::number,
-       .meaning = "Half-width that is good enough, in the observable's own unit; for what may be zero.",
-       .instead_of = "relative_tolerance",
-       .minimum = 0,
-       .maximum = 1e100,
-       .above_minimum = true},
+      relative_tolerance("/target/relative_tolerance"),
+      absolute_tolerance("/target/absolute_tolerance"),
+      {.pointer = "/target/relative_to",
+       .kind = KeyKind::string,
+       .meaning = "Another number in the result's mean, of whose |mean| relative_tolerance is a share."},
+      {.pointer = "/target/also",
+       .kind = KeyKind::array,
+       .meaning = "Further observables; a point is done when all of them are known well enough.",
+       .maximum_items = most_further_targets},
+      {.pointer = "/target/also/*", .kind = KeyKind::object, .meaning = "One of them."},
+      {.pointer = "/target/also/*/observable",
+       .kind = KeyKind::string,
+       .meaning = "A number in the result's mean.",
+       .required = true},
+      relative_tolerance("/target/also/*/relative_tolerance"),
+      absolute_tolerance("/target/also/*/absolute_tolerance"),
+      {.pointer = "/target/also/*/relative_to", .kind = KeyKind::string, .meaning = "As for the target."},
       {.pointer = "/target/confidence",
        .kind = KeyKind::number,
        .meaning = "Of the two-sided interval (Student's t).",

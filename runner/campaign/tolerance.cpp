@@ -6,12 +6,14 @@
 
 #include "contract/input_error.h"
 #include "contract/key_table.h"
+#include "runner/text/number_text.h"
 
 namespace peclet::runner {
 namespace {
 
 constexpr const char* relative_key = "relative_tolerance";
 constexpr const char* absolute_key = "absolute_tolerance";
+constexpr const char* measure_key = "relative_to";
 
 bool has_number(const Json& target, const char* key) {
   return target.contains(key) && target[key].is_number();
@@ -32,20 +34,37 @@ double Tolerance::share(double half_width, double mean) const {
 }
 
 std::string to_string(const Tolerance& tolerance) {
-  return tolerance.is_relative() ? fmt::format("{:g} %", 100 * tolerance.value)
-                                 : fmt::format("{:g}", tolerance.value);
+  if (!tolerance.is_relative()) return fmt::format("{:g}", tolerance.value);
+  return fmt::format("{:g} %{}{}", 100 * tolerance.value, tolerance.relative_to.empty() ? "" : " of ",
+                     tolerance.relative_to);
+}
+
+std::string width_text(const Tolerance& tolerance, double half_width, double mean) {
+  return tolerance.is_relative() ? percent(half_width / std::abs(mean)) : rough(half_width);
 }
 
 const char* key_of(const Tolerance& tolerance) {
   return tolerance.is_relative() ? relative_key : absolute_key;
 }
 
-Json to_json(const Tolerance& tolerance) { return {{key_of(tolerance), tolerance.value}}; }
+Json to_json(const Tolerance& tolerance) {
+  Json json = {{key_of(tolerance), tolerance.value}};
+  if (!tolerance.relative_to.empty()) json[measure_key] = tolerance.relative_to;
+  return json;
+}
 
-Tolerance tolerance_of(const Json& target) {
-  if (has_number(target, relative_key)) return {target[relative_key].get<double>()};
+Tolerance tolerance_of(const Json& target, const std::string& file, const std::string& pointer) {
+  if (has_number(target, relative_key)) {
+    Tolerance tolerance(target[relative_key].get<double>());
+    tolerance.relative_to = target.value(measure_key, "");
+    return tolerance;
+  }
+  if (target.contains(measure_key)) {
+    throw InputError(file, pointer + '/' + measure_key, shortened(target[measure_key]),
+                     fmt::format("must not be given beside {}", absolute_key));
+  }
   if (has_number(target, absolute_key)) return Tolerance::absolute(target[absolute_key].get<double>());
-  throw InputError("", "/target", shortened(target),
+  throw InputError(file, pointer, shortened(target),
                    fmt::format("must have {} or {}", relative_key, absolute_key));
 }
 

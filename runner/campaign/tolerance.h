@@ -12,6 +12,8 @@ struct Tolerance {
 
   double value = 0;
   Kind kind = Kind::relative;
+  // Of a relative one: the observable whose |mean| it is a share of; "" for its own.
+  std::string relative_to{};
 
   // A share of |mean|, unless it says otherwise.
   Tolerance() = default;
@@ -19,7 +21,9 @@ struct Tolerance {
   static Tolerance absolute(double value);
 
   bool is_relative() const { return kind == Kind::relative; }
-  // The half-width that is good enough around this mean.
+  // Whether no half-width is good enough for a mean of 0.
+  bool needs_a_mean() const { return is_relative(); }
+  // The half-width that is good enough, for the mean that it is a share of.
   double half_width(double mean) const;
   // Half-width over the one that is good enough: converged at 1. Infinite or NaN where there is no measure.
   double share(double half_width, double mean) const;
@@ -27,14 +31,20 @@ struct Tolerance {
   bool operator==(const Tolerance&) const = default;
 };
 
-// "5 %", "0.1"
+// "5 %", "5 % of relative_viscosity", "0.1"
 std::string to_string(const Tolerance& tolerance);
 
-// {"relative_tolerance": 0.05} or {"absolute_tolerance": 0.1}: the key of a target, as the campaign file has
-// it.
+// A half-width as the tolerance measures it, beside the mean that it is a share of: "2.3 %", "0.012"; "-"
+// where there is none.
+std::string width_text(const Tolerance& tolerance, double half_width, double mean);
+
+// {"relative_tolerance": 0.05}, with "relative_to" where it has one, or {"absolute_tolerance": 0.1}: the keys
+// of a target, as the campaign file has them.
 Json to_json(const Tolerance& tolerance);
 const char* key_of(const Tolerance& tolerance);
-// Of an object that has one of these keys. Throws InputError when it has none.
-Tolerance tolerance_of(const Json& target);
+// Of an object that has one of these keys. Throws InputError at its place in the file, /target/also/0, when
+// it has none, or an absolute tolerance that says what it is relative to.
+Tolerance tolerance_of(const Json& target, const std::string& file = "",
+                       const std::string& pointer = "/target");
 
 }  // namespace peclet::runner

@@ -7,6 +7,7 @@
 #include "contract/integrity_error.h"
 #include "runner/care/doctor.h"
 #include "runner/database/checked_look.h"
+#include "runner/database/further_values.h"
 #include "runner/database/result_text.h"
 #include "runner/folder/realisation_result.h"
 #include "runner/statistics/cohorts.h"
@@ -87,7 +88,7 @@ void remove_impossible_seeds(Database& owner, const CampaignDirectory& directory
 
 // What is wrong with the result of a seed that has ended: "" when nothing is.
 std::string fault_of(Database& database, const PointRecord& point, const RealisationRecord& record,
-                     const std::string& observable) {
+                     const std::vector<std::string>& observables) {
   try {
     const std::optional<Json> document = database.result(point.id, record.seed);
     if (!document) return "has ended, but there is no result of it";
@@ -96,8 +97,11 @@ std::string fault_of(Database& database, const PointRecord& point, const Realisa
     if (result.content_sha256 != record.content_sha256) return "has a result that does not have its hash";
     if (engine_identity(result.document.at("engine")) != point.engine_identity)
       return "has a result of another engine";
-    const Observed observed = observe(result.document, observable);
-    if (result.completed() && (observed.value != record.value || observed.control != record.control)) {
+    const std::vector<Observed> all = observe(result.document, observables);
+    const Observed& observed = all.front();
+    const std::string further = further_values_text(observables, all).value_or("");
+    if (result.completed() &&
+        (observed.value != record.value || observed.control != record.control || further != record.further)) {
       return "has another value than its result";
     }
     return "";
@@ -131,7 +135,7 @@ std::vector<PointRecord> all_points(Database& database) {
 }  // namespace
 
 void examine_results(Database& database, const Patient& patient, Findings& findings) {
-  const std::string observable = database.campaign().target.target.observable;
+  const std::vector<std::string> observables = database.campaign().target.target.observables();
   if (const std::int64_t count = impossible_seeds(database.connection()); count > 0) {
     findings.push_back(
         {"seed-impossible", Severity::integrity,
@@ -153,7 +157,7 @@ void examine_results(Database& database, const Patient& patient, Findings& findi
     for (const RealisationRecord& record : database.realisations(point.id)) {
       if (record.state != SeedState::done && record.state != SeedState::failed) continue;
       if (record.seed < 0 || record.seed >= most_realisations) continue;  // have been found
-      const std::string fault = fault_of(database, point, record, observable);
+      const std::string fault = fault_of(database, point, record, observables);
       if (fault.empty()) continue;
       Finding finding{"result-altered", Severity::integrity,
                       fmt::format("{} seed {}: {}", point.label, record.seed, fault),

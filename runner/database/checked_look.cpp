@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -12,9 +13,19 @@ namespace {
 // NaN: does not exist, or is beyond what a number can be.
 bool is_same(double one, double other) { return one == other || (std::isnan(one) && std::isnan(other)); }
 
+bool agree(const std::vector<ObservableLook>& stored, const std::vector<ObservableLook>& replayed) {
+  return std::equal(stored.begin(), stored.end(), replayed.begin(), replayed.end(),
+                    [](const ObservableLook& one, const ObservableLook& other) {
+                      return one.observable == other.observable && one.verdict == other.verdict &&
+                             one.estimate.count == other.estimate.count &&
+                             is_same(one.estimate.mean, other.estimate.mean);
+                    });
+}
+
 bool agrees(const Look& stored, const Look& replayed) {
-  return stored.seeds == replayed.seeds && stored.lost == replayed.lost &&
-         stored.verdict == replayed.verdict && stored.estimate.count == replayed.estimate.count &&
+  return agree(stored.each, replayed.each) && stored.seeds == replayed.seeds &&
+         stored.lost == replayed.lost && stored.verdict == replayed.verdict &&
+         stored.estimate.count == replayed.estimate.count &&
          (stored.estimate.count == 0 || (is_same(stored.estimate.mean, replayed.estimate.mean) &&
                                          is_same(stored.controlled.mean, replayed.controlled.mean)));
 }

@@ -45,6 +45,7 @@ struct RealisationRecord {
   std::string cause;              // "completed", "overlap", ..., "crashed"; empty while queued or running
   std::optional<double> value;    // of the target's observable
   std::optional<double> control;  // of the control variate
+  std::string further;            // of the target's other observables: further_values.h
   std::optional<double> statistical_inefficiency, largest_overlap, cpu_seconds, wall_seconds;
   std::string final_state_sha256, content_sha256;
   std::optional<std::int64_t> engine;

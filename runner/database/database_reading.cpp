@@ -1,11 +1,14 @@
 // The read-only half of database.h: rows into records.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "runner/database/database.h"
+#include "runner/database/further_values.h"
 #include "runner/database/result_text.h"
+#include "runner/statistics/look_json.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {
@@ -15,9 +18,9 @@ constexpr const char* point_columns =
     "SELECT point_id, place, hash, scene, settings, label, engine_identity, suspect, priority, "
     "cancelled, kept_apart FROM point ";
 
-Tolerance stored_tolerance(const std::string& criterion) {
+Target stored_target(const std::string& observable, const std::string& criterion, double confidence) {
   try {
-    return tolerance_of(Json::parse(criterion));
+    return target_of(observable, Json::parse(criterion), confidence);
   } catch (const std::exception&) {
     throw IntegrityError("the database holds a target that is none: " + plain(criterion));
   }
@@ -53,11 +56,20 @@ std::vector<PointRecord> read_points(Connection& connection, const std::string& 
 TargetRecord read_target(const Statement& query, int column) {
   TargetRecord record;
   record.id = query.integer(column);
-  record.target = {query.text(column + 1), stored_tolerance(query.text(column + 2)), query.real(column + 3)};
+  record.target = stored_target(query.text(column + 1), query.text(column + 2), query.real(column + 3));
   record.minimum = static_cast<int>(query.integer(column + 4));
   record.maximum = static_cast<int>(query.integer(column + 5));
   record.target.rule = static_cast<int>(query.integer(column + 6));
   return record;
+}
+
+std::vector<ObservableLook> stored_observables(const std::string& text) {
+  if (text.empty()) return {};
+  try {
+    return observables_of(Json::parse(text));
+  } catch (const std::exception&) {
+    throw IntegrityError("the database holds a look that is none: " + plain(text));
+  }
 }
 
 std::vector<LookRecord> read_looks(Connection& connection, std::int64_t point) {
@@ -65,7 +77,8 @@ std::vector<LookRecord> read_looks(Connection& connection, std::int64_t point) {
       connection,
       "SELECT target_id, observable, criterion, confidence, minimum, maximum, rule, seeds, lost, "
       "count, mean, standard_error, half_width, uncontrolled_mean, uncontrolled_standard_error,"
-      " uncontrolled_half_width, verdict, made_at, skewness, transient FROM look JOIN target USING "
+      " uncontrolled_half_width, verdict, made_at, skewness, transient, observables FROM look JOIN target "
+      "USING "
       "(target_id) WHERE point_id = ? AND target_id = (SELECT target_id FROM campaign) ORDER BY seeds");
   query.bind(point);
   std::vector<LookRecord> looks;
@@ -84,6 +97,9 @@ std::vector<LookRecord> read_looks(Connection& connection, std::int64_t point) {
     record.made_at = query.text(17);
     look.skewness = query.real(18);
     look.transient = query.integer(19) != 0;
+    look.each = stored_observables(query.text(20));
+    look.untested = std::any_of(look.each.begin(), look.each.end(),
+                                [](const ObservableLook& one) { return one.untested; });
     looks.push_back(std::move(record));
   }
   return looks;
@@ -169,7 +185,8 @@ std::vector<RealisationRecord> Database::realisations(std::int64_t point) {
   Statement query(
       *connection_,
       "SELECT seed, state, cause, value, control, statistical_inefficiency, largest_overlap, cpu_seconds,"
-      " wall_seconds, final_state_sha256, content_sha256, engine_id FROM realisation WHERE point_id = ? "
+      " wall_seconds, final_state_sha256, content_sha256, engine_id, further FROM realisation WHERE point_id "
+      "= ? "
       "ORDER BY seed");
   query.bind(point);
   std::vector<RealisationRecord> realisations;
@@ -187,24 +204,30 @@ std::vector<RealisationRecord> Database::realisations(std::int64_t point) {
     record.final_state_sha256 = query.text(9);
     record.content_sha256 = query.text(10);
     record.engine = query.optional_integer(11);
+    record.further = query.text(12);
     realisations.push_back(std::move(record));
   }
   return realisations;
 }
 
 std::vector<std::optional<Outcome>> Database::outcomes(std::int64_t point) {
-  Statement query(*connection_,
-                  "SELECT seed, state, value, control, first_quarter, first_half FROM realisation WHERE "
-                  "point_id = ? AND seed < ? AND state IN ('done', 'failed', 'quarantined') ORDER BY seed");
+  Statement query(
+      *connection_,
+      "SELECT seed, state, value, control, first_quarter, first_half, further FROM realisation "
+      "WHERE point_id = ? AND seed < ? AND state IN ('done', 'failed', 'quarantined') ORDER BY seed");
   query.bind(point).bind(most_realisations);
+  std::vector<std::string> observables;  // asked for once, and only where there are several
   std::vector<std::optional<Outcome>> outcomes;
   while (query.step()) {
     outcomes.resize(static_cast<std::size_t>(query.integer(0)) + 1);
     outcomes.back() = Outcome{};  // lost, unless there is a value
-    if (const std::optional<double> value = query.optional_real(2)) {
-      outcomes.back() = Outcome{Outcome::Kind::value, *value, query.optional_real(3).value_or(0),
-                                query.real(4), query.real(5)};
-    }
+    const std::optional<double> value = query.optional_real(2);
+    if (!value) continue;
+    outcomes.back() = Outcome{Outcome::Kind::value, *value, query.optional_real(3).value_or(0), query.real(4),
+                              query.real(5)};
+    if (query.is_null(6)) continue;
+    if (observables.empty()) observables = campaign().target.target.observables();
+    outcomes.back()->further = further_values(query.text(6), observables);
   }
   return outcomes;
 }

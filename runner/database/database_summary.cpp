@@ -12,10 +12,9 @@ namespace {
 
 struct Aggregate {
   StateCounts counts;
-  Estimate so_far{0, std::nan(""), std::nan("")};
+  RunningEstimate so_far;
   std::vector<int> ended;       // seeds, in order
   std::vector<double> seconds;  // of processor time that each of these took
-  double squares = 0;           // of the differences from the mean
 
   void count(SeedState state, int seed, double cpu_seconds) {
     switch (state) {
@@ -39,13 +38,6 @@ struct Aggregate {
     seconds.push_back(cpu_seconds);
     counts.cpu_seconds += cpu_seconds;
   }
-  // Welford's update, so that the spread does not drown in a large mean.
-  void add(double value) {
-    const double before = so_far.count == 0 ? 0 : so_far.mean;
-    so_far.mean = before + (value - before) / ++so_far.count;
-    squares += (value - before) * (value - so_far.mean);
-    if (so_far.count >= 2) so_far.standard_error = std::sqrt(squares / (so_far.count - 1) / so_far.count);
-  }
   double seconds_of_first(int count) const {
     return std::accumulate(seconds.begin(), seconds.begin() + count, 0.0);
   }
@@ -65,7 +57,7 @@ std::map<std::int64_t, Aggregate> read_aggregates(Connection& connection) {
     Aggregate& aggregate = aggregates[query.integer(0)];
     aggregate.count(seed_state(query.text(2)), static_cast<int>(query.integer(1)),
                     query.optional_real(4).value_or(0));
-    if (!query.is_null(3)) aggregate.add(query.real(3));
+    if (!query.is_null(3)) aggregate.so_far.add(query.real(3));
   }
   return aggregates;
 }
@@ -129,11 +121,11 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
     const Aggregate& aggregate = aggregates[point.id];
     summary.confidence = target.target.confidence;
     summary.counts = aggregate.counts;
-    summary.so_far = aggregate.so_far;
+    summary.so_far = aggregate.so_far.estimate();
     summary.losses = std::move(losses[point.id]);
     summary.flags = std::move(flags[point.id]);
     for (LookRecord& record : database.looks(point.id)) summary.looks.push_back(record.look);
-    if (!summary.looks.empty()) {
+    if (!summary.looks.empty() && summary.looks.back().each.empty()) {
       summary.looks.back().untested = is_untested(connection, point.id, summary.looks.back());
     }
     summary.decided = !summary.looks.empty() && summary.looks.back().verdict != Verdict::more;

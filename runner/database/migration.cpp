@@ -19,6 +19,11 @@ void drop_views(Connection& connection) {
   }
 }
 
+bool has_column(Connection& connection, const char* table, const char* column) {
+  Statement query(connection, "SELECT 1 FROM pragma_table_info(?) WHERE name = ?");
+  return query.bind(table).bind(column).step();
+}
+
 // What version 1 did not take from the results.
 void take_parts_of_windows(Connection& connection) {
   Statement done(connection,
@@ -46,6 +51,11 @@ void change_tables(Connection& connection, std::int64_t from) {
   if (from < 3) connection.execute(version_3_sql);
   if (from < 4) connection.execute(version_4_sql);
   if (from < 5) connection.execute(version_5_sql);
+  if (from < 6) {
+    if (has_column(connection, "target", "criterion"))
+      connection.execute("ALTER TABLE target RENAME COLUMN criterion TO relative_tolerance");
+    connection.execute(version_6_sql);
+  }
   connection.execute(views_sql);
   if (const std::string found = damage(connection); !found.empty()) {
     throw IntegrityError(fmt::format("{}: could not be brought up to date: {}", connection.path(), found));

@@ -170,16 +170,18 @@ std::string of_point(const Campaign& campaign, const StatePoint& point) {
 }
 
 // An engine that says what it will measure spares us the first seed of a misspelt observable.
-void check_observable(const Json& answer, const Campaign& campaign, const StatePoint& point,
-                      const std::filesystem::path& campaign_file) {
+void check_observables(const Json& answer, const Campaign& campaign, const StatePoint& point,
+                       const std::filesystem::path& campaign_file) {
   if (!answer.contains("observables")) return;
   const auto known = answer.at("observables").get<std::vector<std::string>>();
-  const std::string& wanted = campaign.target.observable;
-  const auto is_it = [&](const std::string& pattern) { return matches(pattern, wanted); };
-  if (std::any_of(known.begin(), known.end(), is_it)) return;
-  throw InputError(campaign_file.string(), "/target/observable", wanted,
-                   fmt::format("must be a number that the results{} will have: {}{}",
-                               of_point(campaign, point), fmt::join(known, ", "), suggestion(wanted, known)));
+  for (const std::string& wanted : campaign.target.observables()) {
+    const auto is_it = [&](const std::string& pattern) { return matches(pattern, wanted); };
+    if (std::any_of(known.begin(), known.end(), is_it)) continue;
+    throw InputError(
+        campaign_file.string(), pointer_of(campaign.target, wanted), wanted,
+        fmt::format("must be a number that the results{} will have: {}{}", of_point(campaign, point),
+                    fmt::join(known, ", "), suggestion(wanted, known)));
+  }
 }
 
 double number_in(const Json& message, const char* key) {
@@ -226,7 +228,7 @@ std::vector<SceneAnswer> ask_once(const Campaign& campaign, const std::filesyste
           .within(campaign_file.string(), "/scene");
     }
     if (answer.at("type") != "validated") throw FrameError("neither \"validated\" nor \"refused\"");
-    check_observable(answer, campaign, point, campaign_file);
+    check_observables(answer, campaign, point, campaign_file);
     answers.push_back(read_answer(answer, engine.identity()));
   }
   return answers;

@@ -129,6 +129,20 @@ Observed observe(const Json& result, const std::string& observable) {
   return observed;
 }
 
+std::vector<Observed> observe(const Json& result, const std::vector<std::string>& observables) {
+  std::vector<Observed> observed;
+  observed.reserve(observables.size());
+  for (const std::string& observable : observables) observed.push_back(observe(result, observable));
+  return observed;
+}
+
+std::string lacking_in(const Json& result, const std::vector<std::string>& observables) {
+  for (const std::string& observable : observables) {
+    if (!has_observable(result.at("mean"), observable)) return observable;
+  }
+  return "";
+}
+
 std::string cause_of(const RealisationResult& result, const Observed& observed) {
   return result.completed() && !observed.value ? no_value : result.cause;
 }

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "contract/json.h"
 #include "runner/folder/result_shape.h"
@@ -45,6 +46,12 @@ bool has_observable(const Json& mean, const std::string& observable);
 // `observable` is the path of a number in "mean": see runner/statistics/quantities.h. Its control variate is
 // the one that the result names.
 Observed observe(const Json& result, const std::string& observable);
+
+// The same of several observables.
+std::vector<Observed> observe(const Json& result, const std::vector<std::string>& observables);
+
+// The first of the observables that the means of a completed result do not have; "" when they have all.
+std::string lacking_in(const Json& result, const std::vector<std::string>& observables);
 
 // How the realisation counts for a campaign that has seen this in it.
 std::string cause_of(const RealisationResult& result, const Observed& observed);

@@ -70,7 +70,7 @@ void Ledger::read() {
 void Ledger::roll_back() {
   spending_.roll_back();
   after_.forget();
-  lacking_.clear();
+  lacking_ = {};
   if (former_) campaign_ = *std::exchange(former_, std::nullopt);
   board_.read_points(database_);
   read();
@@ -158,9 +158,9 @@ void Ledger::after_commit() {
   former_.reset();
   spending_.commit();
   after_.carry_out(listener_);
-  if (!lacking_.empty()) {
-    throw InputError(campaign_.name, "/target/observable", campaign_.target.observable,
-                     "must be a number that the results have: " + plain(lacking_, longest_list));
+  if (const auto& [observable, names] = lacking_; !observable.empty()) {
+    throw InputError(campaign_.name, pointer_of(campaign_.target, observable), observable,
+                     "must be a number that the results have: " + plain(names, longest_list));
   }
 }
 

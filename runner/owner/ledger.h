@@ -132,6 +132,7 @@ class Ledger {
   // Reads a result and books it, wholly or not at all. Returns why it is turned down; "" when it is not.
   std::string take_whole(const std::filesystem::path& spool, const Reading& read, const Booking& book);
   void take(const RealisationResult& result, const std::filesystem::path& spool);
+  void note_lacking(const RealisationResult& result);
   void book_outcome(SeedId id, const Outcome& outcome);
   void store_looks(int place, std::size_t known);
   void turn_down(const std::filesystem::path& spool, const std::string& why);
@@ -150,7 +151,11 @@ class Ledger {
   Spending spending_;
   EngineAdmission engine_;
   AfterCommit after_;
-  std::string lacking_;         // what results have instead of the target's observable
+  struct Lacking {
+    std::string observable;  // of the target, that results do not have
+    std::string names;       // what they have instead
+  };
+  Lacking lacking_;             // empty as long as there is none
   int turned_down_ = 0;         // of the spool files that are looked at together
   std::set<std::string> away_;  // shared folders that are not there, as has been said
 };

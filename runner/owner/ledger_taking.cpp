@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
+#include "runner/database/further_values.h"
 #include "runner/folder/spool.h"
 #include "runner/owner/ledger.h"
 #include "runner/statistics/quantities.h"
@@ -24,11 +24,14 @@ namespace fs = std::filesystem;
 constexpr std::size_t files_at_a_time = 64;
 constexpr int most_told = 10;
 
-Outcome outcome_of(const Observed& observed) {
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  if (!observed.value) return {};
-  return {Outcome::Kind::value, *observed.value, observed.control.value_or(0),
-          observed.first_quarter.value_or(none), observed.first_half.value_or(none)};
+Outcome outcome_of(const std::vector<Observed>& observed) {
+  if (!observed.front().value) return {};
+  const auto [value, control, first_quarter, first_half] = observation_of(observed.front());
+  Outcome outcome{Outcome::Kind::value, value, control, first_quarter, first_half};
+  for (std::size_t place = 1; place < observed.size(); ++place) {
+    outcome.further.push_back(observation_of(observed[place]));
+  }
+  return outcome;
 }
 
 std::optional<double> cost_of(const RealisationResult& result, const char* which) {
@@ -80,7 +83,7 @@ class Ledger::Taking {
   Savepoint changes_;
   AfterCommit::Mark after_;
   double spent_seconds_;
-  std::string lacking_;
+  Lacking lacking_;
   std::optional<Board::Standing> standing_;
   bool kept_ = false;
 };
@@ -102,7 +105,7 @@ std::string Ledger::take_whole(const fs::path& spool, const Reading& read, const
 }
 
 void Ledger::take(const RealisationResult& result, const fs::path& spool) {
-  const StoredResult stored = results_.store(result, campaign_.target.observable);
+  const StoredResult stored = results_.store(result, campaign_.target);
   switch (stored.what) {
     case Stored::stored_apart:
       after_.remove(spool);
@@ -128,18 +131,23 @@ void Ledger::take(const RealisationResult& result, const fs::path& spool) {
   }
   const std::optional<int> place = board_.place_of(result.point);
   if (stored.what == Stored::duplicate || !place) return;
-  if (result.completed() && !has_observable(result.document["mean"], campaign_.target.observable)) {
-    lacking_ = names_of_targets(result.document);
-    if (lacking_.empty()) lacking_ = "none";
-  }
+  if (result.completed()) note_lacking(result);
+  const std::optional<double> value = stored.observed.front().value;
   const std::optional<double> cpu_seconds = cost_of(result, "cpu_seconds");
-  after_.tell(SeedEnded{told_name(*place), result.seed, stored.cause, stored.observed.value, cpu_seconds});
+  after_.tell(SeedEnded{told_name(*place), result.seed, stored.cause, value, cpu_seconds});
   if (!board_.has_seeds()) return;  // load() finds it
   board_.add_cost(*place, cost_of(result, "wall_seconds"), cpu_seconds);
-  if (!stored.observed.value) {
+  if (!value) {
     after_.note(fmt::format("{}: ended with {}", name({*place, result.seed}), stored.cause));
   }
   book_outcome({*place, result.seed}, outcome_of(stored.observed));
+}
+
+void Ledger::note_lacking(const RealisationResult& result) {
+  const std::string name = lacking_in(result.document, campaign_.target.observables());
+  if (name.empty()) return;
+  const std::string names = names_of_targets(result.document);
+  lacking_ = {name, names.empty() ? "none" : names};
 }
 
 void Ledger::turn_down(const fs::path& spool, const std::string& why) {

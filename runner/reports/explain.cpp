@@ -27,40 +27,100 @@ std::vector<PointSummary> selected(std::vector<PointSummary> points, const std::
   return {std::move(points[find_point(records, name)])};
 }
 
-// The half-width as the tolerance measures it.
-std::string width_text(const Look& look, const Target& target) {
-  return target.tolerance.is_relative() ? percent(relative_width(look)) : rough(look.controlled_half_width);
+// An observable of the last look, and how well it is to be known.
+struct Known {
+  ObservableLook look;
+  Criterion criterion;
+  ObservableLook measure;  // of the mean that the tolerance is a share of
+};
+
+std::vector<Known> known_of(const Look& look, const Target& target) {
+  const std::vector<ObservableLook> each = each_of(look, target);
+  const auto look_at = [&](const std::string& name) {
+    return *std::find_if(each.begin(), each.end(),
+                         [&](const ObservableLook& one) { return one.observable == name; });
+  };
+  std::vector<Known> all;
+  for (const Criterion& criterion : target.criteria()) {
+    const std::string& relative_to = criterion.tolerance.relative_to;
+    all.push_back({look_at(criterion.observable), criterion,
+                   look_at(relative_to.empty() ? criterion.observable : relative_to)});
+  }
+  return all;
 }
 
-// Seeds that the tolerance would take, as the half-width falls with 1 / sqrt(n).
+std::string width_text(const Known& known) {
+  return width_text(known.criterion.tolerance, known.look.half_width, known.measure.estimate.mean);
+}
+
+// "2 %"; of several "relative_viscosity 2 %, pressure 0.1".
+std::string widths_text(const std::vector<Known>& all) {
+  if (all.size() == 1) return width_text(all.front());
+  std::string text;
+  for (const Known& known : all) {
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", known.look.observable, width_text(known));
+  }
+  return text;
+}
+
+// "5 %"; of several "5 % for relative_viscosity, 0.2 for pressure".
+template <typename Which>
+std::string tolerances_text(const std::vector<Known>& all, Which is_meant) {
+  if (all.size() == 1) return to_string(all.front().criterion.tolerance);
+  std::string text;
+  for (const Known& known : all) {
+    if (!is_meant(known)) continue;
+    text += fmt::format("{}{} for {}", text.empty() ? "" : ", ", to_string(known.criterion.tolerance),
+                        known.look.observable);
+  }
+  return text;
+}
+
+// Seeds that the tolerances would take, as half-widths fall with 1 / sqrt(n).
 std::string seeds_for(const Look& look, const Target& target) {
-  const double ratio = target.tolerance.share(look.controlled_half_width, look.controlled.mean);
+  const double ratio = largest_share(look, target);
   return std::isfinite(ratio) ? fmt::format("about {}", rough(std::ceil(look.seeds * ratio * ratio)))
                               : "more";
 }
 
-// A share of a mean that may be zero is no measure of accuracy: whatever number of seeds it led to would be
-// of the mean's own noise.
-bool may_be_zero(const Look& look, const Target& target) {
-  return target.tolerance.is_relative() && relative_width(look) >= 1;
+// The first observable of which a tolerance is a share although it may be zero; null where there is none. A
+// share of such a mean is no measure of accuracy: whatever number of seeds it led to would be of the mean's
+// own noise.
+const Known* that_may_be_zero(const std::vector<Known>& all) {
+  const auto found = std::find_if(all.begin(), all.end(), [](const Known& known) {
+    const ObservableLook& of = known.measure;
+    return known.criterion.tolerance.needs_a_mean() && of.half_width >= std::abs(of.estimate.mean);
+  });
+  return found == all.end() ? nullptr : &*found;
+}
+
+// "/target/also/0/relative_tolerance"
+std::string tolerance_pointer(const Target& target, const Criterion& criterion) {
+  const std::string observable = pointer_of(target, criterion.observable);
+  return observable.substr(0, observable.rfind('/') + 1) + key_of(criterion.tolerance);
 }
 
 std::string advice_when_capped(const Look& look, const Target& target) {
-  if (may_be_zero(look, target)) {
-    return "/target/absolute_tolerance, or another /target/observable: the interval contains zero, and as "
-           "long "
-           "as it does no /target/relative_tolerance below 100 % can be met, whatever the number of seeds";
+  const std::vector<Known> all = known_of(look, target);
+  if (const Known* const zero = that_may_be_zero(all)) {
+    const std::string folder = pointer_of(target, zero->criterion.observable);
+    return fmt::format(
+        "{0}absolute_tolerance, or another {0}observable: the interval contains zero, and as long as it does "
+        "no {0}relative_tolerance below 100 % can be met, whatever the number of seeds",
+        folder.substr(0, folder.rfind('/') + 1));
   }
-  return fmt::format("a larger /realisations/maximum ({} seeds) or /target/{} (`peclet set`), and run again",
-                     seeds_for(look, target), key_of(target.tolerance));
+  const auto worst = std::max_element(all.begin(), all.end(), [](const Known& one, const Known& other) {
+    return one.look.share < other.look.share;
+  });
+  return fmt::format("a larger /realisations/maximum ({} seeds) or {} (`peclet set`), and run again",
+                     seeds_for(look, target), tolerance_pointer(target, worst->criterion));
 }
 
 // Why the look did not decide although its interval is narrow enough.
 std::string luck_text(const Look& look, const Target& target) {
-  if (!(target.tolerance.share(look.controlled_half_width, look.controlled.mean) <= 1)) return "";
+  if (!(largest_share(look, target) <= 1)) return "";
   return "; the last look is within the tolerance, but perhaps by luck: were the spread as large as its "
-         "seeds "
-         "allow, the maximum would not do";
+         "seeds allow, the maximum would not do";
 }
 
 std::string earlier_look_text(const PointSummary& point) {
@@ -72,29 +132,33 @@ std::string earlier_look_text(const PointSummary& point) {
 }
 
 std::string reason(const PointSummary& point, const Target& target) {
-  const std::string tolerance = to_string(target.tolerance);
   if (!point.decided) {
     return fmt::format(
         "{} of the {} seeds of the next look have ended, {}", point.wanted_ended, point.wanted,
         point.point.cancelled ? "and it gets no more" : fmt::format("{} run", point.counts.running));
   }
   const Look& look = point.looks.back();
+  const std::vector<Known> all = known_of(look, target);
+  const auto is_any = [](const Known&) { return true; };
+  const auto is_as_the_look = [&](const Known& known) { return known.look.verdict == look.verdict; };
   switch (look.verdict) {
     case Verdict::converged:
     case Verdict::converged_with_losses:
-      return fmt::format("{} seeds give {}, within the tolerance of {}{}", look.seeds,
-                         width_text(look, target), tolerance, earlier_look_text(point));
+      return fmt::format("{} seeds give {}, within the tolerance of {}{}", look.seeds, widths_text(all),
+                         tolerances_text(all, is_any), earlier_look_text(point));
     case Verdict::converged_near_maximum:
       return fmt::format(
           "all {} seeds that are allowed are just about enough for the tolerance of {}, perhaps by luck: "
-          "they "
-          "are sure of {} only",
-          look.seeds, tolerance, width_text(look, target));
+          "they are sure of {} only",
+          look.seeds, tolerances_text(all, is_as_the_look), widths_text(all));
     case Verdict::capped:
       return fmt::format("all {} seeds that are allowed give {}, not within the tolerance of {}", look.seeds,
-                         width_text(look, target), tolerance);
-    case Verdict::failed:
-      return fmt::format("{} of {} seeds are lost", look.lost, look.seeds);
+                         widths_text(all), tolerances_text(all, is_as_the_look));
+    case Verdict::failed: {
+      const auto failed = std::find_if(all.begin(), all.end(), is_as_the_look);
+      return fmt::format("{} of {} seeds are lost{}", look.seeds - failed->look.estimate.count, look.seeds,
+                         all.size() == 1 ? "" : " to " + failed->look.observable);
+    }
     case Verdict::more:
       break;
   }
@@ -111,7 +175,7 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
     if (point.looks.empty()) return fmt::format("the first look, at {} seeds", point.wanted);
     return fmt::format(
         "the look at {} seeds; {}{}", point.wanted,
-        may_be_zero(point.looks.back(), target.target)
+        that_may_be_zero(known_of(point.looks.back(), target.target)) != nullptr
             ? "how many will be enough cannot be told while the interval contains zero"
             : fmt::format("{} are expected to be enough",
                           expected_seeds(point.looks, target.target, target.minimum, target.maximum)),
@@ -153,10 +217,26 @@ std::string looks_table(const std::vector<Look>& looks, const Target& target) {
   for (const Look& look : looks) {
     std::vector<std::string> row{fmt::format("{}", look.seeds), fmt::format("{}", look.lost),
                                  with_error(look.controlled.mean, look.controlled_half_width),
-                                 width_text(look, target), to_string(target.tolerance)};
+                                 width_text(known_of(look, target).front()), to_string(target.tolerance)};
     if (with_control) row.push_back(with_error(look.estimate.mean, look.half_width));
     row.emplace_back(to_string(look.verdict));
     table.add_row(std::move(row));
+  }
+  return table.text("  ");
+}
+
+// Of a target of several observables, each at the last look.
+std::string observables_table(const std::vector<Look>& looks, const Target& target) {
+  if (looks.empty() || looks.back().each.empty()) return "";
+  TextTable table;
+  table.add_column("at the last look", TextTable::Align::left);
+  for (const char* const title : {"values", "mean ± half-width", "half-width", "tolerance"})
+    table.add_column(title);
+  table.add_column("verdict", TextTable::Align::left);
+  for (const Known& known : known_of(looks.back(), target)) {
+    table.add_row({known.look.observable, fmt::format("{}", known.look.estimate.count),
+                   with_error(known.look.estimate.mean, known.look.half_width), width_text(known),
+                   to_string(known.criterion.tolerance), to_string(*known.look.verdict)});
   }
   return table.text("  ");
 }
@@ -212,6 +292,7 @@ std::string explain(Database& database, const CampaignDirectory& directory, cons
     text += fmt::format("{}  ({})\n", summary.point.label, summary.point.hash.substr(0, 12));
     text += fmt::format("  {}: {}\n", verdict_text(summary), reason(summary, target.target));
     text += looks_table(summary.looks, target.target);
+    text += observables_table(summary.looks, target.target);
     text += prediction_text(summary);
     text += estimate_text(database, summary, target);
     text += losses_text(database, summary.point.id);

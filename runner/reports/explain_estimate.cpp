@@ -52,28 +52,36 @@ std::string interval_text(const Look& look, const std::vector<Outcome>& outcomes
   return text;
 }
 
-std::string transient_text(const Look& look, const std::vector<Outcome>& outcomes,
-                           const std::string& observable) {
-  if (look.untested) {
-    return fmt::format(
-        "  transient: no test was possible, because the results have no blocks of {}: nothing tells whether "
-        "the\n    windows begin before the equilibration is over\n",
-        observable);
-  }
-  if (!look.transient) return "";
+// Of an observable whose window begins too early.
+std::string contrasts_text(const std::vector<Outcome>& outcomes, std::size_t place, const std::string& name) {
   std::vector<double> quarters, halves;
   for (const Outcome& outcome : outcomes) {
-    if (!std::isfinite(outcome.first_half)) continue;
-    quarters.push_back(outcome.first_quarter - outcome.value - outcome.control);
-    halves.push_back(outcome.first_half - outcome.value - outcome.control);
+    const Observation observed = outcome.of(place);
+    if (!std::isfinite(observed.first_half)) continue;
+    quarters.push_back(observed.first_quarter - observed.value - observed.control);
+    halves.push_back(observed.first_half - observed.value - observed.control);
   }
   const Estimate quarter = estimate(quarters), half = estimate(halves);
   return fmt::format(
       "  transient: the first quarter of the windows differs from the whole by {}, the first half by {} (± "
-      "standard "
-      "error):\n    the window begins too early, which more seeds never mend; lengthen "
+      "standard error){}:\n    the window begins too early, which more seeds never mend; lengthen "
       "/scene/duration/equilibration\n",
-      with_error(quarter.mean, quarter.standard_error), with_error(half.mean, half.standard_error));
+      with_error(quarter.mean, quarter.standard_error), with_error(half.mean, half.standard_error), name);
+}
+
+std::string transient_text(const Look& look, const std::vector<Outcome>& outcomes, const Target& target) {
+  const std::vector<ObservableLook> each = each_of(look, target);
+  std::string text, untested;
+  for (std::size_t place = 0; place < each.size(); ++place) {
+    const std::string& name = each[place].observable;
+    if (each[place].untested) untested += (untested.empty() ? "" : ", ") + name;
+    if (each[place].transient) text += contrasts_text(outcomes, place, each.size() > 1 ? " for " + name : "");
+  }
+  if (untested.empty()) return text;
+  return text + fmt::format(
+                    "  transient: no test was possible, because the results have no blocks of {}: nothing "
+                    "tells whether the\n    windows begin before the equilibration is over\n",
+                    untested);
 }
 
 // beta of value + beta * control that would have the least variance, and what the fixed 1 gives.
@@ -144,7 +152,7 @@ std::string estimate_text(Database& database, const PointSummary& point, const T
   if (point.looks.empty()) return "";
   const Look& look = point.looks.back();
   const std::vector<Outcome> outcomes = completed(database, point);
-  return interval_text(look, outcomes, target) + transient_text(look, outcomes, target.target.observable) +
+  return interval_text(look, outcomes, target) + transient_text(look, outcomes, target.target) +
          control_text(outcomes) + window_text(database, point, outcomes);
 }
 

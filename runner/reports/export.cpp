@@ -138,10 +138,7 @@ Json heading(Database& database, const CampaignRecord& campaign, bool canonical)
   const TargetRecord& target = campaign.target;
   Json json = {{"schema_version", 1},
                {"campaign", campaign.name},
-               {"target",
-                {{"observable", target.target.observable},
-                 {key_of(target.target.tolerance), target.target.tolerance.value},
-                 {"confidence", target.target.confidence}}},
+               {"target", to_json(target.target)},
                {"realisations", {{"minimum", target.minimum}, {"maximum", target.maximum}}},
                {"points", nullptr}};
   if (canonical) return json;

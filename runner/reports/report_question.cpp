@@ -67,10 +67,10 @@ std::string swept_values(const std::vector<PointSummary>& points) {
 std::string question_section(const CampaignStatus& status) {
   const TargetRecord& target = status.campaign.target;
   return fmt::format(
-             "<section>\n<p>{} to {} at {:g} % confidence, with {} to {} independent realisations "
+             "<section>\n<p>{} at {:g} % confidence, with {} to {} independent realisations "
              "(seeds) of every point.</p>\n",
-             escaped(target.target.observable), to_string(target.target.tolerance),
-             100 * target.target.confidence, target.minimum, target.maximum) +
+             escaped(to_string(target.target)), 100 * target.target.confidence, target.minimum,
+             target.maximum) +
          swept_values(status.points) + shared_scene(status.points) + "</section>\n";
 }
 

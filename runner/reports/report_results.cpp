@@ -22,7 +22,7 @@ std::string paragraph(const std::string& text) {
 // Seeds have ended, and none has been looked at.
 bool is_provisional(const PointSummary& point) { return point.looks.empty() && point.so_far.count > 0; }
 
-std::vector<std::string> estimates(const PointSummary& point, bool with_control) {
+std::vector<std::string> estimates(const PointSummary& point, bool with_control, const Tolerance& tolerance) {
   if (point.looks.empty()) {
     std::vector<std::string> cells(with_control ? 3 : 2, "-");
     if (is_provisional(point)) {
@@ -32,7 +32,7 @@ std::vector<std::string> estimates(const PointSummary& point, bool with_control)
   }
   const Look& look = point.looks.back();
   std::vector<std::string> cells{with_error(look.controlled.mean, look.controlled_half_width),
-                                 percent(relative_width(look))};
+                                 width_text(tolerance, look.controlled_half_width, look.controlled.mean)};
   if (with_control) cells.push_back(with_error(look.estimate.mean, look.half_width));
   return cells;
 }
@@ -49,7 +49,8 @@ HtmlTable points_table(const CampaignStatus& status) {
   }
   table.add_column("seeds");
   table.add_column(status.campaign.target.target.observable);
-  table.add_column("relative");
+  const Tolerance& tolerance = status.campaign.target.target.tolerance;
+  table.add_column(tolerance.is_relative() ? "relative" : "half-width");
   if (with_control) table.add_column("uncontrolled");
   table.add_column("lost");
   table.add_column("CPU time");
@@ -61,7 +62,7 @@ HtmlTable points_table(const CampaignStatus& status) {
     const PointSummary& point = status.points[i];
     std::vector<std::string> row = columns.cells(i);
     row.push_back(fmt::format("{}/{}", point.wanted_ended, point.wanted));
-    for (std::string& cell : estimates(point, with_control)) row.push_back(std::move(cell));
+    for (std::string& cell : estimates(point, with_control, tolerance)) row.push_back(std::move(cell));
     row.push_back(fmt::format("{}", point.lost()));
     row.push_back(duration_text(point.counts.cpu_seconds));
     row.push_back(standing_word(point));
@@ -76,8 +77,10 @@ std::string caption(const CampaignStatus& status) {
   return fmt::format(
       "Seeds: those that have ended, of those that the deciding look takes (of an open point, the next "
       "look). The value is the mean over the seeds of the last look, ± the half-width of its {:g} % "
-      "interval; relative is the half-width over the mean.{}{}",
+      "interval{}.{}{}",
       100 * status.campaign.target.target.confidence,
+      status.campaign.target.target.tolerance.is_relative() ? "; relative is the half-width over the mean"
+                                                            : "",
       any_control(status) ? " Both are with the control variate, a quantity of known mean zero that "
                             "takes away scatter; uncontrolled is the same without it."
                           : "",

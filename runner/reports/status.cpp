@@ -125,10 +125,7 @@ Json status_json(const CampaignStatus& status) {
   for (const PointSummary& point : status.points) points.push_back(point_json(point));
   return {{"schema_version", 1},
           {"campaign", status.campaign.name},
-          {"target",
-           {{"observable", target.target.observable},
-            {key_of(target.target.tolerance), target.target.tolerance.value},
-            {"confidence", target.target.confidence}}},
+          {"target", to_json(target.target)},
           {"realisations", {{"minimum", target.minimum}, {"maximum", target.maximum}}},
           {"owner", status.owner ? Json(*status.owner) : Json(nullptr)},
           {"standing", standing(status)},

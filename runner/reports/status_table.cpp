@@ -22,15 +22,27 @@ std::string interval(const Look& look, const Tolerance& tolerance) {
   return tolerance.is_relative() ? fmt::format("{} ({})", text, percent(relative_width(look))) : text;
 }
 
-std::vector<std::string> cells(const PointSummary& point, bool with_control, const Tolerance& tolerance) {
+// "pressure 2.6 x": the observable whose half-width is the largest multiple of what is good enough.
+std::string farthest(const Look& look) {
+  const ObservableLook* found = nullptr;
+  for (const ObservableLook& one : look.each) {
+    if (one.verdict && (found == nullptr || !(one.share <= found->share))) found = &one;
+  }
+  return fmt::format("{} {} x", found->observable, rough(found->share));
+}
+
+std::vector<std::string> cells(const PointSummary& point, bool with_control, const Target& target) {
+  const bool with_others = target.observables().size() > 1;
   std::vector<std::string> cells{fmt::format("{}/{}", point.wanted_ended, point.wanted),
                                  with_error(point.so_far.mean, point.so_far.standard_error)};
   if (point.looks.empty()) {
     cells.emplace_back("-");
+    if (with_others) cells.emplace_back("-");
     if (with_control) cells.emplace_back("-");
   } else {
     const Look& look = point.looks.back();
-    cells.push_back(interval(look, tolerance));
+    cells.push_back(interval(look, target.tolerance));
+    if (with_others) cells.push_back(farthest(look));
     if (with_control) cells.push_back(with_error(look.estimate.mean, look.half_width));
   }
   cells.push_back(verdict_text(point));
@@ -39,14 +51,14 @@ std::vector<std::string> cells(const PointSummary& point, bool with_control, con
 
 std::string heading(const CampaignStatus& status) {
   const TargetRecord& target = status.campaign.target;
-  return fmt::format("{}: {} to {} at {:g} % confidence, {} to {} seeds a point\n\n", status.campaign.name,
-                     target.target.observable, to_string(target.target.tolerance),
-                     100 * target.target.confidence, target.minimum, target.maximum);
+  return fmt::format("{}: {} at {:g} % confidence, {} to {} seeds a point\n\n", status.campaign.name,
+                     to_string(target.target), 100 * target.target.confidence, target.minimum,
+                     target.maximum);
 }
 
 // Columns as a narrow terminal does without them; which point and which verdict are always there.
 namespace importance {
-constexpr int uncontrolled = 1, so_far = 2, seeds = 3, look = 4;
+constexpr int uncontrolled = 1, so_far = 2, seeds = 3, look = 4, farthest = 5;
 }
 
 // Of the columns that are shown.
@@ -66,6 +78,9 @@ std::string legend(const CampaignStatus& status, bool with_control, const std::v
   if (with_control && parts.size() == 2) parts.emplace_back("both with the control variate");
   if (with_control && parts.size() == 1) parts.back() += ", with the control variate";
   if (with_control && shows("uncontrolled")) parts.emplace_back("uncontrolled: the look without it");
+  if (shows("farthest") && status.campaign.target.target.observables().size() > 1) {
+    parts.emplace_back("farthest: the largest half-width, as a multiple of its tolerance");
+  }
   std::string text = fmt::format("{}\n", fmt::join(parts, "; "));
   if (!left_out.empty()) text += fmt::format("too narrow for: {}\n", fmt::join(left_out, ", "));
   return folded(text, width);
@@ -168,12 +183,14 @@ std::string status_table(const CampaignStatus& status, std::size_t width) {
   table.add_column("seeds", TextTable::Align::right, importance::seeds);
   table.add_column("so far", TextTable::Align::right, importance::so_far);
   table.add_column("look", TextTable::Align::right, importance::look);
+  if (status.campaign.target.target.observables().size() > 1)
+    table.add_column("farthest", TextTable::Align::left, importance::farthest);
   if (with_control) table.add_column("uncontrolled", TextTable::Align::right, importance::uncontrolled);
   table.add_column("verdict", TextTable::Align::left);
   for (std::size_t i = 0; i < labels.size(); ++i) {
     std::vector<std::string> row = points.cells(i);
     const std::vector<std::string> rest =
-        cells(status.points[i], with_control, status.campaign.target.target.tolerance);
+        cells(status.points[i], with_control, status.campaign.target.target);
     row.insert(row.end(), rest.begin(), rest.end());
     table.add_row(std::move(row));
   }

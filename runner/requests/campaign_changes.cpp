@@ -15,6 +15,14 @@ void compare(std::vector<std::string>& changes, const char* what, const std::str
   if (before != after) changes.push_back(fmt::format("{} {} -> {}", what, before, after));
 }
 
+std::string also_text(const Target& target) {
+  std::string text;
+  for (const auto& [observable, tolerance] : target.also) {
+    text += fmt::format("{}{} to {}", text.empty() ? "" : ", ", observable, to_string(tolerance));
+  }
+  return text.empty() ? "none" : text;
+}
+
 std::string percent(double share) { return fmt::format("{:.6g} %", 100 * share); }
 
 std::string counted(std::ptrdiff_t count, const char* what) {
@@ -42,6 +50,7 @@ std::string describe_changes(Database& database, const Campaign& campaign) {
   std::vector<std::string> changes;
   compare(changes, "observable", before.observable, after.observable);
   compare(changes, "tolerance", to_string(before.tolerance), to_string(after.tolerance));
+  compare(changes, "further targets", also_text(before), also_text(after));
   compare(changes, "confidence", percent(before.confidence), percent(after.confidence));
   compare(changes, "minimum", std::to_string(known.target.minimum),
           std::to_string(campaign.minimum_realisations));

@@ -20,6 +20,7 @@ std::string sum_text(const SummedError& error) {
 
 SummedError summed_error(const Scheduler& scheduler) {
   SummedError error;
+  if (!scheduler.target().tolerance.is_relative()) return error;
   for (int point = 0; point < scheduler.points(); ++point) {
     if (scheduler.cancelled(point)) continue;
     ++error.points;
@@ -33,11 +34,14 @@ SummedError summed_error(const Scheduler& scheduler) {
 
 std::string budget_text(double spent_seconds, double budget_seconds, const SummedError& before,
                         const SummedError& after) {
+  const std::string spent =
+      fmt::format("budget: {} of {} h of processor time spent", rough(spent_seconds / seconds_per_hour),
+                  rough(budget_seconds / seconds_per_hour));
+  if (after.points == 0) return spent + '\n';
   return fmt::format(
-      "budget: {} of {} h of processor time spent; relative half-widths of the {} points' last looks sum to "
+      "{}; relative half-widths of the {} points' last looks sum to "
       "{},\n        before to {}\n",
-      rough(spent_seconds / seconds_per_hour), rough(budget_seconds / seconds_per_hour), after.points,
-      sum_text(after), sum_text(before));
+      spent, after.points, sum_text(after), sum_text(before));
 }
 
 }  // namespace peclet::runner

@@ -7,8 +7,9 @@
 
 namespace peclet::runner {
 
-// Relative half-widths of the last looks, summed over the points that are not cancelled. One that has no
-// look, or none with an interval, counts as 1: its mean is not known at all.
+// Relative half-widths of the last looks, summed over the points that are not cancelled; of no point where
+// the tolerance is absolute. One that has no look, or none with an interval, counts as 1: its mean is not
+// known at all.
 struct SummedError {
   double sum = 0;
   int points = 0, unknown = 0;

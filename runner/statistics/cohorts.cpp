@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <utility>
 
 #include "runner/statistics/transient.h"
 
@@ -16,31 +17,103 @@ bool is_closed(const std::vector<std::optional<Outcome>>& outcomes, int seeds) {
                      [](const std::optional<Outcome>& outcome) { return outcome.has_value(); });
 }
 
-Look look_at(std::span<const std::optional<Outcome>> cohort, StopRule& rule) {
-  std::vector<double> values, controlled;
-  int contrasts = 0;
+// Of one observable, in order of the seeds that have it.
+std::vector<Observation> observed_in(std::span<const std::optional<Outcome>> cohort, std::size_t place) {
+  std::vector<Observation> observed;
+  observed.reserve(cohort.size());
   for (const std::optional<Outcome>& outcome : cohort) {
-    if (outcome->kind == Outcome::Kind::lost) continue;
-    values.push_back(outcome->value);
-    controlled.push_back(outcome->value + outcome->control);
-    if (std::isfinite(outcome->first_half)) ++contrasts;
+    const Observation observation = outcome->of(place);
+    if (!std::isnan(observation.value)) observed.push_back(observation);
   }
-  Look look;
-  look.seeds = static_cast<int>(cohort.size());
-  look.lost = look.seeds - static_cast<int>(values.size());
-  look.estimate = estimate(values);
-  look.half_width = rule.half_width(look.estimate);
-  look.controlled = estimate(controlled);
-  const StopRule::Judgement judgement = rule.judge(look.seeds, look.controlled);
-  look.controlled_half_width = judgement.half_width;
-  look.verdict = judgement.verdict;
+  return observed;
+}
+
+// All but half-width, share and verdict, which are the rule's.
+ObservableLook look_at(const std::vector<Observation>& observed) {
+  std::vector<double> controlled;
+  controlled.reserve(observed.size());
+  int contrasts = 0;
+  for (const Observation& observation : observed) {
+    controlled.push_back(observation.value + observation.control);
+    if (std::isfinite(observation.first_half)) ++contrasts;
+  }
+  ObservableLook look;
+  look.estimate = estimate(controlled);
   look.skewness = skewness(controlled);
-  look.transient = has_transient(cohort);
+  look.transient = has_transient(observed);
   look.untested = lacks_blocks(look.estimate.count, contrasts);
   return look;
 }
 
+Estimate without_control(const std::vector<Observation>& observed) {
+  std::vector<double> values;
+  values.reserve(observed.size());
+  for (const Observation& observation : observed) values.push_back(observation.value);
+  return estimate(values);
+}
+
+Look look_at(std::span<const std::optional<Outcome>> cohort, StopRule& rule,
+             const std::vector<std::string>& observables) {
+  std::vector<ObservableLook> each;
+  std::vector<Estimate> estimates;
+  Look look;
+  look.seeds = static_cast<int>(cohort.size());
+  for (std::size_t place = 0; place < observables.size(); ++place) {
+    const std::vector<Observation> observed = observed_in(cohort, place);
+    if (place == 0) look.estimate = without_control(observed);
+    each.push_back(look_at(observed));
+    each.back().observable = observables[place];
+    estimates.push_back(each.back().estimate);
+  }
+  const StopRule::Judgement judgement = rule.judge(look.seeds, estimates);
+  for (std::size_t place = 0; place < each.size(); ++place) {
+    const StopRule::Finding& finding = judgement.findings[place];
+    each[place].half_width = finding.half_width;
+    each[place].share = finding.share;
+    each[place].verdict = finding.verdict;
+    look.transient = look.transient || each[place].transient;
+    look.untested = look.untested || each[place].untested;
+  }
+  look.lost = look.seeds - look.estimate.count;
+  look.half_width = rule.half_width(look.estimate);
+  look.controlled = each.front().estimate;
+  look.controlled_half_width = each.front().half_width;
+  look.skewness = each.front().skewness;
+  look.verdict = judgement.verdict;
+  if (each.size() > 1) look.each = std::move(each);
+  return look;
+}
+
 }  // namespace
+
+Observation Outcome::of(std::size_t place) const {
+  if (kind == Kind::lost) return {};
+  if (place == 0) return {value, control, first_quarter, first_half};
+  return place <= further.size() ? further[place - 1] : Observation{};
+}
+
+std::vector<ObservableLook> each_of(const Look& look, const Target& target) {
+  if (!look.each.empty()) return look.each;
+  return {{target.observable, look.controlled, look.controlled_half_width,
+           target.tolerance.share(look.controlled_half_width, look.controlled.mean), look.skewness,
+           look.transient, look.untested, look.verdict}};
+}
+
+double largest_share(const Look& look, const Target& target) {
+  double largest = 0;
+  for (const ObservableLook& one : each_of(look, target)) {
+    if (!one.verdict) continue;
+    if (std::isnan(one.share)) return one.share;
+    largest = std::max(largest, one.share);
+  }
+  return largest;
+}
+
+std::vector<Estimate> estimates_of(const Look& look, const Target& target) {
+  std::vector<Estimate> estimates;
+  for (const ObservableLook& one : each_of(look, target)) estimates.push_back(one.estimate);
+  return estimates;
+}
 
 double relative_width(const Look& look) {
   return look.controlled_half_width / std::abs(look.controlled.mean);
@@ -64,10 +137,11 @@ bool has_control(const Look& look) {
 std::vector<Look> replay_looks(const std::vector<std::optional<Outcome>>& outcomes, const Target& target,
                                int minimum, int maximum) {
   StopRule rule(target, minimum, maximum);
+  const std::vector<std::string> observables = target.observables();
   std::vector<Look> looks;
   for (const int seeds : rule.schedule()) {
     if (!is_closed(outcomes, seeds)) break;
-    looks.push_back(look_at(std::span(outcomes).first(static_cast<std::size_t>(seeds)), rule));
+    looks.push_back(look_at(std::span(outcomes).first(static_cast<std::size_t>(seeds)), rule, observables));
     if (looks.back().verdict != Verdict::more) break;
   }
   return looks;

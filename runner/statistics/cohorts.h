@@ -7,13 +7,24 @@
 
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "runner/statistics/stop_rule.h"
 
 namespace peclet::runner {
 
-// How a seed ended; a seed that is queued or runs has no outcome yet.
+// What a seed says of one observable.
+struct Observation {
+  double value = std::numeric_limits<double>::quiet_NaN();  // NaN where it has none
+  double control = 0;  // control variate of mean zero; 0 where there is none
+  // value + control over the first quarter and the first half of the window; NaN where they are not known
+  double first_quarter = std::numeric_limits<double>::quiet_NaN();
+  double first_half = std::numeric_limits<double>::quiet_NaN();
+};
+
+// How a seed ended; a seed that is queued or runs has no outcome yet. The numbers are of the target's leading
+// observable: a seed without it is lost.
 struct Outcome {
   enum class Kind { value, lost };  // lost: the engine's verdict (blow-up, jam), or quarantined after crashes
   Kind kind = Kind::lost;
@@ -22,6 +33,21 @@ struct Outcome {
   // value + control over the first quarter and the first half of the window; NaN where they are not known
   double first_quarter = std::numeric_limits<double>::quiet_NaN();
   double first_half = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Observation> further{};  // of the other ones of Target::observables(), in that order
+
+  // Of the observable at that place of Target::observables(); without a value of a seed that is lost.
+  Observation of(std::size_t place) const;
+};
+
+// What a look says of one of several observables.
+struct ObservableLook {
+  std::string observable;
+  Estimate estimate;      // of value + control
+  double half_width = 0;  // the rule's
+  double share = 0;       // of the one that is good enough; NaN without a tolerance
+  double skewness = std::numeric_limits<double>::quiet_NaN();
+  bool transient = false, untested = false;  // as of a look
+  std::optional<Verdict> verdict;            // none where it only measures others
 };
 
 // One look at a closed cohort. The controlled estimate decides: of value + control, the control variate with
@@ -38,7 +64,20 @@ struct Look {
   bool transient = false;  // the beginning of the window differs from its end: see transient.h
   bool untested = false;   // for transients: lacks_blocks(), see transient.h; made again, never stored
   Verdict verdict = Verdict::more;
+  // Of a target of several observables, each of them, the leading one first; empty otherwise. Transient,
+  // untested and verdict above are then of all of them.
+  std::vector<ObservableLook> each{};
 };
+
+// Look::each, also of a target of one observable.
+std::vector<ObservableLook> each_of(const Look& look, const Target& target);
+
+// The largest half-width over the one that is good enough, of all criteria: met at 1. NaN for what is not
+// known.
+double largest_share(const Look& look, const Target& target);
+
+// The estimates that decide, of Target::observables() in that order.
+std::vector<Estimate> estimates_of(const Look& look, const Target& target);
 
 // Whether the values are so skewed that Student's interval holds the mean visibly less often than it says:
 // the skewness is beyond what a normal population of this size shows, and the loss of coverage that belongs

@@ -27,22 +27,24 @@ struct SeedRange {
   int likely = 0, low = 0, high = 0;
 };
 
-// Student's factor and the standard error both fall with the seeds.
-double share_at(const PointForecast& point, StopRule& rule, int values, double factor) {
-  const double share = static_cast<double>(values) / point.so_far.count;
-  const double error = point.so_far.standard_error * std::sqrt(factor / share);
-  return rule.share({values, point.so_far.mean, error});
+// What may be expected of so many seeds: Student's factor and the standard error both fall with them.
+std::vector<Estimate> expected_at(const PointForecast& point, int seeds, double factor) {
+  std::vector<Estimate> expected;
+  expected.reserve(point.so_far.size());
+  for (const Estimate& known : point.so_far) {
+    const double growth = static_cast<double>(seeds) / point.ended;
+    const auto values = static_cast<int>(std::lround(known.count * growth));
+    const double share = static_cast<double>(values) / known.count;
+    expected.push_back({values, known.mean, known.standard_error * std::sqrt(factor / share)});
+  }
+  return expected;
 }
 
 // The first look that decides, of those that take more seeds than have ended, if the variance is `factor`
 // times the sample's.
 int stop_of(const PointForecast& point, StopRule& rule, double factor) {
   const std::vector<int>& schedule = rule.schedule();
-  const auto stops = [&](int seeds) {
-    const double share = static_cast<double>(seeds) / point.ended;
-    const auto values = static_cast<int>(std::lround(point.so_far.count * share));
-    return rule.stops(seeds, values, share_at(point, rule, values, factor));
-  };
+  const auto stops = [&](int seeds) { return rule.stops(seeds, expected_at(point, seeds, factor)); };
   const auto later = std::upper_bound(schedule.begin(), schedule.end(), point.ended);
   const auto enough = std::find_if(later, schedule.end(), stops);
   return enough == schedule.end() ? schedule.back() : *enough;
@@ -50,9 +52,9 @@ int stop_of(const PointForecast& point, StopRule& rule, double factor) {
 
 SeedRange seeds_of(const PointForecast& point, StopRule& rule) {
   const int minimum = rule.schedule().front(), maximum = rule.schedule().back();
-  if (point.so_far.count < 2 || !rule.has_measure(point.so_far.mean)) return {minimum, minimum, maximum};
+  if (point.fewest_values() < 2 || !rule.has_measure(point.so_far)) return {minimum, minimum, maximum};
   constexpr double outside = 0.1;
-  const int degrees = point.so_far.count - 1;
+  const int degrees = point.fewest_values() - 1;
   return {stop_of(point, rule, 1), stop_of(point, rule, variance_excess(degrees, 1 - outside)),
           stop_of(point, rule, variance_excess(degrees, outside))};
 }
@@ -79,14 +81,20 @@ void Cost::add(double seconds) {
   sum_of_squares += seconds * seconds;
 }
 
+int PointForecast::fewest_values() const {
+  const auto has_fewer = [](const Estimate& one, const Estimate& other) { return one.count < other.count; };
+  const auto fewest = std::min_element(so_far.begin(), so_far.end(), has_fewer);
+  return fewest == so_far.end() ? 0 : fewest->count;
+}
+
 int expected_seeds(const std::vector<Look>& looks, const Target& target, int minimum, int maximum,
                    double factor) {
   StopRule rule(target, minimum, maximum);
   if (looks.empty()) return rule.schedule().front();
   PointForecast point;
   point.ended = looks.back().seeds;
-  point.so_far = looks.back().controlled;
-  if (point.so_far.count < 2 || !rule.has_measure(point.so_far.mean)) return maximum;
+  point.so_far = estimates_of(looks.back(), target);
+  if (point.fewest_values() < 2 || !rule.has_measure(point.so_far)) return maximum;
   return stop_of(point, rule, factor);
 }
 

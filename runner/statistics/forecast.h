@@ -29,10 +29,13 @@ struct Cost {
 
 struct PointForecast {
   Cost cost;
-  Estimate so_far;  // of the values that have ended
-  int ended = 0;    // seeds, lost ones included
-  int running = 0;  // seeds that workers have
+  std::vector<Estimate> so_far{};  // of the values that have ended, of Target::observables() in that order
+  int ended = 0;                   // seeds, lost ones included
+  int running = 0;                 // seeds that workers have
   bool decided = false;
+
+  // Values of the observable that has the fewest.
+  int fewest_values() const;
 };
 
 // Seconds until every point is decided; low and high hold it some 95 % of the time.

@@ -12,6 +12,37 @@ Json estimate_json(const Estimate& estimate) {
           {"standard_error", number_json(estimate.standard_error)}};
 }
 
+Json observables_json(const Look& look) {
+  Json json = Json::array();
+  for (const ObservableLook& one : look.each) {
+    Json& of = json.emplace_back(estimate_json(one.estimate));
+    of["observable"] = one.observable;
+    of["half_width"] = number_json(one.half_width);
+    of["share_of_tolerance"] = number_json(one.share);
+    of["skewness"] = number_json(one.skewness);
+    of["transient"] = one.untested ? Json(nullptr) : Json(one.transient);
+    of["verdict"] = one.verdict ? Json(to_string(*one.verdict)) : Json(nullptr);
+  }
+  return json;
+}
+
+std::vector<ObservableLook> observables_of(const Json& json) {
+  const auto number = [](const Json& value) { return value.is_null() ? std::nan("") : value.get<double>(); };
+  std::vector<ObservableLook> each;
+  for (const Json& of : json) {
+    ObservableLook& one = each.emplace_back();
+    one.observable = of.at("observable").get<std::string>();
+    one.estimate = {of.at("count").get<int>(), number(of.at("mean")), number(of.at("standard_error"))};
+    one.half_width = number(of.at("half_width"));
+    one.share = number(of.at("share_of_tolerance"));
+    one.skewness = number(of.at("skewness"));
+    one.untested = of.at("transient").is_null();
+    one.transient = !one.untested && of.at("transient").get<bool>();
+    if (!of.at("verdict").is_null()) one.verdict = verdict_of(of.at("verdict").get<std::string>()).value();
+  }
+  return each;
+}
+
 Json look_json(const Look& look) {
   Json json = estimate_json(look.controlled);
   json["seeds"] = look.seeds;
@@ -22,6 +53,7 @@ Json look_json(const Look& look) {
   json["skewness"] = number_json(look.skewness);
   json["transient"] = look.untested ? Json(nullptr) : Json(look.transient);
   json["verdict"] = to_string(look.verdict);
+  if (!look.each.empty()) json["observables"] = observables_json(look);
   return json;
 }
 

@@ -1,6 +1,8 @@
 // Estimates and looks as JSON, the same wherever they are printed.
 #pragma once
 
+#include <vector>
+
 #include "contract/json.h"
 #include "runner/statistics/cohorts.h"
 
@@ -14,5 +16,9 @@ Json estimate_json(const Estimate& estimate);
 // The estimate that decides with its half-width, and the one without the control variate; numbers that do not
 // exist are null.
 Json look_json(const Look& look);
+
+// Look::each, and the same read back. Throws a std::exception for what is none.
+Json observables_json(const Look& look);
+std::vector<ObservableLook> observables_of(const Json& json);
 
 }  // namespace peclet::runner

@@ -31,85 +31,125 @@ struct Sample {
   Estimate estimate() const { return {count, mean, std::sqrt(squares / (count - 1) / count)}; }
 };
 
-// What a point's first seeds say.
+// What a point's first seeds say of each observable.
 struct Pilot {
   int seeds = 0;
-  std::vector<double> values{};  // of those that were not lost
+  std::vector<std::vector<double>> values{};  // of those that were not lost to it
 
-  int lost() const { return seeds - static_cast<int>(values.size()); }
-  Sample sample() const {
-    const Estimate known = estimate(values);
-    const double count = known.count;
-    return {known.count, known.mean, known.standard_error * known.standard_error * count * (count - 1)};
+  std::size_t fewest_values() const {
+    return std::min_element(values.begin(), values.end(),
+                            [](const auto& one, const auto& other) { return one.size() < other.size(); })
+        ->size();
+  }
+  std::vector<Estimate> estimates() const {
+    std::vector<Estimate> of_each;
+    of_each.reserve(values.size());
+    for (const std::vector<double>& one : values) of_each.push_back(estimate(one));
+    return of_each;
   }
 };
 
-Pilot pilot_of(const std::vector<std::optional<Outcome>>& outcomes, int maximum) {
-  Pilot pilot;
+Pilot pilot_of(const std::vector<std::optional<Outcome>>& outcomes, std::size_t observables, int maximum) {
+  Pilot pilot{0, std::vector<std::vector<double>>(observables)};
   for (const std::optional<Outcome>& outcome : outcomes) {
     if (!outcome || pilot.seeds == maximum) break;
     ++pilot.seeds;
-    if (outcome->kind == Outcome::Kind::value) pilot.values.push_back(outcome->value + outcome->control);
+    for (std::size_t place = 0; place < observables; ++place) {
+      const Observation observation = outcome->of(place);
+      if (std::isnan(observation.value)) continue;
+      pilot.values[place].push_back(observation.value + observation.control);
+    }
   }
   return pilot;
+}
+
+Sample sample_of(const Estimate& known) {
+  const double count = known.count;
+  return {known.count, known.mean, known.standard_error * known.standard_error * count * (count - 1)};
 }
 
 class Futures {
  public:
   Futures(const Pilot& pilot, const Target& target, int minimum, int maximum, std::uint64_t stream)
       : random_(stream),
-        known_(pilot.sample()),
         seeds_(pilot.seeds),
         rule_(target, minimum, maximum),
         first_(static_cast<std::size_t>(
             std::upper_bound(rule_.schedule().begin(), rule_.schedule().end(), seeds_) -
-            rule_.schedule().begin())) {}
-
-  // By what the variance may be off.
-  double own_factor() {
-    const int degrees = known_.count - 1;
-    return degrees / chi_squared(degrees);
+            rule_.schedule().begin())) {
+    for (const Estimate& known : pilot.estimates()) known_.push_back(sample_of(known));
   }
 
-  // Place of the deciding look in the schedule; without convergence the schedule's size.
-  int draw(double factor) {
-    const double deviation = std::sqrt(factor * known_.squares / (known_.count - 1));
-    const double mean = known_.mean + deviation / std::sqrt(known_.count) * normal_(random_);
-    Sample sample = known_;
+  // Place of the deciding look in the schedule; without convergence the schedule's size. Variances are off by
+  // `factor`, or each by a factor of its own.
+  int draw(std::optional<double> factor = {}) {
+    std::vector<Normal> population;
+    for (const Sample& known : known_) population.push_back(draw_population(known, factor));
+    std::vector<Sample> samples = known_;
+    std::vector<Estimate> estimates(samples.size());
     int seeds = seeds_;
     const std::vector<int>& schedule = rule_.schedule();
     for (std::size_t place = first_; place < schedule.size(); ++place) {
-      sample.add(draw_values(survivors(schedule[place] - seeds), mean, deviation));
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        samples[i].add(draw_values(survivors(known_[i], schedule[place] - seeds), population[i]));
+        estimates[i] = samples[i].estimate();
+      }
       seeds = schedule[place];
-      if (is_converged(rule_.judge(seeds, sample.estimate()).verdict)) return static_cast<int>(place);
+      if (is_converged(rule_.judge(seeds, estimates).verdict)) return static_cast<int>(place);
     }
     return static_cast<int>(schedule.size());
   }
 
  private:
+  struct Normal {
+    double mean = 0, deviation = 0;
+  };
+
   double chi_squared(int degrees) {
     return std::chi_squared_distribution<double>(static_cast<double>(degrees))(random_);
   }
 
-  int survivors(int seeds) {
-    if (known_.count == seeds_) return seeds;
-    return std::binomial_distribution<int>(seeds, static_cast<double>(known_.count) / seeds_)(random_);
+  Normal draw_population(const Sample& known, std::optional<double> factor) {
+    const int degrees = known.count - 1;
+    if (!factor) factor = degrees / chi_squared(degrees);
+    const double deviation = std::sqrt(*factor * known.squares / degrees);
+    return {known.mean + deviation / std::sqrt(known.count) * normal_(random_), deviation};
+  }
+
+  int survivors(const Sample& known, int seeds) {
+    if (known.count == seeds_) return seeds;
+    return std::binomial_distribution<int>(seeds, static_cast<double>(known.count) / seeds_)(random_);
   }
 
   // The mean of normal values and the sum of their squared deviations are independent.
-  Sample draw_values(int count, double mean, double deviation) {
+  Sample draw_values(int count, const Normal& population) {
     if (count == 0) return {};
+    const auto [mean, deviation] = population;
     const double own_mean = mean + deviation / std::sqrt(count) * normal_(random_);
     return {count, own_mean, count > 1 ? deviation * deviation * chi_squared(count - 1) : 0};
   }
 
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
-  Sample known_;
+  std::vector<Sample> known_;  // of each observable
   int seeds_;
   StopRule rule_;
   std::size_t first_;
 };
+
+// Whether the mean that a criterion's tolerance is a share of may be zero.
+bool may_be_zero(const Target& target, const std::vector<Estimate>& estimates) {
+  const std::vector<std::string> observables = target.observables();
+  const std::vector<Criterion> criteria = target.criteria();
+  return std::any_of(criteria.begin(), criteria.end(), [&](const Criterion& criterion) {
+    if (!criterion.tolerance.needs_a_mean()) return false;
+    const std::string& measure = criterion.tolerance.relative_to;
+    const auto place =
+        std::find(observables.begin(), observables.end(), measure.empty() ? criterion.observable : measure);
+    const Estimate& known = estimates[static_cast<std::size_t>(place - observables.begin())];
+    return 2 * known.standard_error >= std::abs(known.mean);
+  });
+}
 
 std::size_t rank_of(double probability, std::size_t count) {
   return std::min(count - 1, static_cast<std::size_t>(probability * static_cast<double>(count)));
@@ -125,16 +165,15 @@ Expected<Number> middle_of(const std::vector<Number>& sorted) {
 
 Prediction predict(const std::vector<std::optional<Outcome>>& outcomes, const Target& target, int minimum,
                    int maximum, std::uint64_t stream) {
-  const Pilot pilot = pilot_of(outcomes, maximum);
+  const Pilot pilot = pilot_of(outcomes, target.observables().size(), maximum);
   Prediction prediction;
   prediction.pilot = pilot.seeds;
-  prediction.lost = pilot.lost();
-  if (pilot.values.size() < 2) {
+  prediction.lost = pilot.seeds - static_cast<int>(pilot.fewest_values());
+  if (pilot.fewest_values() < 2) {
     prediction.obstacle = pilot.seeds < 2 ? Obstacle::too_few : Obstacle::lost;
     return prediction;
   }
-  const Estimate known = estimate(pilot.values);
-  if (target.tolerance.is_relative() && 2 * known.standard_error >= std::abs(known.mean)) {
+  if (may_be_zero(target, pilot.estimates())) {
     prediction.obstacle = Obstacle::near_zero;
     return prediction;
   }
@@ -142,7 +181,7 @@ Prediction predict(const std::vector<std::optional<Outcome>>& outcomes, const Ta
   Futures drawn(pilot, target, minimum, maximum, stream);
   std::vector<int> seeds;
   for (int future = 0; future < futures; ++future) {
-    const int place = drawn.draw(drawn.own_factor());
+    const int place = drawn.draw();
     const bool capped = place == std::ssize(schedule);
     seeds.push_back(capped ? maximum : schedule[static_cast<std::size_t>(place)]);
     prediction.capped += capped ? 1.0 / futures : 0;
@@ -170,7 +209,7 @@ std::vector<double> common_factors(const std::vector<Share>& shares) {
 std::vector<int> places_of_looks(const std::vector<std::optional<Outcome>>& outcomes, const Target& target,
                                  int minimum, int maximum, std::uint64_t stream,
                                  const std::vector<double>& factors) {
-  Futures drawn(pilot_of(outcomes, maximum), target, minimum, maximum, stream);
+  Futures drawn(pilot_of(outcomes, target.observables().size(), maximum), target, minimum, maximum, stream);
   std::vector<int> places;
   places.reserve(factors.size());
   for (const double factor : factors) places.push_back(drawn.draw(factor));

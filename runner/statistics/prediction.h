@@ -5,7 +5,8 @@
 //   (n - 1) s^2 / sigma^2 ~ chi^2(n - 1),   mu ~ N(m, sigma^2 / n),
 // and the values to come from a normal population of these, look by look, until the stop rule
 // (stop_rule.h) calls it converged or the maximum is reached. What is expected is the median of the
-// futures' deciding looks; 95 % of them lie within the range.
+// futures' deciding looks; 95 % of them lie within the range. Several observables of a target are drawn
+// independently of each other.
 //
 // Of a sum over points more is known than of each, since their errors partly cancel. There the variances of
 // all points are off by one factor, f / chi^2(f), with the degrees of freedom that Satterthwaite gives a sum
@@ -28,13 +29,13 @@ enum class Obstacle {
   none,
   too_few,   // fewer than two seeds have ended
   lost,      // fewer than two of them with a value
-  near_zero  // their mean is within two standard errors of zero: a relative tolerance means nothing yet
+  near_zero  // the mean of a relative tolerance is within two standard errors of zero: it means nothing yet
 };
 
 struct Prediction {
   Obstacle obstacle = Obstacle::none;
-  int pilot = 0;        // seeds that it was made from: 0 .. pilot - 1
-  int lost = 0;         // of them; later ones are taken to be lost as often
+  int pilot = 0;  // seeds that it was made from: 0 .. pilot - 1
+  int lost = 0;   // of them, to the observable that lacks most; later ones are taken to be lost as often
   Expected<int> seeds;  // of the deciding look
   double capped = 0;    // share of the futures that end at the maximum without convergence
 };

@@ -22,6 +22,7 @@ bool decides(const std::vector<Look>& looks) {
 Scheduler::Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, Target target, int minimum,
                      int maximum)
     : target_(std::move(target)),
+      observables_(target_.observables().size()),
       minimum_(minimum),
       maximum_(maximum),
       ceiling_(maximum),
@@ -50,20 +51,20 @@ void Scheduler::look_at(Point& point) {
   point.fall = decides(point.looks) ? 0 : expected_fall(point);
 }
 
-// Welford's update.
-void Scheduler::count_in(Point& point, const Outcome& outcome) {
-  if (outcome.kind == Outcome::Kind::lost) return;
-  const double value = outcome.value + outcome.control, before = point.mean;
-  point.mean += (value - before) / ++point.values;
-  point.squares += (value - before) * (value - point.mean);
+void Scheduler::count_in(Point& point, const Outcome& outcome) const {
+  point.so_far.resize(observables_);
+  for (std::size_t place = 0; place < observables_; ++place) {
+    const Observation observation = outcome.of(place);
+    if (!std::isnan(observation.value)) point.so_far[place].add(observation.value + observation.control);
+  }
 }
 
-Estimate Scheduler::so_far(int point) const {
-  const Point& about = point_at(point);
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  if (about.values == 0) return {0, none, none};
-  const double count = about.values;
-  return {about.values, about.mean, about.values < 2 ? none : std::sqrt(about.squares / (count - 1) / count)};
+std::vector<Estimate> Scheduler::so_far(int point) const {
+  std::vector<Estimate> estimates(observables_, RunningEstimate().estimate());
+  const std::vector<RunningEstimate>& known = point_at(point).so_far;
+  std::transform(known.begin(), known.end(), estimates.begin(),
+                 [](const RunningEstimate& one) { return one.estimate(); });
+  return estimates;
 }
 
 bool Scheduler::decided(int point) const { return decides(point_at(point).looks); }
@@ -127,8 +128,10 @@ double Scheduler::expected_fall(const Point& point) const {
   constexpr double of_unknown = 1e6;
   if (point.looks.empty()) return of_unknown;
   const Look& last = point.looks.back();
-  const double width = target_.tolerance.share(last.controlled_half_width, last.controlled.mean);
-  if (!std::isfinite(width)) return 1;
+  const double width = largest_share(last, target_);
+  if (!std::isfinite(width)) {  // as if the half-width were 100 % of the mean
+    return target_.tolerance.is_relative() ? 1 / target_.tolerance.value : of_unknown;
+  }
   // Student's factor counts: it falls from 4 to 10 seeds by as much as the square root's.
   const double confidence = adjusted_confidence(target_.confidence, minimum_, maximum_);
   const double share = static_cast<double>(look_ahead(point, 0)) / last.seeds;

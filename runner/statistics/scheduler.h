@@ -33,7 +33,8 @@ enum class Allocation {
   // cost still to come, seeds that it is expected to need times seconds of each: a campaign is through the
   // sooner the earlier its longest point is begun.
   longest_first,
-  // The point whose relative half-width w will fall most, for a second of processor time, by its next look:
+  // The point whose half-width w, as a share of the tolerance, will fall most, for a second of processor
+  // time, by its next look:
   //   w (1 - t(n' - 1) sqrt(n) / (t(n - 1) sqrt(n'))) / (seeds still to be begun * seconds of each)
   // with n values now and n' then. What is begun counts only when its look is reached, so a look once begun
   // is seen through. Points without a look come before, the cheapest first. For a budget that will not see
@@ -91,12 +92,14 @@ class Scheduler {
   int wanted(int point) const;
   // Of these, how many have ended.
   int ended(int point) const;
-  // Values (observable + control) of the seeds that have ended, in whatever order they came.
-  Estimate so_far(int point) const;
+  // Values (observable + control) of the seeds that have ended, in whatever order they came; of
+  // Target::observables(), in that order.
+  std::vector<Estimate> so_far(int point) const;
   // Seeds of the point that run or have ended.
   int begun(int point) const { return point_at(point).begun; }
   // Of these, those that have ended.
   int all_ended(int point) const { return point_at(point).all_ended; }
+  const Target& target() const { return target_; }
   int points() const { return static_cast<int>(points_.size()); }
 
   // What is known of one point; for kept() and put_back().
@@ -107,12 +110,10 @@ class Scheduler {
     std::vector<Look> looks;
     int begun = 0;  // out or ended
     int all_ended = 0;
-    // Of the values: count, mean, and sum of the squared deviations from it.
-    int values = 0;
-    double mean = 0, squares = 0;
-    int closed = 0;    // the seeds 0 .. closed - 1 have ended
-    int expected = 0;  // seeds at which it may be expected to stop
-    double fall = 0;   // of the relative half-width until the next look
+    std::vector<RunningEstimate> so_far;  // of each observable
+    int closed = 0;                       // the seeds 0 .. closed - 1 have ended
+    int expected = 0;                     // seeds at which it may be expected to stop
+    double fall = 0;  // of the half-width until the next look, as a share of the tolerance
     int priority = 0;
     bool cancelled = false;
     double work = 1;
@@ -126,7 +127,7 @@ class Scheduler {
   const Point& point_at(int point) const { return points_[static_cast<std::size_t>(point)]; }
   Point& point_at(int point) { return points_[static_cast<std::size_t>(point)]; }
   void look_at(Point& point);
-  static void count_in(Point& point, const Outcome& outcome);
+  void count_in(Point& point, const Outcome& outcome) const;
   // The look after the last one made, and the one after that.
   int look_ahead(const Point& point, int steps) const;
   bool is_open(const Point& point) const;
@@ -147,6 +148,7 @@ class Scheduler {
   std::optional<SeedId> most_urgent(int steps, double budget) const;
 
   Target target_;
+  std::size_t observables_;
   int minimum_, maximum_, ceiling_;
   std::vector<int> schedule_;
   Allocation allocation_ = Allocation::longest_first;

@@ -45,6 +45,18 @@ Estimate estimate(std::span<const double> values) {
   return result;
 }
 
+void RunningEstimate::add(double value) {
+  const double before = mean_;
+  mean_ += (value - before) / ++count_;
+  squares_ += (value - before) * (value - mean_);
+}
+
+Estimate RunningEstimate::estimate() const {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (count_ == 0) return {0, none, none};
+  return {count_, mean_, count_ < 2 ? none : std::sqrt(squares_ / (count_ - 1) / count_)};
+}
+
 double skewness(std::span<const double> values) {
   const double unit = unit_of(values), mean = unit * estimate(values).mean;
   double squares = 0, cubes = 0;

@@ -14,6 +14,17 @@ struct Estimate {
 
 Estimate estimate(std::span<const double> values);
 
+// The same of values that come one by one (Welford's update); NaN for a mean without any.
+class RunningEstimate {
+ public:
+  void add(double value);
+  Estimate estimate() const;
+
+ private:
+  int count_ = 0;
+  double mean_ = 0, squares_ = 0;  // squares: the sum of the squared deviations from the mean
+};
+
 // Third central moment over the 3/2 power of the second, both with n; NaN for fewer than three values or
 // equal ones.
 double skewness(std::span<const double> values);

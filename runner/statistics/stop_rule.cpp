@@ -47,6 +47,17 @@ bool is_converged(Verdict verdict) {
   return verdict == Verdict::converged || verdict == Verdict::converged_with_losses;
 }
 
+Verdict less_favourable(Verdict one, Verdict other) {
+  constexpr std::array order{Verdict::converged,
+                             Verdict::converged_with_losses,
+                             Verdict::converged_near_maximum,
+                             Verdict::capped,
+                             Verdict::more,
+                             Verdict::failed};
+  const auto rank = [&](Verdict verdict) { return std::find(order.begin(), order.end(), verdict); };
+  return std::max(rank(one), rank(other)) == rank(one) ? one : other;
+}
+
 double adjusted_confidence(double confidence, int minimum, int maximum) {
   return minimum == maximum ? confidence : 1 - (1 - confidence) * (1 - 1.4 / std::max(minimum, 2));
 }
@@ -59,12 +70,32 @@ std::vector<int> look_schedule(int minimum, int maximum) {
   return schedule;
 }
 
+// An estimate as a criterion sees it.
+struct StopRule::Measured {
+  Estimate estimate;
+  double own = 0;          // Student's half-width
+  double good_enough = 0;  // the one that the tolerance allows
+  double share = 0;        // of both
+  double mean_factor = 1;  // 1 + w, for the mean of which a relative tolerance is a share
+};
+
 StopRule::StopRule(const Target& target, int minimum, int maximum)
-    : target_(target),
+    : rule_(target.rule),
       minimum_(minimum),
       maximum_(maximum),
       confidence_(adjusted_confidence(target.confidence, minimum, maximum)),
-      schedule_(look_schedule(minimum, maximum)) {}
+      schedule_(look_schedule(minimum, maximum)) {
+  const std::vector<std::string> observables = target.observables();
+  observables_ = observables.size();
+  const auto place_of = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::find(observables.begin(), observables.end(), name) -
+                                    observables.begin());
+  };
+  for (const auto& [observable, tolerance] : target.criteria()) {
+    const std::string& measure = tolerance.relative_to.empty() ? observable : tolerance.relative_to;
+    parts_.push_back({tolerance, place_of(observable), place_of(measure)});
+  }
+}
 
 double StopRule::half_width(const Estimate& estimate) {
   if (estimate.count < 2) return std::nan("");
@@ -76,60 +107,86 @@ double StopRule::half_width(const Estimate& estimate) {
   return factor * estimate.standard_error;
 }
 
-double StopRule::share(const Estimate& estimate) {
-  return target_.tolerance.share(half_width(estimate), estimate.mean);
+bool StopRule::has_measure(Estimates estimates) const {
+  return std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) {
+    return part.tolerance.half_width(estimates[part.measure].mean) > 0;
+  });
 }
 
-double StopRule::needed(int seeds, int values, double share, Strictness strictness) {
-  const auto key = std::pair(values, strictness);
+StopRule::Measured StopRule::measure(const Part& part, Estimates estimates) {
+  const Estimate& of = estimates[part.measure];
+  Measured measured;
+  measured.estimate = estimates[part.place];
+  measured.own = half_width(measured.estimate);
+  measured.good_enough = part.tolerance.half_width(of.mean);
+  measured.share = part.tolerance.share(measured.own, of.mean);
+  if (!part.tolerance.is_relative()) return measured;
+  const bool is_own = part.measure == part.place;
+  measured.mean_factor =
+      1 + (is_own ? measured.share * part.tolerance.value : half_width(of) / std::abs(of.mean));
+  return measured;
+}
+
+double StopRule::needed(int seeds, const Measured& measured, Strictness strictness) {
+  const auto key = std::pair(measured.estimate.count, strictness);
   auto known = may_exceed_.find(key);
   if (known == may_exceed_.end()) {
-    known = may_exceed_.emplace(key, excess(values, strictness == Strictness::last ? at_last : before_last))
-                .first;
+    const double probability = strictness == Strictness::last ? at_last : before_last;
+    known = may_exceed_.emplace(key, excess(measured.estimate.count, probability)).first;
   }
-  const double ratio = share * mean_factor(share);
+  const double ratio = measured.share * measured.mean_factor;
   return seeds * ratio * ratio * known->second;
 }
 
-double StopRule::mean_factor(double share) const {
-  return target_.tolerance.is_relative() ? 1 + share * target_.tolerance.value : 1;
-}
-
-bool StopRule::converges(int seeds, int values, double share) {
+bool StopRule::converges(int seeds, const Measured& measured) {
   // Not so an interval that does not exist, and a share of a mean of 0.
-  if (values < 2 || !(share <= 1)) return false;
-  if (target_.rule == Target::first_rule) return true;
+  if (measured.estimate.count < 2 || !(measured.share <= 1)) return false;
+  if (rule_ == Target::first_rule) return true;
   const Strictness strictness = seeds < maximum_ ? Strictness::before_last : Strictness::last;
-  return needed(seeds, values, share, strictness) <= maximum_;
+  return needed(seeds, measured, strictness) <= maximum_;
 }
 
-bool StopRule::stops(int seeds, int values, double share) {
-  return seeds >= maximum_ || converges(seeds, values, share);
+bool StopRule::stops(int seeds, Estimates estimates) {
+  return seeds >= maximum_ || std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) {
+           return converges(seeds, measure(part, estimates));
+         });
 }
 
-StopRule::Judgement StopRule::judge(int seeds, const Estimate& estimate) {
-  const double own = half_width(estimate);
-  const double share = target_.tolerance.share(own, estimate.mean);
-  if (converges(seeds, estimate.count, share)) {
+StopRule::Judgement StopRule::judge(int seeds, Estimates estimates) {
+  Judgement judgement{Verdict::converged, std::vector<Finding>(observables_)};
+  for (std::size_t place = 0; place < observables_; ++place) {
+    judgement.findings[place] = {std::nullopt, half_width(estimates[place]), std::nan("")};
+  }
+  for (const Part& part : parts_) {
+    Finding finding = judge(seeds, measure(part, estimates));
+    finding.share = part.tolerance.share(finding.half_width, estimates[part.measure].mean);
+    judgement.findings[part.place] = finding;
+    judgement.verdict = less_favourable(judgement.verdict, *finding.verdict);
+  }
+  return judgement;
+}
+
+StopRule::Finding StopRule::judge(int seeds, const Measured& measured) {
+  const auto& [estimate, own, good_enough, share, mean_factor] = measured;
+  if (converges(seeds, measured)) {
     const Strictness strictness = seeds < maximum_ ? Strictness::before_last : Strictness::last;
-    const bool is_near = target_.rule != Target::first_rule &&
-                         needed(seeds, estimate.count, share, strictness) > maximum_ / 3.0;
+    const bool is_near = rule_ != Target::first_rule && needed(seeds, measured, strictness) > maximum_ / 3.0;
     return {estimate.count == seeds ? Verdict::converged : Verdict::converged_with_losses,
-            is_near ? std::max(own, target_.tolerance.half_width(estimate.mean)) : own};
+            is_near ? std::max(own, good_enough) : own};
   }
   // Where not one of the first seeds lives, more of them are waste.
   if (seeds == minimum_ && estimate.count == 0) return {Verdict::failed, own};
   if (seeds < maximum_) return {Verdict::more, own};
   if (estimate.count < 2) return {Verdict::failed, own};
   // Not so around a mean of 0, whose relative width has no end.
-  const bool is_within = std::isfinite(share) && share <= mean_factor(share);
-  if (target_.rule == Target::first_rule || !is_within) return {Verdict::capped, own};
-  return {Verdict::converged_near_maximum, widened(estimate, share)};
+  const bool is_within = std::isfinite(share) && share <= mean_factor;
+  if (rule_ == Target::first_rule || !is_within) return {Verdict::capped, own};
+  return {Verdict::converged_near_maximum, widened(measured)};
 }
 
-double StopRule::widened(const Estimate& estimate, double share) {
-  const double factor = std::sqrt(excess(estimate.count, before_last));
-  return std::max(1.0, share * mean_factor(share) * factor) * target_.tolerance.half_width(estimate.mean);
+double StopRule::widened(const Measured& measured) const {
+  const double factor = std::sqrt(excess(measured.estimate.count, before_last));
+  return std::max(1.0, measured.share * measured.mean_factor * factor) * measured.good_enough;
 }
 
 }  // namespace peclet::runner

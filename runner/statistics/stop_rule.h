@@ -15,11 +15,15 @@
 // its interval is wider than the tolerance by the same f,
 //   max(e, w (1 + w) sqrt(f)) |mean|,   p = 0.02.
 // An absolute tolerance takes the same rule with w and e in the observable's unit, and 1 in the place of
-// |mean| and of 1 + w.
+// |mean| and of 1 + w. One relative to another observable takes |mean| and 1 + w of that one.
+//
+// A target of several criteria is met at the first look at which each of them is by its own rule. What is
+// said of the point is the least favourable of what is said of them.
 #pragma once
 
 #include <map>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -45,6 +49,9 @@ std::optional<Verdict> verdict_of(std::string_view word);
 // With losses or without.
 bool is_converged(Verdict verdict);
 
+// Of two verdicts that the same look gave of two criteria, the one that counts for both.
+Verdict less_favourable(Verdict one, Verdict other);
+
 // The level that each interval must have so that the one at which a point stops holds the mean with
 // `confidence`. Among several looks the first one within the tolerance is often one whose spread came out too
 // small: with levels of 95 %, 93 to 95 % of the last intervals hold the mean from a minimum of 8 on, fewer
@@ -60,35 +67,50 @@ class StopRule {
  public:
   StopRule(const Target& target, int minimum, int maximum);
 
+  // Below, estimates are those of Target::observables(), in that order, of a closed cohort of `seeds`: of
+  // each observable those seeds count that have a value of it.
+  using Estimates = std::span<const Estimate>;
+
+  // What is said of one observable.
+  struct Finding {
+    std::optional<Verdict> verdict;  // none where it only measures others
+    double half_width = 0;           // NaN for fewer than two values
+    double share = 0;                // of the half-width that is good enough; NaN without a tolerance
+  };
   struct Judgement {
     Verdict verdict = Verdict::more;
-    double half_width = 0;  // NaN for fewer than two values
+    std::vector<Finding> findings;  // of each observable
   };
-  // Of a closed cohort of so many seeds, those with a value being in the estimate.
-  Judgement judge(int seeds, const Estimate& estimate);
+  Judgement judge(int seeds, Estimates estimates);
+  // Whether the verdict would not be `more`.
+  bool stops(int seeds, Estimates estimates);
 
   // Student's half-width at the adjusted level; NaN for fewer than two values.
   double half_width(const Estimate& estimate);
-  // The same over the half-width that is good enough.
-  double share(const Estimate& estimate);
-  // Whether any half-width is good enough around this mean: not so a share of 0.
-  bool has_measure(double mean) const { return target_.tolerance.half_width(mean) > 0; }
-  // Whether a look at so many seeds, `values` of them with a value, decides when the half-width comes out as
-  // this share of the tolerance.
-  bool stops(int seeds, int values, double share);
+  // Whether for each criterion some half-width is good enough: not so a share of 0, and of what is unknown.
+  bool has_measure(Estimates estimates) const;
 
   const std::vector<int>& schedule() const { return schedule_; }
 
  private:
   enum class Strictness { before_last, last };
+  struct Measured;
+  // One criterion, and where its observable and the one that it is relative to stand among the estimates.
+  struct Part {
+    Tolerance tolerance;
+    std::size_t place = 0, measure = 0;
+  };
+  Measured measure(const Part& part, Estimates estimates);
   // Upper limit of the seeds that the tolerance takes.
-  double needed(int seeds, int values, double share, Strictness strictness);
-  // 1 + w, for the mean of which a relative tolerance is a share; 1 for an absolute one.
-  double mean_factor(double share) const;
-  bool converges(int seeds, int values, double share);
-  double widened(const Estimate& estimate, double share);
+  double needed(int seeds, const Measured& measured, Strictness strictness);
+  bool converges(int seeds, const Measured& measured);
+  // All but the share.
+  Finding judge(int seeds, const Measured& measured);
+  double widened(const Measured& measured) const;
 
-  Target target_;
+  int rule_;
+  std::vector<Part> parts_;
+  std::size_t observables_;
   int minimum_, maximum_;
   double confidence_;
   std::vector<int> schedule_;

@@ -20,15 +20,15 @@ bool differs_from_zero(const std::vector<double>& contrasts, double scale) {
 
 }  // namespace
 
-bool has_transient(std::span<const std::optional<Outcome>> cohort) {
+bool has_transient(std::span<const Observation> observed) {
   std::vector<double> quarters, halves;
   double scale = 0;
-  for (const std::optional<Outcome>& outcome : cohort) {
-    if (!outcome || outcome->kind == Outcome::Kind::lost || !std::isfinite(outcome->first_half)) continue;
-    const double whole = outcome->value + outcome->control;
+  for (const Observation& observation : observed) {
+    if (!std::isfinite(observation.first_half)) continue;
+    const double whole = observation.value + observation.control;
     scale = std::max(scale, std::abs(whole));
-    quarters.push_back(outcome->first_quarter - whole);
-    halves.push_back(outcome->first_half - whole);
+    quarters.push_back(observation.first_quarter - whole);
+    halves.push_back(observation.first_half - whole);
   }
   return differs_from_zero(quarters, scale) || differs_from_zero(halves, scale);
 }

@@ -9,7 +9,6 @@
 // much longer than itself: its bias may be many times what it changes from one half to the other.
 #pragma once
 
-#include <optional>
 #include <span>
 
 #include "runner/statistics/cohorts.h"
@@ -18,7 +17,7 @@ namespace peclet::runner {
 
 // True when one of the two contrasts is beyond what happens by chance once in 1000 looks without a transient
 // (two tests at 0.05 % each). False for fewer than five seeds whose contrasts are known.
-bool has_transient(std::span<const std::optional<Outcome>> cohort);
+bool has_transient(std::span<const Observation> observed);
 
 // Seeds whose contrasts must be known for a test.
 constexpr int fewest_contrasts = 5;

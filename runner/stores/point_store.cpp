@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "contract/input_error.h"
+#include "runner/database/further_values.h"
 #include "runner/database/result_text.h"
 #include "runner/folder/realisation_result.h"
 #include "runner/statistics/quantities.h"
@@ -14,10 +15,9 @@ namespace {
 constexpr std::size_t longest_list = 350;
 
 std::string describe(const Campaign& campaign) {
-  return fmt::format("{}: {} points, {} to {} at {:g} confidence, {} to {} seeds", campaign.name,
-                     campaign.points.size(), campaign.target.observable, to_string(campaign.target.tolerance),
-                     campaign.target.confidence, campaign.minimum_realisations,
-                     campaign.maximum_realisations);
+  return fmt::format("{}: {} points, {} at {:g} confidence, {} to {} seeds", campaign.name,
+                     campaign.points.size(), to_string(campaign.target), campaign.target.confidence,
+                     campaign.minimum_realisations, campaign.maximum_realisations);
 }
 
 }  // namespace
@@ -29,11 +29,12 @@ void PointStore::adopt(const Campaign& campaign) {
 }
 
 void PointStore::take_over(const Campaign& campaign) {
-  const std::string before =
-      connection_.text("SELECT observable FROM campaign JOIN target USING (target_id)");
+  const bool is_first = connection_.integer("SELECT count(*) FROM campaign") == 0;
+  const bool sees_the_same =
+      is_first || database_.campaign().target.target.observables() == campaign.target.observables();
   const std::int64_t target = adopt_target(campaign);
   adopt_points(campaign);
-  if (!before.empty() && before != campaign.target.observable) observe_again(campaign);
+  if (!sees_the_same) observe_again(campaign);
 
   const std::string document = campaign.document.dump();
   const bool unchanged = connection_.text("SELECT document FROM campaign") == document;
@@ -60,7 +61,7 @@ std::int64_t PointStore::adopt_target(const Campaign& campaign) {
   for (const char* const sql : parts) {
     Statement statement(connection_, sql);
     statement.bind(target.observable)
-        .bind(canonical_json(to_json(target.tolerance)))
+        .bind(canonical_json(criterion_json(target)))
         .bind(target.confidence)
         .bind(campaign.minimum_realisations)
         .bind(campaign.maximum_realisations)
@@ -97,13 +98,15 @@ void PointStore::observe_again(const Campaign& campaign) {
   done.bind(no_value);
   Statement change(connection_,
                    "UPDATE realisation SET state = ?, cause = ?, value = ?, control = ?, first_quarter = ?, "
-                   "first_half = ? WHERE point_id = ? AND seed = ?");
+                   "first_half = ?, further = ? WHERE point_id = ? AND seed = ?");
+  const std::vector<std::string> observables = campaign.target.observables();
   while (done.step()) {
     const Json document = Json::parse(result_text(done, 2, 3));
-    const Observed observed = observe(document, campaign.target.observable);
-    if (!done.is_null(4) && !has_observable(document.at("mean"), campaign.target.observable)) {
+    const std::vector<Observed> all = observe(document, observables);
+    const Observed& observed = all.front();
+    if (const std::string lacking = lacking_in(document, observables); !done.is_null(4) && !lacking.empty()) {
       throw InputError(
-          campaign.name, "/target/observable", campaign.target.observable,
+          campaign.name, pointer_of(campaign.target, lacking), lacking,
           "must be a number that the results have: " + plain(names_of_targets(document), longest_list));
     }
     change.bind(to_string(observed.value ? SeedState::done : SeedState::failed))
@@ -112,6 +115,7 @@ void PointStore::observe_again(const Campaign& campaign) {
         .bind(observed.control)
         .bind(observed.first_quarter)
         .bind(observed.first_half)
+        .bind(further_values_text(observables, all))
         .bind(done.integer(0))
         .bind(done.integer(1))
         .run();

@@ -14,7 +14,8 @@ class PointStore {
  public:
   // Requires a Database of open_owner, which must outlive it. adopt() commits by itself; the others are for
   // use inside a Transaction of the caller.
-  explicit PointStore(Database& database) : connection_(database.connection()), events_(database) {}
+  explicit PointStore(Database& database)
+      : database_(database), connection_(database.connection()), events_(database) {}
 
   // Makes the database that of `campaign`: its points in their order, its target. Points that are no longer
   // in the sweep stay, inactive. Throws InputError, with nothing written, when finished realisations lack the
@@ -33,6 +34,7 @@ class PointStore {
   void adopt_points(const Campaign& campaign);
   void observe_again(const Campaign& campaign);
 
+  Database& database_;
   Connection& connection_;
   EventLog events_;
 };

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "runner/database/further_values.h"
 #include "runner/database/result_text.h"
+#include "runner/statistics/look_json.h"
 #include "runner/stores/engine_row.h"
 #include "runner/text/utc_time.h"
 
@@ -18,7 +20,7 @@ std::optional<Number> number_at(const Json& document, const char* pointer) {
 
 }  // namespace
 
-StoredResult ResultStore::store(const RealisationResult& result, const std::string& observable) {
+StoredResult ResultStore::store(const RealisationResult& result, const Target& target) {
   Statement known(
       connection_,
       "SELECT point.point_id, coalesce(engine_identity, ''), content_sha256, state, kept_apart FROM point "
@@ -45,10 +47,11 @@ StoredResult ResultStore::store(const RealisationResult& result, const std::stri
   }
   if (known.text(3) == "quarantined")
     events_.write("late-result", point, result.seed, "a quarantined seed has a result");
-  StoredResult stored{apart ? Stored::stored_apart : Stored::stored, observe(result.document, observable),
+  const std::vector<std::string> observables = target.observables();
+  StoredResult stored{apart ? Stored::stored_apart : Stored::stored, observe(result.document, observables),
                       ""};
-  stored.cause = cause_of(result, stored.observed);
-  store_numbers(point, result, stored);
+  stored.cause = cause_of(result, stored.observed.front());
+  store_numbers(point, result, stored, observables);
   for (const std::string& code : flags_of(result)) events_.write("flag", point, result.seed, code);
   Statement(connection_, "UPDATE point SET engine_identity = ? WHERE point_id = ?")
       .bind(identity)
@@ -58,16 +61,17 @@ StoredResult ResultStore::store(const RealisationResult& result, const std::stri
 }
 
 void ResultStore::store_numbers(std::int64_t point, const RealisationResult& result,
-                                const StoredResult& stored) {
+                                const StoredResult& stored, const std::vector<std::string>& observables) {
   const Json& document = result.document;
-  const Observed& observed = stored.observed;
+  const Observed& observed = stored.observed.front();
+  const std::optional<std::string> further = further_values_text(observables, stored.observed);
   const Json& final_state = document.at("final_state_sha256");
   Statement(
       connection_,
       "INSERT OR REPLACE INTO realisation (point_id, seed, state, cause, value, control, timestep, "
       "equilibration_steps, production_steps, production_strain, statistical_inefficiency, largest_overlap, "
-      "cpu_seconds, wall_seconds, final_state_sha256, content_sha256, engine_id, first_quarter, first_half) "
-      "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+      "cpu_seconds, wall_seconds, final_state_sha256, content_sha256, engine_id, first_quarter, first_half, "
+      "further) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       .bind(point)
       .bind(result.seed)
       .bind(to_string(observed.value ? SeedState::done : SeedState::failed))
@@ -87,6 +91,7 @@ void ResultStore::store_numbers(std::int64_t point, const RealisationResult& res
       .bind(engine_row(database_, document.at("engine")))
       .bind(observed.first_quarter)
       .bind(observed.first_half)
+      .bind(further)
       .run();
   Json without_engine = document;
   without_engine.erase("engine");
@@ -105,12 +110,14 @@ void ResultStore::store_looks(std::int64_t point, const std::vector<Look>& looks
       connection_,
       "INSERT INTO look (point_id, target_id, seeds, lost, count, mean, standard_error, half_width, "
       "uncontrolled_mean, uncontrolled_standard_error, uncontrolled_half_width, verdict, made_at, skewness, "
-      "transient) SELECT ?1, target_id, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14 FROM "
-      "campaign WHERE true ON CONFLICT DO UPDATE SET lost = ?3, count = ?4, mean = ?5, standard_error = ?6, "
+      "transient, observables) SELECT ?1, target_id, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, "
+      "?14, ?15 FROM campaign WHERE true ON CONFLICT DO UPDATE SET lost = ?3, count = ?4, mean = ?5, "
+      "standard_error = ?6, "
       "half_width = ?7, uncontrolled_mean = ?8, uncontrolled_standard_error = ?9, uncontrolled_half_width = "
-      "?10, verdict = ?11, made_at = ?12, skewness = ?13, transient = ?14 WHERE count != ?4 OR lost != ?3 OR "
+      "?10, verdict = ?11, made_at = ?12, skewness = ?13, transient = ?14, observables = ?15 WHERE count != "
+      "?4 OR lost != ?3 OR "
       "mean IS NOT ?5 OR half_width IS NOT ?7 OR uncontrolled_mean IS NOT ?8 OR uncontrolled_half_width IS "
-      "NOT ?10 OR verdict != ?11 OR skewness IS NOT ?13 OR transient != ?14");
+      "NOT ?10 OR verdict != ?11 OR skewness IS NOT ?13 OR transient != ?14 OR observables IS NOT ?15");
   const std::string now = utc_now();
   for (const Look& look : looks) {
     insert.bind(point)
@@ -127,6 +134,7 @@ void ResultStore::store_looks(std::int64_t point, const std::vector<Look>& looks
         .bind(now)
         .bind(look.skewness)
         .bind(look.transient)
+        .bind(look.each.empty() ? std::nullopt : std::optional(observables_json(look).dump()))
         .run();
   }
 }

@@ -25,8 +25,8 @@ enum class Stored {
 // The same, and what the result counts for; of a result that is stored only.
 struct StoredResult {
   Stored what;
-  Observed observed;
-  std::string cause;  // see cause_of()
+  std::vector<Observed> observed;  // of Target::observables()
+  std::string cause;               // see cause_of()
 };
 
 class ResultStore {
@@ -36,13 +36,14 @@ class ResultStore {
   explicit ResultStore(Database& database)
       : database_(database), connection_(database.connection()), events_(database) {}
 
-  // One without a number for the observable is lost with the cause no_value.
-  StoredResult store(const RealisationResult& result, const std::string& observable);
+  // One without a number for the leading observable is lost with the cause no_value.
+  StoredResult store(const RealisationResult& result, const Target& target);
   // The looks at a point for the present target, in place of those that are stored.
   void store_looks(std::int64_t point, const std::vector<Look>& looks);
 
  private:
-  void store_numbers(std::int64_t point, const RealisationResult& result, const StoredResult& stored);
+  void store_numbers(std::int64_t point, const RealisationResult& result, const StoredResult& stored,
+                     const std::vector<std::string>& observables);
 
   Database& database_;
   Connection& connection_;

@@ -38,12 +38,12 @@ MeasuredCost cost_of(const std::vector<RealisationRecord>& realisations) {
 }
 
 std::map<std::string, PointHistory> history(Database& database, const Campaign& campaign) {
-  const bool same_observable = database.campaign().target.target.observable == campaign.target.observable;
+  const bool sees_the_same = database.campaign().target.target.observables() == campaign.target.observables();
   std::map<std::string, PointHistory> known;
   for (const PointRecord& point : database.points()) {
     PointHistory& of = known[point.hash];
     of.cost = cost_of(database.realisations(point.id));
-    if (same_observable) of.outcomes = database.outcomes(point.id);
+    if (sees_the_same) of.outcomes = database.outcomes(point.id);
   }
   return known;
 }
@@ -51,11 +51,7 @@ std::map<std::string, PointHistory> history(Database& database, const Campaign& 
 // Whether the database still is about the points and the target of this campaign: while a pilot runs, people
 // may change both.
 bool is_of(Database& database, const Campaign& campaign) {
-  const Target& target = database.campaign().target.target;
-  if (target.observable != campaign.target.observable || !(target.tolerance == campaign.target.tolerance) ||
-      target.confidence != campaign.target.confidence) {
-    return false;
-  }
+  if (database.campaign().target.target != campaign.target) return false;
   const std::vector<PointRecord> points = database.points();
   return std::equal(points.begin(), points.end(), campaign.points.begin(), campaign.points.end(),
                     [](const PointRecord& stored, const auto& point) { return stored.hash == point.hash; });

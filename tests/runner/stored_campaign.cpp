@@ -9,9 +9,10 @@
 
 namespace peclet::runner {
 
-StoredCampaign::StoredCampaign(int points, int minimum, int maximum)
+StoredCampaign::StoredCampaign(int points, int minimum, int maximum, const std::vector<Criterion>& also)
     : campaign_(plain_campaign(points, minimum, maximum, 0.05)),
       database_(Database::open_owner(CampaignDirectory(folder_.path()).database())) {
+  campaign_.target.also = also;
   PointStore(database_).adopt(campaign_);
 }
 
@@ -20,7 +21,7 @@ void StoredCampaign::store(int point, const Json& result) {
   const std::int64_t engine = engine_row(database_, plain_engine());
   const std::int64_t attempt =
       SeedStore(database_).begin_attempt(id(point), result["seed"].get<int>(), 1, 4711, engine);
-  ResultStore(database_).store(parse_result(result.dump()), campaign_.target.observable);
+  ResultStore(database_).store(parse_result(result.dump()), campaign_.target);
   SeedStore(database_).end_attempt(attempt, {AttemptOutcome::result, 100});
   look(point);
   booking.commit();
@@ -33,7 +34,13 @@ void StoredCampaign::look(int point) {
 }
 
 void StoredCampaign::set_tolerance(double tolerance) {
-  campaign_.target.tolerance = tolerance;
+  Target target = campaign_.target;
+  target.tolerance = tolerance;
+  set_target(target);
+}
+
+void StoredCampaign::set_target(const Target& target) {
+  campaign_.target = target;
   PointStore(database_).adopt(campaign_);
   Transaction booking(database_.connection());
   for (int point = 0; point < static_cast<int>(campaign_.points.size()); ++point) look(point);
@@ -63,8 +70,7 @@ void StoredCampaign::complete_in_halves(int point, int seed, double first, doubl
 
 void StoredCampaign::repeat(int point, int seed, double viscosity) {
   const std::string& hash = campaign_.points.at(static_cast<std::size_t>(point)).hash;
-  ResultStore(database_).store(parse_result(plain_result(hash, seed, viscosity).dump()),
-                               campaign_.target.observable);
+  ResultStore(database_).store(parse_result(plain_result(hash, seed, viscosity).dump()), campaign_.target);
 }
 
 void StoredCampaign::blow_up(int point, int seed) {

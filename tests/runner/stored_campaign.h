@@ -11,8 +11,8 @@ namespace peclet::runner {
 
 class StoredCampaign {
  public:
-  // plain_campaign() with a tolerance of 5 %.
-  StoredCampaign(int points, int minimum, int maximum);
+  // plain_campaign() with a tolerance of 5 %, and these beside it.
+  StoredCampaign(int points, int minimum, int maximum, const std::vector<Criterion>& also = {});
 
   // A result of plain_result(), with an attempt of its own, and the looks that it allows.
   void complete(int point, int seed, double viscosity, const Json& warnings = Json::array());
@@ -22,6 +22,8 @@ class StoredCampaign {
   void complete_in_halves(int point, int seed, double first, double second);
   // As `peclet set --tolerance`, with the looks that follow.
   void set_tolerance(double tolerance);
+  // As a campaign file with another target, with the looks that follow.
+  void set_target(const Target& target);
   // One more result of a seed that has ended.
   void repeat(int point, int seed, double viscosity);
   void blow_up(int point, int seed);

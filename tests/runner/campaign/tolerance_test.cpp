@@ -20,12 +20,15 @@ TEST(Tolerance, IsAShareOfTheMeanOrANumberOfItsOwn) {
 }
 
 TEST(Tolerance, IsWrittenAsItIsRead) {
-  for (const char* const text : {R"({"relative_tolerance":0.05})", R"({"absolute_tolerance":12.5})"}) {
+  for (const char* const text : {R"({"relative_tolerance":0.05})", R"({"absolute_tolerance":12.5})",
+                                 R"({"relative_to":"pressure","relative_tolerance":0.05})"}) {
     EXPECT_EQ(to_json(tolerance_of(Json::parse(text))).dump(), text);
   }
   EXPECT_EQ(to_string(Tolerance(0.05)), "5 %");
   EXPECT_EQ(to_string(Tolerance::absolute(12.5)), "12.5");
   EXPECT_THROW(tolerance_of(Json::parse(R"({"tolerance": 1})")), InputError);
+  const Json measured = Json::parse(R"({"relative_to":"pressure","relative_tolerance":0.05})");
+  EXPECT_EQ(to_string(tolerance_of(measured)), "5 % of pressure");
 }
 
 }  // namespace

@@ -100,6 +100,11 @@ TEST_F(Doctor, FindsWhatContradictsItself) {
   }
 }
 
+TEST_F(Doctor, FindsFurtherValuesThatTheResultDoesNotHave) {
+  edit("UPDATE realisation SET further = '{\"pressure\":[1.0,0.0,null,null]}' WHERE seed = 0");
+  EXPECT_EQ(severity("result-altered"), "integrity");
+}
+
 TEST_F(Doctor, RepairsAnAlteredResultByRunningItsSeedAgain) {
   const std::string before = exported();
   edit("UPDATE result SET document = '" + altered(1) + "' WHERE seed = 1");

@@ -45,6 +45,30 @@ class MigrationFromVersion2 : public Migration {
   }
 };
 
+// The same of version 5, as the released tables are, and as they were for a while between releases, when
+// targets had the document already.
+class MigrationFromVersion5 : public MigrationFromVersion2, public testing::WithParamInterface<bool> {
+ protected:
+  MigrationFromVersion5() {
+    Connection connection(path().string(), Connection::Access::read_write, 0);
+    connection.execute("PRAGMA foreign_keys = OFF");
+    connection.execute("DROP VIEW points; DROP VIEW realisations; DROP VIEW estimates");
+    for (const char* const sql : {version_3_sql, version_4_sql, version_5_sql}) connection.execute(sql);
+    if (GetParam()) {
+      connection.execute(
+          "CREATE TABLE other (target_id INTEGER PRIMARY KEY, observable TEXT NOT NULL, criterion TEXT NOT "
+          "NULL "
+          "CHECK (json_valid(criterion)), confidence REAL NOT NULL, minimum INTEGER NOT NULL, maximum "
+          "INTEGER "
+          "NOT NULL, rule INTEGER NOT NULL, UNIQUE (observable, criterion)) STRICT;"
+          "INSERT INTO other SELECT target_id, observable, '{\"absolute_tolerance\":0.5}', confidence, "
+          "minimum, "
+          "maximum, rule FROM target; DROP TABLE target; ALTER TABLE other RENAME TO target");
+    }
+    connection.execute(views_sql);
+  }
+};
+
 // Table, column, type, NOT NULL, default and place in the key of every column, views included.
 std::string columns(Connection& connection) {
   return connection.text(
@@ -66,7 +90,7 @@ std::string indices(Connection& connection) {
 void expect_newest_layout(const std::filesystem::path& path) {
   Database old = Database::open_owner(path);
   Database fresh = Database::open_owner(path.parent_path() / "fresh.db");
-  EXPECT_EQ(old.connection().integer("PRAGMA user_version"), 5);
+  EXPECT_EQ(old.connection().integer("PRAGMA user_version"), 6);
   EXPECT_EQ(columns(old.connection()), columns(fresh.connection()));
   EXPECT_EQ(indices(old.connection()), indices(fresh.connection()));
   EXPECT_EQ(old.connection().text("PRAGMA integrity_check"), "ok");
@@ -76,6 +100,17 @@ void expect_newest_layout(const std::filesystem::path& path) {
 TEST_F(Migration, LeavesTheTablesThatANewCampaignHas) { expect_newest_layout(path()); }
 
 TEST_F(MigrationFromVersion2, LeavesTheTablesThatANewCampaignHas) { expect_newest_layout(path()); }
+
+TEST_P(MigrationFromVersion5, LeavesTheTablesThatANewCampaignHas) { expect_newest_layout(path()); }
+
+TEST_P(MigrationFromVersion5, KeepsTheTolerance) {
+  const double stored = 0.05;  // in campaign-version-1.sql
+  const Target target = Database::open_owner(path()).campaign().target.target;
+  EXPECT_EQ(target.tolerance, GetParam() ? Tolerance::absolute(0.5) : Tolerance(stored));
+  EXPECT_TRUE(target.also.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(BothForms, MigrationFromVersion5, testing::Bool());
 
 TEST_F(MigrationFromVersion2, KeepsEveryRowAndWhatRefersToIt) {
   Database database = Database::open_owner(path());

@@ -29,7 +29,7 @@ class WorkingAhead : public Dispatching {
       Json result = plain_result(campaign_.points[point].hash, 0, steady(0));
       result["cost"]["wall_seconds"] = wall_seconds[point];
       Transaction booking(database_.connection());
-      ResultStore(database_).store(parse_result(result.dump()), "relative_viscosity");
+      ResultStore(database_).store(parse_result(result.dump()), campaign_.target);
       booking.commit();
     }
   }

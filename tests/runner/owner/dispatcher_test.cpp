@@ -145,7 +145,7 @@ TEST_F(Dispatching, WordsAboutSomebodyElsesJobEndTheWorker) {
 
 TEST_F(Dispatching, AnotherEngineIsRefusedForAPointWithResults) {
   ResultStore(database_).store(parse_result(plain_result(campaign_.points[0].hash, 0, 10, "old").dump()),
-                               "relative_viscosity");
+                               campaign_.target);
   pool_.identity = "new";
   try {
     run();

@@ -59,6 +59,47 @@ TEST(Explain, ACappedPointIsToldHowManySeedsItWouldTake) {
   EXPECT_TRUE(says(text, "/realisations/maximum (about 26 seeds)")) << text;
 }
 
+// The pressure is twice the viscosity and has no control variate: 20 +- 3.1824 * 0.8165 = 2.5985, for which
+// 4 * 2.5985^2 = 27.01 seeds would do.
+TEST(Explain, OfSeveralTargetsEachIsToldWithItsTolerance) {
+  StoredCampaign campaign(1, 4, 4, {{"pressure", Tolerance::absolute(1)}});
+  const double values[] = {9, 10, 11, 10};
+  for (int seed = 0; seed < 4; ++seed) campaign.complete(0, seed, values[seed]);
+  const std::string text = explain(campaign.database(), campaign.directory(), "");
+  EXPECT_TRUE(says(text,
+                   "all 4 seeds that are allowed give relative_viscosity 13 %, pressure 2.6, not within the "
+                   "tolerance of 5 % for relative_viscosity, 1 for pressure"))
+      << text;
+  EXPECT_TRUE(says(text, "/realisations/maximum (about 28 seeds) or /target/also/0/absolute_tolerance"))
+      << text;
+  EXPECT_TRUE(says(text, "20.0 ± 2.6")) << text;
+  EXPECT_TRUE(says(text, "the results have no blocks of pressure:")) << text;
+  const std::string table = status_table(campaign.database(), 0);
+  EXPECT_TRUE(says(table, "relative_viscosity to 5 %, pressure to 1 at 95 % confidence")) << table;
+  EXPECT_TRUE(says(table, "pressure 2.6 x")) << table;
+  const Json look = explain_json(campaign.database(), campaign.directory(), "")["points"][0]["looks"][0];
+  EXPECT_EQ(look["verdict"], "capped");
+  ASSERT_EQ(look["observables"].size(), 2U);
+  EXPECT_EQ(look["observables"][1]["observable"], "pressure");
+  EXPECT_EQ(look["observables"][1]["verdict"], "capped");
+  EXPECT_NEAR(look["observables"][1]["share_of_tolerance"].get<double>(), 2.598, 1e-3);
+  EXPECT_EQ(
+      status_json(read_status(campaign.database()))["target"],
+      Json::parse(R"({"observable": "relative_viscosity", "relative_tolerance": 0.05, "confidence": 0.95,
+                            "also": [{"observable": "pressure", "absolute_tolerance": 1.0}]})"));
+  EXPECT_NO_THROW(export_json(campaign.database(), true));
+}
+
+TEST(Explain, WhereOneOfSeveralTargetsMayBeZeroItsToleranceIsToBecomeAbsolute) {
+  StoredCampaign campaign(1, 8, 8, {{"N1", 0.05}});
+  for (int seed = 0; seed < 8; ++seed) {
+    campaign.complete_with(0, seed, 10 + 0.001 * seed,
+                           [&](Json& result) { result["mean"]["N1"] = seed % 2 == 0 ? 1 : -1; });
+  }
+  const std::string text = explain(campaign.database(), campaign.directory(), "");
+  EXPECT_TRUE(says(text, "/target/also/0/absolute_tolerance, or another /target/also/0/observable")) << text;
+}
+
 // Values +- 10 around 0.25: any number of seeds for a share of such a mean would be an accident.
 TEST(Explain, AMeanThatMayBeZeroIsNotAdvisedToTakeMillionsOfSeeds) {
   StoredCampaign campaign(1, 8, 8), open(1, 8, 20);

@@ -66,7 +66,7 @@ class CarryingOut : public testing::Test {
 
   void store(int place, int seed, double viscosity, const std::string& engine = "engine") {
     ResultStore(database_).store(parse_result(plain_result(hash(place), seed, viscosity, engine).dump()),
-                                 "relative_viscosity");
+                                 database_.campaign().target.target);
   }
   void crash_three_times(int place, int seed) {
     for (int i = 0; i < 3; ++i) {
@@ -80,7 +80,7 @@ class CarryingOut : public testing::Test {
     Json result = plain_result(hash(place), seed, 0);
     result["ending"]["cause"] = "overlap";
     result["mean"] = result["blocks"] = nullptr;
-    ResultStore(database_).store(parse_result(result.dump()), "relative_viscosity");
+    ResultStore(database_).store(parse_result(result.dump()), database_.campaign().target.target);
   }
 
   TemporaryFolder folder_;

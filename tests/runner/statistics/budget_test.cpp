@@ -98,6 +98,27 @@ TEST(Budget, SaysWhatItBought) {
       "an interval, each counted as 1)\n");
 }
 
+TEST(Budget, SumsNoRelativeErrorsWhereTheToleranceIsAbsolute) {
+  const Scheduler scheduler(std::vector<std::vector<std::optional<Outcome>>>(2),
+                            {"N1", Tolerance::absolute(0.1), 0.95}, 4, 40);
+  EXPECT_EQ(budget_text(1800, 3600, summed_error(scheduler), summed_error(scheduler)),
+            "budget: 0.5 of 1 h of processor time spent\n");
+}
+
+// Of two points with equal costs one has a half-width of 20 % and the other a mean of 0, of which nothing is
+// known: it is worth more, although the tolerance is far from 20 %.
+TEST(Budget, AMeanWithoutAnIntervalComesBeforeOneThatIsPoorlyKnown) {
+  std::vector<std::optional<Outcome>> poor, unknown(4, Outcome{});
+  for (int seed = 0; seed < 4; ++seed)
+    poor.emplace_back(Outcome{Outcome::Kind::value, seed % 2 == 0 ? 9.0 : 11});
+  unknown[0] = unknown[1] = Outcome{Outcome::Kind::value, 1};
+  unknown[1]->value = -1;
+  Scheduler scheduler({poor, unknown}, {"relative_viscosity", 0.05, 0.95}, 4, 4000);
+  scheduler.set_allocation(Allocation::steepest_first);
+  for (int point = 0; point < 2; ++point) scheduler.set_cost(point, 1);
+  EXPECT_EQ(scheduler.next_within(1000)->point, 1);
+}
+
 // Normal populations of mean 1 whose spreads and costs differ by a factor of ten, one worker.
 double error_bought(Allocation allocation, double budget, unsigned start) {
   const std::vector<double> spreads{0.05, 0.5, 0.05, 0.5}, seconds{1, 1, 10, 10};

@@ -43,7 +43,7 @@ PointForecast five_of_six_seconds() {
   PointForecast point;
   for (int i = 0; i < 5; ++i) point.cost.add(6);
   point.ended = 5;
-  point.so_far = {5, 10, 0.01};
+  point.so_far = {{5, 10, 0.01}};
   return point;
 }
 
@@ -87,7 +87,7 @@ TEST(Forecast, TheNumberOfSeedsIsNotKnownBetterThanTheSpread) {
   PointForecast point;
   for (int i = 0; i < 10; ++i) point.cost.add(6);
   point.ended = 10;
-  point.so_far = {10, 10, 0.7};
+  point.so_far = {{10, 10, 0.7}};
   const std::optional<TimeToGo> left = time_to_go({point}, ten_percent, 10, 1000, 1);
   ASSERT_TRUE(left);
   EXPECT_GT(left->high / left->likely, 2 * machine_allowance);
@@ -98,7 +98,7 @@ TEST(Forecast, BeforeTwoValuesAnyNumberOfSeedsMayBeNeeded) {
   PointForecast point;
   point.cost.add(6);
   point.ended = 1;
-  point.so_far = {1, 10, std::nan("")};
+  point.so_far = {{1, 10, std::nan("")}};
   EXPECT_GE(time_to_go({point}, ten_percent, 10, 100, 1)->high, 99 * 6);
 }
 

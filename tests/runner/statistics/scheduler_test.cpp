@@ -33,16 +33,16 @@ SeedId take(Scheduler& scheduler) {
 
 TEST(Scheduler, KnowsTheMeanOfWhatHasEndedInAnyOrder) {
   Scheduler scheduler = fresh(1, 8);
-  EXPECT_EQ(scheduler.so_far(0).count, 0);
+  EXPECT_EQ(scheduler.so_far(0)[0].count, 0);
   for (const int seed : {5, 0, 3}) scheduler.end({0, seed}, value(seed));
   scheduler.end({0, 1}, Outcome{});
-  EXPECT_EQ(scheduler.so_far(0).count, 3);
-  EXPECT_DOUBLE_EQ(scheduler.so_far(0).mean, 8.0 / 3);
+  EXPECT_EQ(scheduler.so_far(0)[0].count, 3);
+  EXPECT_DOUBLE_EQ(scheduler.so_far(0)[0].mean, 8.0 / 3);
   // Deviations 7/3, -8/3 and 1/3: variance 19/3, of the mean a third of it.
-  EXPECT_DOUBLE_EQ(scheduler.so_far(0).standard_error, std::sqrt(19.0) / 3);
+  EXPECT_DOUBLE_EQ(scheduler.so_far(0)[0].standard_error, std::sqrt(19.0) / 3);
   EXPECT_EQ(scheduler.all_ended(0), 4);
   scheduler.end({0, 1}, value(8.0 / 3));  // its late result
-  EXPECT_EQ(scheduler.so_far(0).count, 4);
+  EXPECT_EQ(scheduler.so_far(0)[0].count, 4);
   EXPECT_EQ(scheduler.all_ended(0), 4);
 }
 

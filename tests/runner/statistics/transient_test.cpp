@@ -7,14 +7,14 @@
 namespace peclet::runner {
 namespace {
 
-using Outcomes = std::vector<std::optional<Outcome>>;
+using Observations = std::vector<Observation>;
 
 // Realisations of mean 10 with 32 blocks of white noise of unit variance, to which `drift(block)` is added.
 template <typename Drift>
-Outcomes realisations(int seeds, unsigned start, Drift drift) {
+Observations realisations(int seeds, unsigned start, Drift drift) {
   std::mt19937_64 random(start);
   std::normal_distribution<double> noise;
-  Outcomes outcomes;
+  Observations observations;
   for (int seed = 0; seed < seeds; ++seed) {
     double quarter = 0, half = 0, whole = 0;
     for (int block = 0; block < 32; ++block) {
@@ -23,9 +23,9 @@ Outcomes realisations(int seeds, unsigned start, Drift drift) {
       if (block < 16) half += value / 16;
       whole += value / 32;
     }
-    outcomes.emplace_back(Outcome{Outcome::Kind::value, whole + 0.25, -0.25, quarter, half});
+    observations.push_back({whole + 0.25, -0.25, quarter, half});
   }
-  return outcomes;
+  return observations;
 }
 
 // 2000 cohorts at 0.1 % give 2 false alarms on the average, and more than 10 by chance in fewer than 1 of
@@ -59,10 +59,10 @@ TEST(Transient, IsSeenTheBetterTheMoreSeedsThereAre) {
 }
 
 TEST(Transient, OfLostOrUnknownSeedsIsNone) {
-  EXPECT_FALSE(has_transient(Outcomes(20, Outcome{})));
-  EXPECT_FALSE(has_transient(Outcomes(20, Outcome{Outcome::Kind::value, 10})));
+  EXPECT_FALSE(has_transient(Observations(20)));
+  EXPECT_FALSE(has_transient(Observations(20, Observation{10})));
   // Blocks that do not differ, summed with their rounding.
-  EXPECT_FALSE(has_transient(Outcomes(20, Outcome{Outcome::Kind::value, 0.3, 0, 0.1 + 0.2, 0.3})));
+  EXPECT_FALSE(has_transient(Observations(20, Observation{0.3, 0, 0.1 + 0.2, 0.3})));
 }
 
 TEST(Transient, CannotBeTestedWhereFewResultsHaveBlocks) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "contract/input_error.h"
 #include "runner/database/result_text.h"
 #include "runner/stores/engine_row.h"
@@ -18,7 +20,7 @@ class Stores : public testing::Test {
   Stores() { PointStore(database_).adopt(campaign_); }
 
   Stored offer(const Json& result) {
-    return ResultStore(database_).store(parse_result(result.dump()), "relative_viscosity").what;
+    return ResultStore(database_).store(parse_result(result.dump()), campaign_.target).what;
   }
   const std::string& hash(int point = 0) const {
     return campaign_.points[static_cast<std::size_t>(point)].hash;
@@ -53,6 +55,42 @@ TEST_F(Stores, ABlowUpIsAnOutcomeAndNeverANumber) {
   EXPECT_EQ(database_.realisations(1).at(0).state, SeedState::failed);
   EXPECT_EQ(database_.realisations(1).at(0).value, std::nullopt);
   EXPECT_EQ(database_.outcomes(1).at(0)->kind, Outcome::Kind::lost);
+}
+
+TEST_F(Stores, WhatElseATargetAimsAtIsKept) {
+  campaign_.target.also = {{"pressure", Tolerance::absolute(1)}, {"temperature", 0.1}};
+  PointStore(database_).adopt(campaign_);
+  Json result = plain_result(hash(), 0, 12.5);
+  result["mean"]["temperature"] = nullptr;
+  result["blocks"]["pressure"] = {30, 20, 20, 30};
+  offer(result);
+  const Outcome outcome = database_.outcomes(1).at(0).value();
+  EXPECT_EQ(outcome.value, 12.5);
+  ASSERT_EQ(outcome.further.size(), 2U);
+  EXPECT_EQ(outcome.further[0].value, 25);
+  EXPECT_EQ(outcome.further[0].control, 0);
+  EXPECT_EQ(outcome.further[0].first_quarter, 30);
+  EXPECT_EQ(outcome.further[0].first_half, 25);
+  EXPECT_TRUE(std::isnan(outcome.further[1].value));
+}
+
+TEST_F(Stores, WhatATargetAimsAtNewlyIsTakenFromTheResultsThatAreThere) {
+  offer(plain_result(hash(), 0, 12.5));
+  EXPECT_TRUE(database_.outcomes(1).at(0)->further.empty());
+  campaign_.target.tolerance.relative_to = "pressure";
+  PointStore(database_).adopt(campaign_);
+  ASSERT_EQ(database_.outcomes(1).at(0)->further.size(), 1U);
+  EXPECT_EQ(database_.outcomes(1).at(0)->further[0].value, 25);
+  EXPECT_EQ(database_.campaign().target.target, campaign_.target);
+  campaign_.target.also = {{"vorticity", 0.1}};
+  try {
+    PointStore(database_).adopt(campaign_);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.pointer(), "/target/also/0/observable");
+    EXPECT_EQ(error.value(), "vorticity");
+  }
+  EXPECT_EQ(database_.outcomes(1).at(0)->further[0].value, 25);
 }
 
 TEST_F(Stores, ADuplicateCountsOnce) {

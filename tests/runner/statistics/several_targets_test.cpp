@@ -1,0 +1,214 @@
+// Targets of several observables: a point is done when each of them is known well enough.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "runner/statistics/cohorts.h"
+#include "runner/statistics/forecast.h"
+#include "runner/statistics/prediction.h"
+#include "runner/statistics/scheduler.h"
+
+namespace peclet::runner {
+namespace {
+
+using Outcomes = std::vector<std::optional<Outcome>>;
+
+// The viscosity to 5 %, and another observable.
+Target viscosity_and(const Criterion& other) {
+  Target target{"viscosity", 0.05, 0.95};
+  target.also = {other};
+  return target;
+}
+
+Tolerance relative_to(const std::string& measure, double share) {
+  Tolerance tolerance(share);
+  tolerance.relative_to = measure;
+  return tolerance;
+}
+
+// Viscosities 10 - 0.1, 10 + 0.1 in turn, others `mean` - `spread`, `mean` + `spread`: the standard error of
+// an even number n is the spread over sqrt(n - 1).
+Outcomes alternating(int count, double mean, double spread) {
+  Outcomes outcomes;
+  for (int seed = 0; seed < count; ++seed) {
+    const double sign = seed % 2 == 0 ? -1 : 1;
+    Outcome outcome{Outcome::Kind::value, 10 + 0.1 * sign};
+    outcome.further = {{mean + spread * sign}};
+    outcomes.emplace_back(outcome);
+  }
+  return outcomes;
+}
+
+TEST(SeveralTargets, ObserveWhatTheyAimAtAndWhatTheyMeasureBy) {
+  Target target = viscosity_and({"N1", relative_to("viscosity", 0.05)});
+  target.also.push_back({"N2", relative_to("pressure", 0.05)});
+  target.also.push_back({"N3", relative_to("pressure", 0.05)});
+  EXPECT_EQ(target.observables(), (std::vector<std::string>{"viscosity", "N1", "N2", "N3", "pressure"}));
+  EXPECT_EQ(to_string(target),
+            "viscosity to 5 %, N1 to 5 % of viscosity, N2 to 5 % of pressure, N3 to 5 % of pressure");
+  EXPECT_EQ(pointer_of(target, "viscosity"), "/target/observable");
+  EXPECT_EQ(pointer_of(target, "N2"), "/target/also/1/observable");
+  EXPECT_EQ(pointer_of(target, "pressure"), "/target/also/1/relative_to");
+  EXPECT_EQ(target_of("viscosity", criterion_json(target), 0.95), target);
+}
+
+TEST(SeveralTargets, TheLessFavourableVerdictCounts) {
+  EXPECT_EQ(less_favourable(Verdict::converged, Verdict::converged), Verdict::converged);
+  EXPECT_EQ(less_favourable(Verdict::converged_with_losses, Verdict::converged),
+            Verdict::converged_with_losses);
+  EXPECT_EQ(less_favourable(Verdict::converged_with_losses, Verdict::converged_near_maximum),
+            Verdict::converged_near_maximum);
+  EXPECT_EQ(less_favourable(Verdict::capped, Verdict::converged_near_maximum), Verdict::capped);
+  EXPECT_EQ(less_favourable(Verdict::converged, Verdict::more), Verdict::more);
+  EXPECT_EQ(less_favourable(Verdict::failed, Verdict::more), Verdict::failed);
+}
+
+// At 95.7 % t(9) = 2.354 and t(27) = 2.126: half-widths of the other are 0.392 at 10 seeds, 0.205 at 28.
+TEST(SeveralTargets, APointGoesOnUntilAllAreWithinTheirTolerances) {
+  const Target target = viscosity_and({"other", Tolerance::absolute(0.21)});
+  const std::vector<Look> looks = replay_looks(alternating(100, 5, 0.5), target, 10, 1000);
+  ASSERT_EQ(looks.size(), 5U);
+  EXPECT_EQ(looks.front().verdict, Verdict::more);
+  EXPECT_EQ(looks.front().each[0].verdict, Verdict::converged);
+  EXPECT_EQ(looks.front().each[1].verdict, Verdict::more);
+  EXPECT_NEAR(looks.front().each[1].half_width, 0.392, 1e-3);
+  EXPECT_NEAR(looks.front().each[1].share, 0.392 / 0.21, 5e-3);
+  EXPECT_NEAR(largest_share(looks.front(), target), 0.392 / 0.21, 5e-3);
+  EXPECT_EQ(looks.back().seeds, 28);
+  EXPECT_EQ(looks.back().verdict, Verdict::converged);
+  EXPECT_NEAR(looks.back().each[1].half_width, 0.205, 1e-3);
+  EXPECT_DOUBLE_EQ(looks.back().each[1].estimate.mean, 5);
+  EXPECT_DOUBLE_EQ(looks.back().controlled.mean, 10);
+}
+
+// A mean of 0 has no relative width of its own; 5 % of the viscosity is 0.5.
+TEST(SeveralTargets, OneMayBeMeasuredByAnother) {
+  const Target target = viscosity_and({"N1", relative_to("viscosity", 0.05)});
+  const std::vector<Look> looks = replay_looks(alternating(100, 0, 0.5), target, 10, 1000);
+  ASSERT_EQ(looks.size(), 1U);
+  EXPECT_EQ(looks[0].verdict, Verdict::converged);
+  EXPECT_NEAR(looks[0].each[1].share, 0.392 / 0.5, 2e-3);
+}
+
+// What only measures others has an interval, but no verdict, and holds nothing up.
+TEST(SeveralTargets, AMeasureNeedsNoPrecision) {
+  Target target{"N1", relative_to("viscosity", 0.05), 0.95};
+  Outcomes outcomes;
+  for (const std::optional<Outcome>& other : alternating(10, 10, 3)) {
+    Outcome outcome{Outcome::Kind::value, other->value - 10};
+    outcome.further = other->further;
+    outcomes.emplace_back(outcome);
+  }
+  const std::vector<Look> looks = replay_looks(outcomes, target, 10, 1000);
+  ASSERT_EQ(looks.size(), 1U);
+  EXPECT_EQ(looks[0].verdict, Verdict::converged);
+  EXPECT_EQ(looks[0].each[1].verdict, std::nullopt);
+  EXPECT_NEAR(looks[0].each[1].half_width, 2.354 * 3 / 3, 2e-3);
+  EXPECT_NEAR(looks[0].each[0].share, 2.354 * 0.1 / 3 / 0.5, 1e-3);
+}
+
+TEST(SeveralTargets, ASeedWithoutOneOfThemIsLostToThatOne) {
+  const Target target = viscosity_and({"other", Tolerance::absolute(1)});
+  Outcomes outcomes = alternating(10, 5, 0.1);
+  outcomes[3]->further = {Observation{}};
+  const std::vector<Look> looks = replay_looks(outcomes, target, 10, 1000);
+  EXPECT_EQ(looks.back().verdict, Verdict::converged_with_losses);
+  EXPECT_EQ(looks.back().lost, 0);
+  EXPECT_EQ(looks.back().each[0].verdict, Verdict::converged);
+  EXPECT_EQ(looks.back().each[1].estimate.count, 9);
+  for (std::optional<Outcome>& outcome : outcomes) outcome->further = {Observation{}};
+  EXPECT_EQ(replay_looks(outcomes, target, 10, 1000).back().verdict, Verdict::failed);
+}
+
+TEST(SeveralTargets, OneThatIsNotMetCapsThePoint) {
+  const Target target = viscosity_and({"other", Tolerance::absolute(0.01)});
+  const Look last = replay_looks(alternating(13, 5, 0.5), target, 10, 13).back();
+  EXPECT_EQ(last.verdict, Verdict::capped);
+  EXPECT_EQ(last.each[0].verdict, Verdict::converged);
+  EXPECT_EQ(last.each[1].verdict, Verdict::capped);
+}
+
+TEST(SeveralTargets, ATransientOfAnyIsOneOfTheLook) {
+  const Target target = viscosity_and({"other", Tolerance::absolute(1)});
+  Outcomes outcomes = alternating(10, 5, 0.001);
+  for (std::optional<Outcome>& outcome : outcomes) {
+    outcome->first_quarter = outcome->first_half = outcome->value;
+    outcome->further[0].first_quarter = outcome->further[0].first_half = outcome->further[0].value + 0.1;
+  }
+  const Look look = replay_looks(outcomes, target, 10, 1000).back();
+  EXPECT_TRUE(look.transient);
+  EXPECT_FALSE(look.each[0].transient);
+  EXPECT_TRUE(look.each[1].transient);
+  outcomes[0]->further[0].first_half = std::nan("");
+  EXPECT_FALSE(replay_looks(outcomes, target, 10, 1000).back().untested);
+  for (std::optional<Outcome>& outcome : outcomes) outcome->further[0].first_half = std::nan("");
+  EXPECT_TRUE(replay_looks(outcomes, target, 10, 1000).back().untested);
+}
+
+// The viscosity alone would stop at the first look; the other needs (0.392 / 0.1)^2 * 10 = 154 seeds, which
+// are there at the look of 172.
+TEST(SeveralTargets, TheHardestToKnowTellsHowManySeedsToExpect) {
+  const Target target = viscosity_and({"other", Tolerance::absolute(0.1)});
+  const Outcomes outcomes = alternating(10, 5, 0.5);
+  const int expected = expected_seeds(replay_looks(outcomes, target, 10, 10000), target, 10, 10000);
+  EXPECT_GE(expected, 109);
+  EXPECT_LE(expected, 172);
+  const Target alone{"viscosity", 0.05, 0.95};
+  const Prediction together = predict(outcomes, target, 20, 10000, 0);
+  EXPECT_EQ(predict(outcomes, alone, 20, 10000, 0).seeds.likely, 20);
+  EXPECT_GE(together.seeds.likely, 87);
+  EXPECT_LE(together.seeds.likely, 215);
+  Scheduler scheduler({outcomes}, target, 10, 10000);
+  EXPECT_FALSE(scheduler.finished());
+  ASSERT_EQ(scheduler.so_far(0).size(), 2U);
+  EXPECT_DOUBLE_EQ(scheduler.so_far(0)[1].mean, 5);
+  EXPECT_TRUE(Scheduler({outcomes}, alone, 10, 10000).finished());
+}
+
+TEST(SeveralTargets, ATimeToGoIsThatOfTheHardest) {
+  PointForecast point;
+  for (int i = 0; i < 10; ++i) point.cost.add(6);
+  point.ended = 10;
+  point.so_far = {{10, 10, 0.1 / 3}, {10, 5, 0.5 / 3}};
+  const Target target = viscosity_and({"other", Tolerance::absolute(0.1)});
+  const std::optional<TimeToGo> left = time_to_go({point}, target, 10, 10000, 1);
+  ASSERT_TRUE(left);
+  EXPECT_GE(left->likely, 99 * 6);
+  point.so_far[1].standard_error = 0.001;
+  EXPECT_LT(time_to_go({point}, target, 10, 10000, 1)->likely, 10 * 6);
+}
+
+// Each interval holds its mean as often as that of a target alone, or more often, because a point goes on
+// after one of them was narrow for the first time: 93.7 % to 95 %, with a standard error of 0.5 % of 2000.
+TEST(SeveralTargets, EachIntervalIsHonest) {
+  std::mt19937_64 random(20261123);
+  std::normal_distribution<double> viscosities(1, 0.2), others(0, 1);
+  Target target{"viscosity", 0.07, 0.95};
+  target.also = {{"other", Tolerance::absolute(0.35)}};
+  constexpr int replications = 2000;
+  int covered = 0, covered_other = 0;
+  for (int replication = 0; replication < replications; ++replication) {
+    Outcomes outcomes;
+    Look last;
+    for (const int wanted : look_schedule(10, 1000)) {
+      while (std::ssize(outcomes) < wanted) {
+        Outcome outcome{Outcome::Kind::value, viscosities(random)};
+        outcome.further = {{others(random)}};
+        outcomes.emplace_back(outcome);
+      }
+      last = replay_looks(outcomes, target, 10, 1000).back();
+      if (last.verdict != Verdict::more) break;
+    }
+    ASSERT_EQ(last.verdict, Verdict::converged);
+    covered += std::abs(last.controlled.mean - 1) <= last.controlled_half_width ? 1 : 0;
+    covered_other += std::abs(last.each[1].estimate.mean) <= last.each[1].half_width ? 1 : 0;
+  }
+  EXPECT_GT(covered, 0.92 * replications);
+  EXPECT_LT(covered, 0.975 * replications);
+  EXPECT_GT(covered_other, 0.92 * replications);
+  EXPECT_LT(covered_other, 0.975 * replications);
+}
+
+}  // namespace
+}  // namespace peclet::runner
