@@ -1,11 +1,11 @@
--- The database of one campaign, version 5; its views are in views.sql. One process writes it (the one that holds
+-- The database of one campaign, version 6; its views are in views.sql. One process writes it (the one that holds
 -- campaign.lock); everybody else opens it read-only. schema/README.md explains the tables and views to pandas
 -- users. A version-N.sql makes version N of the one before it and leaves the same tables as this file.
 --
 -- Times ending in _at are wall-clock times in UTC, for people to look at: no decision is made from them.
 
 PRAGMA application_id = 1346587724;  -- "PCLL" as a big-endian integer
-PRAGMA user_version = 5;
+PRAGMA user_version = 6;
 
 -- What a verdict was reached for. Old targets stay, with the looks that were made for them.
 CREATE TABLE target (
@@ -99,6 +99,19 @@ CREATE TABLE result (
   PRIMARY KEY (point_id, seed),
   FOREIGN KEY (point_id, seed) REFERENCES realisation
 ) STRICT;
+
+-- A file that a realisation left beside its result. Kept ones are in files/, in the folder of point and seed; others
+-- were thrown away as the campaign asked for. Their engine is that of the realisation.
+CREATE TABLE file (
+  point_id INTEGER NOT NULL,
+  seed     INTEGER NOT NULL,
+  name     TEXT    NOT NULL,
+  bytes    INTEGER NOT NULL,
+  sha256   TEXT    NOT NULL,
+  kept     INTEGER NOT NULL CHECK (kept IN (0, 1)),
+  PRIMARY KEY (point_id, seed, name),
+  FOREIGN KEY (point_id, seed) REFERENCES realisation
+) STRICT, WITHOUT ROWID;
 
 -- Every time a worker was given a seed. blamed: counts against the seed, unless it was pardoned since.
 CREATE TABLE attempt (

@@ -31,6 +31,9 @@ struct Target {
   int rule = newest_rule;
 };
 
+// The largest maximum that a campaign can have: seeds are below it.
+constexpr int most_realisations = 1'000'000;
+
 struct Campaign {
   std::string name;
   Json document;                   // as read, defaults filled
@@ -38,11 +41,11 @@ struct Campaign {
   Target target;
   int minimum_realisations;
   int maximum_realisations;
-  std::vector<std::string> engine;  // program and arguments
-};
+  std::vector<std::string> engine;           // program and arguments
+  int seeds_with_files = most_realisations;  // of each point: what later ones leave beside their results goes
 
-// The largest maximum that a campaign can have: seeds are below it.
-constexpr int most_realisations = 1'000'000;
+  bool keeps_files_of(int seed) const { return seed < seeds_with_files; }
+};
 
 const KeyTable& campaign_keys();
 

@@ -31,6 +31,8 @@ void add_set(VerbSet& verbs) {
              "/realisations/minimum: seeds before the first look");
   add_number(verb, "--maximum", options->maximum, *campaign_keys().find("/realisations/maximum"),
              "/realisations/maximum: seeds after which a point is capped");
+  verb->add_option("--keep-files", options->keep_files,
+                   "/keep_files: all, none, or of how many first seeds of each point files are kept");
   verb->add_option("--point", options->points, "Point that is to have the priority; may be repeated")
       ->allow_extra_args(false);
   add_number(verb, "--priority", options->priority, whole_number(-1'000'000, 1'000'000),

@@ -14,8 +14,8 @@ namespace peclet::runner {
 namespace {
 
 void drop_views(Connection& connection) {
-  for (const char* const view : {"points", "realisations", "estimates"}) {
-    connection.execute(fmt::format("DROP VIEW {}", view));
+  for (const char* const view : {"points", "realisations", "estimates", "files"}) {
+    connection.execute(fmt::format("DROP VIEW IF EXISTS {}", view));
   }
 }
 
@@ -46,6 +46,7 @@ void change_tables(Connection& connection, std::int64_t from) {
   if (from < 3) connection.execute(version_3_sql);
   if (from < 4) connection.execute(version_4_sql);
   if (from < 5) connection.execute(version_5_sql);
+  if (from < 6) connection.execute(version_6_sql);
   connection.execute(views_sql);
   if (const std::string found = damage(connection); !found.empty()) {
     throw IntegrityError(fmt::format("{}: could not be brought up to date: {}", connection.path(), found));

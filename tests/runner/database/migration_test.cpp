@@ -66,7 +66,7 @@ std::string indices(Connection& connection) {
 void expect_newest_layout(const std::filesystem::path& path) {
   Database old = Database::open_owner(path);
   Database fresh = Database::open_owner(path.parent_path() / "fresh.db");
-  EXPECT_EQ(old.connection().integer("PRAGMA user_version"), 5);
+  EXPECT_EQ(old.connection().integer("PRAGMA user_version"), 6);
   EXPECT_EQ(columns(old.connection()), columns(fresh.connection()));
   EXPECT_EQ(indices(old.connection()), indices(fresh.connection()));
   EXPECT_EQ(old.connection().text("PRAGMA integrity_check"), "ok");
