@@ -8,8 +8,9 @@ namespace {
 
 void add_backup(VerbSet& verbs) {
   const auto options = std::make_shared<BackupOptions>();
-  CLI::App* const verb = verbs.add("backup", "Copy a campaign's database, checked, also while it runs",
-                                   "peclet backup flow-curve.json /mnt/usb/flow-curve --checkpoints");
+  CLI::App* const verb =
+      verbs.add("backup", "Copy a campaign's database and files, checked, also while it runs",
+                "peclet backup flow-curve.json /mnt/usb/flow-curve --checkpoints");
   add_file_or_folder(verb, options->campaign);
   verb->add_option("target", options->target,
                    "Folder for backup.db, made in one that must be there; the backup there before becomes "
