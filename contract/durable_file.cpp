@@ -94,6 +94,18 @@ void rename_durably(const std::filesystem::path& from, const std::filesystem::pa
   synchronise_folder(to);
 }
 
+void create_folders_durably(const std::filesystem::path& path) {
+  if (std::filesystem::is_directory(path)) return;
+  if (path.has_parent_path()) create_folders_durably(path.parent_path());
+  if (::mkdir(path.c_str(), 0777) != 0 && errno != EEXIST) {
+    const int error = errno;
+    if (means_no_room(error)) throw NoRoomError(error, "cannot make " + path.string(), path, 0);
+    errno = error;
+    fail_to("cannot make", path);
+  }
+  synchronise_folder(path);
+}
+
 std::filesystem::path free_name(const std::filesystem::path& path) {
   std::filesystem::path name = path;
   for (int count = 1; std::filesystem::symlink_status(name).type() != std::filesystem::file_type::not_found;

@@ -38,6 +38,10 @@ void copy_durably(int from, std::uint64_t bytes, const std::filesystem::path& pa
 // Throws std::system_error naming the path.
 void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to);
 
+// Makes a folder and those above it that are not there; what is made stays after a power cut.
+// Throws NoRoomError, or std::system_error naming the path.
+void create_folders_durably(const std::filesystem::path& path);
+
 // The first of PATH, PATH.1, PATH.2 ... that is not there, not even as a link to nothing.
 std::filesystem::path free_name(const std::filesystem::path& path);
 

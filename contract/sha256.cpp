@@ -1,28 +1,62 @@
 #include "contract/sha256.h"
 
+#include <fcntl.h>
 #include <sodium.h>
+#include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <stdexcept>
 
-#include "contract/durable_file.h"
+#include "contract/descriptor.h"
 
 namespace peclet {
+namespace {
 
-std::string sha256(std::string_view bytes) {
+using Digest = std::array<unsigned char, crypto_hash_sha256_BYTES>;
+
+void require_library() {
   static const bool ready = sodium_init() >= 0;
   if (!ready) throw std::runtime_error("libsodium cannot be initialised");
+}
 
-  std::array<unsigned char, crypto_hash_sha256_BYTES> digest{};
-  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes are bytes
-  crypto_hash_sha256(digest.data(), reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
-
+std::string hexadecimal(const Digest& digest) {
   std::string text(2 * digest.size() + 1, '\0');  // sodium ends it with a zero
   sodium_bin2hex(text.data(), text.size(), digest.data(), digest.size());
   text.pop_back();
   return text;
 }
 
-std::string sha256_of_file(const std::filesystem::path& path) { return sha256(read_file(path)); }
+}  // namespace
+
+std::string sha256(std::string_view bytes) {
+  require_library();
+  Digest digest{};
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes are bytes
+  crypto_hash_sha256(digest.data(), reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  return hexadecimal(digest);
+}
+
+std::string sha256_of_open(int file, const std::filesystem::path& path) {
+  require_library();
+  crypto_hash_sha256_state state;
+  crypto_hash_sha256_init(&state);
+  std::array<unsigned char, 65536> chunk;  // NOLINT(cppcoreguidelines-pro-type-member-init): read() fills it
+  for (;;) {
+    const ssize_t count = ::read(file, chunk.data(), chunk.size());
+    if (count < 0 && errno != EINTR) fail_to("cannot read", path);
+    if (count == 0) break;
+    if (count > 0) crypto_hash_sha256_update(&state, chunk.data(), static_cast<std::size_t>(count));
+  }
+  Digest digest{};
+  crypto_hash_sha256_final(&state, digest.data());
+  return hexadecimal(digest);
+}
+
+std::string sha256_of_file(const std::filesystem::path& path) {
+  const Descriptor file = open_file(path, O_RDONLY);
+  if (file.number() < 0) fail_to("cannot open", path);
+  return sha256_of_open(file.number(), path);
+}
 
 }  // namespace peclet

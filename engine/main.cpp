@@ -56,6 +56,13 @@ const CLI::Validator whole_number(
     },
     "");
 
+// What the names of files begin with that a realisation leaves: "out." beside out.json. None beside what is
+// no file.
+std::string files_beside(const std::filesystem::path& output) {
+  const bool is_file = std::filesystem::is_regular_file(output) || !std::filesystem::exists(output);
+  return output.empty() || !is_file ? "" : std::filesystem::path(output).replace_extension("").string() + '.';
+}
+
 // A person may name a link to the checkpoint; what is replaced is what it leads to.
 std::filesystem::path target_of(const std::filesystem::path& path) {
   std::error_code leads_nowhere;
@@ -71,6 +78,7 @@ int run(const RunOptions& options) {
   job.scene_name = options.scene;
   job.threads = options.threads;
   job.checkpoint = target_of(options.checkpoint);
+  job.files = files_beside(options.output);
   JobEvents events;
   if (!options.checkpoint.empty()) {
     std::signal(SIGINT, request_stop);

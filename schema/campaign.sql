@@ -101,6 +101,19 @@ CREATE TABLE result (
   FOREIGN KEY (point_id, seed) REFERENCES realisation
 ) STRICT;
 
+-- A file that a realisation left beside its result. Kept ones are in files/, in the folder of point and seed; others
+-- were thrown away as the campaign asked for. Their engine is that of the realisation.
+CREATE TABLE file (
+  point_id INTEGER NOT NULL,
+  seed     INTEGER NOT NULL,
+  name     TEXT    NOT NULL,
+  bytes    INTEGER NOT NULL,
+  sha256   TEXT    NOT NULL,
+  kept     INTEGER NOT NULL CHECK (kept IN (0, 1)),
+  PRIMARY KEY (point_id, seed, name),
+  FOREIGN KEY (point_id, seed) REFERENCES realisation
+) STRICT, WITHOUT ROWID;
+
 -- Every time a worker was given a seed. blamed: counts against the seed, unless it was pardoned since.
 CREATE TABLE attempt (
   attempt_id  INTEGER PRIMARY KEY,

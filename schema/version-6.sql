@@ -1,5 +1,5 @@
--- From version 5 of the tables to version 6: how narrow intervals must be is a document, and there is room for what
--- is known of a target's observables beside the leading one.
+-- From version 5 of the tables to version 6: how narrow intervals must be is a document, there is room for what is
+-- known of a target's observables beside the leading one, and for files that realisations leave beside their results.
 --
 -- SQLite cannot change a UNIQUE: the table is made again. Requires foreign keys to be off and the views, which name it,
 -- to be gone. Where a program between two releases wrote the document already, it is in the column of the number.
@@ -25,5 +25,16 @@ ALTER TABLE new_target RENAME TO target;
 
 ALTER TABLE realisation ADD COLUMN further TEXT CHECK (further IS NULL OR json_valid(further));
 ALTER TABLE look ADD COLUMN observables TEXT CHECK (observables IS NULL OR json_valid(observables));
+
+CREATE TABLE file (
+  point_id INTEGER NOT NULL,
+  seed     INTEGER NOT NULL,
+  name     TEXT    NOT NULL,
+  bytes    INTEGER NOT NULL,
+  sha256   TEXT    NOT NULL,
+  kept     INTEGER NOT NULL CHECK (kept IN (0, 1)),
+  PRIMARY KEY (point_id, seed, name),
+  FOREIGN KEY (point_id, seed) REFERENCES realisation
+) STRICT, WITHOUT ROWID;
 
 PRAGMA user_version = 6;

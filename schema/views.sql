@@ -22,6 +22,16 @@ LEFT JOIN result d USING (point_id, seed)
 LEFT JOIN dictionary t USING (point_id)
 WHERE p.place IS NOT NULL ORDER BY p.place, r.seed;
 
+CREATE VIEW files AS
+SELECT p.place, p.label, p.hash, f.seed, e.identity AS engine, f.name, f.bytes, f.sha256, f.kept,
+       CASE WHEN f.kept
+            THEN printf('files/%s-%d/%06d/%s', substr(p.hash, 1, 16), p.point_id, f.seed, f.name) END AS path
+FROM file f
+JOIN point p USING (point_id)
+JOIN realisation r USING (point_id, seed)
+LEFT JOIN engine e USING (engine_id)
+WHERE p.place IS NOT NULL ORDER BY p.place, f.seed, f.name;
+
 -- The last look at each point for the campaign's present target.
 CREATE VIEW estimates AS
 SELECT p.place, p.label, p.hash, t.observable, json_extract(t.criterion, '$.relative_tolerance') AS relative_tolerance,

@@ -6,8 +6,11 @@
 
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
+#include "contract/input_error.h"
+#include "contract/key_table.h"
 #include "contract/provenance.h"
 #include "contract/sha256.h"
+#include "engine/output/final_configuration.h"
 #include "engine/start/packing.h"
 
 namespace peclet::engine {
@@ -66,6 +69,11 @@ class Job {
                   provenance().at("binary_sha256").get<std::string>()} {}
 
   std::optional<Json> run() {
+    if (scene_.final_configuration && job_.files.empty()) {
+      throw InputError(job_.scene_name, "/files", shortened(scene_.document["files"]),
+                       "must be left out where files cannot be left: `peclet-engine run` needs --output with "
+                       "the name of a file, beside which they are put");
+    }
     std::optional<Ending> ending;
     try {
       begin();
@@ -80,10 +88,28 @@ class Job {
     }
     std::string state;
     if (!save_state(*ending, state)) return std::nullopt;
-    return make_result(job_.header, scene_, *simulation_, *ending, state, meter_.spent());
+    Json result = make_result(job_.header, scene_, *simulation_, *ending, state, meter_.spent());
+    if (scene_.final_configuration && ending->cause == Ending::Cause::completed) {
+      if (!leave("final.xyz", extended_xyz(simulation_->system()), result)) return std::nullopt;
+    }
+    return result;
   }
 
  private:
+  // A file beside the result, which lists it. False: there is no room, and nobody wants to wait for it.
+  bool leave(const std::string& name, const std::string& bytes, Json& result) const {
+    while (true) {
+      try {
+        write_durably(job_.files + name, bytes);
+        break;
+      } catch (const NoRoomError& error) {
+        if (!events_.wait_for_room(error)) return false;
+      }
+    }
+    result["files"].push_back({{"name", name}, {"bytes", bytes.size()}, {"sha256", sha256(bytes)}});
+    return true;
+  }
+
   void construct() {
     const std::size_t useful = std::max<std::size_t>(1, scene_.particles.count / fewest_particles_per_thread);
     const int threads =

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "contract/durable_file.h"
 #include "engine/output/result.h"
@@ -18,6 +19,7 @@ struct JobSpecification {
   std::filesystem::path checkpoint;  // resumed from when it exists; empty: none is written
   double checkpoint_seconds = 300;
   std::filesystem::path failures;  // folder for the state of a realisation that broke off; empty: not saved
+  std::string files;  // what the names of files beside the result begin with; empty: none are taken
   bool restart_on_bad_checkpoint =
       false;  // an unusable checkpoint is set aside (.rejected) instead of ending the job
 };

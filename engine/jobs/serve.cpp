@@ -125,6 +125,7 @@ class Worker {
     job.threads = message.value("threads", 1);
     job.checkpoint = message.at("checkpoint").get<std::string>();
     job.checkpoint_seconds = message.value("checkpoint_seconds", job.checkpoint_seconds);
+    job.files = message.value("files", "");
     job.failures = message.value("failures", "");
     job.restart_on_bad_checkpoint = true;
     told_to_leave_ = false;

@@ -239,6 +239,7 @@ Scene read_scene(const Json& document, const std::string& file) {
                  filled["guard"]["largest_displacement"].get<double>(),
                  filled["guard"]["energy_imbalance"].get<double>(),
                  filled["guard"]["half_step_difference"].get<double>()};
+  scene.final_configuration = filled.value(Json::json_pointer("/files/final_configuration"), false);
   return scene;
 }
 

@@ -79,7 +79,8 @@ struct Scene {
   Duration equilibration, production;
   std::map<std::string, Json> observables;  // asked for besides the stress: name, settings with defaults
   Guard guard;
-  Json document;  // as given, defaults filled
+  bool final_configuration = false;  // is left beside the result
+  Json document;                     // as given, defaults filled
 };
 
 const KeyTable& scene_keys();

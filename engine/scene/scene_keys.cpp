@@ -139,6 +139,14 @@ Keys run_keys() {
   });
   append(observable_keys());
   append({
+      block("/files", "Files that a realisation leaves beside its result; absent: none."),
+      {.pointer = "/files/final_configuration",
+       .kind = KeyKind::boolean,
+       .meaning = "final.xyz: cell, centres, radii and velocities at the end of a completed realisation, as "
+                  "extended XYZ.",
+       .required = true},
+  });
+  append({
       with_default(block("/guard", "Limits that end a realisation as failed, or flag its result."),
                    Json::object()),
       with_default(positive("/guard/largest_overlap", "", "Overlap over the smaller radius of the pair."),

@@ -18,6 +18,7 @@
 #include "runner/engines/engine_error.h"
 #include "runner/engines/worker_process.h"
 #include "runner/engines/worker_watch.h"
+#include "runner/folder/result_files.h"
 #include "runner/folder/room.h"
 #include "runner/folder/spool.h"
 #include "runner/text/host_name.h"
@@ -53,6 +54,7 @@ class BatchTask {
 
   void run() {
     fs::create_directories(CampaignDirectory(folder_.task(index_)).logs());
+    fs::create_directories(folder_.left(index_));
     publish_results(folder_, manifest_, index_);
     for (const int place : manifest_.tasks.at(static_cast<std::size_t>(index_))) {
       if (fs::exists(folder_.forgotten())) break;  // its seeds are somebody else's by now
@@ -218,6 +220,7 @@ void BatchTask::take_result(const ResultSpooled& result) {
     if (read.point != job_.point || read.seed != job_.seed) {
       throw ResultError("its result is of another point or seed than the job");
     }
+    check_files_in_spool(read.document, job_.spool);
   } catch (const ResultError& error) {
     if (fs::exists(job_.spool)) reject(folder_.shared(), job_.spool);
     condemn({AttemptOutcome::garbled, error.what()});

@@ -9,6 +9,7 @@
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
 #include "runner/engines/attempt_report.h"
+#include "runner/folder/result_files.h"
 #include "runner/folder/spool.h"
 
 namespace peclet::runner {
@@ -86,7 +87,8 @@ BundleFolder BundleFolder::of_manifest(const fs::path& manifest) {
 }
 
 void BundleFolder::create(int tasks) const {
-  for (const fs::path& folder : {shared_.rejected(), shared_.checkpoints(), shared_.failures(), logs()}) {
+  for (const fs::path& folder :
+       {shared_.rejected(), shared_.left(), shared_.checkpoints(), shared_.failures(), logs()}) {
     fs::create_directories(folder);
   }
   fs::create_directories(root_ / "ended");
@@ -181,7 +183,12 @@ void publish_results(const BundleFolder& folder, const Manifest& manifest, int t
         report.engine = result.document.at("engine");
         write_report(folder.ended(*place), *place, report);
       }
-      rename_durably(file, folder.shared().spool() / (file.stem().string() + ".json"));
+      const fs::path spool = folder.shared().spool() / (file.stem().string() + ".json");
+      // What was moved before somebody died is in its place; what is in neither, the owner misses.
+      for (const fs::path& left : left_files_of(file)) {
+        rename_durably(left, left_folder(spool) / left.filename());
+      }
+      rename_durably(file, spool);
     } catch (const ResultError&) {
       reject(folder.shared(), file);
     }

@@ -8,6 +8,7 @@
 //                       tasks/I/running.json the seed in the hands of task I, or drained by it; written by it
 //                       tasks/I/trouble.json why task I could do nothing at all
 //                       tasks/I/*.result     results that are not in the spool yet
+//                       tasks/I/files        what their realisations leave beside them
 //                       forgotten            the owner has given the bundle up: no task begins a seed any
 //                       more logs/                what tasks and engines printed
 //
@@ -68,6 +69,7 @@ class BundleFolder {
   std::filesystem::path task(int index) const { return root_ / "tasks" / std::to_string(index); }
   std::filesystem::path running(int index) const { return task(index) / "running.json"; }
   std::filesystem::path trouble(int index) const { return task(index) / "trouble.json"; }
+  std::filesystem::path left(int index) const { return task(index) / "files"; }
   void create(int tasks) const;
 
  private:
@@ -93,8 +95,9 @@ bool is_there(const BundleFolder& folder, std::string& why);
 // What a person may do about seeds that are out; `words` are the campaign's on the command line.
 std::string handed_over_advice(const std::vector<HandedOver>& bundles, const std::string& words);
 
-// Moves the results that a task has left in its own folder into the spool, under names of their own, and
-// notes them as ended. Files that are no result go to spool/rejected.
+// Moves the results that a task has left in its own folder into the spool, under names of their own, after
+// what their realisations left beside them, and notes them as ended. Files that are no result go to
+// spool/rejected.
 void publish_results(const BundleFolder& folder, const Manifest& manifest, int task);
 
 }  // namespace peclet::runner

@@ -182,7 +182,9 @@ void Bundles::close(const BundleRecord& bundle, const BundleFolder& folder) {
       fmt::format("{} (job {}): {} seeds came back without a result", bundle.name, bundle.job, without));
   booking.commit();
   // What the tasks printed is of interest only when something went wrong.
-  if (without == 0) fs::remove_all(folder.root());
+  if (without == 0) return void(fs::remove_all(folder.root()));
+  for (int task = 0; task < bundle.tasks; ++task)
+    fs::remove_all(folder.left(task));  // of attempts without a result
 }
 
 }  // namespace peclet::runner

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "contract/input_error.h"
@@ -33,6 +34,18 @@ std::vector<Criterion> also_of(const Json& target, const std::string& leading, c
     also.push_back(std::move(criterion));
   }
   return also;
+}
+
+// Of how many first seeds of each point files are kept.
+int seeds_with_files(const Json& document, const std::string& file) {
+  const Json rule = document.value("keep_files", Json("all"));
+  if (rule == "all") return most_realisations;
+  if (rule == "none") return 0;
+  if (rule.is_number() && rule >= 0 && rule <= most_realisations && std::trunc(rule.get<double>()) == rule) {
+    return rule.get<int>();
+  }
+  throw InputError(file, "/keep_files", shortened(rule),
+                   fmt::format("must be \"all\", \"none\" or an integer >= 0 and <= {}", most_realisations));
 }
 
 }  // namespace
@@ -138,6 +151,7 @@ Campaign parse_campaign(const Json& written, const std::string& file) {
                     smallest_minimum));
   }
   campaign.engine = document["engine"].get<std::vector<std::string>>();
+  campaign.seeds_with_files = seeds_with_files(document, file);
   campaign.points = sweep_points(document["scene"], read_sweep(document["sweep"], file), campaign.name, file);
   return campaign;
 }

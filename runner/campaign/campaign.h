@@ -60,6 +60,8 @@ Json criterion_json(const Target& target);
 // A target of these. Throws InputError at /target of `file` for what is no criterion.
 Target target_of(const std::string& observable, const Json& criterion, double confidence,
                  const std::string& file = "");
+// The largest maximum that a campaign can have: seeds are below it.
+constexpr int most_realisations = 1'000'000;
 
 struct Campaign {
   std::string name;
@@ -68,11 +70,11 @@ struct Campaign {
   Target target;
   int minimum_realisations;
   int maximum_realisations;
-  std::vector<std::string> engine;  // program and arguments
-};
+  std::vector<std::string> engine;           // program and arguments
+  int seeds_with_files = most_realisations;  // of each point: what later ones leave beside their results goes
 
-// The largest maximum that a campaign can have: seeds are below it.
-constexpr int most_realisations = 1'000'000;
+  bool keeps_files_of(int seed) const { return seed < seeds_with_files; }
+};
 
 const KeyTable& campaign_keys();
 

@@ -99,6 +99,10 @@ std::vector<Key> keys() {
        .required = true,
        .minimum = 2,
        .maximum = most_realisations},
+      {.pointer = "/keep_files",
+       .kind = KeyKind::any,
+       .meaning = "Which of the files are kept that realisations leave beside their results: \"all\" (unless "
+                  "given), \"none\", or those of so many first seeds of each point."},
       {.pointer = "/engine",
        .kind = KeyKind::array,
        .meaning =

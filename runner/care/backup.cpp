@@ -9,6 +9,7 @@
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
 #include "contract/integrity_error.h"
+#include "runner/care/file_copies.h"
 #include "runner/database/backup_files.h"
 #include "runner/database/database_copy.h"
 #include "runner/folder/folder_lock.h"
@@ -106,6 +107,8 @@ Json as_json(const Backup& backup) {
           {"results", backup.results},
           {"bytes", backup.bytes},
           {"seconds", backup.seconds},
+          {"files", backup.files.there},
+          {"files_lacking", backup.files.lacking},
           {"spool_files", backup.spool_files},
           {"checkpoints", backup.checkpoints}};
 }
@@ -114,6 +117,13 @@ std::string as_text(const Backup& backup, const CampaignDirectory& directory, bo
   std::string text = fmt::format("{}: {} results, {:.1f} MB, checked, in {:.1f} s\n", backup.file.string(),
                                  backup.results, 1e-6 * static_cast<double>(backup.bytes), backup.seconds);
   text += "in it: the campaign as last run and every committed result, attempt, look and event\n";
+  if (backup.files.there > 0)
+    text += fmt::format("beside it: {} files of realisations\n", backup.files.there);
+  if (backup.files.lacking > 0) {
+    text +=
+        fmt::format("{} of these files are absent or damaged, and not copied: `peclet doctor` names them\n",
+                    backup.files.lacking);
+  }
   if (checkpoints) {
     text += fmt::format("beside it: {} checkpoints and {} results on their way\n", backup.checkpoints,
                         backup.spool_files);
@@ -140,13 +150,17 @@ Backup make_backup(const CampaignDirectory& directory, const fs::path& folder, b
   if (checkpoints) {
     // Before the database: a result that is committed in between is in both, and counts once.
     backup.spool_files = copy_files(directory.spool(), folder / "spool");
+    copy_files(directory.left(), CampaignDirectory(folder).left());  // after the results that list them
     backup.checkpoints = copy_files(directory.checkpoints(), folder / "checkpoints");
   }
   const fs::path next = folder / "backup.next.db";
+  std::vector<FileRecord> files;
   copy_database(directory.database(), next, [&](Connection& copy) {
     sign(copy, directory);
+    files = files_in(copy);
     backup.results = copy.integer("SELECT count(*) FROM result");
   });
+  backup.files = copy_files_of(files, directory, folder);  // before the generation that refers to them
   backup.file = newest_backup(folder);
   if (!kind_of(backup.file).empty()) fs::rename(backup.file, previous_backup(folder));
   rename_durably(next, backup.file);

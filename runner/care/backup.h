@@ -1,7 +1,8 @@
 // The verb `peclet backup`: copies of a campaign's database from which it can go on, here or elsewhere.
 //
 // A folder of backups holds two generations: backup.db, and backup.previous.db from before it. Each is a
-// sound SQLite database in one file. Whoever writes there holds a flock on the folder.
+// sound SQLite database in one file, beside copies of the files that realisations left (file_copies.h).
+// Whoever writes there holds a flock on the folder.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +10,7 @@
 #include <string>
 
 #include "contract/json.h"
+#include "runner/care/file_copies.h"
 #include "runner/database/backup_files.h"
 #include "runner/folder/campaign_directory.h"
 
@@ -27,6 +29,7 @@ struct Backup {
   std::int64_t results = 0;
   std::uintmax_t bytes = 0;
   double seconds = 0;
+  FileCopies files;                      // that realisations have left
   int spool_files = 0, checkpoints = 0;  // copied beside it
   bool beside_campaign = false;          // although it was to be elsewhere, it is on the same file system
 };

@@ -47,6 +47,7 @@ void examine_database(const Patient& patient, Findings& findings) {
     examine_looks(database, findings);
     examine_states(database, patient, findings);
     examine_files(database, patient, findings);
+    examine_left_files(database, patient, findings);
     examine_backups(database, patient, findings);
     examine_hand_over(database, patient, findings);
     examine_clock(database, patient, findings);

@@ -43,11 +43,12 @@ struct Patient {
 using Findings = std::vector<Finding>;
 
 // Each looks at one side of it (doctor_database.cpp, doctor_files.cpp, doctor_hand_over.cpp,
-// doctor_machine.cpp). A reader's database.
+// doctor_left_files.cpp, doctor_machine.cpp). A reader's database.
 void examine_results(Database& database, const Patient& patient, Findings& findings);
 void examine_looks(Database& database, Findings& findings);
 void examine_states(Database& database, const Patient& patient, Findings& findings);
 void examine_files(Database& database, const Patient& patient, Findings& findings);
+void examine_left_files(Database& database, const Patient& patient, Findings& findings);
 void examine_backups(Database& database, const Patient& patient, Findings& findings);
 void examine_hand_over(Database& database, const Patient& patient, Findings& findings);
 void examine_processes(const Patient& patient, Findings& findings);

@@ -43,6 +43,7 @@ void run_again(Database& owner, const CampaignDirectory& directory, std::int64_t
   }
   Transaction booking(connection);
   for (const char* const sql : {"DELETE FROM result WHERE point_id = ? AND seed = ?",
+                                "DELETE FROM file WHERE point_id = ? AND seed = ?",
                                 "UPDATE realisation SET state = 'queued', cause = NULL, value = NULL, "
                                 "control = NULL, content_sha256 = NULL, "
                                 "final_state_sha256 = NULL WHERE point_id = ? AND seed = ?"}) {
@@ -76,7 +77,7 @@ void remove_impossible_seeds(Database& owner, const CampaignDirectory& directory
                       fmt::format("point-{}-seed-{}-impossible.json", stored.integer(2), stored.integer(3)),
                   readable(stored));
   }
-  for (const char* const table : {"result", "lease", "attempt", "bundle_seed", "realisation"}) {
+  for (const char* const table : {"result", "file", "lease", "attempt", "bundle_seed", "realisation"}) {
     Statement(connection, fmt::format("DELETE FROM {} WHERE {}", table, impossible))
         .bind(most_realisations)
         .run();

@@ -19,11 +19,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 13> known_names{
-    "campaign.db",   "campaign.db-wal", "campaign.db-shm", "campaign.db-journal",
-    "campaign.lock", "spool",           "checkpoints",     "failures",
-    "logs",          "backup",          "aside",           "campaign.json",
-    "requests"};
+constexpr std::array<const char*, 14> known_names{"campaign.db",
+                                                  "campaign.db-wal",
+                                                  "campaign.db-shm",
+                                                  "campaign.db-journal",
+                                                  "campaign.lock",
+                                                  "spool",
+                                                  "checkpoints",
+                                                  "failures",
+                                                  "logs",
+                                                  "backup",
+                                                  "aside",
+                                                  "campaign.json",
+                                                  "requests",
+                                                  "files"};
 
 // A campaign that works makes one every ten minutes.
 constexpr double old_backup_hours = 24;
@@ -148,7 +157,7 @@ void examine_spool(const Patient& patient, Findings& findings) {
   const std::vector<fs::path> rejected = files_in(directory.rejected());
   if (!rejected.empty()) {
     findings.push_back({"rejected-results", Severity::warning,
-                        fmt::format("{} results were turned down: {}", rejected.size(), listed(rejected)),
+                        fmt::format("{} files were turned down: {}", rejected.size(), listed(rejected)),
                         "the table `event` says why; remove them from spool/rejected/ when you know"});
   }
 }
@@ -165,8 +174,9 @@ void examine_requests(const Patient& patient, Findings& findings) {
 void examine_unfinished(const Patient& patient, Findings& findings) {
   std::vector<fs::path> folders, unfinished;
   for (const fs::path& folder :
-       {patient.directory.root(), patient.directory.spool(), patient.directory.checkpoints(),
-        patient.directory.failures(), patient.directory.backup(), patient.directory.requests()}) {
+       {patient.directory.root(), patient.directory.spool(), patient.directory.left(),
+        patient.directory.checkpoints(), patient.directory.failures(), patient.directory.backup(),
+        patient.directory.requests()}) {
     if (!fs::is_directory(folder)) continue;
     folders.push_back(folder);
     for (const fs::path& file : unfinished_files(folder)) unfinished.push_back(file);

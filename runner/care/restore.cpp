@@ -11,6 +11,7 @@
 #include "runner/campaign/campaign.h"
 #include "runner/campaign/campaign_file.h"
 #include "runner/care/backup.h"
+#include "runner/care/file_copies.h"
 #include "runner/database/backup_files.h"
 #include "runner/database/database_copy.h"
 #include "runner/folder/owner_lock.h"
@@ -105,6 +106,11 @@ int bring(const fs::path& from, const fs::path& to) {
   return brought;
 }
 
+FileCopies bring_files(const CampaignDirectory& directory, const fs::path& backups) {
+  Connection database(directory.database().string(), Connection::Access::read_only, 10'000);
+  return bring_files_back(files_in(database), directory, backups);
+}
+
 struct Place {
   CampaignDirectory directory;
   fs::path file;  // the campaign's
@@ -178,7 +184,9 @@ std::string restore_campaign(const RestoreOptions& options) {
   record(directory, source);
   const fs::path beside = source.file.parent_path();
   const int spooled = bring(beside / "spool", directory.spool());
+  bring(CampaignDirectory(beside).left(), directory.left());
   const int checkpoints = bring(beside / "checkpoints", directory.checkpoints());
+  const FileCopies files = bring_files(directory, beside);
 
   const bool is_older = leave_newer_backup_behind(directory, source);
   std::string text = source.remarks;
@@ -189,6 +197,13 @@ std::string restore_campaign(const RestoreOptions& options) {
                       source.contents.results);
   if (spooled + checkpoints > 0) {
     text += fmt::format("with it came {} checkpoints and {} results on their way\n", checkpoints, spooled);
+  }
+  if (files.there > 0) text += fmt::format("with it came {} files of realisations\n", files.there);
+  if (files.lacking > 0) {
+    text += fmt::format(
+        "{} files of realisations are neither here nor beside the backup: `peclet doctor` names "
+        "them\n",
+        files.lacking);
   }
   if (is_older) {
     text += fmt::format("the campaign's own last backup has more in it; it is now {}\n",

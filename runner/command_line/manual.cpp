@@ -64,10 +64,11 @@ std::string files_section() {
            {"NAME.json", "the campaign: scene, sweep and target"},
            {"NAME.peclet/campaign.db", "its database, which one process at a time writes"},
            {"NAME.peclet/checkpoints/", "realisations that have not ended"},
+           {"NAME.peclet/files/", "what realisations have left beside their results"},
            {"NAME.peclet/spool/", "results on their way into the database"},
            {"NAME.peclet/failures/", "the last state of realisations that failed"},
            {"NAME.peclet/logs/", "of the run (`peclet.log`) and of every worker"},
-           {"NAME.peclet/backup/", "the last two backups of the database"}}) {
+           {"NAME.peclet/backup/", "the last two backups of the database, and of files"}}) {
     text += ".TP\n.I " + roff_code(file) + '\n' + roff_text(meaning) + ".\n";
   }
   return text;

@@ -12,7 +12,7 @@ namespace {
 
 void add_backup(VerbSet& verbs) {
   const auto options = std::make_shared<BackupOptions>();
-  CLI::App* const verb = verbs.add("backup", "Copy a campaign's database, checked, also while it runs",
+  CLI::App* const verb = verbs.add("backup", "Copy a campaign's database and files, checked, also while it runs",
                                    "peclet backup flow-curve.json /mnt/usb/flow-curve --checkpoints",
                                    page(R"(
 `peclet run` makes such backups by itself; this makes one now, or elsewhere. The copy is checked before

@@ -14,8 +14,8 @@ namespace peclet::runner {
 namespace {
 
 void drop_views(Connection& connection) {
-  for (const char* const view : {"points", "realisations", "estimates"}) {
-    connection.execute(fmt::format("DROP VIEW {}", view));
+  for (const char* const view : {"points", "realisations", "estimates", "files"}) {
+    connection.execute(fmt::format("DROP VIEW IF EXISTS {}", view));
   }
 }
 

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "contract/input_error.h"
+#include "runner/folder/result_files.h"
 #include "runner/folder/result_shape.h"
 #include "runner/text/plain_text.h"
 
@@ -77,6 +78,7 @@ Json job_frame(const Job& job) {
           {"checkpoint_seconds", job.checkpoint_seconds},
           {"progress_seconds", job.progress_seconds},
           {"spool", job.spool.string()},
+          {"files", left_file(job.spool, "").string()},
           {"failures", job.failures.string()}};
 }
 

@@ -41,6 +41,11 @@ fs::path CampaignDirectory::spool_file(const std::string& hash, int seed, std::i
   return spool() / fmt::format("{}-{}.json", stem(hash, seed), attempt);
 }
 
+// As the view `files` spells it.
+fs::path CampaignDirectory::left_files(const std::string& hash, std::int64_t point_id, int seed) const {
+  return files() / fmt::format("{}-{}", hash.substr(0, 16), point_id) / fmt::format("{:06}", seed);
+}
+
 fs::path CampaignDirectory::worker_log(int worker) const {
   return logs() / fmt::format("worker-{}.log", worker);
 }
@@ -54,17 +59,17 @@ CampaignDirectory campaign_directory(const fs::path& campaign_file, const fs::pa
 
 void create_folders(const CampaignDirectory& directory) {
   for (const fs::path& folder :
-       {directory.root(), directory.rejected(), directory.checkpoints(), directory.failures(),
-        directory.logs(), directory.backup(), directory.requests()}) {
+       {directory.root(), directory.rejected(), directory.left(), directory.checkpoints(),
+        directory.failures(), directory.logs(), directory.backup(), directory.requests()}) {
     fs::create_directories(folder);
   }
 }
 
 void require_own_folders(const CampaignDirectory& directory) {
   require_own_folder(directory.root(), true);
-  for (const fs::path& folder :
-       {directory.spool(), directory.rejected(), directory.checkpoints(), directory.failures(),
-        directory.logs(), directory.backup(), directory.requests(), directory.aside()}) {
+  for (const fs::path& folder : {directory.spool(), directory.rejected(), directory.left(), directory.files(),
+                                 directory.checkpoints(), directory.failures(), directory.logs(),
+                                 directory.backup(), directory.requests(), directory.aside()}) {
     require_own_folder(folder);
   }
 }

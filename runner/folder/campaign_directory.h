@@ -18,6 +18,8 @@ class CampaignDirectory {
   std::filesystem::path lock() const { return root_ / "campaign.lock"; }
   std::filesystem::path spool() const { return root_ / "spool"; }
   std::filesystem::path rejected() const { return spool() / "rejected"; }
+  // What realisations leave beside their results, until these are committed.
+  std::filesystem::path left() const { return spool() / "files"; }
   std::filesystem::path checkpoints() const { return root_ / "checkpoints"; }
   std::filesystem::path failures() const { return root_ / "failures"; }
   std::filesystem::path logs() const { return root_ / "logs"; }
@@ -26,12 +28,16 @@ class CampaignDirectory {
   std::filesystem::path requests() const { return root_ / "requests"; }
   // What was in the way is kept here: of `peclet restore`, or of a run.
   std::filesystem::path aside() const { return root_ / "aside"; }
+  // What realisations have left beside their results.
+  std::filesystem::path files() const { return root_ / "files"; }
   std::filesystem::path run_log() const { return logs() / "peclet.log"; }
 
   // Of one seed, whoever runs it: the next attempt resumes what the last one left.
   std::filesystem::path checkpoint(const std::string& hash, int seed) const;
   // Of one attempt: a worker that outlived its owner never writes where a later attempt does.
   std::filesystem::path spool_file(const std::string& hash, int seed, std::int64_t attempt) const;
+  // Of one seed; `point_id` tells the results of the engines apart that a scene has had.
+  std::filesystem::path left_files(const std::string& hash, std::int64_t point_id, int seed) const;
   std::filesystem::path worker_log(int worker) const;
 
  private:

@@ -21,14 +21,17 @@ struct Guarded {
 
 // As restore() leaves them, a folder of backups may hold checkpoints and a spool.
 std::vector<Guarded> guarded_folders(const CampaignDirectory& directory) {
-  return {{directory.spool(), {directory.rejected().filename().string()}},
-          {directory.rejected(), {}},
-          {directory.checkpoints(), {}},
-          {directory.failures(), {}},
-          {directory.logs(), {}},
-          {directory.requests(), {}},
-          {directory.backup(),
-           {directory.spool().filename().string(), directory.checkpoints().filename().string()}}};
+  return {
+      {directory.spool(), {directory.rejected().filename().string(), directory.left().filename().string()}},
+      {directory.rejected(), {}},
+      {directory.left(), {}},
+      {directory.checkpoints(), {}},
+      {directory.failures(), {}},
+      {directory.logs(), {}},
+      {directory.requests(), {}},
+      {directory.backup(),
+       {directory.spool().filename().string(), directory.checkpoints().filename().string(),
+        directory.files().filename().string()}}};
 }
 
 std::vector<fs::path> intruders_in(const Guarded& guarded) {

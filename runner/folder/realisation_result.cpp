@@ -9,7 +9,8 @@
 namespace peclet::runner {
 namespace {
 
-// Time is no part of the physics; the machine, and where it keeps the state of a blow-up, is none either.
+// Time is no part of the physics; the machine, and where it keeps the state of a blow-up, is none either. Nor
+// are the files beside the result: a log among them has times in it.
 std::string content_hash(Json& document) {
   // A result may be large, so these parts are laid aside, not the others copied.
   const auto take = [](Json& object, const char* key) {
@@ -18,11 +19,13 @@ std::string content_hash(Json& document) {
     return part;
   };
   Json& ending = document["ending"];
-  const bool has_state = ending.contains("state");
+  const bool has_state = ending.contains("state"), has_files = document.contains("files");
   Json cost = take(document, "cost"), engine = take(document, "engine"), state = take(ending, "state");
+  Json files = take(document, "files");
   const std::string hash = sha256(canonical_json(document));
   document["cost"] = std::move(cost);
   document["engine"] = std::move(engine);
+  if (has_files) document["files"] = std::move(files);
   if (has_state) ending["state"] = std::move(state);
   return hash;
 }

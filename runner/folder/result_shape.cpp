@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "runner/campaign/campaign.h"
+#include "runner/folder/result_files.h"
 #include "runner/statistics/quantities.h"
 #include "runner/text/plain_text.h"
 
@@ -317,6 +318,7 @@ void check_shape(const Json& document) {
   whole.with("method", must_be_text_or_null);
   whole.with("units", must_be_text);
   whole.with("warnings", check_warnings);
+  whole.with("files", [](const Place& files) { check_left_files(files.value); });
   whole.with("quantities", [&](const Place& quantities) { check_quantities(quantities, document); });
   whole.with("gate", [](const Place& gate) {
     if (!gate.value.is_null()) must_be_object(gate);

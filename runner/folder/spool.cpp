@@ -13,6 +13,7 @@
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
 #include "contract/sha256.h"
+#include "runner/folder/result_files.h"
 
 namespace peclet::runner {
 namespace {
@@ -79,6 +80,9 @@ bool is_there(const fs::path& path) {
 }
 
 fs::path reject(const CampaignDirectory& directory, const fs::path& path) {
+  for (const fs::path& left : left_files_of(path)) {
+    fs::rename(left, free_name(directory.rejected() / left.filename()));
+  }
   const fs::path target = free_name(directory.rejected() / path.filename());
   fs::rename(path, target);
   return target;

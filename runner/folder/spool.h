@@ -32,7 +32,8 @@ std::vector<std::filesystem::path> whole_files(const std::filesystem::path& fold
 // A checkpoint may be large; what is larger than this is none, and is not copied into a backup or out of it.
 constexpr std::uint64_t largest_copied_file = std::uint64_t{16} << 30;
 
-// Moves a file to spool/rejected/ under a name that is free there, and says where it is now.
+// Moves a file to spool/rejected/, with what its realisation left, under names that are free there, and says
+// where it is now.
 std::filesystem::path reject(const CampaignDirectory& directory, const std::filesystem::path& path);
 
 // The unfinished temporary files in `folder` whose writers no longer run.

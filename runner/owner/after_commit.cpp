@@ -2,15 +2,17 @@
 
 #include <utility>
 
+#include "contract/durable_file.h"
 #include "runner/folder/spool.h"
 
 namespace peclet::runner {
 
 AfterCommit::Mark AfterCommit::mark() const {
-  return {to_discard_.size(), to_remove_.size(), to_reject_.size(), to_tell_.size()};
+  return {to_keep_.size(), to_discard_.size(), to_remove_.size(), to_reject_.size(), to_tell_.size()};
 }
 
 void AfterCommit::back_to(const Mark& mark) {
+  to_keep_.resize(mark.keep);
   to_discard_.resize(mark.discard);
   to_remove_.resize(mark.remove);
   to_reject_.resize(mark.reject);
@@ -18,9 +20,14 @@ void AfterCommit::back_to(const Mark& mark) {
 }
 
 void AfterCommit::carry_out(RunListener& listener) {
+  for (const auto& [from, place] : to_keep_) {
+    // `peclet doctor` names one that somebody has taken away meanwhile.
+    if (is_there(from)) rename_durably(from, place);
+  }
   for (const std::filesystem::path& file : to_discard_) std::filesystem::remove(file);
   removal_.add(to_remove_);
   for (const std::filesystem::path& file : to_reject_) peclet::runner::reject(home_of_spool_file(file), file);
+  to_keep_.clear();
   to_discard_.clear();
   to_remove_.clear();
   to_reject_.clear();

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -16,6 +17,10 @@ namespace peclet::runner {
 
 class AfterCommit {
  public:
+  // A file that a result left gets its place, whose folder is there; before anything is removed.
+  void keep(std::filesystem::path from, std::filesystem::path place) {
+    to_keep_.emplace_back(std::move(from), std::move(place));
+  }
   // A checkpoint that the next attempt must not find: gone when carry_out() returns.
   void discard(std::filesystem::path checkpoint) { to_discard_.push_back(std::move(checkpoint)); }
   // What is left of a seed that has ended: removed in the background.
@@ -28,15 +33,15 @@ class AfterCommit {
 
   // How much there is to be done, and back to that.
   struct Mark {
-    std::size_t discard = 0, remove = 0, reject = 0, tell = 0;
+    std::size_t keep = 0, discard = 0, remove = 0, reject = 0, tell = 0;
   };
   Mark mark() const;
   void back_to(const Mark& mark);
   // The transaction failed: nothing of it happens.
   void forget() { back_to({}); }
 
-  // Does all of it, once. Throws std::filesystem::filesystem_error, and std::system_error for a file of an
-  // earlier call that could not be removed.
+  // Does all of it, once. Throws std::filesystem::filesystem_error, and std::system_error for a file that
+  // could not be moved, or one of an earlier call that could not be removed.
   void carry_out(RunListener& listener);
   // Returns when the files of earlier calls are removed. Throws std::system_error.
   void finish_removals() { removal_.finish(); }
@@ -49,6 +54,7 @@ class AfterCommit {
     std::string text;
   };
 
+  std::vector<std::pair<std::filesystem::path, std::filesystem::path>> to_keep_;
   std::vector<std::filesystem::path> to_discard_, to_remove_, to_reject_;
   std::vector<std::variant<RunEvent, Note, Warning>> to_tell_;
   FileRemoval removal_;

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "runner/engines/engine_error.h"
+#include "runner/folder/result_files.h"
 
 namespace peclet::runner {
 namespace {
@@ -230,7 +231,10 @@ void Dispatcher::handle(const ShortOfRoom& event) {
   if (!has_job(event.worker, event.job)) return;
   const Job& job = at(event.worker).assignment->grant.job;
   const std::filesystem::path folder = event.path.parent_path();
-  if (event.path != job.spool && event.path != job.checkpoint && folder != job.failures) {
+  const bool is_beside_result =
+      folder == left_folder(job.spool) && event.path.filename().string().starts_with(left_stem(job.spool));
+  if (event.path != job.spool && event.path != job.checkpoint && folder != job.failures &&
+      !is_beside_result) {
     condemn(event.worker, {AttemptOutcome::garbled, "wrote a file that is none of its job"});
     return;
   }

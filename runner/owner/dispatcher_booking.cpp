@@ -69,8 +69,8 @@ bool Dispatcher::book() {
     give_out_seeds();
     show_leases();
     booking.commit();
-  } catch (const DatabaseError& error) {
-    if (!error.no_room()) throw;
+  } catch (const std::exception& error) {
+    if (!means_no_room(error)) throw;
     take_back(before);
     return false;
   }
@@ -152,8 +152,8 @@ bool Dispatcher::lacked_room(int number) {
 void Dispatcher::settle_spool() {
   try {
     ledger_.ingest_spool();
-  } catch (const DatabaseError& error) {
-    if (!error.no_room()) throw;
+  } catch (const std::exception& error) {
+    if (!means_no_room(error)) throw;
     ledger_.roll_back();  // nothing of it counts: what is decided is what the database says
     listener_.warn("there is no room to book what workers did last: the next run does it");
   }

@@ -9,6 +9,7 @@
 #include "contract/input_error.h"
 #include "runner/folder/intruders.h"
 #include "runner/folder/spool.h"
+#include "runner/owner/file_taking.h"
 #include "runner/stores/engine_row.h"
 #include "runner/text/plain_text.h"
 
@@ -38,6 +39,7 @@ Ledger::Ledger(Database& database, const Campaign& campaign, CampaignDirectory d
   if (const int recovered = seeds_.recover(); recovered > 0) {
     listener_.note(fmt::format("{} seeds that an earlier run left unfinished go on", recovered));
   }
+  remove_files_of_the_dead(database_.connection(), directory_);
   load();
 }
 

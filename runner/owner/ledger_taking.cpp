@@ -12,6 +12,7 @@
 
 #include "runner/database/further_values.h"
 #include "runner/folder/spool.h"
+#include "runner/owner/file_taking.h"
 #include "runner/owner/ledger.h"
 #include "runner/statistics/quantities.h"
 #include "runner/text/plain_text.h"
@@ -106,13 +107,18 @@ std::string Ledger::take_whole(const fs::path& spool, const Reading& read, const
 
 void Ledger::take(const RealisationResult& result, const fs::path& spool) {
   const StoredResult stored = results_.store(result, campaign_.target);
+  const auto take_in = [&] {
+    take_files(database_.connection(), directory_, result, spool, stored,
+               campaign_.keeps_files_of(result.seed), after_);
+    after_.remove(spool);
+  };
   switch (stored.what) {
     case Stored::stored_apart:
-      after_.remove(spool);
+      take_in();
       return;
     case Stored::stored:
     case Stored::duplicate:
-      after_.remove(spool);
+      take_in();
       for (const fs::path& checkpoint :
            std::set{directory_.checkpoint(result.point, result.seed),
                     home_of_spool_file(spool).checkpoint(result.point, result.seed)}) {

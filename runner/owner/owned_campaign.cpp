@@ -118,7 +118,7 @@ Database open_for_owner(const ClaimedCampaign& claimed, const std::function<void
   const CampaignDirectory& directory = claimed.directory;
   create_folders(directory);
   for (const std::filesystem::path& folder :
-       {directory.root(), directory.spool(), directory.checkpoints(), directory.failures(),
+       {directory.root(), directory.spool(), directory.left(), directory.checkpoints(), directory.failures(),
         directory.backup(), directory.requests()}) {
     remove_unfinished_files(folder);
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "runner/database/file_book.h"
 #include "runner/reports/explain_attempts.h"
 #include "runner/reports/explain_estimate.h"
 #include "runner/reports/prediction_text.h"
@@ -262,6 +263,46 @@ Json blamed_attempts_json(Database& database, std::int64_t point) {
   return blamed;
 }
 
+// What the realisations of a point have left.
+struct Files {
+  int kept = 0, thrown_away = 0;
+  std::uint64_t bytes = 0;  // of those that are kept
+  std::string folder;
+};
+
+Files files_of(Database& database, const CampaignDirectory& directory, std::int64_t point) {
+  Files files;
+  for (const FileRecord& record : files_of_point(database.connection(), point)) {
+    ++(record.kept ? files.kept : files.thrown_away);
+    if (!record.kept) continue;
+    files.bytes += record.file.bytes;
+    files.folder = record.place(directory).parent_path().parent_path().string();
+  }
+  return files;
+}
+
+std::string files_text(Database& database, const CampaignDirectory& directory, std::int64_t point) {
+  const Files files = files_of(database, directory, point);
+  std::string text;
+  if (files.kept > 0) {
+    text = fmt::format("  files: {} ({:.1f} MB) in {}", files.kept, 1e-6 * static_cast<double>(files.bytes),
+                       files.folder);
+  }
+  if (files.thrown_away > 0) {
+    text +=
+        fmt::format("{}{} thrown away (/keep_files)", text.empty() ? "  files: " : "; ", files.thrown_away);
+  }
+  return text.empty() ? "" : text + '\n';
+}
+
+Json files_json(Database& database, const CampaignDirectory& directory, std::int64_t point) {
+  const Files files = files_of(database, directory, point);
+  return {{"kept", files.kept},
+          {"bytes", files.bytes},
+          {"thrown_away", files.thrown_away},
+          {"folder", files.folder.empty() ? Json(nullptr) : Json(files.folder)}};
+}
+
 }  // namespace
 
 Json explain_json(Database& database, const CampaignDirectory& directory, const std::string& point) {
@@ -279,6 +320,7 @@ Json explain_json(Database& database, const CampaignDirectory& directory, const 
          {"next", next_step(summary, campaign.target, directory)},
          {"looks", looks},
          {"losses", losses_json(database, summary.point.id)},
+         {"files", files_json(database, directory, summary.point.id)},
          {"blamed_attempts", blamed_attempts_json(database, summary.point.id)}});
   }
   return {{"schema_version", 1}, {"campaign", campaign.name}, {"points", points}};
@@ -297,6 +339,7 @@ std::string explain(Database& database, const CampaignDirectory& directory, cons
     text += estimate_text(database, summary, target);
     text += losses_text(database, summary.point.id);
     text += attempts_text(database, summary.point.id);
+    text += files_text(database, directory, summary.point.id);
     for (const KeptApart& kept : summary.kept_apart) {
       text += fmt::format("  kept apart: {} results of engine {}\n", kept.results, kept.engine);
     }

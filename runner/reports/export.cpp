@@ -7,6 +7,7 @@
 #include <map>
 
 #include "runner/database/checked_look.h"
+#include "runner/database/file_book.h"
 #include "runner/statistics/look_json.h"
 #include "runner/statistics/quantity_estimates.h"
 
@@ -46,6 +47,15 @@ Json attempt_json(const AttemptRecord& attempt) {
           {"message", attempt.message}};
 }
 
+// Where it is below the campaign's folder; null where it was thrown away.
+Json file_json(const FileRecord& record) {
+  const Json place = record.kept ? Json(record.place(CampaignDirectory("")).string()) : Json(nullptr);
+  return {{"name", record.file.name},
+          {"bytes", record.file.bytes},
+          {"sha256", record.file.sha256},
+          {"path", place}};
+}
+
 // The seeds of one point as they go into the document.
 class PointExport {
  public:
@@ -58,6 +68,9 @@ class PointExport {
     if (!canonical_) {
       for (const AttemptRecord& attempt : database.attempts(point.id)) {
         attempts_[attempt.seed].push_back(attempt_json(attempt));
+      }
+      for (const FileRecord& record : files_of_point(database.connection(), point.id)) {
+        files_[record.seed].push_back(file_json(record));
       }
     }
     read_results();
@@ -116,6 +129,7 @@ class PointExport {
       Json json = result != results_.end() ? result->second : content_without_result(record);
       if (!record.content_sha256.empty()) json["content_sha256"] = record.content_sha256;
       if (!canonical_) {
+        json["files"] = files_.contains(record.seed) ? files_.at(record.seed) : Json::array();
         json["attempts"] = attempts_[record.seed];
         json["engine"] = record.engine ? Json(*record.engine) : Json(nullptr);
       }
@@ -127,7 +141,7 @@ class PointExport {
   const PointRecord& point_;
   bool canonical_;
   std::optional<Look> look_;
-  std::map<int, Json> attempts_, results_;
+  std::map<int, Json> attempts_, files_, results_;
   Json derived_, warnings_;
   Json realisations_ = Json::array(), surplus_ = Json::array();
   double confidence_;

@@ -56,6 +56,8 @@ std::string describe_changes(Database& database, const Campaign& campaign) {
           std::to_string(campaign.minimum_realisations));
   compare(changes, "maximum", std::to_string(known.target.maximum),
           std::to_string(campaign.maximum_realisations));
+  const auto kept = [](const Json& document) { return document.value("keep_files", Json("all")).dump(); };
+  compare(changes, "files kept", kept(known.document), kept(campaign.document));
   compare_points(changes, database, campaign);
   if (!changes.empty()) return fmt::format("{}", fmt::join(changes, "; "));
   return known.document == campaign.document ? "nothing differs" : "the file, in nothing that decides";

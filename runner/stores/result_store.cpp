@@ -28,7 +28,7 @@ StoredResult ResultStore::store(const RealisationResult& result, const Target& t
       "(kept_apart = 0 OR engine_identity = ?) ORDER BY kept_apart DESC");
   const std::string identity = engine_identity(result.document.at("engine"));
   known.bind(result.seed).bind(result.point).bind(identity);
-  if (!known.step()) return {Stored::unknown_point, {}, ""};
+  if (!known.step()) return {Stored::unknown_point};
   const std::int64_t point = known.integer(0);
   const bool apart = known.integer(4) != 0;
   const std::string other = known.text(1);
@@ -36,20 +36,20 @@ StoredResult ResultStore::store(const RealisationResult& result, const Target& t
     events_.write(
         "mixed-engine", point, result.seed,
         fmt::format("a result of engine {} is not taken: the point has results of {}", identity, other));
-    return {Stored::mixed_engine, {}, ""};
+    return {Stored::mixed_engine};
   }
   if (!known.is_null(2)) {
     if (known.text(2) == result.content_sha256)
-      return {apart ? Stored::stored_apart : Stored::duplicate, {}, ""};
+      return {apart ? Stored::stored_apart : Stored::duplicate, {}, "", point};
     Statement(connection_, "UPDATE point SET suspect = 1 WHERE point_id = ?").bind(point).run();
     events_.write("suspect", point, result.seed, "two runs of the same seed gave different results");
-    return {Stored::conflict, {}, ""};
+    return {Stored::conflict};
   }
   if (known.text(3) == "quarantined")
     events_.write("late-result", point, result.seed, "a quarantined seed has a result");
   const std::vector<std::string> observables = target.observables();
   StoredResult stored{apart ? Stored::stored_apart : Stored::stored, observe(result.document, observables),
-                      ""};
+                      "", point, true};
   stored.cause = cause_of(result, stored.observed.front());
   store_numbers(point, result, stored, observables);
   for (const std::string& code : flags_of(result)) events_.write("flag", point, result.seed, code);

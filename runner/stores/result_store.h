@@ -25,8 +25,10 @@ enum class Stored {
 // The same, and what the result counts for; of a result that is stored only.
 struct StoredResult {
   Stored what;
-  std::vector<Observed> observed;  // of Target::observables()
-  std::string cause;               // see cause_of()
+  std::vector<Observed> observed{};  // of Target::observables()
+  std::string cause{};               // see cause_of()
+  std::int64_t point = 0;            // the row of its point, where it has one
+  bool is_new = false;               // not known before
 };
 
 class ResultStore {

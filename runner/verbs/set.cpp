@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <stdexcept>
 #include <utility>
 
@@ -22,10 +23,17 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Edit {
-  const char* block;
+  std::string block;  // "": the document
   const char* key;
   Json value;
 };
+
+// What is no number is refused with the file.
+Json word_or_number(const std::string& text) {
+  int number = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
+  return read.ec == std::errc{} && read.ptr == text.data() + text.size() ? Json(number) : Json(text);
+}
 
 std::vector<Edit> edits_of(const SetOptions& options) {
   std::vector<Edit> edits;
@@ -35,6 +43,7 @@ std::vector<Edit> edits_of(const SetOptions& options) {
   if (options.confidence) edits.push_back({"target", "confidence", *options.confidence});
   if (options.minimum) edits.push_back({"realisations", "minimum", *options.minimum});
   if (options.maximum) edits.push_back({"realisations", "maximum", *options.maximum});
+  if (options.keep_files) edits.push_back({"", "keep_files", word_or_number(*options.keep_files)});
   return edits;
 }
 
@@ -56,10 +65,13 @@ std::string edited(const std::string& text, const std::vector<Edit>& edits, cons
   std::string changed = text;
   for (const Edit& edit : edits) {
     const bool has_block =
-        expected.is_object() && expected.contains(edit.block) && expected[edit.block].is_object();
+        expected.is_object() &&
+        (edit.block.empty() || (expected.contains(edit.block) && expected[edit.block].is_object()));
     if (!has_block) parse_campaign(expected, file.string());  // refuses it, and says why
-    changed = with_value(changed, {edit.block, edit.key}, edit.value);
-    expected[edit.block][edit.key] = edit.value;
+    std::vector<std::string> path{edit.block, edit.key};
+    if (edit.block.empty()) path.erase(path.begin());
+    changed = with_value(changed, path, edit.value);
+    (edit.block.empty() ? expected : expected[edit.block])[edit.key] = edit.value;
   }
   if (parse_json_input(changed, file.string()) != expected) {
     throw std::logic_error(file.string() + ": could not be changed in place; change it by hand");

@@ -63,6 +63,14 @@ TEST_F(DurableFile, Sha256IsThePublishedOne) {
   EXPECT_THROW(sha256_of_file(folder() / "g"), std::system_error);
 }
 
+TEST_F(DurableFile, FoldersAreMadeWithThoseAboveThem) {
+  create_folders_durably(folder() / "a" / "b" / "c");
+  EXPECT_TRUE(fs::is_directory(folder() / "a" / "b" / "c"));
+  create_folders_durably(folder() / "a" / "b" / "c");
+  write_durably(folder() / "f", "x");
+  EXPECT_THROW(create_folders_durably(folder() / "f" / "g"), std::system_error);
+}
+
 TEST_F(DurableFile, ThatCannotBeMadeIsCalledByItsOwnName) {
   const std::filesystem::path path = folder() / "absent" / "f";
   try {

@@ -102,7 +102,8 @@ def wrong_values(schema):
         return
     numeric = bool(types & {"number", "integer"})
     yield "null", None
-    yield "true", True
+    if "boolean" not in types:
+        yield "true", True
     yield "nested", NESTED
     if "object" not in types:
         yield "an object", {}

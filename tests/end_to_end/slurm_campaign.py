@@ -115,7 +115,13 @@ class Campaign:
         )
         left = self.ask("SELECT count(*) FROM bundle_seed WHERE outcome IS NULL")
         spool = os.path.join(self.shared, "spool")
-        files = [name for name in os.listdir(spool) if name != "rejected"] if os.path.isdir(spool) else []
+        files = [
+            name
+            for folder in (spool, os.path.join(spool, "files"))
+            if os.path.isdir(folder)
+            for name in os.listdir(folder)
+            if name not in ("rejected", "files")
+        ]
         return wanted - closed + left + len(files)
 
     def double(self):

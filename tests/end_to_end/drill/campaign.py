@@ -1,5 +1,6 @@
 """A campaign that is run, disturbed and run again, and what its database and spool say has been acknowledged."""
 import contextlib
+import hashlib
 import json
 import os
 import re
@@ -37,6 +38,7 @@ REAL = {
         "contact": {"normal_stiffness": 1e4, "friction": 0.5},
         "lubrication": {"form": "kim-karrila", "inner_gap": 0.01, "outer_gap": 0.05},
         "duration": {"equilibration": {"strain": 0.3}, "production": {"strain": 2.7}},
+        "files": {"final_configuration": True},
     },
     "sweep": [{"set": "/peclet", "values": [10, 1000]}],
     "target": {"observable": "relative_viscosity", "relative_tolerance": 0.15},
@@ -98,6 +100,7 @@ class Campaign:
         self.workers, self.lease, self.checkpoint = workers, lease, checkpoint
         self.document = dict(document or FAKE)
         self.document["engine"] = [lab.engine if document is REAL else lab.fake_engine, "serve"]
+        fake.setdefault("files", 2)
         self.environment = {f"PECLET_FAKE_{name.upper()}": str(value) for name, value in fake.items()}
         self.data = os.path.join(self.folder, "drill.peclet")
         self.safe = {}  # (hash, seed) -> (final state, last attempt when it was acknowledged)
@@ -213,6 +216,25 @@ class Campaign:
             "(point_id) WHERE state IN ('done', 'failed')"
         )
         return {**spooled, **{(point, seed): state for point, seed, state in stored}}
+
+    def misplaced_files(self):
+        """What is wrong with the files that realisations have left: those of the table that are absent or other ones,
+        those that no row has, those that lie in the spool."""
+        files = dict(self.query("SELECT path, sha256 FROM files WHERE kept"))
+        found = {
+            os.path.relpath(os.path.join(folder, name), self.data)
+            for top in ("files", "spool/files")
+            for folder, _, names in os.walk(self.path(top))
+            for name in names
+        }
+        wrong = sorted(found.symmetric_difference(files))
+        for path in found.intersection(files):
+            with open(self.path(path), "rb") as f:
+                if hashlib.sha256(f.read()).hexdigest() != files[path]:
+                    wrong.append(path)
+        ended = self.count("SELECT count(*) FROM realisations WHERE cause = 'completed'")
+        each = int(self.environment["PECLET_FAKE_FILES"]) if self.document["engine"][0] == self.lab.fake_engine else 1
+        return wrong or ([] if len(files) == each * ended else [f"{len(files)} files of {ended} results"])
 
     def last_attempt(self):
         return self.count("SELECT coalesce(max(attempt_id), 0) FROM attempt")

@@ -1,6 +1,8 @@
 """What is counted against the programs: results lost or counted twice, exports that differ, and anything else that
 should not have happened."""
 
+import time
+
 
 class Tally:
     """The row of one fault in the drill's table."""
@@ -34,6 +36,13 @@ class Tally:
             self.complain(campaign, "the export differs from the undisturbed one", "different")
         self._count_losses(campaign)
         self._count_doubles(campaign)
+        wrong = campaign.misplaced_files()
+        patience = time.monotonic() + 10
+        while any(path.startswith("spool/") for path in wrong) and time.monotonic() < patience:
+            time.sleep(0.1)  # a dead worker whom nobody has reaped yet cannot be told from one that lives
+            campaign.run()
+            wrong = campaign.misplaced_files()
+        self.expect(campaign, not wrong, f"files of realisations are not where they should be: {wrong[:5]}")
         verdict = campaign.count("PRAGMA integrity_check")
         self.expect(campaign, verdict == "ok", f"integrity_check: {verdict}")
         campaign.close()

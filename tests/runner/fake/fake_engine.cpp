@@ -10,7 +10,8 @@
 //   PECLET_FAKE_TIMES                                   a file that gets a line a job, in nanoseconds of the
 //                                                       monotonic clock: when the job was taken up, and when
 //                                                       its result was durable and announced
-//   PECLET_FAKE_PRINTED (0)                             bytes that it prints at every step
+//   PECLET_FAKE_FILES (0)                               files that it leaves beside its result: state-0.txt
+//   ... PECLET_FAKE_PRINTED (0)                             bytes that it prints at every step
 //   PECLET_FAKE_IDENTITY ("fake")                       what its binary is said to be
 //   PECLET_FAKE_DRIFT                                   set: results differ from those without it
 //   PECLET_FAKE_AHEAD                                   set: it takes a job ahead
@@ -229,11 +230,27 @@ class Engine {
                    {"bytes", error.bytes()}});
   }
 
-  // Keeps the result until there is room for it. False: has to leave before.
-  bool spool(const Json& job, const std::string& text) {
+  // Beside the result, which lists them. False: has to leave before.
+  bool leave_files(const Json& job, const State& state, Fault fault, Json& result) {
+    for (int number = 0; number < files_; ++number) {
+      const std::string name = "state-" + std::to_string(number) + ".txt";
+      const std::string text = std::to_string(mix(state.value + static_cast<std::uint64_t>(number))) + '\n';
+      if (fault != Fault::lose && !spool(job, job.at("files").get<std::string>() + name,
+                                         fault == Fault::tamper ? "something else" : text)) {
+        return false;
+      }
+      result["files"].push_back({{"name", fault == Fault::escape ? "../" + name : name},
+                                 {"bytes", fault == Fault::tamper ? 14 : text.size()},
+                                 {"sha256", sha256(text)}});
+    }
+    return true;
+  }
+
+  // Keeps the text until there is room for it. False: has to leave before.
+  bool spool(const Json& job, const std::string& path, const std::string& text) {
     for (;;) {
       try {
-        write_durably(job.at("spool").get<std::string>(), text);
+        write_durably(path, text);
         return true;
       } catch (const NoRoomError& error) {
         say_no_room(job, error);
@@ -266,6 +283,10 @@ class Engine {
     Json result = outcome(job, state, fault == Fault::overlap);
     result["cost"] = {{"cpu_seconds", wall_seconds}, {"wall_seconds", wall_seconds}};
     if (fault == Fault::swap) result["seed"] = job.at("seed").get<int>() + 1;
+    if (fault != Fault::overlap && !leave_files(job, state, fault, result)) {
+      if (!leave_) give_back(job, state);
+      return;
+    }
     std::string text = result.dump();
     // JSON has no such number; an engine that prints it all the same writes no JSON.
     if (fault == Fault::nan)
@@ -275,7 +296,7 @@ class Engine {
                      {"spool", job.at("spool")},
                      {"sha256", sha256(fault == Fault::lie ? "something else" : text)}};
     if (fault == Fault::early) announce(frame, fault);
-    if (!spool(job, text)) {
+    if (!spool(job, job.at("spool"), text)) {
       if (!leave_) give_back(job, state);
       return;
     }
@@ -342,6 +363,7 @@ class Engine {
   int steps_ = static_cast<int>(setting("PECLET_FAKE_STEPS", 10));
   int half_ = steps_ / 2;
   int fault_step_ = static_cast<int>(setting("PECLET_FAKE_FAULT_STEP", half_));
+  const int files_ = static_cast<int>(setting("PECLET_FAKE_FILES", 0));
   milliseconds step_time_{static_cast<int>(setting("PECLET_FAKE_STEP_MS", 0))};
   const std::filesystem::path hold_ = text_setting("PECLET_FAKE_HOLD");
   const int hold_seed_ = static_cast<int>(setting("PECLET_FAKE_HOLD_SEED", 0));

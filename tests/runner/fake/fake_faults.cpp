@@ -12,23 +12,14 @@
 namespace peclet::fake {
 namespace {
 
-constexpr std::array<std::pair<const char*, Fault>, 17> names{{{"crash", Fault::crash},
-                                                               {"exit", Fault::exit},
-                                                               {"kill", Fault::kill},
-                                                               {"hang", Fault::hang},
-                                                               {"garble", Fault::garble},
-                                                               {"refuse", Fault::refuse},
-                                                               {"overlap", Fault::overlap},
-                                                               {"lie", Fault::lie},
-                                                               {"mute", Fault::mute},
-                                                               {"twice", Fault::twice},
-                                                               {"swap", Fault::swap},
-                                                               {"nan", Fault::nan},
-                                                               {"early", Fault::early},
-                                                               {"late", Fault::late},
-                                                               {"truncate", Fault::truncate},
-                                                               {"oversize", Fault::oversize},
-                                                               {"rehello", Fault::rehello}}};
+constexpr std::array<std::pair<const char*, Fault>, 20> names{
+    {{"crash", Fault::crash},       {"exit", Fault::exit},       {"kill", Fault::kill},
+     {"hang", Fault::hang},         {"garble", Fault::garble},   {"refuse", Fault::refuse},
+     {"overlap", Fault::overlap},   {"lie", Fault::lie},         {"mute", Fault::mute},
+     {"twice", Fault::twice},       {"swap", Fault::swap},       {"nan", Fault::nan},
+     {"early", Fault::early},       {"late", Fault::late},       {"truncate", Fault::truncate},
+     {"oversize", Fault::oversize}, {"rehello", Fault::rehello}, {"lose", Fault::lose},
+     {"tamper", Fault::tamper},     {"escape", Fault::escape}}};
 
 Fault fault_named(const std::string& name) {
   for (const auto& [known, fault] : names) {

@@ -11,6 +11,8 @@
 //   early      the result frame before the file      late     progress of the job after its result
 //   truncate   half a result frame, then exit(0)     oversize a frame that announces 100 MiB
 //   rehello    says hello once more half-way
+//   lose       files are listed that are not there   tamper   files with other bytes than are listed
+//   escape     files are listed by a path
 // PECLET_FAKE_FAULT_STEP is another step for what happens half-way.
 // PECLET_FAKE_CRASH_PROBABILITY crashes any try with this probability, drawn from point, seed and number of
 // the try.
@@ -41,7 +43,10 @@ enum class Fault {
   late,
   truncate,
   oversize,
-  rehello
+  rehello,
+  lose,
+  tamper,
+  escape
 };
 
 // The number of this try of a seed, from 1; counted in a file of `folder`.

@@ -116,9 +116,13 @@ class Conversation:
                 "checkpoint_seconds": 0.01,
                 "progress_seconds": 0.01,
                 "spool": str(self.spool(job)),
+                "files": self.files(job),
                 "failures": str(self.folder),
             }
         )
+
+    def files(self, job):
+        return str(self.folder / f"files-{job}@")
 
     def spool(self, job):
         return self.folder / f"spool-{job}.json"
@@ -138,6 +142,9 @@ class Conversation:
         self.result_schema.validate(result)
         assert (result["point"], result["seed"]) == (self.point, 3)
         assert result["engine"] == engine.identity
+        for file in result.get("files", []):
+            content = pathlib.Path(self.files(job) + file["name"]).read_bytes()
+            assert (len(content), hashlib.sha256(content).hexdigest()) == (file["bytes"], file["sha256"]), file
         checkpoint = self.folder / "checkpoint"
         checkpoint.unlink(missing_ok=True)  # as the runner does when it has the result
         return result
@@ -215,7 +222,7 @@ def with_value(scene, pointer, value):
 
 
 def without_cost(result):
-    return {key: value for key, value in result.items() if key != "cost"}
+    return {key: value for key, value in result.items() if key not in ("cost", "files")}
 
 
 def main():

@@ -7,6 +7,7 @@
 
 #include "contract/durable_file.h"
 #include "contract/sha256.h"
+#include "runner/folder/result_files.h"
 #include "runner/folder/spool.h"
 #include "tests/runner/owner/dispatcher_fixture.h"
 
@@ -21,8 +22,8 @@ class Failing {
   explicit Failing(Connection& connection) {
     sqlite3_create_function(connection.handle(), "strikes", 0, SQLITE_UTF8, this, &strikes, nullptr, nullptr);
     int number = 0;
-    for (const char* const table : {"point", "engine", "realisation", "dictionary", "result", "attempt",
-                                    "lease", "look", "event", "bundle_seed"}) {
+    for (const char* const table : {"point", "engine", "realisation", "dictionary", "result", "file",
+                                    "attempt", "lease", "look", "event", "bundle_seed"}) {
       for (const char* const change : {"INSERT", "UPDATE", "DELETE"}) {
         connection.execute("CREATE TEMP TRIGGER failing_" + std::to_string(++number) + " BEFORE " + change +
                            " ON main." + table +
@@ -62,7 +63,7 @@ std::string stored(Connection& connection) {
     return 0;
   };
   for (const char* const rows :
-       {"point", "engine", "realisation", "dictionary", "attempt", "lease", "look", "bundle_seed",
+       {"point", "engine", "realisation", "dictionary", "file", "attempt", "lease", "look", "bundle_seed",
         "(SELECT point_id, seed, hex(document) FROM result)",
         "(SELECT kind, point_id, seed, message FROM event WHERE kind != 'rejected' ORDER BY event_id)"}) {
     const std::string query = std::string("SELECT * FROM ") + rows;
@@ -78,10 +79,12 @@ class Taking : public Dispatching {
   Json result(int seed) const {
     Json document = plain_result(campaign_.points[0].hash, seed, steady(seed));
     document["warnings"] = {{{"code", "timestep"}, {"message", "too long"}}};
+    document["files"] = {{{"name", "empty"}, {"bytes", 0}, {"sha256", sha256("")}}};
     return document;
   }
   fs::path put(const Json& document) {
     const fs::path file = directory_.spool() / ("result-" + std::to_string(++files_) + ".json");
+    write_durably(left_file(file, "empty"), "");
     write_durably(file, document.dump());
     return file;
   }
@@ -152,6 +155,7 @@ TEST_F(Taking, OfAWorkersResultFailsWithoutATraceAtEveryChange) {
     const std::string before = picture();
     int change = 1;
     for (bool taken = false; !taken; ++change) {
+      write_durably(left_file(grant.job.spool, "empty"), "");
       write_durably(grant.job.spool, result(seed).dump());
       std::string why;
       failing_.strike(change);

@@ -1,0 +1,50 @@
+// Files that a realisation leaves beside its result, which lists them with their sizes and hashes.
+//
+// An engine makes them durable before the result: beside SPOOL/STEM.json they are SPOOL/files/STEM@NAME. No
+// name has an "@", so that no two jobs, and no two attempts at a seed, have a file in common. The result is
+// what makes them count.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "contract/json.h"
+
+namespace peclet::runner {
+
+struct LeftFile {
+  std::string name;
+  std::uint64_t bytes = 0;
+  std::string sha256;
+};
+
+constexpr std::size_t most_left_files = 16;
+constexpr std::size_t longest_left_name = 64;
+constexpr std::uint64_t largest_left_file = std::uint64_t{1} << 32;
+
+// Throws ResultError for the first thing in the member "files" of a result that is not as it must be.
+void check_left_files(const Json& files);
+
+// Requires a result whose shape has been checked.
+std::vector<LeftFile> left_files(const Json& result);
+
+// Where the files of the job with this spool file are: the folder, what their names begin with there, and
+// one.
+std::filesystem::path left_folder(const std::filesystem::path& spool);
+std::string left_stem(const std::filesystem::path& spool);
+std::filesystem::path left_file(const std::filesystem::path& spool, const std::string& name);
+
+// Those that are there, listed or not, without unfinished ones.
+std::vector<std::filesystem::path> left_files_of(const std::filesystem::path& spool);
+
+// Whether there is a regular file of that size and hash at `path`; "" or what is wrong. Its bytes are then on
+// disk.
+std::string fault_of_file(const std::filesystem::path& path, std::uint64_t bytes, const std::string& sha256);
+
+// Throws ResultError that names the first file of the result which is absent or another one.
+void check_files_in_spool(const Json& result, const std::filesystem::path& spool);
+
+}  // namespace peclet::runner

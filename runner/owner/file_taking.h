@@ -1,0 +1,27 @@
+// What becomes of the files that a realisation left beside its result.
+//
+// Their rows are stored with the result, and they are moved to their places after that commit, before the
+// spool file of the result goes. So whatever is killed when, the spool file is found again, as a result that
+// is known by then, and the moving goes on from there.
+#pragma once
+
+#include <filesystem>
+
+#include "runner/database/sqlite.h"
+#include "runner/folder/campaign_directory.h"
+#include "runner/folder/realisation_result.h"
+#include "runner/owner/after_commit.h"
+#include "runner/stores/result_store.h"
+
+namespace peclet::runner {
+
+// Of a result that has been stored, or that is known. Inside its transaction. With `keep` files of a new one
+// are kept. Throws ResultError when a file of a new one is absent or another one; NoRoomError.
+void take_files(Connection& connection, const CampaignDirectory& directory, const RealisationResult& result,
+                const std::filesystem::path& spool, const StoredResult& stored, bool keep,
+                AfterCommit& after);
+
+// Removes files in the spool of attempts that gave no result and whose processes no longer run.
+void remove_files_of_the_dead(Connection& connection, const CampaignDirectory& directory);
+
+}  // namespace peclet::runner
