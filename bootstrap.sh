@@ -5,7 +5,8 @@
 #   ./bootstrap.sh package  the same, and make a .tar.gz for any Linux and a .deb of it
 #   ./bootstrap.sh test     install the packages, build, run every test
 #   ./bootstrap.sh sanitize run the tests of contract/ and runner/ with sanitizers
-#   ./bootstrap.sh lint     look through the whole source with clang-tidy
+#   ./bootstrap.sh tidy     look through the whole source with clang-tidy
+#   ./bootstrap.sh lint     the same, after the form of C++ and Python
 #   ./bootstrap.sh deps     install the packages only
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
@@ -96,12 +97,17 @@ sanitize() {
   build/asan-ubsan/bin/runner_tests --gtest_brief=1
 }
 
+tidy() {
+  build ON --target provenance_facts  # clang-tidy reads sources, and needs those that are generated
+  say "clang-tidy"
+  /usr/bin/python3 tests/house/tidy.py build/release
+}
+
 lint() {
-  build ON
+  build ON --target provenance_facts
   say "Form"
   ctest --preset release -L format
-  say "clang-tidy"
-  git ls-files '*.cpp' | xargs -P "$(nproc)" -n 4 clang-tidy --quiet -p build/release
+  tidy
 }
 
 case "${1:-}" in
@@ -109,10 +115,11 @@ case "${1:-}" in
   package) deps "${to_build[@]}" && package ;;
   test) deps "${to_build[@]}" "${to_test[@]}" && run_tests ;;
   sanitize) deps "${to_build[@]}" "${to_test[@]}" && sanitize ;;
+  tidy) deps "${to_build[@]}" "${to_test[@]}" "${to_lint[@]}" && tidy ;;
   lint) deps "${to_build[@]}" "${to_test[@]}" "${to_lint[@]}" && lint ;;
   deps) deps "${to_build[@]}" "${to_test[@]}" "${to_lint[@]}" ;;
   *)
-    sed -n '2,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
+    sed -n '2,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
     exit 2
     ;;
 esac

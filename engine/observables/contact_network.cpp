@@ -13,7 +13,7 @@ constexpr double sliding_from = 0.99;
 // Particles by their contacts, the last with as many or more; contacts by equal parts of their mobilisation.
 constexpr std::size_t counts_of_contacts = 13, parts_of_mobilisation = 20;
 
-std::vector<Quantity> quantities(const Scene& scene, const Window&) {
+std::vector<Quantity> network_quantities(const Scene& scene, const Window&) {
   Axis contacts{"contacts", "1", Json::array()}, mobilisation{"mobilisation", "1", Json::array()};
   for (std::size_t k = 0; k < counts_of_contacts; ++k) contacts.values.push_back(k);
   for (std::size_t k = 0; k < parts_of_mobilisation; ++k) {
@@ -101,7 +101,8 @@ void ContactNetwork::load(ArchiveReader& archive) {
 }
 
 ObservableKind contact_network() {
-  return {"contact_network", seldom, [](const Scene&, const Window&, const std::string&) {}, quantities,
+  return {"contact_network", seldom, [](const Scene&, const Window&, const std::string&) {},
+          network_quantities,
           [](const Scene& scene, const System& system, const Window& window) -> std::unique_ptr<Observable> {
             return std::make_unique<ContactNetwork>(scene, system, window);
           }};

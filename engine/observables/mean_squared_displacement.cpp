@@ -41,7 +41,7 @@ std::vector<std::uint64_t> lags_in(std::uint64_t samples) {
   return lags;
 }
 
-std::vector<Quantity> quantities(const Scene& scene, const Window& window) {
+std::vector<Quantity> displacement_quantities(const Scene& scene, const Window& window) {
   const std::uint64_t interval = interval_of(scene, mean_squared_displacement(), window);
   const double between = window.timestep * static_cast<double>(interval);
   Axis time{"time", "time", Json::array()};
@@ -218,7 +218,7 @@ ObservableKind mean_squared_displacement() {
           [](const Scene& scene, const Window& window, const std::string& file) {
             need_samples(scene, mean_squared_displacement(), window, 8, file);
           },
-          quantities,
+          displacement_quantities,
           [](const Scene& scene, const System& system, const Window& window) -> std::unique_ptr<Observable> {
             return std::make_unique<MeanSquaredDisplacement>(scene, system, window);
           }};

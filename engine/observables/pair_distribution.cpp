@@ -45,7 +45,7 @@ Axes axes_of(double range, double bin) {
   return axes;
 }
 
-std::vector<Quantity> quantities(const Scene& scene, const Window&) {
+std::vector<Quantity> distribution_quantities(const Scene& scene, const Window&) {
   const Axes axes = axes_of(setting(scene, "range"), setting(scene, "bin"));
   const char* const unit = "reference radius";
   const RatioOfMeans to_ideal{"counts", "ideal"};
@@ -178,7 +178,7 @@ void PairDistribution::load(ArchiveReader& archive) {
 }
 
 ObservableKind pair_distribution() {
-  return {"pair_distribution", seldom, check_range, quantities,
+  return {"pair_distribution", seldom, check_range, distribution_quantities,
           [](const Scene& scene, const System& system, const Window& window) -> std::unique_ptr<Observable> {
             return std::make_unique<PairDistribution>(scene, system, window);
           }};

@@ -81,7 +81,7 @@ class Profiles : public Observable {
   BlockedMean volume_fraction_, flux_;
 };
 
-std::vector<Quantity> quantities(const Scene& scene, const Window& window) {
+std::vector<Quantity> profile_quantities(const Scene& scene, const Window& window) {
   Axis y{"y", "length", Json::array()};
   const std::size_t bins = bins_of(scene);
   for (std::size_t k = 0; k < bins; ++k) {
@@ -98,7 +98,7 @@ std::vector<Quantity> quantities(const Scene& scene, const Window& window) {
 }  // namespace
 
 ObservableKind profiles() {
-  return {"profiles", seldom, [](const Scene&, const Window&, const std::string&) {}, quantities,
+  return {"profiles", seldom, [](const Scene&, const Window&, const std::string&) {}, profile_quantities,
           [](const Scene& scene, const System&, const Window& window) -> std::unique_ptr<Observable> {
             return std::make_unique<Profiles>(scene, window);
           }};

@@ -14,7 +14,7 @@ std::size_t levels_of(std::uint64_t samples) {
   return levels;
 }
 
-std::vector<Quantity> quantities(const Scene& scene, const Window& window) {
+std::vector<Quantity> correlation_quantities(const Scene& scene, const Window& window) {
   const std::uint64_t interval = interval_of(scene, stress_correlation(), window);
   const std::uint64_t samples = samples_in(window.steps, interval);
   const double between = window.timestep * static_cast<double>(interval);
@@ -80,7 +80,7 @@ ObservableKind stress_correlation() {
           [](const Scene& scene, const Window& window, const std::string& file) {
             need_samples(scene, stress_correlation(), window, 16, file);
           },
-          quantities,
+          correlation_quantities,
           [](const Scene& scene, const System& system, const Window& window) -> std::unique_ptr<Observable> {
             return std::make_unique<StressCorrelation>(scene, system, window);
           }};

@@ -182,7 +182,7 @@ void Reading::set_observables(Scene& scene) const {
   const Json& list = at("/observables");
   for (const ObservableEntry& entry : observable_entries()) {
     const std::string pointer = '/' + entry.name;
-    const bool has_settings = has(pointer.c_str());
+    const bool has_settings = has(pointer);
     if (std::find(list.begin(), list.end(), entry.name) == list.end()) {
       if (has_settings) refuse(pointer, "must be left out unless /observables lists it");
       continue;

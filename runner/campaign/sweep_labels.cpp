@@ -13,7 +13,7 @@ std::string last_step(const std::string& pointer) { return pointer.substr(pointe
 
 bool is_number(const std::string& step) { return step.find_first_not_of("0123456789") == std::string::npos; }
 
-constexpr std::size_t longest_name = 100;
+constexpr std::size_t longest_label = 100;
 
 // A value that is too long to be read in a table, or that a terminal would obey, is called by its place among
 // the values, from 1.
@@ -34,7 +34,7 @@ SweepLabels::SweepLabels(const std::vector<SweepEntry>& sweep) : sweep_(sweep) {
     std::vector<std::string>& names = names_.emplace_back();
     for (const std::string& pointer : entry.pointers) {
       const std::string step = last_step(pointer);
-      names.push_back(printable(uses[step] == 1 && !is_number(step) ? step : pointer, longest_name));
+      names.push_back(printable(uses[step] == 1 && !is_number(step) ? step : pointer, longest_label));
     }
   }
 }

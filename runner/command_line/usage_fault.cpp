@@ -32,7 +32,7 @@ std::vector<std::string> option_names(const CLI::App& verb) {
 // The first word that looks like an option and is none of the verb's; "" when there is none.
 std::string unknown_option(const std::vector<std::string>& words, const std::vector<std::string>& names) {
   for (const std::string& word : words) {
-    const std::string name = word.substr(0, word.find('='));
+    std::string name = word.substr(0, word.find('='));
     if (name == "--") return "";  // what follows is taken as it is
     if (name.starts_with("--") && std::find(names.begin(), names.end(), name) == names.end()) return name;
   }
@@ -60,7 +60,7 @@ std::string superfluous(const std::string& word) {
 
 // The parser's classes of faults in our words; what it says itself where it says what is allowed.
 std::string reason(const CLI::App& verb, const CLI::ParseError& fault) {
-  const std::string said = fault.what();
+  std::string said = fault.what();
   if (dynamic_cast<const CLI::RequiredError*>(&fault) != nullptr)
     return missing(verb, before(said, " is required"));
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&fault) != nullptr)

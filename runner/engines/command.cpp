@@ -11,16 +11,13 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <system_error>
+
+#include "runner/engines/system_call.h"
 
 namespace peclet::runner {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-void check(int error, const char* doing) {
-  if (error != 0) throw std::system_error(error, std::generic_category(), doing);
-}
 
 // The reading end of a pipe, and the writing end until the child has it.
 class Pipe {

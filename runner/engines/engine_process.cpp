@@ -19,6 +19,7 @@
 
 #include "contract/input_error.h"
 #include "runner/campaign/campaign_file.h"
+#include "runner/engines/system_call.h"
 #include "runner/folder/own_files.h"
 
 namespace peclet::runner {
@@ -53,10 +54,6 @@ std::vector<fs::path> search_path() {
   const std::vector<fs::path> adapters = own_adapters();
   folders.insert(folders.end(), adapters.begin(), adapters.end());
   return folders;
-}
-
-void check(int error, const char* doing) {
-  if (error != 0) throw std::system_error(error, std::generic_category(), doing);
 }
 
 // Of the pipe that an engine prints into, and the most that is read of it at a time.

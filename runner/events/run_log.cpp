@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t largest_file = 4 << 20;
 constexpr int older_files = 4;
-constexpr double seconds_between_reports = 600;
+constexpr double seconds_between_entries = 600;
 
 class FileSink : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
  public:
@@ -53,7 +53,7 @@ void RunLog::warn(const std::string& message) {
 void RunLog::report(const RunReport& report) {
   if (report.elapsed >= next_report_) {
     log_->info(progress_line(report));
-    next_report_ = report.elapsed + seconds_between_reports;
+    next_report_ = report.elapsed + seconds_between_entries;
   }
   audience_.report(report);
 }

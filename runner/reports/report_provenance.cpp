@@ -15,8 +15,9 @@ constexpr const char* about_repetition =
     "The same engine gives the same bytes with any number of workers: the last line tells whether the "
     "numbers are the same. Another build gives other bytes, and means that agree within their errors.";
 
+// Nothing is said of what is not known.
 std::string item(const std::string& term, const std::string& meaning) {
-  return meaning.empty() ? "" : "<dt>" + escaped(term) + "</dt><dd>" + escaped(meaning) + "</dd>\n";
+  return meaning.empty() ? "" : list_item(term, meaning);
 }
 
 std::string text_of(const Json& object, const char* key) {

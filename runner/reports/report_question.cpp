@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::size_t most_lines = 40;
 
-std::string item(const std::string& term, const std::string& meaning) {
-  return "<dt>" + escaped(term) + "</dt><dd>" + escaped(meaning) + "</dd>\n";
-}
-
 std::string value_text(const Json& value) {
   return value.is_string() ? value.get<std::string>() : canonical_json(value);
 }
@@ -38,9 +34,9 @@ std::string shared_scene(const std::vector<PointSummary>& points) {
   const Json flat = points.front().point.scene.flatten();
   for (const auto& [pointer, value] : flat.items()) {
     if (is_swept(pointer)) continue;
-    if (++lines <= most_lines) list += item(pointer, value_text(value));
+    if (++lines <= most_lines) list += list_item(pointer, value_text(value));
   }
-  if (lines > most_lines) list += item("and more", "see the campaign at the end of this page");
+  if (lines > most_lines) list += list_item("and more", "see the campaign at the end of this page");
   return list.empty() ? "" : "<p>All points share this scene:</p>\n<dl class=\"scene\">\n" + list + "</dl>\n";
 }
 
@@ -56,7 +52,7 @@ std::string swept_values(const std::vector<PointSummary>& points) {
     }
     std::string all;
     for (const std::string& value : values) all += (all.empty() ? "" : ", ") + value;
-    list += item(pointer, all);
+    list += list_item(pointer, all);
   }
   if (list.empty()) return "";
   return fmt::format("<p>{} points, which differ in:</p>\n<dl>\n", points.size()) + list + "</dl>\n";

@@ -33,6 +33,10 @@ std::string escaped(std::string_view text) {
   return safe;
 }
 
+std::string list_item(const std::string& term, const std::string& meaning) {
+  return "<dt>" + escaped(term) + "</dt><dd>" + escaped(meaning) + "</dd>\n";
+}
+
 void HtmlTable::add_column(std::string title, Align align) {
   aligns_.push_back(align);
   titles_.push_back(std::move(title));

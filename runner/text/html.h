@@ -11,6 +11,9 @@ namespace peclet::runner {
 // not allow become U+FFFD.
 std::string escaped(std::string_view text);
 
+// A term of a list and what it means, both as plain text.
+std::string list_item(const std::string& term, const std::string& meaning);
+
 class HtmlTable {
  public:
   enum class Align { left, right };

@@ -126,7 +126,7 @@ Outcome run(System system, const Physics& physics, double step, double strain) {
     if (k >= steps_of(settling_strain, step)) {
       sums.add(report);
       if (k % energy_sampling_interval == 0) {
-        sums.add_energy(integrator.spurious_energy(system));
+        sums.add_energy(integrator.spurious_energy(system).value());
       }
     }
   }

@@ -41,6 +41,8 @@ Json plain_engine(const std::string& identity) {
           {"cpu", "none"}};
 }
 
+bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
 std::string noise(std::size_t size, std::uint32_t start) {
   std::string letters;
   std::uint32_t state = start;

@@ -35,6 +35,8 @@ Campaign plain_campaign(int points, int minimum, int maximum, double tolerance);
 Json plain_result(const std::string& point, int seed, double viscosity,
                   const std::string& identity = "engine");
 
+bool says(const std::string& text, const std::string& part);
+
 // Letters that compress badly: others for each `start`, the same on every platform.
 std::string noise(std::size_t size, std::uint32_t start = 1);
 

@@ -15,7 +15,7 @@ using std::numbers::pi;
 
 // Small enough to move nothing; the step is that with noise all the same.
 constexpr double cold = 1e-30;
-constexpr double tight = 1e-6;
+constexpr double very_tight = 1e-6;
 constexpr double viscosity = 0.1;
 
 System system_of(const Physics& physics, const std::vector<double>& radius, double density) {
@@ -135,7 +135,7 @@ TEST(NoisyStep, OfTwoSpheresOnALineIsThatOfItsEquations) {
     const double changed = expected.velocity[1] - expected.velocity[0] - given.closing;
     ASSERT_GT(std::abs(changed), 0.05 * std::abs(given.closing)) << given.name;
 
-    NoisyMidpoint integrator(given.physics, system.particles, given.timestep, tight, 1, 1);
+    NoisyMidpoint integrator(given.physics, system.particles, given.timestep, very_tight, 1, 1);
     integrator.start(system);
     const StepReport report = integrator.advance(system);
     const ParticleState& p = system.particles;
@@ -168,7 +168,7 @@ TEST(NoisyStep, HasTheStressOfItsNoiseWhereItWasDrawn) {
   system.particles.velocity.set(1, {0.5, 3, -1});
   constexpr double dt = 0.05;
   constexpr std::uint64_t seed = 8, step = 41;
-  NoisyMidpoint integrator(physics, system.particles, dt, tight, seed, 1);
+  NoisyMidpoint integrator(physics, system.particles, dt, very_tight, seed, 1);
   integrator.start(system);
   ASSERT_EQ(system.particles.id[0], 0u);
   system.step = step;
@@ -261,7 +261,7 @@ TEST(NoisyStep, IsOfSecondOrderWithoutTemperature) {
       physics.thermal_energy = cold;
       const double step = encounter.time / steps;
       System found = begin, middle = begin, end = begin;
-      NoisyMidpoint integrator(physics, found.particles, step, tight, 1, 1);
+      NoisyMidpoint integrator(physics, found.particles, step, very_tight, 1, 1);
       const double stress = mean_stress(integrator, found, steps);
       followed(encounter.physics, middle, encounter.time - 0.5 * step);
       const double exact = followed(encounter.physics, end, encounter.time);

@@ -8,7 +8,7 @@
 namespace peclet::engine {
 namespace {
 
-constexpr double viscosity = 0.1;
+constexpr double eta = 0.1;
 
 using NoiseLoad = PairLoad (*)(double, const ResistanceRoots&, const PairGeometry&, const Vector3&,
                                const Vector3&);
@@ -39,9 +39,9 @@ TEST(PairNoise, CovarianceIsTheResistanceForUnequalSizes) {
   for (const double ratio : size_ratios) {
     for (const double gap : gaps) {
       const PairGeometry pair = pair_at(1.3, 1.3 * ratio, gap, draws.direction());
-      const PairResistance R = resistance_of(viscosity, 1.3, 1.3 * ratio, pair);
+      const PairResistance R = resistance_of(eta, 1.3, 1.3 * ratio, pair);
       const Matrix12 expected = grand_resistance(R, pair);
-      const ResistanceRoots root = roots_of(viscosity, 1.3, 1.3 * ratio, pair);
+      const ResistanceRoots root = roots_of(eta, 1.3, 1.3 * ratio, pair);
       EXPECT_LT(largest_entry(covariance(pair_noise_load, 1, root, pair) - expected),
                 1e-13 * largest_entry(expected))
           << ratio << ' ' << gap;
@@ -57,8 +57,8 @@ TEST(PairNoise, TheWrongSignInTheSecondTorqueIsFarFromTheResistance) {
   for (const auto& each : known) {
     for (const double gap : {1e-3, 0.05, 0.5}) {
       const PairGeometry pair = pair_at(1, each.ratio, gap, {1, 0, 0});
-      const PairResistance R = resistance_of(viscosity, 1, each.ratio, pair);
-      const ResistanceRoots root = roots_of(viscosity, 1, each.ratio, pair);
+      const PairResistance R = resistance_of(eta, 1, each.ratio, pair);
+      const ResistanceRoots root = roots_of(eta, 1, each.ratio, pair);
       const Eigen::Index first = 7, second = 10;  // y components of both torques
       EXPECT_NEAR(covariance(pair_noise_load, 1, root, pair)(first, second) / R.twist_cross, 1, 1e-12);
       EXPECT_NEAR(covariance(wrong_sign, 1, root, pair)(first, second) / R.twist_cross, each.too_large_by,
@@ -69,7 +69,7 @@ TEST(PairNoise, TheWrongSignInTheSecondTorqueIsFarFromTheResistance) {
 
 TEST(PairNoise, GrowsWithTheAmplitude) {
   const PairGeometry pair = pair_at(1, 1.4, 0.01, {0, 0, 1});
-  const ResistanceRoots root = roots_of(viscosity, 1, 1.4, pair);
+  const ResistanceRoots root = roots_of(eta, 1, 1.4, pair);
   const PairLoad one = pair_noise_load(1, root, pair, {1, 2, 3}, {4, 5, 6});
   const PairLoad three = pair_noise_load(3, root, pair, {1, 2, 3}, {4, 5, 6});
   EXPECT_NEAR(norm(three.force - 3 * one.force), 0, 1e-13 * norm(three.force));
@@ -82,7 +82,7 @@ TEST(PairNoise, TorquesOfThePairBalance) {
     for (const double gap : gaps) {
       const PairGeometry pair = pair_at(1, ratio, gap, draws.direction());
       const PairLoad load =
-          pair_noise_load(2, roots_of(viscosity, 1, ratio, pair), pair, draws.vector(), draws.vector());
+          pair_noise_load(2, roots_of(eta, 1, ratio, pair), pair, draws.vector(), draws.vector());
       const Vector3 net = load.torque_first + load.torque_second - cross(pair.separation, load.force);
       EXPECT_LT(norm(net), 1e-12 * (norm(load.torque_first) + norm(load.torque_second) + norm(load.force)));
     }

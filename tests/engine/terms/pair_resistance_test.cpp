@@ -13,17 +13,17 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double viscosity = 0.1;
+constexpr double fluid_viscosity = 0.1;
 constexpr Vector3 along_x = {1, 0, 0};
 
 PairResistance at_gap(double first, double second, double gap) {
-  return resistance_of(viscosity, first, second, pair_at(first, second, gap, along_x));
+  return resistance_of(fluid_viscosity, first, second, pair_at(first, second, gap, along_x));
 }
 
 // Li, Royer & Ness (2023): the squeeze mode of equal spheres at the inner gap, and what is left of squeeze
 // and shear where they are cut off, in units of 6 pi eta a.
 TEST(PairResistance, HasThePublishedMagnitudesForEqualSpheres) {
-  const double unit = 6 * pi * viscosity;
+  const double unit = 6 * pi * fluid_viscosity;
   EXPECT_NEAR(at_gap(1, 1, 1e-3).squeeze / unit, 251.55, 0.005);
   EXPECT_NEAR(at_gap(1, 1, 0.05).squeeze / unit, 5.67, 0.005);
   EXPECT_NEAR(at_gap(1, 1, 0.05).shear / unit, 0.50, 0.005);
@@ -35,7 +35,7 @@ TEST(PairResistance, HasThePublishedMagnitudesForEqualSpheres) {
 // eta a^2); Y^C: 1/5 and 1/20 (of 8 pi eta a^3). The levers q, q^2 are this program's.
 TEST(PairResistance, EqualSpheresHaveTheKnownLeadingTerms) {
   constexpr double a = 1.3, gap = 0.02;
-  const double L = std::log(1 / gap), q = 1 + gap / 2, pi_eta = pi * viscosity;
+  const double L = std::log(1 / gap), q = 1 + gap / 2, pi_eta = pi * fluid_viscosity;
   const PairResistance R = at_gap(a, a, gap);
   EXPECT_NEAR(R.squeeze / (6 * pi_eta * a), 1 / (4 * gap) + 9.0 / 40 * L, 1e-12);
   EXPECT_NEAR(R.shear / (6 * pi_eta * a), L / 6, 1e-13);
@@ -50,10 +50,10 @@ TEST(PairResistance, EqualSpheresHaveTheKnownLeadingTerms) {
 // 3/2 pi eta a^2 U / h.
 TEST(PairResistance, SqueezeHasTheClassicalLimits) {
   constexpr double wall = 1e6, h = 2e-3, wall_gap = 2 * h / (1 + wall);
-  const double at_wall = resistance_constants(viscosity, 1, wall).squeeze_inverse / wall_gap;
-  EXPECT_NEAR(at_wall / (6 * pi * viscosity / h), 1, 1e-5);
-  const double at_sphere = resistance_constants(viscosity, 1, 1).squeeze_inverse / h;
-  EXPECT_NEAR(at_sphere / (1.5 * pi * viscosity / h), 1, 1e-12);
+  const double at_wall = resistance_constants(fluid_viscosity, 1, wall).squeeze_inverse / wall_gap;
+  EXPECT_NEAR(at_wall / (6 * pi * fluid_viscosity / h), 1, 1e-5);
+  const double at_sphere = resistance_constants(fluid_viscosity, 1, 1).squeeze_inverse / h;
+  EXPECT_NEAR(at_sphere / (1.5 * pi * fluid_viscosity / h), 1, 1e-12);
 }
 
 // Both particles are the same physics seen from either side.
@@ -99,7 +99,7 @@ TEST(PairResistance, IsSymmetricPositiveSemidefiniteAndOfRankFive) {
   for (const double ratio : size_ratios) {
     for (const double gap : gaps) {
       const PairGeometry pair = pair_at(1, ratio, gap, draws.direction());
-      const Matrix12 R = grand_resistance(resistance_of(viscosity, 1, ratio, pair), pair);
+      const Matrix12 R = grand_resistance(resistance_of(fluid_viscosity, 1, ratio, pair), pair);
       const double scale = largest_entry(R);
       EXPECT_LE(largest_entry(R - R.transpose()), 1e-14 * scale);
       const Vector12 eigenvalues = Eigen::SelfAdjointEigenSolver<Matrix12>(R).eigenvalues();

@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
-#include <array>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -12,17 +11,13 @@
 
 #include "contract/durable_file.h"
 #include "contract/json.h"
+#include "tests/runner/command_line/shell.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Answer {
-  int code = -1;
-  std::string text;  // both outputs
-};
 
 class CommandLine : public testing::Test {
  protected:
@@ -39,15 +34,7 @@ class CommandLine : public testing::Test {
   void write() const { std::ofstream(file()) << campaign.dump(); }
 
   Answer peclet(const std::string& arguments) const {
-    const std::string command =
-        "cd '" + folder_.path().string() + "' || exit; " PECLET_PROGRAM " " + arguments + " 2>&1";
-    FILE* const pipe = popen(command.c_str(), "r");
-    Answer answer;
-    std::array<char, 4096> chunk{};
-    while (const std::size_t count = fread(chunk.data(), 1, chunk.size(), pipe))
-      answer.text.append(chunk.data(), count);
-    answer.code = WEXITSTATUS(pclose(pipe));
-    return answer;
+    return shell("cd '" + folder_.path().string() + "' || exit; " PECLET_PROGRAM " " + arguments);
   }
 
   std::ptrdiff_t files() const {

@@ -1,9 +1,6 @@
 // Manual pages and completions say what --help says, and are what man, groff and shells take.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <fstream>
 #include <regex>
 #include <set>
@@ -11,27 +8,13 @@
 
 #include "contract/durable_file.h"
 #include "runner/text/roff.h"
+#include "tests/runner/command_line/shell.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Answer {
-  int code = -1;
-  std::string text;  // both outputs
-};
-
-Answer shell(const std::string& command) {
-  FILE* const pipe = popen(("(" + command + ") 2>&1").c_str(), "r");
-  Answer answer;
-  std::array<char, 4096> chunk{};
-  while (const std::size_t count = fread(chunk.data(), 1, chunk.size(), pipe))
-    answer.text.append(chunk.data(), count);
-  answer.code = WEXITSTATUS(pclose(pipe));
-  return answer;
-}
 
 const std::string program = PECLET_PROGRAM;
 
@@ -53,8 +36,6 @@ std::set<std::string> verbs_of_help() {
 std::set<std::string> options_of_help(const std::string& verb) {
   return matches(shell(program + " " + verb + " --help").text, "^  (?:-h,)?(--[a-z-]+)");
 }
-
-bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 // Words that bash offers for the last of `words`, in `folder`.
 std::set<std::string> offered(const std::string& words, const fs::path& folder) {

@@ -11,8 +11,6 @@
 namespace peclet::runner {
 namespace {
 
-bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 TEST(Explain, LossesAreNamedByCauseAndSeedWithTheLastWords) {
   StoredCampaign campaign(1, 6, 20);
   for (int seed = 0; seed < 4; ++seed) campaign.complete(0, seed, 10 + 0.01 * seed);

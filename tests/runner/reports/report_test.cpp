@@ -12,8 +12,6 @@
 namespace peclet::runner {
 namespace {
 
-bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 // The first element that is closed without having been opened last, or never closed; "" when there is none.
 std::string badly_nested(const std::string& html) {
   std::vector<std::string> open;

@@ -13,8 +13,6 @@
 namespace peclet::runner {
 namespace {
 
-bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 // 9, 10, 11, 10: mean 10, sample variance 2/3, standard error sqrt(2/3/4) = 0.408.
 void four_values(StoredCampaign& campaign, int point, double unit) {
   const double values[] = {-1, 0, 1, 0};
