@@ -14,31 +14,31 @@ constexpr int entry(int row, int column) { return row * (row + 1) / 2 + column; 
 constexpr int entries = 21;
 
 // What eight links add to the own blocks of their first (sign 1) or second (sign -1) particles.
-PECLET_ALWAYS_INLINE void block_of_links(const FloatVector& n, const Floats& squeeze, const Floats& shear,
+PECLET_ALWAYS_INLINE void block_of_links(const Floats* n, const Floats& squeeze, const Floats& shear,
                                          const Floats& pump, const Floats& twist, float sign, Floats* block) {
   const Floats along = squeeze - shear, p = sign * pump;
   const Floats zero{};
-  block[entry(0, 0)] = along * n.x * n.x + shear;
-  block[entry(1, 0)] = along * n.y * n.x;
-  block[entry(1, 1)] = along * n.y * n.y + shear;
-  block[entry(2, 0)] = along * n.z * n.x;
-  block[entry(2, 1)] = along * n.z * n.y;
-  block[entry(2, 2)] = along * n.z * n.z + shear;
+  block[entry(0, 0)] = along * n[0] * n[0] + shear;
+  block[entry(1, 0)] = along * n[1] * n[0];
+  block[entry(1, 1)] = along * n[1] * n[1] + shear;
+  block[entry(2, 0)] = along * n[2] * n[0];
+  block[entry(2, 1)] = along * n[2] * n[1];
+  block[entry(2, 2)] = along * n[2] * n[2] + shear;
   block[entry(3, 0)] = zero;
-  block[entry(3, 1)] = p * n.z;
-  block[entry(3, 2)] = zero - p * n.y;
-  block[entry(4, 0)] = zero - p * n.z;
+  block[entry(3, 1)] = p * n[2];
+  block[entry(3, 2)] = zero - p * n[1];
+  block[entry(4, 0)] = zero - p * n[2];
   block[entry(4, 1)] = zero;
-  block[entry(4, 2)] = p * n.x;
-  block[entry(5, 0)] = p * n.y;
-  block[entry(5, 1)] = zero - p * n.x;
+  block[entry(4, 2)] = p * n[0];
+  block[entry(5, 0)] = p * n[1];
+  block[entry(5, 1)] = zero - p * n[0];
   block[entry(5, 2)] = zero;
-  block[entry(3, 3)] = twist * (1.0F - n.x * n.x);
-  block[entry(4, 3)] = zero - twist * n.y * n.x;
-  block[entry(4, 4)] = twist * (1.0F - n.y * n.y);
-  block[entry(5, 3)] = zero - twist * n.z * n.x;
-  block[entry(5, 4)] = zero - twist * n.z * n.y;
-  block[entry(5, 5)] = twist * (1.0F - n.z * n.z);
+  block[entry(3, 3)] = twist * (1.0F - n[0] * n[0]);
+  block[entry(4, 3)] = zero - twist * n[1] * n[0];
+  block[entry(4, 4)] = twist * (1.0F - n[1] * n[1]);
+  block[entry(5, 3)] = zero - twist * n[2] * n[0];
+  block[entry(5, 4)] = zero - twist * n[2] * n[1];
+  block[entry(5, 5)] = twist * (1.0F - n[2] * n[2]);
 }
 
 // Of eight matrices side by side: A = L D L^T, A^-1 = L^-T D^-1 L^-1.
@@ -130,7 +130,7 @@ void invert_blocks(const LinkSystem& system, MotionRow* triangles, MotionRow* in
     }
   }
   for (const LinkGroup* group = system.groups; group < system.groups + system.count_of_groups; ++group) {
-    const FloatVector n = {group->normal[0], group->normal[1], group->normal[2]};
+    const Floats* const n = group->normal;
     Floats first[24]{}, second[24]{};
     block_of_links(n, group->squeeze, group->shear, group->pump_first, group->twist_first, 1.0F, first);
     block_of_links(n, group->squeeze, group->shear, group->pump_second, group->twist_second, -1.0F, second);

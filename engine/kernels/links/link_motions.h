@@ -5,6 +5,7 @@
 #pragma once
 
 #include "engine/kernels/links/link_kernels.h"
+#include "engine/state/vector3.h"
 
 #ifdef __AVX2__
 #include <immintrin.h>
@@ -18,32 +19,22 @@ namespace {
 // The place in a row of each of the six components.
 constexpr int place_of[6] = {0, 1, 2, 4, 5, 6};
 
-// One number of each of eight links.
-struct FloatVector {
-  Floats x, y, z;
-};
-struct FloatMotions {
-  FloatVector velocity, spin;
+// One number of each of eight links, as the formulas of a pair take it (state/real.h).
+struct EightFloats {
+  EightFloats() = default;
+  EightFloats(const Floats& floats) : v(floats) {}  // NOLINT(google-explicit-constructor): the same numbers
+
+  friend EightFloats operator+(const EightFloats& a, const EightFloats& b) { return a.v + b.v; }
+  friend EightFloats operator-(const EightFloats& a, const EightFloats& b) { return a.v - b.v; }
+  friend EightFloats operator*(const EightFloats& a, const EightFloats& b) { return a.v * b.v; }
+  friend EightFloats operator-(const EightFloats& a) { return -a.v; }
+
+  Floats v{};
 };
 
-PECLET_ALWAYS_INLINE FloatVector operator+(const FloatVector& a, const FloatVector& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-PECLET_ALWAYS_INLINE FloatVector operator-(const FloatVector& a, const FloatVector& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-PECLET_ALWAYS_INLINE FloatVector operator*(const Floats& s, const FloatVector& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-PECLET_ALWAYS_INLINE Floats dot(const FloatVector& a, const FloatVector& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-PECLET_ALWAYS_INLINE FloatVector cross(const FloatVector& a, const FloatVector& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-PECLET_ALWAYS_INLINE FloatVector across(const FloatVector& a, const FloatVector& n) {
-  return a - dot(a, n) * n;
-}
+struct FloatMotions {
+  Vector3Of<EightFloats> velocity, spin;
+};
 
 #ifdef __AVX2__
 // Rows of eight particles become one number of each. In both halves of a row (velocity, spin) four rows are
@@ -58,8 +49,8 @@ PECLET_ALWAYS_INLINE FloatMotions gather_motions(const MotionRow* rows, const st
     part[q][1] = _mm256_shuffle_ps(ab, cd, 0xee);
     part[q][2] = _mm256_shuffle_ps(_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d), 0x44);
   }
-  const auto velocity = [&](int c) { return _mm256_permute2f128_ps(part[0][c], part[1][c], 0x20); };
-  const auto spin = [&](int c) { return _mm256_permute2f128_ps(part[0][c], part[1][c], 0x31); };
+  const auto velocity = [&](int c) { return Floats(_mm256_permute2f128_ps(part[0][c], part[1][c], 0x20)); };
+  const auto spin = [&](int c) { return Floats(_mm256_permute2f128_ps(part[0][c], part[1][c], 0x31)); };
   return {{velocity(0), velocity(1), velocity(2)}, {spin(0), spin(1), spin(2)}};
 }
 
@@ -67,9 +58,9 @@ PECLET_ALWAYS_INLINE FloatMotions gather_motions(const MotionRow* rows, const st
 PECLET_ALWAYS_INLINE void add_motions(MotionRow* rows, const std::uint32_t* index, const FloatMotions& add) {
   const __m256 zero = _mm256_setzero_ps();
   for (int q = 0; q < 2; ++q) {
-    const auto half = [&](const Floats& velocity, const Floats& spin) {
-      return q == 0 ? _mm256_permute2f128_ps(velocity, spin, 0x20)
-                    : _mm256_permute2f128_ps(velocity, spin, 0x31);
+    const auto half = [&](const EightFloats& velocity, const EightFloats& spin) {
+      return q == 0 ? _mm256_permute2f128_ps(velocity.v, spin.v, 0x20)
+                    : _mm256_permute2f128_ps(velocity.v, spin.v, 0x31);
     };
     const __m256 x = half(add.velocity.x, add.spin.x), y = half(add.velocity.y, add.spin.y),
                  z = half(add.velocity.z, add.spin.z);
@@ -85,22 +76,22 @@ PECLET_ALWAYS_INLINE void add_motions(MotionRow* rows, const std::uint32_t* inde
 #else
 FloatMotions gather_motions(const MotionRow* rows, const std::uint32_t* index) {
   FloatMotions result;
-  Floats* const parts[6] = {&result.velocity.x, &result.velocity.y, &result.velocity.z,
-                            &result.spin.x,     &result.spin.y,     &result.spin.z};
+  EightFloats* const parts[6] = {&result.velocity.x, &result.velocity.y, &result.velocity.z,
+                                 &result.spin.x,     &result.spin.y,     &result.spin.z};
   for (int k = 0; k < links_per_group; ++k) {
     for (int c = 0; c < 6; ++c) {
-      (*parts[c])[k] = rows[index[k]].v[c + c / 3];
+      parts[c]->v[k] = rows[index[k]].v[c + c / 3];
     }
   }
   return result;
 }
 
 void add_motions(MotionRow* rows, const std::uint32_t* index, const FloatMotions& add) {
-  const Floats* const parts[6] = {&add.velocity.x, &add.velocity.y, &add.velocity.z,
-                                  &add.spin.x,     &add.spin.y,     &add.spin.z};
+  const EightFloats* const parts[6] = {&add.velocity.x, &add.velocity.y, &add.velocity.z,
+                                       &add.spin.x,     &add.spin.y,     &add.spin.z};
   for (int k = 0; k < links_per_group; ++k) {
     for (int c = 0; c < 6; ++c) {
-      rows[index[k]].v[c + c / 3] += (*parts[c])[k];
+      rows[index[k]].v[c + c / 3] += parts[c]->v[k];
     }
   }
 }

@@ -7,6 +7,7 @@
 
 #include "engine/kernels/bodies/streaming.h"
 #include "engine/kernels/links/link_motions.h"
+#include "engine/terms/lubrication.h"
 
 namespace peclet::engine {
 namespace {
@@ -37,23 +38,25 @@ PECLET_ALWAYS_INLINE double summed(std::size_t count, Body&& body) {
   return total;
 }
 
-// The opposite of the load of each link, see terms/lubrication.h.
+// The opposite of the load of each link.
 void add_links(const LinkSystem& system, const MotionRow* vector, MotionRow* product) {
   for (const LinkGroup* group = system.groups; group < system.groups + system.count_of_groups; ++group) {
     const FloatMotions i = gather_motions(vector, group->first), j = gather_motions(vector, group->second);
-    const FloatVector n = {group->normal[0], group->normal[1], group->normal[2]};
-    const FloatVector u = j.velocity - i.velocity;
-    const Floats closing = dot(u, n);
-    const FloatVector pumped = group->pump_first * i.spin + group->pump_second * j.spin;
-    const FloatVector turned = cross(u, n);
-    const FloatVector force =
-        (group->squeeze * closing) * n + group->shear * (u - closing * n) + cross(pumped, n);
-    const FloatVector twisted_first =
-        across(group->twist_first * i.spin + group->twist_cross * j.spin, n) - group->pump_first * turned;
-    const FloatVector twisted_second =
-        across(group->twist_cross * i.spin + group->twist_second * j.spin, n) - group->pump_second * turned;
-    add_motions(product, group->first, {FloatVector{} - force, twisted_first});
-    add_motions(product, group->second, {force, twisted_second});
+    const PairResistanceOf<EightFloats> coupling = {
+        .squeeze = group->squeeze,
+        .shear = group->shear,
+        .pump_first = group->pump_first,
+        .pump_second = group->pump_second,
+        .twist_first = group->twist_first,
+        .twist_cross = group->twist_cross,
+        .twist_second = group->twist_second,
+    };
+    PairGeometryOf<EightFloats> pair{};  // of which the load depends on the normal alone
+    pair.normal = {group->normal[0], group->normal[1], group->normal[2]};
+    const PairMotionOf<EightFloats> motion = {j.velocity - i.velocity, i.spin, j.spin};
+    const PairLoadOf<EightFloats> load = lubrication_load(coupling, pair, motion);
+    add_motions(product, group->first, {-load.force, -load.torque_first});
+    add_motions(product, group->second, {load.force, -load.torque_second});
   }
 }
 
