@@ -27,6 +27,17 @@ Key absolute_tolerance(const char* pointer) {
           .above_minimum = true};
 }
 
+Key absolute_floor(const char* pointer) {
+  return {
+      .pointer = pointer,
+      .kind = KeyKind::number,
+      .meaning =
+          "Half-width that is good enough however small the mean is that relative_tolerance is a share of.",
+      .minimum = 0,
+      .maximum = 1e100,
+      .above_minimum = true};
+}
+
 std::vector<Key> keys() {
   return {
       {.pointer = "/name",
@@ -61,6 +72,7 @@ std::vector<Key> keys() {
       {.pointer = "/target/relative_to",
        .kind = KeyKind::string,
        .meaning = "Another number in the result's mean, of whose |mean| relative_tolerance is a share."},
+      absolute_floor("/target/absolute_floor"),
       {.pointer = "/target/also",
        .kind = KeyKind::array,
        .meaning = "Further observables; a point is done when all of them are known well enough.",
@@ -73,6 +85,7 @@ std::vector<Key> keys() {
       relative_tolerance("/target/also/*/relative_tolerance"),
       absolute_tolerance("/target/also/*/absolute_tolerance"),
       {.pointer = "/target/also/*/relative_to", .kind = KeyKind::string, .meaning = "As for the target."},
+      absolute_floor("/target/also/*/absolute_floor"),
       {.pointer = "/target/confidence",
        .kind = KeyKind::number,
        .meaning = "Of the two-sided interval (Student's t).",

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "contract/input_error.h"
@@ -14,6 +15,7 @@ namespace {
 constexpr const char* relative_key = "relative_tolerance";
 constexpr const char* absolute_key = "absolute_tolerance";
 constexpr const char* measure_key = "relative_to";
+constexpr const char* floor_key = "absolute_floor";
 
 bool has_number(const Json& target, const char* key) {
   return target.contains(key) && target[key].is_number();
@@ -27,20 +29,25 @@ Tolerance Tolerance::absolute(double value) {
   return tolerance;
 }
 
-double Tolerance::half_width(double mean) const { return is_relative() ? value * std::abs(mean) : value; }
+double Tolerance::half_width(double mean) const {
+  return is_relative() ? std::max(value * std::abs(mean), floor) : value;
+}
 
 double Tolerance::share(double half_width, double mean) const {
+  if (floor > 0 && value * std::abs(mean) < floor) return half_width / floor;
   return is_relative() ? half_width / std::abs(mean) / value : half_width / value;
 }
 
 std::string to_string(const Tolerance& tolerance) {
   if (!tolerance.is_relative()) return fmt::format("{:g}", tolerance.value);
-  return fmt::format("{:g} %{}{}", 100 * tolerance.value, tolerance.relative_to.empty() ? "" : " of ",
-                     tolerance.relative_to);
+  return fmt::format("{:g} %{}{}{}", 100 * tolerance.value, tolerance.relative_to.empty() ? "" : " of ",
+                     tolerance.relative_to,
+                     tolerance.floor > 0 ? fmt::format(" or {:g}", tolerance.floor) : "");
 }
 
 std::string width_text(const Tolerance& tolerance, double half_width, double mean) {
-  return tolerance.is_relative() ? percent(half_width / std::abs(mean)) : rough(half_width);
+  const bool is_share = tolerance.is_relative() && tolerance.value * std::abs(mean) >= tolerance.floor;
+  return is_share ? percent(half_width / std::abs(mean)) : rough(half_width);
 }
 
 const char* key_of(const Tolerance& tolerance) {
@@ -50,6 +57,7 @@ const char* key_of(const Tolerance& tolerance) {
 Json to_json(const Tolerance& tolerance) {
   Json json = {{key_of(tolerance), tolerance.value}};
   if (!tolerance.relative_to.empty()) json[measure_key] = tolerance.relative_to;
+  if (tolerance.floor > 0) json[floor_key] = tolerance.floor;
   return json;
 }
 
@@ -57,10 +65,12 @@ Tolerance tolerance_of(const Json& target, const std::string& file, const std::s
   if (has_number(target, relative_key)) {
     Tolerance tolerance(target[relative_key].get<double>());
     tolerance.relative_to = target.value(measure_key, "");
+    tolerance.floor = target.value(floor_key, 0.0);
     return tolerance;
   }
-  if (target.contains(measure_key)) {
-    throw InputError(file, pointer + '/' + measure_key, shortened(target[measure_key]),
+  for (const char* const key : {measure_key, floor_key}) {
+    if (!target.contains(key)) continue;
+    throw InputError(file, pointer + '/' + key, shortened(target[key]),
                      fmt::format("must not be given beside {}", absolute_key));
   }
   if (has_number(target, absolute_key)) return Tolerance::absolute(target[absolute_key].get<double>());

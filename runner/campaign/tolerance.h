@@ -14,6 +14,8 @@ struct Tolerance {
   Kind kind = Kind::relative;
   // Of a relative one: the observable whose |mean| it is a share of; "" for its own.
   std::string relative_to{};
+  // Of a relative one: the half-width that is good enough however small the mean.
+  double floor = 0;
 
   // A share of |mean|, unless it says otherwise.
   Tolerance() = default;
@@ -22,7 +24,7 @@ struct Tolerance {
 
   bool is_relative() const { return kind == Kind::relative; }
   // Whether no half-width is good enough for a mean of 0.
-  bool needs_a_mean() const { return is_relative(); }
+  bool needs_a_mean() const { return is_relative() && floor == 0; }
   // The half-width that is good enough, for the mean that it is a share of.
   double half_width(double mean) const;
   // Half-width over the one that is good enough: converged at 1. Infinite or NaN where there is no measure.
@@ -31,7 +33,7 @@ struct Tolerance {
   bool operator==(const Tolerance&) const = default;
 };
 
-// "5 %", "5 % of relative_viscosity", "0.1"
+// "5 %", "5 % of relative_viscosity", "5 % or 0.01", "0.1"
 std::string to_string(const Tolerance& tolerance);
 
 // A half-width as the tolerance measures it, beside the mean that it is a share of: "2.3 %", "0.012"; "-"

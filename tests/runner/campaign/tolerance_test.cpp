@@ -19,9 +19,26 @@ TEST(Tolerance, IsAShareOfTheMeanOrANumberOfItsOwn) {
   EXPECT_DOUBLE_EQ(number.share(0.2, 0), 0.5);
 }
 
+// 5 % of 8 is 0.4, of 1 only 0.05.
+TEST(Tolerance, OfASmallMeanHasAFloor) {
+  Tolerance tolerance = 0.05;
+  EXPECT_TRUE(tolerance.needs_a_mean());
+  tolerance.floor = 0.1;
+  EXPECT_FALSE(tolerance.needs_a_mean());
+  EXPECT_DOUBLE_EQ(tolerance.half_width(8), 0.4);
+  EXPECT_DOUBLE_EQ(tolerance.half_width(-1), 0.1);
+  EXPECT_DOUBLE_EQ(tolerance.share(0.2, 8), 0.5);
+  EXPECT_DOUBLE_EQ(tolerance.share(0.2, 1), 2);
+  EXPECT_DOUBLE_EQ(tolerance.share(0.2, 0), 2);
+  EXPECT_EQ(width_text(tolerance, 0.2, 8), "2.5 %");
+  EXPECT_EQ(width_text(tolerance, 0.2, 1), "0.2");
+  EXPECT_EQ(to_string(tolerance), "5 % or 0.1");
+}
+
 TEST(Tolerance, IsWrittenAsItIsRead) {
   for (const char* const text : {R"({"relative_tolerance":0.05})", R"({"absolute_tolerance":12.5})",
-                                 R"({"relative_to":"pressure","relative_tolerance":0.05})"}) {
+                                 R"({"relative_to":"pressure","relative_tolerance":0.05})",
+                                 R"({"absolute_floor":0.1,"relative_tolerance":0.05})"}) {
     EXPECT_EQ(to_json(tolerance_of(Json::parse(text))).dump(), text);
   }
   EXPECT_EQ(to_string(Tolerance(0.05)), "5 %");

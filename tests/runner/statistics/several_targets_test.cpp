@@ -91,6 +91,17 @@ TEST(SeveralTargets, OneMayBeMeasuredByAnother) {
   EXPECT_NEAR(looks[0].each[1].share, 0.392 / 0.5, 2e-3);
 }
 
+// The other's half-width at 10 seeds is 0.392 around a mean of 0.
+TEST(SeveralTargets, AFloorIsEnoughForAMeanOfZero) {
+  Tolerance tolerance = 0.05;
+  EXPECT_EQ(replay_looks(alternating(10, 0, 0.5), viscosity_and({"N1", tolerance}), 10, 1000).back().verdict,
+            Verdict::more);
+  tolerance.floor = 0.4;
+  const Look look = replay_looks(alternating(10, 0, 0.5), viscosity_and({"N1", tolerance}), 10, 1000).back();
+  EXPECT_EQ(look.verdict, Verdict::converged);
+  EXPECT_NEAR(look.each[1].share, 0.392 / 0.4, 3e-3);
+}
+
 // What only measures others has an interval, but no verdict, and holds nothing up.
 TEST(SeveralTargets, AMeasureNeedsNoPrecision) {
   Target target{"N1", relative_to("viscosity", 0.05), 0.95};
