@@ -12,6 +12,7 @@
 #include "runner/reports/report.h"
 #include "runner/reports/results.h"
 #include "runner/reports/status.h"
+#include "runner/verbs/files.h"
 #include "runner/verbs/plan_campaign.h"
 #include "runner/verbs/watch.h"
 
@@ -93,6 +94,30 @@ said last, whether the window is long enough, and what would bring the point fur
   add_directory(verb, options->directory);
   verb->add_flag("--json", options->json, "For programs");
   verbs.choose(verb, options, show_explanation);
+}
+
+void show_files(const FilesOptions& options) {
+  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  print(list_files(open.database, open.directory, options));
+}
+
+void add_files(VerbSet& verbs) {
+  const auto options = std::make_shared<FilesOptions>();
+  CLI::App* const verb =
+      verbs.add("files", "List the files that realisations have left beside their results",
+                "peclet files flow-curve.json peclet=10 --paths",
+                page(R"(
+A scene may ask its engine for files beside the numbers, as final.xyz of "files": {"final_configuration":
+true}. They lie in the campaign's folder, named by point and seed; those that /keep_files throws away are
+listed, and nothing is left of them.
+)",
+                     {{"ovito $(peclet files flow-curve.json 10 --paths | head -1)", ""}}, {0, 1, 2, 6}));
+  add_file_or_folder(verb, options->campaign);
+  verb->add_option("point", options->point, "As of explain; all unless given")->type_name("POINT");
+  add_directory(verb, options->directory);
+  CLI::Option* const paths = verb->add_flag("--paths", options->paths, "The paths alone, a line each");
+  verb->add_flag("--json", options->json, "For programs")->excludes(paths);
+  verbs.choose(verb, options, show_files);
 }
 
 void export_campaign(const ExportOptions& options) {
@@ -214,6 +239,7 @@ void add_looking_verbs(VerbSet& verbs) {
   add_status(verbs);
   add_watch(verbs);
   add_explain(verbs);
+  add_files(verbs);
   add_export(verbs);
   add_results(verbs);
   add_report(verbs);
