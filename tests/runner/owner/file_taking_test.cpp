@@ -90,7 +90,7 @@ TEST_F(TakingFiles, GoesOnWhereverTheOwnerDied) {
       AfterCommit never;
       ResultStore results(database_);
       const RealisationResult read = read_spool_file(spool, "");
-      const StoredResult stored = results.store(read, campaign_.target.observable);
+      const StoredResult stored = results.store(read, campaign_.target);
       take_files(database_.connection(), directory_, read, spool, stored, true, never);
       booking.commit();
     }
@@ -105,7 +105,7 @@ TEST_F(TakingFiles, GoesOnWhereverTheOwnerDied) {
     Transaction booking(database_.connection());
     AfterCommit never;
     const RealisationResult read = read_spool_file(spool, "");
-    const StoredResult stored = ResultStore(database_).store(read, campaign_.target.observable);
+    const StoredResult stored = ResultStore(database_).store(read, campaign_.target);
     take_files(database_.connection(), directory_, read, spool, stored, true, never);
   }
   EXPECT_FALSE(fs::exists(place(3, 0)));
@@ -269,7 +269,7 @@ TEST_F(TakingFiles, FromAnotherFileSystemTheyComeAsCopies) {
     Transaction booking(database_.connection());
     AfterCommit after;
     const RealisationResult read = read_spool_file(spool, "");
-    const StoredResult stored = ResultStore(database_).store(read, campaign_.target.observable);
+    const StoredResult stored = ResultStore(database_).store(read, campaign_.target);
     take_files(database_.connection(), directory_, read, spool, stored, true, after);
     booking.commit();
     for (const int number : {0, 1}) EXPECT_TRUE(fs::exists(left(spool, number))) << "until it has its place";

@@ -29,7 +29,7 @@ Tolerance relative_to(const std::string& measure, double share) {
 
 // Viscosities 10 - 0.1, 10 + 0.1 in turn, others `mean` - `spread`, `mean` + `spread`: the standard error of
 // an even number n is the spread over sqrt(n - 1).
-Outcomes alternating(int count, double mean, double spread) {
+Outcomes both_alternating(int count, double mean, double spread) {
   Outcomes outcomes;
   for (int seed = 0; seed < count; ++seed) {
     const double sign = seed % 2 == 0 ? -1 : 1;
@@ -67,7 +67,7 @@ TEST(SeveralTargets, TheLessFavourableVerdictCounts) {
 // At 95.7 % t(9) = 2.354 and t(27) = 2.126: half-widths of the other are 0.392 at 10 seeds, 0.205 at 28.
 TEST(SeveralTargets, APointGoesOnUntilAllAreWithinTheirTolerances) {
   const Target target = viscosity_and({"other", Tolerance::absolute(0.21)});
-  const std::vector<Look> looks = replay_looks(alternating(100, 5, 0.5), target, 10, 1000);
+  const std::vector<Look> looks = replay_looks(both_alternating(100, 5, 0.5), target, 10, 1000);
   ASSERT_EQ(looks.size(), 5U);
   EXPECT_EQ(looks.front().verdict, Verdict::more);
   EXPECT_EQ(looks.front().each[0].verdict, Verdict::converged);
@@ -85,7 +85,7 @@ TEST(SeveralTargets, APointGoesOnUntilAllAreWithinTheirTolerances) {
 // A mean of 0 has no relative width of its own; 5 % of the viscosity is 0.5.
 TEST(SeveralTargets, OneMayBeMeasuredByAnother) {
   const Target target = viscosity_and({"N1", relative_to("viscosity", 0.05)});
-  const std::vector<Look> looks = replay_looks(alternating(100, 0, 0.5), target, 10, 1000);
+  const std::vector<Look> looks = replay_looks(both_alternating(100, 0, 0.5), target, 10, 1000);
   ASSERT_EQ(looks.size(), 1U);
   EXPECT_EQ(looks[0].verdict, Verdict::converged);
   EXPECT_NEAR(looks[0].each[1].share, 0.392 / 0.5, 2e-3);
@@ -94,10 +94,12 @@ TEST(SeveralTargets, OneMayBeMeasuredByAnother) {
 // The other's half-width at 10 seeds is 0.392 around a mean of 0.
 TEST(SeveralTargets, AFloorIsEnoughForAMeanOfZero) {
   Tolerance tolerance = 0.05;
-  EXPECT_EQ(replay_looks(alternating(10, 0, 0.5), viscosity_and({"N1", tolerance}), 10, 1000).back().verdict,
-            Verdict::more);
+  EXPECT_EQ(
+      replay_looks(both_alternating(10, 0, 0.5), viscosity_and({"N1", tolerance}), 10, 1000).back().verdict,
+      Verdict::more);
   tolerance.floor = 0.4;
-  const Look look = replay_looks(alternating(10, 0, 0.5), viscosity_and({"N1", tolerance}), 10, 1000).back();
+  const Look look =
+      replay_looks(both_alternating(10, 0, 0.5), viscosity_and({"N1", tolerance}), 10, 1000).back();
   EXPECT_EQ(look.verdict, Verdict::converged);
   EXPECT_NEAR(look.each[1].share, 0.392 / 0.4, 3e-3);
 }
@@ -106,7 +108,7 @@ TEST(SeveralTargets, AFloorIsEnoughForAMeanOfZero) {
 TEST(SeveralTargets, AMeasureNeedsNoPrecision) {
   Target target{"N1", relative_to("viscosity", 0.05), 0.95};
   Outcomes outcomes;
-  for (const std::optional<Outcome>& other : alternating(10, 10, 3)) {
+  for (const std::optional<Outcome>& other : both_alternating(10, 10, 3)) {
     Outcome outcome{Outcome::Kind::value, other->value - 10};
     outcome.further = other->further;
     outcomes.emplace_back(outcome);
@@ -121,7 +123,7 @@ TEST(SeveralTargets, AMeasureNeedsNoPrecision) {
 
 TEST(SeveralTargets, ASeedWithoutOneOfThemIsLostToThatOne) {
   const Target target = viscosity_and({"other", Tolerance::absolute(1)});
-  Outcomes outcomes = alternating(10, 5, 0.1);
+  Outcomes outcomes = both_alternating(10, 5, 0.1);
   outcomes[3]->further = {Observation{}};
   const std::vector<Look> looks = replay_looks(outcomes, target, 10, 1000);
   EXPECT_EQ(looks.back().verdict, Verdict::converged_with_losses);
@@ -134,7 +136,7 @@ TEST(SeveralTargets, ASeedWithoutOneOfThemIsLostToThatOne) {
 
 TEST(SeveralTargets, OneThatIsNotMetCapsThePoint) {
   const Target target = viscosity_and({"other", Tolerance::absolute(0.01)});
-  const Look last = replay_looks(alternating(13, 5, 0.5), target, 10, 13).back();
+  const Look last = replay_looks(both_alternating(13, 5, 0.5), target, 10, 13).back();
   EXPECT_EQ(last.verdict, Verdict::capped);
   EXPECT_EQ(last.each[0].verdict, Verdict::converged);
   EXPECT_EQ(last.each[1].verdict, Verdict::capped);
@@ -142,7 +144,7 @@ TEST(SeveralTargets, OneThatIsNotMetCapsThePoint) {
 
 TEST(SeveralTargets, ATransientOfAnyIsOneOfTheLook) {
   const Target target = viscosity_and({"other", Tolerance::absolute(1)});
-  Outcomes outcomes = alternating(10, 5, 0.001);
+  Outcomes outcomes = both_alternating(10, 5, 0.001);
   for (std::optional<Outcome>& outcome : outcomes) {
     outcome->first_quarter = outcome->first_half = outcome->value;
     outcome->further[0].first_quarter = outcome->further[0].first_half = outcome->further[0].value + 0.1;
@@ -161,7 +163,7 @@ TEST(SeveralTargets, ATransientOfAnyIsOneOfTheLook) {
 // are there at the look of 172.
 TEST(SeveralTargets, TheHardestToKnowTellsHowManySeedsToExpect) {
   const Target target = viscosity_and({"other", Tolerance::absolute(0.1)});
-  const Outcomes outcomes = alternating(10, 5, 0.5);
+  const Outcomes outcomes = both_alternating(10, 5, 0.5);
   const int expected = expected_seeds(replay_looks(outcomes, target, 10, 10000), target, 10, 10000);
   EXPECT_GE(expected, 109);
   EXPECT_LE(expected, 172);
