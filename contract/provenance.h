@@ -7,7 +7,7 @@
 
 namespace peclet {
 
-// "0.1.0"
+// "0.2.0"
 std::string version();
 
 // {"version", "git_commit", "git_dirty", "binary_sha256", "compiler", "flags", "build_type", "cpu"} of the
