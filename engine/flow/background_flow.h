@@ -49,18 +49,20 @@ class BackgroundFlow {
 
   // At a point; with a radius, what a sphere there feels.
   Vector3 velocity(const Vector3& x, double radius = 0) const {
-    return cell_.velocity_gradient() * x + varying_velocity(x, radius);
+    return cell_.velocity_gradient() * x + varying_motion(x, radius).velocity;
   }
-  Vector3 spin(const Vector3& x) const { return spin_of(cell_.velocity_gradient()) + varying_spin(x); }
+  Vector3 spin(const Vector3& x) const {
+    return spin_of(cell_.velocity_gradient()) + varying_motion(x, 0).spin;
+  }
 
   // The part of u' in them, and in the rate of strain.
-  Vector3 varying_velocity(const Vector3& x, double radius) const {
+  struct Motion {
+    Vector3 velocity, spin;
+  };
+  Motion varying_motion(const Vector3& x, double radius) const {
     if (variation_ == nullptr) return {};
     const FlowVariation::Local local = variation_->at(x, cell_);
-    return local.velocity + (radius * radius / 6) * local.laplacian;
-  }
-  Vector3 varying_spin(const Vector3& x) const {
-    return variation_ == nullptr ? Vector3{} : spin_of(variation_->at(x, cell_).gradient);
+    return {local.velocity + (radius * radius / 6) * local.laplacian, spin_of(local.gradient)};
   }
   SymmetricTensor varying_strain(const Vector3& x, double radius) const {
     if (variation_ == nullptr) return {};

@@ -55,8 +55,9 @@ VelocitySolver::Residual VelocitySolver::set_residual(const System& system, cons
   if (flow_.varies()) {
     const BackgroundFlow flow = flow_.at(system.box);
     for (std::size_t i = 0; i < particles.count(); ++i) {
-      varying_velocity_.set(i, flow.varying_velocity(particles.position[i], particles.radius[i]));
-      varying_spin_.set(i, flow.varying_spin(particles.position[i]));
+      const auto [velocity, spin] = flow.varying_motion(particles.position[i], particles.radius[i]);
+      varying_velocity_.set(i, velocity);
+      varying_spin_.set(i, spin);
     }
   }
   const StepRows rows = {.velocity_before = origin.velocity.data(),

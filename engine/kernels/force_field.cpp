@@ -99,8 +99,9 @@ void ForceField::add_varying_drag(const System& system, std::size_t begin, std::
   for (std::size_t i = begin; i < end; ++i) {
     const OneBodyFactors& drag = drag_[particles.size_class[i]];
     const Vector3 x = particles.position[i];
-    force.add(i, drag.translational * flow.varying_velocity(x, particles.radius[i]));
-    torque.add(i, drag.rotational * flow.varying_spin(x));
+    const auto [velocity, spin] = flow.varying_motion(x, particles.radius[i]);
+    force.add(i, drag.translational * velocity);
+    torque.add(i, drag.rotational * spin);
   }
 }
 
