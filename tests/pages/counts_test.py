@@ -35,7 +35,7 @@ class Counts(unittest.TestCase):
         self.assertEqual(last, cases, page)
 
     def test_of_broken_lines_of_the_engine(self):
-        fine, both = len(mutations.NAMED), len(mutations.NAMED) + len(mutations.MUTATIONS)
+        fine, both = len(mutations.NAMED), len(mutations.NAMED) + len(mutations.COARSE)
         for page, count in self.said(r"(\d+) errors put in", "docs/guarantees.md"):
             self.assertEqual(count, both, page)
         for page, count in self.said(r"(\d+) of them subtle", "docs/guarantees.md"):
