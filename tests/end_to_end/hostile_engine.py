@@ -186,6 +186,17 @@ class Lab:
         return campaign.memory
 
 
+def chosen_ways(quick=False, parts_of_names=None):
+    """All of them, unless some are to be left out."""
+    return [
+        way
+        for way in lies.WAYS.values()
+        if way is not HONEST
+        and not (quick and way.slow)
+        and (not parts_of_names or any(part in way.name for part in parts_of_names))
+    ]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bin")
@@ -196,13 +207,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=4, help="runs at a time; most of them wait")
     parser.add_argument("--list", action="store_true", help="names the ways")
     arguments = parser.parse_args()
-    chosen = [
-        way
-        for way in lies.WAYS.values()
-        if way is not HONEST
-        and not (arguments.quick and way.slow)
-        and (not arguments.way or any(part in way.name for part in arguments.way))
-    ]
+    chosen = chosen_ways(arguments.quick, arguments.way)
     if arguments.list:
         print("\n".join(way.name for way in chosen))
         return 0

@@ -2,9 +2,9 @@
 """same_bytes.py BEFORE AFTER [--jobs N]      whether two builds of peclet-engine compute the same, to the last bit
 
 Runs short scenes of every combination of terms, with explicit and with implicit steps, and some others (a fluid at
-rest, four sizes, two threads, a larger system, every observable) with every instruction set that this processor has.
-Prints every field of the results that differs: in how many runs, by how much of its own size at most, and in which run
-first. What tells of the build and the machine is left out.
+rest, waves, other laws of pairs, four sizes, two threads, a larger system, every observable) with every instruction
+set that this processor has. Prints every field of the results that differs: in how many runs, by how much of its own
+size at most, and in which run first. What tells of the build and the machine is left out.
 
 The exit code is 1 where trajectories differ, which is what `final_state_sha256` and `ending` say, or where a scene does
 not do what it is here for. Other fields are means and figures over the same trajectory; that they differ by rounding
@@ -38,6 +38,9 @@ SCENE = {
 METHODS = {"explicit": {"method": "explicit", "timestep": 0.002}, "implicit": {"method": "implicit"}}
 LUBRICATION = {"lubrication": {"form": "kim-karrila", "inner_gap": 0.03, "outer_gap": 0.1}}
 REPULSION = {"repulsion": {"form": "exponential", "strength": 0.2, "relative_length": 0.02, "cutoff_lengths": 5}}
+SCREENED = {"repulsion": {"form": "screened", "force": 5, "debye_length": 0.03, "reference_radius": 1}}
+ATTRACTION = {"attraction": {"hamaker": 0.05, "regularisation": 0.01, "cutoff": 0.1}}
+WAVES = {"flow": {"waves": [{"periods": 1, "sine": 0.5}, {"periods": 2, "cosine": 0.2}], "faxen": False}}
 NOISE = {"fluid": {"thermal_energy": 0.02}}
 ROUGH = {"normal_stiffness": 1e3, "friction": 0.5}
 CONTACTS = {
@@ -48,7 +51,9 @@ CONTACTS = {
 }
 CONTACTS |= {f"{name} damping": keys | {"normal_damping": 1} for name, keys in CONTACTS.items() if keys}
 FRICTION = {"contact": ROUGH}
-EVERY_OBSERVABLE = {"observables": ["stress", "mean_squared_displacement", "pair_distribution", "contact_network"]}
+EVERY_OBSERVABLE = {
+    "observables": ["stress", "mean_squared_displacement", "pair_distribution", "contact_network", "profiles"]
+}
 FOUR_SIZES = {"particles": {"species": [{"radius": a, "volume_share": 0.25} for a in (1, 1.4, 2, 3)]}}
 AT_REST = {"flow": {"shear_rate": 0}, "observables": ["stress", "mean_squared_displacement", "stress_correlation"]}
 LARGE = {
@@ -83,6 +88,13 @@ def scenes():
         rough = merged(base, LUBRICATION, FRICTION)
         yield f"{method}, every observable", merged(rough, NOISE, EVERY_OBSERVABLE, {"particles": {"count": 70}}), 1
         yield f"{method}, four sizes", merged(rough, REPULSION, FOUR_SIZES), 1
+        yield f"{method}, attraction", merged(rough, ATTRACTION), 1
+        yield f"{method}, attraction and repulsion, noise", merged(rough, ATTRACTION, SCREENED, NOISE), 1
+        yield f"{method}, screened repulsion", merged(rough, SCREENED), 1
+        yield f"{method}, waves", merged(rough, WAVES), 1
+        yield f"{method}, waves alone, noise", merged(
+            rough, WAVES, NOISE, {"flow": {"shear_rate": 0, "faxen": True}}
+        ), 1
         yield f"{method}, at rest", merged(base, LUBRICATION, NOISE, AT_REST), 1
         yield f"{method}, two threads", merged(rough, {"particles": {"count": 200}}), 2
         yield f"{method}, several blocks", merged(base, LUBRICATION, LARGE), 1

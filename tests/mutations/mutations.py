@@ -1,19 +1,23 @@
 #!/usr/bin/python3
 """mutations.py FOLDER [--named] [--only WORD] [--jobs N]  break the physics in a copy of the source and see who notices
-mutations.py --check                                    only see that every mutation still applies
+mutations.py --check [--compiler COMMAND]                only see that every mutation still applies and compiles
 
 Each mutation is one change of a line of the engine. It is made in FOLDER, a copy of the source that this script makes,
-and built there. The coarse ones (mutations.py) are shown to the quick forms of the studies and to the tests of the
-engine and of the physics; the fine ones (named_mutations.py, --named) each to the one test of seconds that has to
-notice it. A mutation that is missed is an error. Prints a table, and writes it to its half of mutations.md beside this
-script when all were tried. Some four minutes of two cores for each coarse mutation, a minute for each fine one; a
-second call with FOLDER goes on where the first one was stopped, if the source has the same commit and no changes.
+and built there. The coarse ones (coarse_mutations.py) are shown to the quick forms of the studies and to the tests of
+the engine and of the physics; the fine ones (named_mutations.py, --named) each to the one test of seconds that has to
+notice it. A mutation that is missed is an error, and so is one that ends a test by a signal: a program that crashes
+has seen nothing. Prints a table, and writes it to its half of mutations.md beside this script when all were tried.
+Some four minutes of two cores for each coarse mutation, a minute for each fine one; a second call with FOLDER goes on
+where the first one was stopped, if the source has the same commit and no changes.
 """
 import argparse
+import concurrent.futures
 import datetime
+import hashlib
 import json
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -22,103 +26,10 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.dirname(os.path.dirname(HERE))
 sys.path.insert(0, os.path.join(SOURCE, "results"))
 from studies.command_line import processor
+from coarse_mutations import COARSE
 from named_mutations import NAMED
 
-# What is broken; file, text in it that occurs once, and what takes its place.
-MUTATIONS = [
-    (
-        "plus sign in the second Brownian torque",
-        "engine/terms/pair_noise.h",
-        "root.pump_second * turned - root.spin_second * spun",
-        "root.pump_second * turned + root.spin_second * spun",
-    ),
-    (
-        "noise of half the variance",
-        "engine/kernels/pair_pass.cpp",
-        "std::sqrt(2 * physics.thermal_energy / timestep)",
-        "std::sqrt(physics.thermal_energy / timestep)",
-    ),
-    (
-        "image velocity missing",
-        "engine/state/periodic_cell.cpp",
-        "edge_velocities_ = velocity_gradient_ * edges_;",
-        "edge_velocities_ = 0 * (velocity_gradient_ * edges_);",
-    ),
-    (
-        "torque coupling of lubrication omitted",
-        "engine/terms/pair_resistance.h",
-        "      .pump_first = k.pump_first * pump,\n      .pump_second = k.pump_second * pump,\n",
-        "      .pump_first = 0.0 * pump,\n      .pump_second = 0.0 * pump,\n",
-    ),
-    (
-        "squeeze mode doubled",
-        "engine/terms/pair_resistance.h",
-        ".squeeze_inverse = six * 2 * b * b / cube",
-        ".squeeze_inverse = six * 4 * b * b / cube",
-    ),
-    (
-        "shear mode with another sign",
-        "engine/terms/lubrication.h",
-        "(R.squeeze * closing) * n + R.shear * sliding",
-        "(R.squeeze * closing) * n - R.shear * sliding",
-    ),
-    (
-        "every pair counted twice in the stress",
-        "engine/observables/production.cpp",
-        "block.stress[t] += sums.stress[t];",
-        "block.stress[t] += 2 * sums.stress[t];",
-    ),
-    (
-        "contact half as stiff",
-        "engine/terms/contact.h",
-        "return normal_stiffness * overlap;",
-        "return 0.5 * normal_stiffness * overlap;",
-    ),
-    (
-        "spheres carried round the wrong way",
-        "engine/flow/background_flow.h",
-        "0.5 * (x.y - y.x)};",
-        "-0.5 * (x.y - y.x)};",
-    ),
-    (
-        "drag of a slip sphere",
-        "engine/terms/drag.h",
-        "return 6 * std::numbers::pi * viscosity * radius;",
-        "return 4 * std::numbers::pi * viscosity * radius;",
-    ),
-    (
-        "hollow spheres",
-        "engine/state/particles.cpp",
-        "particles.inertia.push_back(0.4 * mass",
-        "particles.inertia.push_back(2.0 / 3 * mass",
-    ),
-    (
-        "friction twice as strong",
-        "engine/terms/friction.h",
-        "return (contact.friction / contact.tangential_stiffness)",
-        "return (2 * contact.friction / contact.tangential_stiffness)",
-    ),
-    (
-        "contact spring that is not turned",
-        "engine/terms/tangential_spring.h",
-        "Vector3Of<Real> turned = across(spring, normal);",
-        "Vector3Of<Real> turned = spring + Real{0.0} * across(spring, normal);",
-    ),
-    ("repulsion of twice the range", "engine/terms/repulsion.h", ".decay = 1 / length", ".decay = 0.5 / length"),
-    (
-        "structural stress from one side of each pair",
-        "engine/observables/structure.cpp",
-        "within(kind.radius_first) + within(kind.radius_second)",
-        "within(kind.radius_first)",
-    ),
-    (
-        "gap clamped at ten times the inner gap",
-        "engine/terms/pair_resistance.h",
-        "pair.surface_distance(), Real{inner_gap})",
-        "pair.surface_distance(), Real{10 * inner_gap})",
-    ),
-]
-
+CRASH = "ended by signal"
 STUDIES = [
     "convergence",
     "diffusion",
@@ -142,8 +53,41 @@ def replaced(mutation, root):
     with open(path) as f:
         text = f.read()
     if text.count(old) != 1:
-        sys.exit(f"{name}: its text occurs {text.count(old)} times in {file}; correct the list in mutations.py")
+        sys.exit(f"{name}: its text occurs {text.count(old)} times in {file}; correct its text in tests/mutations")
     return path, text.replace(old, new)
+
+
+def errors_of(mutations, file, root, compiler):
+    """What the compiler says of a file with all of these mutations, the first lines; None where two overlap."""
+    with open(os.path.join(root, file)) as f:
+        text = f.read()
+    end = len(text)
+    for place, old, new in sorted(((text.index(m[2]), m[2], m[3]) for m in mutations), reverse=True):
+        if place + len(old) > end:
+            return None
+        text, end = text[:place] + new + text[place + len(old) :], place
+    command = [*compiler, "-std=c++20", f"-I{root}", "-w", "-fsyntax-only", "-x", "c++", "-"]
+    done = subprocess.run(command, input=text, capture_output=True, text=True)
+    return "".join(done.stderr.splitlines(True)[:5]) if done.returncode else ""
+
+
+def not_compiled(mutations, root, compiler, jobs):
+    """(name, what the compiler says) of mutations that are no C++. A file is compiled once with all of its own, and
+    with each by itself only where that fails; a header by itself, so its templates only as far as they name no
+    parameter."""
+    of_file = {}
+    for mutation in mutations:
+        of_file.setdefault(mutation[1], []).append(mutation)
+
+    def faults(file):
+        together = errors_of(of_file[file], file, root, compiler)
+        if together == "":
+            return []
+        apart = [(mutation[0], errors_of([mutation], file, root, compiler)) for mutation in of_file[file]]
+        return [(name, said) for name, said in apart if said] or ([(file, together)] if together else [])
+
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        return [fault for found in pool.map(faults, of_file) for fault in found]
 
 
 def copy_of_source(folder):
@@ -180,7 +124,7 @@ def build(folder, jobs, targets=("peclet", "peclet-engine", "engine_tests", "phy
 
 
 def failed_tests(folder, program, arguments):
-    """Names of the tests that fail, or the signal that ended them."""
+    """Names of the tests that fail; what ended them otherwise."""
     try:
         done = subprocess.run(
             [os.path.join(folder, "build/release/bin", program), *arguments],
@@ -191,6 +135,8 @@ def failed_tests(folder, program, arguments):
         )
     except subprocess.TimeoutExpired:
         return ["does not end"]
+    if done.returncode < 0:
+        return [f"{CRASH} {-done.returncode}"]
     names = re.findall(r"^\[  FAILED  \] ([\w./]+)(?:, |$| \()", done.stdout, re.M)
     return sorted(set(names)) or ([] if done.returncode == 0 else [f"exit {done.returncode}"])
 
@@ -227,15 +173,16 @@ def who_of_the_named(folder, names):
     noticed = []
     for program in sorted({name.split(":")[0] for name in names}):
         tests = [name.split(":")[1] for name in names if name.startswith(program + ":")]
+        for test in tests:
+            listed = subprocess.run(
+                [os.path.join(folder, "build/release/bin", program), f"--gtest_filter={test}", "--gtest_list_tests"],
+                capture_output=True,
+                text=True,
+                check=True,
+            )
+            if "\n  " not in listed.stdout:
+                sys.exit(f"{program} has no {test}")
         chosen = [f"--gtest_filter={':'.join(tests)}"]
-        listed = subprocess.run(
-            [os.path.join(folder, "build/release/bin", program), *chosen, "--gtest_list_tests"],
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        if listed.stdout.count("\n  ") < len(tests):
-            sys.exit(f"{program} has not all of {', '.join(tests)}")
         noticed += [f"{program}: {name}" for name in failed_tests(folder, program, chosen)]
     return noticed
 
@@ -251,10 +198,12 @@ def commit_of_source():
 
 
 def trees():
-    """Of the engine and its tests: what the fine mistakes depend on. Outlives commits on other subjects."""
-    folders = ("engine", "tests/engine", "tests/physics")
-    return " ".join(git("rev-parse", "--short=7", f"HEAD:{folder}") for folder in folders) + (
-        " with changes" if git("status", "--porcelain", *folders) else ""
+    """Of the engine, its tests and how they are built: what the fine mistakes depend on. Outlives commits on other
+    subjects."""
+    parts = ("engine", "contract", "schema", "tests/engine", "tests/physics", "tests/CMakeLists.txt")
+    parts += ("cmake", "CMakeLists.txt", "CMakePresets.json")
+    return " ".join(git("rev-parse", "--short=7", f"HEAD:{part}") for part in parts) + (
+        " with changes" if git("status", "--porcelain", *parts) else ""
     )
 
 
@@ -271,8 +220,13 @@ class Known:
                 stored = json.load(f)
             self.noticed = stored["noticed"] if stored["commit"] == commit else {}
 
-    def add(self, name, noticed):
-        self.noticed[name] = noticed
+    @staticmethod
+    def key(mutation):
+        """Another one when its text has changed."""
+        return f"{mutation[0]} {hashlib.sha256(repr(mutation).encode()).hexdigest()[:12]}"
+
+    def add(self, mutation, noticed):
+        self.noticed[self.key(mutation)] = noticed
         if self.lasting:
             with open(self.path, "w") as f:
                 json.dump({"commit": self.commit, "noticed": self.noticed}, f, indent=1)
@@ -308,7 +262,7 @@ def coarse(folder, jobs, mutation):
 
 def fine(folder, jobs, mutation):
     """Unbroken source is shown to all of the tests."""
-    names = [mutation[4]] if mutation[1] else sorted({m[4] for m in NAMED})
+    names = [mutation[4]] if mutation[1] else mutation[4]
     build(folder, jobs, sorted({name.split(":")[0] for name in names}))
     return who_of_the_named(folder, names)
 
@@ -317,18 +271,27 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", nargs="?", help="of the copy; kept, so that a second call goes faster")
     parser.add_argument("--check", action="store_true")
+    parser.add_argument(
+        "--compiler",
+        metavar="COMMAND",
+        type=shlex.split,
+        default="c++ -isystem/usr/include/eigen3",
+        help="of --check, with the folders of headers that it does not know",
+    )
     parser.add_argument("--named", action="store_true", help="the fine ones, each before its own test")
     parser.add_argument("--only", default="", help="mutations whose name has this in it")
     parser.add_argument("--jobs", type=int, default=2)
     arguments = parser.parse_args()
-    for mutation in (*MUTATIONS, *NAMED):
+    for mutation in (*COARSE, *NAMED):
         replaced(mutation, SOURCE)
     if arguments.check:
-        print(f"{len(MUTATIONS) + len(NAMED)} mutations apply")
-        return 0
+        faults = not_compiled([*COARSE, *NAMED], SOURCE, arguments.compiler, arguments.jobs)
+        print("".join(f"{name}: does not compile:\n{said}" for name, said in faults), end="")
+        print(f"{len(COARSE) + len(NAMED)} mutations apply, {len(faults)} of them do not compile")
+        return 1 if faults else 0
     if not arguments.folder:
         parser.error("needs a folder")
-    chosen, who = (NAMED, fine) if arguments.named else (MUTATIONS, coarse)
+    chosen, who = (NAMED, fine) if arguments.named else (COARSE, coarse)
     commit, tree = commit_of_source(), trees()
     known = Known(
         arguments.folder,
@@ -338,18 +301,19 @@ def main():
     before, rows = halves()
     lines = []
     missed = 0
-    for mutation in [("nothing", None, None, None), *chosen]:
+    # Before unbroken source the tests of all of them are tried.
+    for mutation in [("nothing", None, None, None, sorted({m[4] for m in NAMED})), *chosen]:
         if arguments.only not in mutation[0]:
             continue
-        if mutation[0] not in known.noticed:
+        if known.key(mutation) not in known.noticed:
             copy_of_source(arguments.folder)
             if mutation[1]:
                 path, text = replaced(mutation, arguments.folder)
                 with open(path, "w") as f:
                     f.write(text)
-            known.add(mutation[0], who(arguments.folder, arguments.jobs, mutation))
-        noticed = known.noticed[mutation[0]]
-        missed += bool(mutation[1]) != bool(noticed)
+            known.add(mutation, who(arguments.folder, arguments.jobs, mutation))
+        noticed = known.noticed[known.key(mutation)]
+        missed += bool(mutation[1]) != bool(noticed) or any(CRASH in who for who in noticed)
         lines.append(
             f"| {mutation[0]} | {'; '.join(noticed) or ('nobody' if mutation[1] else 'nobody, as it should be')} |"
         )

@@ -49,7 +49,7 @@ NAMED = [
         "target of Newton's iterations ten times too loose",
         "engine/integrators/midpoint.cpp",
         "const double target = solver_.tolerance() * solver_.tolerance() * motion;",
-        "const double target = 100 * tolerance_ * tolerance_ * motion;",
+        "const double target = 100 * solver_.tolerance() * solver_.tolerance() * motion;",
         "engine_tests:Implicit.LeavesNoLargerResidualThanItsTolerance",
     ),
     (
@@ -105,7 +105,8 @@ NAMED = [
         "noise torque missing from implicit steps",
         "engine/integrators/velocity_solver.cpp",
         "noise != nullptr ? noise->torque.data() : nullptr",
-        "nullptr",
+        "noise != nullptr ? [&] {\n  static VectorField none;\n  none = VectorField(noise->torque.size());\n"
+        "  return none.data();\n}() : nullptr",
         "physics_tests:StepsOverDecayTimes/ImplicitSpheres.DiffuseAsTheNoiseSays/Tenths10",
     ),
     (

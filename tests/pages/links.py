@@ -2,7 +2,8 @@
 """links.py [ROOT]: every relative link of every page below ROOT (the source) resolves, and pages keep to their lengths.
 
     links      the file is there; the anchor is that of one of its headings
-    `paths`    in code spans, from the folders of the source: the file is there (an installation has not all of them)
+    `paths`    in code spans, from the folders of the source: the file is there (an installation has not all of them);
+               a script that begins a span or a line of code with its arguments may be executed
     README.md  at most 200 lines of at most 120 characters, tables and code included
     .md        at most ten lines of more than 140 characters outside tables and code
 
@@ -10,6 +11,7 @@ Prints one line a fault, with its place, and leaves with 1 if there is any. Link
 """
 import os
 import re
+import stat
 import sys
 import urllib.parse
 
@@ -115,6 +117,33 @@ def path_faults(root, text):
                 yield whole.count("\n", 0, span.start()) + 1, f"{word}: there is no such file in the source"
 
 
+def commands(text):
+    """(line, command) of every code span, and of every line of fenced and indented code."""
+    whole = joined(text)
+    for span in CODE_SPAN.finditer(whole):
+        yield whole.count("\n", 0, span.start()) + 1, span[0].strip("`")
+    outside = dict(prose(text))
+    for number, line in enumerate(text.split("\n"), 1):
+        if number not in outside:
+            yield number, line
+
+
+def is_script(path):
+    if not os.path.isfile(path):
+        return False
+    with open(path, "rb") as file:
+        return file.read(2) == b"#!"
+
+
+def command_faults(root, text):
+    for number, command in commands(text):
+        word, *arguments = command.split() or [""]
+        path = os.path.join(root, word)
+        # Not os.access(): root's answer is not everybody's.
+        if arguments and OWN_FILE.fullmatch(word) and is_script(path) and not os.stat(path).st_mode & stat.S_IXOTH:
+            yield number, f"{word}: may not be executed; git update-index --chmod=+x {word}"
+
+
 def readme_faults(text):
     lines = text.rstrip("\n").split("\n")
     if len(lines) > README_LINES:
@@ -139,7 +168,8 @@ def faults(root):
         text, name = read(path), os.path.relpath(path, root)
         of_readme = readme_faults(text) if name == "README.md" else ()
         # The changelog names files as they were then.
-        of_source = path_faults(root, text) if is_source and name != "CHANGELOG.md" else ()
+        is_of_source = is_source and name != "CHANGELOG.md"
+        of_source = [*path_faults(root, text), *command_faults(root, text)] if is_of_source else ()
         for number, fault in [*link_faults(path, text), *of_source, *width_faults(text), *of_readme]:
             yield f"{name}:{number}: {fault}"
 

@@ -98,6 +98,34 @@ class Paths(Pages):
         self.assertEqual(self.faults("`tests/none.py`"), [])
 
 
+class Commands(Pages):
+    def said(self, page, mode):
+        with tempfile.TemporaryDirectory() as root:
+            os.mkdir(os.path.join(root, "tests"))
+            for name, text in (("CMakeLists.txt", ""), ("tests/run.py", "#!/usr/bin/python3\n"), ("README.md", page)):
+                with open(os.path.join(root, name), "w", encoding="utf-8") as file:
+                    file.write(text)
+            os.chmod(os.path.join(root, "tests/run.py"), mode)
+            return list(links.faults(root))
+
+    def test_are_scripts_that_may_be_executed(self):
+        for page, line in (
+            ("`tests/run.py BIN`", 1),
+            ("| a |\n| `tests/run.py BIN` |", 2),
+            ("text\n\n```\ntests/run.py \\\n  BIN\n```", 4),
+            ("text\n\n    tests/run.py BIN\n", 3),
+        ):
+            with self.subTest(page):
+                self.assertEqual(self.said(page, 0o755), [])
+                fault = "tests/run.py: may not be executed; git update-index --chmod=+x tests/run.py"
+                self.assertEqual(self.said(page, 0o644), [f"README.md:{line}: {fault}"])
+
+    def test_are_not_names_and_arguments(self):
+        for page in ("`tests/run.py`", "`python3 tests/run.py BIN`", "tests/run.py BIN"):
+            with self.subTest(page):
+                self.assertEqual(self.said(page, 0o644), [])
+
+
 class Lengths(Pages):
     def test_of_the_readme_count_tables_and_code(self):
         self.assertEqual(self.faults("a\n" * 200), [])

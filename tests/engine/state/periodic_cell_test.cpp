@@ -171,14 +171,18 @@ TEST(PeriodicCell, WidthsAreTheDistancesBetweenFaces) {
 }
 
 // A square lattice, turned by half the angle whose tangent is 2, is itself again after planar extension by
-// ln((3 + sqrt 5) / 2): Kraynik and Reinelt (1992), Int. J. Multiphase Flow 18, 1045. Up to there no two
-// points of it come closer than sqrt(2 / sqrt 5) / ... of the way apart: at half of it they are nearest.
+// ln((3 + sqrt 5) / 2): Kraynik and Reinelt (1992), Int. J. Multiphase Flow 18, 1045. Its points m, n are at
+// |x y| = edge^2 |m^2 + m n - n^2| / sqrt 5, which extension leaves alone, and which is edge^2 / sqrt 5 at
+// least. So no vector is shorter than sqrt(2 |x y|) >= sqrt(2 / sqrt 5) edge; an edge of the square is as
+// short as that where |x| = |y|, after a quarter of the period and after three. A compact cell is no thinner
+// than three quarters of its shortest vector.
 TEST(PeriodicCell, IsMadeCompactInExtension) {
   const double edge = 7, angle = 0.5 * std::atan(2.0), period = std::log(0.5 * (3 + std::sqrt(5.0)));
+  const double least = std::sqrt(2 / std::sqrt(5.0)) * edge;
   const Matrix3 square = {Vector3{edge * std::cos(angle), edge * std::sin(angle), 0},
                           Vector3{-edge * std::sin(angle), edge * std::cos(angle), 0}, Vector3{0, 0, edge}};
   const Matrix3 extension = {Vector3{1, 0, 0}, Vector3{0, -1, 0}, Vector3{}};
-  for (const double share : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0, 2.0, 2.5, 5.0}) {
+  for (const double share : {0.0, 0.1, 0.25, 0.3, 0.5, 0.7, 0.75, 0.9, 1.0, 2.0, 2.5, 5.0}) {
     PeriodicCell box = PeriodicCell::with_edges(square, extension);
     const double e = std::exp(share * period);
     box.deform({Vector3{e - 1, 0, 0}, Vector3{0, 1 / e - 1, 0}, Vector3{}});
@@ -187,7 +191,12 @@ TEST(PeriodicCell, IsMadeCompactInExtension) {
     EXPECT_NEAR(norm(c), edge, 1e-12);
     EXPECT_NEAR(std::abs(determinant(box.edges())), edge * edge * edge, 1e-9);
     const Vector3 widths = box.frame().widths();
-    EXPECT_GT(std::min({widths.x, widths.y, widths.z}), 0.6 * edge) << share;
+    const double shortest = std::min(norm(a), norm(b));
+    EXPECT_GT(shortest, (1 - 1e-9) * least) << share;
+    if (share == 0.25 || share == 0.75) {
+      EXPECT_NEAR(shortest, least, 1e-9) << share;
+    }
+    EXPECT_GT(std::min({widths.x, widths.y, widths.z}), 0.75 * least) << share;
     if (share == std::floor(share)) {
       EXPECT_NEAR(norm(a), edge, 1e-9) << share;
       EXPECT_NEAR(norm(b), edge, 1e-9) << share;

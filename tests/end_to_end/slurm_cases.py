@@ -1,0 +1,291 @@
+"""What happens to campaigns in a Slurm: each case runs one to its end and says what happened."""
+import os
+import random
+import signal
+import subprocess
+import time
+
+from slurm_campaign import Campaign, script_of_the_page, template_of
+from slurm_cluster import CPUS
+
+# Takes the node from others.
+URGENT = (
+    "sbatch",
+    "--partition=urgent",
+    f"--cpus-per-task={CPUS - 1}",
+    "--job-name=urgent",
+    "--output=/dev/null",
+    "--wrap",
+    "sleep 2",
+)
+
+
+class Drill:
+    def __init__(self, binaries, folder, cluster):
+        self.binaries, self.folder, self.cluster = binaries, folder, cluster
+        self.chance = random.Random(1)
+
+    def campaign(self, name, **settings):
+        return Campaign(self.binaries, os.path.join(self.folder, name), **settings)
+
+    def running(self, campaign, tasks=1):
+        """Waits until so many tasks are in the middle of a seed."""
+        self.cluster.wait_until(lambda: len(self.cluster.tasks()) >= tasks, f"{tasks} running tasks")
+        time.sleep(0.5)
+
+    # Each case runs a campaign to its end and says what happened.
+
+    def arrays(self, campaign):
+        campaign.do(*campaign.follow("--seeds-per-task", "2", "--largest-array", "4"))
+        arrays = campaign.ask("SELECT count(*) FROM bundle")
+        largest = campaign.ask("SELECT max(tasks) FROM bundle")
+        assert largest == 4 and arrays > 2, (arrays, largest)
+        return f"{arrays} arrays of up to {largest} tasks, 2 seeds a task"
+
+    def killed_engine(self, campaign):
+        owner = campaign.start(*campaign.follow())
+        killed = 0
+        for _ in range(4):
+            self.running(campaign)
+            killed += kill_one("fake_engine", campaign.folder)
+        assert owner.wait(300) == 0
+        seen = campaign.ask("SELECT count(*) FROM attempt WHERE outcome = 'killed'")
+        assert seen > 0, campaign.log()
+        return f"{killed} engines of running tasks killed, {seen} reported"
+
+    def killed_task(self, campaign):
+        campaign.holds(1)
+        owner = campaign.start(*campaign.follow("--seeds-per-task", "2"))
+        killed = 0
+        for _ in range(3):
+            self.running(campaign)
+            killed += kill_one("peclet task", campaign.folder)
+        self.running(campaign)
+        element = self.cluster.tasks()[0]
+        self.cluster.say("scancel", element)
+        self.running(campaign)
+        self.cluster.say("scancel", "--signal=KILL", "--full", self.cluster.tasks()[0])
+        campaign.lets_go()
+        assert owner.wait(300) == 0
+        returned = campaign.ask("SELECT count(*) FROM bundle_seed WHERE outcome IN ('returned', 'killed')")
+        assert returned > 0, campaign.log()
+        return f"{killed} tasks killed, 2 by scancel; {returned} seeds queued again"
+
+    def preempted(self, campaign):
+        owner = campaign.start(*campaign.follow())
+        self.running(campaign, CPUS)
+        self.cluster.say(*URGENT)
+        self.cluster.wait_until(lambda: self.cluster.restarts() > 0, "a preemption")
+        restarts = self.cluster.restarts()
+        assert owner.wait(300) == 0, campaign.log()
+        assert campaign.ask("SELECT count(*) FROM bundle_seed WHERE outcome != 'result'") == 0, campaign.log()
+        return f"{restarts} tasks preempted and queued again by Slurm"
+
+    def warned(self, campaign):
+        owner = campaign.start(*campaign.follow())
+        warnings = 0
+        while self.cluster.restarts() == 0:  # a task may end just before its warning comes
+            assert owner.poll() is None, campaign.log()
+            self.running(campaign)
+            for element in self.cluster.tasks()[:2]:
+                self.cluster.say("scancel", "--batch", "--signal=USR1", element)
+                warnings += 1
+            time.sleep(2)
+        restarts = self.cluster.restarts()
+        assert owner.wait(300) == 0, campaign.log()
+        assert campaign.ask("SELECT count(*) FROM bundle_seed WHERE outcome != 'result'") == 0, campaign.log()
+        return f"{warnings} tasks warned as at the time limit, {restarts} queued themselves again"
+
+    def time_limit(self, campaign):
+        owner = campaign.start(*campaign.follow("--option=--time=1", "--option=--signal=B:USR1@30"))
+        self.cluster.wait_until(lambda: self.cluster.restarts() > 0, "a task at its time limit", 120)
+        restarts = self.cluster.restarts()
+        assert owner.wait(300) == 0, campaign.log()
+        assert (
+            campaign.blamed() == 0 and campaign.ask("SELECT count(*) FROM bundle_seed WHERE outcome != 'result'") == 0
+        )
+        return f"{restarts} tasks at a real time limit of a minute queued themselves again"
+
+    def controller_restarted(self, campaign):
+        owner = campaign.start(*campaign.follow())
+        for number in (signal.SIGTERM, signal.SIGKILL):
+            self.running(campaign)
+            self.cluster.stop("slurmctld", number)
+            time.sleep(1)
+            self.cluster.start_controller()
+            self.cluster.wait_for_controller()
+        # Killed, it may have forgotten jobs that it had started, and give their numbers out again; it then takes the
+        # node out of use until an administrator says that all is well.
+        resumed = 0
+        end = time.monotonic() + 240
+        while owner.poll() is None and time.monotonic() < end:
+            resumed += self.cluster.resume_node()
+            time.sleep(1)
+        assert owner.wait(60) == 0, campaign.log()
+        return f"slurmctld stopped and killed under running tasks, and started again; node resumed {resumed} times"
+
+    def controller_away(self, campaign):
+        campaign.holds()
+        campaign.do(*campaign.hand_over())
+        self.running(campaign, 2)
+        out = campaign.ask("SELECT count(*) FROM bundle_seed WHERE outcome IS NULL")
+        self.cluster.stop("slurmctld")
+        campaign.lets_go()
+        self.cluster.wait_until(campaign.spooled, "tasks that end meanwhile")
+        campaign.do("ingest", "drill.json")
+        assert "unknown" in campaign.log(), campaign.log()
+        assert campaign.ask("SELECT count(*) FROM bundle_seed WHERE outcome NOT IN ('result')") == 0
+        taken = campaign.ended()
+        assert taken > 0, campaign.log()
+        self.cluster.start_controller()
+        self.cluster.wait_for_controller()
+        campaign.do(*campaign.follow())
+        return f"of {out} seeds {taken} taken in without a controller, the others left alone"
+
+    def answer_lost(self, campaign):
+        template = template_of(campaign, 'sbatch --parsable "$@" "$script" >> "$HOME_OF_DRILL/numbers"; exit 75')
+        campaign.holds()
+        campaign.do(*campaign.hand_over("--template", template))
+        assert campaign.ask("SELECT count(*) FROM bundle WHERE job IS NULL") == 1, campaign.log()
+        campaign.do(
+            *campaign.hand_over("--template", template)
+        )  # nothing is left to hand over: only the name is asked for
+        assert campaign.ask("SELECT count(*) FROM bundle WHERE job IS NULL") == 0, campaign.log()
+        with open(os.path.join(campaign.folder, "numbers")) as f:
+            submitted = len(f.readlines())
+        assert submitted == 1, f"submitted {submitted} times"
+        campaign.lets_go()
+        campaign.do(*campaign.follow())
+        return "sbatch took the job and nobody heard of it: found by its name, submitted once"
+
+    def submission_lost(self, campaign):
+        template = template_of(
+            campaign, 'if mkdir "$HOME_OF_DRILL/failed"; then exit 75; fi\nsbatch --parsable "$@" "$script"'
+        )
+        campaign.do(*campaign.follow("--template", template))
+        assert campaign.log().count("whether the batch system has taken the job is unknown") == 1, campaign.log()
+        return "nobody heard of the submission, and there is no job: asked for by name, submitted again"
+
+    def refused(self, campaign):
+        campaign.do(*campaign.hand_over("--option=--partition=nosuch"), code=1)
+        assert "nvalid partition" in campaign.log(), campaign.log()
+        self.cluster.stop("slurmctld")
+        campaign.do(*campaign.hand_over(), code=1)
+        assert "Unable to contact slurm controller" in campaign.log(), campaign.log()
+        self.cluster.start_controller()
+        self.cluster.wait_for_controller()
+        assert campaign.ask("SELECT count(*) FROM bundle_seed WHERE outcome IS NULL") == 0
+        campaign.run_locally()
+        return "sbatch refused, and without a controller: exit code 1, nothing out, all run by `peclet run`"
+
+    def odd_folder(self, campaign):
+        campaign.shared = os.path.join(campaign.folder, "a b %j 'c' \"d\" #e $HOME")
+        campaign.holds()
+        campaign.do(*campaign.hand_over())
+        self.running(campaign)
+        logs = os.path.join(campaign.shared, "bundles", campaign.ask("SELECT name FROM bundle"), "logs")
+        printed = sorted(os.listdir(logs))
+        assert printed and printed[0].startswith("task-"), (logs, printed)
+        campaign.lets_go()
+        campaign.do(*campaign.follow())
+        return f"a shared folder called {os.path.basename(campaign.shared)}"
+
+    def forgotten(self, campaign):
+        campaign.holds()
+        campaign.do(*campaign.hand_over())
+        self.running(campaign)
+        self.cluster.stop("slurmctld")
+        campaign.do("ingest", "drill.json", "--forget", campaign.ask("SELECT name FROM bundle"))
+        assert campaign.ask("SELECT count(*) FROM bundle_seed WHERE outcome IS NULL") == 0
+        campaign.holds_no_more()
+        campaign.run_locally()
+        campaign.lets_go()
+        self.cluster.wait_until(campaign.spooled, "late results")
+        self.cluster.start_controller()
+        self.cluster.wait_for_controller()
+        self.cluster.wait_until(lambda: not self.cluster.tasks("RUNNING,PENDING,COMPLETING"), "the late tasks to leave")
+        late = len(campaign.spooled())
+        campaign.do("ingest", "drill.json")
+        return f"forgotten while its tasks ran and nobody answered; {late} late results, none counted twice"
+
+    def one_job(self, campaign):
+        """The script of docs/clusters.md, warned as at its time limit, and preempted."""
+        saved = os.path.join(campaign.folder, "saved")
+        script = os.path.join(campaign.folder, "one_job.sh")
+        with open(script, "w") as f:
+            f.write(script_of_the_page(campaign, saved))
+        bin_folder = os.path.dirname(campaign.peclet)
+        subprocess.run(
+            ["sbatch", "--parsable", script],
+            cwd=campaign.folder,
+            check=True,
+            capture_output=True,
+            env={**campaign.environment, "PATH": bin_folder + ":" + os.environ["PATH"]},
+        )
+        interruptions = (("scancel", "--batch", "--signal=USR1", "--me"), URGENT)
+        for count, interruption in enumerate(interruptions, 1):
+            self.cluster.wait_until(
+                lambda: self.cluster.say("squeue", "-h", "--me", "--states=RUNNING", "-o", "%j") == "friction",
+                "the job",
+            )
+            time.sleep(1.5)
+            self.cluster.say(*interruption)
+            self.cluster.wait_until(lambda: self.cluster.restarts() >= count, "the job to be queued again", 120)
+        self.cluster.wait_until(lambda: not self.cluster.say("squeue", "-h", "--me"), "the last job", 240)
+        campaign.do("restore", saved, "drill.json")
+        attempts = campaign.ask("SELECT count(*) FROM attempt WHERE outcome = 'drained'")
+        node = "one job, the database on its node"
+        return f"{node}: warned, preempted, queued again; {attempts} seeds went on from checkpoints"
+
+    def owner_killed(self, campaign):
+        kills = 0
+        for _ in range(6):
+            owner = campaign.start(*campaign.follow("--seeds-per-task", "2"))
+            time.sleep(self.chance.uniform(0.1, 1.5))
+            if owner.poll() is None:
+                owner.kill()
+                kills += 1
+            owner.wait()
+        campaign.do(*campaign.follow("--seeds-per-task", "2"))
+        return f"owner killed {kills} times at any moment"
+
+    def taken_back(self, campaign):
+        campaign.do(*campaign.hand_over("--seeds-per-task", "3"))
+        self.running(campaign)
+        campaign.do("run", "drill.json", "--workers", "2", code=75)  # the seeds are not its own to run
+        campaign.do("ingest", "drill.json", "--cancel")
+        assert not self.cluster.tasks("RUNNING,PENDING"), self.cluster.say("squeue")
+        finished = campaign.ended()
+        campaign.run_locally()
+        return f"jobs cancelled after {finished} seeds, the rest run by `peclet run`"
+
+    def failing_engine(self, campaign):
+        campaign.do(*campaign.follow(), code=3)
+        blamed = campaign.blamed()
+        assert blamed == 2 * (3 + 1), campaign.log()  # two points; seed 3 is given up the third time, seed 4 fails once
+        return f"{blamed:.0f} attempts blamed on the engine, as without Slurm"
+
+    def real_engine(self, campaign):
+        owner = campaign.start(*campaign.follow("--seeds-per-task", "2"))
+        self.running(campaign)
+        element = self.cluster.tasks()
+        for one in element[:2]:
+            self.cluster.say("scontrol", "requeue", one)
+        assert owner.wait(300) == 0, campaign.log()
+        return f"peclet-engine, {min(2, len(element))} running tasks queued again"
+
+
+def kill_one(what, folder):
+    """Kills one process of a campaign with SIGKILL: its command has `what`, its environment or command the folder."""
+    for process in os.listdir("/proc"):
+        try:
+            with open(f"/proc/{process}/cmdline", "rb") as f:
+                command = f.read().replace(b"\0", b" ").decode(errors="replace")
+            with open(f"/proc/{process}/environ", "rb") as f:
+                environment = f.read().decode(errors="replace")
+        except (OSError, ValueError):
+            continue
+        if what in command and f"SLURM_SUBMIT_DIR={folder}\0" in environment:
+            os.kill(int(process), signal.SIGKILL)
+            return 1
+    return 0

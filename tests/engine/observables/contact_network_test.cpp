@@ -1,0 +1,70 @@
+// Contacts and their mobilisation, in chains with springs of known length.
+#include <gtest/gtest.h>
+
+#include "engine/kernels/pairs/pair_kinds.h"
+#include "tests/engine/observables/loose_spheres.h"
+
+namespace peclet::engine {
+namespace {
+
+// A chain 0 - 1 - 2 with overlaps of 0.1 and 0.2 and particle 3 alone; mu = 0.5, k_n = 1e4, k_t = 2/7 k_n: a
+// spring is as long as it may be at mu F_n / k_t = 1.75 overlaps.
+TEST(ContactNetwork, CountsContactsAndTheirMobilisation) {
+  const Scene scene = scene_with("contact_network");
+  System system = loose_spheres(4);
+  system.particles.position.set(0, {1, 1, 1});
+  system.particles.position.set(1, {3.9, 1, 1});
+  system.particles.position.set(2, {6.7, 1, 1});
+  system.particles.position.set(3, {5, 6, 6});
+  system.list = NeighbourList(range_table(make_pair_kinds(scene.physics, {1, 2}), 2), 0.1);
+  system.list.build(system.particles, system.box);
+  system.springs = SpringField(SpringKinds::tangential, system.list.pairs().size());
+  for (std::size_t p = 0; p < system.list.pairs().size(); ++p) {
+    const Pair& pair = system.list.pairs()[p];
+    const bool first = pair.first == 0 || pair.second == 0;
+    system.springs.set(p, {{0, first ? 0.175 : 0.0875, 0}, {}});  // all of 0.175, a quarter of 0.35
+  }
+  const auto observable = observable_of(scene, system, 256);
+  observable->sample(system, 0);
+  const Json mean = mean_of(*observable);
+  EXPECT_NEAR(mean["mobilised_friction"].get<double>(), (1 + 0.25) / 2, 1e-12);
+  EXPECT_EQ(mean["sliding_contacts"], 0.5);
+  EXPECT_EQ(mean["contact_network"]["contacts"], Json({0.25, 0.5, 0.25, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
+  const Json& mobilisation = mean["contact_network"]["mobilisation"];
+  EXPECT_EQ(mobilisation[5].get<double>() + mobilisation[4].get<double>(), 0.5);  // 0.25 but for rounding
+  EXPECT_EQ(mobilisation[19], 0.5);
+}
+
+// Contacts whose springs are half as long as they may be in the first quarter of the window, and all in the
+// others: their mean, and each block's.
+TEST(ContactNetwork, HasBlocks) {
+  const Scene scene = scene_with("contact_network");
+  System system = loose_spheres(2);
+  system.particles.position.set(0, {1, 1, 1});
+  system.particles.position.set(1, {3.9, 1, 1});
+  system.list = NeighbourList(range_table(make_pair_kinds(scene.physics, {1, 2}), 2), 0.1);
+  system.list.build(system.particles, system.box);
+  system.springs = SpringField(SpringKinds::tangential, system.list.pairs().size());
+  const auto observable = observable_of(scene, system, 256);
+  for (std::size_t block = 0; block < 32; ++block) {
+    system.springs.set(0, {{0, block < 8 ? 0.0875 : 0.175, 0}, {}});  // of 1.75 overlaps
+    if (block != 31) observable->sample(system, block);
+  }
+  Json blocks;
+  observable->add_blocks_to(blocks);
+  ASSERT_EQ(blocks["mobilised_friction"].size(), 32u);
+  EXPECT_NEAR(blocks["mobilised_friction"][7].get<double>(), 0.5, 1e-12);
+  EXPECT_NEAR(blocks["mobilised_friction"][8].get<double>(), 1, 1e-12);
+  EXPECT_TRUE(blocks["mobilised_friction"][31].is_null());  // without a sample
+  EXPECT_EQ(blocks["sliding_contacts"][7], 0);
+  EXPECT_EQ(blocks["sliding_contacts"][8], 1);
+  ASSERT_EQ(blocks["contact_network"]["mobilisation"].size(), 4u);
+  const Json& first = blocks["contact_network"]["mobilisation"][0];
+  EXPECT_EQ(first[9].get<double>() + first[10].get<double>(), 1);  // 0.5 but for rounding
+  EXPECT_EQ(blocks["contact_network"]["mobilisation"][3][19], 1);
+  EXPECT_EQ(blocks["contact_network"]["contacts"][0][1], 1);
+  EXPECT_NEAR(mean_of(*observable)["mobilised_friction"].get<double>(), (8 * 0.5 + 23) / 31, 1e-12);
+}
+
+}  // namespace
+}  // namespace peclet::engine

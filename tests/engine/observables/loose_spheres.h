@@ -1,0 +1,57 @@
+// Spheres in a box without a list, and one observable of them: configurations whose answer is known.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "engine/observables/catalogue.h"
+#include "engine/scene/scene.h"
+#include "tests/engine/draws.h"
+#include "tests/engine/small_scene.h"
+
+namespace peclet::engine {
+
+constexpr double edge = 10, timestep = 0.5;
+
+// `count` spheres of radius 1 and 2 in turn, in a cube at rest with springless contacts, without a list.
+inline System loose_spheres(std::size_t count, double shear_rate = 0) {
+  System system;
+  std::vector<double> radius(count);
+  for (std::size_t i = 0; i < count; ++i) radius[i] = i % 2 == 0 ? 1 : 2;
+  system.particles = make_particles(radius, 1);
+  system.box = PeriodicCell({edge, edge, edge}, simple_shear(shear_rate));
+  return system;
+}
+
+// A scene whose physics is at rest at kT = 2, with one observable and its settings.
+inline Scene scene_with(const char* observable, const Json& settings = Json::object(),
+                        double shear_rate = 0) {
+  Json document = small_scene();
+  document["fluid"]["thermal_energy"] = 2;
+  document["flow"]["shear_rate"] = shear_rate;
+  document["observables"] = {observable};
+  if (!settings.empty()) document[observable] = settings;
+  return read_scene(document, "scene.json");
+}
+
+inline std::unique_ptr<Observable> observable_of(const Scene& scene, const System& system,
+                                                 std::uint64_t steps) {
+  auto made = make_observables(scene, system, {timestep, steps, edge});
+  EXPECT_EQ(made.size(), 1u);
+  return std::move(made.front());
+}
+
+inline Vector3 place_in_box(Draws& draws) {
+  return {draws.uniform(0, edge), draws.uniform(0, edge), draws.uniform(0, edge)};
+}
+
+inline Json mean_of(const Observable& observable) {
+  Json mean = Json::object();
+  observable.add_to(mean);
+  return mean;
+}
+
+}  // namespace peclet::engine

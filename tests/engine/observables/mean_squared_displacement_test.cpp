@@ -1,0 +1,93 @@
+// Displacements of spheres that fly straight on.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/engine/observables/loose_spheres.h"
+
+namespace peclet::engine {
+namespace {
+
+class Flight : public testing::Test {
+ protected:
+  // Even particles fly with (1, 2, 3), odd ones with (-1, 0, 3); wrapping into the cell is undone by images.
+  void fly(Observable& observable, System& system, std::uint64_t steps) {
+    for (std::uint64_t step = 0; step < steps; step += observable.interval()) {
+      for (std::size_t i = 0; i < system.particles.count(); ++i) {
+        const double time = timestep * static_cast<double>(step);
+        const bool even = system.particles.id[i] % 2 == 0;
+        system.particles.position.set(i,
+                                      even ? Vector3{time, 2 * time, 3 * time} : Vector3{-time, 5, 3 * time});
+        system.particles.image[i] = {};
+      }
+      wrap_into_cell(system.particles, system.box);
+      observable.sample(system, 0);
+    }
+  }
+};
+
+TEST_F(Flight, HasSquaredDisplacementsOfItsSpeed) {
+  System system = loose_spheres(6);
+  std::swap(system.particles.id[0], system.particles.id[2]);  // places in memory say nothing
+  const auto observable = observable_of(scene_with("mean_squared_displacement"), system, 1000);
+  fly(*observable, system, 1000);
+  const Json mean = mean_of(*observable)["mean_squared_displacement"];
+  const auto times = mean["time"].get<std::vector<double>>();
+  EXPECT_EQ(times.front(), timestep);
+  EXPECT_EQ(times.back(), 7 * 32 * timestep);  // 4 * 2^6 samples would be more than a quarter
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const double square = times[k] * times[k];
+    EXPECT_NEAR(mean["species"][0]["y"][k].get<double>(), 4 * square, 1e-9 * square);
+    EXPECT_NEAR(mean["species"][1]["y"][k].get<double>(), 0, 1e-9 * square);
+    EXPECT_NEAR(mean["all"]["x"][k].get<double>(), square, 1e-9 * square);
+    EXPECT_NEAR(mean["all"]["y"][k].get<double>(), 2 * square, 1e-9 * square);
+    EXPECT_NEAR(mean["centre"]["x"][k].get<double>(), 0, 1e-9 * square);
+    EXPECT_NEAR(mean["centre"]["y"][k].get<double>(), square, 1e-9 * square);
+    EXPECT_NEAR(mean["centre"]["z"][k].get<double>(), 9 * square, 1e-9 * square);
+  }
+  EXPECT_EQ(mean["species"][1]["radius"], 2);
+}
+
+// Relative to the centre, the squares are (1 + 1 + 0) t^2: 2 (4 - 1) t^2 / t over D_0 = kT / (pi eta a).
+TEST_F(Flight, HasASlopeRelativeToTheCentre) {
+  System system = loose_spheres(2);
+  const Scene scene = scene_with("mean_squared_displacement");
+  const auto observable = observable_of(scene, system, 64);
+  fly(*observable, system, 64);
+  const double shorter = 14 * timestep;  // the longest lag is 28 samples
+  const double free = 2 / (std::numbers::pi * 0.1);
+  const double expected = 2 * 3 * shorter / free;
+  EXPECT_NEAR(mean_of(*observable)["self_diffusion"].get<double>(), expected, 1e-9 * expected);
+}
+
+TEST_F(Flight, UnderShearLeavesOutTheDirectionOfTheFlow) {
+  System system = loose_spheres(2, /*shear_rate=*/0.3);
+  const auto observable = observable_of(scene_with("mean_squared_displacement", {}, 0.3), system, 64);
+  fly(*observable, system, 64);
+  const Json mean = mean_of(*observable)["mean_squared_displacement"];
+  EXPECT_TRUE(mean["all"]["x"].is_null());
+  EXPECT_EQ(mean["all"]["y"][0], 0.5 * timestep * timestep * 4);
+}
+
+// Relative to the centre, the squares across the flow are (1 + 0) t^2, and count for three axes: D = 3/2 of
+// theirs.
+TEST_F(Flight, UnderShearHasTheSlopeOfTwoAxesForThree) {
+  System system = loose_spheres(2, /*shear_rate=*/0.3);
+  const auto observable = observable_of(scene_with("mean_squared_displacement", {}, 0.3), system, 64);
+  fly(*observable, system, 64);
+  const double shorter = 14 * timestep, free = 2 / (std::numbers::pi * 0.1);
+  const double expected = 1.5 * 3 * shorter / free;
+  EXPECT_NEAR(mean_of(*observable)["self_diffusion"].get<double>(), expected, 1e-9 * expected);
+}
+
+TEST_F(Flight, MayBeSampledSeldom) {
+  System system = loose_spheres(2);
+  const auto observable =
+      observable_of(scene_with("mean_squared_displacement", {{"interval", 4.6 * timestep}}), system, 100);
+  EXPECT_EQ(observable->interval(), 5u);
+  fly(*observable, system, 100);
+  EXPECT_EQ(mean_of(*observable)["mean_squared_displacement"]["time"][0], 5 * timestep);
+}
+
+}  // namespace
+}  // namespace peclet::engine

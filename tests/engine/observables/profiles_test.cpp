@@ -1,0 +1,87 @@
+// Volume fraction and velocity by y, of spheres whose slabs are known.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/engine/observables/loose_spheres.h"
+
+namespace peclet::engine {
+namespace {
+
+double sphere(double radius) { return 4 * std::numbers::pi / 3 * radius * radius * radius; }
+
+// Bins of the box of edge 10 that are 2 wide: 200 of volume.
+Json profiles_of(const System& system, int bins = 5, double shear_rate = 0) {
+  const auto observable = observable_of(scene_with("profiles", {{"bins", bins}}, shear_rate), system, 256);
+  observable->sample(system, 0);
+  return mean_of(*observable)["profiles"];
+}
+
+// A sphere of radius 1 within one bin; one of radius 2 whose middle slab between -1 and 1 has the volume
+// pi (a^2 2 - 2 / 3), the rest in two equal caps.
+TEST(Profiles, GiveEachBinItsSlabOfASphere) {
+  System system = loose_spheres(2);
+  system.particles.position.set(0, {3, 1, 3});
+  system.particles.position.set(1, {7, 5, 7});
+  const Json phi = profiles_of(system)["volume_fraction"];
+  const double middle = std::numbers::pi * (8 - 2.0 / 3), cap = (sphere(2) - middle) / 2;
+  const double expected[] = {sphere(1), cap, middle, cap, 0};
+  for (std::size_t k = 0; k < 5; ++k) {
+    EXPECT_NEAR(phi[k].get<double>(), expected[k] / 200, 1e-14) << k;
+  }
+}
+
+TEST(Profiles, GoOnAtTheOtherSideOfTheBox) {
+  System system = loose_spheres(1);
+  system.particles.position.set(0, {3, 0, 3});
+  const Json phi = profiles_of(system)["volume_fraction"];
+  EXPECT_NEAR(phi[0].get<double>(), sphere(1) / 2 / 200, 1e-14);
+  EXPECT_NEAR(phi[4].get<double>(), sphere(1) / 2 / 200, 1e-14);
+  EXPECT_EQ(phi[2], 0);
+}
+
+TEST(Profiles, OfSpheresAnywhereAddUpToTheirVolume) {
+  System system = loose_spheres(40);
+  Draws draws(6);
+  for (std::size_t i = 0; i < 40; ++i) system.particles.position.set(i, place_in_box(draws));
+  for (const int bins : {1, 5, 7, 100}) {
+    double sum = 0;
+    const Json phi = profiles_of(system, bins)["volume_fraction"];
+    for (const Json& share : phi) sum += share.get<double>() / bins;
+    EXPECT_NEAR(sum, 20 * (sphere(1) + sphere(2)) / 1000, 1e-13) << bins;
+  }
+}
+
+// Layers of equal spheres two apart, whatever their height in the bins: every bin has one layer's volume.
+TEST(Profiles, OfAUniformLatticeAreUniform) {
+  for (const double offset : {0.0, 0.3, 1.7}) {
+    System system;
+    system.particles = make_particles(std::vector<double>(25, 1), 1);
+    system.box = PeriodicCell({edge, edge, edge}, simple_shear(0));
+    for (std::size_t i = 0; i < 25; ++i) {
+      system.particles.position.set(
+          i, {2.0 * static_cast<double>(i % 5), offset + 2.0 * static_cast<double>(i / 5), 5});
+    }
+    const Json phi = profiles_of(system)["volume_fraction"];
+    for (const Json& share : phi) {
+      EXPECT_NEAR(share.get<double>(), 5 * sphere(1) / 200, 1e-14) << offset;
+    }
+  }
+}
+
+// Relative to the flow the smaller sphere moves with 3, the larger one with -1; their volumes are 1 : 8.
+TEST(Profiles, HaveTheVelocityRelativeToTheFlowByVolume) {
+  constexpr double rate = 0.3;
+  System system = loose_spheres(2, rate);
+  system.particles.position.set(0, {3, 5, 3});
+  system.particles.position.set(1, {7, 5, 7});
+  for (std::size_t i = 0; i < 2; ++i) {
+    system.particles.velocity.set(i, {rate * 5 + (system.particles.radius[i] == 1 ? 3 : -1), 7, 8});
+  }
+  const Json velocity = profiles_of(system, 1, rate)["velocity"];
+  EXPECT_NEAR(velocity["flux"][0].get<double>() / velocity["volume_fraction"][0].get<double>(),
+              (3 * 1 - 1 * 8) / 9.0, 1e-13);
+}
+
+}  // namespace
+}  // namespace peclet::engine

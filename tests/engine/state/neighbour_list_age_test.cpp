@@ -1,0 +1,147 @@
+// For how long a list holds, and that it comes back from its reference.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/state/neighbour_list.h"
+#include "tests/engine/state/listed_pairs.h"
+
+namespace peclet::engine {
+namespace {
+
+// Affine motion with the flow and random steps of up to `step` in each component.
+void move(ParticleState& particles, PeriodicCell& box, double strain, double step, Draws& draws) {
+  for (std::size_t i = 0; i < particles.count(); ++i) {
+    const Vector3 x = particles.position[i];
+    particles.position.set(i, x + Vector3{strain * x.y, 0, 0} + draws.vector(step));
+  }
+  box.deform(simple_shear(box.strain() + strain));
+}
+
+class NeighbourListOfSizes : public testing::TestWithParam<std::vector<double>> {};
+INSTANTIATE_TEST_SUITE_P(AlikeAndEightfold, NeighbourListOfSizes,
+                         testing::Values(std::vector<double>{1, 1.4}, std::vector<double>{0.5, 4}));
+
+TEST_P(NeighbourListOfSizes, MissesNoInteractingPairForAsLongAsItHolds) {
+  Draws draws(14);
+  PeriodicCell box({12, 11, 10}, simple_shear(1), -5);
+  ParticleState particles = scattered(150, GetParam(), box, draws);
+  NeighbourList list(ranges_of(particles.radius), 0.15);
+  list.build(particles, box);
+  int checks = 0;
+  for (int step = 0; step < 400; ++step) {
+    move(particles, box, 0.0025, 0.008, draws);
+    if (!list.holds(particles, box)) {
+      list.build(particles, box);
+      continue;
+    }
+    ++checks;
+    const std::vector<SeenPair> held = listed(list);
+    const std::set<std::tuple<std::uint32_t, std::uint32_t, LatticeShift>> names = [&] {
+      std::set<std::tuple<std::uint32_t, std::uint32_t, LatticeShift>> all;
+      for (const SeenPair& pair : held) all.emplace(pair.first, pair.second, pair.image);
+      return all;
+    }();
+    for (const SeenPair& pair : near(particles, box, outer)) {
+      ASSERT_TRUE(names.count({pair.first, pair.second, pair.image})) << "step " << step;
+    }
+  }
+  EXPECT_GT(list.builds(), 10u);
+  EXPECT_GT(checks, 200);
+}
+
+// Two of the largest spheres, not listed by a hair's breadth, approach as fast as the criterion supposes: it
+// gives way when they come into range, not before. Checked without strain, where each moves by half the skin
+// times the range, and at strains for which the separation lies along the direction that the flow compresses
+// most.
+TEST(NeighbourList, IsRebuiltOnlyWhenAPairCouldBeMissing) {
+  constexpr double skin = 0.15, range = 2 * outer;
+  for (const double strain : {0.0, 0.02, -0.05, 0.1}) {
+    PeriodicCell box({20, 20, 20}, simple_shear(1));
+    ParticleState particles = make_particles({1, 1}, 1);
+    // F = [[1, g], [0, 1]] compresses most, by the factor s, the eigenvector (g, s^2 - 1) of F^T F.
+    const double s = std::sqrt(1 + 0.25 * strain * strain) - 0.5 * std::abs(strain);
+    const Vector3 along = strain == 0 ? Vector3{0.6, 0, 0.8} : Vector3{strain, s * s - 1, 0};
+    const Vector3 compressed = (1 / norm(along)) * along;
+    particles.position.set(1, (range * (1 + skin) + 1e-9) * compressed);
+    NeighbourList list(ranges_of(particles.radius), skin);
+    list.build(particles, box);
+    ASSERT_TRUE(list.pairs().empty());
+    box.deform(simple_shear(strain));
+    const Vector3 carried = particles.position[1] + Vector3{strain * particles.position[1].y, 0, 0};
+    ASSERT_NEAR(norm(carried), s * range * (1 + skin), 1e-8) << strain;
+    const Vector3 direction = (1 / norm(carried)) * carried;
+    const double distance = 0.5 * (norm(carried) - range);  // of each, until they come into range
+    const auto approach = [&](double each) {
+      particles.position.set(0, each * direction);
+      particles.position.set(1, carried - each * direction);
+      return list.holds(particles, box);
+    };
+    EXPECT_TRUE(approach(distance - 1e-6)) << strain;
+    EXPECT_FALSE(approach(distance + 1e-6)) << strain;
+  }
+}
+
+// As strain grows, even a particle at rest in the flow uses up the skin: s (1 + skin) = 1.
+TEST(NeighbourList, StrainAloneUsesUpTheSkin) {
+  PeriodicCell box({20, 20, 20}, simple_shear(1));
+  ParticleState particles = make_particles({1, 1}, 1);
+  particles.position.set(1, {0, 10, 0});
+  NeighbourList list(ranges_of(particles.radius), 0.15);
+  list.build(particles, box);
+  const double stretch = 1 / 1.15;
+  const double largest = 1 / stretch - stretch;  // s(g) = stretch
+  const auto carried_to = [&](double strain) {
+    box.deform(simple_shear(strain));
+    particles.position.set(1, {strain * 10, 10, 0});
+    return list.holds(particles, box);
+  };
+  EXPECT_TRUE(carried_to(0.999 * largest));
+  EXPECT_FALSE(carried_to(1.001 * largest));
+}
+
+// In planar extension by e that of the compression is 1 / e, from whatever extension the list was built at.
+TEST(NeighbourList, ExtensionAloneUsesUpTheSkin) {
+  for (const double before : {1.0, 1.6}) {
+    PeriodicCell box({20, 20, 20}, Matrix3{});
+    ParticleState particles = make_particles({1, 1}, 1);
+    NeighbourList list(ranges_of(particles.radius), 0.15);
+    const auto carry_to = [&](double e) {
+      box.deform({Vector3{e - 1, 0, 0}, Vector3{0, 1 / e - 1, 0}, Vector3{}});
+      particles.position.set(1, {3 * e, 9 / e, 0});
+    };
+    carry_to(before);
+    list.build(particles, box);
+    carry_to(before * 1.149);
+    EXPECT_TRUE(list.holds(particles, box)) << before;
+    EXPECT_NEAR(list.largest_displacement(particles, box), 0, 1e-13) << before;
+    carry_to(before * 1.151);
+    EXPECT_FALSE(list.holds(particles, box)) << before;
+  }
+}
+
+TEST(NeighbourList, IsTheSameAgainFromItsReference) {
+  Draws draws(15);
+  PeriodicCell box({9, 8, 10}, simple_shear(1), 3);
+  ParticleState particles = scattered(80, {1, 1.4}, box, draws);
+  NeighbourList list(ranges_of(particles.radius), 0.15);
+  list.build(particles, box);
+  const PeriodicCell box_then = box;
+  move(particles, box, 0.01, 0.02, draws);
+  NeighbourList again(ranges_of(particles.radius), 0.15);
+  again.rebuild_from(list.reference(), particles, box_then);
+  ASSERT_EQ(again.pairs().size(), list.pairs().size());
+  for (std::size_t p = 0; p < list.pairs().size(); ++p) {
+    EXPECT_EQ(again.pairs()[p].first, list.pairs()[p].first);
+    EXPECT_EQ(again.pairs()[p].second, list.pairs()[p].second);
+    EXPECT_EQ(again.pairs()[p].image, list.pairs()[p].image);
+    EXPECT_EQ(again.pairs()[p].kind, list.pairs()[p].kind);
+  }
+  EXPECT_EQ(again.images(), list.images());
+  EXPECT_EQ(again.displacement_gradient_at_build(), list.displacement_gradient_at_build());
+  EXPECT_EQ(again.allowed_displacement(box), list.allowed_displacement(box));
+  EXPECT_EQ(again.largest_displacement(particles, box), list.largest_displacement(particles, box));
+}
+
+}  // namespace
+}  // namespace peclet::engine

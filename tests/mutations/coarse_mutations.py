@@ -1,0 +1,98 @@
+"""Coarse mistakes, each shown to every study and every test of the engine and of the physics.
+
+What is broken; file, text in it that occurs once, and what takes its place.
+"""
+
+COARSE = [
+    (
+        "plus sign in the second Brownian torque",
+        "engine/terms/pair_noise.h",
+        "root.pump_second * turned - root.spin_second * spun",
+        "root.pump_second * turned + root.spin_second * spun",
+    ),
+    (
+        "noise of half the variance",
+        "engine/kernels/pair_pass.cpp",
+        "std::sqrt(2 * physics.thermal_energy / timestep)",
+        "std::sqrt(physics.thermal_energy / timestep)",
+    ),
+    (
+        "image velocity missing",
+        "engine/state/periodic_cell.cpp",
+        "edge_velocities_ = velocity_gradient_ * edges_;",
+        "edge_velocities_ = 0 * (velocity_gradient_ * edges_);",
+    ),
+    (
+        "torque coupling of lubrication omitted",
+        "engine/terms/pair_resistance.h",
+        "      .pump_first = k.pump_first * pump,\n      .pump_second = k.pump_second * pump,\n",
+        "      .pump_first = 0.0 * pump,\n      .pump_second = 0.0 * pump,\n",
+    ),
+    (
+        "squeeze mode doubled",
+        "engine/terms/pair_resistance.h",
+        ".squeeze_inverse = six * 2 * b * b / cube",
+        ".squeeze_inverse = six * 4 * b * b / cube",
+    ),
+    (
+        "shear mode with another sign",
+        "engine/terms/lubrication.h",
+        "(R.squeeze * closing) * n + R.shear * sliding",
+        "(R.squeeze * closing) * n - R.shear * sliding",
+    ),
+    (
+        "every pair counted twice in the stress",
+        "engine/observables/production.cpp",
+        "block.stress[t] += sums.stress[t];",
+        "block.stress[t] += 2 * sums.stress[t];",
+    ),
+    (
+        "contact half as stiff",
+        "engine/terms/contact.h",
+        "return normal_stiffness * overlap;",
+        "return 0.5 * normal_stiffness * overlap;",
+    ),
+    (
+        "spheres carried round the wrong way",
+        "engine/flow/background_flow.h",
+        "0.5 * (x.y - y.x)};",
+        "-0.5 * (x.y - y.x)};",
+    ),
+    (
+        "drag of a slip sphere",
+        "engine/terms/drag.h",
+        "return 6 * std::numbers::pi * viscosity * radius;",
+        "return 4 * std::numbers::pi * viscosity * radius;",
+    ),
+    (
+        "hollow spheres",
+        "engine/state/particles.cpp",
+        "particles.inertia.push_back(0.4 * mass",
+        "particles.inertia.push_back(2.0 / 3 * mass",
+    ),
+    (
+        "friction twice as strong",
+        "engine/terms/friction.h",
+        "return (contact.friction / contact.tangential_stiffness)",
+        "return (2 * contact.friction / contact.tangential_stiffness)",
+    ),
+    (
+        "contact spring that is not turned",
+        "engine/terms/tangential_spring.h",
+        "Vector3Of<Real> turned = across(spring, normal);",
+        "Vector3Of<Real> turned = spring + Real{0.0} * across(spring, normal);",
+    ),
+    ("repulsion of twice the range", "engine/terms/repulsion.h", ".decay = 1 / length", ".decay = 0.5 / length"),
+    (
+        "structural stress from one side of each pair",
+        "engine/observables/structure.cpp",
+        "within(kind.radius_first) + within(kind.radius_second)",
+        "within(kind.radius_first)",
+    ),
+    (
+        "gap clamped at ten times the inner gap",
+        "engine/terms/pair_resistance.h",
+        "pair.surface_distance(), Real{inner_gap})",
+        "pair.surface_distance(), Real{10 * inner_gap})",
+    ),
+]
