@@ -305,7 +305,7 @@ std::optional<std::string> too_large(const Json& value) {
 
 ResultError::ResultError(const std::string& message) : std::runtime_error(plain(message)) {}
 
-void check_shape(const Json& document) {
+std::string check_shape(const Json& document) {
   const Place whole{document, ""};
   if (!document.is_object()) throw ResultError("must be an object");
   if (whole.at("schema_version").value != 1) refuse("/schema_version", "must be 1");
@@ -328,10 +328,11 @@ void check_shape(const Json& document) {
   whole.with("gate", [](const Place& gate) {
     if (!gate.value.is_null()) must_be_object(gate);
   });
-  engine_identity(whole.at("engine").value);
+  const std::string engine = engine_identity(whole.at("engine").value);
   if (const std::optional<std::string> pointer = too_large(document)) {
     refuse(*pointer, fmt::format("must be a number between -{0:g} and {0:g}", largest_number));
   }
+  return engine;
 }
 
 std::string engine_identity(const Json& engine) {

@@ -201,7 +201,7 @@ bool Ledger::take_result(const Grant& grant, const std::string& sha256, std::int
     if (result.point != grant.job.point || result.seed != grant.job.seed) {
       throw ResultError("it is of another point or seed than the job");
     }
-    if (engine_identity(result.document.at("engine")) != engine_.identity()) {
+    if (result.engine != engine_.identity()) {
       throw ResultError("it names another engine than the worker's hello");
     }
     return result;

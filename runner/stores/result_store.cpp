@@ -38,7 +38,7 @@ StoredResult ResultStore::store(const RealisationResult& result, const Target& t
       "SELECT point.point_id, coalesce(engine_identity, ''), content_sha256, state, kept_apart FROM point "
       "LEFT JOIN realisation ON realisation.point_id = point.point_id AND seed = ? WHERE hash = ? AND "
       "(kept_apart = 0 OR engine_identity = ?) ORDER BY kept_apart DESC");
-  const std::string identity = engine_identity(result.document.at("engine"));
+  const std::string& identity = result.engine;
   known.bind(result.seed).bind(result.point).bind(identity);
   if (!known.step()) return {Stored::unknown_point};
   const std::int64_t point = known.integer(0);
