@@ -96,8 +96,7 @@ std::string fault_of(Database& database, const PointRecord& point, const Realisa
     const RealisationResult result = parse_result(document->dump());
     if (result.point != point.hash || result.seed != record.seed) return "has the result of another seed";
     if (result.content_sha256 != record.content_sha256) return "has a result that does not have its hash";
-    if (engine_identity(result.document.at("engine")) != point.engine_identity)
-      return "has a result of another engine";
+    if (result.engine != point.engine_identity) return "has a result of another engine";
     const std::vector<Observed> all = observe(result.document, observables);
     const Observed& observed = all.front();
     const std::string further = further_values_text(observables, all).value_or("");

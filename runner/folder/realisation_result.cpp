@@ -88,7 +88,7 @@ RealisationResult parse_result(std::string_view text) {
   } catch (const InputError& error) {
     throw ResultError(error.what());
   }
-  check_shape(result.document);
+  result.engine = check_shape(result.document);
   result.point = result.document["point"].get<std::string>();
   result.seed = result.document["seed"].get<int>();
   result.cause = result.document["ending"]["cause"].get<std::string>();

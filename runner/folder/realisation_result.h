@@ -17,6 +17,7 @@ struct RealisationResult {
   std::string point;
   int seed = 0;
   std::string cause;           // of the ending: "completed", "overlap", ...
+  std::string engine;          // engine_identity()
   std::string content_sha256;  // of what repetitions must share
   bool completed() const { return cause == "completed"; }
 };

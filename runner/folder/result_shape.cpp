@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <vector>
@@ -285,22 +286,26 @@ void check_ending(const Place& document) {
     check_paths(quantities_of(document.value));
 }
 
-// The pointer of a number that is too large, or ""; the reader has refused those that are not finite.
-std::string too_large(const Json& value, const std::string& pointer) {
-  if (value.is_number_float() && !(std::abs(value.get<double>()) <= largest_number)) return pointer;
-  if (!value.is_structured()) return "";
-  for (const auto& [key, member] : value.items()) {
-    if (member.is_primitive() && !member.is_number_float()) continue;
-    if (std::string found = too_large(member, pointer + '/' + key); !found.empty()) return found;
+// The pointer of a number that is too large; the reader has refused those that are not finite. It is put
+// together on the way back, because a result has thousands of numbers, and none of them should be.
+std::optional<std::string> too_large(const Json& value) {
+  if (value.is_number_float() && !(std::abs(value.get<double>()) <= largest_number)) return "";
+  if (!value.is_structured()) return std::nullopt;
+  for (auto member = value.begin(); member != value.end(); ++member) {
+    if (member->is_primitive() && !member->is_number_float()) continue;
+    if (const std::optional<std::string> below = too_large(*member)) {
+      const std::string key = value.is_object() ? member.key() : fmt::format("{}", member - value.begin());
+      return '/' + key + *below;
+    }
   }
-  return "";
+  return std::nullopt;
 }
 
 }  // namespace
 
 ResultError::ResultError(const std::string& message) : std::runtime_error(plain(message)) {}
 
-void check_shape(const Json& document) {
+std::string check_shape(const Json& document) {
   const Place whole{document, ""};
   if (!document.is_object()) throw ResultError("must be an object");
   if (whole.at("schema_version").value != 1) refuse("/schema_version", "must be 1");
@@ -323,10 +328,11 @@ void check_shape(const Json& document) {
   whole.with("gate", [](const Place& gate) {
     if (!gate.value.is_null()) must_be_object(gate);
   });
-  engine_identity(whole.at("engine").value);
-  if (const std::string pointer = too_large(document, ""); !pointer.empty()) {
-    refuse(pointer, fmt::format("must be a number between -{0:g} and {0:g}", largest_number));
+  const std::string engine = engine_identity(whole.at("engine").value);
+  if (const std::optional<std::string> pointer = too_large(document)) {
+    refuse(*pointer, fmt::format("must be a number between -{0:g} and {0:g}", largest_number));
   }
+  return engine;
 }
 
 std::string engine_identity(const Json& engine) {

@@ -24,8 +24,9 @@ class ResultError : public std::runtime_error {
 constexpr double largest_number = 1e100;
 
 // Throws ResultError naming the first value that is not as it must be, and what is allowed. `completed`
-// realisations have means, others none. Members that engines did not always write may be absent.
-void check_shape(const Json& document);
+// realisations have means, others none. Members that engines did not always write may be absent. Returns
+// engine_identity().
+std::string check_shape(const Json& document);
 
 // Engine version, instruction set and hash of the binary: results of one point share it.
 // Throws ResultError when one of the three is missing or none.

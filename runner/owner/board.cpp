@@ -94,15 +94,14 @@ std::vector<PointForecast> Board::forecasts() const {
   return forecasts;
 }
 
-Board::Standing Board::standing(int place) const {
-  const Costs& costs = costs_[static_cast<std::size_t>(place)];
-  return {place, scheduler_->kept(place), costs.wall, costs.processor,
-          running_[static_cast<std::size_t>(place)]};
+Board::Standing Board::standing(SeedId id) const {
+  const auto place = static_cast<std::size_t>(id.point);
+  return {scheduler_->kept(id), costs_[place].wall, costs_[place].processor, running_[place]};
 }
 
 void Board::put_back(Standing&& standing) noexcept {
-  const auto place = static_cast<std::size_t>(standing.place);
-  scheduler_->put_back(standing.place, std::move(standing.point));
+  const auto place = static_cast<std::size_t>(standing.seed.id.point);
+  scheduler_->put_back(std::move(standing.seed));
   costs_[place] = {standing.wall, standing.processor};
   running_[place] = standing.running;
 }

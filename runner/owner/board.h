@@ -54,14 +54,13 @@ class Board {
   double expected_seconds() const { return scheduler_->expected_seconds(running_); }
   std::vector<PointForecast> forecasts() const;
 
-  // One point's standing, to be put back when what changed it fails.
+  // What a result of one seed can change, to be put back when taking it fails.
   struct Standing {
-    int place;
-    Scheduler::Point point;
+    Scheduler::Kept seed;
     Cost wall, processor;
     int running;
   };
-  Standing standing(int place) const;
+  Standing standing(SeedId id) const;
   void put_back(Standing&& standing) noexcept;
 
  private:

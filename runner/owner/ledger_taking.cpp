@@ -55,14 +55,14 @@ bool is_of_the_result(const std::exception& error) {
 // What taking a result changes, in the database and here; taken back unless it is kept.
 class Ledger::Taking {
  public:
-  Taking(Ledger& ledger, const std::string& point)
+  Taking(Ledger& ledger, const RealisationResult& result)
       : ledger_(ledger),
         changes_(ledger.database_.connection()),
         after_(ledger.after_.mark()),
         spent_seconds_(ledger.spending_.seconds()),
         lacking_(ledger.lacking_) {
-    const std::optional<int> place = ledger.board_.place_of(point);
-    if (place && ledger.board_.has_seeds()) standing_ = ledger.board_.standing(*place);
+    const std::optional<int> place = ledger.board_.place_of(result.point);
+    if (place && ledger.board_.has_seeds()) standing_ = ledger.board_.standing({*place, result.seed});
   }
   ~Taking() {
     if (kept_) return;
@@ -93,7 +93,7 @@ std::string Ledger::take_whole(const fs::path& spool, const Reading& read, const
   std::string why;
   try {
     const RealisationResult result = read();
-    Taking taking(*this, result.point);
+    Taking taking(*this, result);
     book(result);
     taking.keep();
     return "";
@@ -201,7 +201,7 @@ bool Ledger::take_result(const Grant& grant, const std::string& sha256, std::int
     if (result.point != grant.job.point || result.seed != grant.job.seed) {
       throw ResultError("it is of another point or seed than the job");
     }
-    if (engine_identity(result.document.at("engine")) != engine_.identity()) {
+    if (result.engine != engine_.identity()) {
       throw ResultError("it names another engine than the worker's hello");
     }
     return result;

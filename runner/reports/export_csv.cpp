@@ -43,7 +43,9 @@ class ScalarColumns {
  public:
   void add(std::size_t row, const std::vector<QuantityEstimate>& estimates) {
     for (const QuantityEstimate& found : estimates) {
-      columns_[{found.quantity.name, found.quantity.unit}][row] = found.estimates.front();
+      // What is not described has no unit, and shares its column with what is described as a number.
+      const std::string unit = found.quantity.unit.empty() ? "1" : found.quantity.unit;
+      columns_[{found.quantity.name, unit}][row] = found.estimates.front();
     }
   }
   // `others` are the titles of the columns before these.
@@ -75,7 +77,7 @@ class ScalarColumns {
                               const std::vector<std::string>& others) {
     const bool is_taken = std::find(others.begin(), others.end(), name) != others.end();
     const std::string unambiguous = is_taken ? "quantity " + name : name;
-    return csv_text(unit.empty() || unit == "1" ? unambiguous : fmt::format("{} [{}]", unambiguous, unit));
+    return csv_text(unit == "1" ? unambiguous : fmt::format("{} [{}]", unambiguous, unit));
   }
 
   std::map<std::pair<std::string, std::string>, std::map<std::size_t, Estimate>>

@@ -26,13 +26,29 @@ std::optional<std::size_t> index_in(std::string_view part) {
   return index;
 }
 
-const Json* member(const Json& value, std::string_view part) {
-  if (value.is_object()) {
-    const auto found = value.find(part);
-    return found == value.end() ? nullptr : &*found;
+const Json* below(const Json& value, std::string_view path);
+
+const Json* element_below(const Json& list, std::string_view path) {
+  const std::optional<std::size_t> index = index_in(take_part(path));
+  return index && *index < list.size() ? below(list[*index], path) : nullptr;
+}
+
+// Names may hold slashes: the longest one through which the path leads somewhere counts.
+const Json* member_below(const Json& object, std::string_view path) {
+  for (std::string_view name = path;; name = name.substr(0, name.rfind('/'))) {
+    if (const auto found = object.find(name); found != object.end()) {
+      const bool is_whole = name.size() == path.size();
+      const Json* const there = below(*found, is_whole ? std::string_view() : path.substr(name.size() + 1));
+      if (there != nullptr) return there;
+    }
+    if (name.find('/') == std::string_view::npos) return nullptr;
   }
-  const std::optional<std::size_t> index = value.is_array() ? index_in(part) : std::nullopt;
-  return index && *index < value.size() ? &value[*index] : nullptr;
+}
+
+const Json* below(const Json& value, std::string_view path) {
+  if (path.empty()) return &value;
+  if (value.is_object()) return member_below(value, path);
+  return value.is_array() ? element_below(value, path) : nullptr;
 }
 
 Quantity described(const std::string& name, const Json& about) {
@@ -118,15 +134,7 @@ std::vector<Quantity> quantities_of(const Json& result) {
 }
 
 const Json* at_path(const Json& document, std::string_view path) {
-  const Json* value = &document;
-  for (path = without_slash(path); value != nullptr && !path.empty();) {
-    // Names may hold slashes.
-    if (value->is_object()) {
-      if (const auto whole = value->find(path); whole != value->end()) return &*whole;
-    }
-    value = member(*value, take_part(path));
-  }
-  return value;
+  return below(document, without_slash(path));
 }
 
 std::optional<ControlVariate> control_of(const Json& result, std::string_view path) {

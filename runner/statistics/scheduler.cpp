@@ -4,7 +4,9 @@
 #include <cassert>
 #include <cmath>
 #include <compare>
+#include <iterator>
 #include <limits>
+#include <stdexcept>
 #include <tuple>
 #include <utility>
 
@@ -31,7 +33,7 @@ Scheduler::Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, 
     Point point;
     point.outcomes = std::move(known);
     // Seeds beyond the maximum (it was larger once) are kept by the database and have no part in the looks.
-    point.outcomes.resize(static_cast<std::size_t>(maximum_));
+    if (std::ssize(point.outcomes) > maximum_) point.outcomes.resize(static_cast<std::size_t>(maximum_));
     for (const std::optional<Outcome>& outcome : point.outcomes) {
       point.phases.push_back(outcome ? Phase::ended : Phase::waiting);
       if (!outcome) continue;
@@ -44,8 +46,24 @@ Scheduler::Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, 
   }
 }
 
+Scheduler::Phase& Scheduler::phase_of(SeedId id) {
+  if (id.seed < 0 || id.seed >= maximum_) throw std::out_of_range("no seed below the maximum");
+  Point& point = point_at(id.point);
+  const auto seed = static_cast<std::size_t>(id.seed);
+  if (seed >= point.phases.size()) {
+    point.outcomes.resize(seed + 1);
+    point.phases.resize(seed + 1, Phase::waiting);
+  }
+  return point.phases[seed];
+}
+
+void Scheduler::close(Point& point) {
+  while (point.closed < std::ssize(point.outcomes) && point.outcomes[static_cast<std::size_t>(point.closed)])
+    ++point.closed;
+}
+
 void Scheduler::look_at(Point& point) {
-  while (point.closed < maximum_ && point.outcomes[static_cast<std::size_t>(point.closed)]) ++point.closed;
+  close(point);
   point.looks = replay_looks(point.outcomes, target_, minimum_, maximum_);
   point.expected = expected_seeds(point.looks, target_, minimum_, maximum_);
   point.fall = decides(point.looks) ? 0 : expected_fall(point);
@@ -85,7 +103,8 @@ int Scheduler::wanted(int point) const {
 
 int Scheduler::ended(int point) const {
   const std::vector<Phase>& phases = point_at(point).phases;
-  return static_cast<int>(std::count(phases.begin(), phases.begin() + wanted(point), Phase::ended));
+  const auto end = phases.begin() + std::min<std::ptrdiff_t>(wanted(point), std::ssize(phases));
+  return static_cast<int>(std::count(phases.begin(), end, Phase::ended));
 }
 
 bool Scheduler::is_open(const Point& point) const {
@@ -149,18 +168,24 @@ Scheduler::Rank Scheduler::rank(const Point& point, double seconds) const {
   return {0, std::max(1, std::min(point.expected, ceiling_) - point.begun) * seconds};
 }
 
+Scheduler::Stretch Scheduler::still_open(const Point& point, int steps) const {
+  const auto end = static_cast<std::ptrdiff_t>(std::min(look_ahead(point, steps), ceiling_));
+  const std::ptrdiff_t size = std::ssize(point.phases);
+  const std::ptrdiff_t known = std::clamp<std::ptrdiff_t>(end, point.closed, size);
+  return {std::span(point.phases.begin() + point.closed, point.phases.begin() + known),
+          static_cast<int>(std::max<std::ptrdiff_t>(0, end - size))};
+}
+
 int Scheduler::waiting(const Point& point) const {
-  const auto begin = point.phases.begin() + point.closed;
-  const auto end = std::max(begin, point.phases.begin() + std::min(look_ahead(point, 0), ceiling_));
-  return static_cast<int>(std::count(begin, end, Phase::waiting));
+  const auto [known, beyond] = still_open(point, 0);
+  return static_cast<int>(std::count(known.begin(), known.end(), Phase::waiting)) + beyond;
 }
 
 std::optional<int> Scheduler::waiting_seed(const Point& point, int steps) const {
-  const auto begin = point.phases.begin() + point.closed;
-  const auto end = std::max(begin, point.phases.begin() + std::min(look_ahead(point, steps), ceiling_));
-  const auto found = std::find(begin, end, Phase::waiting);
-  if (found == end) return std::nullopt;
-  return static_cast<int>(found - point.phases.begin());
+  const auto [known, beyond] = still_open(point, steps);
+  const auto found = std::find(known.begin(), known.end(), Phase::waiting);
+  if (found == known.end() && beyond == 0) return std::nullopt;
+  return point.closed + static_cast<int>(found - known.begin());
 }
 
 std::optional<SeedId> Scheduler::most_urgent(int steps, double budget) const {
@@ -186,39 +211,58 @@ std::optional<SeedId> Scheduler::most_urgent(int steps, double budget) const {
 }
 
 void Scheduler::begin(SeedId id) {
-  Point& point = point_at(id.point);
-  Phase& phase = point.phases.at(static_cast<std::size_t>(id.seed));
+  Phase& phase = phase_of(id);
   assert(phase == Phase::waiting);
   phase = Phase::out;
-  ++point.begun;
+  ++point_at(id.point).begun;
 }
 
 void Scheduler::give_back(SeedId id) {
-  Point& point = point_at(id.point);
-  Phase& phase = point.phases.at(static_cast<std::size_t>(id.seed));
+  Phase& phase = phase_of(id);
   assert(phase == Phase::out);
   phase = Phase::waiting;
-  --point.begun;
+  --point_at(id.point).begun;
+}
+
+Scheduler::Kept Scheduler::kept(SeedId id) const {
+  const Point& point = point_at(id.point);
+  const Progress& progress = point;
+  Kept kept{id, progress, Phase::waiting, std::nullopt};
+  if (const auto seed = static_cast<std::size_t>(id.seed); seed < point.phases.size()) {
+    kept.phase = point.phases[seed];
+    kept.outcome = point.outcomes[seed];
+  }
+  return kept;
+}
+
+void Scheduler::put_back(Kept&& kept) noexcept {
+  Point& point = point_at(kept.id.point);
+  static_cast<Progress&>(point) = std::move(kept.progress);
+  if (const auto seed = static_cast<std::size_t>(kept.id.seed); seed < point.phases.size()) {
+    point.phases[seed] = kept.phase;
+    point.outcomes[seed] = std::move(kept.outcome);
+  }
 }
 
 bool Scheduler::end(SeedId id, const Outcome& outcome) {
   if (id.seed >= maximum_) return false;
+  Phase& phase = phase_of(id);
   Point& point = point_at(id.point);
-  const auto seed = static_cast<std::size_t>(id.seed);
-  if (point.phases[seed] == Phase::waiting) ++point.begun;
-  point.phases[seed] = Phase::ended;
-  const bool again = point.outcomes[seed].has_value();
+  if (phase == Phase::waiting) ++point.begun;
+  phase = Phase::ended;
+  std::optional<Outcome>& known = point.outcomes[static_cast<std::size_t>(id.seed)];
+  const bool again = known.has_value();
   // A late result comes in place of a seed that was lost.
-  const bool had_value = again && point.outcomes[seed]->kind == Outcome::Kind::value;
+  const bool had_value = again && known->kind == Outcome::Kind::value;
   if (!had_value) count_in(point, outcome);
   point.all_ended += again ? 0 : 1;
-  point.outcomes[seed] = outcome;
+  known = outcome;
   if (again) {
     look_at(point);
     return true;
   }
   if (id.seed != point.closed || decides(point.looks)) return false;
-  while (point.closed < maximum_ && point.outcomes[static_cast<std::size_t>(point.closed)]) ++point.closed;
+  close(point);
   if (point.closed < look_ahead(point, 0)) return false;
   look_at(point);
   return true;

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -102,11 +103,10 @@ class Scheduler {
   const Target& target() const { return target_; }
   int points() const { return static_cast<int>(points_.size()); }
 
-  // What is known of one point; for kept() and put_back().
+  // How one seed stands; one that nothing is known of waits.
   enum class Phase : unsigned char { waiting, out, ended };
-  struct Point {
-    std::vector<std::optional<Outcome>> outcomes;  // maximum long
-    std::vector<Phase> phases;
+  // What changes of a point when one of its seeds ends.
+  struct Progress {
     std::vector<Look> looks;
     int begun = 0;  // out or ended
     int all_ended = 0;
@@ -114,18 +114,34 @@ class Scheduler {
     int closed = 0;                       // the seeds 0 .. closed - 1 have ended
     int expected = 0;                     // seeds at which it may be expected to stop
     double fall = 0;  // of the half-width until the next look, as a share of the tolerance
+    std::optional<double> seconds;
+  };
+  // A point as it is now, apart from its other seeds: all that end() and set_cost() can change.
+  struct Kept {
+    SeedId id;
+    Progress progress;
+    Phase phase = Phase::waiting;
+    std::optional<Outcome> outcome;
+  };
+  Kept kept(SeedId id) const;
+  // Puts back what was kept, when what has been told of this seed since turns out not to count.
+  void put_back(Kept&& kept) noexcept;
+
+ private:
+  struct Point : Progress {
+    // As long as the largest seed that is known asks for, because the maximum may be far beyond what the
+    // point will ever need: later seeds wait, and have no outcome.
+    std::vector<std::optional<Outcome>> outcomes;
+    std::vector<Phase> phases;
     int priority = 0;
     bool cancelled = false;
     double work = 1;
-    std::optional<double> seconds;
   };
-  // A point as it is now, to be put back when what is told of it from now on turns out not to count.
-  Point kept(int point) const { return point_at(point); }
-  void put_back(int point, Point&& kept) noexcept { point_at(point) = std::move(kept); }
-
- private:
   const Point& point_at(int point) const { return points_[static_cast<std::size_t>(point)]; }
   Point& point_at(int point) { return points_[static_cast<std::size_t>(point)]; }
+  // Makes room for the seed. Throws std::out_of_range for one beyond the maximum.
+  Phase& phase_of(SeedId id);
+  static void close(Point& point);
   void look_at(Point& point);
   void count_in(Point& point, const Outcome& outcome) const;
   // The look after the last one made, and the one after that.
@@ -145,6 +161,13 @@ class Scheduler {
   int waiting(const Point& point) const;
   // The first of them, or of those of `steps` looks further.
   std::optional<int> waiting_seed(const Point& point, int steps) const;
+  // Of the seeds that a look so many steps ahead is still waiting for, those that `phases` tells of, and how
+  // many follow.
+  struct Stretch {
+    std::span<const Phase> known;
+    int beyond = 0;
+  };
+  Stretch still_open(const Point& point, int steps) const;
   std::optional<SeedId> most_urgent(int steps, double budget) const;
 
   Target target_;

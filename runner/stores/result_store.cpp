@@ -18,6 +18,18 @@ std::optional<Number> number_at(const Json& document, const char* pointer) {
   return document.at(where).get<Number>();
 }
 
+// The engine has a row of its own. A result may be large, so it is not copied to leave that out.
+std::string text_without_engine(const Json& document) {
+  std::string text = "{";
+  for (const auto& [key, value] : document.items()) {
+    if (key == "engine") continue;
+    if (text.size() > 1) text += ',';
+    text += Json(key).dump() + ':';
+    text += value.dump();
+  }
+  return text + '}';
+}
+
 }  // namespace
 
 StoredResult ResultStore::store(const RealisationResult& result, const Target& target) {
@@ -26,7 +38,7 @@ StoredResult ResultStore::store(const RealisationResult& result, const Target& t
       "SELECT point.point_id, coalesce(engine_identity, ''), content_sha256, state, kept_apart FROM point "
       "LEFT JOIN realisation ON realisation.point_id = point.point_id AND seed = ? WHERE hash = ? AND "
       "(kept_apart = 0 OR engine_identity = ?) ORDER BY kept_apart DESC");
-  const std::string identity = engine_identity(result.document.at("engine"));
+  const std::string& identity = result.engine;
   known.bind(result.seed).bind(result.point).bind(identity);
   if (!known.step()) return {Stored::unknown_point};
   const std::int64_t point = known.integer(0);
@@ -93,9 +105,7 @@ void ResultStore::store_numbers(std::int64_t point, const RealisationResult& res
       .bind(observed.first_half)
       .bind(further)
       .run();
-  Json without_engine = document;
-  without_engine.erase("engine");
-  store_result_text(connection_, point, result.seed, without_engine.dump(), result.completed());
+  store_result_text(connection_, point, result.seed, text_without_engine(document), result.completed());
 }
 
 void ResultStore::store_looks(std::int64_t point, const std::vector<Look>& looks) {

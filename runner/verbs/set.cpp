@@ -59,6 +59,20 @@ void check_usage(const SetOptions& options) {
   }
 }
 
+// Refuses the tolerance of the kind that the campaign does not have: both are not allowed beside each other.
+void check_kind(const Json& document, const SetOptions& options) {
+  const auto must_not_have = [&](const std::optional<double>& given, const char* option, const char* other,
+                                 const char* other_option) {
+    const Json::json_pointer there(other);
+    if (!given || !document.contains(there)) return;
+    throw InputError(options.campaign.string(), other, shortened(document[there]),
+                     fmt::format("is changed by {}, not by {}", other_option, option));
+  };
+  must_not_have(options.tolerance, "--tolerance", "/target/absolute_tolerance", "--absolute-tolerance");
+  must_not_have(options.absolute_tolerance, "--absolute-tolerance", "/target/relative_tolerance",
+                "--tolerance");
+}
+
 // The text as it is to be.
 std::string edited(const std::string& text, const std::vector<Edit>& edits, const fs::path& file) {
   Json expected = parse_json_input(text, file.string());
@@ -92,6 +106,7 @@ Reply take_over(const SetOptions& options) {
   {
     const FileLock lock(file);  // two verbs at once: the second one reads what the first has written
     before = read_input(file);
+    check_kind(parse_json_input(before, options.campaign.string()), options);
     text = edited(before, edits_of(options), options.campaign);
     const Campaign campaign =
         parse_campaign(parse_json_input(text, options.campaign.string()), options.campaign.string());

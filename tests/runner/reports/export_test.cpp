@@ -189,6 +189,37 @@ TEST(Export, ColumnsOfACsvAreNotCalledAlike) {
   EXPECT_TRUE(seen.count("quantity count"));
 }
 
+// An engine learned to describe its numbers while the campaign ran: "1" is then their unit.
+TEST(Export, ANumberThatOnlySomePointsDescribeHasOneColumnOfACsv) {
+  StoredCampaign campaign(2, 4, 40);
+  for (int seed = 0; seed < 4; ++seed) {
+    for (int point = 0; point < 2; ++point) {
+      campaign.complete_with(point, seed, viscosities[seed], [point](Json& result) {
+        result["mean"]["x"] = point;
+        result.erase("quantities");
+        if (point == 0) return;
+        const Json about = {{"symbol", ""}, {"unit", "1"}, {"estimator", "mean"}};
+        result["quantities"] = {{"relative_viscosity", about}, {"x", about}};
+      });
+    }
+  }
+  std::istringstream lines(export_csv(campaign.database(), true));
+  std::vector<std::vector<std::string>> rows;
+  for (std::string line; std::getline(lines, line);) {
+    rows.emplace_back();
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+  }
+  ASSERT_EQ(rows.size(), 3U);
+  const auto column = std::find(rows[0].begin(), rows[0].end(), "x");
+  ASSERT_NE(column, rows[0].end());
+  EXPECT_EQ(std::count(rows[0].begin(), rows[0].end(), "x"), 1);
+  const auto place = static_cast<std::size_t>(column - rows[0].begin());
+  EXPECT_EQ(rows[1].at(place), "0");
+  EXPECT_EQ(rows[2].at(place), "1");
+  EXPECT_EQ(rows[2].at(place + 2), "4");
+}
+
 TEST(Export, TheLongTableHasARowForEveryNumber) {
   StoredCampaign campaign(2, 4, 20);
   const auto add = [](Json& result, double v) {

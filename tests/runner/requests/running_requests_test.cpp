@@ -134,6 +134,8 @@ TEST(Set, RefusesAFaultWithNothingWritten) {
   const std::string before = read_file(campaign.options.campaign);
   const std::vector<std::pair<std::function<void(SetOptions&)>, std::string>> faults{
       {[](SetOptions& options) { options.tolerance = 5; }, "/target/relative_tolerance: 5.0: must be"},
+      {[](SetOptions& options) { options.absolute_tolerance = 0.1; },
+       "/target/relative_tolerance: 0.05: is changed by --tolerance, not by --absolute-tolerance"},
       {[](SetOptions& options) { options.minimum = 100; }, "/realisations/maximum: 60: must be"},
       {[](SetOptions& options) { options.priority = 1; }, "--priority: needs the points"},
       {[](SetOptions& options) { options.points = {"peclet=1"}; }, "--point: is for --priority"},
@@ -149,6 +151,23 @@ TEST(Set, RefusesAFaultWithNothingWritten) {
   EXPECT_EQ(read_file(campaign.options.campaign), before);
   EXPECT_TRUE(waiting_requests(campaign.directory()).empty());
   EXPECT_EQ(campaign.count("SELECT count(*) FROM event WHERE request IS NOT NULL"), 0);
+}
+
+TEST(Set, SaysWhichOptionAnAbsoluteToleranceTakes) {
+  CampaignOnDisk campaign;
+  campaign.document["target"].erase("relative_tolerance");
+  campaign.document["target"]["absolute_tolerance"] = 0.5;
+  const std::string before = campaign.document.dump();
+  write_durably(campaign.options.campaign, before);
+  try {
+    set(campaign, [](SetOptions& options) { options.tolerance = 0.04; });
+    FAIL() << "it was taken";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.pointer(), "/target/absolute_tolerance");
+    EXPECT_EQ(error.value(), "0.5");
+    EXPECT_EQ(error.allowed(), "is changed by --absolute-tolerance, not by --tolerance");
+  }
+  EXPECT_EQ(read_file(campaign.options.campaign), before);
 }
 
 TEST(Set, OfACampaignThatWasNeverRunChangesItsFile) {

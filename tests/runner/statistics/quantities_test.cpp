@@ -57,6 +57,18 @@ TEST(Quantities, APathLeadsThroughObjectsAndLists) {
   }
 }
 
+TEST(Quantities, AListWhoseNameHasASlashHasElements) {
+  const Json mean = {{"P/P0", {1, 2}}, {"P", {{"x", 3}}}, {"a/b", {{"c", 4}}}, {"a", {{"b", {{"d", 5}}}}}};
+  EXPECT_EQ(*at_path(mean, "P/P0/0"), 1);
+  EXPECT_EQ(*at_path(mean, "/P/P0/1"), 2);
+  EXPECT_EQ(*at_path(mean, "P/x"), 3);
+  EXPECT_EQ(*at_path(mean, "a/b/c"), 4);
+  EXPECT_EQ(*at_path(mean, "a/b/d"), 5);
+  for (const char* nowhere : {"P/P0/2", "P/P0/0/x", "P/P1/0", "a/b/e"}) {
+    EXPECT_EQ(at_path(mean, nowhere), nullptr) << nowhere;
+  }
+}
+
 TEST(Quantities, AStarStandsForAnyIndex) {
   EXPECT_TRUE(matches("stress/total/*", "stress/total/3"));
   EXPECT_TRUE(matches("stress/total/*", "/stress/total/3"));

@@ -340,6 +340,74 @@ TEST(Scheduler, ALateResultOfALostSeedIsLookedAtAgain) {
   EXPECT_EQ(scheduler.looks(0).back().verdict, Verdict::converged);
 }
 
+// A list of its outcomes alone would take 80 GB.
+TEST(Scheduler, AMaximumThatNoPointComesNearCostsNothing) {
+  constexpr int points = 2000, maximum = 1'000'000;
+  Scheduler scheduler = fresh(points, 4, maximum);
+  for (int i = 0; i < 4 * points; ++i) {
+    const SeedId id = take(scheduler);
+    scheduler.end(id, scattered(id.seed));
+  }
+  EXPECT_EQ(scheduler.begun(points - 1), 4);
+  EXPECT_EQ(scheduler.ended(points - 1), 4);
+  EXPECT_EQ(scheduler.wanted(points - 1), 5);
+}
+
+// What the scheduler answers of its only point, and the seeds that it would give out one after the other once
+// another one has ended.
+std::vector<double> answers(Scheduler scheduler, int beyond) {
+  const Estimate so_far = scheduler.so_far(0)[0];
+  std::vector<double> all{
+      scheduler.begun(0) + 0.0,       scheduler.all_ended(0) + 0.0, scheduler.ended(0) + 0.0,
+      scheduler.wanted(0) + 0.0,      so_far.count + 0.0,           so_far.count > 0 ? so_far.mean : 0,
+      scheduler.expected_seconds({1})};
+  for (const Look& look : scheduler.looks(0)) all.push_back(look.estimate.mean);
+  scheduler.end({0, beyond}, scattered(beyond));
+  while (const std::optional<SeedId> id = scheduler.next()) {
+    scheduler.begin(*id);
+    all.push_back(id->seed);
+  }
+  return all;
+}
+
+TEST(Scheduler, PutsBackWhatASeedChangedInWhateverOrderSeedsEnd) {
+  for (const std::vector<int>& order : {std::vector{0, 1, 2, 3, 4}, {4, 3, 2, 1, 0}, {2, 39, 0, 3, 1, 17}}) {
+    Scheduler scheduler = fresh(1);
+    scheduler.set_cost(0, 3);
+    for (const int seed : order) {
+      for (const bool was_out : {false, true}) {
+        Scheduler before = scheduler;
+        if (was_out) before.begin({0, seed});
+        Scheduler after = before;
+        Scheduler::Kept kept = after.kept({0, seed});
+        after.end({0, seed}, scattered(seed));
+        after.set_cost(0, 100);
+        EXPECT_NE(answers(after, 7), answers(before, 7)) << seed;
+        after.put_back(std::move(kept));
+        EXPECT_EQ(answers(after, 7), answers(before, 7)) << seed;
+        after.end({0, seed}, scattered(seed));
+        Scheduler never = before;
+        never.end({0, seed}, scattered(seed));
+        EXPECT_EQ(answers(after, 7), answers(never, 7)) << seed;
+      }
+      scheduler.end({0, seed}, scattered(seed));
+    }
+  }
+}
+
+TEST(Scheduler, PutsBackALostSeedInPlaceOfItsLateResult) {
+  Scheduler scheduler = fresh(1);
+  for (int seed = 0; seed < 3; ++seed) scheduler.end({0, seed}, scattered(seed));
+  scheduler.end({0, 3}, Outcome{});
+  const std::vector<double> before = answers(scheduler, 7);
+  Scheduler::Kept kept = scheduler.kept({0, 3});
+  EXPECT_TRUE(scheduler.end({0, 3}, scattered(3)));
+  EXPECT_EQ(scheduler.looks(0).back().lost, 0);
+  scheduler.put_back(std::move(kept));
+  EXPECT_EQ(scheduler.looks(0).back().lost, 1);
+  EXPECT_EQ(answers(scheduler, 7), before);
+}
+
 // The promise of the whole runner, for the decision alone: workers in any number, ending in any order.
 TEST(Scheduler, LooksDoNotDependOnWorkersOrOrderOfArrival) {
   const auto outcome = [](SeedId id) {
