@@ -12,15 +12,16 @@ namespace {
 
 void add_backup(VerbSet& verbs) {
   const auto options = std::make_shared<BackupOptions>();
-  CLI::App* const verb = verbs.add("backup", "Copy a campaign's database and files, checked, also while it runs",
-                                   "peclet backup flow-curve.json /mnt/usb/flow-curve --checkpoints",
-                                   page(R"(
+  CLI::App* const verb =
+      verbs.add("backup", "Copy a campaign's database and files, checked, also while it runs",
+                "peclet backup flow-curve.json /mnt/usb/flow-curve --checkpoints",
+                page(R"(
 `peclet run` makes such backups by itself; this makes one now, or elsewhere. The copy is checked before
 it takes the place of the one before. Of the folder's path only the last part is made: where a disk is
 not mounted, there is an error and no copy on another disk. A copy that turns out to be on the campaign's
 own file system is said to be.
 )",
-                                        {}, {0, 1, 2, 6}));
+                     {}, {0, 1, 2, 6}));
   add_file_or_folder(verb, options->campaign);
   verb->add_option("target", options->target,
                    "Folder for backup.db, made in one that must be there; the backup there before becomes "
