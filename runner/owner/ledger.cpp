@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "contract/input_error.h"
@@ -45,16 +47,35 @@ Ledger::Ledger(Database& database, const Campaign& campaign, CampaignDirectory d
 
 void Ledger::load() {
   read();
-  for (const PointRecord& known : board_.points()) {
-    for (const RealisationRecord& record : database_.realisations(known.id)) {
-      // A worker that outlived its owner may have saved one after its seed had ended elsewhere.
-      if (!record.cause.empty()) fs::remove(directory_.checkpoint(known.hash, record.seed));
-    }
-  }
+  remove_late_checkpoints();
   Transaction booking(database_.connection());
   book_looks();
   booking.commit();
   after_commit();
+}
+
+// A worker that outlived its owner may have saved one after its seed had ended elsewhere. Files are few where
+// seeds are many.
+void Ledger::remove_late_checkpoints() {
+  for (const fs::path& file : whole_files(directory_.checkpoints())) {
+    const std::optional<SeedId> id = seed_of_checkpoint(file);
+    if (id && has_ended(*id)) fs::remove(file);
+  }
+}
+
+std::optional<SeedId> Ledger::seed_of_checkpoint(const fs::path& file) const {
+  const std::string name = file.filename().string();
+  const std::size_t hyphen = name.find('-');
+  if (hyphen == std::string::npos) return std::nullopt;
+  const std::string_view hash = std::string_view(name).substr(0, hyphen);
+  int seed = 0;
+  std::from_chars(name.data() + hyphen + 1, name.data() + name.size(), seed);
+  for (const PointRecord& known : board_.points()) {
+    // However the name is to be read: there is one way to write it.
+    if (known.hash.starts_with(hash) && directory_.checkpoint(known.hash, seed) == file)
+      return SeedId{*known.place, seed};
+  }
+  return std::nullopt;
 }
 
 void Ledger::book_looks() {

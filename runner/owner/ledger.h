@@ -115,6 +115,9 @@ class Ledger {
 
  private:
   void load();
+  void remove_late_checkpoints();
+  // Nothing for a file that is no checkpoint of a point in the sweep.
+  std::optional<SeedId> seed_of_checkpoint(const std::filesystem::path& file) const;
   void read();
   void book_looks();
   // Whether the seed has a part in the looks.
