@@ -14,6 +14,7 @@
 #include "runner/database/database_copy.h"
 #include "runner/folder/owner_lock.h"
 #include "runner/owner/open_campaign.h"
+#include "runner/text/number_text.h"
 
 namespace peclet::runner {
 namespace {
@@ -80,9 +81,8 @@ int exit_code(const Findings& findings) {
 }
 
 std::string as_text(const Patient& patient, const Findings& findings) {
-  std::string text =
-      fmt::format("{}: {}", patient.directory.root().string(),
-                  findings.empty() ? "sound\n" : fmt::format("{} findings\n", findings.size()));
+  std::string text = fmt::format("{}: {}", patient.directory.root().string(),
+                                 findings.empty() ? "sound\n" : counted(findings.size(), "finding") + '\n');
   for (const Finding& finding : findings) {
     text += fmt::format("\n{}: {}\n", name_of(finding.severity), finding.message);
     if (!finding.cure.empty())
