@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "runner/engines/worker_watch.h"
-#include "runner/folder/room.h"
+#include "runner/folder/disk_room.h"
 #include "runner/owner/ledger.h"
 
 namespace peclet::runner {
@@ -136,7 +136,7 @@ class Dispatcher {
   Picture now_;
   std::vector<WorkerEvent> news_;             // and not booked yet
   std::vector<std::pair<int, Job>> to_send_;  // after the commit
-  Shortage shortage_;
+  DiskShortage shortage_;
   bool unbooked_ = false;       // for want of room
   bool request_waits_ = false;  // for the same
   bool told_of_shortage_ = false;

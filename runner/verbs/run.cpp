@@ -19,7 +19,7 @@
 #include "runner/events/event_stream.h"
 #include "runner/events/progress.h"
 #include "runner/events/run_log.h"
-#include "runner/folder/room.h"
+#include "runner/folder/disk_room.h"
 #include "runner/owner/dispatcher.h"
 #include "runner/owner/folder_watch.h"
 #include "runner/reports/status.h"
