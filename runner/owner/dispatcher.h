@@ -52,7 +52,7 @@ class Dispatcher {
  private:
   // A seed in the hands of a worker.
   struct Assignment {
-    Grant grant;
+    GivenSeed given_seed;
     Time given{};        // when the worker got it
     Time begun{};        // when there was no other before it any more, as far as we know
     bool shown = false;  // the database says how far it is

@@ -124,51 +124,53 @@ void Ledger::book_outcome(SeedId id, const Outcome& outcome) {
   after_.note(fmt::format("{}: {}", about.label, message));
 }
 
-std::optional<Grant> Ledger::give_out(int worker, std::int64_t process, std::int64_t engine) {
+std::optional<GivenSeed> Ledger::give_out(int worker, std::int64_t process, std::int64_t engine) {
   const std::optional<SeedId> id = next();
   if (!id) return std::nullopt;
   const PointRecord& about = point(id->point);
-  Grant grant{*id, about.id, {}};
-  grant.job.attempt = seeds_.begin_attempt(about.id, id->seed, worker, process, engine);
-  grant.job.point = about.hash;
-  grant.job.seed = id->seed;
-  grant.job.scene = about.scene;
-  grant.job.checkpoint = directory_.checkpoint(about.hash, id->seed);
-  grant.job.spool = directory_.spool_file(about.hash, id->seed, grant.job.attempt);
-  grant.job.failures = directory_.failures();
+  GivenSeed given_seed{*id, about.id, {}};
+  given_seed.job.attempt = seeds_.begin_attempt(about.id, id->seed, worker, process, engine);
+  given_seed.job.point = about.hash;
+  given_seed.job.seed = id->seed;
+  given_seed.job.scene = about.scene;
+  given_seed.job.checkpoint = directory_.checkpoint(about.hash, id->seed);
+  given_seed.job.spool = directory_.spool_file(about.hash, id->seed, given_seed.job.attempt);
+  given_seed.job.failures = directory_.failures();
   board_.scheduler().begin(*id);
   board_.add_running(id->point, 1);
-  return grant;
+  return given_seed;
 }
 
-void Ledger::end_attempt(const Grant& grant, const AttemptEnd& end) {
-  leave(grant);
+void Ledger::end_attempt(const GivenSeed& given_seed, const AttemptEnd& end) {
+  leave(given_seed);
   spending_.add(end.held_seconds);
-  seeds_.end_attempt(grant.job.attempt, end);
-  const Sentence sentence = judge(seeds_.history(grant.point_id, grant.id.seed), retries_);
-  if (sentence.discard_checkpoint) after_.discard(grant.job.checkpoint);
+  seeds_.end_attempt(given_seed.job.attempt, end);
+  const Sentence sentence = judge(seeds_.history(given_seed.point_id, given_seed.id.seed), retries_);
+  if (sentence.discard_checkpoint) after_.discard(given_seed.job.checkpoint);
   if (is_blamed(end.outcome)) {
-    after_.warn(fmt::format("{}: {}{}{}; {}", name_of(grant), to_string(end.outcome),
+    after_.warn(fmt::format("{}: {}{}{}; {}", name_of(given_seed), to_string(end.outcome),
                             end.message.empty() ? "" : ": ", end.message,
                             sentence.quarantine ? "it is given up" : "it is tried again"));
   }
-  after_.tell(AttemptFailed{told_name(grant), grant.id.seed, end.outcome, end.message, sentence.quarantine});
+  after_.tell(AttemptFailed{told_name(given_seed), given_seed.id.seed, end.outcome, end.message,
+                            sentence.quarantine});
   if (!sentence.quarantine) {
-    seeds_.requeue(grant.point_id, grant.id.seed);
-    if (takes_part(grant.id)) board_.scheduler().give_back(grant.id);
+    seeds_.requeue(given_seed.point_id, given_seed.id.seed);
+    if (takes_part(given_seed.id)) board_.scheduler().give_back(given_seed.id);
     return;
   }
-  seeds_.quarantine(grant.point_id, grant.id.seed, sentence.cause);
-  after_.tell(SeedEnded{told_name(grant), grant.id.seed, sentence.cause, std::nullopt, std::nullopt});
-  if (takes_part(grant.id)) book_outcome(grant.id, Outcome{});
+  seeds_.quarantine(given_seed.point_id, given_seed.id.seed, sentence.cause);
+  after_.tell(
+      SeedEnded{told_name(given_seed), given_seed.id.seed, sentence.cause, std::nullopt, std::nullopt});
+  if (takes_part(given_seed.id)) book_outcome(given_seed.id, Outcome{});
 }
 
-void Ledger::leave(const Grant& grant) {
-  if (takes_part(grant.id)) board_.add_running(grant.id.point, -1);
+void Ledger::leave(const GivenSeed& given_seed) {
+  if (takes_part(given_seed.id)) board_.add_running(given_seed.id.point, -1);
 }
 
-void Ledger::renew_lease(const Grant& grant, const JobProgress& progress) {
-  seeds_.renew_lease(grant.job.attempt, phase_name(progress.phase), progress.step, progress.steps,
+void Ledger::renew_lease(const GivenSeed& given_seed, const JobProgress& progress) {
+  seeds_.renew_lease(given_seed.job.attempt, phase_name(progress.phase), progress.step, progress.steps,
                      progress.strain);
 }
 
@@ -216,13 +218,15 @@ std::string Ledger::name(SeedId id) const {
 PointName Ledger::told_name(int place) const { return {point(place).label, point(place).hash}; }
 
 // A point that has left the sweep is known by its hash alone.
-PointName Ledger::told_name(const Grant& grant) const {
-  return {grant.id.point == nowhere ? grant.job.point : point(grant.id.point).label, grant.job.point};
+PointName Ledger::told_name(const GivenSeed& given_seed) const {
+  return {given_seed.id.point == nowhere ? given_seed.job.point : point(given_seed.id.point).label,
+          given_seed.job.point};
 }
 
-std::string Ledger::name_of(const Grant& grant) const {
-  if (grant.id.point != nowhere) return name(grant.id);
-  return fmt::format("{} (no longer in the sweep) seed {}", grant.job.point.substr(0, 12), grant.id.seed);
+std::string Ledger::name_of(const GivenSeed& given_seed) const {
+  if (given_seed.id.point != nowhere) return name(given_seed.id);
+  return fmt::format("{} (no longer in the sweep) seed {}", given_seed.job.point.substr(0, 12),
+                     given_seed.id.seed);
 }
 
 }  // namespace peclet::runner
