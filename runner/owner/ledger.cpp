@@ -145,23 +145,22 @@ void Ledger::end_attempt(const GivenSeed& given_seed, const AttemptEnd& end) {
   leave(given_seed);
   spending_.add(end.held_seconds);
   seeds_.end_attempt(given_seed.job.attempt, end);
-  const Sentence sentence = judge(seeds_.history(given_seed.point_id, given_seed.id.seed), retries_);
-  if (sentence.discard_checkpoint) after_.discard(given_seed.job.checkpoint);
+  const SeedFate fate = judge(seeds_.history(given_seed.point_id, given_seed.id.seed), retries_);
+  if (fate.discard_checkpoint) after_.discard(given_seed.job.checkpoint);
   if (is_blamed(end.outcome)) {
     after_.warn(fmt::format("{}: {}{}{}; {}", name_of(given_seed), to_string(end.outcome),
                             end.message.empty() ? "" : ": ", end.message,
-                            sentence.quarantine ? "it is given up" : "it is tried again"));
+                            fate.quarantine ? "it is given up" : "it is tried again"));
   }
-  after_.tell(AttemptFailed{told_name(given_seed), given_seed.id.seed, end.outcome, end.message,
-                            sentence.quarantine});
-  if (!sentence.quarantine) {
+  after_.tell(
+      AttemptFailed{told_name(given_seed), given_seed.id.seed, end.outcome, end.message, fate.quarantine});
+  if (!fate.quarantine) {
     seeds_.requeue(given_seed.point_id, given_seed.id.seed);
     if (takes_part(given_seed.id)) board_.scheduler().give_back(given_seed.id);
     return;
   }
-  seeds_.quarantine(given_seed.point_id, given_seed.id.seed, sentence.cause);
-  after_.tell(
-      SeedEnded{told_name(given_seed), given_seed.id.seed, sentence.cause, std::nullopt, std::nullopt});
+  seeds_.quarantine(given_seed.point_id, given_seed.id.seed, fate.cause);
+  after_.tell(SeedEnded{told_name(given_seed), given_seed.id.seed, fate.cause, std::nullopt, std::nullopt});
   if (takes_part(given_seed.id)) book_outcome(given_seed.id, Outcome{});
 }
 
