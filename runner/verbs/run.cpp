@@ -32,15 +32,15 @@ namespace peclet::runner {
 namespace {
 
 // More workers than seeds that may still run have nothing to do.
-Team useful_team(const RunOptions& options, const Campaign& campaign) {
-  Team size = team(options);
+WorkerCount useful_worker_count(const RunOptions& options, const Campaign& campaign) {
+  WorkerCount size = worker_count(options);
   const auto seeds = static_cast<std::int64_t>(campaign.points.size()) * campaign.maximum_realisations;
   size.workers = static_cast<int>(std::min<std::int64_t>(seeds, size.workers));
   return size;
 }
 
 // What a person should know who asked for more than the machine has.
-void judge_team(const Team& size, RunListener& listener) {
+void judge_worker_count(const WorkerCount& size, RunListener& listener) {
   constexpr int tolerable = 4;
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   if (size.workers * std::int64_t{size.threads} <= std::int64_t{tolerable} * cores) return;
@@ -92,7 +92,7 @@ std::unique_ptr<Opened> open_when_there_is_room(const ClaimedCampaign& claimed, 
 }
 
 RunBegan beginning(const ClaimedCampaign& claimed, const RunOptions& options) {
-  const Team size = useful_team(options, claimed.campaign);
+  const WorkerCount size = useful_worker_count(options, claimed.campaign);
   return {claimed.campaign.name,
           claimed.directory.root(),
           getpid(),
@@ -106,8 +106,8 @@ int dispatch(Opened& opened, const RunOptions& options, const ClaimedCampaign& c
              StopSignals& signals) {
   using std::chrono::steady_clock;
   const CampaignDirectory& directory = claimed.directory;
-  const Team size = useful_team(options, claimed.campaign);
-  judge_team(size, log);
+  const WorkerCount size = useful_worker_count(options, claimed.campaign);
+  judge_worker_count(size, log);
   allow_open_files(size.workers);
   PeriodicBackup backup(directory, std::chrono::duration<double>(options.backup_seconds), log,
                         steady_clock::now());
@@ -193,7 +193,7 @@ int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion&
 
 }  // namespace
 
-Team team(const RunOptions& options) {
+WorkerCount worker_count(const RunOptions& options) {
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   if (options.workers > 0 && options.threads > 0) return {options.workers, options.threads};
   if (options.workers > 0) return {options.workers, std::max(1, cores / options.workers)};
