@@ -51,8 +51,8 @@ void judge_worker_count(const WorkerCount& size, RunListener& listener) {
 }
 
 // A run's database and picture, ready to be dispatched from: what an earlier owner left undone is done.
-struct Opened {
-  Opened(const ClaimedCampaign& claimed, const RunOptions& options, RunListener& listener)
+struct OpenedRun {
+  OpenedRun(const ClaimedCampaign& claimed, const RunOptions& options, RunListener& listener)
       : database(open_for_owner(claimed, [&](const std::string& text) { listener.note(text); })),
         ledger(database, claimed.campaign, claimed.directory, listener, retries),
         requests(database, ledger, claimed.directory, listener) {
@@ -67,11 +67,11 @@ struct Opened {
 };
 
 // Waits while the disk is too full to begin. Nothing: a signal came first, or there never will be room.
-std::unique_ptr<Opened> open_when_there_is_room(const ClaimedCampaign& claimed, const RunOptions& options,
-                                                RunListener& listener, StopSignals& signals) {
+std::unique_ptr<OpenedRun> open_when_there_is_room(const ClaimedCampaign& claimed, const RunOptions& options,
+                                                   RunListener& listener, StopSignals& signals) {
   for (bool first = true;; first = false) {
     try {
-      auto opened = std::make_unique<Opened>(claimed, options, listener);
+      auto opened = std::make_unique<OpenedRun>(claimed, options, listener);
       if (!first) listener.happened(ShortageEnded{});
       return opened;
     } catch (const std::exception& error) {
@@ -102,7 +102,7 @@ RunBegan beginning(const ClaimedCampaign& claimed, const RunOptions& options) {
 }
 
 // The result is the exit code.
-int dispatch(Opened& opened, const RunOptions& options, const ClaimedCampaign& claimed, RunLog& log,
+int dispatch(OpenedRun& opened, const RunOptions& options, const ClaimedCampaign& claimed, RunLog& log,
              StopSignals& signals) {
   using std::chrono::steady_clock;
   const CampaignDirectory& directory = claimed.directory;
@@ -154,12 +154,12 @@ Bounds bounds_of(const RunOptions& options, const ClaimedCampaign& claimed, std:
 }
 
 // What the person is told on standard output in the end.
-using Conclusion = std::function<void(const ClaimedCampaign&, Opened&, int code)>;
+using Conclusion = std::function<void(const ClaimedCampaign&, OpenedRun&, int code)>;
 
 int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion& conclude) {
   const ClaimedCampaign claimed(options.campaign, options.directory, options.force, options.accept_engine);
   StopSignals signals;
-  std::unique_ptr<Opened> opened;
+  std::unique_ptr<OpenedRun> opened;
   int code = ExitCode::stopped;
   {
     Progress progress(Progress::style_of_stderr(options.quiet));
@@ -202,7 +202,7 @@ WorkerCount worker_count(const RunOptions& options) {
 }
 
 int run_campaign(const RunOptions& options) {
-  return run(options, std::nullopt, [&](const ClaimedCampaign&, Opened& opened, int code) {
+  return run(options, std::nullopt, [&](const ClaimedCampaign&, OpenedRun& opened, int code) {
     CampaignStatus status = read_status(opened.database);
     status.owner = getpid();
     std::string text = status_table(status);
@@ -217,9 +217,10 @@ int run_campaign(const RunOptions& options) {
 
 int run_pilot(const RunOptions& options, int seeds,
               const std::function<void(const ClaimedCampaign&, Database&)>& conclude) {
-  const int code = run(options, seeds, [&](const ClaimedCampaign& claimed, Opened& opened, int ended_with) {
-    if (ended_with != ExitCode::stopped) conclude(claimed, opened.database);
-  });
+  const int code =
+      run(options, seeds, [&](const ClaimedCampaign& claimed, OpenedRun& opened, int ended_with) {
+        if (ended_with != ExitCode::stopped) conclude(claimed, opened.database);
+      });
   // That points are not decided yet is what a pilot is for.
   return code == ExitCode::integrity || code == ExitCode::stopped ? code : 0;
 }
