@@ -91,7 +91,7 @@ void predict_point(PointPlan& point, const Campaign& campaign,
 
 // Futures in which the points are predicted together.
 void draw_futures(Plan& plan, const Campaign& campaign, const std::map<std::string, PointHistory>& known) {
-  std::vector<Share> shares;
+  std::vector<CostShare> shares;
   for (const PointPlan& point : plan.points) {
     const Prediction& made = point.prediction;
     if (!point.is_predicted() || made.seeds.lower == made.seeds.upper) continue;
