@@ -121,7 +121,7 @@ int unreadable_results(Connection& connection, std::int64_t point) {
   stored.bind(point);
   int unreadable = 0;
   while (stored.step()) {
-    if (stored.is_blob(0) && !lean_on(stored.text(0), stored.text(1))) ++unreadable;
+    if (stored.is_blob(0) && !was_deflated_with(stored.text(0), stored.text(1))) ++unreadable;
   }
   return unreadable;
 }

@@ -111,7 +111,7 @@ std::string inflated(std::string_view bytes, std::string_view dictionary) {
 }
 
 // RFC 1950, 2.2: bit 5 of the second byte says that four more follow, with the dictionary's checksum.
-bool lean_on(std::string_view bytes, std::string_view dictionary) {
+bool was_deflated_with(std::string_view bytes, std::string_view dictionary) {
   constexpr std::size_t header = 6;
   constexpr unsigned has_dictionary = 0x20;
   if (bytes.size() < header || (static_cast<unsigned char>(bytes[1]) & has_dictionary) == 0) return true;
