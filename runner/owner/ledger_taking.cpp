@@ -187,7 +187,7 @@ void Ledger::ingest(const fs::path& file) {
   const auto read = [&file] {
     RealisationResult result = read_spool_file(file, "");
     // An engine that answers with another seed's result may die before it is found out.
-    if (is_named_for_another(file, result)) throw ResultError("it is named for another point or seed");
+    if (belongs_to_another(file, result)) throw ResultError("it is named for another point or seed");
     return result;
   };
   take_whole(file, read, [&](const RealisationResult& result) { take(result, file); });
