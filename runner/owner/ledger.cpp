@@ -103,9 +103,9 @@ void Ledger::roll_back() {
 void Ledger::store_looks(int place, std::size_t known) {
   const std::vector<Look>& looks = scheduler().looks(place);
   results_.store_looks(point(place).id, looks);
-  for (std::size_t i = known; i < looks.size(); ++i) after_.tell(Looked{told_name(place), looks[i]});
+  for (std::size_t i = known; i < looks.size(); ++i) after_.tell(Looked{point_name(place), looks[i]});
   if (looks.size() > known && scheduler().decided(place)) {
-    after_.tell(Decided{told_name(place), looks.back()});
+    after_.tell(Decided{point_name(place), looks.back()});
   }
 }
 
@@ -153,14 +153,14 @@ void Ledger::end_attempt(const GivenSeed& given_seed, const AttemptEnd& end) {
                             fate.quarantine ? "it is given up" : "it is tried again"));
   }
   after_.tell(
-      AttemptFailed{told_name(given_seed), given_seed.id.seed, end.outcome, end.message, fate.quarantine});
+      AttemptFailed{point_name(given_seed), given_seed.id.seed, end.outcome, end.message, fate.quarantine});
   if (!fate.quarantine) {
     seeds_.requeue(given_seed.point_id, given_seed.id.seed);
     if (takes_part(given_seed.id)) board_.scheduler().give_back(given_seed.id);
     return;
   }
   seeds_.quarantine(given_seed.point_id, given_seed.id.seed, fate.cause);
-  after_.tell(SeedEnded{told_name(given_seed), given_seed.id.seed, fate.cause, std::nullopt, std::nullopt});
+  after_.tell(SeedEnded{point_name(given_seed), given_seed.id.seed, fate.cause, std::nullopt, std::nullopt});
   if (takes_part(given_seed.id)) book_outcome(given_seed.id, Outcome{});
 }
 
@@ -214,10 +214,10 @@ std::string Ledger::name(SeedId id) const {
   return fmt::format("{} seed {}", point(id.point).label, id.seed);
 }
 
-PointName Ledger::told_name(int place) const { return {point(place).label, point(place).hash}; }
+PointName Ledger::point_name(int place) const { return {point(place).label, point(place).hash}; }
 
 // A point that has left the sweep is known by its hash alone.
-PointName Ledger::told_name(const GivenSeed& given_seed) const {
+PointName Ledger::point_name(const GivenSeed& given_seed) const {
   return {given_seed.id.point == nowhere ? given_seed.job.point : point(given_seed.id.point).label,
           given_seed.job.point};
 }

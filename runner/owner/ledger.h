@@ -122,8 +122,8 @@ class Ledger {
   bool takes_part(SeedId id) const { return id.point != nowhere && id.seed < campaign_.maximum_realisations; }
   void leave(const GivenSeed& given_seed);
   std::string name_of(const GivenSeed& given_seed) const;
-  PointName told_name(int place) const;
-  PointName told_name(const GivenSeed& given_seed) const;
+  PointName point_name(int place) const;
+  PointName point_name(const GivenSeed& given_seed) const;
   void leave_to_batch_system(int place);
   void ingest_spool_of(const CampaignDirectory& directory);
   void ingest(const std::filesystem::path& spool);

@@ -140,7 +140,7 @@ void Ledger::take(const RealisationResult& result, const fs::path& spool) {
   if (result.completed()) note_lacking(result);
   const std::optional<double> value = stored.observed.front().value;
   const std::optional<double> cpu_seconds = cost_of(result, "cpu_seconds");
-  after_.tell(SeedEnded{told_name(*place), result.seed, stored.cause, value, cpu_seconds});
+  after_.tell(SeedEnded{point_name(*place), result.seed, stored.cause, value, cpu_seconds});
   if (!board_.has_seeds()) return;  // load() finds it
   board_.add_cost(*place, cost_of(result, "wall_seconds"), cpu_seconds);
   if (!value) {
