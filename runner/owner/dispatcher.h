@@ -106,7 +106,7 @@ class Dispatcher {
   void report();
 
   std::optional<Assignment> next_assignment(int worker);
-  bool takes_one_more(const Worker& worker) const;
+  bool takes_a_second_job(const Worker& worker) const;
   bool has_job(int worker, std::int64_t job);
   // Whether the worker may have failed because it could not write: no room, or no folder.
   bool lacked_room(int worker);

@@ -14,7 +14,7 @@ namespace {
 // Mean seconds of jobs that it is worth having another one wait for. A commit takes some hundredth of a
 // second, for which a worker with longer jobs need not have one; and a seed behind a long one would make the
 // decision of its point wait, while workers become idle that could run it.
-constexpr double longest_brisk_job = 1;
+constexpr double longest_job_to_queue_behind = 1;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ void Dispatcher::give_out_seeds() {
   }
   for (int number = 0; number < pool_.size(); ++number) {
     Worker& worker = at(number);
-    if (!takes_one_more(worker)) continue;
+    if (!takes_a_second_job(worker)) continue;
     worker.waiting = next_assignment(number);
     if (!worker.waiting) return;
   }
@@ -51,11 +51,11 @@ std::optional<Dispatcher::Assignment> Dispatcher::next_assignment(int number) {
   return about;
 }
 
-bool Dispatcher::takes_one_more(const Worker& worker) const {
+bool Dispatcher::takes_a_second_job(const Worker& worker) const {
   if (!worker.watch.is_busy() || !worker.takes_ahead || worker.waiting) return false;
   if (worker.watch.condemned() || worker.watch.is_recalled()) return false;
   const std::optional<double> seconds = ledger_.wall_seconds(worker.assignment->given_seed);
-  return seconds && *seconds < longest_brisk_job;
+  return seconds && *seconds < longest_job_to_queue_behind;
 }
 
 bool Dispatcher::has_job(int worker, std::int64_t job) {
