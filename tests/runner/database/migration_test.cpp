@@ -52,7 +52,7 @@ class MigrationFromVersion5 : public MigrationFromVersion2, public testing::With
   MigrationFromVersion5() {
     Connection connection(path().string(), Connection::Access::read_write, 0);
     connection.execute("PRAGMA foreign_keys = OFF");
-    connection.execute("DROP VIEW points; DROP VIEW realisations; DROP VIEW estimates");
+    connection.execute("DROP VIEW points; DROP VIEW realisations; DROP VIEW estimates; DROP VIEW files");
     for (const char* const sql : {version_3_sql, version_4_sql, version_5_sql}) connection.execute(sql);
     if (GetParam()) {
       connection.execute(
