@@ -48,7 +48,7 @@ class Bundles {
   Bundles(Database& database, Ledger& ledger, const Campaign& campaign, CampaignDirectory directory,
           RunListener& listener);
 
-  struct Settled {
+  struct SettleReport {
     int open = 0;         // bundles of which something is still out
     int unknown = 0;      // of these, those that nobody answers for
     int unreachable = 0;  // of the unknown, those whose folder is not there
@@ -61,7 +61,7 @@ class Bundles {
   };
   // Takes in results and reports, asks the batch system what is still there, and puts the seeds of tasks that
   // have gone without a result back.
-  Settled settle();
+  SettleReport settle();
 
   // Submits again the jobs that the batch system has never shown. Requires a settle() before, which asks for
   // them by name.
@@ -81,16 +81,16 @@ class Bundles {
   bool forget(const std::string& name);
 
  private:
-  void settle_bundle(const BundleRecord& bundle, Settled& settled);
+  void settle_bundle(const BundleRecord& bundle, SettleReport& settled);
   void book(const BundleRecord& bundle, const BundleFolder& folder, const Manifest& manifest,
-            const QueryAnswer* answer, Settled& settled);
+            const QueryAnswer* answer, SettleReport& settled);
   struct Returned {
     int seeds = 0, lifeless = 0;
     std::set<std::string> troubles;
   };
   void return_seed(const BundleRecord& bundle, const BundleFolder& folder, const BundleSeedRecord& seed,
                    Returned& returned);
-  void tell(const BundleRecord& bundle, const Returned& returned, Settled& settled);
+  void tell(const BundleRecord& bundle, const Returned& returned, SettleReport& settled);
   bool was_never_submitted(const BundleRecord& bundle) const;
   void withdraw(const BundleRecord& bundle);
   void take_back_seeds(const BundleRecord& bundle);

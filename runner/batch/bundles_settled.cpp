@@ -29,8 +29,8 @@ std::string trouble_of(const BundleFolder& folder, int task) {
 
 }  // namespace
 
-Bundles::Settled Bundles::settle() {
-  Settled settled;
+Bundles::SettleReport Bundles::settle() {
+  SettleReport settled;
   fence_forgotten();
   for (const BundleRecord& bundle : book_.open_bundles()) {
     ++settled.open;
@@ -60,7 +60,7 @@ void Bundles::tell_once(const std::string& about, const std::string& message) {
   last = message;
 }
 
-void Bundles::settle_bundle(const BundleRecord& known, Settled& settled) {
+void Bundles::settle_bundle(const BundleRecord& known, SettleReport& settled) {
   BundleRecord bundle = known;
   const BundleFolder folder(bundle.shared, bundle.name);
   const Manifest manifest = read_manifest(folder.manifest());
@@ -90,7 +90,7 @@ void Bundles::settle_bundle(const BundleRecord& known, Settled& settled) {
 }
 
 void Bundles::book(const BundleRecord& bundle, const BundleFolder& folder, const Manifest& manifest,
-                   const QueryAnswer* answer, Settled& settled) {
+                   const QueryAnswer* answer, SettleReport& settled) {
   const std::vector<BundleSeedRecord> out = book_.seeds_out(bundle.id);
   Returned returned;
   std::vector<std::optional<PlacedReport>> reports;
@@ -157,7 +157,7 @@ void Bundles::return_seed(const BundleRecord& bundle, const BundleFolder& folder
   book_.seed_ended(bundle.id, seed.place, "returned");
 }
 
-void Bundles::tell(const BundleRecord& bundle, const Returned& returned, Settled& settled) {
+void Bundles::tell(const BundleRecord& bundle, const Returned& returned, SettleReport& settled) {
   if (returned.seeds > 0) {
     listener_.note(
         fmt::format("{}: tasks of job {} have gone without a result for {} seeds; they are queued again",

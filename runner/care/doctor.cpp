@@ -14,6 +14,7 @@
 #include "runner/database/database_copy.h"
 #include "runner/folder/owner_lock.h"
 #include "runner/owner/open_campaign.h"
+#include "runner/text/number_text.h"
 
 namespace peclet::runner {
 namespace {
@@ -33,26 +34,26 @@ const char* name_of(Severity severity) {
 }
 
 // A damaged database cannot be asked anything more.
-void examine_database(const Patient& patient, Findings& findings) {
+void examine_database(const CampaignUnderExamination& examined, Findings& findings) {
   const auto damaged = [&](const std::string& message) {
-    std::string cure = restore_hint(patient.directory);
+    std::string cure = restore_hint(examined.directory);
     cure = cure.empty() ? "there is no backup; keep the folder, and try `sqlite3 campaign.db .recover`"
                         : cure.substr(2);
     findings.push_back({"database-damaged", Severity::integrity, message, cure});
   };
   try {
-    Database database = Database::open_reader(patient.directory.database());
+    Database database = Database::open_reader(examined.directory.database());
     if (const std::string found = damage(database.connection()); !found.empty()) return damaged(found);
-    examine_results(database, patient, findings);
+    examine_results(database, examined, findings);
     examine_looks(database, findings);
-    examine_states(database, patient, findings);
-    examine_files(database, patient, findings);
-    examine_left_files(database, patient, findings);
-    examine_backups(database, patient, findings);
-    examine_hand_over(database, patient, findings);
-    examine_clock(database, patient, findings);
-    examine_log(patient, findings);
-    examine_disk(database, patient, findings);
+    examine_states(database, examined, findings);
+    examine_files(database, examined, findings);
+    examine_left_files(database, examined, findings);
+    examine_backups(database, examined, findings);
+    examine_hand_over(database, examined, findings);
+    examine_clock(database, examined, findings);
+    examine_log(examined, findings);
+    examine_disk(database, examined, findings);
   } catch (const IntegrityError& error) {
     damaged(error.what());
   }
@@ -79,10 +80,9 @@ int exit_code(const Findings& findings) {
   return worst == Severity::warning ? ExitCode::error : ExitCode::done;
 }
 
-std::string as_text(const Patient& patient, const Findings& findings) {
-  std::string text =
-      fmt::format("{}: {}", patient.directory.root().string(),
-                  findings.empty() ? "sound\n" : fmt::format("{} findings\n", findings.size()));
+std::string as_text(const CampaignUnderExamination& examined, const Findings& findings) {
+  std::string text = fmt::format("{}: {}", examined.directory.root().string(),
+                                 findings.empty() ? "sound\n" : counted(findings.size(), "finding") + '\n');
   for (const Finding& finding : findings) {
     text += fmt::format("\n{}: {}\n", name_of(finding.severity), finding.message);
     if (!finding.cure.empty())
@@ -91,7 +91,7 @@ std::string as_text(const Patient& patient, const Findings& findings) {
   return text;
 }
 
-std::string as_json(const Patient& patient, const Findings& findings) {
+std::string as_json(const CampaignUnderExamination& examined, const Findings& findings) {
   Json list = Json::array();
   for (const Finding& finding : findings) {
     list.push_back({{"code", finding.code},
@@ -102,8 +102,8 @@ std::string as_json(const Patient& patient, const Findings& findings) {
                     {"repaired", finding.repaired}});
   }
   return Json{{"schema_version", 1},
-              {"folder", patient.directory.root().string()},
-              {"owner", patient.owner ? Json(*patient.owner) : Json(nullptr)},
+              {"folder", examined.directory.root().string()},
+              {"owner", examined.owner ? Json(*examined.owner) : Json(nullptr)},
               {"standing", exit_code(findings)},
               {"findings", list}}
              .dump(2) +
@@ -117,18 +117,18 @@ Diagnosis examine_campaign(const DoctorOptions& options) {
   std::unique_ptr<OwnerLock> lock;
   if (options.repair) lock = std::make_unique<OwnerLock>(directory);
   const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  const Patient patient{directory, lock ? std::nullopt : current_owner(directory),
-                        fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))};
+  const CampaignUnderExamination examined{directory, lock ? std::nullopt : current_owner(directory),
+                                          fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))};
   Findings findings;
   if (!kind_of(directory.database()).empty()) {
-    examine_database(patient, findings);
+    examine_database(examined, findings);
   } else {
     findings.push_back({"database-gone", Severity::integrity, "there is no " + directory.database().string(),
                         restore_hint(directory).substr(2)});
   }
-  examine_processes(patient, findings);
+  examine_processes(examined, findings);
   if (options.repair) repair(directory, findings);
-  return {options.json ? as_json(patient, findings) : as_text(patient, findings), exit_code(findings)};
+  return {options.json ? as_json(examined, findings) : as_text(examined, findings), exit_code(findings)};
 }
 
 }  // namespace peclet::runner

@@ -34,7 +34,7 @@ struct Finding {
 };
 
 // What is examined. Requires that the campaign's folder exists.
-struct Patient {
+struct CampaignUnderExamination {
   CampaignDirectory directory;
   std::optional<std::int64_t> owner;  // process that runs it now; with repairs, nobody does
   std::string now;                    // wall-clock time in UTC, as in the database
@@ -44,17 +44,17 @@ using Findings = std::vector<Finding>;
 
 // Each looks at one side of it (doctor_database.cpp, doctor_files.cpp, doctor_hand_over.cpp,
 // doctor_left_files.cpp, doctor_machine.cpp). A reader's database.
-void examine_results(Database& database, const Patient& patient, Findings& findings);
+void examine_results(Database& database, const CampaignUnderExamination& examined, Findings& findings);
 void examine_looks(Database& database, Findings& findings);
-void examine_states(Database& database, const Patient& patient, Findings& findings);
-void examine_files(Database& database, const Patient& patient, Findings& findings);
-void examine_left_files(Database& database, const Patient& patient, Findings& findings);
-void examine_backups(Database& database, const Patient& patient, Findings& findings);
-void examine_hand_over(Database& database, const Patient& patient, Findings& findings);
-void examine_processes(const Patient& patient, Findings& findings);
-void examine_clock(Database& database, const Patient& patient, Findings& findings);
-void examine_log(const Patient& patient, Findings& findings);
-void examine_disk(Database& database, const Patient& patient, Findings& findings);
+void examine_states(Database& database, const CampaignUnderExamination& examined, Findings& findings);
+void examine_files(Database& database, const CampaignUnderExamination& examined, Findings& findings);
+void examine_left_files(Database& database, const CampaignUnderExamination& examined, Findings& findings);
+void examine_backups(Database& database, const CampaignUnderExamination& examined, Findings& findings);
+void examine_hand_over(Database& database, const CampaignUnderExamination& examined, Findings& findings);
+void examine_processes(const CampaignUnderExamination& examined, Findings& findings);
+void examine_clock(Database& database, const CampaignUnderExamination& examined, Findings& findings);
+void examine_log(const CampaignUnderExamination& examined, Findings& findings);
+void examine_disk(Database& database, const CampaignUnderExamination& examined, Findings& findings);
 
 struct Diagnosis {
   std::string text;   // for people, or JSON

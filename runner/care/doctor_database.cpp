@@ -121,7 +121,7 @@ int unreadable_results(Connection& connection, std::int64_t point) {
   stored.bind(point);
   int unreadable = 0;
   while (stored.step()) {
-    if (stored.is_blob(0) && !lean_on(stored.text(0), stored.text(1))) ++unreadable;
+    if (stored.is_blob(0) && !was_deflated_with(stored.text(0), stored.text(1))) ++unreadable;
   }
   return unreadable;
 }
@@ -134,7 +134,7 @@ std::vector<PointRecord> all_points(Database& database) {
 
 }  // namespace
 
-void examine_results(Database& database, const Patient& patient, Findings& findings) {
+void examine_results(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
   const std::vector<std::string> observables = database.campaign().target.target.observables();
   if (const std::int64_t count = impossible_seeds(database.connection()); count > 0) {
     findings.push_back(
@@ -143,7 +143,7 @@ void examine_results(Database& database, const Patient& patient, Findings& findi
                      "not count",
                      count, most_realisations),
          "`peclet doctor --repair` keeps what is stored in spool/rejected/ and removes them",
-         [directory = patient.directory](Database& owner) { remove_impossible_seeds(owner, directory); }});
+         [directory = examined.directory](Database& owner) { remove_impossible_seeds(owner, directory); }});
   }
   for (const PointRecord& point : all_points(database)) {
     if (const int count = unreadable_results(database.connection(), point.id); count > 0) {
@@ -165,9 +165,8 @@ void examine_results(Database& database, const Patient& patient, Findings& findi
       if (point.place) {
         finding.cure =
             "`peclet doctor --repair` keeps what is stored in spool/rejected/ and queues the seed again";
-        finding.repair = [directory = patient.directory, id = point.id, seed = record.seed](Database& owner) {
-          run_again(owner, directory, id, seed);
-        };
+        finding.repair = [directory = examined.directory, id = point.id,
+                          seed = record.seed](Database& owner) { run_again(owner, directory, id, seed); };
       }
       findings.push_back(std::move(finding));
     }
@@ -201,7 +200,7 @@ void examine_looks(Database& database, Findings& findings) {
   }
 }
 
-void examine_states(Database& database, const Patient& patient, Findings& findings) {
+void examine_states(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
   Connection& connection = database.connection();
   const std::int64_t unclaimed = connection.integer(
       "SELECT count(*) FROM result JOIN realisation USING (point_id, seed) WHERE state NOT IN ('done', "
@@ -222,9 +221,9 @@ void examine_states(Database& database, const Patient& patient, Findings& findin
     Finding finding{"lease-adrift", Severity::integrity,
                     fmt::format("{} leases and running seeds do not belong together", adrift),
                     "`peclet run` and `peclet doctor --repair` queue them again"};
-    if (!patient.owner) finding.repair = recover;
+    if (!examined.owner) finding.repair = recover;
     findings.push_back(std::move(finding));
-  } else if (running > 0 && !patient.owner) {
+  } else if (running > 0 && !examined.owner) {
     findings.push_back({"left-running", Severity::note,
                         fmt::format("{} seeds are left running by an owner that died", running),
                         "`peclet run` and `peclet doctor --repair` queue them again, without blame",

@@ -98,10 +98,10 @@ std::map<std::string, Need> checkpoint_names(Database& database, const CampaignD
   return names;
 }
 
-void examine_checkpoints(Database& database, const Patient& patient, Findings& findings) {
-  const std::map<std::string, Need> names = checkpoint_names(database, patient.directory);
+void examine_checkpoints(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
+  const std::map<std::string, Need> names = checkpoint_names(database, examined.directory);
   std::vector<fs::path> ended, surplus, rejected, strays;
-  for (const fs::path& file : files_in(patient.directory.checkpoints())) {
+  for (const fs::path& file : files_in(examined.directory.checkpoints())) {
     const auto seed = names.find(file.filename().string());
     if (seed != names.end()) {
       if (seed->second == Need::none) ended.push_back(file);
@@ -113,14 +113,14 @@ void examine_checkpoints(Database& database, const Patient& patient, Findings& f
     }
   }
   // A worker may be about to remove, or to leave, one while the campaign runs.
-  if (!ended.empty() && !patient.owner) {
+  if (!ended.empty() && !examined.owner) {
     findings.push_back(
         {"checkpoint-left", Severity::note,
          fmt::format("{} checkpoints are of seeds that have ended: {}", ended.size(), listed(ended)),
          "`peclet run` and `peclet doctor --repair` remove them",
          [ended](Database&) { remove_all_of(ended); }});
   }
-  if (!surplus.empty() && !patient.owner) {
+  if (!surplus.empty() && !examined.owner) {
     findings.push_back(
         {"checkpoint-surplus", Severity::note,
          fmt::format("{} checkpoints ({:.1f} MB) are of seeds that their points, which are decided, did not "
@@ -145,11 +145,11 @@ void examine_checkpoints(Database& database, const Patient& patient, Findings& f
   }
 }
 
-void examine_spool(const Patient& patient, Findings& findings) {
-  const CampaignDirectory& directory = patient.directory;
+void examine_spool(const CampaignUnderExamination& examined, Findings& findings) {
+  const CampaignDirectory& directory = examined.directory;
   if (!fs::is_directory(directory.spool())) return;
   const std::vector<fs::path> waiting = spool_files(directory);
-  if (!waiting.empty() && !patient.owner) {
+  if (!waiting.empty() && !examined.owner) {
     findings.push_back({"spool-waiting", Severity::note,
                         fmt::format("{} results wait in spool/: {}", waiting.size(), listed(waiting)),
                         "the next `peclet run` takes them in"});
@@ -162,21 +162,21 @@ void examine_spool(const Patient& patient, Findings& findings) {
   }
 }
 
-void examine_requests(const Patient& patient, Findings& findings) {
-  const std::vector<fs::path> waiting = waiting_requests(patient.directory);
-  if (!waiting.empty() && !patient.owner) {
+void examine_requests(const CampaignUnderExamination& examined, Findings& findings) {
+  const std::vector<fs::path> waiting = waiting_requests(examined.directory);
+  if (!waiting.empty() && !examined.owner) {
     findings.push_back({"request-waiting", Severity::note,
                         fmt::format("{} requests wait in requests/: {}", waiting.size(), listed(waiting)),
                         "the next `peclet run` carries them out"});
   }
 }
 
-void examine_unfinished(const Patient& patient, Findings& findings) {
+void examine_unfinished(const CampaignUnderExamination& examined, Findings& findings) {
   std::vector<fs::path> folders, unfinished;
   for (const fs::path& folder :
-       {patient.directory.root(), patient.directory.spool(), patient.directory.left(),
-        patient.directory.checkpoints(), patient.directory.failures(), patient.directory.backup(),
-        patient.directory.requests()}) {
+       {examined.directory.root(), examined.directory.spool(), examined.directory.left(),
+        examined.directory.checkpoints(), examined.directory.failures(), examined.directory.backup(),
+        examined.directory.requests()}) {
     if (!fs::is_directory(folder)) continue;
     folders.push_back(folder);
     for (const fs::path& file : unfinished_files(folder)) unfinished.push_back(file);
@@ -190,9 +190,9 @@ void examine_unfinished(const Patient& patient, Findings& findings) {
                       }});
 }
 
-void examine_strays(const Patient& patient, Findings& findings) {
+void examine_strays(const CampaignUnderExamination& examined, Findings& findings) {
   std::vector<fs::path> strays;
-  for (const fs::path& file : files_in(patient.directory.root())) {
+  for (const fs::path& file : files_in(examined.directory.root())) {
     const std::string name = file.filename().string();
     const bool known = std::find(known_names.begin(), known_names.end(), name) != known_names.end() ||
                        name.starts_with("campaign.db.version-");  // from before a migration
@@ -205,29 +205,29 @@ void examine_strays(const Patient& patient, Findings& findings) {
 
 }  // namespace
 
-void examine_files(Database& database, const Patient& patient, Findings& findings) {
-  examine_spool(patient, findings);
-  examine_checkpoints(database, patient, findings);
-  examine_requests(patient, findings);
-  examine_unfinished(patient, findings);
-  examine_strays(patient, findings);
+void examine_files(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
+  examine_spool(examined, findings);
+  examine_checkpoints(database, examined, findings);
+  examine_requests(examined, findings);
+  examine_unfinished(examined, findings);
+  examine_strays(examined, findings);
 }
 
-void examine_backups(Database& database, const Patient& patient, Findings& findings) {
+void examine_backups(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
   const std::int64_t results = database.connection().integer("SELECT count(*) FROM result");
   if (results == 0) return;
-  const fs::path newest = newest_backup(patient.directory.backup());
+  const fs::path newest = newest_backup(examined.directory.backup());
   const auto find = [&](const std::string& code, const std::string& message) {
     findings.push_back(
         {code, Severity::warning, message, "`peclet backup` and `peclet doctor --repair` make one",
-         [directory = patient.directory](Database&) { make_backup(directory, directory.backup(), false); }});
+         [directory = examined.directory](Database&) { make_backup(directory, directory.backup(), false); }});
   };
   if (kind_of(newest).empty())
     return find("no-backup", fmt::format("there is no backup of {} results", results));
   try {
     const Contents contents = examine(newest);
     Statement age(database.connection(), "SELECT (julianday(?) - julianday(?)) * 24");
-    age.bind(patient.now).bind(contents.backed_up_at).step();
+    age.bind(examined.now).bind(contents.backed_up_at).step();
     const double hours = age.real(0);
     if (contents.results < results && hours > old_backup_hours) {
       find("old-backup", fmt::format("the last backup is {:.0f} hours old and lacks {} results", hours,

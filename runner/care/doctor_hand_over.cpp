@@ -7,7 +7,7 @@
 
 namespace peclet::runner {
 
-void examine_hand_over(Database& database, const Patient& patient, Findings& findings) {
+void examine_hand_over(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
   for (const HandedOver& bundle : BundleBook(database.connection()).handed_over()) {
     std::string why;
     if (!is_there(BundleFolder(bundle.shared, bundle.bundle), why)) {
@@ -18,7 +18,7 @@ void examine_hand_over(Database& database, const Patient& patient, Findings& fin
                "put it back, and `peclet ingest` takes in what it holds; if it is gone for good, `peclet "
                "ingest --forget {}` queues them again",
                bundle.bundle)});
-    } else if (bundle.job.empty() && !patient.owner) {  // an owner is just about to know
+    } else if (bundle.job.empty() && !examined.owner) {  // an owner is just about to know
       findings.push_back(
           {"bundle-unconfirmed", Severity::warning,
            fmt::format(

@@ -62,8 +62,8 @@ class Faulty {
   bool have_copies_ = true;
 };
 
-void examine_places(Database& database, const Patient& patient, Findings& findings) {
-  const CampaignDirectory& directory = patient.directory;
+void examine_places(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
+  const CampaignDirectory& directory = examined.directory;
   Faulty missing(directory), damaged(directory);
   std::set<fs::path> known;
   for (const FileRecord& record : files_in(database.connection())) {
@@ -72,13 +72,13 @@ void examine_places(Database& database, const Patient& patient, Findings& findin
     known.insert(place);
     if (is_there(place)) {
       if (!is_sound(record, directory)) damaged.add(record);
-    } else if (!patient.owner) {  // those of a result that has just been committed are on their way
+    } else if (!examined.owner) {  // those of a result that has just been committed are on their way
       missing.add(record);
     }
   }
   missing.report("file-missing", "are not there", findings);
   damaged.report("file-damaged", "are not what they were", findings);
-  if (patient.owner || kind_of(directory.files()) != "a folder") return;
+  if (examined.owner || kind_of(directory.files()) != "a folder") return;
   Places orphans(directory.root());
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(directory.files())) {
     const bool is_folder = entry.symlink_status().type() == fs::file_type::directory;
@@ -93,13 +93,13 @@ void examine_places(Database& database, const Patient& patient, Findings& findin
 
 }  // namespace
 
-void examine_left_files(Database& database, const Patient& patient, Findings& findings) {
-  examine_places(database, patient, findings);
-  if (patient.owner || kind_of(patient.directory.left()) != "a folder") return;
-  Places waiting(patient.directory.root());
-  for (const fs::path& file : whole_files(patient.directory.left())) {
+void examine_left_files(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
+  examine_places(database, examined, findings);
+  if (examined.owner || kind_of(examined.directory.left()) != "a folder") return;
+  Places waiting(examined.directory.root());
+  for (const fs::path& file : whole_files(examined.directory.left())) {
     const std::string name = file.filename().string();
-    const fs::path result = patient.directory.spool() / (name.substr(0, name.rfind('@')) + ".json");
+    const fs::path result = examined.directory.spool() / (name.substr(0, name.rfind('@')) + ".json");
     if (!is_there(result)) waiting.add(file);
   }
   if (waiting.count() == 0) return;

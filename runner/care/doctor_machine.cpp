@@ -101,14 +101,14 @@ Expected still_needed(Database& database, const CampaignDirectory& directory) {
 
 }  // namespace
 
-void examine_processes(const Patient& patient, Findings& findings) {
-  const std::string owner = patient.owner ? std::to_string(*patient.owner) : "";
+void examine_processes(const CampaignUnderExamination& examined, Findings& findings) {
+  const std::string owner = examined.owner ? std::to_string(*examined.owner) : "";
   for (const fs::directory_entry& entry : fs::directory_iterator("/proc")) {
     const std::string process = entry.path().filename().string();
     if (process.find_first_not_of("0123456789") != std::string::npos) continue;
     // Those of other users cannot be read, and are not ours.
     const std::string environment = content(entry.path() / "environ");
-    if (variable_of(environment, "PECLET_CAMPAIGN") != patient.directory.root().string()) continue;
+    if (variable_of(environment, "PECLET_CAMPAIGN") != examined.directory.root().string()) continue;
     const std::string theirs = variable_of(environment, "PECLET_OWNER");
     const std::string command = command_of(entry.path());
     if (theirs == owner || command.empty()) continue;
@@ -120,7 +120,7 @@ void examine_processes(const Patient& patient, Findings& findings) {
   }
 }
 
-void examine_clock(Database& database, const Patient& patient, Findings& findings) {
+void examine_clock(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
   Connection& connection = database.connection();
   const std::int64_t backwards = connection.integer(
       "SELECT count(*) FROM event a JOIN event b ON b.event_id = a.event_id + 1 WHERE b.at < a.at");
@@ -129,7 +129,7 @@ void examine_clock(Database& database, const Patient& patient, Findings& finding
   const std::int64_t future = connection.integer(fmt::format(
       "SELECT (SELECT count(*) FROM event WHERE at > '{0}') + (SELECT count(*) FROM attempt WHERE "
       "started_at > '{0}')",
-      patient.now));
+      examined.now));
   const std::string harmless =
       "no decision is made from wall-clock times; set the clock (NTP) for the sake of readers";
   if (backwards + negative > 0) {
@@ -142,20 +142,20 @@ void examine_clock(Database& database, const Patient& patient, Findings& finding
   }
   if (future > 0) {
     findings.push_back({"clock-ahead", Severity::warning,
-                        fmt::format("{} events and attempts are later than now, {}", future, patient.now),
+                        fmt::format("{} events and attempts are later than now, {}", future, examined.now),
                         harmless});
   }
 }
 
 // While somebody reads an earlier state of the database, SQLite cannot begin its log anew; everything that is
 // written goes on top of it.
-void examine_log(const Patient& patient, Findings& findings) {
+void examine_log(const CampaignUnderExamination& examined, Findings& findings) {
   constexpr std::uintmax_t large = 32 << 20;  // twice what a checkpoint in time lets it become
   std::error_code absent;
-  const std::uintmax_t size = fs::file_size(patient.directory.database().string() + "-wal", absent);
+  const std::uintmax_t size = fs::file_size(examined.directory.database().string() + "-wal", absent);
   if (absent || size < large) return;
-  const std::string owner = patient.owner ? std::to_string(*patient.owner) : "";
-  const std::vector<std::string> readers = readers_of(patient.directory.database(), owner);
+  const std::string owner = examined.owner ? std::to_string(*examined.owner) : "";
+  const std::vector<std::string> readers = readers_of(examined.directory.database(), owner);
   findings.push_back(
       {"log-large", Severity::warning,
        fmt::format(
@@ -168,8 +168,8 @@ void examine_log(const Patient& patient, Findings& findings) {
            : "let that process go on (kill -CONT) or end it; the log then becomes small by itself"});
 }
 
-void examine_disk(Database& database, const Patient& patient, Findings& findings) {
-  const fs::path& root = patient.directory.root();
+void examine_disk(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
+  const fs::path& root = examined.directory.root();
   if (const std::optional<std::string> kind = network_file_system(root)) {
     findings.push_back({"network-file-system", Severity::warning,
                         fmt::format("the campaign is on {}, where locks and fsync cannot be trusted", *kind),
@@ -178,7 +178,7 @@ void examine_disk(Database& database, const Patient& patient, Findings& findings
   struct statvfs about {};
   if (statvfs(root.c_str(), &about) != 0) return;
   const std::uintmax_t free = std::uintmax_t{about.f_bavail} * about.f_frsize;
-  const Expected expected = still_needed(database, patient.directory);
+  const Expected expected = still_needed(database, examined.directory);
   if (free < expected.bytes) {
     findings.push_back(
         {"disk-short", Severity::warning,

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -136,6 +137,9 @@ class Database {
   // Points of earlier versions of the sweep, and those that are kept apart, in order of their first
   // appearance.
   std::vector<PointRecord> inactive_points();
+
+  // The looks of each point for the present target, by PointRecord::id.
+  std::map<std::int64_t, std::vector<Look>> looks_by_point();
 
   // All functions below take PointRecord::id. Lists are in order of the seeds (then of time).
   StateCounts counts(std::int64_t point);

@@ -72,36 +72,39 @@ std::vector<ObservableLook> stored_observables(const std::string& text) {
   }
 }
 
+constexpr const char* look_columns =
+    "seeds, lost, count, mean, standard_error, half_width, uncontrolled_mean, uncontrolled_standard_error, "
+    "uncontrolled_half_width, verdict, skewness, transient, observables ";
+
+// Of a query of look_columns.
+Look read_look(const Statement& query) {
+  Look look;
+  look.seeds = static_cast<int>(query.integer(0));
+  look.lost = static_cast<int>(query.integer(1));
+  const int count = static_cast<int>(query.integer(2));
+  look.controlled = {count, query.real(3), query.real(4)};
+  look.controlled_half_width = query.real(5);
+  look.estimate = {count, query.real(6), query.real(7)};
+  look.half_width = query.real(8);
+  look.verdict = stored_verdict(query.text(9));
+  look.skewness = query.real(10);
+  look.transient = query.integer(11) != 0;
+  look.each = stored_observables(query.text(12));
+  look.untested =
+      std::any_of(look.each.begin(), look.each.end(), [](const ObservableLook& one) { return one.untested; });
+  return look;
+}
+
 std::vector<LookRecord> read_looks(Connection& connection, std::int64_t point) {
   Statement query(
       connection,
-      "SELECT target_id, observable, criterion, confidence, minimum, maximum, rule, seeds, lost, "
-      "count, mean, standard_error, half_width, uncontrolled_mean, uncontrolled_standard_error,"
-      " uncontrolled_half_width, verdict, made_at, skewness, transient, observables FROM look JOIN target "
-      "USING "
-      "(target_id) WHERE point_id = ? AND target_id = (SELECT target_id FROM campaign) ORDER BY seeds");
+      std::string("SELECT ") + look_columns +
+          ", made_at, target_id, observable, criterion, confidence, minimum, maximum, rule FROM look JOIN "
+          "target USING (target_id) WHERE point_id = ? AND target_id = (SELECT target_id FROM campaign) "
+          "ORDER BY seeds");
   query.bind(point);
   std::vector<LookRecord> looks;
-  while (query.step()) {
-    LookRecord record;
-    record.target = read_target(query, 0);
-    Look& look = record.look;
-    look.seeds = static_cast<int>(query.integer(7));
-    look.lost = static_cast<int>(query.integer(8));
-    const int count = static_cast<int>(query.integer(9));
-    look.controlled = {count, query.real(10), query.real(11)};
-    look.controlled_half_width = query.real(12);
-    look.estimate = {count, query.real(13), query.real(14)};
-    look.half_width = query.real(15);
-    look.verdict = stored_verdict(query.text(16));
-    record.made_at = query.text(17);
-    look.skewness = query.real(18);
-    look.transient = query.integer(19) != 0;
-    look.each = stored_observables(query.text(20));
-    look.untested = std::any_of(look.each.begin(), look.each.end(),
-                                [](const ObservableLook& one) { return one.untested; });
-    looks.push_back(std::move(record));
-  }
+  while (query.step()) looks.push_back({read_target(query, 14), read_look(query), query.text(13)});
   return looks;
 }
 
@@ -141,6 +144,15 @@ CampaignRecord Database::campaign() {
   record.created_at = query.text(9);
   record.updated_at = query.text(10);
   return record;
+}
+
+std::map<std::int64_t, std::vector<Look>> Database::looks_by_point() {
+  Statement query(*connection_, std::string("SELECT ") + look_columns +
+                                    ", point_id FROM look WHERE target_id = (SELECT target_id FROM campaign) "
+                                    "ORDER BY point_id, seeds");
+  std::map<std::int64_t, std::vector<Look>> looks;
+  while (query.step()) looks[query.integer(13)].push_back(read_look(query));
+  return looks;
 }
 
 std::vector<PointRecord> Database::points() {

@@ -14,6 +14,7 @@ struct Aggregate {
   StateCounts counts;
   RunningEstimate so_far;
   std::vector<int> ended;       // seeds, in order
+  std::vector<int> tested;      // the first few seeds with blocks, as many as a test for transients needs
   std::vector<double> seconds;  // of processor time that each of these took
 
   void count(SeedState state, int seed, double cpu_seconds) {
@@ -41,23 +42,33 @@ struct Aggregate {
   double seconds_of_first(int count) const {
     return std::accumulate(seconds.begin(), seconds.begin() + count, 0.0);
   }
-  int ended_below(int seed) const {
-    return static_cast<int>(std::lower_bound(ended.begin(), ended.end(), seed) - ended.begin());
+  int ended_below(int seed) const { return below(ended, seed); }
+  // Whether the look could not be tested for transients.
+  bool lacks_blocks_of(const Look& look) const {
+    return lacks_blocks(look.estimate.count, below(tested, look.seeds));
+  }
+
+ private:
+  static int below(const std::vector<int>& seeds, int seed) {
+    return static_cast<int>(std::lower_bound(seeds.begin(), seeds.end(), seed) - seeds.begin());
   }
 };
 
 // One pass over the seeds in the order in which they are stored: of a large campaign it is what takes the
 // time.
 std::map<std::int64_t, Aggregate> read_aggregates(Connection& connection) {
-  Statement query(connection,
-                  "SELECT point_id, seed, state, value + coalesce(control, 0), cpu_seconds FROM realisation "
-                  "ORDER BY point_id, seed");
+  Statement query(
+      connection,
+      "SELECT point_id, seed, state, value + coalesce(control, 0), cpu_seconds, first_half FROM realisation "
+      "ORDER BY point_id, seed");
   std::map<std::int64_t, Aggregate> aggregates;
   while (query.step()) {
     Aggregate& aggregate = aggregates[query.integer(0)];
-    aggregate.count(seed_state(query.text(2)), static_cast<int>(query.integer(1)),
-                    query.optional_real(4).value_or(0));
-    if (!query.is_null(3)) aggregate.so_far.add(query.real(3));
+    const int seed = static_cast<int>(query.integer(1));
+    aggregate.count(seed_state(query.text(2)), seed, query.optional_real(4).value_or(0));
+    if (query.is_null(3)) continue;
+    aggregate.so_far.add(query.real(3));
+    if (!query.is_null(5) && aggregate.tested.size() < fewest_contrasts) aggregate.tested.push_back(seed);
   }
   return aggregates;
 }
@@ -94,20 +105,12 @@ std::map<std::int64_t, int> read_largest_earlier_looks(Connection& connection) {
   return largest;
 }
 
-// Whether the look could not be tested for transients, from its first few seeds with blocks.
-bool is_untested(Connection& connection, std::int64_t point, const Look& look) {
-  Statement query(connection,
-                  "SELECT count(*) FROM (SELECT 1 FROM realisation WHERE point_id = ? AND seed < ? AND value "
-                  "IS NOT NULL AND first_half IS NOT NULL LIMIT ?)");
-  query.bind(point).bind(look.seeds).bind(fewest_contrasts).step();
-  return lacks_blocks(look.estimate.count, static_cast<int>(query.integer(0)));
-}
-
 }  // namespace
 
 std::vector<PointSummary> summarise_points(Database& database, const TargetRecord& target) {
   Connection& connection = database.connection();
   std::map<std::int64_t, Aggregate> aggregates = read_aggregates(connection);
+  std::map<std::int64_t, std::vector<Look>> looks = database.looks_by_point();
   CountsByPoint losses = read_losses(connection);
   CountsByPoint flags = read_flags(connection);
   const bool any_apart = connection.integer("SELECT count(*) FROM point WHERE kept_apart = 1") > 0;
@@ -124,9 +127,10 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
     summary.so_far = aggregate.so_far.estimate();
     summary.losses = std::move(losses[point.id]);
     summary.flags = std::move(flags[point.id]);
-    for (LookRecord& record : database.looks(point.id)) summary.looks.push_back(record.look);
+    if (const auto known = looks.find(point.id); known != looks.end())
+      summary.looks = std::move(known->second);
     if (!summary.looks.empty() && summary.looks.back().each.empty()) {
-      summary.looks.back().untested = is_untested(connection, point.id, summary.looks.back());
+      summary.looks.back().untested = aggregate.lacks_blocks_of(summary.looks.back());
     }
     summary.decided = !summary.looks.empty() && summary.looks.back().verdict != Verdict::more;
     const int seen = summary.looks.empty() ? 0 : summary.looks.back().seeds;

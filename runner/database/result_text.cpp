@@ -32,9 +32,7 @@ class Deflation {
   Deflation(const Deflation&) = delete;
   Deflation& operator=(const Deflation&) = delete;
 
-  // As if it had never run before.
   std::string run(std::string_view text, std::string_view dictionary) {
-    if (deflateReset(&stream_) != Z_OK) throw std::logic_error("zlib cannot begin anew");
     if (!dictionary.empty() &&
         deflateSetDictionary(&stream_, bytes_of(dictionary), size_of(dictionary)) != Z_OK) {
       throw std::logic_error("zlib refuses a dictionary");
@@ -101,9 +99,7 @@ class Inflation {
 }  // namespace
 
 std::string deflated(std::string_view text, std::string_view dictionary) {
-  // A stream has a quarter of a megabyte, which takes longer to be set up than a short text to be deflated.
-  thread_local Deflation deflation;
-  return deflation.run(text, dictionary);
+  return Deflation().run(text, dictionary);
 }
 
 std::string inflated(std::string_view bytes, std::string_view dictionary) {
@@ -111,7 +107,7 @@ std::string inflated(std::string_view bytes, std::string_view dictionary) {
 }
 
 // RFC 1950, 2.2: bit 5 of the second byte says that four more follow, with the dictionary's checksum.
-bool lean_on(std::string_view bytes, std::string_view dictionary) {
+bool was_deflated_with(std::string_view bytes, std::string_view dictionary) {
   constexpr std::size_t header = 6;
   constexpr unsigned has_dictionary = 0x20;
   if (bytes.size() < header || (static_cast<unsigned char>(bytes[1]) & has_dictionary) == 0) return true;

@@ -22,7 +22,7 @@ void store_result_text(Connection& connection, std::int64_t point, int seed, std
                        bool completed);
 
 // Whether the bytes were made with this dictionary, or with none.
-bool lean_on(std::string_view bytes, std::string_view dictionary);
+bool was_deflated_with(std::string_view bytes, std::string_view dictionary);
 
 // For a query of `document` and `dictionary` of
 // result LEFT JOIN dictionary USING (point_id), in these columns. Results from before version 4 of the tables

@@ -64,7 +64,7 @@ AttemptOutcome outcome_of(const ExitStatus& ending) {
   return from_outside ? AttemptOutcome::killed : AttemptOutcome::crashed;
 }
 
-Sentence judge(std::span<const PastAttempt> attempts, int retries) {
+SeedFate judge(std::span<const PastAttempt> attempts, int retries) {
   if (attempts.empty()) return {};
   const auto blamed = std::count_if(attempts.begin(), attempts.end(),
                                     [](const PastAttempt& past) { return is_blamed(past.outcome); });

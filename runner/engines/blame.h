@@ -26,7 +26,7 @@ struct PastAttempt {
   std::int64_t step;  // the last one it reported
 };
 
-struct Sentence {
+struct SeedFate {
   bool quarantine = false;
   std::string cause{};  // of the quarantine
   bool discard_checkpoint =
@@ -36,6 +36,6 @@ struct Sentence {
 // `attempts` in order of time, the one that has just ended last. A seed may be blamed `retries` times beyond
 // the first. Kills from outside cost nothing, but 20 in a row without a new step between them (the kernel's
 // answer to a realisation that does not fit into memory looks like that) end it all the same.
-Sentence judge(std::span<const PastAttempt> attempts, int retries);
+SeedFate judge(std::span<const PastAttempt> attempts, int retries);
 
 }  // namespace peclet::runner

@@ -47,7 +47,7 @@ RealisationResult read_spool_file(const fs::path& path, const std::string& sha25
   return parse_result(text);
 }
 
-bool is_named_for_another(const fs::path& path, const RealisationResult& result) {
+bool belongs_to_another(const fs::path& path, const RealisationResult& result) {
   // As CampaignDirectory::spool_file() spells it, apart from the attempt.
   static const std::regex ours("([0-9a-f]{16})-([0-9]{6,9})-[0-9]+[.]json");
   const std::string name = path.filename().string();

@@ -17,7 +17,7 @@ RealisationResult read_spool_file(const std::filesystem::path& path, const std::
 
 // Whether the file bears the name of another point's or seed's result. Files with names of other forms are
 // accepted.
-bool is_named_for_another(const std::filesystem::path& path, const RealisationResult& result);
+bool belongs_to_another(const std::filesystem::path& path, const RealisationResult& result);
 
 // The folder whose spool the file lies in: the campaign's own, or one that is shared with a batch system.
 CampaignDirectory home_of_spool_file(const std::filesystem::path& path);

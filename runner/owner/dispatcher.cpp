@@ -134,7 +134,7 @@ void Dispatcher::show_leases() {
   for (Worker& worker : now_.workers) {
     if (!worker.assignment || worker.assignment->shown) continue;
     Assignment& about = *worker.assignment;
-    ledger_.renew_lease(about.grant, worker.watch.progress());
+    ledger_.renew_lease(about.given_seed, worker.watch.progress());
     about.shown = true;
   }
 }
@@ -194,9 +194,9 @@ void Dispatcher::handle(const ResultSpooled& event) {
   const Worker& worker = at(event.worker);
   const Assignment& about = *worker.assignment;
   std::string why;
-  if (event.spool != about.grant.job.spool) {
+  if (event.spool != about.given_seed.job.spool) {
     condemn(event.worker, {AttemptOutcome::garbled, "spooled its result elsewhere"});
-  } else if (ledger_.take_result(about.grant, event.sha256, worker.watch.progress().step,
+  } else if (ledger_.take_result(about.given_seed, event.sha256, worker.watch.progress().step,
                                  processor_seconds_since(about.given), why)) {
     ++now_.results;
     now_.early_exits = 0;
@@ -229,7 +229,7 @@ void Dispatcher::handle(const Drained& event) {
 // It keeps its work and stands still: as long as there really is no room, that is not its fault.
 void Dispatcher::handle(const ShortOfRoom& event) {
   if (!has_job(event.worker, event.job)) return;
-  const Job& job = at(event.worker).assignment->grant.job;
+  const Job& job = at(event.worker).assignment->given_seed.job;
   const std::filesystem::path folder = event.path.parent_path();
   const bool is_beside_result =
       folder == left_folder(job.spool) && event.path.filename().string().starts_with(left_stem(job.spool));

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "runner/engines/worker_watch.h"
-#include "runner/folder/room.h"
+#include "runner/folder/disk_room.h"
 #include "runner/owner/ledger.h"
 
 namespace peclet::runner {
@@ -52,7 +52,7 @@ class Dispatcher {
  private:
   // A seed in the hands of a worker.
   struct Assignment {
-    Grant grant;
+    GivenSeed given_seed;
     Time given{};        // when the worker got it
     Time begun{};        // when there was no other before it any more, as far as we know
     bool shown = false;  // the database says how far it is
@@ -106,7 +106,7 @@ class Dispatcher {
   void report();
 
   std::optional<Assignment> next_assignment(int worker);
-  bool takes_one_more(const Worker& worker) const;
+  bool takes_a_second_job(const Worker& worker) const;
   bool has_job(int worker, std::int64_t job);
   // Whether the worker may have failed because it could not write: no room, or no folder.
   bool lacked_room(int worker);
@@ -136,7 +136,7 @@ class Dispatcher {
   Picture now_;
   std::vector<WorkerEvent> news_;             // and not booked yet
   std::vector<std::pair<int, Job>> to_send_;  // after the commit
-  Shortage shortage_;
+  DiskShortage shortage_;
   bool unbooked_ = false;       // for want of room
   bool request_waits_ = false;  // for the same
   bool told_of_shortage_ = false;

@@ -14,7 +14,7 @@ namespace {
 // Mean seconds of jobs that it is worth having another one wait for. A commit takes some hundredth of a
 // second, for which a worker with longer jobs need not have one; and a seed behind a long one would make the
 // decision of its point wait, while workers become idle that could run it.
-constexpr double longest_brisk_job = 1;
+constexpr double longest_job_to_queue_behind = 1;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ void Dispatcher::give_out_seeds() {
   }
   for (int number = 0; number < pool_.size(); ++number) {
     Worker& worker = at(number);
-    if (!takes_one_more(worker)) continue;
+    if (!takes_a_second_job(worker)) continue;
     worker.waiting = next_assignment(number);
     if (!worker.waiting) return;
   }
@@ -38,30 +38,30 @@ void Dispatcher::give_out_seeds() {
 
 // Books the next seed as this worker's, to be sent after the commit; nothing when there is none.
 std::optional<Dispatcher::Assignment> Dispatcher::next_assignment(int number) {
-  std::optional<Grant> grant = ledger_.give_out(number, pool_.process(number), at(number).engine);
-  if (!grant) return std::nullopt;
-  grant->job.threads = settings_.threads;
-  grant->job.checkpoint_seconds = settings_.checkpoint_seconds;
+  std::optional<GivenSeed> given_seed = ledger_.give_out(number, pool_.process(number), at(number).engine);
+  if (!given_seed) return std::nullopt;
+  given_seed->job.threads = settings_.threads;
+  given_seed->job.checkpoint_seconds = settings_.checkpoint_seconds;
   // Several reports fit into a lease.
-  grant->job.progress_seconds = std::min(1.0, settings_.lease.count() / 5);
-  to_send_.emplace_back(number, grant->job);
-  grant->job.scene = nullptr;  // sent once; the rest is copied at every turn
-  Assignment about{std::move(*grant)};
+  given_seed->job.progress_seconds = std::min(1.0, settings_.lease.count() / 5);
+  to_send_.emplace_back(number, given_seed->job);
+  given_seed->job.scene = nullptr;  // sent once; the rest is copied at every turn
+  Assignment about{std::move(*given_seed)};
   about.given = about.begun = clock_();
   return about;
 }
 
-bool Dispatcher::takes_one_more(const Worker& worker) const {
+bool Dispatcher::takes_a_second_job(const Worker& worker) const {
   if (!worker.watch.is_busy() || !worker.takes_ahead || worker.waiting) return false;
   if (worker.watch.condemned() || worker.watch.is_recalled()) return false;
-  const std::optional<double> seconds = ledger_.wall_seconds(worker.assignment->grant);
-  return seconds && *seconds < longest_brisk_job;
+  const std::optional<double> seconds = ledger_.wall_seconds(worker.assignment->given_seed);
+  return seconds && *seconds < longest_job_to_queue_behind;
 }
 
 bool Dispatcher::has_job(int worker, std::int64_t job) {
   const Worker& about = at(worker);
   if (about.watch.condemned()) return false;
-  if (about.assignment && about.assignment->grant.job.attempt == job) return true;
+  if (about.assignment && about.assignment->given_seed.job.attempt == job) return true;
   if (about.finished_job == job) return false;  // said once too often, which does no harm
   condemn(worker, {AttemptOutcome::garbled, fmt::format("spoke of job {}, which it does not have", job)});
   return false;
@@ -69,7 +69,7 @@ bool Dispatcher::has_job(int worker, std::int64_t job) {
 
 void Dispatcher::go_on(int number) {
   Worker& worker = at(number);
-  worker.finished_job = worker.assignment->grant.job.attempt;
+  worker.finished_job = worker.assignment->given_seed.job.attempt;
   worker.assignment = std::exchange(worker.waiting, std::nullopt);
   if (!worker.assignment) return worker.watch.rest(awake_.awake());
   worker.assignment->begun = clock_();
@@ -85,7 +85,7 @@ void Dispatcher::end_assignment(int number, const AttemptEnd& end) {
   AttemptEnd complete = end;
   complete.step = at(number).watch.progress().step;
   complete.held_seconds = processor_seconds_since(about.begun);
-  ledger_.end_attempt(about.grant, complete);
+  ledger_.end_attempt(about.given_seed, complete);
   go_on(number);
 }
 
@@ -93,8 +93,8 @@ void Dispatcher::end_assignment(int number, const AttemptEnd& end) {
 bool Dispatcher::left_result(int number, const Assignment& about, std::int64_t step) {
   const std::optional<AttemptReason>& condemned = at(number).watch.condemned();
   std::string why;
-  if ((condemned && condemned->outcome == AttemptOutcome::garbled) || !is_there(about.grant.job.spool) ||
-      !ledger_.take_result(about.grant, "", step, processor_seconds_since(about.given), why)) {
+  if ((condemned && condemned->outcome == AttemptOutcome::garbled) || !is_there(about.given_seed.job.spool) ||
+      !ledger_.take_result(about.given_seed, "", step, processor_seconds_since(about.given), why)) {
     return false;
   }
   ++now_.results;
@@ -102,7 +102,7 @@ bool Dispatcher::left_result(int number, const Assignment& about, std::int64_t s
 }
 
 void Dispatcher::give_back(const Assignment& waiting) {
-  ledger_.end_attempt(waiting.grant, {AttemptOutcome::drained, 0, {}, "waited behind another job"});
+  ledger_.end_attempt(waiting.given_seed, {AttemptOutcome::drained, 0, {}, "waited behind another job"});
 }
 
 }  // namespace peclet::runner

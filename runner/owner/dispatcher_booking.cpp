@@ -136,7 +136,7 @@ void Dispatcher::end_shortage() {
 // An engine that does not know how to wait for room may crash or give up instead. So may any whose folders
 // somebody has deleted or moved.
 bool Dispatcher::lacked_room(int number) {
-  const Job& job = at(number).assignment->grant.job;
+  const Job& job = at(number).assignment->given_seed.job;
   for (const std::filesystem::path& folder :
        {job.spool.parent_path(), job.checkpoint.parent_path(), job.failures}) {
     if (!std::filesystem::exists(folder)) return true;

@@ -28,7 +28,7 @@ void Dispatcher::mark_running_seeds() {
     Worker& worker = at(number);
     bool wanted = true;
     for (std::optional<Assignment>* const about : {&worker.assignment, &worker.waiting}) {
-      if (*about && !ledger_.keep_running((*about)->grant)) wanted = false;
+      if (*about && !ledger_.keep_running((*about)->given_seed)) wanted = false;
     }
     if (wanted || worker.watch.is_recalled()) continue;
     worker.watch.recall();

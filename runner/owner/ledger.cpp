@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "contract/input_error.h"
@@ -45,16 +47,35 @@ Ledger::Ledger(Database& database, const Campaign& campaign, CampaignDirectory d
 
 void Ledger::load() {
   read();
-  for (const PointRecord& known : board_.points()) {
-    for (const RealisationRecord& record : database_.realisations(known.id)) {
-      // A worker that outlived its owner may have saved one after its seed had ended elsewhere.
-      if (!record.cause.empty()) fs::remove(directory_.checkpoint(known.hash, record.seed));
-    }
-  }
+  remove_late_checkpoints();
   Transaction booking(database_.connection());
   book_looks();
   booking.commit();
   after_commit();
+}
+
+// A worker that outlived its owner may have saved one after its seed had ended elsewhere. Files are few where
+// seeds are many.
+void Ledger::remove_late_checkpoints() {
+  for (const fs::path& file : whole_files(directory_.checkpoints())) {
+    const std::optional<SeedId> id = seed_of_checkpoint(file);
+    if (id && has_ended(*id)) fs::remove(file);
+  }
+}
+
+std::optional<SeedId> Ledger::seed_of_checkpoint(const fs::path& file) const {
+  const std::string name = file.filename().string();
+  const std::size_t hyphen = name.find('-');
+  if (hyphen == std::string::npos) return std::nullopt;
+  const std::string_view hash = std::string_view(name).substr(0, hyphen);
+  int seed = 0;
+  std::from_chars(name.data() + hyphen + 1, name.data() + name.size(), seed);
+  for (const PointRecord& known : board_.points()) {
+    // However the name is to be read: there is one way to write it.
+    if (known.hash.starts_with(hash) && directory_.checkpoint(known.hash, seed) == file)
+      return SeedId{*known.place, seed};
+  }
+  return std::nullopt;
 }
 
 void Ledger::book_looks() {
@@ -82,9 +103,9 @@ void Ledger::roll_back() {
 void Ledger::store_looks(int place, std::size_t known) {
   const std::vector<Look>& looks = scheduler().looks(place);
   results_.store_looks(point(place).id, looks);
-  for (std::size_t i = known; i < looks.size(); ++i) after_.tell(Looked{told_name(place), looks[i]});
+  for (std::size_t i = known; i < looks.size(); ++i) after_.tell(Looked{point_name(place), looks[i]});
   if (looks.size() > known && scheduler().decided(place)) {
-    after_.tell(Decided{told_name(place), looks.back()});
+    after_.tell(Decided{point_name(place), looks.back()});
   }
 }
 
@@ -103,51 +124,52 @@ void Ledger::book_outcome(SeedId id, const Outcome& outcome) {
   after_.note(fmt::format("{}: {}", about.label, message));
 }
 
-std::optional<Grant> Ledger::give_out(int worker, std::int64_t process, std::int64_t engine) {
+std::optional<GivenSeed> Ledger::give_out(int worker, std::int64_t process, std::int64_t engine) {
   const std::optional<SeedId> id = next();
   if (!id) return std::nullopt;
   const PointRecord& about = point(id->point);
-  Grant grant{*id, about.id, {}};
-  grant.job.attempt = seeds_.begin_attempt(about.id, id->seed, worker, process, engine);
-  grant.job.point = about.hash;
-  grant.job.seed = id->seed;
-  grant.job.scene = about.scene;
-  grant.job.checkpoint = directory_.checkpoint(about.hash, id->seed);
-  grant.job.spool = directory_.spool_file(about.hash, id->seed, grant.job.attempt);
-  grant.job.failures = directory_.failures();
+  GivenSeed given_seed{*id, about.id, {}};
+  given_seed.job.attempt = seeds_.begin_attempt(about.id, id->seed, worker, process, engine);
+  given_seed.job.point = about.hash;
+  given_seed.job.seed = id->seed;
+  given_seed.job.scene = about.scene;
+  given_seed.job.checkpoint = directory_.checkpoint(about.hash, id->seed);
+  given_seed.job.spool = directory_.spool_file(about.hash, id->seed, given_seed.job.attempt);
+  given_seed.job.failures = directory_.failures();
   board_.scheduler().begin(*id);
   board_.add_running(id->point, 1);
-  return grant;
+  return given_seed;
 }
 
-void Ledger::end_attempt(const Grant& grant, const AttemptEnd& end) {
-  leave(grant);
+void Ledger::end_attempt(const GivenSeed& given_seed, const AttemptEnd& end) {
+  leave(given_seed);
   spending_.add(end.held_seconds);
-  seeds_.end_attempt(grant.job.attempt, end);
-  const Sentence sentence = judge(seeds_.history(grant.point_id, grant.id.seed), retries_);
-  if (sentence.discard_checkpoint) after_.discard(grant.job.checkpoint);
+  seeds_.end_attempt(given_seed.job.attempt, end);
+  const SeedFate fate = judge(seeds_.history(given_seed.point_id, given_seed.id.seed), retries_);
+  if (fate.discard_checkpoint) after_.discard(given_seed.job.checkpoint);
   if (is_blamed(end.outcome)) {
-    after_.warn(fmt::format("{}: {}{}{}; {}", name_of(grant), to_string(end.outcome),
+    after_.warn(fmt::format("{}: {}{}{}; {}", name_of(given_seed), to_string(end.outcome),
                             end.message.empty() ? "" : ": ", end.message,
-                            sentence.quarantine ? "it is given up" : "it is tried again"));
+                            fate.quarantine ? "it is given up" : "it is tried again"));
   }
-  after_.tell(AttemptFailed{told_name(grant), grant.id.seed, end.outcome, end.message, sentence.quarantine});
-  if (!sentence.quarantine) {
-    seeds_.requeue(grant.point_id, grant.id.seed);
-    if (takes_part(grant.id)) board_.scheduler().give_back(grant.id);
+  after_.tell(
+      AttemptFailed{point_name(given_seed), given_seed.id.seed, end.outcome, end.message, fate.quarantine});
+  if (!fate.quarantine) {
+    seeds_.requeue(given_seed.point_id, given_seed.id.seed);
+    if (takes_part(given_seed.id)) board_.scheduler().give_back(given_seed.id);
     return;
   }
-  seeds_.quarantine(grant.point_id, grant.id.seed, sentence.cause);
-  after_.tell(SeedEnded{told_name(grant), grant.id.seed, sentence.cause, std::nullopt, std::nullopt});
-  if (takes_part(grant.id)) book_outcome(grant.id, Outcome{});
+  seeds_.quarantine(given_seed.point_id, given_seed.id.seed, fate.cause);
+  after_.tell(SeedEnded{point_name(given_seed), given_seed.id.seed, fate.cause, std::nullopt, std::nullopt});
+  if (takes_part(given_seed.id)) book_outcome(given_seed.id, Outcome{});
 }
 
-void Ledger::leave(const Grant& grant) {
-  if (takes_part(grant.id)) board_.add_running(grant.id.point, -1);
+void Ledger::leave(const GivenSeed& given_seed) {
+  if (takes_part(given_seed.id)) board_.add_running(given_seed.id.point, -1);
 }
 
-void Ledger::renew_lease(const Grant& grant, const JobProgress& progress) {
-  seeds_.renew_lease(grant.job.attempt, phase_name(progress.phase), progress.step, progress.steps,
+void Ledger::renew_lease(const GivenSeed& given_seed, const JobProgress& progress) {
+  seeds_.renew_lease(given_seed.job.attempt, phase_name(progress.phase), progress.step, progress.steps,
                      progress.strain);
 }
 
@@ -192,16 +214,18 @@ std::string Ledger::name(SeedId id) const {
   return fmt::format("{} seed {}", point(id.point).label, id.seed);
 }
 
-PointName Ledger::told_name(int place) const { return {point(place).label, point(place).hash}; }
+PointName Ledger::point_name(int place) const { return {point(place).label, point(place).hash}; }
 
 // A point that has left the sweep is known by its hash alone.
-PointName Ledger::told_name(const Grant& grant) const {
-  return {grant.id.point == nowhere ? grant.job.point : point(grant.id.point).label, grant.job.point};
+PointName Ledger::point_name(const GivenSeed& given_seed) const {
+  return {given_seed.id.point == nowhere ? given_seed.job.point : point(given_seed.id.point).label,
+          given_seed.job.point};
 }
 
-std::string Ledger::name_of(const Grant& grant) const {
-  if (grant.id.point != nowhere) return name(grant.id);
-  return fmt::format("{} (no longer in the sweep) seed {}", grant.job.point.substr(0, 12), grant.id.seed);
+std::string Ledger::name_of(const GivenSeed& given_seed) const {
+  if (given_seed.id.point != nowhere) return name(given_seed.id);
+  return fmt::format("{} (no longer in the sweep) seed {}", given_seed.job.point.substr(0, 12),
+                     given_seed.id.seed);
 }
 
 }  // namespace peclet::runner

@@ -8,11 +8,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "runner/engines/worker_watch.h"
@@ -28,7 +26,7 @@
 namespace peclet::runner {
 
 // A seed that has been given to a worker.
-struct Grant {
+struct GivenSeed {
   SeedId id;  // its place is `nowhere` when the point has left the sweep since
   std::int64_t point_id = 0;
   Job job;
@@ -53,16 +51,16 @@ class Ledger {
   // are out are not expected to cost.
   std::optional<SeedId> next() const;
   // Books that seed as given to a worker; nothing when there is none to run now.
-  std::optional<Grant> give_out(int worker, std::int64_t process, std::int64_t engine);
+  std::optional<GivenSeed> give_out(int worker, std::int64_t process, std::int64_t engine);
   // Books a result that a worker has announced (`sha256`) or left behind (""), after `held_seconds` as in
   // AttemptEnd. False: it is none and has been turned down; `why` says so, and the attempt has not ended.
-  bool take_result(const Grant& grant, const std::string& sha256, std::int64_t step, double held_seconds,
-                   std::string& why);
+  bool take_result(const GivenSeed& given_seed, const std::string& sha256, std::int64_t step,
+                   double held_seconds, std::string& why);
   // Mean wall time of the results of the seed's point; nothing when there are none.
-  std::optional<double> wall_seconds(const Grant& grant) const;
+  std::optional<double> wall_seconds(const GivenSeed& given_seed) const;
   // Books any other end of an attempt: the seed is queued again, or given up.
-  void end_attempt(const Grant& grant, const AttemptEnd& end);
-  void renew_lease(const Grant& grant, const JobProgress& progress);
+  void end_attempt(const GivenSeed& given_seed, const AttemptEnd& end);
+  void renew_lease(const GivenSeed& given_seed, const JobProgress& progress);
 
   // The seeds that the next looks need and nobody runs, with `ahead` those of the looks after them, too. They
   // are out from now on; the caller hands them over.
@@ -96,7 +94,7 @@ class Ledger {
   void roll_back();
   // Finds the place of the seed's point. False: the seed is not wanted any more, because its point was
   // cancelled or left the sweep, or the maximum is smaller now.
-  bool keep_running(Grant& grant);
+  bool keep_running(GivenSeed& given_seed);
 
   // Moves files that are no results and discards checkpoints, begins to remove the files of results that are
   // durable now, and tells what happened. Throws InputError when results lack the observable.
@@ -115,14 +113,17 @@ class Ledger {
 
  private:
   void load();
+  void remove_late_checkpoints();
+  // Nothing for a file that is no checkpoint of a point in the sweep.
+  std::optional<SeedId> seed_of_checkpoint(const std::filesystem::path& file) const;
   void read();
   void book_looks();
   // Whether the seed has a part in the looks.
   bool takes_part(SeedId id) const { return id.point != nowhere && id.seed < campaign_.maximum_realisations; }
-  void leave(const Grant& grant);
-  std::string name_of(const Grant& grant) const;
-  PointName told_name(int place) const;
-  PointName told_name(const Grant& grant) const;
+  void leave(const GivenSeed& given_seed);
+  std::string name_of(const GivenSeed& given_seed) const;
+  PointName point_name(int place) const;
+  PointName point_name(const GivenSeed& given_seed) const;
   void leave_to_batch_system(int place);
   void ingest_spool_of(const CampaignDirectory& directory);
   void ingest(const std::filesystem::path& spool);

@@ -7,8 +7,8 @@ namespace peclet::runner {
 
 void Ledger::set_bounds(Bounds bounds) { board_.set_bounds(std::move(bounds)); }
 
-std::optional<double> Ledger::wall_seconds(const Grant& grant) const {
-  return grant.id.point == nowhere ? std::nullopt : board_.wall_seconds(grant.id.point);
+std::optional<double> Ledger::wall_seconds(const GivenSeed& given_seed) const {
+  return given_seed.id.point == nowhere ? std::nullopt : board_.wall_seconds(given_seed.id.point);
 }
 
 std::optional<SeedId> Ledger::next() const {

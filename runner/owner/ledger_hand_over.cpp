@@ -93,18 +93,18 @@ void Ledger::end_handed_over(SeedId id, int task, const AttemptReport& report,
   const PointRecord& about = point(id.point);
   seeds_.attempt_elsewhere(about.id, id.seed, task, report);
   if (has_ended(id)) return;
-  const Sentence sentence = judge(seeds_.history(about.id, id.seed), retries_);
-  if (sentence.discard_checkpoint) after_.discard(checkpoint);
+  const SeedFate fate = judge(seeds_.history(about.id, id.seed), retries_);
+  if (fate.discard_checkpoint) after_.discard(checkpoint);
   if (is_blamed(report.outcome)) {
     after_.warn(fmt::format("{} on {}: {}{}{}; {}", name(id), report.host, to_string(report.outcome),
                             report.message.empty() ? "" : ": ", report.message,
-                            sentence.quarantine ? "it is given up" : "it is tried again"));
+                            fate.quarantine ? "it is given up" : "it is tried again"));
   }
-  if (!sentence.quarantine) {
+  if (!fate.quarantine) {
     take_back(id);
     return;
   }
-  seeds_.quarantine(about.id, id.seed, sentence.cause);
+  seeds_.quarantine(about.id, id.seed, fate.cause);
   book_outcome(id, Outcome{});
 }
 

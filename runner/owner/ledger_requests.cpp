@@ -22,12 +22,12 @@ void Ledger::refresh() {
   engine_.require_no_other(board_);
 }
 
-bool Ledger::keep_running(Grant& grant) {
-  grant.id.point = board_.place_of(grant.job.point).value_or(nowhere);
-  if (!takes_part(grant.id)) return false;
-  board_.scheduler().begin(grant.id);
-  board_.add_running(grant.id.point, 1);
-  return !scheduler().cancelled(grant.id.point);
+bool Ledger::keep_running(GivenSeed& given_seed) {
+  given_seed.id.point = board_.place_of(given_seed.job.point).value_or(nowhere);
+  if (!takes_part(given_seed.id)) return false;
+  board_.scheduler().begin(given_seed.id);
+  board_.add_running(given_seed.id.point, 1);
+  return !scheduler().cancelled(given_seed.id.point);
 }
 
 int Ledger::accept_engine(const std::string& identity) {

@@ -140,7 +140,7 @@ void Ledger::take(const RealisationResult& result, const fs::path& spool) {
   if (result.completed()) note_lacking(result);
   const std::optional<double> value = stored.observed.front().value;
   const std::optional<double> cpu_seconds = cost_of(result, "cpu_seconds");
-  after_.tell(SeedEnded{told_name(*place), result.seed, stored.cause, value, cpu_seconds});
+  after_.tell(SeedEnded{point_name(*place), result.seed, stored.cause, value, cpu_seconds});
   if (!board_.has_seeds()) return;  // load() finds it
   board_.add_cost(*place, cost_of(result, "wall_seconds"), cpu_seconds);
   if (!value) {
@@ -187,18 +187,18 @@ void Ledger::ingest(const fs::path& file) {
   const auto read = [&file] {
     RealisationResult result = read_spool_file(file, "");
     // An engine that answers with another seed's result may die before it is found out.
-    if (is_named_for_another(file, result)) throw ResultError("it is named for another point or seed");
+    if (belongs_to_another(file, result)) throw ResultError("it is named for another point or seed");
     return result;
   };
   take_whole(file, read, [&](const RealisationResult& result) { take(result, file); });
 }
 
-bool Ledger::take_result(const Grant& grant, const std::string& sha256, std::int64_t step,
+bool Ledger::take_result(const GivenSeed& given_seed, const std::string& sha256, std::int64_t step,
                          double held_seconds, std::string& why) {
   turned_down_ = 0;
   const auto read = [&] {
-    RealisationResult result = read_spool_file(grant.job.spool, sha256);
-    if (result.point != grant.job.point || result.seed != grant.job.seed) {
+    RealisationResult result = read_spool_file(given_seed.job.spool, sha256);
+    if (result.point != given_seed.job.point || result.seed != given_seed.job.seed) {
       throw ResultError("it is of another point or seed than the job");
     }
     if (result.engine != engine_.identity()) {
@@ -206,11 +206,11 @@ bool Ledger::take_result(const Grant& grant, const std::string& sha256, std::int
     }
     return result;
   };
-  why = take_whole(grant.job.spool, read, [&](const RealisationResult& result) {
-    take(result, grant.job.spool);
+  why = take_whole(given_seed.job.spool, read, [&](const RealisationResult& result) {
+    take(result, given_seed.job.spool);
     spending_.add(std::min(held_seconds, cost_of(result, "cpu_seconds").value_or(held_seconds)));
-    leave(grant);
-    seeds_.end_attempt(grant.job.attempt, {AttemptOutcome::result, step});
+    leave(given_seed);
+    seeds_.end_attempt(given_seed.job.attempt, {AttemptOutcome::result, step});
   });
   return why.empty();
 }

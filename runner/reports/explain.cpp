@@ -340,9 +340,8 @@ std::string explain(Database& database, const CampaignDirectory& directory, cons
     text += losses_text(database, summary.point.id);
     text += attempts_text(database, summary.point.id);
     text += files_text(database, directory, summary.point.id);
-    for (const KeptApart& kept : summary.kept_apart) {
+    for (const KeptApart& kept : summary.kept_apart)
       text += fmt::format("  kept apart: {} results of engine {}\n", kept.results, kept.engine);
-    }
     text += fmt::format("  next: {}\n", next_step(summary, target, directory));
   }
   return text;

@@ -9,9 +9,9 @@ namespace peclet::runner {
 namespace {
 
 // Of one point that is decided or has a prediction, for every place in the schedule at which it may stop.
-class Ahead {
+class LooksAhead {
  public:
-  Ahead(const PointPlan& point, const std::vector<int>& schedule, int workers) : point_(point) {
+  LooksAhead(const PointPlan& point, const std::vector<int>& schedule, int workers) : point_(point) {
     int seeds = point.ended;
     double rounds = 0;
     for (const int look : schedule) {
@@ -42,7 +42,7 @@ class Ahead {
 Totals totals_of(const Plan& plan) {
   Totals totals;
   const std::vector<int> schedule = look_schedule(plan.minimum, plan.maximum);
-  std::vector<Ahead> points;
+  std::vector<LooksAhead> points;
   for (const PointPlan& point : plan.points) {
     const bool counts = point.is_predicted() || (point.decided && std::isfinite(point.cost.cpu_seconds));
     if (!counts) continue;
@@ -54,7 +54,7 @@ Totals totals_of(const Plan& plan) {
   std::vector<double> seeds(futures), cpu(futures), cpu_to_come(futures), wall(futures);
   for (std::size_t future = 0; future < futures; ++future) {
     double work = 0, longest = 0;
-    for (const Ahead& point : points) {
+    for (const LooksAhead& point : points) {
       seeds[future] += point.seeds(future);
       cpu[future] += point.seeds(future) * point.cost().cpu_seconds;
       cpu_to_come[future] += point.to_come(future) * point.cost().cpu_seconds;
@@ -91,7 +91,7 @@ void predict_point(PointPlan& point, const Campaign& campaign,
 
 // Futures in which the points are predicted together.
 void draw_futures(Plan& plan, const Campaign& campaign, const std::map<std::string, PointHistory>& known) {
-  std::vector<Share> shares;
+  std::vector<CostShare> shares;
   for (const PointPlan& point : plan.points) {
     const Prediction& made = point.prediction;
     if (!point.is_predicted() || made.seeds.lower == made.seeds.upper) continue;

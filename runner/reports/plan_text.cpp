@@ -191,8 +191,9 @@ Json totals_json(const Plan& plan) {
 
 std::string plan_text(const Plan& plan) {
   const bool predicted = has_values(plan);
-  return fmt::format("{}: {} points, {} to {} seeds each\n\n{}\n{}{}", plan.campaign, plan.points.size(),
-                     plan.minimum, plan.maximum, table_text(plan, predicted), legend(plan, predicted),
+  return fmt::format("{}: {}, {} to {} seeds each\n\n{}\n{}{}", plan.campaign,
+                     counted(plan.points.size(), "point"), plan.minimum, plan.maximum,
+                     table_text(plan, predicted), legend(plan, predicted),
                      predicted ? '\n' + ending_text(plan) : "");
 }
 

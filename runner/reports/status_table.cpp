@@ -169,8 +169,7 @@ bool any_control(const CampaignStatus& status) {
 std::string point_totals(const CampaignStatus& status) {
   std::map<std::string, int> verdicts;
   for (const PointSummary& point : status.points) ++verdicts[standing_word(point)];
-  return fmt::format("{} point{}: {}", status.points.size(), status.points.size() == 1 ? "" : "s",
-                     listed(verdicts));
+  return fmt::format("{}: {}", counted(status.points.size(), "point"), listed(verdicts));
 }
 
 std::string status_table(const CampaignStatus& status, std::size_t width) {

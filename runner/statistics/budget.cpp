@@ -39,9 +39,10 @@ std::string budget_text(double spent_seconds, double budget_seconds, const Summe
                   rough(budget_seconds / seconds_per_hour));
   if (after.points == 0) return spent + '\n';
   return fmt::format(
-      "{}; relative half-widths of the {} points' last looks sum to "
+      "{}; relative half-widths of the {}{} last looks sum to "
       "{},\n        before to {}\n",
-      spent, after.points, sum_text(after), sum_text(before));
+      spent, counted(static_cast<std::size_t>(after.points), "point"), after.points == 1 ? "'s" : "'",
+      sum_text(after), sum_text(before));
 }
 
 }  // namespace peclet::runner

@@ -191,9 +191,9 @@ Prediction predict(const std::vector<std::optional<Outcome>>& outcomes, const Ta
   return prediction;
 }
 
-std::vector<double> common_factors(const std::vector<Share>& shares) {
+std::vector<double> common_factors(const std::vector<CostShare>& shares) {
   double sum = 0, squares = 0;
-  for (const Share& share : shares) {
+  for (const CostShare& share : shares) {
     sum += share.cost;
     squares += share.cost * share.cost / (share.values - 1);
   }

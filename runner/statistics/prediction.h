@@ -52,11 +52,11 @@ std::string obstacle_text(const Prediction& prediction);
 
 // By what the variances of all points are off in each future, for a sum of what they cost; of a stream that
 // no point has.
-struct Share {
+struct CostShare {
   double cost = 0;  // w
   int values = 0;   // n, 2 or more
 };
-std::vector<double> common_factors(const std::vector<Share>& shares);
+std::vector<double> common_factors(const std::vector<CostShare>& shares);
 
 // The deciding look in each of these futures, as its place in the schedule. As predict(), without an
 // obstacle.

@@ -36,6 +36,10 @@ std::string with_error(double value, double error) {
                      rounded(error / unit, decimals + power), power);
 }
 
+std::string counted(std::size_t number, const char* noun) {
+  return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
+}
+
 std::string percent(double fraction) {
   if (!std::isfinite(fraction)) return "-";
   return fmt::format("{:.{}f} %", 100 * fraction, fraction < 0.0995 ? 1 : 0);

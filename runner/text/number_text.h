@@ -1,6 +1,7 @@
 // Numbers as people want to read them: no more digits than their errors justify, "-" for what does not exist.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace peclet::runner {
@@ -11,6 +12,9 @@ std::string with_error(double value, double error);
 
 // "3.0 %", "12 %" of a fraction.
 std::string percent(double fraction);
+
+// "1 seed", "3 seeds".
+std::string counted(std::size_t number, const char* noun);
 
 // Three significant digits at most: "0.017", "1.2e+06".
 std::string rough(double number);

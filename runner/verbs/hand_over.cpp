@@ -120,7 +120,7 @@ class Follower {
   bool follow(const BundleSettings& settings) {
     StopSignals signals;
     for (;;) {
-      const Bundles::Settled settled = bundles_.settle();
+      const Bundles::SettleReport settled = bundles_.settle();
       give_up_on_lifeless_tasks(settled);
       requests_.carry_out();
       if (ledger_.scheduler().finished()) break;
@@ -162,13 +162,13 @@ class Follower {
     return poll(&watched, 1, static_cast<int>(1000 * seconds)) > 0 && signals.take();
   }
 
-  void give_up_on_lifeless_tasks(const Bundles::Settled& settled) {
+  void give_up_on_lifeless_tasks(const Bundles::SettleReport& settled) {
     if (settled.ended > 0) lifeless_turns_ = 0;
     if (!settled.lifeless.empty() && ++lifeless_turns_ >= most_lifeless_turns)
       throw EngineError(settled.lifeless);
   }
 
-  void report(const Bundles::Settled& settled) {
+  void report(const Bundles::SettleReport& settled) {
     results_ += settled.ended;
     RunReport report = ledger_.report(1);
     report.to_go.reset();  // the batch system knows when, if anybody does
@@ -287,7 +287,7 @@ int ingest_campaign(const IngestOptions& options) {
   Ledger ledger(owned.database, owned.campaign, owned.directory, progress, retries);
   RequestHandler(owned.database, ledger, owned.directory, progress).carry_out();
   Bundles bundles(owned.database, ledger, owned.campaign, owned.directory, progress);
-  Bundles::Settled settled = bundles.settle();
+  Bundles::SettleReport settled = bundles.settle();
   if (options.cancel) {
     bundles.cancel();
     const auto patience = Clock::now() + leaving_patience;

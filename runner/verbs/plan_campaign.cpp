@@ -104,7 +104,7 @@ bool any_cost(const std::map<std::string, PointHistory>& known) {
 Plan plan_of(const Campaign& campaign, const std::vector<SceneAnswer>& scenes,
              const std::map<std::string, PointHistory>& known, const RunOptions& options,
              const std::optional<CostGuess>& guess = {}) {
-  Plan plan = make_plan(campaign, work_of(scenes), known, team(options).workers, guess);
+  Plan plan = make_plan(campaign, work_of(scenes), known, worker_count(options).workers, guess);
   plan.made_at = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   return plan;
 }

@@ -19,7 +19,7 @@
 #include "runner/events/event_stream.h"
 #include "runner/events/progress.h"
 #include "runner/events/run_log.h"
-#include "runner/folder/room.h"
+#include "runner/folder/disk_room.h"
 #include "runner/owner/dispatcher.h"
 #include "runner/owner/folder_watch.h"
 #include "runner/reports/status.h"
@@ -32,15 +32,15 @@ namespace peclet::runner {
 namespace {
 
 // More workers than seeds that may still run have nothing to do.
-Team useful_team(const RunOptions& options, const Campaign& campaign) {
-  Team size = team(options);
+WorkerCount useful_worker_count(const RunOptions& options, const Campaign& campaign) {
+  WorkerCount size = worker_count(options);
   const auto seeds = static_cast<std::int64_t>(campaign.points.size()) * campaign.maximum_realisations;
   size.workers = static_cast<int>(std::min<std::int64_t>(seeds, size.workers));
   return size;
 }
 
 // What a person should know who asked for more than the machine has.
-void judge_team(const Team& size, RunListener& listener) {
+void judge_worker_count(const WorkerCount& size, RunListener& listener) {
   constexpr int tolerable = 4;
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   if (size.workers * std::int64_t{size.threads} <= std::int64_t{tolerable} * cores) return;
@@ -51,8 +51,8 @@ void judge_team(const Team& size, RunListener& listener) {
 }
 
 // A run's database and picture, ready to be dispatched from: what an earlier owner left undone is done.
-struct Opened {
-  Opened(const ClaimedCampaign& claimed, const RunOptions& options, RunListener& listener)
+struct OpenedRun {
+  OpenedRun(const ClaimedCampaign& claimed, const RunOptions& options, RunListener& listener)
       : database(open_for_owner(claimed, [&](const std::string& text) { listener.note(text); })),
         ledger(database, claimed.campaign, claimed.directory, listener, retries),
         requests(database, ledger, claimed.directory, listener) {
@@ -67,11 +67,11 @@ struct Opened {
 };
 
 // Waits while the disk is too full to begin. Nothing: a signal came first, or there never will be room.
-std::unique_ptr<Opened> open_when_there_is_room(const ClaimedCampaign& claimed, const RunOptions& options,
-                                                RunListener& listener, StopSignals& signals) {
+std::unique_ptr<OpenedRun> open_when_there_is_room(const ClaimedCampaign& claimed, const RunOptions& options,
+                                                   RunListener& listener, StopSignals& signals) {
   for (bool first = true;; first = false) {
     try {
-      auto opened = std::make_unique<Opened>(claimed, options, listener);
+      auto opened = std::make_unique<OpenedRun>(claimed, options, listener);
       if (!first) listener.happened(ShortageEnded{});
       return opened;
     } catch (const std::exception& error) {
@@ -92,7 +92,7 @@ std::unique_ptr<Opened> open_when_there_is_room(const ClaimedCampaign& claimed, 
 }
 
 RunBegan beginning(const ClaimedCampaign& claimed, const RunOptions& options) {
-  const Team size = useful_team(options, claimed.campaign);
+  const WorkerCount size = useful_worker_count(options, claimed.campaign);
   return {claimed.campaign.name,
           claimed.directory.root(),
           getpid(),
@@ -102,12 +102,12 @@ RunBegan beginning(const ClaimedCampaign& claimed, const RunOptions& options) {
 }
 
 // The result is the exit code.
-int dispatch(Opened& opened, const RunOptions& options, const ClaimedCampaign& claimed, RunLog& log,
+int dispatch(OpenedRun& opened, const RunOptions& options, const ClaimedCampaign& claimed, RunLog& log,
              StopSignals& signals) {
   using std::chrono::steady_clock;
   const CampaignDirectory& directory = claimed.directory;
-  const Team size = useful_team(options, claimed.campaign);
-  judge_team(size, log);
+  const WorkerCount size = useful_worker_count(options, claimed.campaign);
+  judge_worker_count(size, log);
   allow_open_files(size.workers);
   PeriodicBackup backup(directory, std::chrono::duration<double>(options.backup_seconds), log,
                         steady_clock::now());
@@ -154,12 +154,12 @@ Bounds bounds_of(const RunOptions& options, const ClaimedCampaign& claimed, std:
 }
 
 // What the person is told on standard output in the end.
-using Conclusion = std::function<void(const ClaimedCampaign&, Opened&, int code)>;
+using Conclusion = std::function<void(const ClaimedCampaign&, OpenedRun&, int code)>;
 
 int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion& conclude) {
   const ClaimedCampaign claimed(options.campaign, options.directory, options.force, options.accept_engine);
   StopSignals signals;
-  std::unique_ptr<Opened> opened;
+  std::unique_ptr<OpenedRun> opened;
   int code = ExitCode::stopped;
   {
     Progress progress(Progress::style_of_stderr(options.quiet));
@@ -193,7 +193,7 @@ int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion&
 
 }  // namespace
 
-Team team(const RunOptions& options) {
+WorkerCount worker_count(const RunOptions& options) {
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   if (options.workers > 0 && options.threads > 0) return {options.workers, options.threads};
   if (options.workers > 0) return {options.workers, std::max(1, cores / options.workers)};
@@ -202,7 +202,7 @@ Team team(const RunOptions& options) {
 }
 
 int run_campaign(const RunOptions& options) {
-  return run(options, std::nullopt, [&](const ClaimedCampaign&, Opened& opened, int code) {
+  return run(options, std::nullopt, [&](const ClaimedCampaign&, OpenedRun& opened, int code) {
     CampaignStatus status = read_status(opened.database);
     status.owner = getpid();
     std::string text = status_table(status);
@@ -217,9 +217,10 @@ int run_campaign(const RunOptions& options) {
 
 int run_pilot(const RunOptions& options, int seeds,
               const std::function<void(const ClaimedCampaign&, Database&)>& conclude) {
-  const int code = run(options, seeds, [&](const ClaimedCampaign& claimed, Opened& opened, int ended_with) {
-    if (ended_with != ExitCode::stopped) conclude(claimed, opened.database);
-  });
+  const int code =
+      run(options, seeds, [&](const ClaimedCampaign& claimed, OpenedRun& opened, int ended_with) {
+        if (ended_with != ExitCode::stopped) conclude(claimed, opened.database);
+      });
   // That points are not decided yet is what a pilot is for.
   return code == ExitCode::integrity || code == ExitCode::stopped ? code : 0;
 }

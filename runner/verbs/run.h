@@ -27,10 +27,10 @@ struct RunOptions {
 };
 
 // What is not given follows from what is: together they fill the machine.
-struct Team {
+struct WorkerCount {
   int workers, threads;
 };
-Team team(const RunOptions& options);
+WorkerCount worker_count(const RunOptions& options);
 
 // Runs until every point is decided or the run is stopped. The result is the exit code: 0 every point
 // converged, 3 some points capped, failed, cancelled or with losses, 5 another process owns the campaign, 6

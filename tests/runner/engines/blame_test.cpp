@@ -10,7 +10,7 @@ namespace {
 
 using enum AttemptOutcome;
 
-Sentence after(const std::vector<PastAttempt>& attempts) { return judge(attempts, 2); }
+SeedFate after(const std::vector<PastAttempt>& attempts) { return judge(attempts, 2); }
 
 TEST(Blame, OnlyTheEnginesOwnDoingCounts) {
   for (const AttemptOutcome outcome : {crashed, hung, garbled, refused}) EXPECT_TRUE(is_blamed(outcome));
@@ -31,7 +31,7 @@ TEST(Blame, AnyExitThatNobodyAskedForIsACrash) {
 TEST(Blame, ASeedMayFailTwiceBeyondTheFirstTime) {
   EXPECT_FALSE(after({{crashed, 5}}).quarantine);
   EXPECT_FALSE(after({{crashed, 5}, {hung, 5}}).quarantine);
-  const Sentence third = after({{crashed, 5}, {hung, 5}, {garbled, 5}});
+  const SeedFate third = after({{crashed, 5}, {hung, 5}, {garbled, 5}});
   EXPECT_TRUE(third.quarantine);
   EXPECT_EQ(third.cause, "garbled");
 }

@@ -149,18 +149,18 @@ TEST_F(Taking, OfAWorkersResultFailsWithoutATraceAtEveryChange) {
   }();
   for (int seed = 0; seed < 4; ++seed) {
     Transaction giving(database_.connection());
-    Grant grant = ledger_->give_out(0, 4711, engine).value();
+    GivenSeed given_seed = ledger_->give_out(0, 4711, engine).value();
     giving.commit();
-    ASSERT_EQ(grant.id.seed, seed);
+    ASSERT_EQ(given_seed.id.seed, seed);
     const std::string before = picture();
     int change = 1;
     for (bool taken = false; !taken; ++change) {
-      write_durably(left_file(grant.job.spool, "empty"), "");
-      write_durably(grant.job.spool, result(seed).dump());
+      write_durably(left_file(given_seed.job.spool, "empty"), "");
+      write_durably(given_seed.job.spool, result(seed).dump());
       std::string why;
       failing_.strike(change);
       Transaction booking(database_.connection());
-      taken = ledger_->take_result(grant, sha256_of_file(grant.job.spool), 100, 8, why);
+      taken = ledger_->take_result(given_seed, sha256_of_file(given_seed.job.spool), 100, 8, why);
       booking.commit();
       failing_.strike(0);
       ledger_->after_commit();

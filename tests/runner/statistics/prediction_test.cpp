@@ -137,10 +137,10 @@ TEST(Prediction, OfASumMoreIsKnownThanOfEachPart) {
   const Expected<double> one = middle(common_factors({{5, 4}}));
   EXPECT_NEAR(one.lower, 3 / 9.348, 0.25 * one.lower);
   EXPECT_NEAR(one.upper, 3 / 0.2158, 0.6 * one.upper);
-  const Expected<double> ten = middle(common_factors(std::vector<Share>(10, {5, 4})));
+  const Expected<double> ten = middle(common_factors(std::vector<CostShare>(10, {5, 4})));
   EXPECT_NEAR(ten.lower, 30 / 46.98, 0.1 * ten.lower);
   EXPECT_NEAR(ten.upper, 30 / 16.79, 0.1 * ten.upper);
-  std::vector<Share> unequal(10, {1e-6, 4});
+  std::vector<CostShare> unequal(10, {1e-6, 4});
   unequal.push_back({5, 4});
   EXPECT_NEAR(middle(common_factors(unequal)).likely, one.likely, 1e-3);
 }

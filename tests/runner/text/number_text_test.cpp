@@ -18,6 +18,12 @@ TEST(NumberText, AValueHasTheDigitsThatItsErrorJustifies) {
   EXPECT_EQ(with_error(1234.5, 123), "1230 ± 120");
 }
 
+TEST(NumberText, OneThingIsNotCalledMany) {
+  EXPECT_EQ(counted(0, "point"), "0 points");
+  EXPECT_EQ(counted(1, "point"), "1 point");
+  EXPECT_EQ(counted(2, "point"), "2 points");
+}
+
 TEST(NumberText, AnErrorThatRoundsUpToTheNextPowerOfTenKeepsTwoDigits) {
   EXPECT_EQ(with_error(5, 0.0996), "5.00 ± 0.10");
   EXPECT_EQ(with_error(5, 0.0994), "5.000 ± 0.099");

@@ -16,8 +16,8 @@ class FilesOfACampaign : public testing::Test {
     campaign_.complete(0, 0, 10);
     campaign_.complete(1, 3, 10);
     Connection& connection = campaign_.database().connection();
-    store_file(connection, 2, 3, {"final.xyz", 1234, hash_}, true);
-    store_file(connection, 2, 3, {"log.txt", 5, hash_}, false);
+    store_file(connection, 2, 3, {"final.xyz", 1234, std::string(64, 'a')}, true);
+    store_file(connection, 2, 3, {"log.txt", 5, std::string(64, 'b')}, false);
   }
   std::string list(const FilesOptions& options) {
     return list_files(campaign_.database(), campaign_.directory(), options);
@@ -29,7 +29,6 @@ class FilesOfACampaign : public testing::Test {
         .string();
   }
 
-  const std::string hash_ = std::string(64, 'a');
   StoredCampaign campaign_{2, 4, 4};
 };
 
@@ -56,7 +55,7 @@ TEST_F(FilesOfACampaign, AreToldToPrograms) {
                           {"seed", 3},
                           {"name", "final.xyz"},
                           {"bytes", 1234},
-                          {"sha256", hash_},
+                          {"sha256", std::string(64, 'a')},
                           {"path", path()}}));
   EXPECT_TRUE(all[1]["path"].is_null());
 }

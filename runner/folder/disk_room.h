@@ -22,7 +22,7 @@ std::string why_in_vain(const std::filesystem::path& root, const std::filesystem
                         std::uint64_t bytes);
 
 // What could not be written last, until there is room for it.
-class Shortage {
+class DiskShortage {
  public:
   using Time = std::chrono::steady_clock::time_point;
 

@@ -1,4 +1,4 @@
-#include "runner/folder/room.h"
+#include "runner/folder/disk_room.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -83,7 +83,7 @@ std::string why_in_vain(const fs::path& root, const fs::path& folder, std::uint6
       folder.string(), megabytes(size), megabytes(own), megabytes(needed));
 }
 
-std::string Shortage::in_vain(const fs::path& root, Time now) {
+std::string DiskShortage::in_vain(const fs::path& root, Time now) {
   if (!lasts() || now != looked_) return "";
   std::string why = why_in_vain(root, *folder_, bytes_);
   if (why.empty()) {
@@ -94,7 +94,7 @@ std::string Shortage::in_vain(const fs::path& root, Time now) {
   return vain_since_ && now - *vain_since_ >= vain_patience ? why : "";
 }
 
-void Shortage::begin(const fs::path& folder, std::uint64_t bytes, Time now) {
+void DiskShortage::begin(const fs::path& folder, std::uint64_t bytes, Time now) {
   const bool news = !lasts();
   if (news) {
     looked_ = now;
@@ -104,9 +104,9 @@ void Shortage::begin(const fs::path& folder, std::uint64_t bytes, Time now) {
   folder_ = folder;
 }
 
-bool Shortage::is_looked_at(Time now) const { return lasts() && now - looked_ >= patience; }
+bool DiskShortage::is_looked_at(Time now) const { return lasts() && now - looked_ >= patience; }
 
-bool Shortage::is_over(Time now) {
+bool DiskShortage::is_over(Time now) {
   if (!is_looked_at(now)) return false;
   looked_ = now;
   if (!has_room(*folder_, bytes_)) return false;

@@ -1,6 +1,6 @@
 // A database without room, made by SQLite's own limit of pages; full file systems are in
 // tests/end_to_end/full_disk.py.
-#include "runner/folder/room.h"
+#include "runner/folder/disk_room.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
