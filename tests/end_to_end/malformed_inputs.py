@@ -18,19 +18,9 @@ import sys
 import tempfile
 import time
 
-SCENE = {
-    "particles": {
-        "count": 30,
-        "density": 0.1,
-        "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}],
-    },
-    "volume_fraction": 0.3,
-    "fluid": {"viscosity": 0.1},
-    "flow": {"shear_rate": 0.05},
-    "contact": {"normal_stiffness": 1e4},
-    "lubrication": {"form": "kim-karrila", "inner_gap": 0.01, "outer_gap": 0.05},
-    "duration": {"equilibration": {"strain": 0.001}, "production": {"strain": 0.005}},
-}
+from thirty_spheres import thirty_spheres
+
+SCENE = thirty_spheres(0.001, 0.005)
 CAMPAIGN = {
     "name": "small",
     "scene": SCENE,

@@ -2,8 +2,9 @@
 """layering.py [--picture FILE.svg]      may every folder include what it includes?
 
 A folder may include those before it in its list below, and itself. An include that runs upward is an error; so are a
-file of more than 350 lines and a folder of more than 30 files, which hide a second subject. --picture draws the folders
-and their includes (needs graphviz).
+folder of the lists that has no file, a file of more than 350 lines and a folder of more than 30 files, which hide a
+second subject. Lines and files count in tests, too, in Python as in C++. --picture draws the folders and their includes
+(needs graphviz).
 """
 import argparse
 import collections
@@ -68,14 +69,15 @@ ENGINE = [
 ]
 LAYERS = {"engine": ENGINE, "runner": RUNNER}
 MOST_LINES, MOST_FILES = 350, 30
+CXX, WRITTEN_BY_HAND = (".h", ".cpp", ".in"), (".h", ".cpp", ".in", ".py")
 INCLUDE = re.compile(r'\s*#\s*include\s+"((?:contract|engine|runner)/[^"]+)"')
 
 
-def sources(source, top):
-    """Paths of C++ files below a folder."""
+def sources(source, top, endings=CXX):
+    """Paths of files below a folder, unless told otherwise of C++."""
     for folder, _, names in os.walk(os.path.join(source, top)):
         for name in sorted(names):
-            if name.endswith((".h", ".cpp", ".in")):
+            if name.endswith(endings):
                 yield os.path.relpath(os.path.join(folder, name), source)
 
 
@@ -102,10 +104,18 @@ def upward(source):
                 yield f"{path}:{number}: {included}: {here} may not include {there}, which is above it"
 
 
+def absent(source):
+    """Else a check of another place, or of a folder that was renamed, would find nothing to say."""
+    for top, layers in LAYERS.items():
+        for layer in layers:
+            if not any(os.path.dirname(path) == layer for path in sources(source, layer)):
+                yield f"{layer}: is a layer of {top} without a file"
+
+
 def too_large(source):
-    for top in ("contract", "engine", "runner"):
+    for top in ("contract", "engine", "runner", "tests"):
         files = collections.Counter()
-        for path in sources(source, top):
+        for path in sources(source, top, WRITTEN_BY_HAND):
             files[os.path.dirname(path)] += 1
             with open(os.path.join(source, path), encoding="utf-8") as f:
                 lines = sum(1 for _ in f)
@@ -145,7 +155,7 @@ def main():
         subprocess.run(
             ["dot", f"-T{kind}", "-o", arguments.picture], input=picture(arguments.source), text=True, check=True
         )
-    faults = [*upward(arguments.source), *too_large(arguments.source)]
+    faults = [*absent(arguments.source), *upward(arguments.source), *too_large(arguments.source)]
     for fault in faults:
         print(fault)
     return 1 if faults else 0

@@ -6,13 +6,16 @@ import sys
 import tempfile
 import unittest
 
+import layering
+
 SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "layering.py")
+EVERY_LAYER = {f"{layer}/here.h": "" for layers in layering.LAYERS.values() for layer in layers}
 
 
 class Layering(unittest.TestCase):
-    def said(self, files):
+    def said(self, files, others=EVERY_LAYER):
         with tempfile.TemporaryDirectory() as folder:
-            for path, text in files.items():
+            for path, text in {**others, **files}.items():
                 os.makedirs(os.path.join(folder, os.path.dirname(path)), exist_ok=True)
                 with open(os.path.join(folder, path), "w", encoding="utf-8") as f:
                     f.write(text)
@@ -44,8 +47,24 @@ class Layering(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("runner/text/a.cpp: 351 lines", text)
 
+    def test_a_long_file_of_tests(self):
+        for path in ("tests/runner/text/a.cpp", "tests/end_to_end/a.py"):
+            self.assertEqual(self.said({path: "\n" * 350}), (0, ""))
+            code, text = self.said({path: "\n" * 351})
+            self.assertEqual(code, 1)
+            self.assertIn(f"{path}: 351 lines", text)
+
+    def test_a_layer_without_files(self):
+        code, text = self.said({}, {path: text for path, text in EVERY_LAYER.items() if "random" not in path})
+        self.assertEqual((code, text), (1, "engine/random: is a layer of engine without a file\n"))
+
+    def test_an_empty_tree(self):
+        code, text = self.said({}, {})
+        self.assertEqual(code, 1)
+        self.assertIn("runner/verbs: is a layer of runner without a file", text)
+
     def test_a_crowded_folder(self):
-        code, text = self.said({f"runner/text/a{i}.h": "" for i in range(31)})
+        code, text = self.said({f"runner/text/a{i}.h": "" for i in range(30)})
         self.assertEqual(code, 1)
         self.assertIn("runner/text: 31 files", text)
 

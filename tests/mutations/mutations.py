@@ -269,7 +269,9 @@ def fine(folder, jobs, mutation):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", nargs="?", help="of the copy; kept, so that a second call goes faster")
+    parser.add_argument(
+        "folder", nargs="?", type=os.path.abspath, help="of the copy; kept, so that a second call goes faster"
+    )
     parser.add_argument("--check", action="store_true")
     parser.add_argument(
         "--compiler",

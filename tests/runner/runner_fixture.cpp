@@ -85,4 +85,10 @@ Json plain_result(const std::string& point, int seed, double viscosity, const st
           {"engine", plain_engine(identity)}};
 }
 
+Json described_ratio(const Json& values) {
+  return {{"symbol", "g(r)"},       {"unit", "1"},
+          {"estimator", "ratio"},   {"numerator", "counts"},
+          {"denominator", "ideal"}, {"axes", {{{"name", "r"}, {"unit", "radius"}, {"values", values}}}}};
+}
+
 }  // namespace peclet::runner

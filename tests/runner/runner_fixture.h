@@ -35,6 +35,9 @@ Campaign plain_campaign(int points, int minimum, int maximum, double tolerance);
 Json plain_result(const std::string& point, int seed, double viscosity,
                   const std::string& identity = "engine");
 
+// What a result says of a ratio of means, of members "counts" and "ideal", along an axis with these values.
+Json described_ratio(const Json& values);
+
 bool says(const std::string& text, const std::string& part);
 
 // Letters that compress badly: others for each `start`, the same on every platform.

@@ -9,6 +9,8 @@ import sqlite3
 import subprocess
 import time
 
+from thirty_spheres import thirty_spheres
+
 # Nothing takes this long: a command that does hangs.
 PATIENCE = 120
 # The fake engine's: two points of eight seeds and one look each. 20 ms a seed unless a case asks for slower ones.
@@ -21,19 +23,7 @@ CAMPAIGN = {
     "engine": ["fake_engine"],
 }
 # A second of real physics a seed.
-SCENE = {
-    "particles": {
-        "count": 30,
-        "density": 0.1,
-        "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}],
-    },
-    "volume_fraction": 0.3,
-    "fluid": {"viscosity": 0.1},
-    "flow": {"shear_rate": 0.05},
-    "contact": {"normal_stiffness": 1e4},
-    "lubrication": {"form": "kim-karrila", "inner_gap": 0.01, "outer_gap": 0.05},
-    "duration": {"equilibration": {"strain": 0.5}, "production": {"strain": 1}},
-}
+SCENE = thirty_spheres(0.5, 1)
 REAL = dict(
     CAMPAIGN, scene=SCENE, sweep=[{"set": "/flow/shear_rate", "values": [0.05]}], engine=["peclet-engine", "serve"]
 )

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <thread>
 
 #include "contract/durable_file.h"
 #include "runner/batch/batch_task.h"
@@ -33,6 +35,14 @@ std::string export_of(const fs::path& database) {
 }
 
 }  // namespace
+
+bool comes_true(const std::function<bool()>& is_so) {
+  const auto patience = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (!is_so() && std::chrono::steady_clock::now() < patience) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return is_so();
+}
 
 BatchFixture::BatchFixture() {
   options.system = "test";

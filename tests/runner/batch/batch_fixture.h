@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "contract/json.h"
@@ -11,8 +12,13 @@
 
 namespace peclet::runner {
 
+// Looks again and again for a minute. False: it did not come true.
+bool comes_true(const std::function<bool()>& is_so);
+
 class BatchFixture : public testing::Test {
  protected:
+  static constexpr int tasks = 5;  // ten seeds, two a task
+
   BatchFixture();
   ~BatchFixture() override;
 

@@ -2,51 +2,18 @@
 // look.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 
-#include <cstdio>
 #include <fstream>
-#include <iterator>
 #include <regex>
 
 #include "contract/durable_file.h"
 #include "contract/json.h"
-#include "tests/runner/command_line/shell.h"
-#include "tests/runner/runner_fixture.h"
+#include "tests/runner/command_line/command_line_fixture.h"
 
 namespace peclet::runner {
 namespace {
 
 namespace fs = std::filesystem;
-
-class CommandLine : public testing::Test {
- protected:
-  CommandLine() {
-    campaign = {{"name", "small"},
-                {"scene", {{"volume_fraction", 0.5}}},
-                {"sweep", {{{"set", "/peclet"}, {"values", {1, 10}}}}},
-                {"target", {{"relative_tolerance", 0.2}}},
-                {"realisations", {{"minimum", 8}, {"maximum", 40}}},
-                {"engine", {FAKE_ENGINE}}};
-  }
-
-  fs::path file() const { return folder_.path() / "small.json"; }
-  void write() const { std::ofstream(file()) << campaign.dump(); }
-
-  Answer peclet(const std::string& arguments) const {
-    return shell("cd '" + folder_.path().string() + "' || exit; " PECLET_PROGRAM " " + arguments);
-  }
-
-  std::ptrdiff_t files() const {
-    return std::distance(fs::recursive_directory_iterator(folder_.path()),
-                         fs::recursive_directory_iterator());
-  }
-
-  Json campaign;
-
- private:
-  TemporaryFolder folder_;
-};
 
 TEST_F(CommandLine, AFileMayFollowTheNameOfABundle) {
   write();
@@ -255,50 +222,6 @@ TEST_F(CommandLine, TheNextStepNamesTheFolderThatWasChosenAndIsQuotedForTheShell
             std::string::npos);
   const Answer cancelled = peclet("cancel small.json 1 --directory 'my runs'");
   EXPECT_EQ(cancelled.code, 0) << cancelled.text;
-}
-
-TEST_F(CommandLine, AnEngineThatIsNotThereIsNamed) {
-  campaign["engine"] = {"./no-such-engine"};
-  write();
-  const Answer answer = peclet("validate small.json");
-  EXPECT_EQ(answer.code, 2);
-  EXPECT_NE(answer.text.find("small.json: /engine/0: ./no-such-engine"), std::string::npos) << answer.text;
-}
-
-TEST_F(CommandLine, AnEngineThatDoesNotSpeakTheFramesIsAnErrorNotAHang) {
-  campaign["engine"] = {"/bin/true"};
-  write();
-  const Answer answer = peclet("validate small.json");
-  EXPECT_EQ(answer.code, 1) << answer.text;
-  EXPECT_NE(answer.text.find("/bin/true"), std::string::npos) << answer.text;
-}
-
-TEST_F(CommandLine, WhatAnUnsuitableEnginePrintsIsShown) {
-  campaign["engine"] = {"/bin/sh", "-c", "for i in 1 2 3 4 5 6 7; do echo line $i >&2; done; exit 3"};
-  write();
-  const Answer answer = peclet("validate small.json");
-  EXPECT_EQ(answer.code, 1);
-  EXPECT_TRUE(answer.text.ends_with("It printed:\nline 3\nline 4\nline 5\nline 6\nline 7\n")) << answer.text;
-  EXPECT_NE(answer.text.find("exit status 3"), std::string::npos) << answer.text;
-  EXPECT_EQ(files(), 1);
-}
-
-TEST_F(CommandLine, AnEngineRunsInTheFolderOfTheCampaignFile) {
-  const fs::path folder = file().parent_path() / "elsewhere";
-  fs::create_directory(folder);
-  campaign["engine"] = {"/bin/sh", "-c", "pwd; exit 3"};
-  std::ofstream(folder / "small.json") << campaign.dump();
-  const Answer answer = peclet("validate elsewhere/small.json");
-  EXPECT_TRUE(answer.text.ends_with("It printed:\n" + folder.string() + '\n')) << answer.text;
-}
-
-TEST_F(CommandLine, AnEngineMayKnowOfNoTimestep) {
-  setenv("PECLET_FAKE_STEPLESS", "1", 1);
-  write();
-  const Answer valid = peclet("validate small.json"), json = peclet("validate small.json --json");
-  unsetenv("PECLET_FAKE_STEPLESS");
-  EXPECT_EQ(valid.code, 0) << valid.text;
-  EXPECT_TRUE(Json::parse(json.text)["points"][0]["timestep"].is_null()) << json.text;
 }
 
 TEST_F(CommandLine, ARunCanBeLookedAtByFileAndByFolder) {

@@ -226,18 +226,11 @@ TEST(Export, TheLongTableHasARowForEveryNumber) {
     result["mean"]["profile"] = {v, 2 * v};
     result["mean"]["g"] = {{"counts", {v}}, {"ideal", 2}};
     const Json y = {{{"name", "y"}, {"unit", "length"}, {"values", {0.5, 1.5}}}};
-    const Json r = {{{"name", "r"}, {"unit", "radius"}, {"values", {"all"}}}};
     result["quantities"] = {
         {"relative_viscosity", {{"symbol", "eta_r"}, {"unit", "1"}, {"estimator", "mean"}}},
         {"pressure", {{"symbol", "P"}, {"unit", "stress"}, {"estimator", "mean"}}},
         {"profile", {{"symbol", "u"}, {"unit", "length / time"}, {"estimator", "mean"}, {"axes", y}}},
-        {"g",
-         {{"symbol", "g(r)"},
-          {"unit", "1"},
-          {"estimator", "ratio"},
-          {"numerator", "counts"},
-          {"denominator", "ideal"},
-          {"axes", r}}}};
+        {"g", described_ratio({"all"})}};
   };
   for (int seed = 0; seed < 4; ++seed) {
     campaign.complete_with(0, seed, viscosities[seed], [&](Json& result) { add(result, viscosities[seed]); });

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "runner/reports/plan.h"
+#include "tests/runner/population.h"
 
 namespace peclet::runner {
 namespace {
@@ -35,13 +36,11 @@ class Source {
   Source(const Case& about, unsigned start)
       : random_(start),
         lognormal_(about.lognormal),
-        spread_(about.tolerance * std::sqrt(about.needed) / 1.959964) {}
+        spread_(spread_that_needs(about.needed, about.tolerance)) {}
 
   Outcome draw() {
     const double z = normal_(random_);
-    const double logarithmic = std::sqrt(std::log1p(spread_ * spread_));
-    return {Outcome::Kind::value,
-            lognormal_ ? std::exp(logarithmic * z - logarithmic * logarithmic / 2) : 1 + spread_ * z};
+    return {Outcome::Kind::value, lognormal_ ? lognormal_of(z, spread_) : 1 + spread_ * z};
   }
 
  private:

@@ -8,92 +8,14 @@
 #include <fstream>
 
 #include "contract/durable_file.h"
-#include "contract/input_error.h"
 #include "contract/sha256.h"
-#include "runner/reports/explain.h"
-#include "runner/reports/export.h"
-#include "runner/reports/status.h"
-#include "runner/stores/engine_row.h"
-#include "runner/stores/point_store.h"
-#include "runner/stores/result_store.h"
 #include "runner/stores/seed_store.h"
-#include "tests/runner/runner_fixture.h"
+#include "tests/runner/requests/carrying_out.h"
 
 namespace peclet::runner {
 namespace {
 
 namespace fs = std::filesystem;
-
-class CarryingOut : public testing::Test {
- protected:
-  CarryingOut() {
-    create_folders(directory_);
-    document_ = {{"name", "small"},
-                 {"scene", {{"fluid", {{"viscosity", 1}}}}},
-                 {"sweep", {{{"set", "/peclet"}, {"values", {1, 10}}}}},
-                 {"target", {{"relative_tolerance", 0.05}}},
-                 {"realisations", {{"minimum", 8}, {"maximum", 40}}}};
-    write();
-    PointStore(database_).adopt(read_campaign(file()));
-    begin();
-  }
-
-  fs::path file() const { return folder_.path() / "small.json"; }
-  void write() const { write_durably(file(), document_.dump(2)); }
-  // An owner starts.
-  void begin() {
-    ledger_.emplace(database_, read_campaign(file()), directory_, listener_, 2);
-    requests_.emplace(database_, *ledger_, directory_, listener_);
-  }
-  TakeOver file_as_it_is() const { return {file(), sha256(read_file(file()))}; }
-
-  // "cancel: no more seeds: peclet=1"
-  std::string ask(const Wish& wish) {
-    const Request request = write_request(directory_, wish);
-    requests_->carry_out();
-    EXPECT_FALSE(fs::exists(request_file(directory_, request.name)));
-    return answer(request);
-  }
-  std::string answer(const Request& request) {
-    const std::optional<EventRecord> event = database_.event_of(request.name);
-    return event ? event->kind + ": " + event->message : "";
-  }
-  std::int64_t count(const std::string& what) {
-    return database_.connection().integer("SELECT count(*) FROM " + what);
-  }
-  std::int64_t id(int place) { return database_.points().at(static_cast<std::size_t>(place)).id; }
-  std::string hash(int place) { return database_.points().at(static_cast<std::size_t>(place)).hash; }
-
-  void store(int place, int seed, double viscosity, const std::string& engine = "engine") {
-    ResultStore(database_).store(parse_result(plain_result(hash(place), seed, viscosity, engine).dump()),
-                                 database_.campaign().target.target);
-  }
-  void crash_three_times(int place, int seed) {
-    for (int i = 0; i < 3; ++i) {
-      const std::int64_t attempt =
-          SeedStore(database_).begin_attempt(id(place), seed, 0, 4711, engine_row(database_, plain_engine()));
-      SeedStore(database_).end_attempt(attempt, {AttemptOutcome::crashed, 5});
-    }
-    SeedStore(database_).quarantine(id(place), seed, "crashed");
-  }
-  void blow_up(int place, int seed) {
-    Json result = plain_result(hash(place), seed, 0);
-    result["ending"]["cause"] = "overlap";
-    result["mean"] = result["blocks"] = nullptr;
-    ResultStore(database_).store(parse_result(result.dump()), database_.campaign().target.target);
-  }
-
-  TemporaryFolder folder_;
-  CampaignDirectory directory_{folder_.path() / "small.peclet"};
-  Json document_;
-  Database database_ = [this] {
-    create_folders(directory_);
-    return Database::open_owner(directory_.database());
-  }();
-  SilentListener listener_;
-  std::optional<Ledger> ledger_;
-  std::optional<RequestHandler> requests_;
-};
 
 TEST_F(CarryingOut, ANewTargetReopensWhatItDoesNotSatisfy) {
   for (int seed = 0; seed < 8; ++seed) store(0, seed, seed % 2 == 0 ? 10 : 10.5);
@@ -331,81 +253,6 @@ TEST_F(CarryingOut, RequestsAreInOrderOfTime) {
   std::sort(sorted.begin(), sorted.end());
   EXPECT_EQ(names, sorted);
   EXPECT_EQ(waiting_requests(directory_).size(), 50U);
-}
-
-TEST_F(CarryingOut, AnEngineThatIsAcceptedStartsAfreshBesideTheOld) {
-  for (int seed = 0; seed < 3; ++seed) store(0, seed, 10, "old");
-  for (int seed = 0; seed < 8; ++seed) store(1, seed, seed % 2 == 0 ? 10 : 10.5, "old");
-  PointStore(database_).set_priority(id(0), 4);
-  begin();
-  EXPECT_THROW(ledger_->admit_engine(plain_engine("new")), OtherEngine);
-  write_durably(directory_.checkpoint(hash(0), 5), "of the old engine");
-  const std::int64_t old_row = id(0);
-  EXPECT_EQ(ledger_->accept_engine(engine_identity(plain_engine("new"))), 1);
-  ledger_->admit_engine(plain_engine("new"));
-  EXPECT_NE(id(0), old_row);
-  EXPECT_EQ(database_.points().at(0).priority, 4);
-  EXPECT_EQ(ledger_->scheduler().begun(0), 0);
-  EXPECT_TRUE(ledger_->scheduler().decided(1));  // decided points stay as they are
-  EXPECT_FALSE(fs::exists(directory_.checkpoint(hash(0), 5)));
-  const std::vector<KeptApart> kept = database_.kept_apart(hash(0));
-  ASSERT_EQ(kept.size(), 1U);
-  EXPECT_EQ(kept[0].results, 3);
-  EXPECT_EQ(kept[0].engine, engine_identity(plain_engine("old")));
-  EXPECT_EQ(count("event WHERE kind = 'engine-accepted'"), 1);
-  // Whoever looks at the point is told.
-  const std::string results = "3 results of engine " + kept[0].engine;
-  const CampaignStatus status = read_status(database_);
-  EXPECT_NE(status_table(status).find("peclet=1: " + results + " are kept apart"), std::string::npos);
-  EXPECT_EQ(status_json(status)["points"][0]["kept_apart"][0]["results"], 3);
-  EXPECT_NE(explain(database_, directory_, "peclet=1").find("kept apart: " + results), std::string::npos);
-  EXPECT_EQ(Json::parse(export_json(database_, false))["points"][0]["kept_apart"][0]["engine"],
-            kept[0].engine);
-  EXPECT_FALSE(Json::parse(export_json(database_, true))["points"][0].contains("kept_apart"));
-}
-
-TEST_F(CarryingOut, LateResultsOfTheOldEngineGoToItsOwnRow) {
-  store(0, 0, 10, "old");
-  begin();
-  ledger_->accept_engine(engine_identity(plain_engine("new")));
-  write_durably(directory_.spool_file(hash(0), 1, 3), plain_result(hash(0), 1, 11, "old").dump());
-  write_durably(directory_.spool_file(hash(0), 2, 4), plain_result(hash(0), 2, 12, "new").dump());
-  ledger_->ingest_spool();
-  EXPECT_TRUE(fs::is_empty(directory_.rejected()));
-  EXPECT_EQ(ledger_->scheduler().begun(0), 1);
-  EXPECT_EQ(database_.outcomes(id(0)).at(2)->value, 12);
-  EXPECT_EQ(database_.kept_apart(hash(0)).at(0).results, 2);
-  begin();
-  EXPECT_EQ(ledger_->scheduler().begun(0), 1);
-  // Delivered once more, while the new engine is at that seed.
-  write_durably(directory_.checkpoint(hash(0), 1), "of the new engine");
-  const fs::path again = directory_.spool_file(hash(0), 1, 5);
-  write_durably(again, plain_result(hash(0), 1, 11, "old").dump());
-  ledger_->ingest_spool();
-  EXPECT_FALSE(fs::exists(again));
-  EXPECT_TRUE(fs::exists(directory_.checkpoint(hash(0), 1)));
-}
-
-TEST_F(CarryingOut, AnEngineThatWasReplacedIsRefusedEvenBeforeTheFirstResultOfTheOther) {
-  store(0, 0, 10, "old");
-  begin();
-  ledger_->accept_engine(engine_identity(plain_engine("new")));
-  begin();
-  EXPECT_THROW(ledger_->admit_engine(plain_engine("old")), OtherEngine);
-  ledger_->admit_engine(plain_engine("new"));
-}
-
-TEST_F(CarryingOut, AnEngineThatComesBackGoesOnWithWhatItHad) {
-  for (int seed = 0; seed < 3; ++seed) store(0, seed, 10, "old");
-  begin();
-  const std::int64_t old_row = id(0);
-  ledger_->accept_engine(engine_identity(plain_engine("new")));
-  store(0, 0, 10, "new");
-  begin();
-  ledger_->accept_engine(engine_identity(plain_engine("old")));
-  EXPECT_EQ(id(0), old_row);
-  EXPECT_EQ(ledger_->scheduler().begun(0), 3);
-  EXPECT_EQ(database_.kept_apart(hash(0)).at(0).engine, engine_identity(plain_engine("new")));
 }
 
 }  // namespace

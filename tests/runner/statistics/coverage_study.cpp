@@ -17,6 +17,7 @@
 
 #include "runner/statistics/scheduler.h"
 #include "runner/statistics/statistics.h"
+#include "tests/runner/population.h"
 
 namespace peclet::runner {
 namespace {
@@ -49,13 +50,11 @@ class Source {
   Source(const Case& about, unsigned start)
       : random_(start),
         population_(about.population),
-        spread_(about.tolerance * std::sqrt(about.needed) / 1.959964) {}
+        spread_(spread_that_needs(about.needed, about.tolerance)) {}
 
   Realisation draw() {
     const double z = normal_(random_);
-    const double logarithmic = std::sqrt(std::log1p(spread_ * spread_));
-    const double value =
-        population_.lognormal ? std::exp(logarithmic * z - logarithmic * logarithmic / 2) : 1 + spread_ * z;
+    const double value = population_.lognormal ? lognormal_of(z, spread_) : 1 + spread_ * z;
     const double own = normal_(random_);
     // Lognormal run times whose logarithm has the standard deviation 0.5.
     return {value, std::exp(0.5 * (population_.slow_when_large ? 0.8 * z + 0.6 * own : own))};

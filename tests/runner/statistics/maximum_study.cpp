@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "runner/statistics/cohorts.h"
+#include "tests/runner/population.h"
 
 namespace peclet::runner {
 namespace {
@@ -45,7 +46,7 @@ class Source {
   Source(const Case& about, unsigned start)
       : random_(start),
         population_(about.population),
-        spread_(tolerance * std::sqrt(about.needed()) / 1.959964),
+        spread_(spread_that_needs(about.needed(), tolerance)),
         // Mean 1 and standard deviation spread_: skewness 2 spread_.
         gamma_(1 / (spread_ * spread_), spread_ * spread_) {}
 

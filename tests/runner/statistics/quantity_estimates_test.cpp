@@ -6,10 +6,10 @@
 #include <cmath>
 #include <random>
 
+#include "tests/runner/runner_fixture.h"
+
 namespace peclet::runner {
 namespace {
-
-const Json r_axis = {{{"name", "r"}, {"unit", "radius"}, {"values", {1, 2}}}};
 
 Json result_of(const Json& mean) {
   return {{"mean", mean},
@@ -20,13 +20,7 @@ Json result_of(const Json& mean) {
               {"estimator", "mean"},
               {"control", {{"quantity", "noise"}, {"mean", 1}}}}},
             {"noise", {{"symbol", "n"}, {"unit", "stress"}, {"estimator", "mean"}}},
-            {"g",
-             {{"symbol", "g(r)"},
-              {"unit", "1"},
-              {"estimator", "ratio"},
-              {"numerator", "counts"},
-              {"denominator", "ideal"},
-              {"axes", r_axis}}}}}};
+            {"g", described_ratio({1, 2})}}}};
 }
 
 QuantityEstimates of(const std::vector<Json>& means) {
@@ -112,7 +106,7 @@ TEST(QuantityEstimates, OfARatioAreListsOverItsAxes) {
           {{"pressure", 1}, {"noise", 1}, {"g", {{"counts", {2, 5}}, {"ideal", {3, 0}}}}}});
   const Json g = estimates.json(0.95)["g"];
   EXPECT_EQ(g["estimator"], "ratio");
-  EXPECT_EQ(g["axes"], r_axis);
+  EXPECT_EQ(g["axes"], described_ratio({1, 2})["axes"]);
   EXPECT_EQ(g["count"], Json({2, 2}));
   EXPECT_NEAR(g["mean"][0].get<double>(), 0.75, 1e-15);
   EXPECT_NEAR(g["standard_error"][0].get<double>(), 1.0 / 6, 1e-15);

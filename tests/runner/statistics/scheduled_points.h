@@ -1,0 +1,42 @@
+// Points whose seeds end as a test says, and the scheduler that gives them out.
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "runner/statistics/scheduler.h"
+
+namespace peclet::runner {
+
+using Outcomes = std::vector<std::vector<std::optional<Outcome>>>;
+
+inline Outcome value(double number) { return {Outcome::Kind::value, number, 0}; }
+
+// Two values so far apart, or so near, that no reasonable interval could decide otherwise at 5 %.
+inline Outcome scattered(int seed) { return value(seed % 2 == 0 ? 1 : 19); }
+inline Outcome steady(int seed) { return value(seed % 2 == 0 ? 10 : 10.01); }
+
+inline const Target five_percent{"relative_viscosity", 0.05, 0.95};
+
+// As many seeds of values mean - spread and mean + spread in turn.
+inline std::vector<std::optional<Outcome>> alternating(int count, double mean, double spread) {
+  std::vector<std::optional<Outcome>> outcomes;
+  for (int seed = 0; seed < count; ++seed)
+    outcomes.emplace_back(value(seed % 2 == 0 ? mean - spread : mean + spread));
+  return outcomes;
+}
+
+// Looks at 4, 5, 7, 9, 12 ... (each the ceiling of 1.25 times the last).
+inline Scheduler fresh(int points, int minimum = 4, int maximum = 40) {
+  return {Outcomes(static_cast<std::size_t>(points)), five_percent, minimum, maximum};
+}
+
+inline SeedId take(Scheduler& scheduler) {
+  const std::optional<SeedId> id = scheduler.next();
+  if (!id) throw std::logic_error("nothing to run");
+  scheduler.begin(*id);
+  return *id;
+}
+
+}  // namespace peclet::runner
