@@ -1,22 +1,29 @@
 """The transcript of the mistakes as a page."""
 import re
+import textwrap
 
 HEAD = """# At two in the morning
 
-What a tired person does wrong, and what `peclet` answers: what happened, what was kept, and the next command. Written \
-by
-`tests/end_to_end/at_two_in_the_morning.py BIN --page tests/end_to_end/MISTAKES.md`, which does all of \
-this with real processes and checks it: exit codes, the
-phrases that matter, in the cases that count results that none is lost, and in many that the command that the answer \
-names works as it stands. Folders are shortened to `~`, long answers and the legends of tables cut, times and process \
-numbers replaced; `fake_engine` is
-the tests' engine without physics.
+What a tired person does wrong, and what `peclet` answers: what happened, what was kept, and the next command. Written
+by `tests/end_to_end/at_two_in_the_morning.py BIN --page tests/end_to_end/MISTAKES.md`, which does all of this with real
+processes and checks it: exit codes, the phrases that matter, in the cases that count results that none is lost, and in
+many that the command that the answer names works as it stands. Folders are shortened to `~`, long answers and the
+legends of tables cut, long lines of answers folded, times and process numbers replaced; `fake_engine` is the tests'
+engine without physics.
 """
+WIDEST = 120  # characters of a line
 LONGEST = 12  # lines of an answer
 
 
 # What every table ends with.
 LEGEND = re.compile(r"^(so far: mean|95 % interval at the last).*\n", re.MULTILINE)
+
+
+def folded(line, indent=""):
+    """The line as it is, or in parts that are narrow enough, the later ones indented; words stay whole."""
+    if len(line) <= WIDEST:
+        return [line]
+    return textwrap.wrap(line, WIDEST, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
 
 
 def shortened(text, night):
@@ -43,13 +50,13 @@ def of_case(night):
         if kind == "types":
             block.extend(f"$ {line}" for line in shortened(about[0], night))
         elif kind == "answer":
-            block.extend(shortened(about[0], night))
+            block.extend(part for line in shortened(about[0], night) for part in folded(line, "    "))
         elif kind == "code":
             if about[0] != 0:
                 block.append(f"[exit code {about[0]}]")
         else:
             close()
-            lines.extend([remark(kind, about), ""])
+            lines.extend([*folded(remark(kind, about)), ""])
     close()
     return lines
 
