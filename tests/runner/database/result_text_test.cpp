@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <thread>
+
 #include "contract/integrity_error.h"
 #include "runner/stores/point_store.h"
 #include "runner/stores/seed_store.h"
@@ -15,6 +17,22 @@ TEST(ResultText, ComesBackAsItWas) {
   for (const std::string& text : {std::string(), std::string("{}"), dictionary, noise(100'000)}) {
     for (const std::string& used : {std::string(), dictionary, noise(50'000)}) {
       EXPECT_EQ(inflated(deflated(text, used), used), text) << text.size() << ' ' << used.size();
+    }
+  }
+}
+
+// The first text of a thread meets a stream that has never run.
+TEST(ResultText, DoesNotDependOnWhatWasDeflatedBefore) {
+  const std::vector<std::string> texts{noise(40'000), "", noise(300), noise(40'000).substr(100) + "{}"};
+  for (const std::string& dictionary : {std::string(), texts[0], noise(70'000)}) {
+    for (const std::string& text : texts) {
+      for (const std::string& before : texts) {
+        deflated(before, noise(1000));
+        const std::string bytes = deflated(text, dictionary);
+        std::string fresh;
+        std::jthread([&] { fresh = deflated(text, dictionary); }).join();
+        EXPECT_EQ(bytes, fresh) << before.size() << ' ' << text.size() << ' ' << dictionary.size();
+      }
     }
   }
 }
