@@ -95,7 +95,7 @@ def wrong_values(schema):
             yield "the open bound", low
     high, is_open = bound(schema, ("maximum", "exclusiveMaximum"))
     if high is not None:
-        yield "too large", high + 1
+        yield "too large", high + max(1, abs(high))
         yield "far too large", 1e300
         if is_open:
             yield "the open upper bound", high
