@@ -58,8 +58,9 @@ std::vector<Criterion> Target::criteria() const {
 
 std::vector<std::string> Target::observables() const {
   const std::vector<Criterion> all = criteria();
-  std::vector<std::string> names;
-  for (const Criterion& criterion : all) names.push_back(criterion.observable);
+  std::vector<std::string> names(all.size());
+  std::transform(all.begin(), all.end(), names.begin(),
+                 [](const Criterion& criterion) { return criterion.observable; });
   for (const Criterion& criterion : all) {
     const std::string& measure = criterion.tolerance.relative_to;
     if (!measure.empty() && std::count(names.begin(), names.end(), measure) == 0) names.push_back(measure);
