@@ -156,8 +156,9 @@ std::vector<QuantityEstimate> QuantityEstimates::estimates() const {
   for (const Sums& sums : sums_) {
     QuantityEstimate found{sums.quantity, {}, {}, sums.unlike};
     const auto estimates_of = [](const std::vector<Running>& running) {
-      std::vector<Estimate> estimates;
-      for (const Running& element : running) estimates.push_back(element.estimate());
+      std::vector<Estimate> estimates(running.size());
+      std::transform(running.begin(), running.end(), estimates.begin(),
+                     [](const Running& element) { return element.estimate(); });
       return estimates;
     };
     if (sums.quantity.control) {

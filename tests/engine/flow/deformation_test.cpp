@@ -85,7 +85,7 @@ System carried(const std::shared_ptr<const Deformation>& deformation, bool impli
   system.box = PeriodicCell({40, 40, 40}, deformation->velocity_gradient(0));
   physics.contact = ContactParameters{.normal_stiffness = 1};  // so that there is a range to look in
   system.list = NeighbourList(range_table(make_pair_kinds(physics, {1}), 1), 0.1);
-  for (const std::size_t i : {0, 1}) {
+  for (const std::size_t i : {0U, 1U}) {
     const Vector3 place = i == 0 ? Vector3{3, 5, 7} : Vector3{12, 15, 18};
     system.particles.position.set(i, place);
     system.particles.velocity.set(i, system.box.velocity_gradient() * place);

@@ -66,7 +66,7 @@ Vector3 end_of_encounter(int steps) {
   System system = system_of(physics, {1, 1.4}, 1e-6, 30);
   system.particles.position.set(0, {10, 3, 15});
   system.particles.position.set(1, {8.2, 4.9, 15.9});
-  for (const std::size_t i : {0, 1}) {
+  for (const std::size_t i : {0U, 1U}) {
     system.particles.velocity.set(i, {system.particles.position[i].y, 0, 0});
     system.particles.angular_velocity.set(i, {0, 0, -0.5});
   }

@@ -109,7 +109,7 @@ std::vector<NamedPair> pairs_on_a_line() {
 
 OnALine line_of(const NamedPair& given, const ParticleState& particles) {
   OnALine pair{};
-  for (const std::size_t i : {0, 1}) {
+  for (const std::size_t i : {0U, 1U}) {
     const double radius = i == 0 ? 1 : 1.4;
     pair.mass[i] = given.density * 4 * pi / 3 * radius * radius * radius;
     pair.drag[i] = 6 * pi * viscosity * radius;

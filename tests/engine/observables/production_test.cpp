@@ -13,7 +13,7 @@ namespace peclet::engine {
 namespace {
 
 TEST(Production, EveryStepGoesIntoExactlyOneOfEvenBlocks) {
-  for (const std::uint64_t steps : {32, 33, 63, 1000, 12345}) {
+  for (const std::uint64_t steps : {32U, 33U, 63U, 1000U, 12345U}) {
     Production production(steps);
     for (std::uint64_t index = 0; index < steps; ++index) {
       PairSums sums;

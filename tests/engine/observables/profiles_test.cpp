@@ -59,8 +59,9 @@ TEST(Profiles, OfAUniformLatticeAreUniform) {
     system.particles = make_particles(std::vector<double>(25, 1), 1);
     system.box = PeriodicCell({edge, edge, edge}, simple_shear(0));
     for (std::size_t i = 0; i < 25; ++i) {
+      const std::size_t column = i % 5, layer = i / 5;
       system.particles.position.set(
-          i, {2.0 * static_cast<double>(i % 5), offset + 2.0 * static_cast<double>(i / 5), 5});
+          i, {2.0 * static_cast<double>(column), offset + 2.0 * static_cast<double>(layer), 5});
     }
     const Json phi = profiles_of(system)["volume_fraction"];
     for (const Json& share : phi) {

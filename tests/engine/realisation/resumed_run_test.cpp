@@ -83,7 +83,7 @@ TEST_P(ResumedRun, PassesThroughContactsRebuildsAndFlips) {
 }
 
 TEST_P(ResumedRun, EndsAsTheUncutOneWhereverItWasCut) {
-  for (const std::uint64_t cut : {0, 1, 57, 100, 101, 200, 333, 419}) {
+  for (const std::uint64_t cut : {0U, 1U, 57U, 100U, 101U, 200U, 333U, 419U}) {
     const auto before = started();
     before->advance(cut);
     ArchiveWriter archive;
@@ -104,7 +104,7 @@ TEST_P(ResumedRun, EndsAsTheUncutOneAfterThreeCheckpointsOnDisk) {
   const TemporaryFolder folder;
   const CheckpointIdentity identity = {"scene", seed, "binary"};
   auto run = started();
-  for (const std::uint64_t steps : {90, 111, 150}) {  // in equilibration, and twice in production
+  for (const std::uint64_t steps : {90U, 111U, 150U}) {  // in equilibration, and twice in production
     EXPECT_FALSE(run->advance(steps).has_value());
     EXPECT_GT(stretched_springs(run->system()), 0u);  // in the middle of contacts with friction
     write_checkpoint(folder / "checkpoint", identity, {1.5, 2.5}, *run);

@@ -71,7 +71,7 @@ TEST(SceneFit, ASpeciesMoreThanThereMayBeIsRefused) {
 
 // The edge is a part of the trajectory: to the last bit that of a box for the list of all radii.
 TEST(SceneFit, TheBoxIsThatOfAllRadii) {
-  for (const std::size_t count : {2, 7, 60, 12345}) {
+  for (const std::size_t count : {2U, 7U, 60U, 12345U}) {
     const Scene scene = read_scene(small_scene(with_species(count, {{{"radius", 1.1}, {"number_share", 1}},
                                                                     {{"radius", 0.7}, {"number_share", 2}}})),
                                    "scene.json");

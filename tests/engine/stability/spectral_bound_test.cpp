@@ -182,7 +182,7 @@ TEST(PackingMatrix, StiffnessOfAttractionIsThatOfTurningPairs) {
 // 1 % too low.
 TEST(SpectralBound, IsTheLargestOfAllEigenvalues) {
   const Physics physics = physics_with(every_term);
-  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     const System system = dense_suspension(physics, count, seed);
     for (const MatrixWeights weights : {MatrixWeights{1, 0}, {0, 1}, {1e-2, 1e-4}}) {
       const PackingMatrix matrix(system, kinds_of(system, physics), physics, weights);

@@ -59,7 +59,8 @@ TEST(NeighbourList, HoldsEveryPairOfACellOfAnyShape) {
     for (std::uint32_t i = 0; i < particles.count(); ++i) {
       for (std::uint32_t j = i + 1; j < particles.count(); ++j) {
         for (int k = 0; k < 13 * 13 * 13; ++k) {
-          const Vector3 whole = {k / 169 - 6.0, k / 13 % 13 - 6.0, k % 13 - 6.0};
+          const int x = k / 169 - 6, y = k / 13 % 13 - 6, z = k % 13 - 6;
+          const Vector3 whole = {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
           const double distance = norm(particles.position[j] + edges * whole - particles.position[i]);
           if (distance < reach) expected.emplace_back(i, j, distance);
         }

@@ -96,8 +96,8 @@ void print_row(const Case& about, int replications, unsigned start) {
   Source source(about, start);
   Tallies now, before;
   for (int replication = 0; replication < replications; ++replication) {
-    std::vector<std::optional<Outcome>> outcomes;
-    for (int seed = 0; seed < about.maximum; ++seed) outcomes.emplace_back(source.draw());
+    std::vector<std::optional<Outcome>> outcomes(static_cast<std::size_t>(about.maximum));
+    for (std::optional<Outcome>& outcome : outcomes) outcome = source.draw();
     now.add(replay_looks(outcomes, target, about.minimum, about.maximum).back());
     before.add(replay_looks(outcomes, first, about.minimum, about.maximum).back());
   }
