@@ -80,9 +80,9 @@ TEST_F(Databases, DamageIsFoundWhenTheOwnerOpens) {
 // Made by somebody who wants a reader to wait for ever, or a writer to write something else.
 TEST_F(Databases, TablesThatThisProgramDidNotMakeAreNotRead) {
   const char* const changes[] = {
-      "ALTER TABLE point RENAME TO real_point; CREATE VIEW point AS WITH RECURSIVE n(i) AS (SELECT 1 UNION "
-      "ALL "
-      "SELECT i + 1 FROM n) SELECT i AS point_id, i AS place FROM n",
+      R"(ALTER TABLE point RENAME TO real_point;
+         CREATE VIEW point AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n)
+         SELECT i AS point_id, i AS place FROM n)",
       "CREATE TRIGGER more AFTER INSERT ON event BEGIN UPDATE realisation SET value = 1; END",
       "ALTER TABLE look ADD COLUMN more INTEGER",
       "ALTER TABLE look ADD COLUMN more BLOB AS (zeroblob(1000000000))",

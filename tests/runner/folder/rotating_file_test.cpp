@@ -78,8 +78,8 @@ TEST(WorkerLogs, StaySmallWhenAnEnginePrintsWithoutEnd) {
     size += entry.file_size();
   }
   EXPECT_GT(size, std::uintmax_t{1} << 20);
-  EXPECT_LE(size,
-            2 * 3 * (std::uintmax_t{1} << 20) + 10'000);  // two workers, three files each, the run's own
+  EXPECT_LE(size, std::uintmax_t{2} * 3 * (std::uintmax_t{1} << 20) +
+                      10'000);  // two workers, three files each, the run's own
 }
 
 }  // namespace

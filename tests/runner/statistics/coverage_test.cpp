@@ -96,10 +96,9 @@ Verdicts simulate_near_maximum(int replications, double needed, int maximum, uns
   const Target target{"relative_viscosity", tolerance, 0.95};
   Verdicts verdicts;
   for (int replication = 0; replication < replications; ++replication) {
-    std::vector<std::optional<Outcome>> outcomes;
-    for (int seed = 0; seed < maximum; ++seed) {
-      outcomes.emplace_back(Outcome{Outcome::Kind::value, seeds(random), 0});
-    }
+    std::vector<std::optional<Outcome>> outcomes(static_cast<std::size_t>(maximum));
+    for (std::optional<Outcome>& outcome : outcomes)
+      outcome = Outcome{Outcome::Kind::value, seeds(random), 0};
     const Look last = replay_looks(outcomes, target, 8, maximum).back();
     OfVerdict& of = last.verdict == Verdict::converged                ? verdicts.converged
                     : last.verdict == Verdict::converged_near_maximum ? verdicts.near_maximum

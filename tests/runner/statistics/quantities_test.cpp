@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace peclet::runner {
 namespace {
 
 std::vector<std::string> names_in(const std::vector<Quantity>& quantities) {
-  std::vector<std::string> names;
-  for (const Quantity& quantity : quantities) names.push_back(quantity.name);
+  std::vector<std::string> names(quantities.size());
+  std::transform(quantities.begin(), quantities.end(), names.begin(),
+                 [](const Quantity& quantity) { return quantity.name; });
   return names;
 }
 
