@@ -27,7 +27,7 @@ System cluster(const Physics& physics) {
   system.particles = make_particles(radius, 1);
   const std::vector<double> sizes = distinct_radii(radius);
   system.list = NeighbourList(range_table(make_pair_kinds(physics, sizes), sizes.size()), 0.1);
-  system.box = PeriodicCell({4.02, 6.0, 7.0}, simple_shear(/*shear_rate=*/0), /*tilt=*/1.3);
+  system.box = PeriodicCell({4.02, 6.0, 7.0}, simple_shear(0), /*tilt=*/1.3);
   system.particles.position.set(0, {0.3, 0.3, 3.0});
   system.particles.position.set(1, {2.305, 0.31, 3.02});
   system.particles.position.set(2, Vector3{0.3, 0.3, 3.0} + 2.42 * Vector3{0.48, 0.64, 0.6});

@@ -22,6 +22,7 @@ inline const Target five_percent{"relative_viscosity", 0.05, 0.95};
 // As many seeds of values mean - spread and mean + spread in turn.
 inline std::vector<std::optional<Outcome>> alternating(int count, double mean, double spread) {
   std::vector<std::optional<Outcome>> outcomes;
+  outcomes.reserve(static_cast<std::size_t>(count));
   for (int seed = 0; seed < count; ++seed)
     outcomes.emplace_back(value(seed % 2 == 0 ? mean - spread : mean + spread));
   return outcomes;

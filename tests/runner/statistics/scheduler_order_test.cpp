@@ -57,8 +57,8 @@ TEST(Scheduler, ThePointWithMostCostToComeGoesFirst) {
   scheduler.set_cost(0, 1);
   scheduler.set_cost(1, 3);  // 12 s, then 9, 6 and 3
   scheduler.set_cost(2, 2);  // 8 s, then 6, 4 and 2
-  std::vector<int> taken;
-  for (int i = 0; i < 8; ++i) taken.push_back(take(scheduler).point);
+  std::vector<int> taken(8);
+  for (int& point : taken) point = take(scheduler).point;
   EXPECT_EQ(taken, (std::vector<int>{1, 1, 2, 1, 2, 0, 2, 0}));
 }
 
