@@ -68,9 +68,11 @@ std::vector<std::string> Target::observables() const {
   return names;
 }
 
-std::string to_string(const Target& target) {
+std::string to_string(const Target& target) { return to_string(target.criteria()); }
+
+std::string to_string(const std::vector<Criterion>& criteria) {
   std::string text;
-  for (const Criterion& criterion : target.criteria()) {
+  for (const Criterion& criterion : criteria) {
     text += fmt::format("{}{} to {}", text.empty() ? "" : ", ", criterion.observable,
                         to_string(criterion.tolerance));
   }

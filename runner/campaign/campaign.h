@@ -48,6 +48,7 @@ struct Target {
 };
 
 // "relative_viscosity to 5 %, pressure to 0.1"
+std::string to_string(const std::vector<Criterion>& criteria);
 std::string to_string(const Target& target);
 // Where a campaign names one of Target::observables(): "/target/also/0/observable".
 std::string pointer_of(const Target& target, const std::string& observable);

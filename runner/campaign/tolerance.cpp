@@ -29,13 +29,14 @@ Tolerance Tolerance::absolute(double value) {
   return tolerance;
 }
 
+bool Tolerance::is_share_of(double mean) const { return is_relative() && value * std::abs(mean) >= floor; }
+
 double Tolerance::half_width(double mean) const {
   return is_relative() ? std::max(value * std::abs(mean), floor) : value;
 }
 
 double Tolerance::share(double half_width, double mean) const {
-  if (floor > 0 && value * std::abs(mean) < floor) return half_width / floor;
-  return is_relative() ? half_width / std::abs(mean) / value : half_width / value;
+  return is_share_of(mean) ? half_width / std::abs(mean) / value : half_width / this->half_width(mean);
 }
 
 std::string to_string(const Tolerance& tolerance) {
@@ -46,8 +47,7 @@ std::string to_string(const Tolerance& tolerance) {
 }
 
 std::string width_text(const Tolerance& tolerance, double half_width, double mean) {
-  const bool is_share = tolerance.is_relative() && tolerance.value * std::abs(mean) >= tolerance.floor;
-  return is_share ? percent(half_width / std::abs(mean)) : rough(half_width);
+  return tolerance.is_share_of(mean) ? percent(half_width / std::abs(mean)) : rough(half_width);
 }
 
 const char* key_of(const Tolerance& tolerance) {

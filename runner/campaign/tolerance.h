@@ -23,6 +23,8 @@ struct Tolerance {
   static Tolerance absolute(double value);
 
   bool is_relative() const { return kind == Kind::relative; }
+  // Whether the half-width that is good enough around this mean is a share of it, and no number of its own.
+  bool is_share_of(double mean) const;
   // Whether no half-width is good enough for a mean of 0.
   bool needs_a_mean() const { return is_relative() && floor == 0; }
   // The half-width that is good enough, for the mean that it is a share of.

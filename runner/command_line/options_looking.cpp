@@ -13,7 +13,6 @@
 #include "runner/reports/results.h"
 #include "runner/reports/status.h"
 #include "runner/verbs/files.h"
-#include "runner/verbs/plan_campaign.h"
 #include "runner/verbs/watch.h"
 
 namespace peclet::runner {

@@ -95,26 +95,26 @@ const Known* that_may_be_zero(const std::vector<Known>& all) {
   return found == all.end() ? nullptr : &*found;
 }
 
-// "/target/also/0/relative_tolerance"
-std::string tolerance_pointer(const Target& target, const Criterion& criterion) {
+// "/target/also/0/"
+std::string place_of(const Target& target, const Criterion& criterion) {
   const std::string observable = pointer_of(target, criterion.observable);
-  return observable.substr(0, observable.rfind('/') + 1) + key_of(criterion.tolerance);
+  return observable.substr(0, observable.rfind('/') + 1);
 }
 
 std::string advice_when_capped(const Look& look, const Target& target) {
   const std::vector<Known> all = known_of(look, target);
   if (const Known* const zero = that_may_be_zero(all)) {
-    const std::string folder = pointer_of(target, zero->criterion.observable);
     return fmt::format(
         "{0}absolute_tolerance, or another {0}observable: the interval contains zero, and as long as it does "
         "no {0}relative_tolerance below 100 % can be met, whatever the number of seeds",
-        folder.substr(0, folder.rfind('/') + 1));
+        place_of(target, zero->criterion));
   }
   const auto worst = std::max_element(all.begin(), all.end(), [](const Known& one, const Known& other) {
     return one.look.share < other.look.share;
   });
-  return fmt::format("a larger /realisations/maximum ({} seeds) or {} (`peclet set`), and run again",
-                     seeds_for(look, target), tolerance_pointer(target, worst->criterion));
+  return fmt::format("a larger /realisations/maximum ({} seeds) or {}{} (`peclet set`), and run again",
+                     seeds_for(look, target), place_of(target, worst->criterion),
+                     key_of(worst->criterion.tolerance));
 }
 
 // Why the look did not decide although its interval is narrow enough.

@@ -15,13 +15,7 @@ void compare(std::vector<std::string>& changes, const char* what, const std::str
   if (before != after) changes.push_back(fmt::format("{} {} -> {}", what, before, after));
 }
 
-std::string also_text(const Target& target) {
-  std::string text;
-  for (const auto& [observable, tolerance] : target.also) {
-    text += fmt::format("{}{} to {}", text.empty() ? "" : ", ", observable, to_string(tolerance));
-  }
-  return text.empty() ? "none" : text;
-}
+std::string also_text(const Target& target) { return target.also.empty() ? "none" : to_string(target.also); }
 
 std::string percent(double share) { return fmt::format("{:.6g} %", 100 * share); }
 

@@ -120,7 +120,7 @@ StopRule::Measured StopRule::measure(const Part& part, Estimates estimates) {
   measured.own = half_width(measured.estimate);
   measured.good_enough = part.tolerance.half_width(of.mean);
   measured.share = part.tolerance.share(measured.own, of.mean);
-  if (!part.tolerance.is_relative()) return measured;
+  if (!part.tolerance.is_share_of(of.mean)) return measured;
   const bool is_own = part.measure == part.place;
   measured.mean_factor =
       1 + (is_own ? measured.share * part.tolerance.value : half_width(of) / std::abs(of.mean));

@@ -15,7 +15,8 @@
 // its interval is wider than the tolerance by the same f,
 //   max(e, w (1 + w) sqrt(f)) |mean|,   p = 0.02.
 // An absolute tolerance takes the same rule with w and e in the observable's unit, and 1 in the place of
-// |mean| and of 1 + w. One relative to another observable takes |mean| and 1 + w of that one.
+// |mean| and of 1 + w. One relative to another observable takes |mean| and 1 + w of that one. Where a floor
+// counts, the tolerance is an absolute one.
 //
 // A target of several criteria is met at the first look at which each of them is by its own rule. What is
 // said of the point is the least favourable of what is said of them.

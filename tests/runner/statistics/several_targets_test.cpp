@@ -104,6 +104,16 @@ TEST(SeveralTargets, AFloorIsEnoughForAMeanOfZero) {
   EXPECT_NEAR(look.each[1].share, 0.392 / 0.4, 3e-3);
 }
 
+// A measure that may be zero has no relative width: where the floor counts, it has no part in it.
+TEST(SeveralTargets, AFloorNeedsNoMeasure) {
+  Tolerance tolerance = relative_to("other", 0.05);
+  tolerance.floor = 0.5;
+  const Target target{"viscosity", tolerance, 0.95};
+  const Look look = replay_looks(both_alternating(10, 0, 0.5), target, 10, 1000).back();
+  EXPECT_EQ(look.verdict, Verdict::converged);
+  EXPECT_NEAR(look.each[0].share, 2.354 * 0.1 / 3 / 0.5, 1e-3);
+}
+
 // What only measures others has an interval, but no verdict, and holds nothing up.
 TEST(SeveralTargets, AMeasureNeedsNoPrecision) {
   Target target{"N1", relative_to("viscosity", 0.05), 0.95};
@@ -159,14 +169,13 @@ TEST(SeveralTargets, ATransientOfAnyIsOneOfTheLook) {
   EXPECT_TRUE(replay_looks(outcomes, target, 10, 1000).back().untested);
 }
 
-// The viscosity alone would stop at the first look; the other needs (0.392 / 0.1)^2 * 10 = 154 seeds, which
-// are there at the look of 172.
+// The viscosity alone would stop at the first look. The other's half-width is t(n - 1) 0.527 / sqrt(n): 0.103
+// at the look of 109 seeds, with t = 2.047, and 0.092 at that of 137.
 TEST(SeveralTargets, TheHardestToKnowTellsHowManySeedsToExpect) {
   const Target target = viscosity_and({"other", Tolerance::absolute(0.1)});
   const Outcomes outcomes = both_alternating(10, 5, 0.5);
   const int expected = expected_seeds(replay_looks(outcomes, target, 10, 10000), target, 10, 10000);
-  EXPECT_GE(expected, 109);
-  EXPECT_LE(expected, 172);
+  EXPECT_EQ(expected, 137);
   const Target alone{"viscosity", 0.05, 0.95};
   const Prediction together = predict(outcomes, target, 20, 10000, 0);
   EXPECT_EQ(predict(outcomes, alone, 20, 10000, 0).seeds.likely, 20);
