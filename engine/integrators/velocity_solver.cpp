@@ -18,12 +18,18 @@ VelocitySolver::VelocitySolver(const Physics& physics, const ParticleState& part
     : timestep_(timestep),
       tolerance_(tolerance),
       link_(link_kernels(set)),
-      inverse_blocks_(6 * particles.count()),
+      inverse_pivots_(6 * particles.count()),
       scratch_(rows_of_scratch(particles.count())),
+      squeezing_(particles.count()),
+      right_(particles.count()),
       solution_(particles.count()),
       residual_(particles.count()),
+      weighted_(particles.count()),
       direction_(particles.count()),
-      product_(particles.count()),
+      ahead_(particles.count()),
+      moved_(particles.count()),
+      back_(particles.count()),
+      loads_(particles.count()),
       flow_(physics.flow) {
   if (flow_.varies()) {
     varying_velocity_ = varying_spin_ = VectorField(particles.count());
@@ -43,10 +49,15 @@ VelocitySolver::VelocitySolver(const Physics& physics, const ParticleState& part
 }
 
 void VelocitySolver::assemble(System& system, ForceField& field, double resistance_time) {
-  count_of_groups_ = field.assemble_links(
+  if (ordered_ != system.list.builds()) {
+    order_.arrange(system.list, system.particles.count());
+    ordered_ = system.list.builds();
+  }
+  field.assemble_links(
       system, {.timestep = timestep_, .normal_time = 0.5 * timestep_, .resistance_time = resistance_time},
-      groups_);
-  link_.invert_blocks(links(system), scratch_.data(), inverse_blocks_.data());
+      order_, groups_);
+  link_.factorise(links(system), scratch_.data(), inverse_pivots_.data(), squeezing_.data());
+  begun_.reset();
 }
 
 VelocitySolver::Residual VelocitySolver::set_residual(const System& system, const StepOrigin& origin,
@@ -75,33 +86,48 @@ VelocitySolver::Residual VelocitySolver::set_residual(const System& system, cons
                          .varying_velocity = flow_.varies() ? varying_velocity_.data() : nullptr,
                          .varying_spin = flow_.varies() ? varying_spin_.data() : nullptr};
   const LinkSystem matrix = links(system);
-  link_.set_residual(matrix, rows, residual_.data());
-  const SquaredMotion motion = link_.squared_motion(matrix, rows, direction_.data(), product_.data());
+  link_.set_residual(matrix, rows, right_.data());
+  begun_ = link_.begin(matrix, right_.data(), this->rows());
+  const SquaredMotion motion = link_.squared_motion(matrix, rows, direction_.data());
   // What a step changes is the smaller a part of the motion the more inertia outlives the step, and errors of
   // that part add up for as long.
   const double changed = std::max(motion.whole - motion.inertial, 0.0);
-  return {.squared = link_.squared_norm(matrix, residual_.data()),
-          .squared_motion = motion.whole > 0 ? changed * changed / motion.whole : 0};
+  return {.squared = *begun_, .squared_motion = motion.whole > 0 ? changed * changed / motion.whole : 0};
 }
 
 bool VelocitySolver::correct(System& system, double target, StepReport& report) {
-  const SolverReport solved =
-      link_.solve(links(system), {solution_.data(), residual_.data(), direction_.data(), product_.data()},
-                  target, most_iterations);
+  const LinkSystem matrix = links(system);
+  if (!begun_) begun_ = link_.begin(matrix, right_.data(), rows());
+  const SolverReport solved = link_.solve(matrix, rows(), *begun_, target, most_iterations);
+  begun_.reset();
   report.solver_iterations += solved.iterations;
   report.solver_residual = target > 0 ? tolerance_ * std::sqrt(solved.squared_residual / target) : 0;
-  link_.add_motion(system.particles.count(), solution_.data(), system.particles.velocity.data(),
+  link_.add_motion(matrix, solution_.data(), system.particles.velocity.data(),
                    system.particles.angular_velocity.data());
   return std::isfinite(solved.squared_residual);
 }
 
 LinkSystem VelocitySolver::links(const System& system) const {
   return {.particles = system.particles.count(),
+          .particle = order_.particle().data(),
           .size_class = system.particles.size_class.data(),
           .diagonal = diagonal_.data(),
+          .levels = order_.levels().data(),
+          .count_of_levels = order_.levels().size(),
           .groups = groups_.data(),
-          .count_of_groups = count_of_groups_,
-          .inverse_blocks = inverse_blocks_.data()};
+          .inverse_pivots = inverse_pivots_.data(),
+          .squeezing = squeezing_.data()};
+}
+
+SolverRows VelocitySolver::rows() {
+  return {.solution = solution_.data(),
+          .residual = residual_.data(),
+          .weighted = weighted_.data(),
+          .direction = direction_.data(),
+          .ahead = ahead_.data(),
+          .moved = moved_.data(),
+          .back = back_.data(),
+          .loads = loads_.data()};
 }
 
 }  // namespace peclet::engine

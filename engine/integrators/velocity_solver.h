@@ -1,5 +1,5 @@
 // The equations of an implicit step at given forces, M (V - V_n) = dt F, and the correction of V that takes
-// their residual away: couplings of near pairs ("links"), the particles' own blocks, conjugate gradients.
+// their residual away: couplings of near pairs ("links"), an incomplete factorisation, conjugate gradients.
 //
 // The matrix is symmetric and positive definite: friction that slides enters with its secant stiffness, the
 // resistance with what the approach changes of its squeezing part.
@@ -37,8 +37,8 @@ class VelocitySolver {
   void assemble(System& system, ForceField& field, double resistance_time);
 
   struct Residual {
-    double squared;         // r.C r with the inverse C of the particles' own blocks
-    double squared_motion;  // of what a step changes, in the same norm
+    double squared;         // r.C^-1 r with the preconditioner C, nearly r.A^-1 r
+    double squared_motion;  // v.A v of what a step changes
   };
   // Of M (V - V_n) = dt (loads + noise), kept for correct(). The motion is that relative to the flow.
   Residual set_residual(const System& system, const StepOrigin& origin, const Loads& loads,
@@ -50,14 +50,20 @@ class VelocitySolver {
 
  private:
   LinkSystem links(const System& system) const;
+  SolverRows rows();
 
   double timestep_, tolerance_;
   LinkKernels link_;
   std::vector<OneBodyFactors> inertia_;  // of each size class
   std::vector<MotionRow> diagonal_;
+  LinkOrder order_;
+  std::optional<std::uint64_t> ordered_;  // the number of the list's builds when the order was made
   std::vector<LinkGroup> groups_;
-  std::size_t count_of_groups_ = 0;
-  std::vector<MotionRow> inverse_blocks_, scratch_, solution_, residual_, direction_, product_;
+  std::vector<MotionRow> inverse_pivots_, scratch_;
+  std::vector<SqueezingRow> squeezing_;
+  std::vector<MotionRow> right_;  // of the equations
+  std::vector<MotionRow> solution_, residual_, weighted_, direction_, ahead_, moved_, back_, loads_;
+  std::optional<double> begun_;  // what begin() has returned for the present matrix and right-hand side
   ImposedFlow flow_;
   VectorField varying_velocity_, varying_spin_;  // of each particle, where the flow varies
 };

@@ -48,13 +48,12 @@ PairPassInput ForceField::pair_input(const System& system) const {
   };
 }
 
-std::size_t ForceField::assemble_links(System& system, const LinkWeights& weights,
-                                       std::vector<LinkGroup>& groups) {
-  const std::size_t pairs = system.list.pairs().size();
-  groups.resize(std::max(groups.size(), pairs / links_per_group + 1));
+void ForceField::assemble_links(System& system, const LinkWeights& weights, LinkOrder& order,
+                                std::vector<LinkGroup>& groups) {
+  groups.resize(std::max(groups.size(), order.most_groups()));
   const std::vector<PairRun>& runs = system.list.runs();
-  return link_.assemble(pair_pass_.kernel_input(pair_input(system), system.springs), runs.data(), runs.size(),
-                        terms_, weights, groups.data());
+  link_.assemble(pair_pass_.kernel_input(pair_input(system), system.springs), runs.data(), runs.size(),
+                 terms_, weights, order.places(), groups.data());
 }
 
 OneBodyInput ForceField::one_body_input(System& system, VectorField& force, VectorField& torque,

@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "engine/kernels/links/link_order.h"
 #include "engine/kernels/pair_pass.h"
 #include "engine/state/system.h"
 
@@ -32,8 +33,9 @@ class ForceField {
   }
 
   // The links of all pairs within their range. `groups` is made as long as it has to be and keeps its
-  // storage; returns how many are in use.
-  std::size_t assemble_links(System& system, const LinkWeights& weights, std::vector<LinkGroup>& groups);
+  // storage.
+  void assemble_links(System& system, const LinkWeights& weights, LinkOrder& order,
+                      std::vector<LinkGroup>& groups);
 
   // What the loops over particles take: the rows of all of them, the flow, and the caller's kicks, if any.
   OneBodyInput one_body_input(System& system, VectorField& force, VectorField& torque,

@@ -38,4 +38,29 @@ PECLET_ALWAYS_INLINE PairLoadOf<Real> lubrication_load(const PairResistanceOf<Re
           R.pump_second * turned - across(twisted_second, n)};
 }
 
+// What the motion of one sphere of a pair, at velocity U and spin Omega, does to the other one that rests:
+// lubrication_load() without all that is zero, and the other sphere's part of it.
+template <class Real>
+struct SphereLoadOf {
+  Vector3Of<Real> force, torque;
+};
+
+template <class Real>
+PECLET_ALWAYS_INLINE SphereLoadOf<Real> load_on_first(const PairResistanceOf<Real>& R,
+                                                      const Vector3Of<Real>& n, const Vector3Of<Real>& U,
+                                                      const Vector3Of<Real>& Omega) {
+  const Vector3Of<Real> along = dot(U, n) * n;
+  return {R.squeeze * along + R.shear * (U - along) + R.pump_second * cross(Omega, n),
+          R.pump_first * cross(U, n) - R.twist_cross * across(Omega, n)};
+}
+
+template <class Real>
+PECLET_ALWAYS_INLINE SphereLoadOf<Real> load_on_second(const PairResistanceOf<Real>& R,
+                                                       const Vector3Of<Real>& n, const Vector3Of<Real>& U,
+                                                       const Vector3Of<Real>& Omega) {
+  const Vector3Of<Real> along = dot(U, n) * n, turned = cross(n, Omega);
+  return {R.squeeze * along + R.shear * (U - along) + R.pump_first * turned,
+          R.pump_second * cross(n, U) - R.twist_cross * across(Omega, n)};
+}
+
 }  // namespace peclet::engine

@@ -8,6 +8,38 @@
 
 namespace peclet::engine {
 
+namespace {
+
+// Of the link of a level that has this number, among the level's groups.
+PECLET_ALWAYS_INLINE LinkGroup& group_of(LinkGroup* groups, std::uint32_t number) {
+  return groups[number / links_side_by_side * groups_side_by_side + number % groups_side_by_side];
+}
+PECLET_ALWAYS_INLINE int place_of_link(std::uint32_t number) {
+  return static_cast<int>(number % links_side_by_side / groups_side_by_side);
+}
+
+// Links that couple nothing, so that a level's groups are full.
+void fill_up(LinkLevel& level, std::uint32_t links, LinkGroup* groups) {
+  const std::uint32_t rest = links % links_side_by_side;
+  level.count_of_groups = links / links_side_by_side * groups_side_by_side +
+                          (rest < groups_side_by_side ? rest : groups_side_by_side);
+  if (rest == 0) return;
+  for (; links % links_side_by_side != 0; ++links) {
+    LinkGroup& group = group_of(groups + level.groups_begin, links);
+    const int place = place_of_link(links);
+    group.first[place] = level.rows_begin;
+    group.second[place] = 0;
+    Floats* const numbers[] = {&group.normal[0],   &group.normal[1],   &group.normal[2],   &group.squeeze,
+                               &group.shear,       &group.pump_first,  &group.pump_second, &group.twist_first,
+                               &group.twist_cross, &group.twist_second};
+    for (Floats* const number : numbers) {
+      (*number)[place] = 0;
+    }
+  }
+}
+
+}  // namespace
+
 // Pairs of one run, as many as a number holds.
 template <class Real>
 class LinkedPairs {
@@ -60,28 +92,35 @@ class LinkedPairs {
     return sum;
   }
 
-  PECLET_ALWAYS_INLINE void emit(LinkGroup* groups, std::size_t& links,
+  PECLET_ALWAYS_INLINE void emit(const LinkPlaces& places, LinkGroup* groups,
                                  const PairResistanceOf<Real>& coupling) const {
     for (int k = 0; k < count_; ++k) {
       if ((near_ >> k & 1U) == 0) {
         continue;
       }
-      LinkGroup& group = groups[links / links_per_group];
-      const auto place = static_cast<int>(links % links_per_group);
-      ++links;
-      group.first[place] = first_[k];
-      group.second[place] = second_[k];
+      const std::uint32_t row_of_first = places.row[first_[k]], row_of_second = places.row[second_[k]];
+      const bool swapped = row_of_first < row_of_second;
+      const std::uint32_t later = swapped ? row_of_second : row_of_first;
+      const std::uint16_t level = places.level[later];
+      const std::uint32_t number = places.next[level]++;
+      LinkGroup& group = group_of(groups + places.levels[level].groups_begin, number);
+      const int place = place_of_link(number);
+      group.first[place] = later;
+      group.second[place] = swapped ? row_of_first : row_of_second;
       const auto put = [&](Floats& to, const Real& from) { to[place] = static_cast<float>(lane(from, k)); };
-      put(group.normal[0], shape_.normal.x);
-      put(group.normal[1], shape_.normal.y);
-      put(group.normal[2], shape_.normal.z);
+      const auto put_both = [&](Floats& to_first, Floats& to_second, const Real& first, const Real& second) {
+        put(swapped ? to_second : to_first, first);
+        put(swapped ? to_first : to_second, second);
+      };
+      const float sign = swapped ? -1.0F : 1.0F;
+      group.normal[0][place] = sign * static_cast<float>(lane(shape_.normal.x, k));
+      group.normal[1][place] = sign * static_cast<float>(lane(shape_.normal.y, k));
+      group.normal[2][place] = sign * static_cast<float>(lane(shape_.normal.z, k));
       put(group.squeeze, coupling.squeeze);
       put(group.shear, coupling.shear);
-      put(group.pump_first, coupling.pump_first);
-      put(group.pump_second, coupling.pump_second);
-      put(group.twist_first, coupling.twist_first);
+      put_both(group.pump_first, group.pump_second, coupling.pump_first, coupling.pump_second);
+      put_both(group.twist_first, group.twist_second, coupling.twist_first, coupling.twist_second);
       put(group.twist_cross, coupling.twist_cross);
-      put(group.twist_second, coupling.twist_second);
     }
   }
 
@@ -118,32 +157,24 @@ class LinkedPairs {
 };
 
 template <class Real>
-std::size_t assemble_links(const PairKernelInput& in, const PairRun* runs, std::size_t count,
-                           const Terms& terms, const LinkWeights& weights, LinkGroup* groups) {
+void assemble_links(const PairKernelInput& in, const PairRun* runs, std::size_t count, const Terms& terms,
+                    const LinkWeights& weights, const LinkPlaces& places, LinkGroup* groups) {
   constexpr std::uint32_t width = width_of<Real>;
-  std::size_t links = 0;
+  for (std::size_t level = 0; level < places.count_of_levels; ++level) {
+    places.next[level] = 0;
+  }
   for (const PairRun* run = runs; run < runs + count; ++run) {
     for (std::uint32_t begin = run->begin; begin < run->end; begin += width) {
       const std::uint32_t rest = run->end - begin;
       const LinkedPairs<Real> pairs(in, *run, begin, static_cast<int>(rest < width ? rest : width));
       if (pairs.near() != 0) {
-        pairs.emit(groups, links, pairs.coupling(terms, weights));
+        pairs.emit(places, groups, pairs.coupling(terms, weights));
       }
     }
   }
-  const std::size_t count_of_groups = (links + links_per_group - 1) / links_per_group;
-  for (; links < count_of_groups * links_per_group; ++links) {
-    LinkGroup& group = groups[links / links_per_group];
-    const auto place = static_cast<int>(links % links_per_group);
-    group.first[place] = group.second[place] = 0;
-    Floats* const numbers[] = {&group.normal[0],   &group.normal[1],   &group.normal[2],   &group.squeeze,
-                               &group.shear,       &group.pump_first,  &group.pump_second, &group.twist_first,
-                               &group.twist_cross, &group.twist_second};
-    for (Floats* const number : numbers) {
-      (*number)[place] = 0;
-    }
+  for (std::size_t level = 0; level < places.count_of_levels; ++level) {
+    fill_up(places.levels[level], places.next[level], groups);
   }
-  return count_of_groups;
 }
 
 }  // namespace peclet::engine

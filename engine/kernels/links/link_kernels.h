@@ -7,6 +7,15 @@
 // stiffness of springs. Single precision is enough for a correction to a velocity whose residual is known in
 // double precision.
 //
+// Rows are arranged in levels (link_order.h): no link couples two rows of one level. With L the couplings of
+// a row to rows of earlier levels and B the particles' own blocks, A = L + B + L^T. The preconditioner is
+//   C = (P + L) P^-1 (P + L^T),   P = B - K,
+// with pivots P as those of an incomplete factorisation (Meijerink & van der Vorst 1977), of which K keeps
+// the squeezing alone: row after row
+//   K_i = 0.9 sum over links to earlier rows j of s^2 (n.P_j^-1 n) n n
+// with the squeezing coefficient s. P_j holds s n n itself, so that s n.P_j^-1 n < 1 and every P is positive
+// definite. Where K = 0 this is symmetric Gauss-Seidel; the factor keeps rounding away from the bound.
+//
 // Plain data, because this is shared with files that are compiled for one processor only.
 #pragma once
 
@@ -23,6 +32,7 @@ struct alignas(32) MotionRow {
 
 constexpr int links_per_group = 8;
 
+// Rows of particles; `first` is in a later level than `second`.
 struct alignas(32) LinkGroup {
   std::uint32_t first[links_per_group], second[links_per_group];
   Floats normal[3];
@@ -38,23 +48,51 @@ struct LinkWeights {
   double resistance_time;
 };
 
-struct LinkSystem {
-  std::size_t particles;
-  const std::uint16_t* size_class;
-  const MotionRow* diagonal;  // of D, for each size class
-  const LinkGroup* groups;
-  std::size_t count_of_groups;
-  const MotionRow* inverse_blocks;  // six columns for each particle, see invert_blocks
+// Consecutive rows, and the groups of links whose first particles they are.
+struct LinkLevel {
+  std::uint32_t rows_begin, rows_end;
+  std::uint32_t groups_begin;     // there is room for the links of all listed pairs
+  std::uint32_t count_of_groups;  // in use
 };
 
-// Rows of each particle that solve() works on.
+// Where the links of pairs go. Consecutive links of a level often belong to the same row: they go to
+// different groups, so that sums into a row do not wait for each other within a group.
+constexpr std::uint32_t groups_side_by_side = 4;
+constexpr std::uint32_t links_side_by_side = groups_side_by_side * links_per_group;
+
+struct LinkPlaces {
+  const std::uint32_t* row;    // of each particle
+  const std::uint16_t* level;  // of each row
+  LinkLevel* levels;
+  std::size_t count_of_levels;
+  std::uint32_t* next;  // a number for each level, to count with
+};
+
+// Twice what a link keeps of a row: K, two rows of three columns.
+struct alignas(32) SqueezingRow {
+  Floats columns[2];
+};
+
+struct LinkSystem {
+  std::size_t particles;
+  const std::uint32_t* particle;  // of each row
+  const std::uint16_t* size_class;
+  const MotionRow* diagonal;  // of D, for each size class
+  const LinkLevel* levels;
+  std::size_t count_of_levels;
+  const LinkGroup* groups;
+  const MotionRow* inverse_pivots;  // six columns for each row, see factorise
+  const SqueezingRow* squeezing;    // K of each row
+};
+
+// Of each row, what solve() works on.
 struct SolverRows {
-  MotionRow *solution, *residual, *direction, *product;
+  MotionRow *solution, *residual, *weighted, *direction, *ahead, *moved, *back, *loads;
 };
 
 struct SolverReport {
   int iterations = 0;
-  double squared_residual = 0;  // r.C r with the inverse blocks C
+  double squared_residual = 0;  // r.C^-1 r
 };
 
 // What the residual of the equations of motion is made of; rows are those of a VectorField.
@@ -74,38 +112,38 @@ struct SquaredMotion {
   double whole, inertial;
 };
 
-// Of invert_blocks(): the lower triangle of each particle's block, 21 numbers.
+// Of factorise(): the lower triangle of each particle's block, 21 numbers.
 constexpr std::size_t rows_of_scratch(std::size_t particles) { return 3 * particles; }
 
 struct LinkKernels {
-  // The links of all pairs within their range, at the motion that `input` holds; the last group is filled up
-  // with links that couple nothing. Returns the number of groups; there must be room for one link of each
-  // pair.
-  std::size_t (*assemble)(const PairKernelInput& input, const PairRun* runs, std::size_t count,
-                          const Terms& terms, const LinkWeights& weights, LinkGroup* groups);
+  // The links of all pairs within their range, at the motion that `input` holds; the last group of a level is
+  // filled up with links that couple nothing.
+  void (*assemble)(const PairKernelInput& input, const PairRun* runs, std::size_t count, const Terms& terms,
+                   const LinkWeights& weights, const LinkPlaces& places, LinkGroup* groups);
 
-  // The inverse of each particle's own 6 x 6 block of A, six columns for each.
-  void (*invert_blocks)(const LinkSystem& system, MotionRow* scratch, MotionRow* inverse_blocks);
+  // P^-1 and K, see above.
+  void (*factorise)(const LinkSystem& system, MotionRow* scratch, MotionRow* inverse_pivots,
+                    SqueezingRow* squeezing);
 
-  // product = A vector.
+  // product = A vector, both in the order of rows.
   void (*multiply)(const LinkSystem& system, const MotionRow* vector, MotionRow* product);
 
   // residual = M (velocity before - velocity) + timestep force, and likewise for spins.
   void (*set_residual)(const LinkSystem& system, const StepRows& step, MotionRow* residual);
 
-  // Of the velocities relative to the streaming flow. Overwrites both rows.
-  SquaredMotion (*squared_motion)(const LinkSystem& system, const StepRows& step, MotionRow* motion,
-                                  MotionRow* product);
+  // Of the velocities relative to the streaming flow. Overwrites the rows.
+  SquaredMotion (*squared_motion)(const LinkSystem& system, const StepRows& step, MotionRow* motion);
 
-  // Adds rows to velocities and spins.
-  void (*add_motion)(std::size_t particles, const MotionRow* motion, double* velocity, double* spin);
+  // Adds rows to velocities and spins of their particles.
+  void (*add_motion)(const LinkSystem& system, const MotionRow* motion, double* velocity, double* spin);
 
-  // Returns r.C r.
-  double (*squared_norm)(const LinkSystem& system, const MotionRow* residual);
+  // Begins to solve A x = right: sets rows.weighted and rows.residual. Returns right.C^-1 right.
+  double (*begin)(const LinkSystem& system, const MotionRow* right, const SolverRows& rows);
 
-  // Conjugate gradients with the inverse blocks as preconditioner, from zero, until r.C r <= target or after
-  // `most_iterations`. The residual enters as the right-hand side and leaves as what remains of it.
-  SolverReport (*solve)(const LinkSystem& system, const SolverRows& rows, double target, int most_iterations);
+  // After begin(), which returned `squared_residual`: conjugate gradients from zero, until r.C^-1 r <= target
+  // or after `most_iterations`.
+  SolverReport (*solve)(const LinkSystem& system, const SolverRows& rows, double squared_residual,
+                        double target, int most_iterations);
 };
 
 extern const LinkKernels baseline_link_kernels;  // gathers one number at a time: the twin of the others

@@ -1,11 +1,11 @@
 #include "engine/kernels/links/link_assembly.h"
-#include "engine/kernels/links/link_blocks.h"
+#include "engine/kernels/links/link_pivots.h"
 #include "engine/kernels/links/link_solver.h"
 
 namespace peclet::engine {
 
-constinit const LinkKernels baseline_link_kernels = {&assemble_links<double>, &invert_blocks,  &multiply,
-                                                     &set_residual,           &squared_motion, &add_motion,
-                                                     &squared_norm,           &solve};
+constinit const LinkKernels baseline_link_kernels = {
+    &assemble_links<double>, &factorise,  &multiply, &set_residual,
+    &squared_motion,         &add_motion, &begin,    &solve};
 
 }  // namespace peclet::engine

@@ -1,10 +1,11 @@
-// The particles' own 6 x 6 blocks of a system of links, and their inverses.
+// The pivots of a system of links: the particles' own 6 x 6 blocks less K, and their inverses
+// (link_kernels.h).
 //
 // Everything is static: nothing that is compiled for one processor may be linked into a program that runs on
 // another.
 #pragma once
 
-#include "engine/kernels/links/link_motions.h"
+#include "engine/kernels/links/link_solver.h"
 
 namespace peclet::engine {
 namespace {
@@ -117,10 +118,10 @@ PECLET_ALWAYS_INLINE void add_blocks(MotionRow* triangles, const std::uint32_t* 
   }
 }
 
-void invert_blocks(const LinkSystem& system, MotionRow* triangles, MotionRow* inverse_blocks) {
-  const std::size_t count = system.particles;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Floats& diagonal = system.diagonal[system.size_class[i]].v;
+// D and what links add, of the own block of each row.
+PECLET_ALWAYS_INLINE void set_own_blocks(const LinkSystem& system, MotionRow* triangles) {
+  for (std::size_t i = 0; i < system.particles; ++i) {
+    const Floats& diagonal = diagonal_of(system, i);
     for (std::size_t part = 0; part < 3; ++part) {
       triangles[3 * i + part].v = Floats{};
     }
@@ -129,34 +130,96 @@ void invert_blocks(const LinkSystem& system, MotionRow* triangles, MotionRow* in
       triangles[3 * i + static_cast<std::size_t>(e / 8)].v[e % 8] = diagonal[place_of[c]];
     }
   }
-  for (const LinkGroup* group = system.groups; group < system.groups + system.count_of_groups; ++group) {
-    const Floats* const n = group->normal;
-    Floats first[24]{}, second[24]{};
-    block_of_links(n, group->squeeze, group->shear, group->pump_first, group->twist_first, 1.0F, first);
-    block_of_links(n, group->squeeze, group->shear, group->pump_second, group->twist_second, -1.0F, second);
-    add_blocks(triangles, group->first, first);
-    add_blocks(triangles, group->second, second);
+  for (std::size_t l = 0; l < system.count_of_levels; ++l) {
+    for_each_group(system, system.levels[l], [&](const LinkGroup& group) PECLET_INLINE_LAMBDA {
+      Floats first[24]{}, second[24]{};
+      block_of_links(group.normal, group.squeeze, group.shear, group.pump_first, group.twist_first, 1.0F,
+                     first);
+      block_of_links(group.normal, group.squeeze, group.shear, group.pump_second, group.twist_second, -1.0F,
+                     second);
+      add_blocks(triangles, group.first, first);
+      add_blocks(triangles, group.second, second);
+    });
   }
-  for (std::size_t begin = 0; begin < count; begin += 8) {
-    const std::size_t here = count - begin < 8 ? count - begin : 8;
-    Floats block[24], inverse[entries];
-    for (std::size_t part = 0; part < 3; ++part) {
-      for (std::size_t k = 0; k < 8; ++k) {
-        // Lanes without a particle repeat the first one.
-        block[8 * part + k] = triangles[3 * (begin + (k < here ? k : 0)) + part].v;
+}
+
+// K of a level's rows, from the pivots of earlier ones.
+PECLET_ALWAYS_INLINE void set_squeezing(const LinkSystem& system, const LinkLevel& level,
+                                        const MotionRow* inverse_pivots, SqueezingRow* squeezing) {
+  constexpr float kept = 0.9F;
+  for (std::size_t i = level.rows_begin; i < level.rows_end; ++i) {
+    squeezing[i] = {};
+  }
+  for_each_group(system, level, [&](const LinkGroup& group) PECLET_INLINE_LAMBDA {
+    const Vector3Of<EightFloats> n = normal_of(group);
+    const EightFloats components[3] = {n.x, n.y, n.z};
+    EightFloats compliance{};  // n.P^-1 n of the second particle
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      std::uint32_t column[links_per_group];
+      for (int k = 0; k < links_per_group; ++k) {
+        column[k] = 6 * group.second[k] + c;
       }
-      transpose(block + 8 * part);
+      compliance = compliance + components[c] * dot(gather_motions(inverse_pivots, column).velocity, n);
     }
-    invert(block, inverse);
-    for (int column = 0; column < 6; ++column) {
-      Floats rows[8]{};
-      for (int row = 0; row < 6; ++row) {
-        rows[place_of[row]] = inverse[row < column ? entry(column, row) : entry(row, column)];
-      }
-      transpose(rows);
-      for (std::size_t k = 0; k < here; ++k) {
-        inverse_blocks[6 * (begin + k) + static_cast<std::size_t>(column)].v = rows[k];
-      }
+    const EightFloats weight = EightFloats(kept * group.squeeze * group.squeeze) * compliance;
+    std::uint32_t row[links_per_group];
+    for (int k = 0; k < links_per_group; ++k) {
+      row[k] = 2 * group.first[k];
+    }
+    MotionRow* const rows = reinterpret_cast<MotionRow*>(squeezing);
+    add_motions(rows, row, {(weight * n.x) * n, (weight * n.y) * n});
+    for (std::uint32_t& k : row) {
+      ++k;
+    }
+    add_motions(rows, row, {(weight * n.z) * n, {}});
+  });
+}
+
+// (B - K)^-1 of up to eight rows from `begin` on.
+PECLET_ALWAYS_INLINE void invert_pivots(const MotionRow* triangles, const SqueezingRow* squeezing,
+                                        std::size_t begin, std::size_t count, MotionRow* inverse_pivots) {
+  Floats block[24], columns[16], inverse[entries];
+  // Lanes without a particle repeat the first one.
+  const auto row = [&](std::size_t k) { return begin + (k < count ? k : 0); };
+  for (std::size_t part = 0; part < 3; ++part) {
+    for (std::size_t k = 0; k < 8; ++k) {
+      block[8 * part + k] = triangles[3 * row(k) + part].v;
+    }
+    transpose(block + 8 * part);
+  }
+  for (std::size_t part = 0; part < 2; ++part) {
+    for (std::size_t k = 0; k < 8; ++k) {
+      columns[8 * part + k] = squeezing[row(k)].columns[part];
+    }
+    transpose(columns + 8 * part);
+  }
+  for (int column = 0; column < 3; ++column) {
+    for (int of = column; of < 3; ++of) {
+      block[entry(of, column)] -= columns[4 * column + of];
+    }
+  }
+  invert(block, inverse);
+  for (int column = 0; column < 6; ++column) {
+    Floats rows[8]{};
+    for (int of = 0; of < 6; ++of) {
+      rows[place_of[of]] = inverse[of < column ? entry(column, of) : entry(of, column)];
+    }
+    transpose(rows);
+    for (std::size_t k = 0; k < count; ++k) {
+      inverse_pivots[6 * (begin + k) + static_cast<std::size_t>(column)].v = rows[k];
+    }
+  }
+}
+
+void factorise(const LinkSystem& system, MotionRow* scratch, MotionRow* inverse_pivots,
+               SqueezingRow* squeezing) {
+  set_own_blocks(system, scratch);
+  for (std::size_t l = 0; l < system.count_of_levels; ++l) {
+    const LinkLevel& level = system.levels[l];
+    set_squeezing(system, level, inverse_pivots, squeezing);
+    for (std::size_t begin = level.rows_begin; begin < level.rows_end; begin += 8) {
+      const std::size_t rest = level.rows_end - begin;
+      invert_pivots(scratch, squeezing, begin, rest < 8 ? rest : 8, inverse_pivots);
     }
   }
 }
