@@ -19,7 +19,8 @@ namespace {
 
 // Pairs are listed that much beyond their range, as a fraction of the smallest one. A small skin keeps the
 // list close to the pairs that act; large steps would use it up at once.
-constexpr double skin_of_explicit_steps = 0.03, skin_of_implicit_steps = 0.1;
+constexpr double skin_of_explicit_steps = 0.03, skin_of_implicit_steps = 0.05;
+constexpr double skin_of_candidates = 0.5;
 
 // The streaming flow's velocities, and those of equilibrium where there is a temperature.
 void set_initial_velocities(ParticleState& particles, const BackgroundFlow& flow, const Physics& physics,
@@ -57,9 +58,10 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
   smallest_radius_ = sizes.front();
   system_.particles = make_particles(radius, scene.particles.density);
   system_.box = PeriodicCell({edge, edge, edge}, physics.flow.deformation().velocity_gradient(0));
-  const double skin =
-      scene.method == Method::implicit_steps ? skin_of_implicit_steps : skin_of_explicit_steps;
-  system_.list = NeighbourList(range_table(kinds_, sizes.size()), skin);
+  const RangeTable ranges = range_table(kinds_, sizes.size());
+  system_.list = scene.method == Method::implicit_steps
+                     ? NeighbourList(ranges, skin_of_implicit_steps, skin_of_candidates)
+                     : NeighbourList(ranges, skin_of_explicit_steps);
   system_.springs = SpringField(spring_kinds(required_terms(physics)), 0);
   if (scene.method == Method::implicit_steps) {
     integrator_ =

@@ -7,13 +7,8 @@
 
 namespace peclet::engine {
 
-ListBuilder::ListBuilder(NeighbourList& list, const ParticleState& particles, const PeriodicCell& box,
-                         int threads)
-    : list_(list),
-      particles_(particles),
-      box_(box),
-      threads_(threads),
-      places_(lattice_places(list.reference_, box)) {
+void ListBuilder::set_grids(const VectorField& position) {
+  places_ = lattice_places(position, box_);
   const RangeTable& ranges = list_.ranges_;
   std::vector<std::vector<std::uint32_t>> members(ranges.classes());
   for (std::uint32_t i = 0; i < particles_.count(); ++i) {
@@ -26,12 +21,14 @@ ListBuilder::ListBuilder(NeighbourList& list, const ParticleState& particles, co
     }
     grids_.emplace_back();
     if (!members[c].empty()) {
-      grids_.back().emplace(places_, members[c], box_, list_.reach(range));
+      grids_.back().emplace(places_, members[c], box_, list_.reach(range, skin_));
     }
   }
 }
 
-void ListBuilder::run() {
+std::vector<std::vector<FoundPair>> ListBuilder::find(const VectorField& position, double skin) {
+  skin_ = skin;
+  set_grids(position);
   const std::size_t count = particles_.count(), blocks = count_of_particle_blocks(count);
   list_.blocks_.clear();
   for (std::size_t b = 0; b < blocks; ++b) {
@@ -39,7 +36,6 @@ void ListBuilder::run() {
                              static_cast<std::uint32_t>(count * (b + 1) / blocks), 0, 0, 0, 0});
   }
   found_.resize(blocks);
-  runs_.resize(blocks);
   for_each_range(blocks, threads_, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       search(b);
@@ -49,18 +45,45 @@ void ListBuilder::run() {
     throw std::invalid_argument("the box is so small that a particle interacts with its own image");
   }
   deliver_strays();
-  number_images();
+  return std::move(found_);
+}
 
+std::vector<std::vector<FoundPair>> ListBuilder::near_ones(
+    const std::vector<std::vector<FoundPair>>& candidates) const {
+  std::vector<double> squared_reach;  // of each kind
+  const std::size_t classes = list_.ranges_.classes();
+  for (std::size_t kind = 0; kind < classes * classes; ++kind) {
+    const double reach = list_.reach(list_.ranges_.at(kind / classes, kind % classes), list_.skin_);
+    squared_reach.push_back(reach * reach);
+  }
+  std::vector<std::vector<FoundPair>> near(candidates.size());
+  const VectorField& position = list_.listed_.position;
+  for_each_range(candidates.size(), threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      near[b].reserve(candidates[b].size());
+      for (const FoundPair& pair : candidates[b]) {
+        Vector3 way = position[pair.second] - position[pair.first];
+        if (pair.image != LatticeShift{}) way += box_.displacement(pair.image);
+        if (dot(way, way) < squared_reach[pair.kind]) near[b].push_back(pair);
+      }
+    }
+  });
+  return near;
+}
+
+void ListBuilder::arrange(const std::vector<std::vector<FoundPair>>& found) {
+  number_images(found);
   list_.runs_.clear();
+  runs_.resize(found.size());
   std::uint32_t pairs = 0;
-  for (std::size_t b = 0; b < blocks; ++b) {
-    list_.blocks_[b].runs_begin = pairs;  // until arrange() has made the runs
-    pairs += static_cast<std::uint32_t>(found_[b].size());
+  for (std::size_t b = 0; b < found.size(); ++b) {
+    list_.blocks_[b].runs_begin = pairs;  // until the runs are made
+    pairs += static_cast<std::uint32_t>(found[b].size());
   }
   list_.pairs_.resize(pairs);
-  for_each_range(blocks, threads_, [&](std::size_t begin, std::size_t end) {
+  for_each_range(found.size(), threads_, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
-      arrange(b);
+      arrange(b, found[b]);
     }
   });
   collect_incoming();
@@ -81,7 +104,7 @@ void ListBuilder::search_near(std::uint32_t i, std::vector<Found>& found) {
     if (!grids_[other]) {
       continue;
     }
-    const double range = ranges.at(own, other), listed = list_.reach(range);
+    const double range = ranges.at(own, other), listed = list_.reach(range, skin_);
     grids_[other]->visit_near(places_.fractional[i], listed,
                               [&](std::uint32_t j, LatticeShift wrap, const Vector3& separation) {
                                 const double squared = dot(separation, separation);
@@ -140,9 +163,9 @@ void ListBuilder::deliver_strays() {
   }
 }
 
-void ListBuilder::number_images() {
+void ListBuilder::number_images(const std::vector<std::vector<Found>>& all) {
   list_.images_.assign(1, LatticeShift{});
-  for (const std::vector<Found>& found : found_) {
+  for (const std::vector<Found>& found : all) {
     for (const Found& pair : found) {
       if (pair.image != list_.images_.back() &&
           std::find(list_.images_.begin(), list_.images_.end(), pair.image) == list_.images_.end()) {
@@ -158,8 +181,7 @@ std::uint16_t ListBuilder::image_number(LatticeShift image) const {
 }
 
 // A counting sort: pairs of one run keep the order in which they were found.
-void ListBuilder::arrange(std::size_t block) {
-  const std::vector<Found>& found = found_[block];
+void ListBuilder::arrange(std::size_t block, const std::vector<Found>& found) {
   const std::size_t part = 2 * list_.ranges_.classes() * list_.ranges_.classes(), buckets = 3 * part;
   std::vector<std::uint32_t> next(buckets + 1);
   for (const Found& pair : found) {

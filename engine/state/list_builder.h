@@ -15,26 +15,27 @@ namespace peclet::engine {
 
 class ListBuilder {
  public:
-  ListBuilder(NeighbourList& list, const ParticleState& particles, const PeriodicCell& box, int threads);
+  // At the list's moment: blocks, and pairs of the particles, are those of the list.
+  ListBuilder(NeighbourList& list, const ParticleState& particles, const PeriodicCell& box, int threads)
+      : list_(list), particles_(particles), box_(box), threads_(threads) {}
 
-  void run();
+  // The pairs of each block that at these places are closer than their reach with this skin.
+  std::vector<std::vector<FoundPair>> find(const VectorField& position, double skin);
+  // Those of the candidates that are closer than their reach at the list's places.
+  std::vector<std::vector<FoundPair>> near_ones(const std::vector<std::vector<FoundPair>>& candidates) const;
+  void arrange(const std::vector<std::vector<FoundPair>>& found);
 
  private:
-  // A pair before the list is arranged.
-  enum class Away : std::uint8_t { none, second, first };  // the particle that lies in an earlier block
-  struct Found {
-    std::uint32_t first, second, block;
-    LatticeShift image;
-    std::uint16_t kind;
-    Away away;
-  };
+  using Found = FoundPair;
+  using Away = FoundPair::Away;
 
   void search(std::size_t block);
   void search_near(std::uint32_t particle, std::vector<Found>& found);
+  void set_grids(const VectorField& position);
   Found make(std::uint32_t i, std::uint32_t j, LatticeShift image) const;
   void deliver_strays();
-  void number_images();
-  void arrange(std::size_t block);
+  void number_images(const std::vector<std::vector<Found>>& found);
+  void arrange(std::size_t block, const std::vector<Found>& found);
   void collect_incoming();
 
   std::size_t bucket(const Found& pair) const {
@@ -49,6 +50,7 @@ class ListBuilder {
   const ParticleState& particles_;
   const PeriodicCell& box_;
   int threads_;
+  double skin_ = 0;
   LatticePlaces places_;
   std::vector<std::optional<CellGrid>> grids_;  // of each class; none without members
   std::vector<std::vector<Found>> found_;       // of each block

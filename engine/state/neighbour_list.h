@@ -11,11 +11,16 @@
 // rebuilt exactly when this can no longer be guaranteed. The same two particles may be listed under several
 // images (small boxes), never with themselves.
 //
+// A list may keep candidates: the pairs within a wider skin, of an earlier moment. As long as these hold
+// every pair that is to be listed, narrow() lists the near ones of them anew, a small part of the work of a
+// build.
+//
 // Particles next to each other in memory form blocks of equal size. The pairs of a block are consecutive, and
 // among them those of equal kind: a run. A pair of two blocks, a crossing pair, is one of the later block, so
 // that whoever walks through the blocks has been at both particles when it meets the pair. Crossing pairs
 // have runs of their own; they are numbered, and `incoming` says which of them have a particle in an earlier
-// block. The list is a function of the positions at the build alone.
+// block. The list is a function of the positions at the build, and of those at which the candidates were
+// found, alone.
 #pragma once
 
 #include <cstdint>
@@ -27,6 +32,12 @@
 #include "engine/state/range_table.h"
 
 namespace peclet::engine {
+
+// Where particles were, and the displacement gradient of the cell.
+struct ListMoment {
+  VectorField position;
+  Matrix3 displacement_gradient;
+};
 
 // A crossing pair of a later block, and its particle in this one.
 struct IncomingPair {
@@ -45,18 +56,23 @@ constexpr std::size_t most_particles_per_block = 4096;
 class NeighbourList {
  public:
   NeighbourList() = default;
-  NeighbourList(RangeTable ranges, double skin) : ranges_(std::move(ranges)), skin_(skin) {}
+  // Candidates are kept where their skin is wider.
+  NeighbourList(RangeTable ranges, double skin, double skin_of_candidates = 0)
+      : ranges_(std::move(ranges)), skin_(skin), skin_of_candidates_(skin_of_candidates) {}
 
   // Lists the pairs at the positions as they stand; images are relative to them, wrapped or not.
   // Throws std::invalid_argument when a particle interacts with its own image.
   void build(const ParticleState& particles, const PeriodicCell& box, int threads = 1);
 
-  // Rebuilds the list of an earlier moment: the reference positions and the box as they were at the build.
-  void rebuild_from(VectorField reference, const ParticleState& particles, const PeriodicCell& box_then,
-                    int threads = 1);
+  // Whether the candidates still hold every pair that a build would list.
+  bool can_narrow(const ParticleState& particles, const PeriodicCell& box) const;
+  // Lists candidates at the positions as they stand, which must not have been wrapped since the build.
+  void narrow(const ParticleState& particles, const PeriodicCell& box, int threads = 1);
 
-  // The distance below which pairs of this range are listed.
-  double reach(double range) const;
+  // Rebuilds the list of an earlier moment; `candidates`: the moment of the build. The box may be any of that
+  // basis.
+  void rebuild_from(ListMoment candidates, ListMoment listed, const ParticleState& particles,
+                    PeriodicCell box, int threads = 1);
 
   // Whether the list still holds every interacting pair.
   bool holds(const ParticleState& particles, const PeriodicCell& box) const;
@@ -75,28 +91,31 @@ class NeighbourList {
   std::size_t crossings() const { return incoming_.size(); }
 
   const RangeTable& ranges() const { return ranges_; }
-  const VectorField& reference() const { return reference_; }
-  const Matrix3& displacement_gradient_at_build() const { return gradient_at_build_; }
+  const ListMoment& listed() const { return listed_; }
+  const ListMoment& moment_of_candidates() const { return keeps_candidates() ? found_ : listed_; }
   std::uint64_t builds() const { return builds_; }
   void set_builds(std::uint64_t builds) { builds_ = builds; }
 
  private:
   friend class ListBuilder;
 
-  // Displacement gradient of the cell since the build: D' - D seen from the cell as it was then.
-  Matrix3 since_build(const PeriodicCell& box) const {
-    return (box.displacement_gradient() - gradient_at_build_) * inverse(identity() + gradient_at_build_);
-  }
+  bool keeps_candidates() const { return skin_of_candidates_ > skin_; }
+  // The distance below which pairs of this range are listed.
+  double reach(double range, double skin) const;
+  void list_candidates(const ParticleState& particles, const PeriodicCell& box, int threads);
+  // Largest displacement since then at which every pair closer than `inner` is closer than `reach` was.
+  double allowed_displacement(const ListMoment& then, double skin, double inner_skin,
+                              const PeriodicCell& box) const;
 
   RangeTable ranges_;
-  double skin_ = 0;
+  double skin_ = 0, skin_of_candidates_ = 0;
+  std::vector<std::vector<FoundPair>> candidates_;  // of each block
   std::vector<Pair> pairs_;
   std::vector<LatticeShift> images_;
   std::vector<PairRun> runs_;
   std::vector<ParticleBlock> blocks_;
   std::vector<IncomingPair> incoming_;
-  VectorField reference_;
-  Matrix3 gradient_at_build_;  // of the displacement of the cell
+  ListMoment found_, listed_;  // when candidates were found, and pairs listed
   std::uint64_t builds_ = 0;
 };
 

@@ -7,6 +7,11 @@ namespace peclet::engine {
 void rebuild_neighbours(System& system, int threads) {
   ParticleState& particles = system.particles;
   std::vector<HeldContact> held = held_contacts(system.list, particles, system.springs);
+  if (system.list.can_narrow(particles, system.box)) {
+    system.list.narrow(particles, system.box, threads);
+    system.springs = placed_contacts(system.list, particles, held, system.springs.kinds());
+    return;
+  }
   if (const BasisChange change = system.box.due_change(); change != BasisChange{}) {
     system.box.change_basis(change);
     for (LatticeShift& image : particles.image) {
@@ -34,8 +39,10 @@ void save(const System& system, ArchiveWriter& archive) {
     archive.put(*field);
   }
   archive.put(particles.image);
-  archive.put(system.list.reference());
-  archive.put(system.list.displacement_gradient_at_build());
+  for (const ListMoment* moment : {&system.list.moment_of_candidates(), &system.list.listed()}) {
+    archive.put(moment->position);
+    archive.put(moment->displacement_gradient);
+  }
   archive.put(system.list.builds());
   for (std::size_t c = 0; c < system.springs.components(); ++c) {
     archive.put(system.springs.values(c));
@@ -55,12 +62,14 @@ void load(System& system, ArchiveReader& archive) {
     *field = archive.get_field(count);
   }
   particles.image = archive.get_vector<LatticeShift>(count);
-  VectorField reference = archive.get_field(count);
-  const auto gradient_at_build = archive.get<Matrix3>();
+  const auto moment = [&] {
+    VectorField position = archive.get_field(count);
+    return ListMoment{std::move(position), archive.get<Matrix3>()};
+  };
+  ListMoment candidates = moment(), listed = moment();
   const auto builds = archive.get<std::uint64_t>();
   // A change of basis always comes with a build, so the basis is still that of the build.
-  system.box.deform(gradient_at_build);
-  system.list.rebuild_from(std::move(reference), particles, system.box);
+  system.list.rebuild_from(std::move(candidates), std::move(listed), particles, system.box);
   system.list.set_builds(builds);
   system.box.deform(displacement_gradient);
   system.springs = SpringField(system.springs.kinds(), system.list.pairs().size());

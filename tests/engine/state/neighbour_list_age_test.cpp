@@ -120,16 +120,56 @@ TEST(NeighbourList, ExtensionAloneUsesUpTheSkin) {
   }
 }
 
-TEST(NeighbourList, IsTheSameAgainFromItsReference) {
+// Lists of candidates are those that a search through all particles makes, as long as the candidates hold,
+// and these hold until a pair could come within reach that is none of them.
+TEST_P(NeighbourListOfSizes, ListsCandidatesAsItWouldListAll) {
+  constexpr double skin = 0.05;
+  Draws draws(16);
+  PeriodicCell box({12, 11, 10}, simple_shear(1), -5);
+  ParticleState particles = scattered(150, GetParam(), box, draws);
+  NeighbourList list(ranges_of(particles.radius), skin, 0.4);
+  EXPECT_FALSE(list.can_narrow(particles, box));
+  list.build(particles, box);
+  int narrowed = 0;
+  for (int step = 0; step < 400; ++step) {
+    move(particles, box, 0.0025, 0.008, draws);
+    if (!list.can_narrow(particles, box)) {
+      list.build(particles, box);
+      continue;
+    }
+    list.narrow(particles, box);
+    ++narrowed;
+    const std::vector<SeenPair> expected = near_with_skin(particles, box, skin), found = listed(list);
+    ASSERT_EQ(found.size(), expected.size()) << step;
+    for (std::size_t p = 0; p < found.size(); ++p) {
+      ASSERT_TRUE(found[p].first == expected[p].first && found[p].second == expected[p].second &&
+                  found[p].image == expected[p].image)
+          << step;
+    }
+    EXPECT_EQ(list.largest_displacement(particles, box), 0);
+  }
+  EXPECT_EQ(list.builds(), 401u);
+  EXPECT_GT(narrowed, 300);
+  EXPECT_LT(narrowed, 400);
+}
+
+class NeighbourListWithCandidates : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(NoneAndSome, NeighbourListWithCandidates, testing::Values(0, 0.4));
+
+TEST_P(NeighbourListWithCandidates, IsTheSameAgainFromItsMoments) {
   Draws draws(15);
   PeriodicCell box({9, 8, 10}, simple_shear(1), 3);
   ParticleState particles = scattered(80, {1, 1.4}, box, draws);
-  NeighbourList list(ranges_of(particles.radius), 0.15);
+  NeighbourList list(ranges_of(particles.radius), 0.15, GetParam());
   list.build(particles, box);
-  const PeriodicCell box_then = box;
+  if (GetParam() > 0) {
+    move(particles, box, 0.03, 0.06, draws);
+    ASSERT_TRUE(list.can_narrow(particles, box));
+    list.narrow(particles, box);
+  }
   move(particles, box, 0.01, 0.02, draws);
-  NeighbourList again(ranges_of(particles.radius), 0.15);
-  again.rebuild_from(list.reference(), particles, box_then);
+  NeighbourList again(ranges_of(particles.radius), 0.15, GetParam());
+  again.rebuild_from(list.moment_of_candidates(), list.listed(), particles, box);
   ASSERT_EQ(again.pairs().size(), list.pairs().size());
   for (std::size_t p = 0; p < list.pairs().size(); ++p) {
     EXPECT_EQ(again.pairs()[p].first, list.pairs()[p].first);
@@ -138,9 +178,10 @@ TEST(NeighbourList, IsTheSameAgainFromItsReference) {
     EXPECT_EQ(again.pairs()[p].kind, list.pairs()[p].kind);
   }
   EXPECT_EQ(again.images(), list.images());
-  EXPECT_EQ(again.displacement_gradient_at_build(), list.displacement_gradient_at_build());
+  EXPECT_EQ(again.listed().displacement_gradient, list.listed().displacement_gradient);
   EXPECT_EQ(again.allowed_displacement(box), list.allowed_displacement(box));
   EXPECT_EQ(again.largest_displacement(particles, box), list.largest_displacement(particles, box));
+  EXPECT_EQ(again.can_narrow(particles, box), list.can_narrow(particles, box));
 }
 
 }  // namespace
