@@ -60,6 +60,11 @@ void Midpoint::keep_change(const System& system) {
   array(spin_change_)(Eigen::all, particles.id) = array(particles.angular_velocity) - array(origin_.spin);
 }
 
+void Midpoint::forget_change() {
+  array(velocity_change_).setZero();
+  array(spin_change_).setZero();
+}
+
 void Midpoint::save(ArchiveWriter& archive) const {
   archive.put(velocity_change_);
   archive.put(spin_change_);

@@ -24,6 +24,7 @@ class Midpoint final : public Implicit {
  private:
   std::optional<StepReport> find_velocities(System& system) override;
   void keep_change(const System& system) override;
+  void forget_change() override;
 
   VectorField velocity_change_, spin_change_;  // of the last step, for each id
 };
