@@ -139,11 +139,15 @@ StepReport Implicit::advance_halves(System& system) {
   half_->displacement_bound_ = displacement_bound_;
   const Clock whole = system.clock;
   system.clock = whole.with_parts(2);
+  const std::uint64_t part = system.part;
+  system.part = 2 * part;
   StepReport report = half_->advance_part(system);
   if (!report.broke_off && report.sums.finite) {
+    ++system.part;
     report = joined(report, half_->advance_part(system));
   }
   ++report.division;
+  system.part = part;
   system.clock = {whole.origin, whole.timestep, whole.steps + 1};
   displacement_bound_ = half_->displacement_bound_;
   forget_change();

@@ -5,7 +5,7 @@
 //
 // A step in which spheres would leap, or whose velocities are not found, is made again as two of half the
 // size, and these likewise, once divide_steps() has allowed it. What divides a step lies in it alone: a run
-// that is resumed between steps divides the same ones.
+// that is resumed between steps divides the same ones. Halves share the noise of their step (normal_block.h).
 #pragma once
 
 #include <memory>

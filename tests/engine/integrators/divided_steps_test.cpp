@@ -157,6 +157,31 @@ TEST(DividedSteps, AreStepsOfHalfTheSize) {
   EXPECT_GT(first.sums.contacts, 0);
 }
 
+// A sphere without inertia moves by the integral of the noise, sqrt(2 kT dt / zeta) z, however its steps are
+// divided; a part of 1/8 moves it by about sqrt(1/8) of that.
+TEST(DividedSteps, FollowThePathOfTheNoise) {
+  Physics physics;
+  physics.viscosity = 0.1;
+  physics.thermal_energy = 0.01;
+  const auto end = [&](double longest_way, StepReport& report) {
+    System system;
+    system.particles = make_particles({1}, 1e-9);
+    system.box = PeriodicCell({20, 20, 20}, simple_shear(0));
+    system.list = NeighbourList(range_table(make_pair_kinds(physics, {1}), 1), 0.1);
+    const std::unique_ptr<Implicit> steps = implicit_steps(physics, system.particles, 0.5, solved_to, 1, 1);
+    steps->start(system);
+    if (longest_way > 0) steps->divide_steps(longest_way);
+    for (int step = 0; step < 3; ++step) report = steps->advance(system);
+    EXPECT_EQ(system.part, 1U);
+    return system.particles.position[0];
+  };
+  StepReport whole, divided;
+  const Vector3 expected = end(0, whole), found = end(0.3 * whole.largest_displacement, divided);
+  EXPECT_GT(norm(expected), 0.01);
+  EXPECT_GT(divided.division, 2);
+  EXPECT_NEAR(norm(found - expected), 0, 1e-4 * norm(expected));
+}
+
 // What leaps in the smallest part of a step has no smaller one to be made in: the cause is the displacement,
 // and the text says in which part.
 TEST(DividedSteps, BreakOffWhereTheSmallestPartLeaps) {

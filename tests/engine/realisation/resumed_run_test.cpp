@@ -31,8 +31,12 @@ const Way ways[] = {
     {"implicit_with_divided_steps",
      {{"integrator", {{"method", "implicit"}}},
       {"particles", {{"density", 0.01}}},
+      {"guard", {{"largest_displacement", 0.01}}}}},
+    {"implicit_without_noise_with_divided_steps",
+     {{"integrator", {{"method", "implicit"}}},
+      {"particles", {{"density", 0.01}}},
       {"fluid", {{"thermal_energy", nullptr}}},
-      {"guard", {{"largest_displacement", 0.03}}}}},
+      {"guard", {{"largest_displacement", 0.04}}}}},
     {"with_every_observable_of_a_flow",
      {{"observables", {"mean_squared_displacement", "pair_distribution", "contact_network", "profiles"}},
       {"pair_distribution", {{"range", 3}}}}},
@@ -86,8 +90,7 @@ TEST_P(ResumedRun, PassesThroughContactsRebuildsAndFlips) {
   EXPECT_GT(run->system().list.builds(), 20u);
   EXPECT_EQ(run->system().box.basis(), flips(2));
   const bool divides = std::string(GetParam().name).ends_with("divided_steps");
-  EXPECT_EQ(run->step_errors().divided_steps > 100, divides);
-  EXPECT_EQ(run->step_errors().deepest_division > 1, divides);
+  EXPECT_EQ(run->step_errors().divided_steps > 50, divides);
 }
 
 TEST_P(ResumedRun, EndsAsTheUncutOneWhereverItWasCut) {
