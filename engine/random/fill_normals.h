@@ -106,9 +106,9 @@ inline void fill_whole(const NoiseKey& key, const std::uint64_t* identity, const
   }
 }
 
-inline void fill_block(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
-                       NormalBlock& block) {
-  fill_whole(key, identity, image, block);
+// Turns the normals of a whole step into those of a part. Seldom needed: apart.
+[[gnu::noinline]] inline void refine(const NoiseKey& key, const std::uint64_t* identity,
+                                     const std::uint64_t* image, NormalBlock& block) {
   int divisions = 0;
   while (key.part >> (divisions + 1) != 0) {
     ++divisions;
@@ -126,6 +126,14 @@ inline void fill_block(const NoiseKey& key, const std::uint64_t* identity, const
         block.value[c][k] = 0.70710678F * (block.value[c][k] + sign * other.value[c][k]);
       }
     }
+  }
+}
+
+inline void fill_block(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
+                       NormalBlock& block) {
+  fill_whole(key, identity, image, block);
+  if (key.part != 1) [[unlikely]] {
+    refine(key, identity, image, block);
   }
 }
 
