@@ -34,6 +34,26 @@ double largest_square(const Matrix3& gradient, const VectorField& position, cons
   return std::isfinite(sum) ? largest : std::numeric_limits<double>::quiet_NaN();
 }
 
+// A residual that leaves so much of the motion open is none that a step may have.
+constexpr double unsolved = 0.1;
+// Where forces jump, as at the edge of a repulsion that is cut off, smaller steps have no solution either.
+constexpr int divisions_of_unsolved = 3;
+
+// Of two halves: means over the time.
+StepReport joined(const StepReport& first, const StepReport& second) {
+  StepReport both = second;
+  for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
+    both.sums.stress[t] = 0.5 * (first.sums.stress[t] + second.sums.stress[t]);
+  }
+  both.sums.contacts = 0.5 * (first.sums.contacts + second.sums.contacts);
+  both.sums.largest_overlap = std::max(first.sums.largest_overlap, second.sums.largest_overlap);
+  both.largest_displacement = std::max(first.largest_displacement, second.largest_displacement);
+  both.solver_iterations = first.solver_iterations + second.solver_iterations;
+  both.solver_residual = 0.5 * (first.solver_residual + second.solver_residual);
+  both.division = std::max(first.division, second.division);
+  return both;
+}
+
 }  // namespace
 
 Implicit::Implicit(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,
@@ -42,7 +62,14 @@ Implicit::Implicit(const Physics& physics, const ParticleState& particles, doubl
       field_(without_noise(physics), particles, timestep, seed, threads, set),
       solver_(physics, particles, timestep, tolerance, set),
       loads_(particles.count(), threads),
-      physics_(physics) {}
+      physics_(physics),
+      seed_(seed),
+      set_(set) {}
+
+void Implicit::divide_steps(double longest_way) {
+  longest_way_ = longest_way;
+  divisions_left_ = deepest_division;
+}
 
 // A comparison with half steps costs as much as three steps or a little more.
 Integrator::Intervals Implicit::intervals() const {
@@ -60,30 +87,79 @@ void Implicit::start(System& system) {
 }
 
 StepReport Implicit::advance_open(System& system) {
+  const StepReport report = advance_part(system);
+  ++system.step;
+  return report;
+}
+
+// All of a step but the step counter, which belongs to whole ones.
+StepReport Implicit::advance_part(System& system) {
   remember(system);
   std::optional<StepReport> found = find_velocities(system);
-  if (!found) {
-    restart(system);
+  if (!found && displacement_bound_ > 0) {
+    // Once more from the origin, with a new list.
+    return_to_origin(system);
+    rebuild_neighbours(system, field_.threads());
+    displacement_bound_ = 0;
+    remember(system);
     found = find_velocities(system);
   }
   StepReport report = found.value_or(StepReport{});
+  report.broke_off = !found;
   report.largest_displacement = displacement(system);
+  if (divisions_left_ > 0 && is_to_be_divided(report)) {
+    return advance_halves(system);
+  }
   if (!found) {
     // Not even a new list holds. Whoever asked for the step sees why.
     report.largest_displacement = std::max(report.largest_displacement, system.list.ranges().largest());
-    ++system.step;
     ++system.clock.steps;
     return report;
   }
   keep_change(system);
   move(system, timestep_);
-  ++system.step;
   ++system.clock.steps;
-  displacement_bound_ +=
-      report.largest_displacement + timestep_ * norm(system.box.velocity_gradient()) * displacement_bound_;
+  follow_list(system, report.largest_displacement);
+  return report;
+}
+
+bool Implicit::is_to_be_divided(const StepReport& report) const {
+  return report.broke_off || !report.sums.finite || !(report.largest_displacement <= longest_way_) ||
+         (report.solver_residual > unsolved && divisions_left_ > deepest_division - divisions_of_unsolved);
+}
+
+// From the origin.
+StepReport Implicit::advance_halves(System& system) {
+  return_to_origin(system);
+  if (!half_) {
+    half_ = with_timestep(0.5 * timestep_, system.particles);
+    half_->divisions_left_ = divisions_left_ - 1;
+  }
+  half_->forget_change();
+  half_->displacement_bound_ = displacement_bound_;
+  const Clock whole = system.clock;
+  system.clock = whole.with_parts(2);
+  const std::uint64_t part = system.part;
+  system.part = 2 * part;
+  StepReport report = half_->advance_part(system);
+  if (!report.broke_off && report.sums.finite) {
+    ++system.part;
+    report = joined(report, half_->advance_part(system));
+  }
+  ++report.division;
+  system.part = part;
+  system.clock = {whole.origin, whole.timestep, whole.steps + 1};
+  displacement_bound_ = half_->displacement_bound_;
+  forget_change();
+  return report;
+}
+
+// The particles have moved that far.
+void Implicit::follow_list(System& system, double way) {
+  displacement_bound_ += way + timestep_ * norm(system.box.velocity_gradient()) * displacement_bound_;
   const double allowed = system.list.allowed_displacement(system.box);
   // With room for half of the next step, should it be as large as this one.
-  const double next = 0.5 * report.largest_displacement;
+  const double next = 0.5 * way;
   if (displacement_bound_ + next >= allowed) {
     displacement_bound_ = system.list.largest_displacement(system.particles, system.box);
     if (displacement_bound_ + next >= allowed) {
@@ -91,7 +167,6 @@ StepReport Implicit::advance_open(System& system) {
       displacement_bound_ = 0;
     }
   }
-  return report;
 }
 
 void Implicit::remember(const System& system) {
@@ -101,15 +176,11 @@ void Implicit::remember(const System& system) {
   origin_.springs = system.springs;
 }
 
-// Once more from the origin, with a new list.
-void Implicit::restart(System& system) {
+void Implicit::return_to_origin(System& system) {
   system.particles.velocity = origin_.velocity;
   system.particles.angular_velocity = origin_.spin;
   restore_springs(system);
   move(system, 0);
-  rebuild_neighbours(system, field_.threads());
-  displacement_bound_ = 0;
-  remember(system);
 }
 
 void Implicit::restore_springs(System& system) const {
@@ -147,8 +218,7 @@ Integrator::HalfSteps Implicit::compare_half_steps(const System& system, int ste
   // `every` steps of timestep / every for one that counts.
   const auto stress = [&](int every) {
     System copy = system;
-    const std::unique_ptr<Implicit> integrator =
-        implicit_steps(physics_, copy.particles, timestep_ / every, solver_.tolerance(), 0, field_.threads());
+    const std::unique_ptr<Implicit> integrator = with_timestep(timestep_ / every, copy.particles);
     copy.clock = system.clock.with_parts(every);
     integrator->displacement_bound_ = displacement_bound_;
     double sum = 0;
@@ -161,6 +231,15 @@ Integrator::HalfSteps Implicit::compare_half_steps(const System& system, int ste
     return sum;
   };
   return {stress(1), stress(2)};
+}
+
+// Another one for steps of this size, which divides them alike.
+std::unique_ptr<Implicit> Implicit::with_timestep(double timestep, const ParticleState& particles) const {
+  std::unique_ptr<Implicit> other =
+      implicit_steps(physics_, particles, timestep, solver_.tolerance(), seed_, field_.threads(), set_);
+  other->longest_way_ = longest_way_;
+  other->divisions_left_ = divisions_left_;
+  return other;
 }
 
 void Implicit::save(ArchiveWriter& archive) const { archive.put(displacement_bound_); }

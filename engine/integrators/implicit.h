@@ -2,6 +2,10 @@
 //   x_n+1 = x_n + dt V.
 // What such methods share: the way from the origin of a step and back to it, and the list of neighbours,
 // which must hold half a step ahead. How V is found is in midpoint.h and, with noise, in noisy_midpoint.h.
+//
+// A step in which spheres would leap, or whose velocities are not found, is made again as two of half the
+// size, and these likewise, once divide_steps() has allowed it. What divides a step lies in it alone: a run
+// that is resumed between steps divides the same ones. Halves share the noise of their step (normal_block.h).
 #pragma once
 
 #include <memory>
@@ -24,6 +28,11 @@ class Implicit : public Integrator {
   void save(ArchiveWriter& archive) const override;
   void load(const System& system, ArchiveReader& archive) override;
 
+  // From now on steps are divided, into parts of 2^-deepest_division of them at the least, in which a
+  // particle would move farther than this relative to the flow. Before, none is.
+  void divide_steps(double longest_way);
+  static constexpr int deepest_division = 10;
+
  protected:
   Implicit(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,
            std::uint64_t seed, int threads, InstructionSet set);
@@ -32,6 +41,8 @@ class Implicit : public Integrator {
   virtual std::optional<StepReport> find_velocities(System& system) = 0;
   // Before the particles move with the velocities that have been found.
   virtual void keep_change(const System& /*system*/) {}
+  // What was kept says nothing of the next step.
+  virtual void forget_change() {}
 
   void restore_springs(System& system) const;
   // To where the present velocities lead. Returns whether the list holds there.
@@ -44,13 +55,23 @@ class Implicit : public Integrator {
   Loads loads_;
 
  private:
+  StepReport advance_part(System& system);
+  StepReport advance_halves(System& system);
+  bool is_to_be_divided(const StepReport& report) const;
+  void follow_list(System& system, double way);
+  std::unique_ptr<Implicit> with_timestep(double timestep, const ParticleState& particles) const;
   void remember(const System& system);
-  void restart(System& system);
+  void return_to_origin(System& system);
   void move(System& system, double time);
   double displacement(const System& system) const;
 
   Physics physics_;
+  std::uint64_t seed_;
+  InstructionSet set_;
   double displacement_bound_ = 0;  // of all particles since the list was built
+  double longest_way_ = 0;
+  int divisions_left_ = 0;
+  std::unique_ptr<Implicit> half_;  // makes the halves of a step; nothing in it outlives a step
 };
 
 // Implicit steps, with noise where there is a temperature. `tolerance`: residual of the equations, relative

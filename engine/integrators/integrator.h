@@ -15,6 +15,8 @@ struct StepReport {
       0;  // of a particle relative to the streaming flow, in this step; NaN if one is not finite
   int solver_iterations = 0;   // of a method that solves for the velocities
   double solver_residual = 0;  // what its equations are left with, relative to the motion
+  int division = 0;        // of a method that divides steps: the smallest part was 2^-division of the step
+  bool broke_off = false;  // the step was not made: not even its smallest part has velocities
 };
 
 // Owns the forces between steps; the system belongs to the caller. After start() or load(), each advance()

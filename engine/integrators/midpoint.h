@@ -1,10 +1,10 @@
 // The implicit midpoint rule, without noise:
 //   x' = x_n + dt/2 V,   M (V - V_n) = dt F(x', V),   x_n+1 = x_n + dt V.
-// Springs of friction are those that V has stretched for the whole step and Coulomb's law has cut. Newton's
-// iterations start from the velocities that the last change would lead to. They go on until the residual,
-// relative to the motion relative to the streaming flow and in the energy norm of the system, is below the
-// tolerance, or for three iterations: where pairs enter or leave the range of lubrication, whose resistance
-// jumps there, the equations may have no solution at all.
+// Springs of friction push after 0.6 of the way that V stretches them in the step, and Coulomb's law cuts
+// them there and at its end. Newton's iterations start from the velocities that the last change would lead
+// to. They go on until the residual, relative to the motion relative to the streaming flow and in the energy
+// norm of the system, is below the tolerance, or for three iterations: where pairs enter or leave the range
+// of lubrication, whose resistance jumps there, the equations may have no solution at all.
 //
 // The stress is that of V at x_n + dt/2 V.
 #pragma once
@@ -24,6 +24,7 @@ class Midpoint final : public Implicit {
  private:
   std::optional<StepReport> find_velocities(System& system) override;
   void keep_change(const System& system) override;
+  void forget_change() override;
 
   VectorField velocity_change_, spin_change_;  // of the last step, for each id
 };

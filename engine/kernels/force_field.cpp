@@ -43,7 +43,7 @@ PairPassInput ForceField::pair_input(const System& system) const {
       .box = system.box,
       .kinds = kinds_,
       .parameters = parameters_,
-      .noise = pair_noise_.key(system.step),
+      .noise = pair_noise_.key(system.step, system.part),
       .threads = threads_,
   };
 }
@@ -106,7 +106,7 @@ void ForceField::add_varying_drag(const System& system, std::size_t begin, std::
 
 void ForceField::add_drag_noise(const System& system, std::size_t begin, std::size_t end, VectorField& force,
                                 VectorField& torque) const {
-  const NoiseKey key = one_body_noise_.key(system.step);
+  const NoiseKey key = one_body_noise_.key(system.step, system.part);
   std::uint64_t identity[identities_per_block] = {};
   NormalBlock normals;
   for (std::size_t first = begin; first < end; first += identities_per_block) {

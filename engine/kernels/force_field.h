@@ -54,6 +54,9 @@ class ForceField {
     torque.add(i, amplitude.rotational * normals.second);
   }
 
+  // From now on springs push after that share of their advance by a step; before, after all of it.
+  void feel_springs_after(double share) { parameters_.felt_share = share; }
+
   const Terms& terms() const { return terms_; }
   const std::vector<PairKind>& kinds() const { return kinds_; }
   const Physics& physics() const { return physics_; }

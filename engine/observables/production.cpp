@@ -11,7 +11,7 @@ void Production::add_step(std::uint64_t index, const PairSums& sums) {
   for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
     block.stress[t] += sums.stress[t];
   }
-  block.contacts += static_cast<double>(sums.contacts);
+  block.contacts += sums.contacts;
 }
 
 void Production::add_sample(std::uint64_t index, const SymmetricTensor& structural_brownian,

@@ -1,5 +1,7 @@
 #include "engine/output/result.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -50,6 +52,9 @@ Json or_null(const std::optional<double>& number) { return number ? Json(*number
 // with friction at a step of 0.09 and 0.028 at one of 0.2, where half steps change the stress by 3 %.
 constexpr double largest_mean_residual = 0.015;
 
+// Where more of the steps are divided, the step is no longer the one that was chosen.
+constexpr double largest_share_divided = 0.1;
+
 // How well implicit steps have solved their equations, in the production window.
 Json solver_json(const Scene& scene, const Simulation& simulation) {
   const StepErrors& errors = simulation.step_errors();
@@ -59,7 +64,9 @@ Json solver_json(const Scene& scene, const Simulation& simulation) {
   }
   return {{"iterations_per_step", static_cast<double>(errors.solver_iterations) / steps},
           {"mean_residual", errors.sum_of_solver_residuals / steps},
-          {"largest_residual", errors.largest_solver_residual}};
+          {"largest_residual", errors.largest_solver_residual},
+          {"divided_steps", errors.divided_steps},
+          {"deepest_division", errors.deepest_division}};
 }
 
 Json ending_json(const Ending& ending, const std::string& saved_state) {
@@ -167,6 +174,17 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
     warnings.push_back({"solver", "the equations of the steps are left with a residual of " +
                                       solver["mean_residual"].dump() + " of the motion, more than " +
                                       Json(largest_mean_residual).dump() + ": choose a smaller step"});
+  }
+  if (!solver.is_null()) {
+    const auto steps = static_cast<double>(sum_of(simulation.production().blocks()).steps);
+    const double share = solver["divided_steps"].get<double>() / steps;
+    if (share > largest_share_divided) {
+      warnings.push_back(
+          {"timestep",
+           fmt::format("{:.2g} of the steps were divided, down to 1/{}, because "
+                       "spheres would have leapt, more than {}: choose a smaller step",
+                       share, 1 << solver["deepest_division"].get<int>(), largest_share_divided)});
+    }
   }
   result["warnings"] = warnings_json(warnings);
   result["gate"] = {{"largest_stability_share", simulation.step_errors().largest_stability_share},

@@ -93,7 +93,7 @@ inline void split_words(const std::uint64_t (&words)[width], std::uint32_t (&uni
   }
 }
 
-inline void fill_block(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
+inline void fill_whole(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
                        NormalBlock& block) {
   static constexpr std::uint64_t no_image[width] = {};
   std::uint64_t low[width], high[width];
@@ -103,6 +103,37 @@ inline void fill_block(const NoiseKey& key, const std::uint64_t* identity, const
   split_words(high, angle_bits);
   for (std::size_t j = 0; j < 3; ++j) {
     box_muller(radius_bits[j], angle_bits[j], block.value[2 * j], block.value[2 * j + 1]);
+  }
+}
+
+// Turns the normals of a whole step into those of a part. Seldom needed: apart.
+[[gnu::noinline]] inline void refine(const NoiseKey& key, const std::uint64_t* identity,
+                                     const std::uint64_t* image, NormalBlock& block) {
+  int divisions = 0;
+  while (key.part >> (divisions + 1) != 0) {
+    ++divisions;
+  }
+  while (divisions > 0) {
+    const std::uint64_t whole = key.part >> divisions;
+    --divisions;
+    const float sign = (key.part >> divisions & 1U) == 0 ? 1.0F : -1.0F;
+    // No run has 2^48 steps.
+    const NoiseKey of_whole = {key.seed, key.purpose, key.step ^ whole << 48};
+    NormalBlock other;
+    fill_whole(of_whole, identity, image, other);
+    for (int c = 0; c < 6; ++c) {
+      for (int k = 0; k < width; ++k) {
+        block.value[c][k] = 0.70710678F * (block.value[c][k] + sign * other.value[c][k]);
+      }
+    }
+  }
+}
+
+inline void fill_block(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
+                       NormalBlock& block) {
+  fill_whole(key, identity, image, block);
+  if (key.part != 1) [[unlikely]] {
+    refine(key, identity, image, block);
   }
 }
 

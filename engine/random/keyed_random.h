@@ -32,7 +32,7 @@ class KeyedRandom {
   KeyedRandom(std::uint64_t seed, Purpose purpose)
       : seed_(seed), purpose_(static_cast<std::uint64_t>(purpose)) {}
 
-  NoiseKey key(std::uint64_t step) const { return {seed_, purpose_, step}; }
+  NoiseKey key(std::uint64_t step, std::uint64_t part = 1) const { return {seed_, purpose_, step, part}; }
 
   // Of a particle at a step. 21-bit uniforms: largest value 5.5, variance exact to 1e-6
   // (tests/engine/random/keyed_random_test.cpp).

@@ -4,6 +4,10 @@
 // (Salmon et al. 2011) gives 128 bits, three Box-Muller transforms of 21-bit uniforms in single precision
 // turn them into normals. Every operation is exact or rounded on its own (products are never fused with
 // sums), so the bits are the same on every instruction set.
+//
+// The noise of a divided step is refined: of a part with the normal z, and y another one that is keyed by
+// that part, the halves have (z + y)/sqrt 2 and (z - y)/sqrt 2. Both are standard normal and independent, and
+// sqrt(dt/2) times their sum is sqrt(dt) z: the same Wiener path, however a step is divided (Levy 1948).
 #pragma once
 
 #include <cstdint>
@@ -14,6 +18,7 @@ constexpr int identities_per_block = 8;
 
 struct NoiseKey {
   std::uint64_t seed = 0, purpose = 0, step = 0;
+  std::uint64_t part = 1;  // of the step: 1 is all of it, 2 p and 2 p + 1 are the halves of p
 };
 
 // What keys the noise of a pair besides its step. `first` < `second` fixes the sign of the pair's forces.

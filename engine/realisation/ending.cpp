@@ -35,9 +35,11 @@ std::optional<Ending> ending_of(const StepReport& report, const System& system, 
   const double largest =
       std::min(guard.largest_displacement, 0.5 * system.list.ranges().largest() / smallest_radius);
   if (displacement > largest) {
+    const std::string part =
+        report.division == 0 ? "one step" : fmt::format("1/{} of a step", 1 << report.division);
     return Ending{
         Ending::Cause::displacement, system.step,
-        fmt::format("a particle moved {:.3g} radii in one step, more than {:.3g}", displacement, largest)};
+        fmt::format("a particle moved {:.3g} radii in {}, more than {:.3g}", displacement, part, largest)};
   }
   if (report.sums.largest_overlap > guard.largest_overlap) {
     return Ending{Ending::Cause::overlap, system.step,

@@ -42,6 +42,8 @@ void StepGate::observe(std::uint64_t index, const StepReport& report, Integrator
   errors_.solver_iterations += static_cast<std::uint64_t>(report.solver_iterations);
   errors_.sum_of_solver_residuals += report.solver_residual;
   errors_.largest_solver_residual = std::max(errors_.largest_solver_residual, report.solver_residual);
+  errors_.divided_steps += report.division > 0 ? 1 : 0;
+  errors_.deepest_division = std::max(errors_.deepest_division, static_cast<std::uint64_t>(report.division));
   const Integrator::Intervals intervals = integrator.intervals();
   // A short window is sampled more often so that each block has its samples.
   if (index % std::min(intervals.energy, production_ / count_of_blocks) == 0) {

@@ -18,6 +18,8 @@ struct StepErrors {
   // Of all steps of the production window.
   std::uint64_t solver_iterations = 0;
   double sum_of_solver_residuals = 0, largest_solver_residual = 0;
+  std::uint64_t divided_steps = 0;
+  std::uint64_t deepest_division = 0;  // the smallest part was 2^-deepest_division of its step
 };
 
 class StepGate {

@@ -8,6 +8,7 @@
 
 #include "contract/input_error.h"
 #include "engine/kernels/pairs/pair_kinds.h"
+#include "engine/kernels/pairs/terms.h"
 #include "engine/terms/drag.h"
 #include "engine/terms/rolling.h"
 
@@ -192,7 +193,12 @@ PeriodicCell cell_of(const Scene& scene) {
 double automatic_implicit_timestep(const Scene& scene) {
   const Physics& physics = scene.physics;
   const bool friction = physics.contact && physics.contact->friction > 0;
-  const double strain = friction ? 0.0025 : 0.005, contact_times = friction ? 2 : 5;
+  // Where springs at the middle of the step are not enough, or are not taken there.
+  const bool demanding = friction && (physics.thermal_energy > 0 || physics.contact->friction > 1 ||
+                                      physics.contact->rolling_stiffness > 0);
+  const bool relaxed = !demanding && physics.thermal_energy == 0 && !required_terms(physics).conservative;
+  const double strain = demanding ? 0.0025 : 0.005;
+  const double contact_times = (friction ? 2 : 5) * (relaxed ? 2 : 1);
   constexpr double brownian_times = 0.0017, pushing_times = 20, leaps = 5;
   double step = std::numeric_limits<double>::infinity();
   double smallest = scene.particles.species.front().radius, largest = smallest;

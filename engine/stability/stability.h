@@ -27,12 +27,13 @@ constexpr double packing_factor = 2.8;
 double largest_timestep(const Scene& scene);
 
 // The automatic implicit step, the smallest of these:
-// - 0.005 / (rate (1 + 2 St)), with friction 0.0025; St = rho a^2 rate / eta with the largest radius. Pairs
-//   that the flow presses together pass through the gaps of lubrication in many steps; sliding contacts and
-//   inertia are of first order only.
+// - 0.005 / (rate (1 + 2 St)), half of that with friction above 1, friction and rolling, or friction and
+// noise;
+//   St = rho a^2 rate / eta with the largest radius. Pairs that the flow presses together pass through the
+//   gaps of lubrication in many steps; inertia is of first order only.
 // - 0.0017 eta a^3 / kT, a the smallest radius. Noise moves a pair through these gaps in many steps, too.
-// - 5 X_A / k, with friction 2: the time in which lubrication at the inner gap holds up the stiffest contact
-//   and conservative law.
+// - 10 X_A / k, with friction 4, half of that in the same cases, with noise and with conservative laws: the
+//   time in which lubrication at the inner gap holds up the stiffest contact and conservative law.
 // - 20 drag / k of the conservative laws from the outer gap on, where the drag of single spheres alone
 //   resists them. Larger steps throw the spheres of unbalanced packings apart.
 // - Resistance / -V'' where the conservative laws together attract: the time in which the approach of a pair

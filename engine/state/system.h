@@ -32,6 +32,7 @@ struct System {
   NeighbourList list;
   SpringField springs;     // of each pair of the list
   std::uint64_t step = 0;  // names the noise
+  std::uint64_t part = 1;  // of that step (NoiseKey); 1 between steps
   Clock clock;
 };
 

@@ -57,7 +57,7 @@ void place(Laboratory& laboratory, const Vector3& offset) {
 }
 
 void expect_same_stress(Laboratory& one, Laboratory& other) {
-  std::uint64_t contacts = 0;
+  double contacts = 0;
   for (int step = 0; step < steps; ++step) {
     const PairSums a = one.step().sums, b = other.step().sums;
     ASSERT_EQ(a.contacts, b.contacts) << "step " << step;

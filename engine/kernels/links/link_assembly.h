@@ -87,7 +87,7 @@ class LinkedPairs {
     add_stiffness(sum, terms, parameters.contact, kind_, ahead_,
                   {.resistance = weights.timestep,
                    .normal = weights.timestep * weights.normal_time,
-                   .tangential = weights.timestep * weights.timestep},
+                   .tangential = weights.timestep * weights.timestep * parameters.felt_share},
                   [&]() PECLET_INLINE_LAMBDA { return held_springs(terms); });
     return sum;
   }
@@ -133,7 +133,7 @@ class LinkedPairs {
                              load_lanes(in_.springs[c + 2] + begin_, count_, Real{})};
     };
     const Real overlap = larger(ahead_.overlap(), Real{0.0});
-    const Real elapsed{parameters.spring_timestep};
+    const Real elapsed{parameters.spring_timestep * parameters.felt_share};
     const ContactLeversOf<Real> lever = contact_levers(kind_.radius_first, kind_.radius_second, ahead_);
     HeldSprings<Real> held{};
     held.tangential = held_share(spring(0), shape_.normal, elapsed * slip_velocity(lever, shape_, motion_),

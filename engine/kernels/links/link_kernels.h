@@ -39,9 +39,10 @@ struct alignas(32) LinkGroup {
   Floats squeeze, shear, pump_first, pump_second, twist_first, twist_cross, twist_second;
 };
 
-// The couplings of a pair are timestep (R + normal_time K_n + timestep K_t) with the resistance R, the
-// stiffness K_n along n and the one K_t of tangential and rolling springs. A spring that slides has the
-// secant stiffness that leaves it at Coulomb's limit.
+// The couplings of a pair are timestep (R + normal_time K_n + felt_share timestep K_t) with the resistance R,
+// the stiffness K_n along n and the one K_t of tangential and rolling springs, which push after felt_share of
+// their advance (PairParameters). A spring that slides has the secant stiffness that leaves it at Coulomb's
+// limit.
 struct LinkWeights {
   double timestep, normal_time;
   // The approach changes the squeezing resistance during this time; 0: the resistance stays.

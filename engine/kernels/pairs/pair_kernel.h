@@ -308,7 +308,7 @@ template <class Real, Terms terms, bool mirrored>
     total.stress[t] = {sum_of_lanes(s.xx), sum_of_lanes(s.yy), sum_of_lanes(s.zz),
                        sum_of_lanes(s.xy), sum_of_lanes(s.xz), sum_of_lanes(s.yz)};
   }
-  total.contacts = sums.contacts;
+  total.contacts = static_cast<double>(sums.contacts);
   total.largest_overlap = largest_lane(sums.largest_overlap);
   total.finite = sums.not_finite == 0;
 }

@@ -1,8 +1,6 @@
 // What a pass over pairs adds up.
 #pragma once
 
-#include <cstdint>
-
 #include "engine/state/vector3.h"
 #include "engine/terms/laws.h"
 
@@ -11,7 +9,7 @@ namespace peclet::engine {
 // Sums over the pairs of one evaluation. stress is sum of sym(r F_i): divide by the volume for (1/V) sum r F.
 struct PairSums {
   SymmetricTensor stress[count_of_stress_terms] = {};
-  std::uint64_t contacts = 0;
+  double contacts = 0;
   double largest_overlap = 0;  // over the smaller radius of the pair
   bool finite = true;          // no separation was NaN or infinite
 

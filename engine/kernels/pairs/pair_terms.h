@@ -21,6 +21,7 @@ struct PairParameters {
   // Forces that depend on the distance are those at the distance that the present motion leads to in this
   // time; their direction stays.
   double approach_time = 0;
+  double felt_share = 1;       // of the springs' advance, after which they push
   double noise_amplitude = 0;  // sqrt(2 kT / dt)
 };
 
@@ -43,6 +44,22 @@ struct TermLoadsOf {
   Real overlap{};                // that contact forces belong to
 };
 
+// Advances a spring where spheres touch, else forgets it. Returns the one that pushes, on its way between the
+// two.
+template <class Real, class Mask>
+PECLET_ALWAYS_INLINE Vector3Of<Real> advance_spring(const PairParameters& parameters, const Mask& touching,
+                                                    const Vector3Of<Real>& normal,
+                                                    const Vector3Of<Real>& stretch, const Real& longest,
+                                                    Vector3Of<Real>& spring) {
+  const Vector3Of<Real> before = spring;
+  spring = where(touching, advanced_spring(before, normal, stretch, longest));
+  if (parameters.felt_share == 1) {
+    return spring;
+  }
+  const Vector3Of<Real> part = Real{parameters.felt_share} * stretch;
+  return where(touching, advanced_spring(before, normal, part, longest));
+}
+
 template <Terms terms, class Real>
 PECLET_ALWAYS_INLINE void add_contact_terms(const PairParameters& parameters, const PairKind& kind,
                                             const PairGeometryOf<Real>& pair,
@@ -58,14 +75,16 @@ PECLET_ALWAYS_INLINE void add_contact_terms(const PairParameters& parameters, co
     const ContactLeversOf<Real> lever = contact_levers(kind.radius_first, kind.radius_second, pair);
     const Vector3Of<Real> slip = Real{parameters.spring_timestep} * slip_velocity(lever, pair, motion);
     const Real longest = longest_spring(contact, pair.overlap());
-    springs.tangential = where(touching, advanced_spring(springs.tangential, pair.normal, slip, longest));
-    loads.friction = friction_load(contact.tangential_stiffness, springs.tangential, lever, pair);
+    const Vector3Of<Real> felt =
+        advance_spring(parameters, touching, pair.normal, slip, longest, springs.tangential);
+    loads.friction = friction_load(contact.tangential_stiffness, felt, lever, pair);
     if constexpr (terms.rolling) {
       const Vector3Of<Real> turn =
           Real{parameters.spring_timestep} * rolling_velocity(kind.reduced_diameter, pair, motion);
       const Real longest_turn = longest_rolling_spring(contact, pair.overlap());
-      springs.rolling = where(touching, advanced_spring(springs.rolling, pair.normal, turn, longest_turn));
-      loads.rolling = rolling_load(contact.rolling_stiffness, springs.rolling, kind.reduced_diameter, pair);
+      const Vector3Of<Real> felt_turn =
+          advance_spring(parameters, touching, pair.normal, turn, longest_turn, springs.rolling);
+      loads.rolling = rolling_load(contact.rolling_stiffness, felt_turn, kind.reduced_diameter, pair);
     }
   }
 }

@@ -89,6 +89,41 @@ TEST(Implicit, IsOfSecondOrderForAnEncounter) {
   }
 }
 
+// Two spheres that touch and stick are turned and pressed together by the flow.
+Vector3 end_of_contact(int steps) {
+  Physics physics;
+  physics.viscosity = 0.1;
+  physics.flow = steady_shear(1);
+  physics.contact = ContactParameters{.normal_stiffness = 1e3, .friction = 1, .tangential_stiffness = 300};
+  physics.lubrication = LubricationParameters{1e-2, 0.5};
+  System system = system_of(physics, {1, 1.4}, 1e-6, 30);
+  const Vector3 along = {-1.6, 1.75, 0.2};
+  system.particles.position.set(0, {10, 10, 15});
+  system.particles.position.set(1, system.particles.position[0] + (2.38 / norm(along)) * along);
+  for (const std::size_t i : {0U, 1U}) {
+    system.particles.velocity.set(i, {system.particles.position[i].y, 0, 0});
+    system.particles.angular_velocity.set(i, {0, 0, -0.5});
+  }
+  Midpoint integrator(physics, system.particles, 0.3 / steps, 1e-7, 1, 1);
+  integrator.start(system);
+  for (int k = 0; k < steps; ++k) integrator.advance(system);
+  const ParticleState& p = system.particles;
+  const std::size_t first = p.id[0] == 0 ? 0 : 1;
+  return p.position[1 - first] - p.position[first];
+}
+
+// Springs push after 0.6 of their advance: what is of first order shows only in smaller steps.
+TEST(Implicit, IsNearlyOfSecondOrderForSpheresThatStick) {
+  const Vector3 exact = end_of_contact(5120);
+  ASSERT_LT(norm(exact), 2.4);  // still in contact
+  double coarse = norm(end_of_contact(10) - exact);
+  for (const int steps : {20, 40, 80}) {
+    const double fine = norm(end_of_contact(steps) - exact);
+    EXPECT_NEAR(std::log2(coarse / fine), 2, 0.15) << steps;
+    coarse = fine;
+  }
+}
+
 // A sheared packing with friction, from the same places: the stress that explicit steps of a five hundredth
 // give.
 class AgainstExplicit : public testing::TestWithParam<double> {
@@ -164,7 +199,7 @@ TEST_P(AgainstExplicit, TheStressAfterAReversalIsTheSame) {
     return mean_stress(integrator, system, time);
   };
   const double step = automatic_timestep(scene);
-  for (const auto& [steps, tolerance] : {std::pair{5, 0.05}, std::pair{25, 0.01}}) {
+  for (const auto& [steps, tolerance] : {std::pair{5, 0.08}, std::pair{25, 0.015}}) {
     VelocityVerlet small(ForceField(physics, particles, step / 400, 1, 1), particles, step / 400);
     Midpoint large(physics, particles, step, scene.solver_tolerance, 1, 1);
     const double expected = stress(small, steps * step);
@@ -272,7 +307,8 @@ TEST(Implicit, ReportsTheLargestDisplacementRelativeToTheFlow) {
 }
 
 // Heavy spheres that touch pass each other at a constant velocity, far below Coulomb's limit: their spring
-// grows by dt v_t a step, however often a step evaluates the forces.
+// grows by dt v_t a step, however often a step evaluates the forces. Without noise it pushes after 0.6 of
+// that, and the stress r_x F_z / 2 is that of the push.
 TEST(Implicit, StretchesSpringsOnceAStep) {
   Physics physics;
   physics.viscosity = 0.1;
@@ -289,7 +325,11 @@ TEST(Implicit, StretchesSpringsOnceAStep) {
     const std::unique_ptr<Implicit> method = implicit_steps(physics, system.particles, step, 1e-3, 1, 1);
     Implicit& integrator = *method;
     integrator.start(system);
-    for (int k = 0; k < steps; ++k) integrator.advance(system);
+    for (int k = 0; k < steps; ++k) {
+      const double push = 300 * step * slip * (k + (thermal_energy > 0 ? 1 : 0.6));
+      const StepReport report = integrator.advance(system);
+      EXPECT_NEAR(report.sums.of(StressTerm::friction).xz / (0.5 * 2.39 * push), 1, 1e-3) << thermal_energy;
+    }
     const std::vector<HeldContact> held = held_contacts(system.list, system.particles, system.springs);
     ASSERT_EQ(held.size(), 1u);
     EXPECT_NEAR(held[0].springs.tangential.z / (steps * step * slip), 1, 1e-3) << thermal_energy;

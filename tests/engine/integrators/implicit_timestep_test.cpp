@@ -21,12 +21,19 @@ Scene scene_with(const Json& patch) {
   return read_scene(document, "scene.json");
 }
 
-// 0.005 / rate (1 + 2 St), or half of that with friction; 0.0017 eta a^3 / kT; and the contact, whose rates
-// are those of the explicit step's bound.
+// 0.005 / rate (1 + 2 St), half of that where friction asks for more; 0.0017 eta a^3 / kT; and the contact,
+// whose rates are those of the explicit step's bound.
 TEST(ImplicitTimestep, IsTheLeastOfStrainBrownianAndContactTimes) {
   const Json soft = {{"contact", {{"normal_stiffness", 1e-3}, {"friction", 0.5}}}, {"repulsion", nullptr}};
   const double stokes = 0.1 * 1.4 * 1.4 * 2 / 0.1;
   EXPECT_NEAR(automatic_timestep(scene_with(soft)), 0.0025 / 2 / (1 + 2 * stokes), 1e-12);
+  Json quiet = soft;
+  quiet["fluid"] = {{"thermal_energy", nullptr}};
+  EXPECT_NEAR(automatic_timestep(scene_with(quiet)), 0.0025 / 2 / (1 + 2 * stokes), 1e-12);  // rolls
+  quiet["contact"].update({{"rolling_stiffness", nullptr}, {"rolling_friction", nullptr}});
+  EXPECT_NEAR(automatic_timestep(scene_with(quiet)), 0.005 / 2 / (1 + 2 * stokes), 1e-12);
+  quiet["contact"]["friction"] = 1.1;
+  EXPECT_NEAR(automatic_timestep(scene_with(quiet)), 0.0025 / 2 / (1 + 2 * stokes), 1e-12);
   Json smooth = soft;
   smooth["contact"] = {{"normal_stiffness", 1e-3},
                        {"rolling_stiffness", nullptr},
@@ -43,6 +50,9 @@ TEST(ImplicitTimestep, IsTheLeastOfStrainBrownianAndContactTimes) {
                       {"rolling_friction", nullptr}};
   const PairRates rates = stiffest_pair(scene_with(stiff));
   EXPECT_NEAR(automatic_timestep(scene_with(stiff)), 5 * rates.damping / rates.frequency_squared, 1e-15);
+  stiff["fluid"] = {{"thermal_energy", nullptr}};
+  EXPECT_NEAR(automatic_timestep(scene_with(stiff)), 10 * rates.damping / rates.frequency_squared, 1e-15);
+  stiff["fluid"] = Json::object();
   stiff["contact"] = {{"normal_stiffness", 1e9},
                       {"friction", 0.5},
                       {"rolling_stiffness", nullptr},
@@ -50,6 +60,9 @@ TEST(ImplicitTimestep, IsTheLeastOfStrainBrownianAndContactTimes) {
   const PairRates with_friction = stiffest_pair(scene_with(stiff));
   EXPECT_NEAR(automatic_timestep(scene_with(stiff)),
               2 * with_friction.damping / with_friction.frequency_squared, 1e-15);
+  stiff["fluid"] = {{"thermal_energy", nullptr}};
+  EXPECT_NEAR(automatic_timestep(scene_with(stiff)),
+              4 * with_friction.damping / with_friction.frequency_squared, 1e-15);
 }
 
 // Springs of strength / kappa^2 exp(-h / kappa) with kappa = 1 at h = outer gap (a_i + a_j) / 2 = 0.1,

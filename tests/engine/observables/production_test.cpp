@@ -17,7 +17,7 @@ TEST(Production, EveryStepGoesIntoExactlyOneOfEvenBlocks) {
     Production production(steps);
     for (std::uint64_t index = 0; index < steps; ++index) {
       PairSums sums;
-      sums.contacts = index;
+      sums.contacts = static_cast<double>(index);
       production.add_step(index, sums);
     }
     std::uint64_t all = 0;

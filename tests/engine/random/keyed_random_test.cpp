@@ -222,6 +222,44 @@ TEST(NormalBlock, IsMadeOfTheWordsOfThreefry) {
   EXPECT_EQ(high[0], 0xd06633d0893b8b68U);
 }
 
+// Of eight particles at a step.
+NormalBlock normals_of_part(std::uint64_t step, std::uint64_t part) {
+  const std::uint64_t identity[identities_per_block] = {0, 1, 2, 3, 4, 5, 6, 7};
+  NormalBlock block;
+  baseline::fill_normals({11, 3, step, part}, identity, nullptr, block);
+  return block;
+}
+
+// sqrt(dt/2) (z_2p + z_2p+1) = sqrt(dt) z_p, down to the smallest parts; and halves are standard normal and
+// independent, of each other and of other parts.
+TEST(NormalBlock, HalvesOfAPartRefineItsPath) {
+  std::map<std::uint64_t, Moments> moments;
+  std::map<std::pair<std::uint64_t, std::uint64_t>, double> products;
+  const std::pair<std::uint64_t, std::uint64_t> apart[] = {{2, 3}, {4, 5}, {4, 6}, {5, 7}, {1022, 1023}};
+  constexpr std::uint64_t steps = 4000;
+  for (std::uint64_t step = 0; step < steps; ++step) {
+    std::map<std::uint64_t, NormalBlock> of_part;
+    for (const std::uint64_t part : {1U, 2U, 3U, 4U, 5U, 6U, 7U, 511U, 1022U, 1023U}) {
+      of_part[part] = normals_of_part(step, part);
+    }
+    for (int c = 0; c < 6; ++c) {
+      for (int k = 0; k < identities_per_block; ++k) {
+        const auto z = [&](std::uint64_t part) { return static_cast<double>(of_part[part].value[c][k]); };
+        for (const std::uint64_t part : {1U, 2U, 3U, 511U}) {
+          ASSERT_NEAR(std::sqrt(0.5) * (z(2 * part) + z(2 * part + 1)), z(part), 2e-6) << part;
+        }
+        for (const std::uint64_t part : {2U, 3U, 5U, 7U, 1023U}) moments[part].add(z(part));
+        for (const auto& [a, b] : apart) products[{a, b}] += z(a) * z(b);
+      }
+    }
+  }
+  for (const auto& [part, of_part] : moments) expect_normal(of_part, "part " + std::to_string(part));
+  constexpr double count = steps * 6 * identities_per_block;
+  for (const auto& [parts, sum] : products) {
+    EXPECT_NEAR(sum / count, 0, allowed / std::sqrt(count)) << parts.first << ' ' << parts.second;
+  }
+}
+
 // Every instruction set that this processor has gives the same bits.
 TEST(NormalBlock, HasTheSameBitsOnEveryInstructionSet) {
   for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512}) {
@@ -236,8 +274,9 @@ TEST(NormalBlock, HasTheSameBitsOnEveryInstructionSet) {
         image[k] = k % 3;
       }
       NormalBlock one, other;
-      baseline::fill_normals({7, 3, step}, identity, image, one);
-      fill_normals(set)({7, 3, step}, identity, image, other);
+      const NoiseKey key = {7, 3, step, 1 + step % 37};
+      baseline::fill_normals(key, identity, image, one);
+      fill_normals(set)(key, identity, image, other);
       ASSERT_EQ(bits_of(one), bits_of(other)) << name_of(set) << ' ' << step;
     }
   }

@@ -28,6 +28,15 @@ const Way ways[] = {
      {{"integrator", {{"method", "implicit"}}},
       {"particles", {{"density", 0.01}}},
       {"fluid", {{"thermal_energy", nullptr}}}}},
+    {"implicit_with_divided_steps",
+     {{"integrator", {{"method", "implicit"}}},
+      {"particles", {{"density", 0.01}}},
+      {"guard", {{"largest_displacement", 0.01}}}}},
+    {"implicit_without_noise_with_divided_steps",
+     {{"integrator", {{"method", "implicit"}}},
+      {"particles", {{"density", 0.01}}},
+      {"fluid", {{"thermal_energy", nullptr}}},
+      {"guard", {{"largest_displacement", 0.04}}}}},
     {"with_every_observable_of_a_flow",
      {{"observables", {"mean_squared_displacement", "pair_distribution", "contact_network", "profiles"}},
       {"pair_distribution", {{"range", 3}}}}},
@@ -80,6 +89,8 @@ TEST_P(ResumedRun, PassesThroughContactsRebuildsAndFlips) {
   EXPECT_GT(steps_with_springs, 350u);
   EXPECT_GT(run->system().list.builds(), 20u);
   EXPECT_EQ(run->system().box.basis(), flips(2));
+  const bool divides = std::string(GetParam().name).ends_with("divided_steps");
+  EXPECT_EQ(run->step_errors().divided_steps > 50, divides);
 }
 
 TEST_P(ResumedRun, EndsAsTheUncutOneWhereverItWasCut) {

@@ -175,7 +175,8 @@ TEST(StepGate, FlagsAResultThatHalfStepsWouldChange) {
   EXPECT_EQ(flagged.at("mean"), fine.at("mean"));
 }
 
-// Beyond what is known of their error with noise, and where friction is too stiff for Newton's iterations.
+// Beyond what is known of their error with noise, where a repulsion is cut off that still is strong, which
+// leaves equations without a solution, and where most steps had to be divided.
 TEST(StepGate, FlagsImplicitSteps) {
   const auto result = [](Json scene, const Json& patch) {
     scene.merge_patch(
@@ -192,7 +193,19 @@ TEST(StepGate, FlagsImplicitSteps) {
   EXPECT_FALSE(has_warning(fine, "timestep"));
   EXPECT_FALSE(has_warning(fine, "solver"));
   EXPECT_GT(fine.at("gate").at("solver").at("iterations_per_step"), 1);
-  EXPECT_TRUE(has_warning(result(published(0.5), {{"contact", {{"friction", 40}}}}), "solver"));
+  EXPECT_EQ(fine.at("gate").at("solver").at("divided_steps"), 0);
+  EXPECT_EQ(fine.at("gate").at("solver").at("deepest_division"), 0);
+  const Json edge = {
+      {"repulsion",
+       {{"form", "exponential"}, {"strength", 100}, {"relative_length", 0.05}, {"cutoff_lengths", 5}}},
+      {"duration", {{"production", {{"strain", 0.05}}}}}};
+  EXPECT_TRUE(has_warning(result(published(0.5), edge), "solver"));
+  const Json divided = result(published(0.5), {{"guard", {{"largest_displacement", 0.02}}}});
+  EXPECT_TRUE(has_warning(divided, "timestep"));
+  const Json& solver = divided.at("gate").at("solver");
+  EXPECT_GT(solver.at("divided_steps"), 0.1 * divided.at("steps").at("production").get<double>());
+  EXPECT_LE(solver.at("divided_steps"), divided.at("steps").at("production"));
+  EXPECT_GT(solver.at("deepest_division"), 0);
 
   Json warm = published(0.5);
   warm["fluid"]["thermal_energy"] = 0.01;
