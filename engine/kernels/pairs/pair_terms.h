@@ -93,9 +93,10 @@ PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& paramete
   }
   if constexpr (terms.lubrication) {
     if (any(pair.distance <= kind.lubrication_range + kind_reach(parameters, kind))) {
-      const ResistanceModesOf<Real> modes =
-          resistance_modes(parameters.step_resistance, parameters.lubrication, kind.lubrication_range, pair,
-                           dot(motion.velocity, pair.normal));
+      // Noise belongs to the resistance as it is.
+      const ResistanceModesOf<Real> modes = resistance_modes(
+          terms.noise ? StepResistance{} : parameters.step_resistance, parameters.lubrication,
+          kind.lubrication_range, pair, dot(motion.velocity, pair.normal));
       const PairResistanceOf<Real> resistance = pair_resistance(kind.resistance, modes);
       loads.lubrication = lubrication_load(resistance, pair, motion);
       if constexpr (terms.noise) {
