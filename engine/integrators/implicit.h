@@ -35,7 +35,7 @@ class Implicit : public Integrator {
 
  protected:
   Implicit(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,
-           std::uint64_t seed, int threads, InstructionSet set);
+           std::uint64_t seed, int threads, InstructionSet set, double drag_share = 1);
 
   // Finds the velocities; nothing where the list of pairs does not hold half a step ahead.
   virtual std::optional<StepReport> find_velocities(System& system) = 0;

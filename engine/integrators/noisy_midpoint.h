@@ -3,9 +3,18 @@
 //   M (V' - V_n) = dt [F(x_n, V') + F_B],   x' = x_n + dt/2 V',
 //   M (V - V_n) = dt [F(x', V) + F_B],      x_n+1 = x_n + dt V
 // with contact and repulsion at the distance that the velocities lead to in half a step. One iteration of
-// each, no more: with x' from V itself the spheres would gather where R is large.
+// each, no more: with x' from V itself the spheres would gather where R is large. V' need not be exact.
 //
-// The stress is that of V at x_n + dt/2 V; of the noise, at x_n.
+// A velocity that only decays, as with R V above, has the variance kT / (m + dt R / 2): as if the mass were
+// larger where R is. Where R jumps, the flux of pairs then makes the density jump, to 0.9 beyond the outer
+// gap. So the drag and what jumps there, R_o, act on (V_n + V) / 2 at x_n in both systems: inertia carries
+// the pair half a step to x_n and half a step on, and between free flights a velocity of variance kT / m
+// turns into another one of that variance, whatever R_o is at x_n; no density has a bias of it. The rest of
+// R, which is continuous, is as above, at the gaps of terms/step_resistance.h. Steps too long for that, in
+// which a thermal flight is as long as the range or velocities have forgotten all (terms/inertial_step.h),
+// are those above.
+//
+// The stress is that of V at x_n + dt/2 V, R averaged over the way; of the noise, at x_n.
 #pragma once
 
 #include "engine/integrators/implicit.h"
@@ -18,11 +27,18 @@ class NoisyMidpoint final : public Implicit {
                 std::uint64_t seed, int threads, InstructionSet set = chosen_instruction_set());
 
  private:
-  std::optional<StepReport> find_velocities(System& system) override;
-  [[nodiscard]] bool solve(System& system, const Loads* noise, StepReport& report);
+  NoisyMidpoint(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,
+                std::uint64_t seed, int threads, InstructionSet set, bool inertial);
 
-  ForceField with_noise_, without_noise_;  // contact and repulsion half a step ahead
+  std::optional<StepReport> find_velocities(System& system) override;
+  void leave_half_of_the_drag(const System& system);
+  // Down to `factor` times the tolerance.
+  [[nodiscard]] bool solve(System& system, const Loads* noise, double factor, StepReport& report);
+
+  ForceField with_noise_, at_beginning_;  // contact and repulsion half a step ahead
+  ForceField ahead_, on_the_way_;
   Loads noise_;
+  bool inertial_;
 };
 
 }  // namespace peclet::engine

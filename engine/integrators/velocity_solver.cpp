@@ -14,7 +14,7 @@ constexpr int most_iterations = 1000;
 }  // namespace
 
 VelocitySolver::VelocitySolver(const Physics& physics, const ParticleState& particles, double timestep,
-                               double tolerance, InstructionSet set)
+                               double tolerance, InstructionSet set, double drag_share)
     : timestep_(timestep),
       tolerance_(tolerance),
       link_(link_kernels(set)),
@@ -40,10 +40,11 @@ VelocitySolver::VelocitySolver(const Physics& physics, const ParticleState& part
   for (std::size_t i = 0; i < particles.count(); ++i) {
     const double radius = particles.radius[i], mass = particles.mass[i], inertia = particles.inertia[i];
     inertia_[particles.size_class[i]] = {mass, inertia};
+    const double drag_time = drag_share * timestep;
     Floats& diagonal = diagonal_[particles.size_class[i]].v;
     for (int c = 0; c < 3; ++c) {
-      diagonal[c] = static_cast<float>(mass + timestep * translational_drag(physics.viscosity, radius));
-      diagonal[4 + c] = static_cast<float>(inertia + timestep * rotational_drag(physics.viscosity, radius));
+      diagonal[c] = static_cast<float>(mass + drag_time * translational_drag(physics.viscosity, radius));
+      diagonal[4 + c] = static_cast<float>(inertia + drag_time * rotational_drag(physics.viscosity, radius));
     }
   }
 }

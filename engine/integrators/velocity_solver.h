@@ -26,9 +26,10 @@ struct Loads {
 
 class VelocitySolver {
  public:
-  // Velocities are found until the residual is below `tolerance`, relative to the motion.
+  // Velocities are found until the residual is below `tolerance`, relative to the motion. They feel that
+  // share of the drag; the rest is the caller's.
   VelocitySolver(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,
-                 InstructionSet set);
+                 InstructionSet set, double drag_share = 1);
 
   double tolerance() const { return tolerance_; }
 

@@ -6,7 +6,8 @@
 namespace peclet::engine {
 
 ForceField::ForceField(const Physics& physics, const ParticleState& particles, double timestep,
-                       std::uint64_t seed, int threads, InstructionSet set, double approach_time)
+                       std::uint64_t seed, int threads, InstructionSet set, double approach_time,
+                       const StepResistance& step_resistance)
     : physics_(physics),
       terms_(required_terms(physics)),
       kinds_(make_pair_kinds(physics, distinct_radii(particles.radius))),
@@ -19,6 +20,7 @@ ForceField::ForceField(const Physics& physics, const ParticleState& particles, d
       link_(link_kernels(set)),
       threads_(threads) {
   parameters_.approach_time = approach_time;
+  parameters_.step_resistance = step_resistance;
   for (const double radius : distinct_radii(particles.radius)) {
     const double zeta = translational_drag(physics.viscosity, radius);
     const double zeta_r = rotational_drag(physics.viscosity, radius);

@@ -10,6 +10,7 @@
 #include "engine/kernels/pairs/pair_kinds.h"
 #include "engine/kernels/pairs/terms.h"
 #include "engine/terms/drag.h"
+#include "engine/terms/inertial_step.h"
 #include "engine/terms/rolling.h"
 
 namespace peclet::engine {
@@ -200,6 +201,7 @@ double automatic_implicit_timestep(const Scene& scene) {
   const double strain = demanding ? 0.0025 : 0.005;
   const double contact_times = (friction ? 2 : 5) * (relaxed ? 2 : 1);
   constexpr double brownian_times = 0.0017, pushing_times = 20, leaps = 5;
+  constexpr double inertial_brownian_times = 0.004;
   double step = std::numeric_limits<double>::infinity();
   double smallest = scene.particles.species.front().radius, largest = smallest;
   for (const Species& species : scene.particles.species) {
@@ -209,10 +211,6 @@ double automatic_implicit_timestep(const Scene& scene) {
   if (const double rate = physics.flow.largest_rate(cell_of(scene)); rate > 0) {
     const double stokes = scene.particles.density * largest * largest * rate / physics.viscosity;
     step = strain / ((1 + 2 * stokes) * rate);
-  }
-  if (physics.thermal_energy > 0) {
-    step =
-        std::min(step, brownian_times * physics.viscosity * std::pow(smallest, 3) / physics.thermal_energy);
   }
   if (const PairRates rates = stiffest_pair(scene); rates.frequency_squared > 0) {
     step = std::min(step, contact_times * rates.damping / rates.frequency_squared);
@@ -225,10 +223,15 @@ double automatic_implicit_timestep(const Scene& scene) {
       step = std::min(step, time_of_pulling(physics, first.radius, second.radius));
     }
   }
-  if (physics.lubrication && physics.thermal_energy > 0) {
-    step = step_of_leaps(scene, smallest, leaps, step);
-  }
-  return step;
+  if (!(physics.thermal_energy > 0)) return step;
+  const double brownian_time = physics.viscosity * std::pow(smallest, 3) / physics.thermal_energy;
+  const double without_inertia = std::min(step, brownian_times * brownian_time);
+  if (!physics.lubrication) return without_inertia;
+  const double inertial =
+      std::min({step, inertial_brownian_times * brownian_time,
+                longest_inertial_step(physics.viscosity, physics.thermal_energy, *physics.lubrication,
+                                      smallest, mass_of(scene, smallest))});
+  return std::max(inertial, step_of_leaps(scene, smallest, leaps, without_inertia));
 }
 
 double automatic_timestep(const Scene& scene) {

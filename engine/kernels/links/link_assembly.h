@@ -62,7 +62,8 @@ class LinkedPairs {
     motion_.spin_first = gather_rows(in.spin, first_, Real{});
     motion_.spin_second = gather_rows(in.spin, second_, Real{});
     const Real squared = dot(r, r);
-    near_ = bits(listed_lanes(count, Real{}) & (squared <= Real{kind_.range * kind_.range}));
+    const double range = kind_.range + kind_reach(in.parameters, kind_);
+    near_ = bits(listed_lanes(count, Real{}) & (squared <= Real{range * range}));
     shape_ = {r, {}, square_root(squared), kind_.sum_of_radii};
     shape_.normal = (1.0 / shape_.distance) * r;
     ahead_ = shape_;
@@ -76,11 +77,12 @@ class LinkedPairs {
     const PairParameters& parameters = in_.parameters;
     if (terms.lubrication) {
       const double inner_gap = parameters.lubrication.inner_gap;
-      const ResistanceModesOf<Real> modes = resistance_modes(inner_gap, kind_.lubrication_range, shape_);
+      const Real closing = dot(motion_.velocity, shape_.normal);
+      const ResistanceModesOf<Real> modes = resistance_modes(
+          parameters.step_resistance, parameters.lubrication, kind_.lubrication_range, shape_, closing);
       add_scaled(sum, Real{weights.timestep}, pair_resistance(kind_.resistance, modes));
       // The resistance at the distance that the velocities lead to: d/dv of X_A(r + t v) v.
       const Real slope = squeeze_slope(kind_.resistance, inner_gap, kind_.sum_of_radii, modes);
-      const Real closing = dot(motion_.velocity, shape_.normal);
       sum.squeeze = larger(sum.squeeze + (weights.timestep * weights.resistance_time) * slope * closing,
                            0.5 * sum.squeeze);
     }

@@ -52,7 +52,8 @@ class PairGroup {
     const auto listed = listed_lanes(count_, Real{});
     const Real squared = dot(r, r);
     sums.not_finite |= bits(listed & !(squared < Real{__builtin_inf()}));
-    const auto near = listed & (squared <= Real{kind_.range * kind_.range});
+    const double range = kind_.range + kind_reach(in_.parameters, kind_);
+    const auto near = listed & (squared <= Real{range * range});
     if (!any(near)) {
       forget_springs();
       leave_nothing(out);
@@ -61,7 +62,7 @@ class PairGroup {
     // Lanes that are not near compute with a distance at which every term is zero.
     PairGeometryOf<Real> shape;
     shape.separation = where(near, r);
-    shape.distance = select(near, square_root(squared), Real{2 * kind_.range});
+    shape.distance = select(near, square_root(squared), Real{2 * range});
     shape.normal = (1.0 / shape.distance) * shape.separation;
     shape.sum_of_radii = kind_.sum_of_radii;
     PairMotionOf<Real> motion;

@@ -10,6 +10,7 @@
 #include "engine/terms/lubrication.h"
 #include "engine/terms/pair_noise.h"
 #include "engine/terms/rolling.h"
+#include "engine/terms/step_resistance.h"
 
 namespace peclet::engine {
 
@@ -23,7 +24,13 @@ struct PairParameters {
   double approach_time = 0;
   double felt_share = 1;       // of the springs' advance, after which they push
   double noise_amplitude = 0;  // sqrt(2 kT / dt)
+  StepResistance step_resistance = {};
 };
+
+// How much farther than its range a pair of this kind may be and still feel something.
+inline double kind_reach(const PairParameters& parameters, const PairKind& kind) {
+  return parameters.step_resistance.reach(parameters.lubrication, kind.sum_of_radii);
+}
 
 template <class Real>
 struct PairSpringsOf {
@@ -104,9 +111,11 @@ PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& paramete
     ahead.distance += parameters.approach_time * dot(motion.velocity, pair.normal);
   }
   if constexpr (terms.lubrication) {
-    if (any(pair.distance <= kind.lubrication_range)) {
-      const ResistanceModesOf<Real> modes =
-          resistance_modes(parameters.lubrication.inner_gap, kind.lubrication_range, pair);
+    if (any(pair.distance <= kind.lubrication_range + kind_reach(parameters, kind))) {
+      // Noise belongs to the resistance as it is.
+      const ResistanceModesOf<Real> modes = resistance_modes(
+          terms.noise ? StepResistance{} : parameters.step_resistance, parameters.lubrication,
+          kind.lubrication_range, pair, dot(motion.velocity, pair.normal));
       const PairResistanceOf<Real> resistance = pair_resistance(kind.resistance, modes);
       loads.lubrication = lubrication_load(resistance, pair, motion);
       if constexpr (terms.noise) {

@@ -30,16 +30,43 @@ System system_of(const Physics& physics, const std::vector<double>& radius, doub
 // Two spheres of radii 1 and 1.4 on a line, the smaller one to the left.
 struct OnALine {
   double mass[2], drag[2];
-  double inner_gap = 0, stiffness = 0, strength = 0, length = 0;
+  double inner_gap = 0, outer_gap = 0, stiffness = 0, strength = 0, length = 0;
+  bool inertial = false;  // whether inertia carries the pair across the outer gap
 
   static constexpr double sum = 2.4;
 
-  // X_A at the surface distance h: Li, Royer & Ness (2023) eq. 9 with beta = 1.4.
-  double resistance(double h) const {
-    if (inner_gap == 0) return 0;
-    const double gap = std::max(2 * h / sum, inner_gap), b = 1.4, cube = std::pow(1 + b, 3);
+  // X_A at this gap: Li, Royer & Ness (2023) eq. 9 with beta = 1.4.
+  static double squeeze(double gap) {
+    const double b = 1.4, cube = std::pow(1 + b, 3);
     return 6 * pi * viscosity *
            (2 * b * b / cube / gap + b * (1 + 7 * b + b * b) / (5 * cube) * std::log(1 / gap));
+  }
+  bool lubricated(double h) const { return inner_gap > 0 && 2 * h / sum <= outer_gap; }
+  // At the surface distance h.
+  double resistance(double h) const { return lubricated(h) ? squeeze(std::max(2 * h / sum, inner_gap)) : 0; }
+  // Over the distances of a way from h, by the midpoint rule.
+  double mean_resistance(double h, double way) const {
+    constexpr int parts = 200'000;
+    double sum = 0;
+    for (int k = 0; k < parts; ++k) sum += resistance(h + way * (k + 0.5) / parts) / parts;
+    return sum;
+  }
+  // The part that jumps to zero at the outer gap, and the other one on a predicted way from h.
+  double jump(double h) const { return lubricated(h) ? squeeze(outer_gap) : 0; }
+  double rest_on_the_way(double h, double way) const {
+    const double begin = std::max(2 * h / sum, inner_gap);
+    const auto root = [&](double made) {
+      return std::sqrt(begin * std::max(2 * (h + made) / sum, inner_gap));
+    };
+    const double e = 1 / (4 * inner_gap), left = (1 / begin + e) / (1 / root(way) + e);
+    const double made = way * (0.35 + 0.65 * left);
+    const auto continuous = [&](double gap) {
+      return squeeze(std::clamp(gap, inner_gap, outer_gap)) - squeeze(outer_gap);
+    };
+    constexpr int parts = 200'000;
+    double average = 0;
+    for (int k = 0; k < parts; ++k) average += continuous(2 * (h + made * (k + 0.5) / parts) / sum) / parts;
+    return 0.5 * (average + continuous(root(made)));
   }
   // What pushes the spheres apart, and its stiffness.
   double push(double h) const {
@@ -53,16 +80,23 @@ struct OnALine {
 
 using Two = std::array<double, 2>;
 
-// One iteration of Newton's method for M (V - V_n) = dt F(x, V): from the velocities V, with the resistance
-// at the distance h and what pushes at the distance h + t (V_2 - V_1), whose stiffness counts for dt/2.
-Two corrected(const OnALine& pair, const Two& before, const Two& velocity, double h, double ahead,
-              double dt) {
-  const double closing = velocity[1] - velocity[0], pushed = h + ahead * closing;
-  const double between = pair.resistance(h) * closing - pair.push(pushed);
-  const double link = dt * (pair.resistance(h) + 0.5 * dt * pair.stiffness_at(pushed));
-  const double a = pair.mass[0] + dt * pair.drag[0] + link, d = pair.mass[1] + dt * pair.drag[1] + link;
-  const double p = dt * (between - pair.drag[0] * velocity[0]) - pair.mass[0] * (velocity[0] - before[0]);
-  const double q = dt * (-between - pair.drag[1] * velocity[1]) - pair.mass[1] * (velocity[1] - before[1]);
+// One iteration of Newton's method for M (V - V_n) = dt F(x, V): from the velocities V, with a resistance to
+// V and another one to the mean of V and V_n, as all of the drag is where the latter exists; what pushes is
+// at the distance `pushed`, and its stiffness counts for dt/2.
+Two corrected(const OnALine& pair, const Two& before, const Two& velocity, double resistance,
+              double resistance_to_mean, double pushed, double dt) {
+  const double part = pair.inertial ? 0.5 : 1;  // of V in what feels the drag
+  const auto dragged = [&](std::size_t i) {
+    return pair.drag[i] * (part * velocity[i] + (1 - part) * before[i]);
+  };
+  const double closing = velocity[1] - velocity[0], closing_before = before[1] - before[0];
+  const double between =
+      resistance * closing + 0.5 * resistance_to_mean * (closing + closing_before) - pair.push(pushed);
+  const double link = dt * (resistance + 0.5 * resistance_to_mean + 0.5 * dt * pair.stiffness_at(pushed));
+  const double a = pair.mass[0] + part * dt * pair.drag[0] + link;
+  const double d = pair.mass[1] + part * dt * pair.drag[1] + link;
+  const double p = dt * (between - dragged(0)) - pair.mass[0] * (velocity[0] - before[0]);
+  const double q = dt * (-between - dragged(1)) - pair.mass[1] * (velocity[1] - before[1]);
   const double determinant = a * d - link * link;
   return {velocity[0] + (d * p + link * q) / determinant, velocity[1] + (link * p + a * q) / determinant};
 }
@@ -74,17 +108,21 @@ struct StepOfTwo {
 
 // V' from x_n with what pushes half a step ahead, V from x_n + dt/2 V', the stress at x_n + dt/2 V.
 StepOfTwo step_by_hand(const OnALine& pair, const Two& before, double h, double dt) {
-  const Two predicted = corrected(pair, before, before, h, 0.5 * dt, dt);
-  const double ahead = h + 0.5 * dt * (predicted[1] - predicted[0]);
-  const Two found = corrected(pair, before, predicted, ahead, 0, dt);
+  const double jump = pair.inertial ? pair.jump(h) : 0;
+  const Two predicted = corrected(pair, before, before, pair.resistance(h) - jump, jump,
+                                  h + 0.5 * dt * (before[1] - before[0]), dt);
+  const double way = dt * (predicted[1] - predicted[0]), ahead = h + 0.5 * way;
+  const double resistance = pair.inertial ? pair.rest_on_the_way(h, way) : pair.resistance(ahead);
+  const Two found = corrected(pair, before, predicted, resistance, jump, ahead, dt);
   const double closing = found[1] - found[0], middle = h + 0.5 * dt * closing, r = OnALine::sum + middle;
-  return {r * pair.resistance(middle) * closing, -r * pair.push(middle), found};
+  return {r * pair.mean_resistance(h, dt * closing) * closing, -r * pair.push(middle), found};
 }
 
 struct NamedPair {
   const char* name;
   Physics physics;
   double h, closing, density, timestep;
+  bool inertial;
 };
 
 // Steps in which resistance, stiffness and inertia each decide.
@@ -95,15 +133,18 @@ std::vector<NamedPair> pairs_on_a_line() {
   std::vector<NamedPair> cases;
   Physics contact = still;
   contact.contact = ContactParameters{.normal_stiffness = 40};
-  cases.push_back({"contact", contact, -0.05, -0.3, 0.1, 0.1});
+  cases.push_back({"contact", contact, -0.05, -0.3, 0.1, 0.1, false});
   contact.lubrication = LubricationParameters{1e-2, 0.9};
-  cases.push_back({"lubricated contact", contact, -0.02, -0.2, 0.1, 0.5});
+  cases.push_back({"lubricated contact", contact, -0.02, -0.2, 0.1, 0.5, true});
   Physics lubricated = still;
   lubricated.lubrication = LubricationParameters{1e-3, 0.9};
-  cases.push_back({"approach", lubricated, 0.2, -0.8, 0.5, 0.3});
+  cases.push_back({"approach", lubricated, 0.2, -0.8, 0.5, 0.3, true});
+  cases.push_back({"parting", lubricated, 1.07, 0.15, 1, 0.5, true});
+  cases.push_back({"meeting", lubricated, 1.1, -0.15, 1, 0.5, true});
+  cases.push_back({"closing the gap", lubricated, 0.03, -0.8, 1, 0.4, true});
   lubricated.repulsion = RepulsionParameters{.strength = 0.3, .relative_length = 0.05, .cutoff_lengths = 20};
-  cases.push_back({"repulsion", lubricated, 0.15, -0.6, 0.1, 0.2});
-  cases.push_back({"parting by repulsion", lubricated, 0.05, 0.1, 1e-3, 0.05});
+  cases.push_back({"repulsion", lubricated, 0.15, -0.6, 0.1, 0.2, true});
+  cases.push_back({"parting by repulsion", lubricated, 0.05, 0.1, 1e-3, 0.05, false});
   return cases;
 }
 
@@ -117,6 +158,8 @@ OnALine line_of(const NamedPair& given, const ParticleState& particles) {
   }
   const Physics& physics = given.physics;
   pair.inner_gap = physics.lubrication ? physics.lubrication->inner_gap : 0;
+  pair.outer_gap = physics.lubrication ? physics.lubrication->outer_gap : 0;
+  pair.inertial = given.inertial;
   pair.stiffness = physics.contact ? physics.contact->normal_stiffness : 0;
   pair.strength = physics.repulsion ? physics.repulsion->strength : 0;
   pair.length = physics.repulsion ? physics.repulsion->relative_length * OnALine::sum : 0;
@@ -134,6 +177,8 @@ TEST(NoisyStep, OfTwoSpheresOnALineIsThatOfItsEquations) {
     // What is to be seen is there: the two iterations differ, and so do the two distances.
     const double changed = expected.velocity[1] - expected.velocity[0] - given.closing;
     ASSERT_GT(std::abs(changed), 0.05 * std::abs(given.closing)) << given.name;
+    const double lightest = std::min(pair.mass[0] / pair.drag[0], pair.mass[1] / pair.drag[1]);
+    ASSERT_EQ(given.inertial, pair.inner_gap > 0 && given.timestep <= 4 * lightest) << given.name;
 
     NoisyMidpoint integrator(given.physics, system.particles, given.timestep, very_tight, 1, 1);
     integrator.start(system);
@@ -174,7 +219,8 @@ TEST(NoisyStep, HasTheStressOfItsNoiseWhereItWasDrawn) {
   system.step = step;
   const Vector3 n = (1 / norm(r)) * r;
   OnALine pair{};
-  pair.inner_gap = 1e-3;
+  pair.inner_gap = physics.lubrication->inner_gap;
+  pair.outer_gap = physics.lubrication->outer_gap;
   const double h = norm(r) - OnALine::sum, b = 1.4;
   const double squeeze = pair.resistance(h);
   const double shear = 6 * pi * viscosity * 4 * b * (2 + b + 2 * b * b) / (15 * std::pow(1 + b, 3)) *

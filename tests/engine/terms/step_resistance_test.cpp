@@ -1,0 +1,101 @@
+// The resistance of a pair within a step, beside the formulas of its head and averages by quadrature.
+#include "engine/terms/step_resistance.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+namespace peclet::engine {
+namespace {
+
+constexpr double first = 1, second = 1.4, sum = first + second, timestep = 0.3;
+constexpr LubricationParameters lubrication = {1e-2, 0.1};
+
+// Of a gap: 1/xi and L within the range.
+double inverse(double gap) {
+  return gap <= lubrication.outer_gap ? 1 / std::max(gap, lubrication.inner_gap) : 0;
+}
+double logarithm_of(double gap) {
+  return gap <= lubrication.outer_gap ? -std::log(std::max(gap, lubrication.inner_gap)) : 0;
+}
+
+double average(const std::function<double(double)>& f, double from, double to) {
+  constexpr int parts = 400'000;
+  double mean = 0;
+  for (int k = 0; k < parts; ++k) mean += f(from + (to - from) * (k + 0.5) / parts) / parts;
+  return mean;
+}
+
+// Of a pair in the middle of a way of gaps.
+ResistanceModes modes(StepResistance::Part part, double from, double to) {
+  const double gap = 0.5 * (from + to), distance = sum * (1 + 0.5 * gap);
+  const PairGeometry pair = {{distance, 0, 0}, {1, 0, 0}, distance, sum};
+  const double closing = 0.5 * sum * (to - from) / timestep;
+  return resistance_modes({part, timestep}, lubrication, lubrication_range(lubrication, sum), pair, closing);
+}
+
+struct Way {
+  double from, to;
+};
+// Within the range, into the inner gap and out of it, out of the range and into it, through all, and beyond.
+constexpr Way ways[] = {{0.02, 0.05}, {0.05, 0.02}, {0.03, -0.02}, {-0.02, 0.03}, {-0.03, -0.01},
+                        {0.08, 0.13}, {0.13, 0.08}, {-0.01, 0.12}, {0.12, -0.01}, {0.13, 0.15}};
+
+TEST(StepResistance, OnTheWayIsTheAverageOverItsGaps) {
+  for (const auto& [from, to] : ways) {
+    const ResistanceModes found = modes(StepResistance::Part::on_the_way, from, to);
+    EXPECT_NEAR(found.inverse, average(inverse, from, to), 1e-4 / lubrication.inner_gap) << from << ' ' << to;
+    EXPECT_NEAR(found.logarithm, average(logarithm_of, from, to), 1e-4) << from << ' ' << to;
+    EXPECT_NEAR(found.lever, 1 + 0.25 * (from + to), 1e-12);
+  }
+}
+
+// Where pairs stand still every part is R, or R less half of what jumps.
+TEST(StepResistance, OfAPairAtRestIsThatOfItsGap) {
+  const double jump = 1 / lubrication.outer_gap, log_jump = std::log(jump);
+  for (const double gap : {-0.02, 0.005, 0.02, 0.09, 0.11}) {
+    const double within = gap <= lubrication.outer_gap ? 1 : 0;
+    for (const auto part : {StepResistance::Part::at_beginning, StepResistance::Part::ahead}) {
+      EXPECT_NEAR(modes(part, gap, gap).inverse, inverse(gap) - 0.5 * jump * within, 1e-3) << gap;
+      EXPECT_NEAR(modes(part, gap, gap).logarithm, logarithm_of(gap) - 0.5 * log_jump * within, 1e-5) << gap;
+    }
+    for (const auto part : {StepResistance::Part::whole, StepResistance::Part::on_the_way}) {
+      EXPECT_NEAR(modes(part, gap, gap).inverse, inverse(gap), 1e-3) << gap;
+      EXPECT_NEAR(modes(part, gap, gap).logarithm, logarithm_of(gap), 1e-5) << gap;
+    }
+  }
+}
+
+// The way that the head describes, with the averages by quadrature.
+TEST(StepResistance, AheadIsTheMeanOfItsTwoRulesAndHalfOfTheJump) {
+  const double inner = lubrication.inner_gap, outer = lubrication.outer_gap;
+  for (const auto& [from, to] : ways) {
+    const double start = std::max(from, inner), e = 1 / (4 * inner);
+    const auto root = [&](double end) { return std::sqrt(start * std::max(end, inner)); };
+    const double left = (1 / start + e) / (1 / root(to) + e);
+    const double end = from + (to - from) * (1 - 0.65 + 0.65 * left);
+    const auto rest = [&](const std::function<double(double)>& mode) {
+      const auto continuous = [&](double gap) { return mode(std::min(gap, outer)) - mode(outer); };
+      return 0.5 * (average(continuous, from, end) + continuous(root(end))) +
+             (from <= outer ? 0.5 * mode(outer) : 0);
+    };
+    const ResistanceModes found = modes(StepResistance::Part::ahead, from, to);
+    EXPECT_NEAR(found.inverse, rest(inverse), 1e-6 / inner) << from << ' ' << to;
+    EXPECT_NEAR(found.logarithm, rest(logarithm_of), 1e-6) << from << ' ' << to;
+  }
+}
+
+// Fixman's drift needs the resistance in the middle of the predicted step, to first order of its length.
+TEST(StepResistance, AheadIsThatOfTheMiddleToFirstOrder) {
+  const double gap = 0.03;
+  const auto error = [&](double way) {
+    return modes(StepResistance::Part::ahead, gap - 0.5 * way, gap + 0.5 * way).inverse -
+           (1 / gap - 0.5 / lubrication.outer_gap);
+  };
+  for (const double sign : {-1, 1}) {
+    EXPECT_NEAR(error(sign * 1e-3) / error(sign * 5e-4), 4, 0.4);
+  }
+}
+
+}  // namespace
+}  // namespace peclet::engine
