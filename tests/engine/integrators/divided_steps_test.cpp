@@ -43,6 +43,17 @@ struct Flight {
   System system;
 };
 
+// Spheres that fly beyond any list are reported, not looked for.
+TEST(Implicit, ReportsALeapOverTheNeighbours) {
+  Flight flight(1e4);
+  flight.system.particles.velocity.set(1, {50, 0, 0});
+  Midpoint integrator = flight.steps_of(0.1);
+  EXPECT_GE(integrator.advance(flight.system).largest_displacement, 2);
+
+  flight.system.particles.velocity.set(1, {std::numeric_limits<double>::quiet_NaN(), 0, 0});
+  EXPECT_FALSE(std::isfinite(integrator.advance(flight.system).largest_displacement));
+}
+
 // A sphere that flies on makes the way v dt, in as many halvings as bring the way of a part below the bound.
 TEST(DividedSteps, AreHalvedUntilNoSphereMovesTooFar) {
   constexpr double way = 0.1;
