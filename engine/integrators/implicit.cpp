@@ -57,9 +57,10 @@ StepReport joined(const StepReport& first, const StepReport& second) {
 }  // namespace
 
 Implicit::Implicit(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,
-                   std::uint64_t seed, int threads, InstructionSet set, double drag_share)
+                   std::uint64_t seed, int threads, InstructionSet set, double drag_share,
+                   StepResistance::Part part)
     : timestep_(timestep),
-      field_(without_noise(physics), particles, timestep, seed, threads, set),
+      field_(without_noise(physics), particles, timestep, seed, threads, set, 0, part),
       solver_(physics, particles, timestep, tolerance, set, drag_share),
       loads_(particles.count(), threads),
       physics_(physics),

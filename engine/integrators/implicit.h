@@ -35,7 +35,8 @@ class Implicit : public Integrator {
 
  protected:
   Implicit(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,
-           std::uint64_t seed, int threads, InstructionSet set, double drag_share = 1);
+           std::uint64_t seed, int threads, InstructionSet set, double drag_share = 1,
+           StepResistance::Part part = StepResistance::Part::whole);
 
   // Finds the velocities; nothing where the list of pairs does not hold half a step ahead.
   virtual std::optional<StepReport> find_velocities(System& system) = 0;
@@ -49,7 +50,7 @@ class Implicit : public Integrator {
   bool move_half_a_step(System& system);
 
   double timestep_;
-  ForceField field_;  // without noise, at the distances as they are
+  ForceField field_;  // without noise, at the distances as they are, with that part of the resistance
   VelocitySolver solver_;
   StepOrigin origin_;
   Loads loads_;

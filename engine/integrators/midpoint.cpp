@@ -8,9 +8,18 @@
 namespace peclet::engine {
 namespace {
 
-constexpr int most_newton_iterations = 3;
-// An iteration of Newton's method need not solve its system better than the next one's residual will be.
-constexpr double forcing = 0.1;
+// Newton's iterations, and the part of a residual that the first one and later ones may leave of the linear
+// system at the default tolerance, in proportion less at a tighter one: it need not be solved better than the
+// next residual will be. In the first one contacts open and close. Springs that slide enter the system with
+// their secant stiffness; with them iterations converge slowly, and more than the usual ones are made only
+// where the residual is larger than seven tolerances.
+struct Iterations {
+  int usual, most;
+  double first_forcing, forcing;
+};
+constexpr Iterations with_springs = {3, 8, 0.3, 0.2}, without_springs = {6, 6, 0.2, 0.05};
+constexpr double far = 7, default_tolerance = 2e-3;
+
 // Springs that push after half of their advance are of second order. A little more than half damps those that
 // stick and are stiff: with z = dt k / R a step multiplies them by (1 - (1 - s) z) / (1 + s z), which tends
 // to
@@ -21,7 +30,8 @@ constexpr double felt_share = 0.6;
 
 Midpoint::Midpoint(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,
                    std::uint64_t seed, int threads, InstructionSet set)
-    : Implicit(physics, particles, timestep, tolerance, seed, threads, set),
+    : Implicit(physics, particles, timestep, tolerance, seed, threads, set, /*drag_share=*/1,
+               StepResistance::Part::on_the_way),
       velocity_change_(particles.count(), threads),
       spin_change_(particles.count(), threads) {
   field_.feel_springs_after(felt_share);
@@ -31,13 +41,14 @@ std::optional<StepReport> Midpoint::find_velocities(System& system) {
   ParticleState& particles = system.particles;
   array(particles.velocity) += array(velocity_change_)(Eigen::all, particles.id);
   array(particles.angular_velocity) += array(spin_change_)(Eigen::all, particles.id);
+  const Iterations& iterations = system.springs.kinds() == SpringKinds::none ? without_springs : with_springs;
   StepReport report;
   for (int iteration = 0;; ++iteration) {
     if (!move_half_a_step(system)) {
       return std::nullopt;
     }
     if (iteration == 0) {
-      solver_.assemble(system, field_, 0.5 * timestep_);
+      solver_.assemble(system, field_);
     }
     report.sums = field_.evaluate(system, loads_.force, loads_.torque);
     const VelocitySolver::Residual residual = solver_.set_residual(system, origin_, loads_, nullptr);
@@ -47,14 +58,17 @@ std::optional<StepReport> Midpoint::find_velocities(System& system) {
     const double target = solver_.tolerance() * solver_.tolerance() * motion;
     report.solver_residual = motion > 0 ? std::sqrt(residual.squared / motion) : 0;
     report.sums.finite = report.sums.finite && std::isfinite(residual.squared) && std::isfinite(motion);
-    if (!(residual.squared > target) || iteration == most_newton_iterations) {
+    const int most = residual.squared > far * far * target ? iterations.most : iterations.usual;
+    if (!(residual.squared > target) || iteration >= most) {
       return report;
     }
     restore_springs(system);
     if (iteration > 0) {
-      solver_.assemble(system, field_, 0.5 * timestep_);
+      solver_.assemble(system, field_);
     }
-    if (!solver_.correct(system, std::max(0.25 * target, forcing * forcing * residual.squared), report)) {
+    const double left = std::min(solver_.tolerance() / default_tolerance, 1.0) *
+                        (iteration == 0 ? iterations.first_forcing : iterations.forcing);
+    if (!solver_.correct(system, std::max(0.25 * target, left * left * residual.squared), report)) {
       report.sums.finite = false;
       return report;
     }

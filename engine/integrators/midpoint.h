@@ -1,12 +1,13 @@
 // The implicit midpoint rule, without noise:
-//   x' = x_n + dt/2 V,   M (V - V_n) = dt F(x', V),   x_n+1 = x_n + dt V.
+//   x' = x_n + dt/2 V,   M (V - V_n) = dt F(x', V),   x_n+1 = x_n + dt V,
+// with the resistance of a pair averaged over the gaps between x_n and x_n+1 (terms/step_resistance.h).
 // Springs of friction push after 0.6 of the way that V stretches them in the step, and Coulomb's law cuts
 // them there and at its end. Newton's iterations start from the velocities that the last change would lead
 // to. They go on until the residual, relative to the motion relative to the streaming flow and in the energy
-// norm of the system, is below the tolerance, or for three iterations: where pairs enter or leave the range
-// of lubrication, whose resistance jumps there, the equations may have no solution at all.
+// norm of the system, is below the tolerance, or for six iterations; with friction for three, and for eight
+// where the residual is large.
 //
-// The stress is that of V at x_n + dt/2 V.
+// The stress is that of V at x_n + dt/2 V, with the averaged resistance.
 #pragma once
 
 #include "engine/integrators/implicit.h"

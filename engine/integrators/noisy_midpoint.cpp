@@ -34,18 +34,17 @@ NoisyMidpoint::NoisyMidpoint(const Physics& physics, const ParticleState& partic
     : Implicit(physics, particles, timestep, tolerance, seed, threads, set, inertial ? 0.5 : 1),
       with_noise_(physics, particles, timestep, seed, threads, set, 0.5 * timestep),
       at_beginning_(field_.physics(), particles, timestep, seed, threads, set, 0.5 * timestep,
-                    {inertial ? StepResistance::Part::at_beginning : StepResistance::Part::whole, timestep}),
+                    inertial ? StepResistance::Part::at_beginning : StepResistance::Part::whole),
       ahead_(field_.physics(), particles, timestep, seed, threads, set, 0,
-             {inertial ? StepResistance::Part::ahead : StepResistance::Part::whole, timestep}),
+             inertial ? StepResistance::Part::ahead : StepResistance::Part::whole),
       on_the_way_(field_.physics(), particles, timestep, seed, threads, set, 0,
-                  {StepResistance::Part::on_the_way, timestep}),
+                  StepResistance::Part::on_the_way),
       noise_(particles.count(), threads),
       inertial_(inertial) {}
 
 std::optional<StepReport> NoisyMidpoint::find_velocities(System& system) {
-  constexpr double resistance_stays = 0;
   StepReport report;
-  solver_.assemble(system, at_beginning_, resistance_stays);
+  solver_.assemble(system, at_beginning_);
   at_beginning_.evaluate(system, noise_.force, noise_.torque);
   restore_springs(system);
   const PairSums drawn = with_noise_.evaluate(system, loads_.force, loads_.torque);
@@ -57,7 +56,7 @@ std::optional<StepReport> NoisyMidpoint::find_velocities(System& system) {
   if (!move_half_a_step(system)) {
     return std::nullopt;
   }
-  solver_.assemble(system, ahead_, resistance_stays);
+  solver_.assemble(system, ahead_);
   ahead_.evaluate(system, loads_.force, loads_.torque);
   restore_springs(system);
   if (inertial_) {

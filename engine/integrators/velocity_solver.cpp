@@ -49,14 +49,12 @@ VelocitySolver::VelocitySolver(const Physics& physics, const ParticleState& part
   }
 }
 
-void VelocitySolver::assemble(System& system, ForceField& field, double resistance_time) {
+void VelocitySolver::assemble(System& system, ForceField& field) {
   if (ordered_ != system.list.builds()) {
     order_.arrange(system.list, system.particles.count());
     ordered_ = system.list.builds();
   }
-  field.assemble_links(
-      system, {.timestep = timestep_, .normal_time = 0.5 * timestep_, .resistance_time = resistance_time},
-      order_, groups_);
+  field.assemble_links(system, {.timestep = timestep_, .normal_time = 0.5 * timestep_}, order_, groups_);
   link_.factorise(links(system), scratch_.data(), inverse_pivots_.data(), squeezing_.data());
   begun_.reset();
 }

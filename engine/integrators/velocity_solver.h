@@ -2,7 +2,7 @@
 // their residual away: couplings of near pairs ("links"), an incomplete factorisation, conjugate gradients.
 //
 // The matrix is symmetric and positive definite: friction that slides enters with its secant stiffness, the
-// resistance with what the approach changes of its squeezing part.
+// resistance with what the approach changes of it (terms/step_resistance.h).
 #pragma once
 
 #include "engine/integrators/integrator.h"
@@ -33,9 +33,8 @@ class VelocitySolver {
 
   double tolerance() const { return tolerance_; }
 
-  // The matrix at the system's places and velocities, whose springs must be those of the origin. The
-  // resistance changes during `resistance_time` of the approach; 0: it stays.
-  void assemble(System& system, ForceField& field, double resistance_time);
+  // The matrix at the system's places and velocities, whose springs must be those of the origin.
+  void assemble(System& system, ForceField& field);
 
   struct Residual {
     double squared;         // r.C^-1 r with the preconditioner C, nearly r.A^-1 r

@@ -7,7 +7,7 @@ namespace peclet::engine {
 
 ForceField::ForceField(const Physics& physics, const ParticleState& particles, double timestep,
                        std::uint64_t seed, int threads, InstructionSet set, double approach_time,
-                       const StepResistance& step_resistance)
+                       StepResistance::Part part)
     : physics_(physics),
       terms_(required_terms(physics)),
       kinds_(make_pair_kinds(physics, distinct_radii(particles.radius))),
@@ -20,7 +20,7 @@ ForceField::ForceField(const Physics& physics, const ParticleState& particles, d
       link_(link_kernels(set)),
       threads_(threads) {
   parameters_.approach_time = approach_time;
-  parameters_.step_resistance = step_resistance;
+  parameters_.step_resistance = step_resistance(part, timestep, parameters_.lubrication);
   for (const double radius : distinct_radii(particles.radius)) {
     const double zeta = translational_drag(physics.viscosity, radius);
     const double zeta_r = rotational_drag(physics.viscosity, radius);

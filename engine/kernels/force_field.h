@@ -12,10 +12,10 @@ namespace peclet::engine {
 class ForceField {
  public:
   // `timestep` enters the amplitude of the noise, sqrt(2 kT / dt), and the advance of contact springs;
-  // `approach_time` and `step_resistance` see PairParameters.
+  // `approach_time` see PairParameters, `part` terms/step_resistance.h.
   ForceField(const Physics& physics, const ParticleState& particles, double timestep, std::uint64_t seed,
              int threads, InstructionSet set = chosen_instruction_set(), double approach_time = 0,
-             const StepResistance& step_resistance = {});
+             StepResistance::Part part = StepResistance::Part::whole);
 
   // Overwrites force and torque with those at the system's positions and velocities, with the noise of
   // system.step; contact springs advance by one step of the present motion.

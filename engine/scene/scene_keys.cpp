@@ -120,9 +120,9 @@ Keys run_keys() {
       {.pointer = "/integrator/tolerance",
        .kind = KeyKind::number,
        .meaning = "Residual of the equations of an implicit step, relative to the motion, in the energy "
-                  "norm; 0.001 unless given.",
+                  "norm; 0.002 unless given.",
        .minimum = 0,
-       .maximum = 1e-3,
+       .maximum = 5e-3,
        .above_minimum = true},
       block("/duration", "How long a realisation runs.", required),
   };

@@ -198,8 +198,8 @@ double automatic_implicit_timestep(const Scene& scene) {
   const bool demanding = friction && (physics.thermal_energy > 0 || physics.contact->friction > 1 ||
                                       physics.contact->rolling_stiffness > 0);
   const bool relaxed = !demanding && physics.thermal_energy == 0 && !required_terms(physics).conservative;
-  const double strain = demanding ? 0.0025 : 0.005;
-  const double contact_times = (friction ? 2 : 5) * (relaxed ? 2 : 1);
+  const double strain = demanding ? 0.0025 : friction || !relaxed ? 0.005 : 0.01;
+  const double contact_times = friction ? (relaxed ? 4 : 2) : (relaxed ? 20 : 5);
   constexpr double brownian_times = 0.0017, pushing_times = 20, leaps = 5;
   constexpr double inertial_brownian_times = 0.004;
   double step = std::numeric_limits<double>::infinity();

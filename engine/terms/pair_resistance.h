@@ -89,15 +89,6 @@ PECLET_ALWAYS_INLINE PairResistanceOf<Real> pair_resistance(const ResistanceCons
   };
 }
 
-// dX_A/dr; zero below the inner gap, where X_A stays as it is.
-template <class Real>
-PECLET_ALWAYS_INLINE Real squeeze_slope(const ResistanceConstants& k, double inner_gap, double sum_of_radii,
-                                        const ResistanceModesOf<Real>& mode) {
-  return select(mode.inverse * inner_gap < 1.0,
-                (-2 / sum_of_radii) * mode.inverse * (k.squeeze_inverse * mode.inverse + k.squeeze_logarithm),
-                Real{0.0});
-}
-
 template <class Real>
 PECLET_ALWAYS_INLINE void add_scaled(PairResistanceOf<Real>& sum, const Real& weight,
                                      const PairResistanceOf<Real>& part) {

@@ -1,7 +1,11 @@
-// The resistance of a pair as an implicit step with noise counts it, where inertia carries a pair across the
-// outer gap (integrators/noisy_midpoint.h).
+// The resistance of a pair as an implicit step counts it.
 //
-// With R_o the resistance at the outer gap, within the range, and zero beyond, R = R_o + R_b: R_b is
+// Without noise it is R averaged over the gaps of the step, from xi_0 to xi_1 (integrators/midpoint.h). The
+// squeezing force is then the difference of a potential over the way, whose derivative is X_A(xi_1): it
+// changes continuously where pairs enter or leave the range, and Newton's iterations find its zeros.
+//
+// With noise, where inertia carries a pair across the outer gap (integrators/noisy_midpoint.h): with R_o the
+// resistance at the outer gap, within the range, and zero beyond, R = R_o + R_b: R_b is
 // continuous, R_o jumps. R_o is that of the gap at which the step begins and acts on (V_n + V) / 2; so the
 // new velocities feel R_b + R_o / 2. R_b is the mean of its average over the gaps from xi_0 to xi_1 and of
 // its value at sqrt(xi_0 xi_1),
@@ -29,6 +33,7 @@ struct StepResistance {
   };
   Part part = Part::whole;
   double timestep = 0;
+  double inner_logarithm = 0, outer_logarithm = 0;  // L at the inner and at the outer gap
 
   // How much farther than its range a pair may stand and still have a resistance.
   double reach(const LubricationParameters& lubrication, double sum_of_radii) const {
@@ -36,29 +41,68 @@ struct StepResistance {
   }
 };
 
-// Averages over the gaps from `begin` to `begin` + `way`; beyond the outer gap there is that share of what
-// is there.
+inline StepResistance step_resistance(StepResistance::Part part, double timestep,
+                                      const LubricationParameters& lubrication) {
+  return {part, timestep, -std::log(lubrication.inner_gap), -std::log(lubrication.outer_gap)};
+}
+
+// A gap, and 1/xi and L of the nearest one that is neither below the inner gap nor beyond the outer one.
 template <class Real>
-PECLET_ALWAYS_INLINE ResistanceModesOf<Real> mean_modes(const LubricationParameters& lubrication,
-                                                        double share_beyond, const Real& begin,
-                                                        const Real& given_way, const Real& lever) {
+struct BoundedModesOf {
+  Real gap, inverse, logarithm;
+};
+
+template <class Real>
+PECLET_ALWAYS_INLINE BoundedModesOf<Real> bounded_modes(const LubricationParameters& lubrication,
+                                                        const Real& gap) {
+  const Real inverse =
+      larger(1.0 / larger(gap, Real{lubrication.inner_gap}), Real{1 / lubrication.outer_gap});
+  return {gap, inverse, logarithm(inverse)};
+}
+
+template <class Real>
+struct WayOf {
+  BoundedModesOf<Real> from, to;
+  Real per_way;  // 1 / (xi_1 - xi_0)
+};
+
+template <class Real>
+PECLET_ALWAYS_INLINE WayOf<Real> way_of(const LubricationParameters& lubrication, const Real& begin,
+                                        const Real& given_way) {
   const Real shortest{1e-5 * lubrication.inner_gap};  // of which differences keep ten digits
   const Real way = select(larger(given_way, -given_way) < shortest, shortest, given_way);
+  return {bounded_modes(lubrication, begin), bounded_modes(lubrication, begin + way), 1.0 / way};
+}
+
+// Of a pair in the middle of a step, with this closing velocity.
+template <class Real>
+PECLET_ALWAYS_INLINE WayOf<Real> way_of_step(const StepResistance& step,
+                                             const LubricationParameters& lubrication,
+                                             const PairGeometryOf<Real>& pair, const Real& closing) {
+  const double per_radius = 2 / pair.sum_of_radii;
+  const Real way = (per_radius * step.timestep) * closing;
+  return way_of(lubrication, per_radius * pair.surface_distance() - 0.5 * way, way);
+}
+
+// Averages over a way; beyond the outer gap there is that share of what is there.
+template <class Real>
+PECLET_ALWAYS_INLINE ResistanceModesOf<Real> mean_modes(const StepResistance& step,
+                                                        const LubricationParameters& lubrication,
+                                                        double share_beyond, const WayOf<Real>& way,
+                                                        const Real& lever) {
   const double inner = lubrication.inner_gap;
   struct Integrals {
     Real inverse, logarithm;
   };
-  const auto up_to = [&](const Real& gap) PECLET_INLINE_LAMBDA {
-    const Real inverse = larger(1.0 / larger(gap, Real{inner}), Real{1 / lubrication.outer_gap});
-    const Real L = logarithm(inverse), below = larger(inner - gap, Real{0.0});
-    const Real beyond = share_beyond * larger(gap - lubrication.outer_gap, Real{0.0});
+  const auto up_to = [&](const BoundedModesOf<Real>& there) PECLET_INLINE_LAMBDA {
+    const Real &L = there.logarithm, below = larger(inner - there.gap, Real{0.0});
+    const Real beyond = share_beyond * larger(there.gap - lubrication.outer_gap, Real{0.0});
     return Integrals{
         (1 / lubrication.outer_gap) * beyond - L - (1 / inner) * below,
-        std::log(1 / lubrication.outer_gap) * beyond + (1.0 + L) / inverse - std::log(1 / inner) * below};
+        step.outer_logarithm * beyond + (1.0 + L) / there.inverse - step.inner_logarithm * below};
   };
-  const Integrals from = up_to(begin), to = up_to(begin + way);
-  const Real per_way = 1.0 / way;
-  return {(to.inverse - from.inverse) * per_way, (to.logarithm - from.logarithm) * per_way, lever};
+  const Integrals from = up_to(way.from), to = up_to(way.to);
+  return {(to.inverse - from.inverse) * way.per_way, (to.logarithm - from.logarithm) * way.per_way, lever};
 }
 
 template <class Real>
@@ -69,7 +113,7 @@ PECLET_ALWAYS_INLINE ResistanceModesOf<Real> resistance_modes(const StepResistan
   if (__builtin_expect(step.part == StepResistance::Part::whole, 1)) {
     return resistance_modes(lubrication.inner_gap, range, pair);
   }
-  const double jump = 1 / lubrication.outer_gap, log_jump = std::log(jump);
+  const double jump = 1 / lubrication.outer_gap, log_jump = step.outer_logarithm;
   const double per_radius = 2 / pair.sum_of_radii;
   const Real inner{lubrication.inner_gap}, zero{0.0}, lever = (1 / pair.sum_of_radii) * pair.distance;
   const Real here = per_radius * pair.surface_distance();
@@ -79,10 +123,11 @@ PECLET_ALWAYS_INLINE ResistanceModesOf<Real> resistance_modes(const StepResistan
     return {select(within, inverse - 0.5 * jump, zero),
             select(within, logarithm(inverse) - 0.5 * log_jump, zero), lever};
   }
-  const Real way = (per_radius * step.timestep) * closing, begin = here - 0.5 * way;
   if (step.part == StepResistance::Part::on_the_way) {
-    return mean_modes(lubrication, /*share_beyond=*/0, begin, way, lever);
+    return mean_modes(step, lubrication, /*share_beyond=*/0, way_of_step(step, lubrication, pair, closing),
+                      lever);
   }
+  const Real way = (per_radius * step.timestep) * closing, begin = here - 0.5 * way;
   constexpr double changed = 0.65;
   const double around = 0.25 / lubrication.inner_gap;
   const Real from = larger(begin, inner);
@@ -91,13 +136,36 @@ PECLET_ALWAYS_INLINE ResistanceModesOf<Real> resistance_modes(const StepResistan
   };
   const Real left = (1.0 / from + around) / (inverse_mean(way) + around);
   const Real made = way * ((1 - changed) + changed * left);
-  const ResistanceModesOf<Real> average = mean_modes(lubrication, /*share_beyond=*/1, begin, made, lever);
+  const ResistanceModesOf<Real> average =
+      mean_modes(step, lubrication, /*share_beyond=*/1, way_of(lubrication, begin, made), lever);
   const Real inverse = larger(inverse_mean(made), Real{jump});
   const auto was_within = begin <= Real{lubrication.outer_gap};
   return {larger(0.5 * (average.inverse + inverse) - jump, zero) + select(was_within, Real{0.5 * jump}, zero),
           larger(0.5 * (average.logarithm + logarithm(inverse)) - log_jump, zero) +
               select(was_within, Real{0.5 * log_jump}, zero),
           lever};
+}
+
+// What a change of the motion changes of the load is the product of it with this. Averaged over the way, the
+// squeezing force at the closing velocity c is (1/t) times the integral of X_A from xi_0 to xi_0 + t c; its
+// derivative is X_A where the step ends.
+template <class Real>
+PECLET_ALWAYS_INLINE PairResistanceOf<Real> tangent_resistance(const ResistanceConstants& k,
+                                                               const StepResistance& step,
+                                                               const LubricationParameters& lubrication,
+                                                               double range, const PairGeometryOf<Real>& pair,
+                                                               const Real& closing) {
+  if (step.part != StepResistance::Part::on_the_way) {
+    return pair_resistance(k, resistance_modes(step, lubrication, range, pair, closing));
+  }
+  const WayOf<Real> way = way_of_step(step, lubrication, pair, closing);
+  const Real lever = (1 / pair.sum_of_radii) * pair.distance;
+  PairResistanceOf<Real> tangent =
+      pair_resistance(k, mean_modes(step, lubrication, /*share_beyond=*/0, way, lever));
+  tangent.squeeze =
+      select(way.to.gap <= Real{lubrication.outer_gap},
+             k.squeeze_inverse * way.to.inverse + k.squeeze_logarithm * way.to.logarithm, Real{0.0});
+  return tangent;
 }
 
 }  // namespace peclet::engine

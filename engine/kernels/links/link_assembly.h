@@ -76,15 +76,10 @@ class LinkedPairs {
     PairResistanceOf<Real> sum{};
     const PairParameters& parameters = in_.parameters;
     if (terms.lubrication) {
-      const double inner_gap = parameters.lubrication.inner_gap;
       const Real closing = dot(motion_.velocity, shape_.normal);
-      const ResistanceModesOf<Real> modes = resistance_modes(
-          parameters.step_resistance, parameters.lubrication, kind_.lubrication_range, shape_, closing);
-      add_scaled(sum, Real{weights.timestep}, pair_resistance(kind_.resistance, modes));
-      // The resistance at the distance that the velocities lead to: d/dv of X_A(r + t v) v.
-      const Real slope = squeeze_slope(kind_.resistance, inner_gap, kind_.sum_of_radii, modes);
-      sum.squeeze = larger(sum.squeeze + (weights.timestep * weights.resistance_time) * slope * closing,
-                           0.5 * sum.squeeze);
+      add_scaled(sum, Real{weights.timestep},
+                 tangent_resistance(kind_.resistance, parameters.step_resistance, parameters.lubrication,
+                                    kind_.lubrication_range, shape_, closing));
     }
     add_stiffness(sum, terms, parameters.contact, kind_, ahead_,
                   {.resistance = weights.timestep,

@@ -45,8 +45,6 @@ struct alignas(32) LinkGroup {
 // limit.
 struct LinkWeights {
   double timestep, normal_time;
-  // The approach changes the squeezing resistance during this time; 0: the resistance stays.
-  double resistance_time;
 };
 
 // Consecutive rows, and the groups of links whose first particles they are.

@@ -236,7 +236,7 @@ TEST(Implicit, StrainAfterNStepsIsNTimesRateAndStep) {
 }
 
 // Iterations end when the residual is below the tolerance, and smooth packings never need more than they may.
-TEST(Implicit, LeavesHardlyEverALargerResidualThanItsTolerance) {
+TEST(Implicit, LeavesNoLargerResidualThanItsTolerance) {
   const Json document = small_scene(
       {{"particles", {{"count", 100}}},
        {"fluid", {{"thermal_energy", 0}}},
@@ -251,14 +251,9 @@ TEST(Implicit, LeavesHardlyEverALargerResidualThanItsTolerance) {
   System system = simulation.system();
   Midpoint integrator(scene.physics, system.particles, automatic_timestep(scene), tolerance, 1, 1);
   integrator.start(system);
-  // Three of Newton's iterations are not always enough where a contact opens or closes.
-  int beyond = 0;
   for (int step = 0; step < 200; ++step) {
-    const double residual = integrator.advance(system).solver_residual;
-    beyond += residual > tolerance ? 1 : 0;
-    EXPECT_LE(residual, 2 * tolerance) << step;
+    EXPECT_LE(integrator.advance(system).solver_residual, tolerance) << step;
   }
-  EXPECT_LE(beyond, 2);
 }
 
 // The comparison beside the system: steps as the system will take them, and steps of half the size.

@@ -21,8 +21,9 @@ Scene scene_with(const Json& patch) {
   return read_scene(document, "scene.json");
 }
 
-// 0.005 / rate (1 + 2 St), half of that where friction asks for more; 0.004 eta a^3 / kT, 0.0017 without
-// lubrication; and the contact, whose rates are those of the explicit step's bound.
+// 0.01 / rate (1 + 2 St), half of that with friction, noise or repulsion, a quarter where friction asks for
+// more; 0.004 eta a^3 / kT, 0.0017 without lubrication; and the contact, whose rates are those of the
+// explicit step's bound.
 TEST(ImplicitTimestep, IsTheLeastOfStrainBrownianAndContactTimes) {
   const Json soft = {{"contact", {{"normal_stiffness", 1e-3}, {"friction", 0.5}}}, {"repulsion", nullptr}};
   const double stokes = 0.1 * 1.4 * 1.4 * 2 / 0.1;
@@ -40,6 +41,10 @@ TEST(ImplicitTimestep, IsTheLeastOfStrainBrownianAndContactTimes) {
                        {"friction", nullptr},
                        {"rolling_friction", nullptr}};
   EXPECT_NEAR(automatic_timestep(scene_with(smooth)), 0.005 / 2 / (1 + 2 * stokes), 1e-12);
+  smooth["fluid"] = {{"thermal_energy", nullptr}};
+  EXPECT_NEAR(automatic_timestep(scene_with(smooth)), 0.01 / 2 / (1 + 2 * stokes), 1e-12);
+  smooth.erase("repulsion");
+  EXPECT_NEAR(automatic_timestep(scene_with(smooth)), 0.005 / 2 / (1 + 2 * stokes), 1e-12);
   Json warm = soft;
   warm["fluid"] = {{"thermal_energy", 5}};
   EXPECT_NEAR(automatic_timestep(scene_with(warm)), 0.004 * 0.1 / 5, 1e-12);
@@ -53,7 +58,7 @@ TEST(ImplicitTimestep, IsTheLeastOfStrainBrownianAndContactTimes) {
   const PairRates rates = stiffest_pair(scene_with(stiff));
   EXPECT_NEAR(automatic_timestep(scene_with(stiff)), 5 * rates.damping / rates.frequency_squared, 1e-15);
   stiff["fluid"] = {{"thermal_energy", nullptr}};
-  EXPECT_NEAR(automatic_timestep(scene_with(stiff)), 10 * rates.damping / rates.frequency_squared, 1e-15);
+  EXPECT_NEAR(automatic_timestep(scene_with(stiff)), 20 * rates.damping / rates.frequency_squared, 1e-15);
   stiff["fluid"] = Json::object();
   stiff["contact"] = {{"normal_stiffness", 1e9},
                       {"friction", 0.5},

@@ -15,15 +15,16 @@ namespace peclet::engine {
 constexpr double single_precision = 2e-6;
 
 constexpr double step = 0.02;
-constexpr LinkWeights weights = {.timestep = step, .normal_time = 0.5 * step, .resistance_time = 0};
+constexpr LinkWeights weights = {.timestep = step, .normal_time = 0.5 * step};
 
 // Kernels need not start from every particle: rows of all of them, and what belongs to them.
 class Links {
  public:
-  Links(const Physics& physics, System system, InstructionSet set, const LinkWeights& of_links = weights)
+  Links(const Physics& physics, System system, InstructionSet set, const LinkWeights& of_links = weights,
+        StepResistance::Part part = StepResistance::Part::whole)
       : kernels_(link_kernels(set)),
         system_(std::move(system)),
-        field_(physics, system_.particles, step, seed, 1, set, of_links.normal_time) {
+        field_(physics, system_.particles, step, seed, 1, set, of_links.normal_time, part) {
     const ParticleState& particles = system_.particles;
     diagonal_.resize(distinct_radii(particles.radius).size());
     for (std::size_t i = 0; i < particles.count(); ++i) {

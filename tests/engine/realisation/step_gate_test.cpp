@@ -197,7 +197,7 @@ TEST(StepGate, FlagsImplicitSteps) {
   EXPECT_EQ(fine.at("gate").at("solver").at("deepest_division"), 0);
   const Json edge = {
       {"repulsion",
-       {{"form", "exponential"}, {"strength", 100}, {"relative_length", 0.05}, {"cutoff_lengths", 5}}},
+       {{"form", "exponential"}, {"strength", 100}, {"relative_length", 0.01}, {"cutoff_lengths", 5}}},
       {"duration", {{"production", {{"strain", 0.05}}}}}};
   EXPECT_TRUE(has_warning(result(published(0.5), edge), "solver"));
   const Json divided = result(published(0.5), {{"guard", {{"largest_displacement", 0.02}}}});

@@ -107,7 +107,7 @@ const Fault faults[] = {
     {R"({"integrator": {"method": "explicit", "tolerance": 1e-4}})", "/integrator/tolerance", "0.0001",
      "must be left out"},
     {R"({"integrator": {"method": "implicit", "tolerance": 0.01}})", "/integrator/tolerance", "0.01",
-     "<= 0.001"},
+     "<= 0.005"},
     {R"({"integrator": {"timestep": "fast"}})", "/integrator/timestep", "\"fast\"", "number > 0 or \"auto\""},
     {R"({"duration": null})", "/duration", "missing", "must be an object"},
     {R"({"duration": {"equilibration": null}})", "/duration/equilibration", "missing", "must be an object"},

@@ -31,7 +31,8 @@ ResistanceModes modes(StepResistance::Part part, double from, double to) {
   const double gap = 0.5 * (from + to), distance = sum * (1 + 0.5 * gap);
   const PairGeometry pair = {{distance, 0, 0}, {1, 0, 0}, distance, sum};
   const double closing = 0.5 * sum * (to - from) / timestep;
-  return resistance_modes({part, timestep}, lubrication, lubrication_range(lubrication, sum), pair, closing);
+  return resistance_modes(step_resistance(part, timestep, lubrication), lubrication,
+                          lubrication_range(lubrication, sum), pair, closing);
 }
 
 struct Way {
@@ -47,6 +48,31 @@ TEST(StepResistance, OnTheWayIsTheAverageOverItsGaps) {
     EXPECT_NEAR(found.inverse, average(inverse, from, to), 1e-4 / lubrication.inner_gap) << from << ' ' << to;
     EXPECT_NEAR(found.logarithm, average(logarithm_of, from, to), 1e-4) << from << ' ' << to;
     EXPECT_NEAR(found.lever, 1 + 0.25 * (from + to), 1e-12);
+  }
+}
+
+// From the same gap at the beginning of the step, beside differences of the force X_A dr/dt; other modes keep
+// their averages.
+TEST(StepResistance, TheTangentIsTheDerivativeOfTheSqueezingForce) {
+  const ResistanceConstants k = resistance_constants(0.1, first, second);
+  const auto mean = [&](double from, double to) {
+    return pair_resistance(k, modes(StepResistance::Part::on_the_way, from, to));
+  };
+  const auto force = [&](double from, double to) {
+    return mean(from, to).squeeze * 0.5 * sum * (to - from) / timestep;
+  };
+  for (const auto& [from, to] : ways) {
+    const double d = 1e-6, gap = 0.5 * (from + to), distance = sum * (1 + 0.5 * gap);
+    const PairGeometry pair = {{distance, 0, 0}, {1, 0, 0}, distance, sum};
+    const double closing = 0.5 * sum * (to - from) / timestep, change = sum * d / timestep;
+    const PairResistance tangent =
+        tangent_resistance(k, step_resistance(StepResistance::Part::on_the_way, timestep, lubrication),
+                           lubrication, lubrication_range(lubrication, sum), pair, closing);
+    EXPECT_NEAR(tangent.squeeze, (force(from, to + d) - force(from, to - d)) / change,
+                1e-4 * k.squeeze_inverse / lubrication.inner_gap)
+        << from << ' ' << to;
+    EXPECT_DOUBLE_EQ(tangent.shear, mean(from, to).shear);
+    EXPECT_DOUBLE_EQ(tangent.twist_cross, mean(from, to).twist_cross);
   }
 }
 
