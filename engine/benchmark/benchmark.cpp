@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "engine/benchmark/catalogue.h"
 #include "engine/benchmark/machine.h"
 #include "engine/benchmark/operations.h"
+#include "engine/benchmark/solver_cost.h"
 #include "engine/benchmark/tiling.h"
 #include "engine/realisation/simulation.h"
 
@@ -25,25 +25,6 @@ constexpr std::size_t particle_steps_per_round = 100000;
 constexpr std::size_t implicit_particle_steps_per_round = 10000;
 // The packing's contacts must have given way to those of the flow.
 constexpr double warm_up_strain = 0.2;
-
-struct Spread {
-  double smallest = 0, median = 0, largest = 0;
-};
-
-Spread spread_of(std::vector<double> values) {
-  if (values.empty()) {
-    throw std::runtime_error("a list of neighbours was rebuilt in every round: nothing is known of one step");
-  }
-  std::sort(values.begin(), values.end());
-  return {values.front(), values[values.size() / 2], values.back()};
-}
-
-// Processor time of this thread, or the time on the wall where others work with it.
-double seconds(bool wall) {
-  timespec now{};
-  clock_gettime(wall ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 void advance(Simulation& simulation, std::uint64_t steps) {
   if (const std::optional<Ending> ending = simulation.advance(steps)) {
@@ -245,9 +226,6 @@ Roof roof_of(const Operations& done, double bytes, const Machine& machine, doubl
 
 void print_roofline(const std::vector<Runner>& runners, const std::vector<Measured>& results,
                     const Machine& machine) {
-  if (std::all_of(runners.begin(), runners.end(), [](const Runner& each) { return each.is_implicit(); })) {
-    return;  // the operations that are counted are those of one evaluation of the forces
-  }
   fmt::print("\n{:<19} {:^33}  {:>9} {:>7}  {:^24} {:>7} {:>8}\n", "", "per near pair", "1e6 near", "Gflop",
              "ns that the machine needs", "bytes", "");
   fmt::print("{:<19} {:>5} {:>8} {:>4} {:>5} {:>4}   {:>9} {:>7}  {:>12} {:>12} {:>7}\n", "case", "flops",
@@ -285,7 +263,19 @@ void run(const Group& group, const Machine& machine) {
   fmt::print("\n{}: {}{} {} rounds\n\n", group.name, group.question, wall ? " (time on the wall)" : "",
              group.rounds);
   print_times(runners, results);
-  print_roofline(runners, results, machine);
+  // A group has steps of one kind.
+  if (!runners.front().is_implicit()) {
+    print_roofline(runners, results, machine);
+    std::fflush(stdout);
+    return;
+  }
+  std::vector<std::string> names;
+  std::vector<SolverCost> costs;
+  for (const Runner& runner : runners) {
+    names.push_back(runner.contestant().name);
+    costs.push_back(solver_cost(runner.contestant().scene, runner.system(), runner.timestep()));
+  }
+  print_solvers(names, costs, machine);
   std::fflush(stdout);
 }
 
@@ -300,8 +290,11 @@ int run_benchmarks(const std::vector<std::string>& names) {
              build.at("git_dirty").get<bool>() ? " with changes" : "", build.at("cpu").get<std::string>(),
              name_of(set));
   fmt::print(
-      "one thread of this machine: {:.1f} Gflop/s, {:.2f} quotients, {:.2f} roots per ns, {:.1f} GB/s\n",
-      1e-9 * machine.products_and_sums, 1e-9 * machine.quotients, 1e-9 * machine.roots, 1e-9 * machine.bytes);
+      "one thread of this machine: {:.1f} Gflop/s, {:.2f} quotients, {:.2f} roots per ns, {:.1f} GB/s; "
+      "{:.1f} "
+      "Gflop/s of single precision\n",
+      1e-9 * machine.products_and_sums, 1e-9 * machine.quotients, 1e-9 * machine.roots, 1e-9 * machine.bytes,
+      1e-9 * machine.single_products_and_sums);
   fmt::print("rounds of {} particle steps, implicit ones of {}, after a strain of {}\n",
              particle_steps_per_round, implicit_particle_steps_per_round, warm_up_strain);
   std::fflush(stdout);

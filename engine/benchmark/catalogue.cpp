@@ -103,7 +103,7 @@ Group implicit() {
 // be those of the small one.
 Group implicit_size() {
   Group group{"implicit-size", "What does an implicit step cost in a larger system?", {}, 9};
-  for (const std::size_t count : {1000, 4000, 16384, 65536}) {
+  for (const std::size_t count : {1000U, 4000U, 16384U, 65536U}) {
     group.contestants.push_back(
         implicit_contestant(fmt::format("implicit-{}", count), "contact and lubrication", count));
   }
