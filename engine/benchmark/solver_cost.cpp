@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <limits>
 
 #include "engine/benchmark/counted_links.h"
@@ -49,15 +50,44 @@ std::size_t room_of_iteration(std::size_t rows, std::size_t groups) {
   return rows * ((vectors + pivot) * sizeof(MotionRow) + sizeof(SqueezingRow)) + groups * sizeof(LinkGroup);
 }
 
-// Operations of an iteration in the rows alone: the same system without its links.
-Operations operations_of_rows(LinkSystem system, const std::vector<MotionRow>& right) {
-  std::vector<LinkLevel> levels(system.levels, system.levels + system.count_of_levels);
-  for (LinkLevel& level : levels) {
-    level.count_of_groups = 0;
+// The same system without its links.
+class RowsAlone {
+ public:
+  explicit RowsAlone(const LinkSystem& system)
+      : system_(system), levels_(system.levels, system.levels + system.count_of_levels) {
+    for (LinkLevel& level : levels_) {
+      level.count_of_groups = 0;
+    }
+    system_.levels = levels_.data();
   }
-  system.levels = levels.data();
-  return count_solver_operations(system, right.data(), 1).iteration;
-}
+  RowsAlone(const RowsAlone&) = delete;
+  RowsAlone& operator=(const RowsAlone&) = delete;
+
+  Operations operations(const std::vector<MotionRow>& right) const {
+    return count_solver_operations(system_, right.data(), 1).iteration;
+  }
+
+  // Seconds of an iteration.
+  double time(const LinkKernels& kernels, const std::vector<MotionRow>& right) const {
+    std::array<std::vector<MotionRow>, 8> v;
+    v.fill(std::vector<MotionRow>(right.size()));
+    const SolverRows rows = {v[0].data(), v[1].data(), v[2].data(), v[3].data(),
+                             v[4].data(), v[5].data(), v[6].data(), v[7].data()};
+    constexpr int few = 3;  // so that something is left to solve
+    std::vector<double> times(repetitions);
+    for (double& time : times) {
+      const double squared = kernels.begin(system_, right.data(), rows);
+      time = -seconds_of([&] { kernels.solve(system_, rows, squared, 0, 0); });
+      time += seconds_of([&] { kernels.solve(system_, rows, squared, 0, few); });
+      time /= few;
+    }
+    return spread_of(times).median;
+  }
+
+ private:
+  LinkSystem system_;
+  std::vector<LinkLevel> levels_;
+};
 
 double links_in(const LinkSystem& system) {
   std::size_t links = 0;
@@ -74,10 +104,9 @@ double links_in(const LinkSystem& system) {
   return static_cast<double>(links);
 }
 
-void count(const LinkSystem& system, SolverCost& cost) {
-  const std::vector<MotionRow> right = ones(system.particles);
+void count(const LinkSystem& system, const std::vector<MotionRow>& right, SolverCost& cost) {
   const SolverOperations all = count_solver_operations(system, right.data(), 1);
-  cost.of_rows = operations_of_rows(system, right);
+  cost.of_rows = RowsAlone(system).operations(right);
   cost.of_links = all.iteration - cost.of_rows;
   cost.of_factorisation = all.factorisation;
   std::size_t groups = 0;
@@ -142,9 +171,13 @@ SolverCost solver_cost(const Scene& scene, const System& given, double timestep)
     iteration.push_back((with_iterations - without) / iterations);
   }
   SolverCost cost{};
-  count(solver.links(system), cost);
+  const LinkSystem links = solver.links(system);
+  const LinkKernels& kernels = link_kernels(set);
+  const std::vector<MotionRow> right = ones(particles.count());
+  count(links, right, cost);
   cost.iteration = spread_of(iteration);
-  cost.factorisation = time_of_factorisation(solver.links(system), link_kernels(set));
+  cost.rows_alone = RowsAlone(links).time(kernels, right);
+  cost.factorisation = time_of_factorisation(links, kernels);
   cost.assembly = spread_of(assembly).median - cost.factorisation;
   cost.residual = spread_of(residuals).median;
   cost.stream = stream_rate(set, cost.room);
@@ -155,24 +188,25 @@ void print_solvers(const std::vector<std::string>& names, const std::vector<Solv
                    const Machine& machine) {
   const auto nanoseconds = [](double seconds, double of) { return 1e9 * seconds / of; };
   const auto arithmetic = [&](double flops) { return flops / machine.single_products_and_sums; };
-  fmt::print("\n{:<19} {:^16} {:^12} {:^28} {:>8} {:>7} {:>7}  {:^27} {:>7} {:>7} {:>7}\n", "an iteration",
-             "", "flops", "ns per particle", "ns", "Gflop", "GB", "ns that the machine needs", "bytes", "kB",
-             "GB/s");
+  fmt::print("\n{:<19} {:^16} {:^12} {:^28} {:>7} {:>7} {:>7} {:>7} {:^25} {:>7} {:>7} {:>7}\n",
+             "an iteration", "", "flops", "ns per particle", "rows", "ns", "Gflop", "GB",
+             "ns the machine needs", "bytes", "kB", "GB/s");
   fmt::print(
-      "{:<19} {:>6} {:>9} {:>6} {:>5} {:>8} {:<19} {:>8} {:>7} {:>7}  {:>13} {:>13} {:>7} {:>7} {:>7}\n",
-      "case", "levels", "links / N", "a link", "a row", "median", "smallest .. largest", "a link", "per s",
-      "per s", "arithmetic", "transfers", "per N", "of room", "in it");
+      "{:<19} {:>6} {:>9} {:>6} {:>5} {:>8} {:<19} {:>7} {:>7} {:>7} {:>7} {:>12} {:>12} {:>7} {:>7} {:>7}\n",
+      "case", "levels", "links / N", "a link", "a row", "median", "smallest .. largest", "alone", "a link",
+      "per s", "per s", "arithmetic", "transfers", "per N", "of room", "in it");
   for (std::size_t k = 0; k < names.size(); ++k) {
     const SolverCost& c = costs[k];
     const double of_links = flops(c.of_links), of_rows = flops(c.of_rows);
+    const Spread& t = c.iteration;
     fmt::print(
-        "{:<19} {:>6} {:>9.2f} {:>6.0f} {:>5.0f} {:>8.1f} {:>8.1f} .. {:<7.1f} {:>8.1f} {:>7.1f} {:>7.1f}  "
-        "{:>13.1f} "
-        "{:>13.1f} {:>7.0f} {:>7.0f} {:>7.0f}\n",
+        "{:<19} {:>6} {:>9.2f} {:>6.0f} {:>5.0f} {:>8.1f} {:>8.1f} .. {:<7.1f} {:>7.1f} {:>7.1f} {:>7.1f} "
+        "{:>7.1f} "
+        "{:>12.1f} {:>12.1f} {:>7.0f} {:>7.0f} {:>7.0f}\n",
         names[k], c.levels, c.links / c.rows, of_links / c.links, of_rows / c.rows,
-        nanoseconds(c.iteration.median, c.rows), nanoseconds(c.iteration.smallest, c.rows),
-        nanoseconds(c.iteration.largest, c.rows), nanoseconds(c.iteration.median, c.links),
-        1e-9 * (of_links + of_rows) / c.iteration.median, 1e-9 * c.bytes / c.iteration.median,
+        nanoseconds(t.median, c.rows), nanoseconds(t.smallest, c.rows), nanoseconds(t.largest, c.rows),
+        nanoseconds(c.rows_alone, c.rows), nanoseconds(t.median, c.links),
+        1e-9 * (of_links + of_rows) / t.median, 1e-9 * c.bytes / t.median,
         nanoseconds(arithmetic(of_links + of_rows), c.rows), nanoseconds(c.bytes / c.stream, c.rows),
         c.bytes / c.rows, 1e-3 * static_cast<double>(c.room), 1e-9 * c.stream);
   }

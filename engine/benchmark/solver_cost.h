@@ -17,6 +17,7 @@ struct SolverCost {
   double rows, links;  // a row for each particle
   std::size_t levels;
   Spread iteration;
+  double rows_alone;                         // of an iteration without links
   double assembly, factorisation, residual;  // of a system, before its iterations
   Operations of_rows, of_links;              // in an iteration; links that fill up groups of eight included
   Operations of_factorisation;
