@@ -87,8 +87,10 @@ class Run:
             result = json.loads(done.stdout)
         except json.JSONDecodeError:
             sys.exit(f"{engine}: {scene}: exit status {done.returncode}: {done.stderr.strip()}")
-        strain = sum(result["strain"].values())
         self.ending = result["ending"]["cause"]
+        if self.ending != "completed":
+            return
+        strain = sum(result["strain"].values())
         self.seconds = result["cost"]["cpu_seconds"] / strain
         self.iterations = result["gate"]["solver"]["iterations_per_step"]
         self.steps = sum(result["steps"].values()) / strain
