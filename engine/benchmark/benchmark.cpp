@@ -177,6 +177,10 @@ std::vector<Measured> measure(std::vector<Runner>& runners, int rounds) {
     }
   }
   for (std::size_t k = 0; k < runners.size(); ++k) {
+    if (times[k].empty() || ratios[k].empty()) {
+      throw std::runtime_error(
+          "a list of neighbours was rebuilt in every round: nothing is known of one step");
+    }
     results[k].nanoseconds = spread_of(times[k]);
     results[k].ratio = spread_of(ratios[k]);
     results[k].iterations = static_cast<double>(runners[k].iterations() - iterations[k]) /
@@ -290,9 +294,8 @@ int run_benchmarks(const std::vector<std::string>& names) {
              build.at("git_dirty").get<bool>() ? " with changes" : "", build.at("cpu").get<std::string>(),
              name_of(set));
   fmt::print(
-      "one thread of this machine: {:.1f} Gflop/s, {:.2f} quotients, {:.2f} roots per ns, {:.1f} GB/s; "
-      "{:.1f} "
-      "Gflop/s of single precision\n",
+      "one thread of this machine: {:.1f} Gflop/s, {:.2f} quotients, {:.2f} roots per ns, {:.1f} GB/s;\n"
+      "{:.1f} Gflop/s of single precision\n",
       1e-9 * machine.products_and_sums, 1e-9 * machine.quotients, 1e-9 * machine.roots, 1e-9 * machine.bytes,
       1e-9 * machine.single_products_and_sums);
   fmt::print("rounds of {} particle steps, implicit ones of {}, after a strain of {}\n",

@@ -13,7 +13,7 @@
 
 namespace peclet::counting_engine {
 
-engine::Operations done;
+static engine::Operations done;
 
 struct CountedFloat {
   CountedFloat() = default;

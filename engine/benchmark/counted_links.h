@@ -13,8 +13,8 @@ struct SolverOperations {
   double squared_residual;              // that the last iteration leaves
 };
 
-// Of the kernels that take one processor's instructions as well as any other's, in `iterations` >= 1
-// iterations for A x = right. The pivots of `system` are not read.
+// Of the kernels without any processor's own instructions, in the last of `iterations` >= 1 iterations for
+// A x = right. The pivots of `system` are made anew.
 SolverOperations count_solver_operations(const LinkSystem& system, const MotionRow* right, int iterations);
 
 }  // namespace peclet::engine

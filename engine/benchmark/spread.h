@@ -13,10 +13,9 @@ struct Spread {
   double smallest = 0, median = 0, largest = 0;
 };
 
+// Of one value or more.
 inline Spread spread_of(std::vector<double> values) {
-  if (values.empty()) {
-    throw std::runtime_error("a list of neighbours was rebuilt in every round: nothing is known of one step");
-  }
+  if (values.empty()) throw std::invalid_argument("nothing has been measured");
   std::sort(values.begin(), values.end());
   return {values.front(), values[values.size() / 2], values.back()};
 }
