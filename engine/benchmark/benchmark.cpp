@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,13 +12,13 @@
 #include "engine/benchmark/catalogue.h"
 #include "engine/benchmark/machine.h"
 #include "engine/benchmark/operations.h"
+#include "engine/benchmark/solver_cost.h"
 #include "engine/benchmark/tiling.h"
 #include "engine/realisation/simulation.h"
 
 namespace peclet::engine {
 namespace {
 
-constexpr int rounds = 41;
 // What a contestant computes at a time: long beside the clock, short beside what else the machine does.
 constexpr std::size_t particle_steps_per_round = 100000;
 // An implicit step costs as much as tens of explicit ones.
@@ -27,32 +26,25 @@ constexpr std::size_t implicit_particle_steps_per_round = 10000;
 // The packing's contacts must have given way to those of the flow.
 constexpr double warm_up_strain = 0.2;
 
-struct Spread {
-  double smallest = 0, median = 0, largest = 0;
-};
-
-Spread spread_of(std::vector<double> values) {
-  if (values.empty()) {
-    throw std::runtime_error("a list of neighbours was rebuilt in every round: nothing is known of one step");
-  }
-  std::sort(values.begin(), values.end());
-  return {values.front(), values[values.size() / 2], values.back()};
-}
-
-// Processor time of this thread, or the time on the wall where others work with it.
-double seconds(bool wall) {
-  timespec now{};
-  clock_gettime(wall ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 void advance(Simulation& simulation, std::uint64_t steps) {
   if (const std::optional<Ending> ending = simulation.advance(steps)) {
     throw std::runtime_error("a case broke off: " + ending->message);
   }
 }
 
-// A system after the warm-up, and how long its lists held in the second half of it.
+// Packs and shears; returns how many steps a list held in the second half of it.
+double warm_up(Simulation& simulation, const Scene& scene) {
+  const auto half = static_cast<std::uint64_t>(0.5 * warm_up_strain / scene.physics.flow.rate() /
+                                               simulation.schedule().timestep);
+  simulation.start();
+  advance(simulation, half);
+  const std::uint64_t builds = simulation.system().list.builds();
+  advance(simulation, half);
+  const auto rebuilds = static_cast<double>(simulation.system().list.builds() - builds);
+  return static_cast<double>(half) / std::max(1.0, rebuilds);
+}
+
+// A system after the warm-up, and how long its lists held.
 struct Warm {
   System system;
   double steps_per_rebuild;
@@ -64,14 +56,8 @@ const Warm& warmed_up(const Contestant& contestant) {
   const std::string key = scene.document.dump();
   if (!known.contains(key)) {
     Simulation simulation(scene, make_schedule(scene, contestant.name), 0, 1, contestant.name);
-    const auto half = static_cast<std::uint64_t>(0.5 * warm_up_strain / scene.physics.flow.rate() /
-                                                 simulation.schedule().timestep);
-    simulation.start();
-    advance(simulation, half);
-    const std::uint64_t builds = simulation.system().list.builds();
-    advance(simulation, half);
-    const auto rebuilds = static_cast<double>(simulation.system().list.builds() - builds);
-    known[key] = {simulation.system(), static_cast<double>(half) / std::max(1.0, rebuilds)};
+    const double steps_per_rebuild = warm_up(simulation, scene);
+    known[key] = {simulation.system(), steps_per_rebuild};
   }
   return known.at(key);
 }
@@ -88,12 +74,17 @@ double near_pairs_of(const System& system, const std::vector<PairKind>& kinds) {
 class Runner {
  public:
   Runner(const Contestant& contestant, bool wall) : contestant_(contestant), wall_(wall) {
-    const Warm& warm = warmed_up(contestant);
     Scene scene = contestant.scene;
     const auto tiles = static_cast<std::size_t>(contestant.tiles);
     scene.particles.count *= tiles * tiles * tiles;
     simulation_ = std::make_unique<Simulation>(scene, make_schedule(scene, contestant.name), 0,
                                                contestant.threads, contestant.name);
+    if (is_implicit()) {
+      // Springs of friction that begin anew would be pushed beyond Coulomb's limit: steps would be divided.
+      steps_per_rebuild_ = warm_up(*simulation_, scene);
+      return;
+    }
+    const Warm& warm = warmed_up(contestant);
     simulation_->start(contestant.tiles == 1 ? warm.system : tiled(warm.system, contestant.tiles));
     steps_per_rebuild_ = warm.steps_per_rebuild;
   }
@@ -129,6 +120,8 @@ class Runner {
   bool is_implicit() const { return contestant_.scene.method == Method::implicit_steps; }
   std::size_t count() const { return simulation_->system().particles.count(); }
   double steps_per_rebuild() const { return steps_per_rebuild_; }
+  // Of the solver until now.
+  std::uint64_t iterations() const { return simulation_->step_errors().solver_iterations; }
   const System& system() const { return simulation_->system(); }
   double timestep() const { return simulation_->schedule().timestep; }
 
@@ -144,9 +137,10 @@ struct Measured {
   Spread ratio;        // to the first contestant of the same round
   double near, listed, crossing;  // pairs per particle
   double rebuild;                 // nanoseconds per particle
+  double iterations;              // of the solver in a step
 };
 
-std::vector<Measured> measure(std::vector<Runner>& runners) {
+std::vector<Measured> measure(std::vector<Runner>& runners, int rounds) {
   std::vector<Measured> results;
   std::vector<double> rebuild_share;
   for (const Runner& runner : runners) {
@@ -163,6 +157,11 @@ std::vector<Measured> measure(std::vector<Runner>& runners) {
     results.push_back(result);
   }
   std::vector<std::vector<double>> times(runners.size()), ratios(runners.size());
+  std::vector<std::uint64_t> iterations, steps;
+  for (const Runner& runner : runners) {
+    iterations.push_back(runner.iterations());
+    steps.push_back(runner.system().step);
+  }
   for (int r = 0; r < rounds; ++r) {
     std::optional<double> first;
     for (std::size_t k = 0; k < runners.size(); ++k) {
@@ -178,8 +177,14 @@ std::vector<Measured> measure(std::vector<Runner>& runners) {
     }
   }
   for (std::size_t k = 0; k < runners.size(); ++k) {
+    if (times[k].empty() || ratios[k].empty()) {
+      throw std::runtime_error(
+          "a list of neighbours was rebuilt in every round: nothing is known of one step");
+    }
     results[k].nanoseconds = spread_of(times[k]);
     results[k].ratio = spread_of(ratios[k]);
+    results[k].iterations = static_cast<double>(runners[k].iterations() - iterations[k]) /
+                            static_cast<double>(runners[k].system().step - steps[k]);
   }
   return results;
 }
@@ -190,17 +195,18 @@ std::string text(const Spread& spread, int digits) {
 }
 
 void print_times(const std::vector<Runner>& runners, const std::vector<Measured>& results) {
-  fmt::print("{:<17} {:>7}  {:^28}  {:^28}  {:>5} {:>6} {:>6}  {:>6} {:>7}  {}\n", "", "",
+  fmt::print("{:<19} {:>7}  {:^28}  {:^28}  {:>5} {:>6} {:>6}  {:>6} {:>7} {:>10}\n", "", "",
              "ns per particle and step", "over the first, same round", "near", "listed", "cross", "steps/",
-             "rebuild", "");
-  fmt::print("{:<17} {:>7}  {:>8} {:<19}  {:>8} {:<19}  {:>5} {:>6} {:>6}  {:>6} {:>7}  {}\n", "case", "N",
-             "median", "smallest .. largest", "median", "smallest .. largest", "per N", "per N", "per N",
-             "build", "ns", "what it is");
+             "rebuild", "iterations");
+  fmt::print("{:<19} {:>7}  {:>8} {:<19}  {:>8} {:<19}  {:>5} {:>6} {:>6}  {:>6} {:>7} {:>10}  {}\n", "case",
+             "N", "median", "smallest .. largest", "median", "smallest .. largest", "per N", "per N", "per N",
+             "build", "ns", "a step", "what it is");
   for (std::size_t k = 0; k < runners.size(); ++k) {
     const Measured& m = results[k];
-    fmt::print("{:<17} {:>7}  {:<28}  {:<28}  {:>5.2f} {:>6.2f} {:>6.2f}  {:>6.0f} {:>7.0f}  {}\n",
+    fmt::print("{:<19} {:>7}  {:<28}  {:<28}  {:>5.2f} {:>6.2f} {:>6.2f}  {:>6.0f} {:>7.0f} {:>10}  {}\n",
                runners[k].contestant().name, runners[k].count(), text(m.nanoseconds, 1), text(m.ratio, 3),
                m.near, m.listed, m.crossing, runners[k].steps_per_rebuild(), m.rebuild,
+               runners[k].is_implicit() ? fmt::format("{:.1f}", m.iterations) : "",
                runners[k].contestant().meaning);
   }
 }
@@ -224,12 +230,9 @@ Roof roof_of(const Operations& done, double bytes, const Machine& machine, doubl
 
 void print_roofline(const std::vector<Runner>& runners, const std::vector<Measured>& results,
                     const Machine& machine) {
-  if (std::all_of(runners.begin(), runners.end(), [](const Runner& each) { return each.is_implicit(); })) {
-    return;  // the operations that are counted are those of one evaluation of the forces
-  }
-  fmt::print("\n{:<17} {:^33}  {:>9} {:>7}  {:^24} {:>7} {:>8}\n", "", "per near pair", "1e6 near", "Gflop",
+  fmt::print("\n{:<19} {:^33}  {:>9} {:>7}  {:^24} {:>7} {:>8}\n", "", "per near pair", "1e6 near", "Gflop",
              "ns that the machine needs", "bytes", "");
-  fmt::print("{:<17} {:>5} {:>8} {:>4} {:>5} {:>4}   {:>9} {:>7}  {:>12} {:>12} {:>7}\n", "case", "flops",
+  fmt::print("{:<19} {:>5} {:>8} {:>4} {:>5} {:>4}   {:>9} {:>7}  {:>12} {:>12} {:>7}\n", "case", "flops",
              "quotients", "roots", "logs", "ns", "pairs / s", "per s", "arithmetic", "memory", "per N");
   for (std::size_t k = 0; k < runners.size(); ++k) {
     const Runner& runner = runners[k];
@@ -246,7 +249,7 @@ void print_roofline(const std::vector<Runner>& runners, const std::vector<Measur
     const auto per_pair = [&](std::uint64_t n) { return static_cast<double>(n) / pairs; };
     const double flops = per_pair(done->sums + done->products);
     fmt::print(
-        "{:<17} {:>5.0f} {:>9.2f} {:>5.2f} {:>5.2f} {:>5.1f}  {:>9.1f} {:>7.2f}  {:>12.1f} {:>12.1f} "
+        "{:<19} {:>5.0f} {:>9.2f} {:>5.2f} {:>5.2f} {:>5.1f}  {:>9.1f} {:>7.2f}  {:>12.1f} {:>12.1f} "
         "{:>7.0f}\n",
         runner.contestant().name, flops, per_pair(done->quotients), per_pair(done->roots),
         per_pair(done->logarithms), each, 1e3 / each, flops / each, roof.arithmetic, roof.memory, bytes);
@@ -260,10 +263,23 @@ void run(const Group& group, const Machine& machine) {
   for (const Contestant& contestant : group.contestants) {
     runners.emplace_back(contestant, wall);
   }
-  const std::vector<Measured> results = measure(runners);
-  fmt::print("\n{}: {}{}\n\n", group.name, group.question, wall ? " (time on the wall)" : "");
+  const std::vector<Measured> results = measure(runners, group.rounds);
+  fmt::print("\n{}: {}{} {} rounds\n\n", group.name, group.question, wall ? " (time on the wall)" : "",
+             group.rounds);
   print_times(runners, results);
-  print_roofline(runners, results, machine);
+  // A group has steps of one kind.
+  if (!runners.front().is_implicit()) {
+    print_roofline(runners, results, machine);
+    std::fflush(stdout);
+    return;
+  }
+  std::vector<std::string> names;
+  std::vector<SolverCost> costs;
+  for (const Runner& runner : runners) {
+    names.push_back(runner.contestant().name);
+    costs.push_back(solver_cost(runner.contestant().scene, runner.system(), runner.timestep()));
+  }
+  print_solvers(names, costs, machine);
   std::fflush(stdout);
 }
 
@@ -278,10 +294,12 @@ int run_benchmarks(const std::vector<std::string>& names) {
              build.at("git_dirty").get<bool>() ? " with changes" : "", build.at("cpu").get<std::string>(),
              name_of(set));
   fmt::print(
-      "one thread of this machine: {:.1f} Gflop/s, {:.2f} quotients, {:.2f} roots per ns, {:.1f} GB/s\n",
-      1e-9 * machine.products_and_sums, 1e-9 * machine.quotients, 1e-9 * machine.roots, 1e-9 * machine.bytes);
-  fmt::print("{} rounds of {} particle steps, after a strain of {}\n", rounds, particle_steps_per_round,
-             warm_up_strain);
+      "one thread of this machine: {:.1f} Gflop/s, {:.2f} quotients, {:.2f} roots per ns, {:.1f} GB/s;\n"
+      "{:.1f} Gflop/s of single precision\n",
+      1e-9 * machine.products_and_sums, 1e-9 * machine.quotients, 1e-9 * machine.roots, 1e-9 * machine.bytes,
+      1e-9 * machine.single_products_and_sums);
+  fmt::print("rounds of {} particle steps, implicit ones of {}, after a strain of {}\n",
+             particle_steps_per_round, implicit_particle_steps_per_round, warm_up_strain);
   std::fflush(stdout);
   for (const Group& group : groups) {
     run(group, machine);

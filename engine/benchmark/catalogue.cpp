@@ -67,17 +67,45 @@ Group size() {
   return group;
 }
 
+constexpr const char* four_sizes = R"({ "particles": { "species": [
+  { "radius": 1, "volume_share": 0.25 }, { "radius": 1.4, "volume_share": 0.25 },
+  { "radius": 5, "volume_share": 0.25 }, { "radius": 7, "volume_share": 0.25 } ] } })";
+
+// In production from the first step on: iterations are counted, and what is sampled costs what it costs in a
+// run.
+Contestant implicit_contestant(const std::string& name, const std::string& meaning, std::size_t count,
+                               const std::string& patch = "{}") {
+  Json document = reference_document(count);
+  document["integrator"]["method"] = "implicit";
+  document["duration"]["equilibration"]["strain"] = 0;
+  document.merge_patch(Json::parse(patch));
+  return {name, meaning, read_scene(document, name), 1, 1};
+}
+
 // The solver's share: links, preconditioner, iterations; with noise two systems for each step.
 Group implicit() {
-  Group group{"implicit",
-              "What does an implicit step cost?",
-              {contestant("implicit", "contact and lubrication", 1000),
-               contestant("implicit-friction", "and sliding friction with history", 1000,
-                          R"({ "contact": { "friction": 0.5 } })"),
-               contestant("implicit-brownian", "without friction, with noise at Pe = 10", 1000, brownian)}};
-  for (Contestant& each : group.contestants) {
-    each.scene.document["integrator"] = {{"method", "implicit"}};
-    each.scene = read_scene(each.scene.document, each.name);
+  const auto at_peclet = [](int peclet) {
+    return fmt::format(R"({{ "flow": null, "peclet": {},
+      "limits": {{ "shear_rate": 0.009, "thermal_energy": 0.017 }} }})",
+                       peclet);
+  };
+  return {"implicit",
+          "What does an implicit step cost?",
+          {implicit_contestant("implicit", "contact and lubrication", 1000),
+           implicit_contestant("implicit-friction", "and sliding friction, coefficient 1", 1000,
+                               R"({ "contact": { "friction": 1 } })"),
+           implicit_contestant("implicit-four-sizes", "radii 1, 1.4, 5, 7, equal volumes", 3000, four_sizes),
+           implicit_contestant("implicit-peclet-1", "without friction, noise at Pe = 1", 1000, at_peclet(1)),
+           implicit_contestant("implicit-peclet-100", "at Pe = 100", 1000, at_peclet(100))}};
+}
+
+// Packed as they are: in copies of a small system nothing moves that is larger than it, and iterations would
+// be those of the small one.
+Group implicit_size() {
+  Group group{"implicit-size", "What does an implicit step cost in a larger system?", {}, 9};
+  for (const std::size_t count : {1000U, 4000U, 16384U, 65536U}) {
+    group.contestants.push_back(
+        implicit_contestant(fmt::format("implicit-{}", count), "contact and lubrication", count));
   }
   return group;
 }
@@ -86,10 +114,7 @@ Group species() {
   return {"species",
           "What does a near pair cost among small and large spheres?",
           {contestant("two-sizes", "radii 1, 1.4", 10000),
-           contestant("four-sizes", "radii 1, 1.4, 5, 7, equal volumes", 10000,
-                      R"({ "particles": { "species": [
-                           { "radius": 1, "volume_share": 0.25 }, { "radius": 1.4, "volume_share": 0.25 },
-                           { "radius": 5, "volume_share": 0.25 }, { "radius": 7, "volume_share": 0.25 } ] } })")}};
+           contestant("four-sizes", "radii 1, 1.4, 5, 7, equal volumes", 10000, four_sizes)}};
 }
 
 Group threads() {
@@ -115,6 +140,7 @@ std::vector<Group> catalogue() {
   return {
       reference(),
       implicit(),
+      implicit_size(),
       size(),
       species(),
       threads(),

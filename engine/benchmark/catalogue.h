@@ -20,6 +20,7 @@ struct Contestant {
 struct Group {
   std::string name, question;
   std::vector<Contestant> contestants;
+  int rounds = 41;
 };
 
 // The groups that `names` ask for: all without a name; a group, or contestants of it, by name.

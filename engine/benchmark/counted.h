@@ -2,15 +2,10 @@
 // operations a pair takes.
 #pragma once
 
-#include <cstdint>
-
+#include "engine/benchmark/operation_counts.h"
 #include "engine/kernels/lanes/single_access.h"
 
 namespace peclet::engine {
-
-struct Operations {
-  std::uint64_t sums = 0, products = 0, quotients = 0, roots = 0, logarithms = 0, exponentials = 0;
-};
 
 class Counted {
  public:

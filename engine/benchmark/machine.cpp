@@ -11,6 +11,7 @@ namespace peclet::engine {
 namespace {
 
 constexpr int repetitions = 7;
+constexpr std::size_t beyond_caches = std::size_t{192} << 20;
 
 // Fewest seconds that `work` took.
 template <class Work>
@@ -42,28 +43,35 @@ double rate(PeakLoops::Loop loop, std::uint64_t per_round) {
   return static_cast<double>(rounds * per_round) / fastest([&] { keep = loop(rounds); });
 }
 
-double stream_rate() {
-  constexpr std::size_t count = std::size_t{1} << 23;
-  std::vector<double> a(count), b(count, 1.0), c(count, 2.0);
-  volatile double factor = 3;
-  const double seconds = fastest([&] {
-    const double s = factor;
-    for (std::size_t i = 0; i < count; ++i) {
-      a[i] = b[i] + s * c[i];
-    }
-  });
-  factor = a[count / 2];
-  return 4.0 * sizeof(double) * static_cast<double>(count) / seconds;
-}
+struct alignas(64) CacheLine {
+  double number[8];
+};
 
 }  // namespace
+
+double stream_rate(InstructionSet set, std::size_t room) {
+  const std::size_t lines = std::max<std::size_t>(1, room / (3 * sizeof(CacheLine))), count = 8 * lines;
+  std::vector<CacheLine> a(lines), b(lines, {{1, 1, 1, 1, 1, 1, 1, 1}}), c(b);
+  constexpr std::size_t streamed = std::size_t{1} << 26;  // bytes at a time, or one pass
+  const std::size_t passes = std::max<std::size_t>(1, streamed / room);
+  const auto stream = loops_of(set).stream;
+  volatile double factor = 3;
+  const double seconds = fastest([&] {
+    for (std::size_t pass = 0; pass < passes; ++pass) {
+      stream(a.data()->number, b.data()->number, c.data()->number, factor, count);
+    }
+  });
+  factor = a[lines / 2].number[0];
+  return 4.0 * sizeof(double) * static_cast<double>(count * passes) / seconds;
+}
 
 Machine measure_machine(InstructionSet set) {
   const PeakLoops& loops = loops_of(set);
   return {.products_and_sums = 2 * rate(loops.multiply_add, loops.per_round),
           .quotients = rate(loops.divide, loops.per_round),
           .roots = rate(loops.square_root, loops.per_round),
-          .bytes = stream_rate()};
+          .bytes = stream_rate(set, beyond_caches),
+          .single_products_and_sums = 2 * rate(loops.multiply_add_single, loops.singles_per_round)};
 }
 
 }  // namespace peclet::engine

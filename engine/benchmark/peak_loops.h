@@ -3,18 +3,23 @@
 // Plain data, because this is shared with files that are compiled for one processor only.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "engine/kernels/lanes/single_access.h"
 
 namespace peclet::engine {
 
-// Each does `rounds` rounds of `per_round` operations on as many numbers; returns a number that depends on
-// all of them.
+// Each loop does `rounds` rounds of `per_round` operations on as many numbers; returns a number that depends
+// on all of them.
 struct PeakLoops {
   using Loop = double (*)(std::uint64_t rounds);
   Loop multiply_add, divide, square_root;
   std::uint64_t per_round;
+  Loop multiply_add_single;  // of single-precision numbers
+  std::uint64_t singles_per_round;
+  // a = b + s c, of rows that are a whole number of cache lines.
+  void (*stream)(double* a, const double* b, const double* c, double s, std::size_t count);
 };
 
 extern const PeakLoops baseline_peak_loops;
@@ -57,10 +62,45 @@ double square_root_loop(std::uint64_t rounds) {
   return run_chains<Real>(rounds, [&](const Real& x) { return square_root(x); });
 }
 
+// Single-precision numbers side by side. Real marks the instruction set, which keeps code for one apart from
+// others'.
+template <class Real, int width>
+struct Singles {
+  typedef float Vector __attribute__((vector_size(4 * width)));
+
+  Singles() = default;
+  explicit Singles(double x) : v(Vector{} + static_cast<float>(x)) {}
+  Singles& operator+=(const Singles& b) { return v += b.v, *this; }
+  Singles& operator*=(const Singles& b) { return v *= b.v, *this; }
+  friend Singles operator+(Singles a, const Singles& b) { return a += b; }
+  friend Singles operator*(Singles a, const Singles& b) { return a *= b; }
+  friend double sum_of_lanes(const Singles& x) {
+    return static_cast<double>(reinterpret_cast<const float&>(x.v));
+  }
+
+  Vector v{};
+};
+
+template <class Real>
+void stream_loop(double* a, const double* b, const double* c, double s, std::size_t count) {
+  const Real factor{s};
+  for (std::size_t i = 0; i < count; i += width_of<Real>) {
+    *reinterpret_cast<Real*>(a + i) =
+        *reinterpret_cast<const Real*>(b + i) + factor * *reinterpret_cast<const Real*>(c + i);
+  }
+}
+
 template <class Real>
 constexpr PeakLoops peak_loops_of() {
-  return {&multiply_add_loop<Real>, &divide_loop<Real>, &square_root_loop<Real>,
-          std::uint64_t{chains} * width_of<Real>};
+  // As many as a register of the set holds; every processor has one of four.
+  constexpr int singles = width_of<Real> == 1 ? 4 : 2 * width_of<Real>;
+  return {&multiply_add_loop<Real>,
+          &divide_loop<Real>,
+          &square_root_loop<Real>,
+          std::uint64_t{chains} * width_of<Real>,
+          &multiply_add_loop<Singles<Real, singles>>,
+          std::uint64_t{chains} * singles,
+          &stream_loop<Real>};
 }
 
 }  // namespace peclet::engine

@@ -48,8 +48,10 @@ class VelocitySolver {
   // report what it took. Returns whether the result is finite.
   [[nodiscard]] bool correct(System& system, double target, StepReport& report);
 
- private:
+  // What has been assembled.
   LinkSystem links(const System& system) const;
+
+ private:
   SolverRows rows();
 
   double timestep_, tolerance_;

@@ -151,9 +151,10 @@ Keys run_keys() {
                    Json::object()),
       with_default(positive("/guard/largest_overlap", "", "Overlap over the smaller radius of the pair."),
                    0.05),
-      positive("/guard/largest_displacement", "",
-               "Displacement in one step, relative to rate y, over the smallest radius; 0.05 with explicit "
-               "and 0.3 with implicit steps unless given."),
+      positive(
+          "/guard/largest_displacement", "",
+          "Displacement in one step, or in the smallest part of a divided implicit one, relative to rate y, "
+          "over the smallest radius; 0.05 with explicit and 0.3 with implicit steps unless given."),
       with_default(positive("/guard/energy_imbalance", "",
                             "Energy that the finite step makes over the work of the flow; beyond it the "
                             "result has the warning timestep."),

@@ -161,7 +161,7 @@ std::string meaning(const std::string& mark) {
        "no "
        "other, and leaves out seeds that ended later"},
       {"suspect", "a seed gave two different results; no number of this point can be trusted"},
-      {"timestep", "seeds whose time step made too much energy or changes the stress"},
+      {"timestep", "seeds whose time step made too much energy, changes the stress or was often divided"},
       {"solver", "seeds whose implicit steps were solved too inaccurately"},
       {"overlap", "seeds in which spheres overlapped by more than a hundredth of a radius"}};
   const auto known = meanings.find(mark);

@@ -24,7 +24,9 @@
 
 namespace peclet::engine {
 
+#ifndef PECLET_FLOATS  // benchmark/counted_links.cpp has numbers that count
 typedef float Floats __attribute__((vector_size(32)));
+#endif
 
 struct alignas(32) MotionRow {
   Floats v;

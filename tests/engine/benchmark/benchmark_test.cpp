@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "contract/input_error.h"
 #include "engine/benchmark/catalogue.h"
 #include "engine/benchmark/operations.h"
@@ -87,7 +89,24 @@ TEST(Catalogue, TakesImplicitStepsOnlyWhereTheirNameSaysSo) {
       implicit += named ? 1 : 0;
     }
   }
-  EXPECT_EQ(implicit, 3u);
+  EXPECT_EQ(implicit, 9u);
+}
+
+// What cost most time before it was looked at.
+TEST(Catalogue, HasImplicitStepsOfFrictionNoiseAndSpheresOfSeveralSizes) {
+  const auto scene = [](const char* name) { return chosen_groups({name}).at(0).contestants.at(0).scene; };
+  EXPECT_EQ(scene("implicit-friction").physics.contact->friction, 1);
+  EXPECT_EQ(scene("implicit-four-sizes").particles.species.size(), 4u);
+  const Physics noisy = scene("implicit-peclet-1").physics;
+  // Pe = 6 pi eta a^3 rate / kT with eta = 0.1 and a = 1.
+  EXPECT_NEAR(6 * std::numbers::pi * 0.1 * noisy.flow.rate() / noisy.thermal_energy, 1, 1e-12);
+  EXPECT_EQ(scene("implicit-65536").particles.count, 65536u);
+}
+
+TEST(Catalogue, GivesImplicitStepsTheirOwnDefaults) {
+  // Of the schema: 0.3 of the smallest radius, with explicit steps 0.05.
+  EXPECT_EQ(chosen_groups({"implicit"}).at(0).contestants.at(0).scene.guard.largest_displacement, 0.3);
+  EXPECT_EQ(chosen_groups({"frictionless"}).at(0).contestants.at(0).scene.guard.largest_displacement, 0.05);
 }
 
 TEST(Catalogue, SaysWhatItHasWhenAskedForSomethingElse) {

@@ -1,0 +1,171 @@
+#!/usr/bin/python3
+"""ratios.py BEFORE NOW [SCENE ...] [--rounds 5] [--instruction-sets avx2 avx512] [--large]
+
+Processor time per unit of strain of two engines at their default steps, on one thread, in scenes whose files are the
+same byte for byte: what a change is worth to who runs it. BEFORE is the engine of an earlier commit (build_before.sh).
+In every round both run the same seed one after the other, and take turns to begin; ratios are those of a round. Times
+are those of whole runs, packing included; iterations of the solver are those of the production window, steps those of
+the whole run. A round in which a realisation broke off counts for nothing, and is said.
+
+--instruction-sets  by default all that this machine and both engines have, but the baseline
+--large             also N = 16384 and 65536, which take minutes a round
+"""
+import argparse
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "results"))
+from studies.scenes import REFERENCE_SCENE, during, merged
+
+VECTOR_SETS = ("avx2", "avx512")
+
+
+def lasting(equilibration, production):
+    return during({"strain": equilibration}, {"strain": production})
+
+
+def of_spheres(count):
+    return {"particles": {"count": count}}
+
+
+def at_peclet(number):
+    limits = {"shear_rate": 0.009, "thermal_energy": 0.017}
+    return {"flow": None, "peclet": number, "limits": limits}
+
+
+FRICTION = {"contact": {"friction": 1}}
+FOUR_SIZES = {
+    "particles": {"count": 3000, "species": [{"radius": radius, "volume_share": 0.25} for radius in (1, 1.4, 5, 7)]}
+}
+# Of each scene, patches of the published one. Two engines with two instruction sets take ten seconds a round.
+SCENES = {
+    "quiet": [lasting(0.5, 1)],
+    "friction-0.45": [FRICTION, {"volume_fraction": 0.45}, lasting(0.5, 1)],
+    "friction-0.5": [FRICTION, lasting(0.5, 1)],
+    "peclet-1": [at_peclet(1), lasting(0.05, 0.1)],
+    "peclet-100": [at_peclet(100), lasting(0.2, 1)],
+    "four-sizes": [FOUR_SIZES, lasting(0.2, 0.5)],
+}
+LARGE_SCENES = {
+    "quiet-16384": [of_spheres(16384), lasting(0.1, 0.2)],
+    "quiet-65536": [of_spheres(65536), lasting(0.05, 0.1)],
+}
+
+
+def scene_of(name):
+    scene = REFERENCE_SCENE
+    for patch in {**SCENES, **LARGE_SCENES}[name]:
+        scene = merged(scene, patch)
+    return scene
+
+
+def answer_of(engine, scene, seed, instruction_set):
+    environment = {**os.environ, "OMP_NUM_THREADS": "1", "PECLET_INSTRUCTION_SET": instruction_set}
+    command = [engine, "run", scene, "--seed", str(seed), "--threads", "1"]
+    return subprocess.run(command, capture_output=True, text=True, env=environment)
+
+
+def has_set(engine, instruction_set, folder):
+    path = os.path.join(folder, "probe.json")
+    with open(path, "w", encoding="utf-8") as file:
+        json.dump(merged(scene_of("quiet"), {**of_spheres(20), **lasting(0, 0.01)}), file)
+    done = answer_of(engine, path, 0, instruction_set)
+    if done.returncode != 0 and "PECLET_INSTRUCTION_SET" not in done.stderr:
+        sys.exit(f"{engine}: {done.stderr.strip()}")
+    return done.returncode == 0
+
+
+class Run:
+    def __init__(self, engine, scene, seed, instruction_set):
+        done = answer_of(engine, scene, seed, instruction_set)
+        try:
+            result = json.loads(done.stdout)
+        except json.JSONDecodeError:
+            sys.exit(f"{engine}: {scene}: exit status {done.returncode}: {done.stderr.strip()}")
+        self.ending = result["ending"]["cause"]
+        if self.ending != "completed":
+            return
+        strain = sum(result["strain"].values())
+        self.seconds = result["cost"]["cpu_seconds"] / strain
+        self.iterations = result["gate"]["solver"]["iterations_per_step"]
+        self.steps = sum(result["steps"].values()) / strain
+
+
+def spread(values, digits="3g"):
+    return f"{statistics.median(values):.{digits}} ({min(values):.{digits}} .. {max(values):.{digits}})"
+
+
+def compare(engines, name, instruction_set, rounds, folder):
+    path = os.path.join(folder, f"{name}.json")
+    with open(path, "w", encoding="utf-8") as file:
+        json.dump(scene_of(name), file)
+    complete, broken = [], []
+    for seed in range(1, rounds + 1):
+        turn = engines if seed % 2 else engines[::-1]
+        runs = {engine: Run(engine, path, seed, instruction_set) for engine in turn}
+        ends = [runs[engine].ending for engine in engines]
+        if ends == ["completed", "completed"]:
+            complete.append([runs[engine] for engine in engines])
+        else:
+            broken.append(f"{name}, seed {seed}: before {ends[0]}, now {ends[1]}")
+    if complete:
+        before, now = zip(*complete)
+        columns = [
+            spread([run.seconds for run in before]),
+            spread([run.seconds for run in now]),
+            spread([b.seconds / a.seconds for a, b in complete], "3f"),
+            *(
+                " -> ".join(f"{statistics.median(getattr(run, number) for run in runs):.1f}" for runs in (before, now))
+                for number in ("iterations", "steps")
+            ),
+        ]
+        print(f"{name:14} {instruction_set:8} " + " ".join(f"{column:>26}" for column in columns), flush=True)
+    for line in broken:
+        print(line, flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("before")
+    parser.add_argument("now")
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"of {', '.join([*SCENES, *LARGE_SCENES])}")
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--instruction-sets", nargs="+", metavar="SET")
+    parser.add_argument("--large", action="store_true")
+    arguments = parser.parse_intermixed_args()
+    unknown = [name for name in arguments.scenes if name not in {**SCENES, **LARGE_SCENES}]
+    if unknown:
+        parser.error(f"SCENE: {', '.join(unknown)}: must be of {', '.join([*SCENES, *LARGE_SCENES])}")
+    if arguments.rounds < 1:
+        parser.error(f"--rounds: {arguments.rounds}: must be at least 1")
+    engines = [os.path.abspath(arguments.before), os.path.abspath(arguments.now)]
+    if engines[0] == engines[1]:
+        parser.error("NOW: must be another file than BEFORE")
+    names = arguments.scenes or [*SCENES, *(LARGE_SCENES if arguments.large else ())]
+    with tempfile.TemporaryDirectory() as folder:
+        sets = arguments.instruction_sets or VECTOR_SETS
+        had = [name for name in sets if all(has_set(engine, name, folder) for engine in engines)]
+        if arguments.instruction_sets and had != list(sets):
+            lacking = ", ".join(name for name in sets if name not in had)
+            parser.error(f"--instruction-sets: {lacking}: must be what this machine and both engines have")
+        heads = (
+            "before / s per strain",
+            "now / s per strain",
+            "now over before",
+            "iterations / step",
+            "steps / strain",
+        )
+        print(f"medians (extremes) of {arguments.rounds} rounds")
+        print(f"{'scene':14} {'set':8} " + " ".join(f"{head:>26}" for head in heads))
+        for name in names:
+            for instruction_set in had or ["baseline"]:
+                compare(engines, name, instruction_set, arguments.rounds, folder)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,109 @@
+// The kernels of the implicit system, compiled with numbers that count.
+#include "engine/benchmark/counted_links.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/benchmark/catalogue.h"
+#include "engine/benchmark/solver_cost.h"
+#include "tests/engine/every_image.h"
+#include "tests/engine/kernels/linked_suspension.h"
+
+namespace peclet::engine {
+namespace {
+
+Links links_of(InstructionSet set = InstructionSet::baseline) {
+  const Physics physics = physics_with({.lubrication = true, .contact = true});
+  return Links(physics, dense_suspension(physics, 300, 5), set);
+}
+
+// What the compiled kernels leave after as many iterations.
+double squared_residual(const Links& links, const std::vector<MotionRow>& right, int iterations) {
+  std::vector<MotionRow> rows[8];
+  for (std::vector<MotionRow>& each : rows) {
+    each.resize(right.size());
+  }
+  const SolverRows places = {rows[0].data(), rows[1].data(), rows[2].data(), rows[3].data(),
+                             rows[4].data(), rows[5].data(), rows[6].data(), rows[7].data()};
+  const double squared = links.kernels().begin(links.view(), right.data(), places);
+  return links.kernels().solve(links.view(), places, squared, 0, iterations).squared_residual;
+}
+
+TEST(SolverOperations, AreThoseOfWorkThatGivesTheKernelsResult) {
+  for (const InstructionSet set : available_sets()) {
+    const Links links = links_of(set);
+    const std::vector<MotionRow> right = random_rows(links.system().particles.count(), 7);
+    for (const int iterations : {1, 6}) {
+      const double expected = squared_residual(links, right, iterations);
+      EXPECT_NEAR(count_solver_operations(links.view(), right.data(), iterations).squared_residual, expected,
+                  1e-4 * expected);
+    }
+  }
+}
+
+TEST(SolverOperations, AreTheSameInEveryIteration) {
+  const Links links = links_of();
+  const std::vector<MotionRow> right = random_rows(links.system().particles.count(), 7);
+  EXPECT_EQ(count_solver_operations(links.view(), right.data(), 1).iteration,
+            count_solver_operations(links.view(), right.data(), 5).iteration);
+}
+
+// A = L D L^T of a 6 x 6 matrix has six pivots, each of which is divided by once; matrices of a level's rows
+// are factorised eight at a time.
+TEST(SolverOperations, OfTheFactorisationAreSixQuotientsForEachRow) {
+  const Links links = links_of();
+  const LinkSystem system = links.view();
+  std::uint64_t rows = 0;
+  for (const LinkLevel& level : std::span(system.levels, system.count_of_levels)) {
+    rows += (level.rows_end - level.rows_begin + 7) / 8 * 8;
+  }
+  const std::vector<MotionRow> right = random_rows(links.system().particles.count(), 7);
+  const SolverOperations done = count_solver_operations(system, right.data(), 1);
+  EXPECT_EQ(done.factorisation.quotients, 6 * rows);
+  EXPECT_EQ(done.iteration.quotients, 0u);
+}
+
+// In each of the two sweeps of an iteration a row of eight numbers is multiplied by the six columns of P^-1,
+// in one by K, two halves of three columns; and a link's load, six numbers, is added to its row.
+TEST(SolverOperations, OfAnIterationAreAtLeastThoseOfItsProducts) {
+  const Links links = links_of();
+  const LinkSystem system = links.view();
+  std::vector<LinkLevel> levels(system.levels, system.levels + system.count_of_levels);
+  std::uint64_t places = 0;
+  for (LinkLevel& level : levels) {
+    places += std::uint64_t{level.count_of_groups} * links_per_group;
+    level.count_of_groups = 0;
+  }
+  LinkSystem without_links = system;
+  without_links.levels = levels.data();
+  const std::vector<MotionRow> right = random_rows(system.particles, 7);
+  const Operations of_rows = count_solver_operations(without_links, right.data(), 1).iteration;
+  const Operations of_links = count_solver_operations(system, right.data(), 1).iteration - of_rows;
+  EXPECT_GE(of_rows.products, (2 * 6 + 2) * 8 * system.particles);
+  EXPECT_EQ(of_rows.products % system.particles, 0u);
+  EXPECT_GE(of_links.sums, 2 * 6 * places);
+  EXPECT_EQ(of_links.products % places, 0u);
+}
+
+// Where nothing moves within the step, links are the near pairs.
+TEST(SolverCost, IsThatOfEveryNearPair) {
+  const Scene scene = chosen_groups({"implicit"}).at(0).contestants.at(0).scene;
+  const System system = dense_suspension(scene.physics, 200, 5);
+  const double outer = 1 + 0.5 * scene.physics.lubrication->outer_gap;
+  const std::vector<double>& radius = system.particles.radius;
+  const std::size_t near =
+      every_image(system.particles.position, system.box.lengths(), system.box.tilt(),
+                  [&](std::uint32_t i, std::uint32_t j) { return outer * (radius[i] + radius[j]); })
+          .size();
+  const SolverCost cost = solver_cost(scene, system, 0.01);
+  EXPECT_EQ(cost.rows, 200);
+  EXPECT_EQ(cost.links, static_cast<double>(near));
+  // Six to ten colours serve any suspension (link_order.h).
+  EXPECT_GE(cost.levels, 2u);
+  EXPECT_LE(cost.levels, 16u);
+  EXPECT_GT(cost.iteration.median, 0);
+  // Each number that an iteration walks through is read at least once.
+  EXPECT_GE(cost.bytes, static_cast<double>(cost.room));
+}
+
+}  // namespace
+}  // namespace peclet::engine
