@@ -139,8 +139,9 @@ SolverCost solver_cost(const Scene& scene, const System& given, double timestep)
   const ParticleState& particles = system.particles;
   // As midpoint.h and noisy_midpoint.h begin.
   const bool noise = scene.physics.thermal_energy > 0;
-  const double resistance_time = noise ? 0 : 0.5 * timestep, approach_time = noise ? 0.5 * timestep : 0;
-  ForceField field(scene.physics, particles, timestep, 0, 1, set, approach_time);
+  const double approach_time = noise ? 0.5 * timestep : 0;
+  const auto part = noise ? StepResistance::Part::at_beginning : StepResistance::Part::on_the_way;
+  ForceField field(scene.physics, particles, timestep, 0, 1, set, approach_time, part);
   Loads loads(particles.count(), 1);
   {
     System moved = system;  // springs advance
@@ -150,10 +151,10 @@ SolverCost solver_cost(const Scene& scene, const System& given, double timestep)
   origin.velocity = particles.velocity;
   origin.spin = particles.angular_velocity;
   VelocitySolver solver(scene.physics, particles, timestep, scene.solver_tolerance, set);
-  solver.assemble(system, field, resistance_time);  // with the order of rows, which later ones have already
+  solver.assemble(system, field);  // with the order of rows, which later ones have already
   std::vector<double> assembly, residuals, iteration;
   for (int r = 0; r < repetitions; ++r) {
-    assembly.push_back(seconds_of([&] { solver.assemble(system, field, resistance_time); }));
+    assembly.push_back(seconds_of([&] { solver.assemble(system, field); }));
     VelocitySolver::Residual residual{};
     residuals.push_back(seconds_of([&] { residual = solver.set_residual(system, origin, loads, nullptr); }));
     StepReport report;

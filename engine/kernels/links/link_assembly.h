@@ -91,8 +91,10 @@ class LinkedPairs {
 
   PECLET_ALWAYS_INLINE void emit(const LinkPlaces& places, LinkGroup* groups,
                                  const PairResistanceOf<Real>& coupling) const {
+    // Pairs within reach whose way leads past the range are coupled by nothing.
+    const unsigned coupled = near_ & (bits(coupling.squeeze > 0.0) | bits(coupling.shear > 0.0));
     for (int k = 0; k < count_; ++k) {
-      if ((near_ >> k & 1U) == 0) {
+      if ((coupled >> k & 1U) == 0) {
         continue;
       }
       const std::uint32_t row_of_first = places.row[first_[k]], row_of_second = places.row[second_[k]];

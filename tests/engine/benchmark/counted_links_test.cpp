@@ -94,7 +94,7 @@ TEST(SolverCost, IsThatOfEveryNearPair) {
       every_image(system.particles.position, system.box.lengths(), system.box.tilt(),
                   [&](std::uint32_t i, std::uint32_t j) { return outer * (radius[i] + radius[j]); })
           .size();
-  const SolverCost cost = solver_cost(scene, system, 0.01);
+  const SolverCost cost = solver_cost(scene, system, 1e-9);
   EXPECT_EQ(cost.rows, 200);
   EXPECT_EQ(cost.links, static_cast<double>(near));
   // Six to ten colours serve any suspension (link_order.h).

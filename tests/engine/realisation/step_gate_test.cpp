@@ -209,7 +209,7 @@ TEST(StepGate, FlagsImplicitSteps) {
 
   Json warm = published(0.5);
   warm["fluid"]["thermal_energy"] = 0.01;
-  const double automatic = 0.004 * 0.1 / 0.01;
+  const double automatic = 0.0045 * 0.1 / 0.01;
   EXPECT_FALSE(has_warning(result(warm, {{"integrator", {{"timestep", 0.99 * automatic}}}}), "timestep"));
   EXPECT_TRUE(has_warning(result(warm, {{"integrator", {{"timestep", 1.01 * automatic}}}}), "timestep"));
 }
