@@ -196,7 +196,8 @@ struct ImplicitStep {
   double strain, contact_times;
 };
 
-ImplicitStep longest_implicit_step(const Physics& physics) {
+ImplicitStep longest_implicit_step(const Scene& scene) {
+  const Physics& physics = scene.physics;
   const bool conservative = required_terms(physics).conservative, noise = physics.thermal_energy > 0;
   if (physics.contact && physics.contact->friction > 0) {
     // Where springs at the middle of the step are not enough, or are not taken there.
@@ -204,12 +205,14 @@ ImplicitStep longest_implicit_step(const Physics& physics) {
     return {demanding ? 0.0025 : 0.005, demanding || conservative ? 2.0 : 4.0};
   }
   if (conservative) return {0.005, 5};
-  return noise ? ImplicitStep{0.005, 7} : ImplicitStep{0.01, 20};
+  if (noise) return {0.005, 7};
+  // Towards jamming spheres move farther in a strain, and many steps would be divided.
+  return {std::clamp(0.2 * (0.65 - scene.volume_fraction), 0.002, 0.01), 20};
 }
 
 double automatic_implicit_timestep(const Scene& scene) {
   const Physics& physics = scene.physics;
-  const auto [strain, contact_times] = longest_implicit_step(physics);
+  const auto [strain, contact_times] = longest_implicit_step(scene);
   constexpr double brownian_times = 0.0017, pushing_times = 20, leaps = 5;
   constexpr double inertial_brownian_times = 0.0045;
   double step = std::numeric_limits<double>::infinity();

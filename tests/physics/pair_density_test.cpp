@@ -79,10 +79,10 @@ TEST(PairDensity, IsKeptByImplicitSteps) {
   PairDensityRun run = {.thermal_energy = 2.0e-3,
                         .stiffness_over_thermal_energy = 5.9e5,
                         .inner_gap = 1e-3,
-                        .timestep = 0.106,
+                        .timestep = 0.1192,
                         .steps = 500'000,
                         .realisations = 40,
-                        .solver_tolerance = 1e-3};
+                        .solver_tolerance = 2e-3};
   const auto shares = sampled_shares(run);
   const std::vector<double> expected = expected_shares(run, StepBias::none);
   const Estimate touching = ratio(shares, expected, 0, 3), near = ratio(shares, expected, 4, 5);

@@ -42,7 +42,11 @@ TEST(ImplicitTimestep, IsTheLeastOfStrainBrownianAndContactTimes) {
                        {"rolling_friction", nullptr}};
   EXPECT_NEAR(automatic_timestep(scene_with(smooth)), 0.005 / 2 / (1 + 2 * stokes), 1e-12);
   smooth["fluid"] = {{"thermal_energy", nullptr}};
-  EXPECT_NEAR(automatic_timestep(scene_with(smooth)), 0.01 / 2 / (1 + 2 * stokes), 1e-12);
+  for (const auto& [volume_fraction, strain] :
+       {std::pair{0.5, 0.01}, std::pair{0.6, 0.01}, std::pair{0.63, 0.004}, std::pair{0.66, 0.002}}) {
+    smooth["volume_fraction"] = volume_fraction;
+    EXPECT_NEAR(automatic_timestep(scene_with(smooth)), strain / 2 / (1 + 2 * stokes), 1e-12);
+  }
   smooth.erase("repulsion");
   EXPECT_NEAR(automatic_timestep(scene_with(smooth)), 0.005 / 2 / (1 + 2 * stokes), 1e-12);
   Json warm = soft;
