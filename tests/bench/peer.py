@@ -78,14 +78,21 @@ def bench_median(table, case):
     )
 
 
-class Lammps:
-    """One scene in LAMMPS, packed and warmed up."""
+def loop_seconds(output):
+    """Processor time of the loop, its wall-clock time times its share of a processor, and its particle steps."""
+    loop = re.search(r"Loop time of (\S+) on 1 procs for (\d+) steps with (\d+) atoms", output)
+    share = re.search(r"([\d.]+)% CPU use", output)
+    return float(loop[1]) * float(share[1]) / 100, int(loop[2]) * int(loop[3])
 
-    def __init__(self, program, folder, rate, thermal_energy, step, strain):
+
+class Lammps:
+    """One scene in LAMMPS, packed and warmed up; `seconds` of processor time for that."""
+
+    def __init__(self, program, folder, rate, thermal_energy, step, strain, packing=1):
         self.program = program
         self.shear = {"rate": rate, "thermal_energy": thermal_energy, "step": step}
         packed, self.warm, self.unused = (os.path.join(folder, name) for name in ("packed", "warm", "unused"))
-        self.run("lammps_packing.in", edge=EDGE, rate=rate, to=packed)
+        self.run("lammps_packing.in", edge=EDGE, rate=rate, packing=packing, to=packed)
         warming = self.run(
             "lammps.in",
             **{"from": packed},
@@ -95,6 +102,7 @@ class Lammps:
             skin=SKIN,
             **self.shear,
         )
+        self.seconds = loop_seconds(warming)[0]
         lines = warming[warming.index("\nStep ") : warming.index("\nLoop time")].splitlines()[2:]
         second_half = [[float(word) for word in line.split()] for line in lines[len(lines) // 2 :]]
         _, self.relative_viscosity, self.temperature = (statistics.fmean(column) for column in zip(*second_half))
@@ -104,13 +112,12 @@ class Lammps:
         return output_of(self.program, "-in", os.path.join(HERE, script), "-log", "none", *given)
 
     def nanoseconds(self, skin):
-        """Processor time of the loop per particle and step: its wall-clock time times its share of a processor."""
+        """Of the loop, per particle and step."""
         output = self.run(
             "lammps.in", **{"from": self.warm}, to=self.unused, steps=TIMED_STEPS, every=0, skin=skin, **self.shear
         )
-        loop = re.search(r"Loop time of (\S+) on 1 procs for (\d+) steps with (\d+) atoms", output)
-        share = re.search(r"([\d.]+)% CPU use", output)
-        return 1e9 * float(loop[1]) * float(share[1]) / 100 / (int(loop[2]) * int(loop[3]))
+        seconds, particle_steps = loop_seconds(output)
+        return 1e9 * seconds / particle_steps
 
 
 def compare(case, arguments, folder):

@@ -1,0 +1,97 @@
+#!/usr/bin/python3
+"""lammps.py BIN [--packings 6] [--lammps lmp]
+
+The point of LAMMPS in the chart: shears packings of the reference scene by 2 with Debian's LAMMPS, in explicit steps of
+half of the largest stable one of this engine, and sixteen packings of its own with the peclet-engine in BIN at its
+default step. Viscosities are means over the second half. Writes lammps.csv beside this script; some five minutes for
+each packing of LAMMPS.
+"""
+import argparse
+import concurrent.futures
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+sys.path.insert(0, str(HERE.parent.parent / "tests/bench"))
+from peer import Lammps, output_of
+from studies.campaigns import Program
+from studies.estimates import estimate, relative_difference, student_quantile
+from studies.scenes import REFERENCE_SCENE, during, merged
+from studies.tables import write_table
+from studies.viscosities import values_by_seed
+
+STRAIN = 2
+SEEDS = 16
+TARGET = 0.02
+COLUMNS = (
+    "panel",
+    "method",
+    "step",
+    "timestep",
+    "tolerance",
+    "seeds",
+    "lost",
+    "flags",
+    "viscosity",
+    "viscosity_error",
+    "bias_percent",
+    "bias_half_width_percent",
+    "seconds_per_strain",
+    "seconds_to_2_percent",
+    "particles",
+    "commit",
+)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("binaries")
+    parser.add_argument("--packings", type=int, default=6)
+    parser.add_argument("--lammps", default="lmp")
+    arguments = parser.parse_args()
+    scene = merged(REFERENCE_SCENE, during({"strain": STRAIN / 2}, {"strain": STRAIN / 2}))
+    rate = scene["flow"]["shear_rate"]
+    with tempfile.TemporaryDirectory() as folder:
+        program = Program(arguments.binaries, folder)
+        step = program.derived(merged(scene, {"integrator": {"method": "explicit"}}))["timestep"]
+        ours = values_by_seed(program.run("ours", scene, [{"/integrator": {"method": "implicit"}}], SEEDS)[0]["realisations"])
+
+        def sheared(packing):
+            own = os.path.join(folder, f"packing-{packing}")
+            os.mkdir(own)
+            lammps = Lammps(arguments.lammps, own, rate, 0, step, STRAIN, packing)
+            print(f"packing {packing}: {lammps.relative_viscosity:.2f}, {lammps.seconds:.0f} s", flush=True)
+            return lammps
+
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            theirs = list(pool.map(sheared, range(1, arguments.packings + 1)))
+        commit = " ".join(sorted(program.commits))
+    values = {packing: lammps.relative_viscosity for packing, lammps in enumerate(theirs)}
+    viscosity, error = estimate([*values.values()])
+    bias, bias_error, degrees = relative_difference(values, ours, paired=False)
+    seconds = estimate([lammps.seconds for lammps in theirs])[0]
+    row = {
+        "panel": "reference",
+        "method": "LAMMPS",
+        "step": 0.5,
+        "timestep": step,
+        "seeds": arguments.packings,
+        "lost": 0,
+        "viscosity": viscosity,
+        "viscosity_error": error,
+        "bias_percent": 100 * bias,
+        "bias_half_width_percent": 100 * bias_error * student_quantile(degrees, 0.975),
+        "seconds_per_strain": seconds / STRAIN,
+        "seconds_to_2_percent": seconds * (error / viscosity) ** 2 * arguments.packings / TARGET**2,
+        "particles": scene["particles"]["count"],
+        "commit": commit,
+    }
+    write_table(HERE / "lammps.csv", COLUMNS, [row], digits=5)
+    print("{viscosity:.2f} ± {viscosity_error:.2f}, {bias_percent:.1f} ± {bias_half_width_percent:.1f} %".format(**row))
+
+
+if __name__ == "__main__":
+    main()
