@@ -46,23 +46,23 @@ inline StepResistance step_resistance(StepResistance::Part part, double timestep
   return {part, timestep, -std::log(lubrication.inner_gap), -std::log(lubrication.outer_gap)};
 }
 
-// A gap, and 1/xi and L of the nearest one that is neither below the inner gap nor beyond the outer one.
+// A gap, the nearest one that is neither below the inner gap nor beyond the outer one, and its L.
 template <class Real>
-struct BoundedModesOf {
-  Real gap, inverse, logarithm;
+struct BoundedGapOf {
+  Real gap, bounded, logarithm;
 };
 
 template <class Real>
-PECLET_ALWAYS_INLINE BoundedModesOf<Real> bounded_modes(const LubricationParameters& lubrication,
-                                                        const Real& gap) {
-  const Real inverse =
-      larger(1.0 / larger(gap, Real{lubrication.inner_gap}), Real{1 / lubrication.outer_gap});
-  return {gap, inverse, logarithm(inverse)};
+PECLET_ALWAYS_INLINE BoundedGapOf<Real> bounded_gap(const LubricationParameters& lubrication,
+                                                    const Real& gap) {
+  const Real outer{lubrication.outer_gap};
+  const Real bounded = select(gap < outer, larger(gap, Real{lubrication.inner_gap}), outer);
+  return {gap, bounded, -logarithm(bounded)};
 }
 
 template <class Real>
 struct WayOf {
-  BoundedModesOf<Real> from, to;
+  BoundedGapOf<Real> from, to;
   Real per_way;  // 1 / (xi_1 - xi_0)
 };
 
@@ -71,7 +71,7 @@ PECLET_ALWAYS_INLINE WayOf<Real> way_of(const LubricationParameters& lubrication
                                         const Real& given_way) {
   const Real shortest{1e-5 * lubrication.inner_gap};  // of which differences keep ten digits
   const Real way = select(larger(given_way, -given_way) < shortest, shortest, given_way);
-  return {bounded_modes(lubrication, begin), bounded_modes(lubrication, begin + way), 1.0 / way};
+  return {bounded_gap(lubrication, begin), bounded_gap(lubrication, begin + way), 1.0 / way};
 }
 
 // Of a pair in the middle of a step, with this closing velocity.
@@ -84,22 +84,25 @@ PECLET_ALWAYS_INLINE WayOf<Real> way_of_step(const StepResistance& step,
   return way_of(lubrication, per_radius * pair.surface_distance() - 0.5 * way, way);
 }
 
-// Averages over a way; beyond the outer gap there is that share of what is there.
-template <class Real>
+// Averages over a way. Beyond the outer gap there is nothing, or what is there.
+enum class Beyond { nothing, as_at_the_gap };
+template <Beyond beyond, class Real>
 PECLET_ALWAYS_INLINE ResistanceModesOf<Real> mean_modes(const StepResistance& step,
                                                         const LubricationParameters& lubrication,
-                                                        double share_beyond, const WayOf<Real>& way,
-                                                        const Real& lever) {
-  const double inner = lubrication.inner_gap;
+                                                        const WayOf<Real>& way, const Real& lever) {
+  const double inner = lubrication.inner_gap, outer = lubrication.outer_gap;
   struct Integrals {
     Real inverse, logarithm;
   };
-  const auto up_to = [&](const BoundedModesOf<Real>& there) PECLET_INLINE_LAMBDA {
+  const auto up_to = [&](const BoundedGapOf<Real>& there) PECLET_INLINE_LAMBDA {
     const Real &L = there.logarithm, below = larger(inner - there.gap, Real{0.0});
-    const Real beyond = share_beyond * larger(there.gap - lubrication.outer_gap, Real{0.0});
-    return Integrals{
-        (1 / lubrication.outer_gap) * beyond - L - (1 / inner) * below,
-        step.outer_logarithm * beyond + (1.0 + L) / there.inverse - step.inner_logarithm * below};
+    Integrals sum = {-L - (1 / inner) * below, (1.0 + L) * there.bounded - step.inner_logarithm * below};
+    if constexpr (beyond == Beyond::as_at_the_gap) {
+      const Real out = larger(there.gap - outer, Real{0.0});
+      sum.inverse += (1 / outer) * out;
+      sum.logarithm += step.outer_logarithm * out;
+    }
+    return sum;
   };
   const Integrals from = up_to(way.from), to = up_to(way.to);
   return {(to.inverse - from.inverse) * way.per_way, (to.logarithm - from.logarithm) * way.per_way, lever};
@@ -124,8 +127,8 @@ PECLET_ALWAYS_INLINE ResistanceModesOf<Real> resistance_modes(const StepResistan
             select(within, logarithm(inverse) - 0.5 * log_jump, zero), lever};
   }
   if (step.part == StepResistance::Part::on_the_way) {
-    return mean_modes(step, lubrication, /*share_beyond=*/0, way_of_step(step, lubrication, pair, closing),
-                      lever);
+    return mean_modes<Beyond::nothing>(step, lubrication, way_of_step(step, lubrication, pair, closing),
+                                       lever);
   }
   const Real way = (per_radius * step.timestep) * closing, begin = here - 0.5 * way;
   constexpr double changed = 0.65;
@@ -137,7 +140,7 @@ PECLET_ALWAYS_INLINE ResistanceModesOf<Real> resistance_modes(const StepResistan
   const Real left = (1.0 / from + around) / (inverse_mean(way) + around);
   const Real made = way * ((1 - changed) + changed * left);
   const ResistanceModesOf<Real> average =
-      mean_modes(step, lubrication, /*share_beyond=*/1, way_of(lubrication, begin, made), lever);
+      mean_modes<Beyond::as_at_the_gap>(step, lubrication, way_of(lubrication, begin, made), lever);
   const Real inverse = larger(inverse_mean(made), Real{jump});
   const auto was_within = begin <= Real{lubrication.outer_gap};
   return {larger(0.5 * (average.inverse + inverse) - jump, zero) + select(was_within, Real{0.5 * jump}, zero),
@@ -161,10 +164,10 @@ PECLET_ALWAYS_INLINE PairResistanceOf<Real> tangent_resistance(const ResistanceC
   const WayOf<Real> way = way_of_step(step, lubrication, pair, closing);
   const Real lever = (1 / pair.sum_of_radii) * pair.distance;
   PairResistanceOf<Real> tangent =
-      pair_resistance(k, mean_modes(step, lubrication, /*share_beyond=*/0, way, lever));
+      pair_resistance(k, mean_modes<Beyond::nothing>(step, lubrication, way, lever));
   tangent.squeeze =
       select(way.to.gap <= Real{lubrication.outer_gap},
-             k.squeeze_inverse * way.to.inverse + k.squeeze_logarithm * way.to.logarithm, Real{0.0});
+             k.squeeze_inverse / way.to.bounded + k.squeeze_logarithm * way.to.logarithm, Real{0.0});
   return tangent;
 }
 
