@@ -68,7 +68,7 @@ PANELS = {
 }
 OVERVIEW = ["reference", "friction 1, phi 0.45", "Pe 1"]
 QUICK_PANELS = ("reference", "Pe 100")
-QUICK = {"particles": {"count": 100}, **during({"strain": 0.5}, {"strain": 1})}
+QUICK = {"particles": {"count": 100}, **during({"strain": 0.5}, {"strain": 1.5})}
 QUICK_SEEDS = 8
 COLUMNS = (
     "panel",
