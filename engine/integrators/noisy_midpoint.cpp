@@ -11,7 +11,7 @@ namespace {
 
 // The predicted velocities need not be better than half of their way changes the resistance: their tolerance
 // is that many times the one of the velocities.
-constexpr double of_prediction = 10;
+constexpr double of_prediction = 5;
 
 bool carried_by_inertia(const Physics& physics, const ParticleState& particles, double timestep) {
   if (!physics.lubrication || particles.count() == 0) return false;

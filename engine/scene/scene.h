@@ -75,7 +75,7 @@ struct Scene {
   Physics physics;
   Method method = Method::explicit_steps;
   std::optional<double> timestep;  // absent: "auto"
-  double solver_tolerance = 2e-3;  // of implicit steps
+  double solver_tolerance = 0;     // of implicit steps
   Duration equilibration, production;
   std::map<std::string, Json> observables;  // asked for besides the stress: name, settings with defaults
   Guard guard;

@@ -120,7 +120,7 @@ Keys run_keys() {
       {.pointer = "/integrator/tolerance",
        .kind = KeyKind::number,
        .meaning = "Residual of the equations of an implicit step, relative to the motion, in the energy "
-                  "norm; 0.002 unless given.",
+                  "norm; unless given 0.002, with noise 0.004.",
        .minimum = 0,
        .maximum = 5e-3,
        .above_minimum = true},

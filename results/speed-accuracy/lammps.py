@@ -16,7 +16,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 sys.path.insert(0, str(HERE.parent.parent / "tests/bench"))
-from peer import Lammps, output_of
+from peer import Lammps
 from studies.campaigns import Program
 from studies.estimates import estimate, relative_difference, student_quantile
 from studies.scenes import REFERENCE_SCENE, during, merged
@@ -57,7 +57,9 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         program = Program(arguments.binaries, folder)
         step = program.derived(merged(scene, {"integrator": {"method": "explicit"}}))["timestep"]
-        ours = values_by_seed(program.run("ours", scene, [{"/integrator": {"method": "implicit"}}], SEEDS)[0]["realisations"])
+        ours = values_by_seed(
+            program.run("ours", scene, [{"/integrator": {"method": "implicit"}}], SEEDS)[0]["realisations"]
+        )
 
         def sheared(packing):
             own = os.path.join(folder, f"packing-{packing}")
