@@ -18,17 +18,13 @@ VelocitySolver::VelocitySolver(const Physics& physics, const ParticleState& part
     : timestep_(timestep),
       tolerance_(tolerance),
       link_(link_kernels(set)),
-      inverse_pivots_(6 * particles.count()),
-      scratch_(rows_of_scratch(particles.count())),
-      squeezing_(particles.count()),
-      right_(particles.count()),
+      pivots_(particles.count()),
       solution_(particles.count()),
       residual_(particles.count()),
       weighted_(particles.count()),
       direction_(particles.count()),
       ahead_(particles.count()),
       moved_(particles.count()),
-      back_(particles.count()),
       loads_(particles.count()),
       flow_(physics.flow) {
   if (flow_.varies()) {
@@ -57,7 +53,7 @@ void VelocitySolver::assemble(System& system, ForceField& field, double resistan
   field.assemble_links(
       system, {.timestep = timestep_, .normal_time = 0.5 * timestep_, .resistance_time = resistance_time},
       order_, groups_);
-  link_.factorise(links(system), scratch_.data(), inverse_pivots_.data(), squeezing_.data());
+  link_.factorise(links(system), pivots_.data());
   begun_.reset();
 }
 
@@ -87,8 +83,8 @@ VelocitySolver::Residual VelocitySolver::set_residual(const System& system, cons
                          .varying_velocity = flow_.varies() ? varying_velocity_.data() : nullptr,
                          .varying_spin = flow_.varies() ? varying_spin_.data() : nullptr};
   const LinkSystem matrix = links(system);
-  link_.set_residual(matrix, rows, right_.data());
-  begun_ = link_.begin(matrix, right_.data(), this->rows());
+  link_.set_residual(matrix, rows, solution_.data());
+  begun_ = link_.begin(matrix, this->rows());
   const SquaredMotion motion = link_.squared_motion(matrix, rows, direction_.data());
   // What a step changes is the smaller a part of the motion the more inertia outlives the step, and errors of
   // that part add up for as long.
@@ -98,7 +94,7 @@ VelocitySolver::Residual VelocitySolver::set_residual(const System& system, cons
 
 bool VelocitySolver::correct(System& system, double target, StepReport& report) {
   const LinkSystem matrix = links(system);
-  if (!begun_) begun_ = link_.begin(matrix, right_.data(), rows());
+  if (!begun_) begun_ = link_.begin(matrix, rows());
   const SolverReport solved = link_.solve(matrix, rows(), *begun_, target, most_iterations);
   begun_.reset();
   report.solver_iterations += solved.iterations;
@@ -116,8 +112,7 @@ LinkSystem VelocitySolver::links(const System& system) const {
           .levels = order_.levels().data(),
           .count_of_levels = order_.levels().size(),
           .groups = groups_.data(),
-          .inverse_pivots = inverse_pivots_.data(),
-          .squeezing = squeezing_.data()};
+          .pivots = pivots_.data()};
 }
 
 SolverRows VelocitySolver::rows() {
@@ -127,7 +122,6 @@ SolverRows VelocitySolver::rows() {
           .direction = direction_.data(),
           .ahead = ahead_.data(),
           .moved = moved_.data(),
-          .back = back_.data(),
           .loads = loads_.data()};
 }
 

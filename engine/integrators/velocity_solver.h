@@ -60,10 +60,8 @@ class VelocitySolver {
   LinkOrder order_;
   std::optional<std::uint64_t> ordered_;  // the number of the list's builds when the order was made
   std::vector<LinkGroup> groups_;
-  std::vector<MotionRow> inverse_pivots_, scratch_;
-  std::vector<SqueezingRow> squeezing_;
-  std::vector<MotionRow> right_;  // of the equations
-  std::vector<MotionRow> solution_, residual_, weighted_, direction_, ahead_, moved_, back_, loads_;
+  std::vector<Pivot> pivots_;
+  std::vector<MotionRow> solution_, residual_, weighted_, direction_, ahead_, moved_, loads_;
   std::optional<double> begun_;  // what begin() has returned for the present matrix and right-hand side
   ImposedFlow flow_;
   VectorField varying_velocity_, varying_spin_;  // of each particle, where the flow varies

@@ -69,9 +69,14 @@ struct LinkPlaces {
   std::uint32_t* next;  // a number for each level, to count with
 };
 
-// Twice what a link keeps of a row: K, two rows of three columns.
-struct alignas(32) SqueezingRow {
-  Floats columns[2];
+// P^-1 = (a b; b^T c) of one particle, with blocks of velocity and spin, and K. Three numbers of each half
+// are parts of a motion, the fourth is what would be 0 there:
+//   { a_xx a_yy a_zz K_xx   c_xx c_yy c_zz K_xy }
+//   { a_xy a_xz a_yz K_yy   c_xy c_xz c_yz K_xz }
+//   { b_xx b_yy b_zz K_zz   b_xx b_yy b_zz K_yz }
+//   { b_xy b_yz b_zx 0      b_yx b_zy b_xz 0 }
+struct Pivot {
+  MotionRow rows[4];
 };
 
 struct LinkSystem {
@@ -82,13 +87,12 @@ struct LinkSystem {
   const LinkLevel* levels;
   std::size_t count_of_levels;
   const LinkGroup* groups;
-  const MotionRow* inverse_pivots;  // six columns for each row, see factorise
-  const SqueezingRow* squeezing;    // K of each row
+  const Pivot* pivots;  // of each row
 };
 
-// Of each row, what solve() works on.
+// Of each row, what solve() works on. `solution` holds the right-hand side until then.
 struct SolverRows {
-  MotionRow *solution, *residual, *weighted, *direction, *ahead, *moved, *back, *loads;
+  MotionRow *solution, *residual, *weighted, *direction, *ahead, *moved, *loads;
 };
 
 struct SolverReport {
@@ -113,18 +117,14 @@ struct SquaredMotion {
   double whole, inertial;
 };
 
-// Of factorise(): the lower triangle of each particle's block, 21 numbers.
-constexpr std::size_t rows_of_scratch(std::size_t particles) { return 3 * particles; }
-
 struct LinkKernels {
   // The links of all pairs within their range, at the motion that `input` holds; the last group of a level is
   // filled up with links that couple nothing.
   void (*assemble)(const PairKernelInput& input, const PairRun* runs, std::size_t count, const Terms& terms,
                    const LinkWeights& weights, const LinkPlaces& places, LinkGroup* groups);
 
-  // P^-1 and K, see above.
-  void (*factorise)(const LinkSystem& system, MotionRow* scratch, MotionRow* inverse_pivots,
-                    SqueezingRow* squeezing);
+  // The pivots of a system, which may be those that it points at.
+  void (*factorise)(const LinkSystem& system, Pivot* pivots);
 
   // product = A vector, both in the order of rows.
   void (*multiply)(const LinkSystem& system, const MotionRow* vector, MotionRow* product);
@@ -138,8 +138,9 @@ struct LinkKernels {
   // Adds rows to velocities and spins of their particles.
   void (*add_motion)(const LinkSystem& system, const MotionRow* motion, double* velocity, double* spin);
 
-  // Begins to solve A x = right: sets rows.weighted and rows.residual. Returns right.C^-1 right.
-  double (*begin)(const LinkSystem& system, const MotionRow* right, const SolverRows& rows);
+  // Begins to solve A x = right for rows.solution = right: sets rows.weighted and rows.residual. Returns
+  // right.C^-1 right.
+  double (*begin)(const LinkSystem& system, const SolverRows& rows);
 
   // After begin(), which returned `squared_residual`: conjugate gradients from zero, until r.C^-1 r <= target
   // or after `most_iterations`.

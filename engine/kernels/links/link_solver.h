@@ -103,6 +103,7 @@ PECLET_ALWAYS_INLINE const Row& vector_row(const double* rows, std::size_t i) {
 }
 
 typedef float FourFloats __attribute__((vector_size(16)));
+typedef int FourIntegers __attribute__((vector_size(16)));
 
 PECLET_ALWAYS_INLINE void set_motion(MotionRow& to, const Row& velocity, const Row& spin) {
   reinterpret_cast<FourFloats*>(&to)[0] = __builtin_convertvector(velocity, FourFloats);
@@ -179,37 +180,49 @@ void add_motion(const LinkSystem& system, const MotionRow* motion, double* veloc
 
 typedef int EightIntegers __attribute__((vector_size(32)));
 
-// P^-1 r of one row.
-PECLET_ALWAYS_INLINE Floats over_pivot(const LinkSystem& system, std::size_t row, const Floats& residual) {
-  const MotionRow* const columns = system.inverse_pivots + 6 * row;
-#ifdef __AVX512F__
-  // Two columns side by side.
-  const auto two = [&](int c) { return _mm512_loadu_ps(reinterpret_cast<const float*>(columns + c)); };
-  const auto numbers = [&](int a, int b) {
-    const __m512i which = _mm512_setr_epi32(a, a, a, a, a, a, a, a, b, b, b, b, b, b, b, b);
-    return _mm512_permutexvar_ps(which, _mm512_castps256_ps512(residual));
+// P^-1 r of one row, see Pivot: with r = (f, g) the halves a f + b g and b^T f + c g.
+PECLET_ALWAYS_INLINE Floats over_pivot(const Pivot& pivot, const Floats& r) {
+  constexpr EightIntegers halves_changed = {4, 5, 6, 7, 0, 1, 2, 3};
+  // Of both halves alike.
+  const auto xxy = [](const Floats& v) {
+    return __builtin_shuffle(v, EightIntegers{0, 0, 1, 3, 4, 4, 5, 7});
   };
-  __m512 sum = _mm512_mul_ps(two(0), numbers(0, 1));
-  sum = _mm512_fmadd_ps(two(2), numbers(2, 4), sum);
-  sum = _mm512_fmadd_ps(two(4), numbers(5, 6), sum);
-  return Floats(_mm512_castps512_ps256(sum)) + Floats(_mm512_extractf32x8_ps(sum, 1));
-#else
-  Floats even = columns[0].v * residual[0], odd = columns[1].v * residual[1];
-  even += columns[2].v * residual[2];
-  odd += columns[3].v * residual[4];
-  even += columns[4].v * residual[5];
-  odd += columns[5].v * residual[6];
+  const auto yxx = [](const Floats& v) {
+    return __builtin_shuffle(v, EightIntegers{1, 0, 0, 3, 5, 4, 4, 7});
+  };
+  const auto yzz = [](const Floats& v) {
+    return __builtin_shuffle(v, EightIntegers{1, 2, 2, 3, 5, 6, 6, 7});
+  };
+  const auto zzy = [](const Floats& v) {
+    return __builtin_shuffle(v, EightIntegers{2, 2, 1, 3, 6, 6, 5, 7});
+  };
+  const auto yzx = [](const Floats& v) {
+    return __builtin_shuffle(v, EightIntegers{1, 2, 0, 3, 5, 6, 4, 7});
+  };
+  const auto zxy = [](const Floats& v) {
+    return __builtin_shuffle(v, EightIntegers{2, 0, 1, 3, 6, 4, 5, 7});
+  };
+  const Floats &beside = pivot.rows[1].v, &across = pivot.rows[3].v;
+  const Floats other = __builtin_shuffle(r, halves_changed);
+  const Floats even = pivot.rows[0].v * r + xxy(beside) * yxx(r) + yzz(beside) * zzy(r);
+  const Floats odd = pivot.rows[2].v * other + across * yzx(other) +
+                     zxy(__builtin_shuffle(across, halves_changed)) * zxy(other);
   return even + odd;
-#endif
 }
 
 // K t of one row.
-PECLET_ALWAYS_INLINE Floats squeezed(const SqueezingRow& row, const Floats& t) {
-  const Floats halves = row.columns[0] * __builtin_shuffle(t, EightIntegers{0, 0, 0, 0, 1, 1, 1, 1}) +
-                        row.columns[1] * __builtin_shuffle(t, EightIntegers{2, 2, 2, 2, 2, 2, 2, 2});
-  const Floats none{};
-  return __builtin_shuffle(halves, none, EightIntegers{0, 1, 2, 3, 8, 8, 8, 8}) +
-         __builtin_shuffle(halves, none, EightIntegers{4, 5, 6, 7, 8, 8, 8, 8});
+PECLET_ALWAYS_INLINE Floats squeezed(const Pivot& pivot, const Floats& t) {
+  const Floats four =
+      __builtin_shuffle(pivot.rows[0].v, pivot.rows[1].v, EightIntegers{3, 3, 11, 11, 7, 7, 15, 15});
+  const Floats six = __builtin_shuffle(four, pivot.rows[2].v, EightIntegers{0, 2, 11, 11, 4, 6, 15, 15});
+  const FourFloats v = __builtin_shufflevector(t, t, 0, 1, 2, 3);
+  const FourFloats diagonal = __builtin_shufflevector(six, six, 0, 1, 2, 3);
+  const FourFloats beside = __builtin_shufflevector(six, six, 4, 5, 6, 7);
+  const FourFloats sum =
+      diagonal * v +
+      __builtin_shuffle(beside, FourIntegers{0, 0, 1, 3}) * __builtin_shuffle(v, FourIntegers{1, 0, 0, 3}) +
+      __builtin_shuffle(beside, FourIntegers{1, 2, 2, 3}) * __builtin_shuffle(v, FourIntegers{2, 2, 1, 3});
+  return __builtin_shufflevector(sum, FourFloats{}, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
 // Adds to the rows of a level what the vector of earlier rows does to them: -L vector.
@@ -233,17 +246,17 @@ PECLET_ALWAYS_INLINE void push(const LinkSystem& system, const LinkLevel& level,
 }
 
 // residual = (P + L)^-1 right, weighted = P residual.
-double begin(const LinkSystem& system, const MotionRow* right, const SolverRows& rows) {
+double begin(const LinkSystem& system, const SolverRows& rows) {
   MotionRow *const r = rows.residual, *const z = rows.weighted;
   for (std::size_t i = 0; i < system.particles; ++i) {
-    z[i].v = right[i].v;
+    z[i].v = rows.solution[i].v;
   }
   double squared = 0;
   for (std::size_t l = 0; l < system.count_of_levels; ++l) {
     const LinkLevel& level = system.levels[l];
     pull(system, level, r, z);
     squared += summed(level.rows_begin, level.rows_end, [&](std::size_t i, Floats& sum) PECLET_INLINE_LAMBDA {
-      r[i].v = over_pivot(system, i, z[i].v);
+      r[i].v = over_pivot(system.pivots[i], z[i].v);
       sum += r[i].v * z[i].v;
     });
   }
@@ -253,15 +266,15 @@ double begin(const LinkSystem& system, const MotionRow* right, const SolverRows&
 // Conjugate gradients for
 //   A^ = (P + L)^-1 A (P + L^T)^-1   with the preconditioner P^-1,
 // which are those for A with C. With t = (P + L^T)^-1 p (Eisenstat 1981, SIAM J. Sci. Stat. Comput. 2, 1)
-//   A^ p = t + (P + L)^-1 (p + (K - P) t),   P t = p - L^T t,
-// a product costs what A itself would, and not C^-1 as well. Rows: r of A^, z = P r, p, t; `back` is P t and
-// `loads` -L^T t, later what is left of the right-hand side of the second sweep.
+//   A^ p = t + y,   (P + L) y = p + (K - P) t = K t + L^T t,
+// a product costs what A itself would, and not C^-1 as well. Rows: r of A^, z = P r, p, t, y; `loads` is
+// -L^T t, later P (t + y) = p + K t - L y.
 SolverReport solve(const LinkSystem& system, const SolverRows& rows, double squared_residual, double target,
                    int most_iterations) {
   const std::size_t count = system.particles;
   MotionRow *const x = rows.solution, *const r = rows.residual, *const z = rows.weighted,
                    *const p = rows.direction, *const t = rows.ahead, *const y = rows.moved,
-                   *const back = rows.back, *const s = rows.loads;
+                   *const s = rows.loads;
   SolverReport report{0, squared_residual};
   for (std::size_t i = 0; i < count; ++i) {
     x[i].v = p[i].v = s[i].v = Floats{};
@@ -272,19 +285,23 @@ SolverReport solve(const LinkSystem& system, const SolverRows& rows, double squa
       const LinkLevel& level = system.levels[l];
       for (std::size_t i = level.rows_begin; i < level.rows_end; ++i) {
         p[i].v = z[i].v + beta * p[i].v;
-        back[i].v = p[i].v + s[i].v;
-        t[i].v = over_pivot(system, i, back[i].v);
-        s[i].v = squeezed(system.squeezing[i], t[i].v) - s[i].v;
+        t[i].v = over_pivot(system.pivots[i], p[i].v + s[i].v);
       }
       push(system, level, t, s);
     }
     double curvature = 0;
     for (std::size_t l = 0; l < system.count_of_levels; ++l) {
       const LinkLevel& level = system.levels[l];
-      pull(system, level, y, s);
+      for (std::size_t i = level.rows_begin; i < level.rows_end; ++i) {
+        y[i].v = Floats{};
+      }
+      pull(system, level, y, y);
       curvature +=
           summed(level.rows_begin, level.rows_end, [&](std::size_t i, Floats& sum) PECLET_INLINE_LAMBDA {
-            y[i].v = over_pivot(system, i, s[i].v);
+            const Pivot& pivot = system.pivots[i];
+            const Floats load = squeezed(pivot, t[i].v) + y[i].v;
+            y[i].v = over_pivot(pivot, load - s[i].v);
+            s[i].v = p[i].v + load;
             sum += p[i].v * (t[i].v + y[i].v);
           });
     }
@@ -292,7 +309,7 @@ SolverReport solve(const LinkSystem& system, const SolverRows& rows, double squa
     const double squared = summed(0, count, [&](std::size_t i, Floats& sum) PECLET_INLINE_LAMBDA {
       x[i].v += alpha * t[i].v;
       r[i].v -= alpha * (t[i].v + y[i].v);
-      z[i].v -= alpha * (back[i].v + s[i].v);
+      z[i].v -= alpha * s[i].v;
       s[i].v = Floats{};
       sum += r[i].v * z[i].v;
     });

@@ -35,10 +35,8 @@ class Links {
     }
     order_.arrange(system_.list, particles.count());
     field_.assemble_links(system_, of_links, order_, groups_);
-    inverse_pivots_.resize(6 * particles.count());
-    squeezing_.resize(particles.count());
-    std::vector<MotionRow> scratch(rows_of_scratch(particles.count()));
-    kernels_.factorise(view(), scratch.data(), inverse_pivots_.data(), squeezing_.data());
+    pivots_.resize(particles.count());
+    kernels_.factorise(view(), pivots_.data());
   }
 
   LinkSystem view() const {
@@ -49,8 +47,7 @@ class Links {
             .levels = order_.levels().data(),
             .count_of_levels = order_.levels().size(),
             .groups = groups_.data(),
-            .inverse_pivots = inverse_pivots_.data(),
-            .squeezing = squeezing_.data()};
+            .pivots = pivots_.data()};
   }
   const LinkOrder& order() const { return order_; }
   const LinkKernels& kernels() const { return kernels_; }
@@ -98,8 +95,8 @@ class Links {
   const LinkKernels& kernels_;
   System system_;
   ForceField field_;
-  std::vector<MotionRow> diagonal_, inverse_pivots_;
-  std::vector<SqueezingRow> squeezing_;
+  std::vector<MotionRow> diagonal_;
+  std::vector<Pivot> pivots_;
   LinkOrder order_;
   std::vector<LinkGroup> groups_;
 };
