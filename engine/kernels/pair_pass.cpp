@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "engine/state/for_each_range.h"
+#include "engine/threads/for_each_range.h"
 
 namespace peclet::engine {
 namespace {
