@@ -60,7 +60,7 @@ Implicit::Implicit(const Physics& physics, const ParticleState& particles, doubl
                    std::uint64_t seed, int threads, InstructionSet set, double drag_share)
     : timestep_(timestep),
       field_(without_noise(physics), particles, timestep, seed, threads, set),
-      solver_(physics, particles, timestep, tolerance, set, drag_share),
+      solver_(physics, particles, timestep, tolerance, threads, set, drag_share),
       loads_(particles.count(), threads),
       physics_(physics),
       seed_(seed),

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/terms/drag.h"
+#include "engine/threads/run_team.h"
 
 namespace peclet::engine {
 namespace {
@@ -14,9 +15,10 @@ constexpr int most_iterations = 1000;
 }  // namespace
 
 VelocitySolver::VelocitySolver(const Physics& physics, const ParticleState& particles, double timestep,
-                               double tolerance, InstructionSet set, double drag_share)
+                               double tolerance, int threads, InstructionSet set, double drag_share)
     : timestep_(timestep),
       tolerance_(tolerance),
+      threads_(threads),
       link_(link_kernels(set)),
       pivots_(particles.count()),
       solution_(particles.count()),
@@ -47,13 +49,23 @@ VelocitySolver::VelocitySolver(const Physics& physics, const ParticleState& part
 
 void VelocitySolver::assemble(System& system, ForceField& field, double resistance_time) {
   if (ordered_ != system.list.builds()) {
-    order_.arrange(system.list, system.particles.count());
+    order_.arrange(system.list, system.particles.count(), threads_);
+    aside_.resize(std::size_t{rows_of_block} * links_per_group * order_.crossing_groups());
+    sums_.resize(count_of_sums * order_.blocks().size());
     ordered_ = system.list.builds();
   }
-  field.assemble_links(
+  const ForceField::AssembleLinks assemble_block = field.assemble_links(
       system, {.timestep = timestep_, .normal_time = 0.5 * timestep_, .resistance_time = resistance_time},
       order_, groups_);
-  link_.factorise(links(system), pivots_.data());
+  const LinkSystem matrix = links(system);
+  run_team(threads_, [&](Team& team) {
+    const Team::Part mine = team.part_of(matrix.count_of_blocks);
+    for (std::size_t block = mine.begin; block < mine.end; ++block) {
+      assemble_block(block);
+    }
+    team.meet();
+    link_.factorise(matrix, pivots_.data(), team);
+  });
   begun_.reset();
 }
 
@@ -83,9 +95,16 @@ VelocitySolver::Residual VelocitySolver::set_residual(const System& system, cons
                          .varying_velocity = flow_.varies() ? varying_velocity_.data() : nullptr,
                          .varying_spin = flow_.varies() ? varying_spin_.data() : nullptr};
   const LinkSystem matrix = links(system);
-  link_.set_residual(matrix, rows, solution_.data());
-  begun_ = link_.begin(matrix, this->rows());
-  const SquaredMotion motion = link_.squared_motion(matrix, rows, direction_.data());
+  SquaredMotion motion{};
+  run_team(threads_, [&](Team& team) {
+    link_.set_residual(matrix, rows, solution_.data(), team);
+    const double squared = link_.begin(matrix, this->rows(), team);
+    const SquaredMotion squared_motion = link_.squared_motion(matrix, rows, direction_.data(), team);
+    if (team.is_first()) {
+      begun_ = squared;
+      motion = squared_motion;
+    }
+  });
   // What a step changes is the smaller a part of the motion the more inertia outlives the step, and errors of
   // that part add up for as long.
   const double changed = std::max(motion.whole - motion.inertial, 0.0);
@@ -94,25 +113,35 @@ VelocitySolver::Residual VelocitySolver::set_residual(const System& system, cons
 
 bool VelocitySolver::correct(System& system, double target, StepReport& report) {
   const LinkSystem matrix = links(system);
-  if (!begun_) begun_ = link_.begin(matrix, rows());
-  const SolverReport solved = link_.solve(matrix, rows(), *begun_, target, most_iterations);
+  SolverReport solved;
+  run_team(threads_, [&](Team& team) {
+    const double squared = begun_ ? *begun_ : link_.begin(matrix, rows(), team);
+    const SolverReport found = link_.solve(matrix, rows(), squared, target, most_iterations, team);
+    link_.add_motion(matrix, solution_.data(), system.particles.velocity.data(),
+                     system.particles.angular_velocity.data(), team);
+    if (team.is_first()) solved = found;
+  });
   begun_.reset();
   report.solver_iterations += solved.iterations;
   report.solver_residual = target > 0 ? tolerance_ * std::sqrt(solved.squared_residual / target) : 0;
-  link_.add_motion(matrix, solution_.data(), system.particles.velocity.data(),
-                   system.particles.angular_velocity.data());
   return std::isfinite(solved.squared_residual);
 }
 
-LinkSystem VelocitySolver::links(const System& system) const {
+LinkSystem VelocitySolver::links(const System& system) {
   return {.particles = system.particles.count(),
-          .particle = order_.particle().data(),
+          .row = order_.row().data(),
           .size_class = system.particles.size_class.data(),
           .diagonal = diagonal_.data(),
+          .blocks = order_.blocks().data(),
+          .count_of_blocks = order_.blocks().size(),
           .levels = order_.levels().data(),
-          .count_of_levels = order_.levels().size(),
+          .boundary_levels = order_.boundary_levels(),
           .groups = groups_.data(),
-          .pivots = pivots_.data()};
+          .incoming = order_.incoming().data(),
+          .pivots = pivots_.data(),
+          .aside = aside_.data(),
+          .crossing_begin = order_.inner_groups(),
+          .sums = sums_.data()};
 }
 
 SolverRows VelocitySolver::rows() {

@@ -5,7 +5,7 @@
 // another.
 #pragma once
 
-#include "engine/kernels/links/link_solver.h"
+#include "engine/kernels/links/link_residual.h"
 
 namespace peclet::engine {
 namespace {
@@ -18,7 +18,6 @@ constexpr int entries = 21;
 //   { a_xx a_yy a_zz w_x   c_xx c_yy c_zz w_y }
 //   { a_xy a_xz a_yz w_z   c_xy c_xz c_yz 0 }
 // and K: { K_xx K_yy K_zz 0   K_xy K_xz K_yz 0 }.
-constexpr int rows_of_block = 2;
 
 // What eight links add to the own blocks of their first (sign 1) or second (sign -1) particles.
 PECLET_ALWAYS_INLINE void block_of_links(const Floats* n, const Floats& squeeze, const Floats& shear,
@@ -106,36 +105,59 @@ PECLET_ALWAYS_INLINE void transpose(Floats* rows) {
 #endif
 }
 
-// Adds what eight links give to the blocks of their particles.
-PECLET_ALWAYS_INLINE void add_blocks(Pivot* pivots, const std::uint32_t* index, Floats* blocks) {
+// What eight links give to the blocks of their particles: calls add(k, part, row).
+template <class Add>
+PECLET_ALWAYS_INLINE void for_each_row_of_blocks(Floats* blocks, Add&& add) {
   for (int part = 0; part < rows_of_block; ++part) {
     transpose(blocks + 8 * part);
     for (int k = 0; k < links_per_group; ++k) {
-      pivots[index[k]].rows[part].v += blocks[8 * part + k];
+      add(k, part, blocks[8 * part + k]);
     }
   }
 }
 
-// D and what links add, of the own block of each row; no K.
-PECLET_ALWAYS_INLINE void set_own_blocks(const LinkSystem& system, Pivot* pivots) {
-  for (std::size_t i = 0; i < system.particles; ++i) {
-    pivots[i] = Pivot{{{diagonal_of(system, i)}, {}, {}, {}}};
-  }
-  for (std::size_t l = 0; l < system.count_of_levels; ++l) {
-    for_each_group(system, system.levels[l], [&](const LinkGroup& group) PECLET_INLINE_LAMBDA {
+// D and what links add, of the own block of each row; no K. What belongs to other blocks' rows is put aside.
+PECLET_ALWAYS_INLINE void set_own_blocks(const LinkSystem& system, const LinkBlock& of, Pivot* pivots) {
+  const auto add_to = [&](const std::uint32_t* index, Floats* block) PECLET_INLINE_LAMBDA {
+    for_each_row_of_blocks(block, [&](int k, int part, const Floats& row)
+                                      PECLET_INLINE_LAMBDA { pivots[index[k]].rows[part].v += row; });
+  };
+  const auto add_to_first = [&](const LinkGroup& group) PECLET_INLINE_LAMBDA {
+    Floats block[16];
+    block_of_links(group.normal, group.squeeze, group.shear, group.pump_first, group.twist_first, 1.0F,
+                   block);
+    add_to(group.first, block);
+  };
+  const auto block_of_second = [](const LinkGroup& group, Floats* block) PECLET_INLINE_LAMBDA {
+    block_of_links(group.normal, group.squeeze, group.shear, group.pump_second, group.twist_second, -1.0F,
+                   block);
+  };
+  for_each_particle(of, [&](std::size_t i) PECLET_INLINE_LAMBDA {
+    pivots[system.row[i]] = Pivot{{{diagonal_of(system, i)}, {}, {}, {}}};
+  });
+  for (std::uint32_t l = of.levels_begin; l < of.levels_end; ++l) {
+    const GroupRange inner = inner_groups(system, system.levels[l]),
+                     crossing = crossing_groups(system, system.levels[l]);
+    for (const LinkGroup* group = inner.begin; group < inner.end; ++group) {
       Floats block[16];
-      block_of_links(group.normal, group.squeeze, group.shear, group.pump_first, group.twist_first, 1.0F,
-                     block);
-      add_blocks(pivots, group.first, block);
-      block_of_links(group.normal, group.squeeze, group.shear, group.pump_second, group.twist_second, -1.0F,
-                     block);
-      add_blocks(pivots, group.second, block);
-    });
+      add_to_first(*group);
+      block_of_second(*group, block);
+      add_to(group->second, block);
+    }
+    MotionRow* aside = aside_of(system, system.levels[l], rows_of_block);
+    for (const LinkGroup* group = crossing.begin; group < crossing.end; ++group) {
+      Floats block[16];
+      add_to_first(*group);
+      block_of_second(*group, block);
+      for_each_row_of_blocks(block, [&](int k, int part, const Floats& row)
+                                        PECLET_INLINE_LAMBDA { aside[rows_of_block * k + part].v = row; });
+      aside += rows_of_block * links_per_group;
+    }
   }
 }
 
-// Adds to K of a level's rows what the pivots of earlier ones give.
-PECLET_ALWAYS_INLINE void add_squeezing(const LinkSystem& system, const LinkLevel& level, Pivot* pivots) {
+// Adds to K of the first particles what the pivots of the second ones give.
+PECLET_ALWAYS_INLINE void add_squeezing(const GroupRange& groups, Pivot* pivots) {
   constexpr float kept = 0.9F;
   MotionRow* const rows = reinterpret_cast<MotionRow*>(pivots);
   const auto places = [](const std::uint32_t* of, std::uint32_t part, std::uint32_t* row) {
@@ -144,18 +166,18 @@ PECLET_ALWAYS_INLINE void add_squeezing(const LinkSystem& system, const LinkLeve
     }
     return row;
   };
-  for_each_group(system, level, [&](const LinkGroup& group) PECLET_INLINE_LAMBDA {
+  for (const LinkGroup* group = groups.begin; group < groups.end; ++group) {
     std::uint32_t row[links_per_group];
-    const Vector3Of<EightFloats> n = normal_of(group);
+    const Vector3Of<EightFloats> n = normal_of(*group);
     const Vector3Of<EightFloats> squares = {n.x * n.x, n.y * n.y, n.z * n.z};
     const Vector3Of<EightFloats> products = {n.x * n.y, n.x * n.z, n.y * n.z};
     // n.P^-1 n of the second particle
     const EightFloats compliance =
-        dot(squares, gather_motions(rows, places(group.second, 0, row)).velocity) +
-        EightFloats(2.0F * dot(products, gather_motions(rows, places(group.second, 1, row)).velocity).v);
-    const EightFloats weight = EightFloats(kept * group.squeeze * group.squeeze) * compliance;
-    add_motions(rows, places(group.first, 2, row), {weight * squares, weight * products});
-  });
+        dot(squares, gather_motions(rows, places(group->second, 0, row)).velocity) +
+        EightFloats(2.0F * dot(products, gather_motions(rows, places(group->second, 1, row)).velocity).v);
+    const EightFloats weight = EightFloats(kept * group->squeeze * group->squeeze) * compliance;
+    add_motions(rows, places(group->first, 2, row), {weight * squares, weight * products});
+  }
 }
 
 // (B - K)^-1 of up to eight rows from `begin` on.
@@ -211,16 +233,24 @@ PECLET_ALWAYS_INLINE void invert_pivots(Pivot* begin, std::size_t count) {
   }
 }
 
-void factorise(const LinkSystem& system, Pivot* pivots) {
-  set_own_blocks(system, pivots);
-  for (std::size_t l = 0; l < system.count_of_levels; ++l) {
-    const LinkLevel& level = system.levels[l];
-    add_squeezing(system, level, pivots);
-    for (std::size_t begin = level.rows_begin; begin < level.rows_end; begin += 8) {
-      const std::size_t rest = level.rows_end - begin;
-      invert_pivots(pivots + begin, rest < 8 ? rest : 8);
-    }
-  }
+void factorise(const LinkSystem& system, Pivot* pivots, Team& team) {
+  climb(
+      system, team,
+      [&](const LinkBlock& block, std::size_t)
+          PECLET_INLINE_LAMBDA { set_own_blocks(system, block, pivots); },
+      [](const LinkLevel&) {},
+      [&](const GroupRange& groups) PECLET_INLINE_LAMBDA { add_squeezing(groups, pivots); },
+      [&](const LinkLevel& level, std::size_t) PECLET_INLINE_LAMBDA {
+        for_each_incoming(system, level, [&](std::uint32_t row, std::uint32_t crossing) PECLET_INLINE_LAMBDA {
+          for (int part = 0; part < rows_of_block; ++part) {
+            pivots[row].rows[part].v += system.aside[rows_of_block * crossing + part].v;
+          }
+        });
+        for (std::size_t begin = level.rows_begin; begin < level.rows_end; begin += 8) {
+          const std::size_t rest = level.rows_end - begin;
+          invert_pivots(pivots + begin, rest < 8 ? rest : 8);
+        }
+      });
 }
 
 }  // namespace
