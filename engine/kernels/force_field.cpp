@@ -32,9 +32,7 @@ ForceField::ForceField(const Physics& physics, const ParticleState& particles, d
 
 PairSums ForceField::evaluate(System& system, VectorField& force, VectorField& torque) {
   const PairSums sums = evaluate_blocks(system, force, torque);
-  for (const ParticleBlock& block : system.list.blocks()) {
-    add_incoming(system, block, force, torque);
-  }
+  pair_pass_.add_incoming(system.list, threads_, force, torque);
   return sums;
 }
 
