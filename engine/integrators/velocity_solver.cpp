@@ -51,7 +51,7 @@ void VelocitySolver::assemble(System& system, ForceField& field, double resistan
   if (ordered_ != system.list.builds()) {
     order_.arrange(system.list, system.particles.count(), threads_);
     aside_.resize(std::size_t{rows_of_block} * links_per_group * order_.crossing_groups());
-    sums_.resize(count_of_sums * order_.blocks().size());
+    sums_.resize(order_.blocks().size());
     ordered_ = system.list.builds();
   }
   const ForceField::AssembleLinks assemble_block = field.assemble_links(

@@ -64,7 +64,7 @@ class VelocitySolver {
   std::vector<Pivot> pivots_;
   std::vector<MotionRow> solution_, residual_, weighted_, direction_, ahead_, moved_, loads_;
   std::vector<MotionRow> aside_;
-  std::vector<double> sums_;
+  std::vector<LinkSums> sums_;
   std::optional<double> begun_;  // what begin() has returned for the present matrix and right-hand side
   ImposedFlow flow_;
   VectorField varying_velocity_, varying_spin_;  // of each particle, where the flow varies

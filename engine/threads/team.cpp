@@ -45,13 +45,4 @@ void Team::meet() {
   wait();
 }
 
-double Team::total(const double* numbers, std::size_t count) {
-  meet();
-  double sum = 0;
-  for (const double number : std::span(numbers, count)) {
-    sum += number;
-  }
-  return sum;
-}
-
 }  // namespace peclet::engine

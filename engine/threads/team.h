@@ -36,9 +36,6 @@ class Team {
   void wait();
   void meet();  // arrives and waits
 
-  // The sum of numbers to which every member has contributed its part, in their order. Meets.
-  double total(const double* numbers, std::size_t count);
-
  private:
   std::span<Arrivals> arrivals_;
   std::size_t member_ = 0;

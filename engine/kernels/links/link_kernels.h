@@ -33,8 +33,7 @@ struct alignas(32) MotionRow {
 };
 
 constexpr int links_per_group = 8;
-constexpr std::size_t count_of_sums = 3;  // that may be in use at a time
-constexpr int rows_of_block = 2;          // what a link adds to a particle's own block
+constexpr int rows_of_block = 2;  // what a link adds to a particle's own block
 
 // Rows of particles; `first` is in a later level than `second`.
 struct alignas(32) LinkGroup {
@@ -104,6 +103,13 @@ struct Pivot {
   MotionRow rows[4];
 };
 
+// What the rows of a block contribute. One is taken anew while others may still be read.
+struct alignas(64) LinkSums {
+  double begun;            // of begin()
+  double curvature, left;  // of solve()
+  double whole, inertial;  // of squared_motion()
+};
+
 // Blocks are shared out among the members of a team. Sums are those of blocks, added up in their order: they
 // have the same bits for any number of members. What a block's rows do to those of another is put aside, for
 // whoever works on that one.
@@ -121,7 +127,7 @@ struct LinkSystem {
   const Pivot* pivots;           // of each row
   MotionRow* aside;              // rows_of_block of each crossing link
   std::uint32_t crossing_begin;  // the first group of crossing links
-  double* sums;                  // a number of each block, for each of count_of_sums
+  LinkSums* sums;                // of each block
 };
 
 // Of each row, what solve() works on. `solution` holds the right-hand side until then.

@@ -98,21 +98,21 @@ Row set_motions(const LinkSystem& system, const StepRows& step, const LinkBlock&
 
 // What links and D dissipate.
 SquaredMotion squared_motion(const LinkSystem& system, const StepRows& step, MotionRow* motion, Team& team) {
-  double *const whole = system.sums, *const inertial = system.sums + system.count_of_blocks;
   for_my_blocks(system, team, [&](const LinkBlock& block, std::size_t b) PECLET_INLINE_LAMBDA {
     const Row sums = step.flow.is_simple_shear ? set_motions<true>(system, step, block, motion)
                                                : set_motions<false>(system, step, block, motion);
-    inertial[b] = sums[0] + sums[1] + sums[2];
-    whole[b] = summed(block.rows_begin, block.rows_end, [&](std::size_t i, Floats& sum) PECLET_INLINE_LAMBDA {
-      const Floats& v = motion[system.row[i]].v;
-      sum += diagonal_of(system, i) * v * v;
-    });
+    system.sums[b].inertial = sums[0] + sums[1] + sums[2];
+    system.sums[b].whole =
+        summed(block.rows_begin, block.rows_end, [&](std::size_t i, Floats& sum) PECLET_INLINE_LAMBDA {
+          const Floats& v = motion[system.row[i]].v;
+          sum += diagonal_of(system, i) * v * v;
+        });
   });
   team.meet();
   for_my_blocks(system, team, [&](const LinkBlock& block, std::size_t b) PECLET_INLINE_LAMBDA {
     const auto add = [&](const GroupRange& groups) PECLET_INLINE_LAMBDA {
       const auto count = static_cast<std::size_t>(groups.end - groups.begin);
-      whole[b] += summed(0, count, [&](std::size_t g, Floats& sum) PECLET_INLINE_LAMBDA {
+      system.sums[b].whole += summed(0, count, [&](std::size_t g, Floats& sum) PECLET_INLINE_LAMBDA {
         const LinkGroup& group = groups.begin[g];
         const FloatMotions i = gather_motions(motion, group.first), j = gather_motions(motion, group.second);
         const PairLoadOf<EightFloats> load = load_of(group, i, j);
@@ -123,7 +123,7 @@ SquaredMotion squared_motion(const LinkSystem& system, const StepRows& step, Mot
     };
     for_each_level(system, block.levels_begin, block.levels_end, add);
   });
-  return {team.total(whole, system.count_of_blocks), team.total(inertial, system.count_of_blocks)};
+  return {total(system, team, &LinkSums::whole), total(system, team, &LinkSums::inertial)};
 }
 
 void add_motion(const LinkSystem& system, const MotionRow* motion, double* velocity, double* spin,

@@ -60,11 +60,10 @@ PECLET_ALWAYS_INLINE Floats squeezed(const Pivot& pivot, const Floats& t) {
 // residual = (P + L)^-1 right, weighted = P residual.
 double begin(const LinkSystem& system, const SolverRows& rows, Team& team) {
   MotionRow *const r = rows.residual, *const z = rows.weighted;
-  double* const squared = system.sums + 2 * system.count_of_blocks;
   climb(
       system, team,
       [&](const LinkBlock& block, std::size_t b) PECLET_INLINE_LAMBDA {
-        squared[b] = 0;
+        system.sums[b].begun = 0;
         for_each_row(block, [&](std::size_t i) PECLET_INLINE_LAMBDA { z[i].v = rows.solution[i].v; });
       },
       [&](const LinkLevel& level) PECLET_INLINE_LAMBDA {
@@ -73,14 +72,14 @@ double begin(const LinkSystem& system, const SolverRows& rows, Team& team) {
       },
       [&](const GroupRange& groups) PECLET_INLINE_LAMBDA { pull(groups, r, z); },
       [&](const LinkLevel& level, std::size_t b) PECLET_INLINE_LAMBDA {
-        squared[b] +=
+        system.sums[b].begun +=
             summed(level.rows_begin, level.rows_end, [&](std::size_t i, Floats& sum) PECLET_INLINE_LAMBDA {
               fetch(system.pivots + i + rows_ahead);
               r[i].v = over_pivot(system.pivots[i], z[i].v);
               sum += r[i].v * z[i].v;
             });
       });
-  return team.total(squared, system.count_of_blocks);
+  return total(system, team, &LinkSums::begun);
 }
 
 // Conjugate gradients for
@@ -97,7 +96,6 @@ SolverReport solve(const LinkSystem& system, const SolverRows& rows, double squa
   MotionRow *const x = rows.solution, *const r = rows.residual, *const z = rows.weighted,
                    *const p = rows.direction, *const t = rows.ahead, *const y = rows.moved,
                    *const s = rows.loads;
-  double *const curvature = system.sums, *const squared = system.sums + system.count_of_blocks;
   SolverReport report{0, squared_residual};
   for_my_blocks(system, team, [&](const LinkBlock& block, std::size_t) PECLET_INLINE_LAMBDA {
     for_each_row(block, [&](std::size_t i) PECLET_INLINE_LAMBDA { x[i].v = p[i].v = s[i].v = Floats{}; });
@@ -129,7 +127,7 @@ SolverReport solve(const LinkSystem& system, const SolverRows& rows, double squa
     climb(
         system, team,
         [&](const LinkBlock& block, std::size_t b) PECLET_INLINE_LAMBDA {
-          curvature[b] = 0;
+          system.sums[b].curvature = 0;
           for (std::uint32_t l = block.boundary_begin; l-- > block.levels_begin;) {
             descend(system.levels[l]);
             push(system, system.levels[l], t, s);
@@ -140,7 +138,7 @@ SolverReport solve(const LinkSystem& system, const SolverRows& rows, double squa
         },
         [&](const GroupRange& groups) PECLET_INLINE_LAMBDA { pull(groups, y, y); },
         [&](const LinkLevel& level, std::size_t b) PECLET_INLINE_LAMBDA {
-          curvature[b] +=
+          system.sums[b].curvature +=
               summed(level.rows_begin, level.rows_end, [&](std::size_t i, Floats& sum) PECLET_INLINE_LAMBDA {
                 fetch(system.pivots + i + rows_ahead);
                 const Pivot& pivot = system.pivots[i];
@@ -150,10 +148,10 @@ SolverReport solve(const LinkSystem& system, const SolverRows& rows, double squa
                 sum += p[i].v * (t[i].v + y[i].v);
               });
         });
-    const double along = team.total(curvature, system.count_of_blocks);
+    const double along = total(system, team, &LinkSums::curvature);
     const auto alpha = static_cast<float>(report.squared_residual / along);
     for_my_blocks(system, team, [&](const LinkBlock& block, std::size_t b) PECLET_INLINE_LAMBDA {
-      squared[b] =
+      system.sums[b].left =
           summed(block.rows_begin, block.rows_end, [&](std::size_t i, Floats& sum) PECLET_INLINE_LAMBDA {
             x[i].v += alpha * t[i].v;
             r[i].v -= alpha * (t[i].v + y[i].v);
@@ -162,7 +160,7 @@ SolverReport solve(const LinkSystem& system, const SolverRows& rows, double squa
             sum += r[i].v * z[i].v;
           });
     });
-    const double left = team.total(squared, system.count_of_blocks);
+    const double left = total(system, team, &LinkSums::left);
     beta = static_cast<float>(left / report.squared_residual);
     report.squared_residual = left;
     ++report.iterations;

@@ -93,6 +93,16 @@ PECLET_ALWAYS_INLINE void for_my_blocks(const LinkSystem& system, const Team& te
   }
 }
 
+// The sum over all blocks, in their order, once all members have contributed theirs.
+PECLET_ALWAYS_INLINE double total(const LinkSystem& system, Team& team, double LinkSums::*sum) {
+  team.meet();
+  double total = 0;
+  for (std::size_t b = 0; b < system.count_of_blocks; ++b) {
+    total += system.sums[b].*sum;
+  }
+  return total;
+}
+
 // Calls body(row) for the rows of a block or level.
 template <class Rows, class Body>
 PECLET_ALWAYS_INLINE void for_each_row(const Rows& of, Body&& body) {

@@ -42,7 +42,7 @@ class Links {
     }
     pivots_.resize(particles.count());
     aside_.resize(std::size_t{rows_of_block} * links_per_group * order_.crossing_groups());
-    sums_.resize(count_of_sums * order_.blocks().size());
+    sums_.resize(order_.blocks().size());
     Team alone;
     kernels_.factorise(view(), pivots_.data(), alone);
   }
@@ -112,7 +112,7 @@ class Links {
   std::vector<MotionRow> diagonal_;
   std::vector<Pivot> pivots_;
   mutable std::vector<MotionRow> aside_;
-  mutable std::vector<double> sums_;
+  mutable std::vector<LinkSums> sums_;
   LinkOrder order_;
   std::vector<LinkGroup> groups_;
 };

@@ -41,22 +41,6 @@ TEST(Team, SeesWhatOthersDidBeforeTheyArrived) {
   }
 }
 
-// In another order the small numbers would be lost on the large one.
-TEST(Team, AddsUpInOrder) {
-  std::vector<double> numbers(1000, 1.0);
-  numbers.back() = 0x1p53;
-  const double expected = 0x1p53 + 1000;  // 999 rounded to even
-  for (const int threads : {1, 2, 3, 5}) {
-    std::vector<double> totals(static_cast<std::size_t>(threads), expected);
-    run_team(threads, [&](Team& team) {
-      const double total = team.total(numbers.data(), numbers.size());
-      const Team::Part mine = team.part_of(totals.size());
-      for (std::size_t k = mine.begin; k < mine.end; ++k) totals[k] = total;
-    });
-    EXPECT_EQ(totals, std::vector<double>(totals.size(), expected));
-  }
-}
-
 TEST(Team, HasOneFirstMember) {
   std::atomic<int> first = 0, members = 0;
   run_team(3, [&](Team& team) {
