@@ -43,7 +43,7 @@ void LinkOrder::arrange(const NeighbourList& list, std::size_t particles, int th
   });
   boundary_levels_ =
       list.crossings() == 0 ? 0 : colour(list.pairs(), true, 0, static_cast<std::uint32_t>(particles));
-  number_rows(list, interior_levels);
+  number_rows(list, interior_levels, threads);
   make_room(list, threads);
   place_crossing_links(list);
 }
@@ -89,7 +89,8 @@ LinkOrder::Colour LinkOrder::colour(std::span<const Pair> pairs, bool boundary, 
   return static_cast<Colour>(taken_by.size());
 }
 
-void LinkOrder::number_rows(const NeighbourList& list, const std::vector<Colour>& interior_levels) {
+void LinkOrder::number_rows(const NeighbourList& list, const std::vector<Colour>& interior_levels,
+                            int threads) {
   blocks_.clear();
   std::uint32_t levels = 0;
   for (std::size_t b = 0; b < interior_levels.size(); ++b) {
@@ -102,25 +103,31 @@ void LinkOrder::number_rows(const NeighbourList& list, const std::vector<Colour>
   next_.assign(levels, 0);
   row_.resize(colour_.size());
   level_.resize(colour_.size());
-  for (const LinkBlock& block : blocks_) {
-    const auto level_of = [&](std::uint32_t i) {
-      return colour_[i] + (in_boundary_[i] != 0 ? block.boundary_begin : block.levels_begin);
-    };
-    for (std::uint32_t i = block.rows_begin; i < block.rows_end; ++i) {
-      ++next_[level_of(i)];
+  for_each_range(blocks_.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      number_rows(blocks_[b]);
     }
-    std::uint32_t row = block.rows_begin;
-    for (std::uint32_t l = block.levels_begin; l < block.levels_end; ++l) {
-      levels_[l].rows_begin = row;
-      row += next_[l];
-      levels_[l].rows_end = row;
-      next_[l] = levels_[l].rows_begin;
-    }
-    for (std::uint32_t i = block.rows_begin; i < block.rows_end; ++i) {
-      const std::uint32_t level = level_of(i), of_particle = next_[level]++;
-      row_[i] = of_particle;
-      level_[of_particle] = level;
-    }
+  });
+}
+
+void LinkOrder::number_rows(const LinkBlock& block) {
+  const auto level_of = [&](std::uint32_t i) {
+    return colour_[i] + (in_boundary_[i] != 0 ? block.boundary_begin : block.levels_begin);
+  };
+  for (std::uint32_t i = block.rows_begin; i < block.rows_end; ++i) {
+    ++next_[level_of(i)];
+  }
+  std::uint32_t row = block.rows_begin;
+  for (std::uint32_t l = block.levels_begin; l < block.levels_end; ++l) {
+    levels_[l].rows_begin = row;
+    row += next_[l];
+    levels_[l].rows_end = row;
+    next_[l] = levels_[l].rows_begin;
+  }
+  for (std::uint32_t i = block.rows_begin; i < block.rows_end; ++i) {
+    const std::uint32_t level = level_of(i), of_particle = next_[level]++;
+    row_[i] = of_particle;
+    level_[of_particle] = level;
   }
 }
 

@@ -38,7 +38,8 @@ class LinkOrder {
 
   void find_boundary(const NeighbourList& list, std::size_t particles);
   Colour colour(std::span<const Pair> pairs, bool boundary, std::uint32_t begin, std::uint32_t end);
-  void number_rows(const NeighbourList& list, const std::vector<Colour>& interior_levels);
+  void number_rows(const NeighbourList& list, const std::vector<Colour>& interior_levels, int threads);
+  void number_rows(const LinkBlock& block);
   void make_room(const NeighbourList& list, int threads);
   void place_crossing_links(const NeighbourList& list);
 
