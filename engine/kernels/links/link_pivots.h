@@ -139,6 +139,7 @@ PECLET_ALWAYS_INLINE void set_own_blocks(const LinkSystem& system, const LinkBlo
     const GroupRange inner = inner_groups(system, system.levels[l]),
                      crossing = crossing_groups(system, system.levels[l]);
     for (const LinkGroup* group = inner.begin; group < inner.end; ++group) {
+      fetch(group + groups_ahead);
       Floats block[16];
       add_to_first(*group);
       block_of_second(*group, block);
@@ -167,6 +168,7 @@ PECLET_ALWAYS_INLINE void add_squeezing(const GroupRange& groups, Pivot* pivots)
     return row;
   };
   for (const LinkGroup* group = groups.begin; group < groups.end; ++group) {
+    fetch(group + groups_ahead);
     std::uint32_t row[links_per_group];
     const Vector3Of<EightFloats> n = normal_of(*group);
     const Vector3Of<EightFloats> squares = {n.x * n.x, n.y * n.y, n.z * n.z};

@@ -114,6 +114,7 @@ SquaredMotion squared_motion(const LinkSystem& system, const StepRows& step, Mot
       const auto count = static_cast<std::size_t>(groups.end - groups.begin);
       system.sums[b].whole += summed(0, count, [&](std::size_t g, Floats& sum) PECLET_INLINE_LAMBDA {
         const LinkGroup& group = groups.begin[g];
+        fetch(&group + groups_ahead);
         const FloatMotions i = gather_motions(motion, group.first), j = gather_motions(motion, group.second);
         const PairLoadOf<EightFloats> load = load_of(group, i, j);
         sum += (dot(load.force, j.velocity - i.velocity) - dot(load.torque_first, i.spin) -

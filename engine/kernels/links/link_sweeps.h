@@ -61,7 +61,7 @@ PECLET_ALWAYS_INLINE Vector3Of<EightFloats> normal_of(const LinkGroup& group) {
 
 // Loops over much more than a cache holds: what comes next is asked for in time. Beyond the end nothing
 // happens.
-constexpr int groups_ahead = 4, rows_ahead = 24;
+constexpr int groups_ahead = 12, rows_ahead = 48;
 
 template <class T>
 PECLET_ALWAYS_INLINE void fetch(const T* place) {
