@@ -12,48 +12,53 @@ namespace {
 typedef int FourIntegers __attribute__((vector_size(16)));
 typedef int EightIntegers __attribute__((vector_size(32)));
 
+// The first three numbers of both halves in this order.
+template <int a, int b, int c>
+PECLET_ALWAYS_INLINE Floats arranged(const Floats& v) {
+#ifdef __AVX2__
+  return __builtin_shuffle(v, EightIntegers{a, b, c, 3, 4 + a, 4 + b, 4 + c, 7});
+#else
+  Floats result;
+  for (int half = 0; half < 2; ++half) {
+    reinterpret_cast<FourFloats*>(&result)[half] =
+        __builtin_shuffle(reinterpret_cast<const FourFloats*>(&v)[half], FourIntegers{a, b, c, 3});
+  }
+  return result;
+#endif
+}
+
+PECLET_ALWAYS_INLINE Floats with_halves_changed(const Floats& v) {
+#ifdef __AVX2__
+  return __builtin_shuffle(v, EightIntegers{4, 5, 6, 7, 0, 1, 2, 3});
+#else
+  Floats result;
+  for (int half = 0; half < 2; ++half) {
+    reinterpret_cast<FourFloats*>(&result)[half] = reinterpret_cast<const FourFloats*>(&v)[1 - half];
+  }
+  return result;
+#endif
+}
+
 // P^-1 r of one row, see Pivot: with r = (f, g) the halves a f + b g and b^T f + c g.
 PECLET_ALWAYS_INLINE Floats over_pivot(const Pivot& pivot, const Floats& r) {
-  constexpr EightIntegers halves_changed = {4, 5, 6, 7, 0, 1, 2, 3};
-  // Of both halves alike.
-  const auto xxy = [](const Floats& v) {
-    return __builtin_shuffle(v, EightIntegers{0, 0, 1, 3, 4, 4, 5, 7});
-  };
-  const auto yxx = [](const Floats& v) {
-    return __builtin_shuffle(v, EightIntegers{1, 0, 0, 3, 5, 4, 4, 7});
-  };
-  const auto yzz = [](const Floats& v) {
-    return __builtin_shuffle(v, EightIntegers{1, 2, 2, 3, 5, 6, 6, 7});
-  };
-  const auto zzy = [](const Floats& v) {
-    return __builtin_shuffle(v, EightIntegers{2, 2, 1, 3, 6, 6, 5, 7});
-  };
-  const auto yzx = [](const Floats& v) {
-    return __builtin_shuffle(v, EightIntegers{1, 2, 0, 3, 5, 6, 4, 7});
-  };
-  const auto zxy = [](const Floats& v) {
-    return __builtin_shuffle(v, EightIntegers{2, 0, 1, 3, 6, 4, 5, 7});
-  };
   const Floats &beside = pivot.rows[1].v, &across = pivot.rows[3].v;
-  const Floats other = __builtin_shuffle(r, halves_changed);
-  const Floats even = pivot.rows[0].v * r + xxy(beside) * yxx(r) + yzz(beside) * zzy(r);
-  const Floats odd = pivot.rows[2].v * other + across * yzx(other) +
-                     zxy(__builtin_shuffle(across, halves_changed)) * zxy(other);
+  const Floats other = with_halves_changed(r);
+  const Floats even = pivot.rows[0].v * r + arranged<0, 0, 1>(beside) * arranged<1, 0, 0>(r) +
+                      arranged<1, 2, 2>(beside) * arranged<2, 2, 1>(r);
+  const Floats odd = pivot.rows[2].v * other + across * arranged<1, 2, 0>(other) +
+                     arranged<2, 0, 1>(with_halves_changed(across)) * arranged<2, 0, 1>(other);
   return even + odd;
 }
 
 // K t of one row.
 PECLET_ALWAYS_INLINE Floats squeezed(const Pivot& pivot, const Floats& t) {
-  const Floats four =
-      __builtin_shuffle(pivot.rows[0].v, pivot.rows[1].v, EightIntegers{3, 3, 11, 11, 7, 7, 15, 15});
-  const Floats six = __builtin_shuffle(four, pivot.rows[2].v, EightIntegers{0, 2, 11, 11, 4, 6, 15, 15});
-  const FourFloats v = __builtin_shufflevector(t, t, 0, 1, 2, 3);
-  const FourFloats diagonal = __builtin_shufflevector(six, six, 0, 1, 2, 3);
-  const FourFloats beside = __builtin_shufflevector(six, six, 4, 5, 6, 7);
-  const FourFloats sum =
-      diagonal * v +
-      __builtin_shuffle(beside, FourIntegers{0, 0, 1, 3}) * __builtin_shuffle(v, FourIntegers{1, 0, 0, 3}) +
-      __builtin_shuffle(beside, FourIntegers{1, 2, 2, 3}) * __builtin_shuffle(v, FourIntegers{2, 2, 1, 3});
+  const auto three = [&](int place) {
+    return FourFloats{pivot.rows[0].v[place], pivot.rows[1].v[place], pivot.rows[2].v[place], 0};
+  };
+  const FourFloats diagonal = three(3), beside = three(7), v = __builtin_shufflevector(t, t, 0, 1, 2, 3);
+  constexpr FourIntegers xxy = {0, 0, 1, 3}, yxx = {1, 0, 0, 3}, yzz = {1, 2, 2, 3}, zzy = {2, 2, 1, 3};
+  const FourFloats sum = diagonal * v + __builtin_shuffle(beside, xxy) * __builtin_shuffle(v, yxx) +
+                         __builtin_shuffle(beside, yzz) * __builtin_shuffle(v, zzy);
   return __builtin_shufflevector(sum, FourFloats{}, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
