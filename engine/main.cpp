@@ -19,7 +19,7 @@
 #include "engine/jobs/job.h"
 #include "engine/jobs/serve.h"
 #include "engine/output/summary.h"
-#include "engine/state/waiting_threads.h"
+#include "engine/threads/waiting_threads.h"
 
 namespace {
 
@@ -133,7 +133,9 @@ int main(int argc, char** argv) {
   run_command->add_option("--seed", options.seed, "Seed of packing and noise")
       ->capture_default_str()
       ->check(whole_number);
-  run_command->add_option("--threads", options.threads, "Threads of the pair loop")
+  run_command
+      ->add_option("--threads", options.threads,
+                   "Threads, of which each has 4000 particles or more and a processor")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));
   run_command->add_option("--output", options.output, "File for the result instead of standard output");

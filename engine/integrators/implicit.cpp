@@ -6,7 +6,7 @@
 
 #include "engine/integrators/midpoint.h"
 #include "engine/integrators/noisy_midpoint.h"
-#include "engine/state/field_array.h"
+#include "engine/threads/for_each_range.h"
 
 namespace peclet::engine {
 namespace {
@@ -16,11 +16,12 @@ Physics without_noise(Physics physics) {
   return physics;
 }
 
-// Of the velocities relative to the flow; NaN if one is not finite.
+// Of the velocities of a block relative to the flow; NaN if one is not finite.
 template <bool is_simple_shear>
-double largest_square(const Matrix3& gradient, const VectorField& position, const VectorField& velocity) {
+double largest_square(const Matrix3& gradient, const VectorField& position, const VectorField& velocity,
+                      const ParticleBlock& block) {
   double largest = 0, sum = 0;
-  for (std::size_t i = 0; i < position.size(); ++i) {
+  for (std::size_t i = block.begin; i < block.end; ++i) {
     Vector3 peculiar = velocity[i];
     if constexpr (is_simple_shear) {
       peculiar.x -= gradient.column[1].x * position.row(i)[1];
@@ -61,7 +62,7 @@ Implicit::Implicit(const Physics& physics, const ParticleState& particles, doubl
                    StepResistance::Part part)
     : timestep_(timestep),
       field_(without_noise(physics), particles, timestep, seed, threads, set, 0, part),
-      solver_(physics, particles, timestep, tolerance, set, drag_share),
+      solver_(physics, particles, timestep, tolerance, threads, set, drag_share),
       loads_(particles.count(), threads),
       physics_(physics),
       seed_(seed),
@@ -171,9 +172,18 @@ void Implicit::follow_list(System& system, double way) {
 }
 
 void Implicit::remember(const System& system) {
-  origin_.position = system.particles.position;
-  origin_.velocity = system.particles.velocity;
-  origin_.spin = system.particles.angular_velocity;
+  const ParticleState& particles = system.particles;
+  const std::size_t count = particles.count();
+  for (VectorField* field : {&origin_.position, &origin_.velocity, &origin_.spin}) {
+    if (field->size() != count) *field = VectorField(count, field_.threads());
+  }
+  for_each_range(count, field_.threads(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      origin_.position.row(i) = particles.position.row(i);
+      origin_.velocity.row(i) = particles.velocity.row(i);
+      origin_.spin.row(i) = particles.angular_velocity.row(i);
+    }
+  });
   origin_.springs = system.springs;
 }
 
@@ -201,7 +211,11 @@ bool Implicit::move_half_a_step(System& system) {
 // To where the present velocities lead from the origin in that time.
 void Implicit::move(System& system, double time) {
   ParticleState& particles = system.particles;
-  array(particles.position) = array(origin_.position) + time * array(particles.velocity);
+  for_each_range(particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      particles.position.row(i) = origin_.position.row(i) + time * particles.velocity.row(i);
+    }
+  });
   physics_.flow.deformation().drive(system.box, system.clock.time() + time);
 }
 
@@ -209,10 +223,18 @@ void Implicit::move(System& system, double time) {
 // finite.
 double Implicit::displacement(const System& system) const {
   const Matrix3& gradient = system.box.velocity_gradient();
-  const double squared = gradient == simple_shear(gradient.column[1].x)
-                             ? largest_square<true>(gradient, origin_.position, system.particles.velocity)
-                             : largest_square<false>(gradient, origin_.position, system.particles.velocity);
-  return timestep_ * std::sqrt(squared);
+  const auto largest =
+      gradient == simple_shear(gradient.column[1].x) ? largest_square<true> : largest_square<false>;
+  const std::vector<ParticleBlock>& blocks = system.list.blocks();
+  std::vector<double> squared(blocks.size());
+  for_each_range(blocks.size(), field_.threads(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      squared[b] = largest(gradient, origin_.position, system.particles.velocity, blocks[b]);
+    }
+  });
+  // NaN is larger than any.
+  const auto is_less = [](double a, double b) { return !std::isnan(a) && !(a >= b); };
+  return timestep_ * std::sqrt(*std::ranges::max_element(squared, is_less));
 }
 
 Integrator::HalfSteps Implicit::compare_half_steps(const System& system, int steps) const {

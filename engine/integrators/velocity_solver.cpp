@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/terms/drag.h"
+#include "engine/threads/run_team.h"
 
 namespace peclet::engine {
 namespace {
@@ -14,21 +15,18 @@ constexpr int most_iterations = 1000;
 }  // namespace
 
 VelocitySolver::VelocitySolver(const Physics& physics, const ParticleState& particles, double timestep,
-                               double tolerance, InstructionSet set, double drag_share)
+                               double tolerance, int threads, InstructionSet set, double drag_share)
     : timestep_(timestep),
       tolerance_(tolerance),
+      threads_(threads),
       link_(link_kernels(set)),
-      inverse_pivots_(6 * particles.count()),
-      scratch_(rows_of_scratch(particles.count())),
-      squeezing_(particles.count()),
-      right_(particles.count()),
+      pivots_(particles.count()),
       solution_(particles.count()),
       residual_(particles.count()),
       weighted_(particles.count()),
       direction_(particles.count()),
       ahead_(particles.count()),
       moved_(particles.count()),
-      back_(particles.count()),
       loads_(particles.count()),
       flow_(physics.flow) {
   if (flow_.varies()) {
@@ -51,11 +49,22 @@ VelocitySolver::VelocitySolver(const Physics& physics, const ParticleState& part
 
 void VelocitySolver::assemble(System& system, ForceField& field) {
   if (ordered_ != system.list.builds()) {
-    order_.arrange(system.list, system.particles.count());
+    order_.arrange(system.list, system.particles.count(), threads_);
+    aside_.resize(std::size_t{rows_of_block} * links_per_group * order_.crossing_groups());
+    sums_.resize(order_.blocks().size());
     ordered_ = system.list.builds();
   }
-  field.assemble_links(system, {.timestep = timestep_, .normal_time = 0.5 * timestep_}, order_, groups_);
-  link_.factorise(links(system), scratch_.data(), inverse_pivots_.data(), squeezing_.data());
+  const ForceField::AssembleLinks assemble_block = field.assemble_links(
+      system, {.timestep = timestep_, .normal_time = 0.5 * timestep_}, order_, groups_);
+  const LinkSystem matrix = links(system);
+  run_team(threads_, [&](Team& team) {
+    const Team::Part mine = team.part_of(matrix.count_of_blocks);
+    for (std::size_t block = mine.begin; block < mine.end; ++block) {
+      assemble_block(block);
+    }
+    team.meet();
+    link_.factorise(matrix, pivots_.data(), team);
+  });
   begun_.reset();
 }
 
@@ -85,9 +94,16 @@ VelocitySolver::Residual VelocitySolver::set_residual(const System& system, cons
                          .varying_velocity = flow_.varies() ? varying_velocity_.data() : nullptr,
                          .varying_spin = flow_.varies() ? varying_spin_.data() : nullptr};
   const LinkSystem matrix = links(system);
-  link_.set_residual(matrix, rows, right_.data());
-  begun_ = link_.begin(matrix, right_.data(), this->rows());
-  const SquaredMotion motion = link_.squared_motion(matrix, rows, direction_.data());
+  SquaredMotion motion{};
+  run_team(threads_, [&](Team& team) {
+    link_.set_residual(matrix, rows, solution_.data(), team);
+    const double squared = link_.begin(matrix, this->rows(), team);
+    const SquaredMotion squared_motion = link_.squared_motion(matrix, rows, direction_.data(), team);
+    if (team.is_first()) {
+      begun_ = squared;
+      motion = squared_motion;
+    }
+  });
   // What a step changes is the smaller a part of the motion the more inertia outlives the step, and errors of
   // that part add up for as long.
   const double changed = std::max(motion.whole - motion.inertial, 0.0);
@@ -96,26 +112,35 @@ VelocitySolver::Residual VelocitySolver::set_residual(const System& system, cons
 
 bool VelocitySolver::correct(System& system, double target, StepReport& report) {
   const LinkSystem matrix = links(system);
-  if (!begun_) begun_ = link_.begin(matrix, right_.data(), rows());
-  const SolverReport solved = link_.solve(matrix, rows(), *begun_, target, most_iterations);
+  SolverReport solved;
+  run_team(threads_, [&](Team& team) {
+    const double squared = begun_ ? *begun_ : link_.begin(matrix, rows(), team);
+    const SolverReport found = link_.solve(matrix, rows(), squared, target, most_iterations, team);
+    link_.add_motion(matrix, solution_.data(), system.particles.velocity.data(),
+                     system.particles.angular_velocity.data(), team);
+    if (team.is_first()) solved = found;
+  });
   begun_.reset();
   report.solver_iterations += solved.iterations;
   report.solver_residual = target > 0 ? tolerance_ * std::sqrt(solved.squared_residual / target) : 0;
-  link_.add_motion(matrix, solution_.data(), system.particles.velocity.data(),
-                   system.particles.angular_velocity.data());
   return std::isfinite(solved.squared_residual);
 }
 
-LinkSystem VelocitySolver::links(const System& system) const {
+LinkSystem VelocitySolver::links(const System& system) {
   return {.particles = system.particles.count(),
-          .particle = order_.particle().data(),
+          .row = order_.row().data(),
           .size_class = system.particles.size_class.data(),
           .diagonal = diagonal_.data(),
+          .blocks = order_.blocks().data(),
+          .count_of_blocks = order_.blocks().size(),
           .levels = order_.levels().data(),
-          .count_of_levels = order_.levels().size(),
+          .boundary_levels = order_.boundary_levels(),
           .groups = groups_.data(),
-          .inverse_pivots = inverse_pivots_.data(),
-          .squeezing = squeezing_.data()};
+          .incoming = order_.incoming().data(),
+          .pivots = pivots_.data(),
+          .aside = aside_.data(),
+          .crossing_begin = order_.inner_groups(),
+          .sums = sums_.data()};
 }
 
 SolverRows VelocitySolver::rows() {
@@ -125,7 +150,6 @@ SolverRows VelocitySolver::rows() {
           .direction = direction_.data(),
           .ahead = ahead_.data(),
           .moved = moved_.data(),
-          .back = back_.data(),
           .loads = loads_.data()};
 }
 

@@ -29,7 +29,7 @@ class VelocitySolver {
   // Velocities are found until the residual is below `tolerance`, relative to the motion. They feel that
   // share of the drag; the rest is the caller's.
   VelocitySolver(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,
-                 InstructionSet set, double drag_share = 1);
+                 int threads, InstructionSet set, double drag_share = 1);
 
   double tolerance() const { return tolerance_; }
 
@@ -49,22 +49,23 @@ class VelocitySolver {
   [[nodiscard]] bool correct(System& system, double target, StepReport& report);
 
   // What has been assembled.
-  LinkSystem links(const System& system) const;
+  LinkSystem links(const System& system);
 
  private:
   SolverRows rows();
 
   double timestep_, tolerance_;
+  int threads_;
   LinkKernels link_;
   std::vector<OneBodyFactors> inertia_;  // of each size class
   std::vector<MotionRow> diagonal_;
   LinkOrder order_;
   std::optional<std::uint64_t> ordered_;  // the number of the list's builds when the order was made
   std::vector<LinkGroup> groups_;
-  std::vector<MotionRow> inverse_pivots_, scratch_;
-  std::vector<SqueezingRow> squeezing_;
-  std::vector<MotionRow> right_;  // of the equations
-  std::vector<MotionRow> solution_, residual_, weighted_, direction_, ahead_, moved_, back_, loads_;
+  std::vector<Pivot> pivots_;
+  std::vector<MotionRow> solution_, residual_, weighted_, direction_, ahead_, moved_, loads_;
+  std::vector<MotionRow> aside_;
+  std::vector<LinkSums> sums_;
   std::optional<double> begun_;  // what begin() has returned for the present matrix and right-hand side
   ImposedFlow flow_;
   VectorField varying_velocity_, varying_spin_;  // of each particle, where the flow varies

@@ -8,7 +8,7 @@
 
 #include "engine/stability/spectral_bound.h"
 #include "engine/stability/spurious_energy.h"
-#include "engine/state/for_each_range.h"
+#include "engine/threads/for_each_range.h"
 
 namespace peclet::engine {
 namespace {

@@ -1,5 +1,7 @@
 #include "engine/jobs/job.h"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <chrono>
 #include <ctime>
@@ -18,8 +20,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Fewer particles per thread than this lose more by waiting for each other than they gain. The result is the
-// same.
+// Fewer particles per thread than this lose more by waiting for each other than they gain; so do more threads
+// than processors. The result is the same.
 constexpr std::size_t fewest_particles_per_thread = 4000;
 
 // How soon a checkpoint is tried again that did not fit onto the disk.
@@ -112,8 +114,8 @@ class Job {
 
   void construct() {
     const std::size_t useful = std::max<std::size_t>(1, scene_.particles.count / fewest_particles_per_thread);
-    const int threads =
-        static_cast<int>(std::min<std::size_t>(useful, static_cast<std::size_t>(job_.threads)));
+    const int allowed = std::min(job_.threads, omp_get_num_procs());
+    const int threads = static_cast<int>(std::min(useful, static_cast<std::size_t>(allowed)));
     simulation_ = std::make_unique<Simulation>(scene_, schedule_, job_.header.seed, threads, job_.scene_name);
   }
 

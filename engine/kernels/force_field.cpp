@@ -32,9 +32,7 @@ ForceField::ForceField(const Physics& physics, const ParticleState& particles, d
 
 PairSums ForceField::evaluate(System& system, VectorField& force, VectorField& torque) {
   const PairSums sums = evaluate_blocks(system, force, torque);
-  for (const ParticleBlock& block : system.list.blocks()) {
-    add_incoming(system, block, force, torque);
-  }
+  pair_pass_.add_incoming(system.list, threads_, force, torque);
   return sums;
 }
 
@@ -50,12 +48,16 @@ PairPassInput ForceField::pair_input(const System& system) const {
   };
 }
 
-void ForceField::assemble_links(System& system, const LinkWeights& weights, LinkOrder& order,
-                                std::vector<LinkGroup>& groups) {
-  groups.resize(std::max(groups.size(), order.most_groups()));
-  const std::vector<PairRun>& runs = system.list.runs();
-  link_.assemble(pair_pass_.kernel_input(pair_input(system), system.springs), runs.data(), runs.size(),
-                 terms_, weights, order.places(), groups.data());
+ForceField::AssembleLinks ForceField::assemble_links(System& system, const LinkWeights& weights,
+                                                     LinkOrder& order, std::vector<LinkGroup>& groups) {
+  const std::size_t room = order.inner_groups() + order.crossing_groups();
+  groups.resize(std::max(groups.size(), room));
+  return [this, &list = system.list, &order, weights, places = order.places(), groups = groups.data(),
+          input = pair_pass_.kernel_input(pair_input(system), system.springs)](std::size_t number) {
+    const ParticleBlock& block = list.blocks()[number];
+    link_.assemble(input, list.runs().data() + block.runs_begin, block.runs_end - block.runs_begin, terms_,
+                   weights, places, order.blocks()[number], groups);
+  };
 }
 
 OneBodyInput ForceField::one_body_input(System& system, VectorField& force, VectorField& torque,

@@ -33,10 +33,12 @@ class ForceField {
     pair_pass_.add_incoming(system.list, block, force, torque);
   }
 
-  // The links of all pairs within their range. `groups` is made as long as it has to be and keeps its
-  // storage.
-  void assemble_links(System& system, const LinkWeights& weights, LinkOrder& order,
-                      std::vector<LinkGroup>& groups);
+  // The links of all pairs within their range: what is returned puts those of a block in their places. It
+  // holds while the system stands and until the next evaluation. `groups` is made as long as it has to be and
+  // keeps its storage.
+  using AssembleLinks = std::function<void(std::size_t block)>;
+  AssembleLinks assemble_links(System& system, const LinkWeights& weights, LinkOrder& order,
+                               std::vector<LinkGroup>& groups);
 
   // What the loops over particles take: the rows of all of them, the flow, and the caller's kicks, if any.
   OneBodyInput one_body_input(System& system, VectorField& force, VectorField& torque,

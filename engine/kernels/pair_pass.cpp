@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "engine/state/for_each_range.h"
+#include "engine/threads/for_each_range.h"
 
 namespace peclet::engine {
 namespace {
@@ -110,6 +110,16 @@ void PairPass::add_incoming(const NeighbourList& list, const ParticleBlock& bloc
   }
 }
 
+void PairPass::add_incoming(const NeighbourList& list, int threads, VectorField& force,
+                            VectorField& torque) const {
+  if (list.crossings() == 0) return;
+  for_each_range(list.blocks().size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      add_incoming(list, list.blocks()[b], force, torque);
+    }
+  });
+}
+
 PairSums PairPass::evaluate(const PairPassInput& input, SpringField& springs, VectorField& force,
                             VectorField& torque) {
   const auto clear = [&](const ParticleBlock& block) {
@@ -118,9 +128,7 @@ PairSums PairPass::evaluate(const PairPassInput& input, SpringField& springs, Ve
     std::fill_n(torque.data() + begin, count, 0.0);
   };
   const PairSums sums = add_pairs(input, springs, force, torque, clear);
-  for (const ParticleBlock& block : input.list.blocks()) {
-    add_incoming(input.list, block, force, torque);
-  }
+  add_incoming(input.list, input.threads, force, torque);
   return sums;
 }
 

@@ -52,9 +52,10 @@ class PairPass {
   PairSums add_pairs(const PairPassInput& input, SpringField& springs, VectorField& force,
                      VectorField& torque, const SetRows& set_rows);
 
-  // Adds to the rows of a block what the last add_pairs() left for it.
+  // Adds to the rows of a block, or of all of them, what the last add_pairs() left for it.
   void add_incoming(const NeighbourList& list, const ParticleBlock& block, VectorField& force,
                     VectorField& torque) const;
+  void add_incoming(const NeighbourList& list, int threads, VectorField& force, VectorField& torque) const;
 
   // What the loops over pairs take; valid until the next call, and while the system stands.
   PairKernelInput kernel_input(const PairPassInput& input, SpringField& springs);

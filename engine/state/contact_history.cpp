@@ -1,7 +1,10 @@
 #include "engine/state/contact_history.h"
 
 #include <algorithm>
+#include <mutex>
 #include <tuple>
+
+#include "engine/threads/for_each_range.h"
 
 namespace peclet::engine {
 namespace {
@@ -28,25 +31,31 @@ void sort_contacts(std::vector<HeldContact>& contacts) {
 }
 
 std::vector<HeldContact> held_contacts(const NeighbourList& list, const ParticleState& particles,
-                                       const SpringField& springs) {
+                                       const SpringField& springs, int threads) {
   std::vector<HeldContact> held;
   if (springs.kinds() == SpringKinds::none) {
     return held;
   }
-  for (std::size_t p = 0; p < springs.size(); ++p) {
-    const ContactSprings of_pair = springs[p];
-    if (is_zero(of_pair.tangential) && is_zero(of_pair.rolling)) {
-      continue;
+  std::mutex of_held;
+  for_each_range(springs.size(), threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<HeldContact> part;
+    for (std::size_t p = begin; p < end; ++p) {
+      const ContactSprings of_pair = springs[p];
+      if (is_zero(of_pair.tangential) && is_zero(of_pair.rolling)) {
+        continue;
+      }
+      part.push_back(contact_of(list, particles, list.pairs()[p]));
+      part.back().springs = of_pair;
     }
-    held.push_back(contact_of(list, particles, list.pairs()[p]));
-    held.back().springs = of_pair;
-  }
-  sort_contacts(held);
+    const std::lock_guard lock(of_held);
+    held.insert(held.end(), part.begin(), part.end());
+  });
+  sort_contacts(held);  // so it does not matter which part came first
   return held;
 }
 
 SpringField placed_contacts(const NeighbourList& list, const ParticleState& particles,
-                            const std::vector<HeldContact>& held, SpringKinds kinds) {
+                            const std::vector<HeldContact>& held, SpringKinds kinds, int threads) {
   SpringField springs(kinds, list.pairs().size());
   if (held.empty()) {
     return springs;
@@ -59,18 +68,20 @@ SpringField placed_contacts(const NeighbourList& list, const ParticleState& part
   for (std::size_t i = 0; i < particles.count(); ++i) {
     begin[i + 1] += begin[i];
   }
-  for (std::size_t p = 0; p < list.pairs().size(); ++p) {
-    const std::uint32_t id = particles.id[list.pairs()[p].first];
-    if (begin[id] == begin[id + 1]) {
-      continue;
-    }
-    const auto wanted = name_of(contact_of(list, particles, list.pairs()[p]));
-    for (std::uint32_t k = begin[id]; k < begin[id + 1]; ++k) {
-      if (name_of(held[k]) == wanted) {
-        springs.set(p, held[k].springs);
+  for_each_range(list.pairs().size(), threads, [&](std::size_t first, std::size_t end) {
+    for (std::size_t p = first; p < end; ++p) {
+      const std::uint32_t id = particles.id[list.pairs()[p].first];
+      if (begin[id] == begin[id + 1]) {
+        continue;
+      }
+      const auto wanted = name_of(contact_of(list, particles, list.pairs()[p]));
+      for (std::uint32_t k = begin[id]; k < begin[id + 1]; ++k) {
+        if (name_of(held[k]) == wanted) {
+          springs.set(p, held[k].springs);
+        }
       }
     }
-  }
+  });
   return springs;
 }
 

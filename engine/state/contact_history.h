@@ -74,12 +74,12 @@ void sort_contacts(std::vector<HeldContact>& contacts);
 
 // All springs that are not zero, sorted.
 std::vector<HeldContact> held_contacts(const NeighbourList& list, const ParticleState& particles,
-                                       const SpringField& springs);
+                                       const SpringField& springs, int threads = 1);
 
 // Springs of each pair of a new list. The image counters of `particles` are as they are now, in the same
 // basis as `held`, which is sorted. A contact that is not listed any more has opened: its springs are
 // forgotten.
 SpringField placed_contacts(const NeighbourList& list, const ParticleState& particles,
-                            const std::vector<HeldContact>& held, SpringKinds kinds);
+                            const std::vector<HeldContact>& held, SpringKinds kinds, int threads = 1);
 
 }  // namespace peclet::engine

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "engine/state/for_each_range.h"
+#include "engine/threads/for_each_range.h"
 
 namespace peclet::engine {
 
@@ -164,14 +164,18 @@ void ListBuilder::deliver_strays() {
 }
 
 void ListBuilder::number_images(const std::vector<std::vector<Found>>& all) {
-  list_.images_.assign(1, LatticeShift{});
-  for (const std::vector<Found>& found : all) {
-    for (const Found& pair : found) {
-      if (pair.image != list_.images_.back() &&
-          std::find(list_.images_.begin(), list_.images_.end(), pair.image) == list_.images_.end()) {
-        list_.images_.push_back(pair.image);
-      }
+  const auto add = [](std::vector<LatticeShift>& images, LatticeShift image) {
+    if (image != images.back() && std::ranges::find(images, image) == images.end()) images.push_back(image);
+  };
+  std::vector<std::vector<LatticeShift>> of_block(all.size(), {LatticeShift{}});
+  for_each_range(all.size(), threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      for (const Found& pair : all[b]) add(of_block[b], pair.image);
     }
+  });
+  list_.images_.assign(1, LatticeShift{});
+  for (const std::vector<LatticeShift>& images : of_block) {
+    for (const LatticeShift image : images) add(list_.images_, image);
   }
 }
 

@@ -6,10 +6,10 @@ namespace peclet::engine {
 
 void rebuild_neighbours(System& system, int threads) {
   ParticleState& particles = system.particles;
-  std::vector<HeldContact> held = held_contacts(system.list, particles, system.springs);
+  std::vector<HeldContact> held = held_contacts(system.list, particles, system.springs, threads);
   if (system.list.can_narrow(particles, system.box)) {
     system.list.narrow(particles, system.box, threads);
-    system.springs = placed_contacts(system.list, particles, held, system.springs.kinds());
+    system.springs = placed_contacts(system.list, particles, held, system.springs.kinds(), threads);
     return;
   }
   if (const BasisChange change = system.box.due_change(); change != BasisChange{}) {
@@ -24,7 +24,7 @@ void rebuild_neighbours(System& system, int threads) {
   wrap_into_cell(particles, system.box);
   arrange_along_curve(particles, system.box, threads);
   system.list.build(particles, system.box, threads);
-  system.springs = placed_contacts(system.list, particles, held, system.springs.kinds());
+  system.springs = placed_contacts(system.list, particles, held, system.springs.kinds(), threads);
 }
 
 void save(const System& system, ArchiveWriter& archive) {

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "engine/state/for_each_range.h"
 #include "engine/state/row.h"
 #include "engine/state/vector3.h"
+#include "engine/threads/for_each_range.h"
 
 namespace peclet::engine {
 

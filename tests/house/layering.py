@@ -44,6 +44,7 @@ ENGINE = [
     *(
         "engine/" + room
         for room in (
+            "threads",
             "state",
             "flow",
             "random",

@@ -18,23 +18,37 @@ PECLET_ALWAYS_INLINE int place_of_link(std::uint32_t number) {
   return static_cast<int>(number % links_side_by_side / groups_side_by_side);
 }
 
+// Groups of many levels are written at a time, which no processor sees coming: a line of the next ones with
+// each link, so that they are at hand when these are full.
+PECLET_ALWAYS_INLINE void fetch_next_groups(LinkGroup* groups, std::uint32_t number) {
+  const LinkGroup* const next = groups + (number / links_side_by_side + 1) * groups_side_by_side;
+  constexpr int for_writing = 1;
+  __builtin_prefetch(reinterpret_cast<const char*>(next) + 64 * (number % links_side_by_side), for_writing);
+}
+
+void couple_nothing(LinkGroup& group, int place, std::uint32_t first, std::uint32_t second) {
+  group.first[place] = first;
+  group.second[place] = second;
+  Floats* const numbers[] = {&group.normal[0],   &group.normal[1],   &group.normal[2],   &group.squeeze,
+                             &group.shear,       &group.pump_first,  &group.pump_second, &group.twist_first,
+                             &group.twist_cross, &group.twist_second};
+  for (Floats* const number : numbers) {
+    (*number)[place] = 0;
+  }
+}
+
 // Links that couple nothing, so that a level's groups are full.
 void fill_up(LinkLevel& level, std::uint32_t links, LinkGroup* groups) {
   const std::uint32_t rest = links % links_side_by_side;
   level.count_of_groups = links / links_side_by_side * groups_side_by_side +
                           (rest < groups_side_by_side ? rest : groups_side_by_side);
-  if (rest == 0) return;
+  const std::uint32_t row = level.rows_begin;
   for (; links % links_side_by_side != 0; ++links) {
-    LinkGroup& group = group_of(groups + level.groups_begin, links);
-    const int place = place_of_link(links);
-    group.first[place] = level.rows_begin;
-    group.second[place] = 0;
-    Floats* const numbers[] = {&group.normal[0],   &group.normal[1],   &group.normal[2],   &group.squeeze,
-                               &group.shear,       &group.pump_first,  &group.pump_second, &group.twist_first,
-                               &group.twist_cross, &group.twist_second};
-    for (Floats* const number : numbers) {
-      (*number)[place] = 0;
-    }
+    couple_nothing(group_of(groups + level.groups_begin, links), place_of_link(links), row, row);
+  }
+  for (std::uint32_t k = level.count_of_crossing; k % links_per_group != 0; ++k) {
+    couple_nothing(groups[level.crossing_begin + k / links_per_group], static_cast<int>(k % links_per_group),
+                   row, row);
   }
 }
 
@@ -89,6 +103,7 @@ class LinkedPairs {
     return sum;
   }
 
+  // Of a pair within its block.
   PECLET_ALWAYS_INLINE void emit(const LinkPlaces& places, LinkGroup* groups,
                                  const PairResistanceOf<Real>& coupling) const {
     // Pairs within reach whose way leads past the range are coupled by nothing.
@@ -100,30 +115,56 @@ class LinkedPairs {
       const std::uint32_t row_of_first = places.row[first_[k]], row_of_second = places.row[second_[k]];
       const bool swapped = row_of_first < row_of_second;
       const std::uint32_t later = swapped ? row_of_second : row_of_first;
-      const std::uint16_t level = places.level[later];
+      const std::uint32_t level = places.level[later];
       const std::uint32_t number = places.next[level]++;
+      fetch_next_groups(groups + places.levels[level].groups_begin, number);
       LinkGroup& group = group_of(groups + places.levels[level].groups_begin, number);
       const int place = place_of_link(number);
       group.first[place] = later;
       group.second[place] = swapped ? row_of_first : row_of_second;
-      const auto put = [&](Floats& to, const Real& from) { to[place] = static_cast<float>(lane(from, k)); };
-      const auto put_both = [&](Floats& to_first, Floats& to_second, const Real& first, const Real& second) {
-        put(swapped ? to_second : to_first, first);
-        put(swapped ? to_first : to_second, second);
-      };
-      const float sign = swapped ? -1.0F : 1.0F;
-      group.normal[0][place] = sign * static_cast<float>(lane(shape_.normal.x, k));
-      group.normal[1][place] = sign * static_cast<float>(lane(shape_.normal.y, k));
-      group.normal[2][place] = sign * static_cast<float>(lane(shape_.normal.z, k));
-      put(group.squeeze, coupling.squeeze);
-      put(group.shear, coupling.shear);
-      put_both(group.pump_first, group.pump_second, coupling.pump_first, coupling.pump_second);
-      put_both(group.twist_first, group.twist_second, coupling.twist_first, coupling.twist_second);
-      put(group.twist_cross, coupling.twist_cross);
+      put(group, place, coupling, k, swapped);
+    }
+  }
+
+  // Of pairs between blocks, whose places are these.
+  PECLET_ALWAYS_INLINE void emit_crossing(const CrossingLink* crossing, const std::uint32_t* row,
+                                          LinkGroup* groups, const PairResistanceOf<Real>& coupling) const {
+    for (int k = 0; k < count_; ++k) {
+      const CrossingLink& link = crossing[k];
+      LinkGroup& group = groups[link.place / links_per_group];
+      const int place = static_cast<int>(link.place % links_per_group);
+      if (is_near(k)) {
+        group.first[place] = link.first;
+        group.second[place] = link.second;
+        put(group, place, coupling, k, link.first != row[first_[k]]);
+      } else {
+        couple_nothing(group, place, link.first, link.second);
+      }
     }
   }
 
  private:
+  bool is_near(int k) const { return (near_ >> k & 1U) != 0; }
+
+  // Swapped: the first particle of the link is the second one of the pair.
+  PECLET_ALWAYS_INLINE void put(LinkGroup& group, int place, const PairResistanceOf<Real>& coupling, int k,
+                                bool swapped) const {
+    const auto put = [&](Floats& to, const Real& from) { to[place] = static_cast<float>(lane(from, k)); };
+    const auto put_both = [&](Floats& to_first, Floats& to_second, const Real& first, const Real& second) {
+      put(swapped ? to_second : to_first, first);
+      put(swapped ? to_first : to_second, second);
+    };
+    const float sign = swapped ? -1.0F : 1.0F;
+    group.normal[0][place] = sign * static_cast<float>(lane(shape_.normal.x, k));
+    group.normal[1][place] = sign * static_cast<float>(lane(shape_.normal.y, k));
+    group.normal[2][place] = sign * static_cast<float>(lane(shape_.normal.z, k));
+    put(group.squeeze, coupling.squeeze);
+    put(group.shear, coupling.shear);
+    put_both(group.pump_first, group.pump_second, coupling.pump_first, coupling.pump_second);
+    put_both(group.twist_first, group.twist_second, coupling.twist_first, coupling.twist_second);
+    put(group.twist_cross, coupling.twist_cross);
+  }
+
   PECLET_ALWAYS_INLINE HeldSprings<Real> held_springs(const Terms& terms) const {
     const PairParameters& parameters = in_.parameters;
     const auto spring = [&](int c) {
@@ -157,21 +198,28 @@ class LinkedPairs {
 
 template <class Real>
 void assemble_links(const PairKernelInput& in, const PairRun* runs, std::size_t count, const Terms& terms,
-                    const LinkWeights& weights, const LinkPlaces& places, LinkGroup* groups) {
+                    const LinkWeights& weights, const LinkPlaces& places, const LinkBlock& block,
+                    LinkGroup* groups) {
   constexpr std::uint32_t width = width_of<Real>;
-  for (std::size_t level = 0; level < places.count_of_levels; ++level) {
+  for (std::uint32_t level = block.levels_begin; level < block.levels_end; ++level) {
     places.next[level] = 0;
   }
   for (const PairRun* run = runs; run < runs + count; ++run) {
     for (std::uint32_t begin = run->begin; begin < run->end; begin += width) {
       const std::uint32_t rest = run->end - begin;
       const LinkedPairs<Real> pairs(in, *run, begin, static_cast<int>(rest < width ? rest : width));
-      if (pairs.near() != 0) {
-        pairs.emit(places, groups, pairs.coupling(terms, weights));
+      const bool crosses = run->crossing != within_block;
+      if (pairs.near() == 0 && !crosses) continue;
+      const PairResistanceOf<Real> coupling = pairs.coupling(terms, weights);
+      if (crosses) {
+        pairs.emit_crossing(places.crossing + run->crossing + (begin - run->begin), places.row, groups,
+                            coupling);
+      } else {
+        pairs.emit(places, groups, coupling);
       }
     }
   }
-  for (std::size_t level = 0; level < places.count_of_levels; ++level) {
+  for (std::uint32_t level = block.levels_begin; level < block.levels_end; ++level) {
     fill_up(places.levels[level], places.next[level], groups);
   }
 }

@@ -7,8 +7,9 @@
 // stiffness of springs. Single precision is enough for a correction to a velocity whose residual is known in
 // double precision.
 //
-// Rows are arranged in levels (link_order.h): no link couples two rows of one level. With L the couplings of
-// a row to rows of earlier levels and B the particles' own blocks, A = L + B + L^T. The preconditioner is
+// Rows are arranged in blocks and levels (link_order.h): no link couples two rows of one level. With L the
+// couplings of a row to rows of earlier levels and B the particles' own blocks, A = L + B + L^T. The
+// preconditioner is
 //   C = (P + L) P^-1 (P + L^T),   P = B - K,
 // with pivots P as those of an incomplete factorisation (Meijerink & van der Vorst 1977), of which K keeps
 // the squeezing alone: row after row
@@ -21,6 +22,7 @@
 
 #include "engine/kernels/bodies/one_body_kernels.h"
 #include "engine/kernels/pairs/pair_kernels.h"
+#include "engine/threads/team.h"
 
 namespace peclet::engine {
 
@@ -33,6 +35,7 @@ struct alignas(32) MotionRow {
 };
 
 constexpr int links_per_group = 8;
+constexpr int rows_of_block = 2;  // what a link adds to a particle's own block
 
 // Rows of particles; `first` is in a later level than `second`.
 struct alignas(32) LinkGroup {
@@ -49,11 +52,32 @@ struct LinkWeights {
   double timestep, normal_time;
 };
 
-// Consecutive rows, and the groups of links whose first particles they are.
+// Consecutive rows of a block, and the groups of links whose first particles they are.
 struct LinkLevel {
   std::uint32_t rows_begin, rows_end;
-  std::uint32_t groups_begin;     // there is room for the links of all listed pairs
-  std::uint32_t count_of_groups;  // in use
+  std::uint32_t groups_begin;       // of links within the block; there is room for those of all listed pairs
+  std::uint32_t count_of_groups;    // in use
+  std::uint32_t crossing_begin;     // groups of links to rows of other blocks
+  std::uint32_t count_of_crossing;  // links
+  std::uint32_t incoming_begin, incoming_end;  // whose second particles the rows are
+};
+
+// The rows of some particles next to each other, which have the same numbers in another order. Levels of the
+// interior come first; links to other blocks couple rows of the boundary.
+struct LinkBlock {
+  std::uint32_t rows_begin, rows_end;
+  std::uint32_t levels_begin, boundary_begin, levels_end;
+};
+
+// A link between two blocks, among all of them, and its second particle.
+struct IncomingLink {
+  std::uint32_t row, crossing;
+};
+
+// Where the link of a pair between two blocks goes: a number among the links of all groups. `first` and
+// `second` are rows.
+struct CrossingLink {
+  std::uint32_t place, first, second;
 };
 
 // Where the links of pairs go. Consecutive links of a level often belong to the same row: they go to
@@ -63,32 +87,52 @@ constexpr std::uint32_t links_side_by_side = groups_side_by_side * links_per_gro
 
 struct LinkPlaces {
   const std::uint32_t* row;    // of each particle
-  const std::uint16_t* level;  // of each row
+  const std::uint32_t* level;  // of each row
   LinkLevel* levels;
-  std::size_t count_of_levels;
-  std::uint32_t* next;  // a number for each level, to count with
+  std::uint32_t* next;           // a number for each level, to count with
+  const CrossingLink* crossing;  // of each crossing pair of the list
 };
 
-// Twice what a link keeps of a row: K, two rows of three columns.
-struct alignas(32) SqueezingRow {
-  Floats columns[2];
+// P^-1 = (a b; b^T c) of one particle, with blocks of velocity and spin, and K. Three numbers of each half
+// are parts of a motion, the fourth is what would be 0 there:
+//   { a_xx a_yy a_zz K_xx   c_xx c_yy c_zz K_xy }
+//   { a_xy a_xz a_yz K_yy   c_xy c_xz c_yz K_xz }
+//   { b_xx b_yy b_zz K_zz   b_xx b_yy b_zz K_yz }
+//   { b_xy b_yz b_zx 0      b_yx b_zy b_xz 0 }
+struct Pivot {
+  MotionRow rows[4];
 };
 
+// What the rows of a block contribute. One is taken anew while others may still be read.
+struct alignas(64) LinkSums {
+  double begun;            // of begin()
+  double curvature, left;  // of solve()
+  double whole, inertial;  // of squared_motion()
+};
+
+// Blocks are shared out among the members of a team. Sums are those of blocks, added up in their order: they
+// have the same bits for any number of members. What a block's rows do to those of another is put aside, for
+// whoever works on that one.
 struct LinkSystem {
   std::size_t particles;
-  const std::uint32_t* particle;  // of each row
+  const std::uint32_t* row;  // of each particle
   const std::uint16_t* size_class;
   const MotionRow* diagonal;  // of D, for each size class
+  const LinkBlock* blocks;
+  std::size_t count_of_blocks;
   const LinkLevel* levels;
-  std::size_t count_of_levels;
+  std::uint32_t boundary_levels;  // of every block
   const LinkGroup* groups;
-  const MotionRow* inverse_pivots;  // six columns for each row, see factorise
-  const SqueezingRow* squeezing;    // K of each row
+  const IncomingLink* incoming;
+  const Pivot* pivots;           // of each row
+  MotionRow* aside;              // rows_of_block of each crossing link
+  std::uint32_t crossing_begin;  // the first group of crossing links
+  LinkSums* sums;                // of each block
 };
 
-// Of each row, what solve() works on.
+// Of each row, what solve() works on. `solution` holds the right-hand side until then.
 struct SolverRows {
-  MotionRow *solution, *residual, *weighted, *direction, *ahead, *moved, *back, *loads;
+  MotionRow *solution, *residual, *weighted, *direction, *ahead, *moved, *loads;
 };
 
 struct SolverReport {
@@ -113,38 +157,41 @@ struct SquaredMotion {
   double whole, inertial;
 };
 
-// Of factorise(): the lower triangle of each particle's block, 21 numbers.
-constexpr std::size_t rows_of_scratch(std::size_t particles) { return 3 * particles; }
-
+// All members of a team call these, each for its part of the blocks, with the same arguments. What one
+// returns is the same for all of them.
 struct LinkKernels {
-  // The links of all pairs within their range, at the motion that `input` holds; the last group of a level is
-  // filled up with links that couple nothing.
+  // The links of pairs of one block of the list within their range, at the motion that `input` holds. The
+  // last groups of its levels are filled up with links that couple nothing. Those of crossing pairs are
+  // complete when all blocks are.
   void (*assemble)(const PairKernelInput& input, const PairRun* runs, std::size_t count, const Terms& terms,
-                   const LinkWeights& weights, const LinkPlaces& places, LinkGroup* groups);
+                   const LinkWeights& weights, const LinkPlaces& places, const LinkBlock& block,
+                   LinkGroup* groups);
 
-  // P^-1 and K, see above.
-  void (*factorise)(const LinkSystem& system, MotionRow* scratch, MotionRow* inverse_pivots,
-                    SqueezingRow* squeezing);
+  // The pivots of a system, which may be those that it points at.
+  void (*factorise)(const LinkSystem& system, Pivot* pivots, Team& team);
 
-  // product = A vector, both in the order of rows.
+  // product = A vector, both in the order of rows. Of a team of one.
   void (*multiply)(const LinkSystem& system, const MotionRow* vector, MotionRow* product);
 
   // residual = M (velocity before - velocity) + timestep force, and likewise for spins.
-  void (*set_residual)(const LinkSystem& system, const StepRows& step, MotionRow* residual);
+  void (*set_residual)(const LinkSystem& system, const StepRows& step, MotionRow* residual, Team& team);
 
   // Of the velocities relative to the streaming flow. Overwrites the rows.
-  SquaredMotion (*squared_motion)(const LinkSystem& system, const StepRows& step, MotionRow* motion);
+  SquaredMotion (*squared_motion)(const LinkSystem& system, const StepRows& step, MotionRow* motion,
+                                  Team& team);
 
   // Adds rows to velocities and spins of their particles.
-  void (*add_motion)(const LinkSystem& system, const MotionRow* motion, double* velocity, double* spin);
+  void (*add_motion)(const LinkSystem& system, const MotionRow* motion, double* velocity, double* spin,
+                     Team& team);
 
-  // Begins to solve A x = right: sets rows.weighted and rows.residual. Returns right.C^-1 right.
-  double (*begin)(const LinkSystem& system, const MotionRow* right, const SolverRows& rows);
+  // Begins to solve A x = right for rows.solution = right: sets rows.weighted and rows.residual. Returns
+  // right.C^-1 right.
+  double (*begin)(const LinkSystem& system, const SolverRows& rows, Team& team);
 
   // After begin(), which returned `squared_residual`: conjugate gradients from zero, until r.C^-1 r <= target
   // or after `most_iterations`.
   SolverReport (*solve)(const LinkSystem& system, const SolverRows& rows, double squared_residual,
-                        double target, int most_iterations);
+                        double target, int most_iterations, Team& team);
 };
 
 extern const LinkKernels baseline_link_kernels;  // gathers one number at a time: the twin of the others

@@ -5,7 +5,7 @@
 // another.
 #pragma once
 
-#include "engine/kernels/links/link_solver.h"
+#include "engine/kernels/links/link_residual.h"
 
 namespace peclet::engine {
 namespace {
@@ -14,32 +14,29 @@ namespace {
 constexpr int entry(int row, int column) { return row * (row + 1) / 2 + column; }
 constexpr int entries = 21;
 
+// Before it is inverted the own block of a row is (a b; -b c) with b v = w x v, and a pivot holds
+//   { a_xx a_yy a_zz w_x   c_xx c_yy c_zz w_y }
+//   { a_xy a_xz a_yz w_z   c_xy c_xz c_yz 0 }
+// and K: { K_xx K_yy K_zz 0   K_xy K_xz K_yz 0 }.
+
 // What eight links add to the own blocks of their first (sign 1) or second (sign -1) particles.
 PECLET_ALWAYS_INLINE void block_of_links(const Floats* n, const Floats& squeeze, const Floats& shear,
                                          const Floats& pump, const Floats& twist, float sign, Floats* block) {
   const Floats along = squeeze - shear, p = sign * pump;
-  const Floats zero{};
-  block[entry(0, 0)] = along * n[0] * n[0] + shear;
-  block[entry(1, 0)] = along * n[1] * n[0];
-  block[entry(1, 1)] = along * n[1] * n[1] + shear;
-  block[entry(2, 0)] = along * n[2] * n[0];
-  block[entry(2, 1)] = along * n[2] * n[1];
-  block[entry(2, 2)] = along * n[2] * n[2] + shear;
-  block[entry(3, 0)] = zero;
-  block[entry(3, 1)] = p * n[2];
-  block[entry(3, 2)] = zero - p * n[1];
-  block[entry(4, 0)] = zero - p * n[2];
-  block[entry(4, 1)] = zero;
-  block[entry(4, 2)] = p * n[0];
-  block[entry(5, 0)] = p * n[1];
-  block[entry(5, 1)] = zero - p * n[0];
-  block[entry(5, 2)] = zero;
-  block[entry(3, 3)] = twist * (1.0F - n[0] * n[0]);
-  block[entry(4, 3)] = zero - twist * n[1] * n[0];
-  block[entry(4, 4)] = twist * (1.0F - n[1] * n[1]);
-  block[entry(5, 3)] = zero - twist * n[2] * n[0];
-  block[entry(5, 4)] = zero - twist * n[2] * n[1];
-  block[entry(5, 5)] = twist * (1.0F - n[2] * n[2]);
+  const Floats xy = n[0] * n[1], xz = n[0] * n[2], yz = n[1] * n[2];
+  for (int c = 0; c < 3; ++c) {
+    block[c] = along * n[c] * n[c] + shear;
+    block[4 + c] = twist * (1.0F - n[c] * n[c]);
+  }
+  const Floats beside[3] = {xy, xz, yz};
+  for (int c = 0; c < 3; ++c) {
+    block[8 + c] = along * beside[c];
+    block[12 + c] = Floats{} - twist * beside[c];
+  }
+  block[3] = p * n[0];
+  block[7] = p * n[1];
+  block[11] = p * n[2];
+  block[15] = Floats{};
 }
 
 // Of eight matrices side by side: A = L D L^T, A^-1 = L^-T D^-1 L^-1.
@@ -108,120 +105,154 @@ PECLET_ALWAYS_INLINE void transpose(Floats* rows) {
 #endif
 }
 
-// Adds what eight links give to the triangles of their particles, three rows for each.
-PECLET_ALWAYS_INLINE void add_blocks(MotionRow* triangles, const std::uint32_t* index, Floats* blocks) {
-  for (std::size_t part = 0; part < 3; ++part) {
+// What eight links give to the blocks of their particles: calls add(k, part, row).
+template <class Add>
+PECLET_ALWAYS_INLINE void for_each_row_of_blocks(Floats* blocks, Add&& add) {
+  for (int part = 0; part < rows_of_block; ++part) {
     transpose(blocks + 8 * part);
     for (int k = 0; k < links_per_group; ++k) {
-      triangles[3 * std::size_t{index[k]} + part].v += blocks[8 * part + static_cast<std::size_t>(k)];
+      add(k, part, blocks[8 * part + k]);
     }
   }
 }
 
-// D and what links add, of the own block of each row.
-PECLET_ALWAYS_INLINE void set_own_blocks(const LinkSystem& system, MotionRow* triangles) {
-  for (std::size_t i = 0; i < system.particles; ++i) {
-    const Floats& diagonal = diagonal_of(system, i);
-    for (std::size_t part = 0; part < 3; ++part) {
-      triangles[3 * i + part].v = Floats{};
-    }
-    for (int c = 0; c < 6; ++c) {
-      const int e = entry(c, c);
-      triangles[3 * i + static_cast<std::size_t>(e / 8)].v[e % 8] = diagonal[place_of[c]];
-    }
-  }
-  for (std::size_t l = 0; l < system.count_of_levels; ++l) {
-    for_each_group(system, system.levels[l], [&](const LinkGroup& group) PECLET_INLINE_LAMBDA {
-      Floats first[24]{}, second[24]{};
-      block_of_links(group.normal, group.squeeze, group.shear, group.pump_first, group.twist_first, 1.0F,
-                     first);
-      block_of_links(group.normal, group.squeeze, group.shear, group.pump_second, group.twist_second, -1.0F,
-                     second);
-      add_blocks(triangles, group.first, first);
-      add_blocks(triangles, group.second, second);
-    });
-  }
-}
-
-// K of a level's rows, from the pivots of earlier ones.
-PECLET_ALWAYS_INLINE void set_squeezing(const LinkSystem& system, const LinkLevel& level,
-                                        const MotionRow* inverse_pivots, SqueezingRow* squeezing) {
-  constexpr float kept = 0.9F;
-  for (std::size_t i = level.rows_begin; i < level.rows_end; ++i) {
-    squeezing[i] = {};
-  }
-  for_each_group(system, level, [&](const LinkGroup& group) PECLET_INLINE_LAMBDA {
-    const Vector3Of<EightFloats> n = normal_of(group);
-    const EightFloats components[3] = {n.x, n.y, n.z};
-    EightFloats compliance{};  // n.P^-1 n of the second particle
-    for (std::uint32_t c = 0; c < 3; ++c) {
-      std::uint32_t column[links_per_group];
-      for (int k = 0; k < links_per_group; ++k) {
-        column[k] = 6 * group.second[k] + c;
-      }
-      compliance = compliance + components[c] * dot(gather_motions(inverse_pivots, column).velocity, n);
-    }
-    const EightFloats weight = EightFloats(kept * group.squeeze * group.squeeze) * compliance;
-    std::uint32_t row[links_per_group];
-    for (int k = 0; k < links_per_group; ++k) {
-      row[k] = 2 * group.first[k];
-    }
-    MotionRow* const rows = reinterpret_cast<MotionRow*>(squeezing);
-    add_motions(rows, row, {(weight * n.x) * n, (weight * n.y) * n});
-    for (std::uint32_t& k : row) {
-      ++k;
-    }
-    add_motions(rows, row, {(weight * n.z) * n, {}});
+// D and what links add, of the own block of each row; no K. What belongs to other blocks' rows is put aside.
+PECLET_ALWAYS_INLINE void set_own_blocks(const LinkSystem& system, const LinkBlock& of, Pivot* pivots) {
+  const auto add_to = [&](const std::uint32_t* index, Floats* block) PECLET_INLINE_LAMBDA {
+    for_each_row_of_blocks(block, [&](int k, int part, const Floats& row)
+                                      PECLET_INLINE_LAMBDA { pivots[index[k]].rows[part].v += row; });
+  };
+  const auto add_to_first = [&](const LinkGroup& group) PECLET_INLINE_LAMBDA {
+    Floats block[16];
+    block_of_links(group.normal, group.squeeze, group.shear, group.pump_first, group.twist_first, 1.0F,
+                   block);
+    add_to(group.first, block);
+  };
+  const auto block_of_second = [](const LinkGroup& group, Floats* block) PECLET_INLINE_LAMBDA {
+    block_of_links(group.normal, group.squeeze, group.shear, group.pump_second, group.twist_second, -1.0F,
+                   block);
+  };
+  for_each_particle(of, [&](std::size_t i) PECLET_INLINE_LAMBDA {
+    pivots[system.row[i]] = Pivot{{{diagonal_of(system, i)}, {}, {}, {}}};
   });
+  for (std::uint32_t l = of.levels_begin; l < of.levels_end; ++l) {
+    const GroupRange inner = inner_groups(system, system.levels[l]),
+                     crossing = crossing_groups(system, system.levels[l]);
+    for (const LinkGroup* group = inner.begin; group < inner.end; ++group) {
+      fetch(group + groups_ahead);
+      Floats block[16];
+      add_to_first(*group);
+      block_of_second(*group, block);
+      add_to(group->second, block);
+    }
+    MotionRow* aside = aside_of(system, system.levels[l], rows_of_block);
+    for (const LinkGroup* group = crossing.begin; group < crossing.end; ++group) {
+      Floats block[16];
+      add_to_first(*group);
+      block_of_second(*group, block);
+      for_each_row_of_blocks(block, [&](int k, int part, const Floats& row)
+                                        PECLET_INLINE_LAMBDA { aside[rows_of_block * k + part].v = row; });
+      aside += rows_of_block * links_per_group;
+    }
+  }
+}
+
+// Adds to K of the first particles what the pivots of the second ones give.
+PECLET_ALWAYS_INLINE void add_squeezing(const GroupRange& groups, Pivot* pivots) {
+  constexpr float kept = 0.9F;
+  MotionRow* const rows = reinterpret_cast<MotionRow*>(pivots);
+  const auto places = [](const std::uint32_t* of, std::uint32_t part, std::uint32_t* row) {
+    for (int k = 0; k < links_per_group; ++k) {
+      row[k] = 4 * of[k] + part;
+    }
+    return row;
+  };
+  for (const LinkGroup* group = groups.begin; group < groups.end; ++group) {
+    fetch(group + groups_ahead);
+    std::uint32_t row[links_per_group];
+    const Vector3Of<EightFloats> n = normal_of(*group);
+    const Vector3Of<EightFloats> squares = {n.x * n.x, n.y * n.y, n.z * n.z};
+    const Vector3Of<EightFloats> products = {n.x * n.y, n.x * n.z, n.y * n.z};
+    // n.P^-1 n of the second particle
+    const EightFloats compliance =
+        dot(squares, gather_motions(rows, places(group->second, 0, row)).velocity) +
+        EightFloats(2.0F * dot(products, gather_motions(rows, places(group->second, 1, row)).velocity).v);
+    const EightFloats weight = EightFloats(kept * group->squeeze * group->squeeze) * compliance;
+    add_motions(rows, places(group->first, 2, row), {weight * squares, weight * products});
+  }
 }
 
 // (B - K)^-1 of up to eight rows from `begin` on.
-PECLET_ALWAYS_INLINE void invert_pivots(const MotionRow* triangles, const SqueezingRow* squeezing,
-                                        std::size_t begin, std::size_t count, MotionRow* inverse_pivots) {
-  Floats block[24], columns[16], inverse[entries];
+PECLET_ALWAYS_INLINE void invert_pivots(Pivot* begin, std::size_t count) {
+  Floats held[3][8], a[entries], inverse[entries];
   // Lanes without a particle repeat the first one.
-  const auto row = [&](std::size_t k) { return begin + (k < count ? k : 0); };
   for (std::size_t part = 0; part < 3; ++part) {
     for (std::size_t k = 0; k < 8; ++k) {
-      block[8 * part + k] = triangles[3 * row(k) + part].v;
+      held[part][k] = begin[k < count ? k : 0].rows[part].v;
     }
-    transpose(block + 8 * part);
+    transpose(held[part]);
   }
-  for (std::size_t part = 0; part < 2; ++part) {
-    for (std::size_t k = 0; k < 8; ++k) {
-      columns[8 * part + k] = squeezing[row(k)].columns[part];
-    }
-    transpose(columns + 8 * part);
+  // In each 3 x 3 part: the diagonal, and what stands beside it.
+  constexpr int beside[3][2] = {{1, 0}, {2, 0}, {2, 1}};
+  for (int c = 0; c < 3; ++c) {
+    const auto [row, column] = beside[c];
+    a[entry(c, c)] = held[0][c] - held[2][c];
+    a[entry(row, column)] = held[1][c] - held[2][4 + c];
+    a[entry(3 + c, 3 + c)] = held[0][4 + c];
+    a[entry(3 + row, 3 + column)] = held[1][4 + c];
+    a[entry(3 + c, c)] = Floats{};
   }
-  for (int column = 0; column < 3; ++column) {
-    for (int of = column; of < 3; ++of) {
-      block[entry(of, column)] -= columns[4 * column + of];
-    }
+  const Floats w[3] = {held[0][3], held[0][7], held[1][3]};
+  for (int c = 0; c < 3; ++c) {
+    const int next = (c + 1) % 3, last = (c + 2) % 3;
+    a[entry(3 + next, c)] = Floats{} - w[last];
+    a[entry(3 + c, next)] = w[last];
   }
-  invert(block, inverse);
-  for (int column = 0; column < 6; ++column) {
-    Floats rows[8]{};
-    for (int of = 0; of < 6; ++of) {
-      rows[place_of[of]] = inverse[of < column ? entry(column, of) : entry(of, column)];
-    }
-    transpose(rows);
+  invert(a, inverse);
+  Floats pivot[4][8];
+  for (int c = 0; c < 3; ++c) {
+    const auto [row, column] = beside[c];
+    const int next = (c + 1) % 3;
+    pivot[0][c] = inverse[entry(c, c)];
+    pivot[0][4 + c] = inverse[entry(3 + c, 3 + c)];
+    pivot[1][c] = inverse[entry(row, column)];
+    pivot[1][4 + c] = inverse[entry(3 + row, 3 + column)];
+    pivot[2][c] = pivot[2][4 + c] = inverse[entry(3 + c, c)];
+    // b_xy, b_yz, b_zx; b_yx, b_zy, b_xz. The triangle holds b^T.
+    pivot[3][c] = inverse[entry(3 + next, c)];
+    pivot[c][3] = held[2][c];
+    pivot[c][7] = held[2][4 + c];
+  }
+  pivot[3][4] = inverse[entry(3, 1)];
+  pivot[3][5] = inverse[entry(4, 2)];
+  pivot[3][6] = inverse[entry(5, 0)];
+  pivot[3][3] = pivot[3][7] = Floats{};
+  for (std::size_t part = 0; part < 4; ++part) {
+    transpose(pivot[part]);
     for (std::size_t k = 0; k < count; ++k) {
-      inverse_pivots[6 * (begin + k) + static_cast<std::size_t>(column)].v = rows[k];
+      begin[k].rows[part].v = pivot[part][k];
     }
   }
 }
 
-void factorise(const LinkSystem& system, MotionRow* scratch, MotionRow* inverse_pivots,
-               SqueezingRow* squeezing) {
-  set_own_blocks(system, scratch);
-  for (std::size_t l = 0; l < system.count_of_levels; ++l) {
-    const LinkLevel& level = system.levels[l];
-    set_squeezing(system, level, inverse_pivots, squeezing);
-    for (std::size_t begin = level.rows_begin; begin < level.rows_end; begin += 8) {
-      const std::size_t rest = level.rows_end - begin;
-      invert_pivots(scratch, squeezing, begin, rest < 8 ? rest : 8, inverse_pivots);
-    }
-  }
+void factorise(const LinkSystem& system, Pivot* pivots, Team& team) {
+  climb(
+      system, team,
+      [&](const LinkBlock& block, std::size_t)
+          PECLET_INLINE_LAMBDA { set_own_blocks(system, block, pivots); },
+      [](const LinkLevel&) {},
+      [&](const GroupRange& groups) PECLET_INLINE_LAMBDA { add_squeezing(groups, pivots); },
+      [&](const LinkLevel& level, std::size_t) PECLET_INLINE_LAMBDA {
+        for_each_incoming(system, level, [&](std::uint32_t row, std::uint32_t crossing) PECLET_INLINE_LAMBDA {
+          for (int part = 0; part < rows_of_block; ++part) {
+            pivots[row].rows[part].v += system.aside[rows_of_block * crossing + part].v;
+          }
+        });
+        for (std::size_t begin = level.rows_begin; begin < level.rows_end; begin += 8) {
+          const std::size_t rest = level.rows_end - begin;
+          invert_pivots(pivots + begin, rest < 8 ? rest : 8);
+        }
+      });
 }
 
 }  // namespace

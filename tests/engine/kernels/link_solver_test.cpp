@@ -41,19 +41,15 @@ Matrix pivots_of(const Links& links, const Matrix& matrix) {
   for (Eigen::Index i = 0; i < count; ++i) {
     pivots.block<6, 6>(6 * i, 6 * i) = matrix.block<6, 6>(6 * i, 6 * i);
   }
-  for (const LinkLevel& level : std::span(system.levels, system.count_of_levels)) {
-    for (const LinkGroup& group : std::span(system.groups + level.groups_begin, level.count_of_groups)) {
-      for (int k = 0; k < links_per_group; ++k) {
-        const Eigen::Index i = 6 * Eigen::Index{group.first[k]}, j = 6 * Eigen::Index{group.second[k]};
-        const Eigen::Vector3d n = {static_cast<double>(group.normal[0][k]),
-                                   static_cast<double>(group.normal[1][k]),
-                                   static_cast<double>(group.normal[2][k])};
-        const auto squeeze = static_cast<double>(group.squeeze[k]);
-        const Eigen::Matrix<double, 6, 6> inverse = pivots.block<6, 6>(j, j).inverse();
-        const double compliance = n.dot(inverse.topLeftCorner<3, 3>() * n);
-        EXPECT_LE(squeeze * compliance, 1 + 1e-5);
-        pivots.block<3, 3>(i, i) -= 0.9 * squeeze * squeeze * compliance * n * n.transpose();
-      }
+  for (const LinkGroup& group : groups_in_order(system)) {
+    for (int k = 0; k < links_per_group; ++k) {
+      const Eigen::Index i = 6 * Eigen::Index{group.first[k]}, j = 6 * Eigen::Index{group.second[k]};
+      const Eigen::Vector3d n = normal_of(group, k);
+      const auto squeeze = static_cast<double>(group.squeeze[k]);
+      const Eigen::Matrix<double, 6, 6> inverse = pivots.block<6, 6>(j, j).inverse();
+      const double compliance = n.dot(inverse.topLeftCorner<3, 3>() * n);
+      EXPECT_LE(squeeze * compliance, 1 + 1e-5);
+      pivots.block<3, 3>(i, i) -= 0.9 * squeeze * squeeze * compliance * n * n.transpose();
     }
   }
   return pivots;
@@ -87,15 +83,12 @@ TEST_P(LinkSolverOf, InvertThePivots) {
   const Links links(physics, dense_suspension(physics, 61, 7), GetParam());
   const Matrix pivots = pivots_of(links, matrix_of(links));
   for (std::size_t i = 0; i < 61; ++i) {
-    Eigen::Matrix<double, 8, 6> inverse;
-    for (std::size_t k = 0; k < 6; ++k) {
-      inverse.col(static_cast<Eigen::Index>(k)) = entries(links.view().inverse_pivots[6 * i + k]);
-    }
-    Eigen::Matrix<double, 8, 6> identity = Eigen::Matrix<double, 8, 6>::Zero();
-    identity(of_a_motion, Eigen::all).setIdentity();
     const auto at = static_cast<Eigen::Index>(6 * i);
+    const Eigen::Matrix<double, 6, 6> error =
+        inverse_of(links.view().pivots[i]) * pivots.block<6, 6>(at, at) -
+        Eigen::Matrix<double, 6, 6>::Identity();
     // The ratio of a block's extreme eigenvalues is some hundreds.
-    EXPECT_LE(largest_entry(inverse * pivots.block<6, 6>(at, at) - identity), 1e-3) << i;
+    EXPECT_LE(largest_entry(error), 1e-3) << i;
   }
 }
 
@@ -104,10 +97,11 @@ TEST_P(LinkSolverOf, SolveTheSystem) {
   const Links links(physics, dense_suspension(physics, 203, 7), GetParam());
   const std::size_t count = links.system().particles.count();
   const auto right = random_rows(count, 12);
-  std::vector<std::vector<MotionRow>> storage(8, std::vector<MotionRow>(count));
-  const SolverRows rows = {storage[0].data(), storage[1].data(), storage[2].data(), storage[3].data(),
-                           storage[4].data(), storage[5].data(), storage[6].data(), storage[7].data()};
-  const double begun = links.kernels().begin(links.view(), right.data(), rows);
+  SolverStorage storage(count);
+  const SolverRows rows = storage.view();
+  storage.of[0] = right;
+  Team alone;
+  const double begun = links.kernels().begin(links.view(), rows, alone);
   // r.C^-1 r with C = (P + L) P^-1 (P + L^T).
   const Matrix matrix = matrix_of(links), pivots = pivots_of(links, matrix);
   const auto size = static_cast<Eigen::Index>(6 * count);
@@ -127,12 +121,12 @@ TEST_P(LinkSolverOf, SolveTheSystem) {
       Eigen::GeneralizedSelfAdjointEigenSolver<Matrix>(matrix, whole, Eigen::EigenvaluesOnly).eigenvalues();
   const double ratio = spectrum.maxCoeff() / spectrum.minCoeff(), smaller = 1e-5;
   const SolverReport report =
-      links.kernels().solve(links.view(), rows, begun, smaller * smaller * begun, 1000);
+      links.kernels().solve(links.view(), rows, begun, smaller * smaller * begun, 1000, alone);
   EXPECT_LE(report.squared_residual, smaller * smaller * begun);
   EXPECT_GT(report.iterations, 5);
   EXPECT_LT(report.iterations, 1 + 0.5 * std::sqrt(ratio) * std::log(2 * std::sqrt(ratio) / smaller));
   // What it says of the residual is true: in the same norm, to the precision of the numbers.
-  const Eigen::VectorXd rest = vector_of(right) - matrix * vector_of(storage[0]);
+  const Eigen::VectorXd rest = vector_of(right) - matrix * vector_of(storage.of[0]);
   EXPECT_LT(squared_norm(rest), 4 * smaller * smaller * begun);
 }
 
@@ -144,8 +138,8 @@ TEST_P(LinkSolverOf, SquareTheMotionRelativeToTheFlow) {
   std::vector<OneBodyFactors> inertia(distinct_radii(particles.radius).size());
   std::vector<MotionRow> relative(particles.count()), scratch(particles.count());
   double inertial = 0;
-  for (std::size_t row = 0; row < particles.count(); ++row) {
-    const std::size_t i = links.order().particle()[row];
+  for (std::size_t i = 0; i < particles.count(); ++i) {
+    const std::size_t row = links.order().row()[i];
     inertia[particles.size_class[i]] = {particles.mass[i], particles.inertia[i]};
     const Vector3 u = particles.velocity[i] - gradient * particles.position[i];
     const Vector3 w = particles.angular_velocity[i] - Vector3{0, 0, -0.15};
@@ -167,7 +161,8 @@ TEST_P(LinkSolverOf, SquareTheMotionRelativeToTheFlow) {
                               .flow = plain_flow(gradient),
                               .varying_velocity = nullptr,
                               .varying_spin = nullptr};
-  const SquaredMotion found = links.kernels().squared_motion(links.view(), step_rows, scratch.data());
+  Team alone;
+  const SquaredMotion found = links.kernels().squared_motion(links.view(), step_rows, scratch.data(), alone);
   const Eigen::VectorXd motion = vector_of(relative);
   EXPECT_NEAR(found.inertial / inertial, 1, 1e-12);
   EXPECT_NEAR(found.whole / motion.dot(matrix_of(links) * motion), 1, 1e-5);

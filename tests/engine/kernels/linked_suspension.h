@@ -2,8 +2,10 @@
 #pragma once
 
 #include <numbers>
+#include <span>
 
 #include "engine/kernels/force_field.h"
+#include "tests/engine/available_sets.h"
 #include "tests/engine/dense_suspension.h"
 #include "tests/engine/draws.h"
 #include "tests/engine/linear_algebra.h"
@@ -35,23 +37,32 @@ class Links {
       }
     }
     order_.arrange(system_.list, particles.count());
-    field_.assemble_links(system_, of_links, order_, groups_);
-    inverse_pivots_.resize(6 * particles.count());
-    squeezing_.resize(particles.count());
-    std::vector<MotionRow> scratch(rows_of_scratch(particles.count()));
-    kernels_.factorise(view(), scratch.data(), inverse_pivots_.data(), squeezing_.data());
+    const ForceField::AssembleLinks assemble = field_.assemble_links(system_, of_links, order_, groups_);
+    for (std::size_t block = 0; block < order_.blocks().size(); ++block) {
+      assemble(block);
+    }
+    pivots_.resize(particles.count());
+    aside_.resize(std::size_t{rows_of_block} * links_per_group * order_.crossing_groups());
+    sums_.resize(order_.blocks().size());
+    Team alone;
+    kernels_.factorise(view(), pivots_.data(), alone);
   }
 
   LinkSystem view() const {
     return {.particles = system_.particles.count(),
-            .particle = order_.particle().data(),
+            .row = order_.row().data(),
             .size_class = system_.particles.size_class.data(),
             .diagonal = diagonal_.data(),
+            .blocks = order_.blocks().data(),
+            .count_of_blocks = order_.blocks().size(),
             .levels = order_.levels().data(),
-            .count_of_levels = order_.levels().size(),
+            .boundary_levels = order_.boundary_levels(),
             .groups = groups_.data(),
-            .inverse_pivots = inverse_pivots_.data(),
-            .squeezing = squeezing_.data()};
+            .incoming = order_.incoming().data(),
+            .pivots = pivots_.data(),
+            .aside = aside_.data(),
+            .crossing_begin = order_.inner_groups(),
+            .sums = sums_.data()};
   }
   const LinkOrder& order() const { return order_; }
   const LinkKernels& kernels() const { return kernels_; }
@@ -60,12 +71,12 @@ class Links {
   // Both in the order of particles.
   std::vector<MotionRow> times(const std::vector<MotionRow>& vector) const {
     std::vector<MotionRow> rows(vector.size()), product(vector.size()), result(vector.size());
-    for (std::size_t row = 0; row < vector.size(); ++row) {
-      rows[row] = vector[order_.particle()[row]];
+    for (std::size_t i = 0; i < vector.size(); ++i) {
+      rows[order_.row()[i]] = vector[i];
     }
     kernels_.multiply(view(), rows.data(), product.data());
-    for (std::size_t row = 0; row < vector.size(); ++row) {
-      result[order_.particle()[row]] = product[row];
+    for (std::size_t i = 0; i < vector.size(); ++i) {
+      result[i] = product[order_.row()[i]];
     }
     return result;
   }
@@ -99,8 +110,10 @@ class Links {
   const LinkKernels& kernels_;
   System system_;
   ForceField field_;
-  std::vector<MotionRow> diagonal_, inverse_pivots_;
-  std::vector<SqueezingRow> squeezing_;
+  std::vector<MotionRow> diagonal_;
+  std::vector<Pivot> pivots_;
+  mutable std::vector<MotionRow> aside_;
+  mutable std::vector<LinkSums> sums_;
   LinkOrder order_;
   std::vector<LinkGroup> groups_;
 };
@@ -133,12 +146,59 @@ inline std::vector<double> numbers(const std::vector<MotionRow>& rows) {
   return result;
 }
 
-inline std::vector<InstructionSet> available_sets() {
-  std::vector<InstructionSet> sets;
-  for (const InstructionSet set : {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512}) {
-    if (is_available(set)) sets.push_back(set);
+// From earlier rows to later ones: the interior of every block, then the boundary, level by level.
+inline std::vector<LinkGroup> groups_in_order(const LinkSystem& system) {
+  std::vector<LinkGroup> groups;
+  const auto add = [&](std::uint32_t level) {
+    const LinkLevel& of = system.levels[level];
+    const std::uint32_t crossing = (of.count_of_crossing + links_per_group - 1) / links_per_group;
+    groups.insert(groups.end(), system.groups + of.groups_begin,
+                  system.groups + of.groups_begin + of.count_of_groups);
+    groups.insert(groups.end(), system.groups + of.crossing_begin,
+                  system.groups + of.crossing_begin + crossing);
+  };
+  const std::span blocks(system.blocks, system.count_of_blocks);
+  for (const LinkBlock& block : blocks) {
+    for (std::uint32_t l = block.levels_begin; l < block.boundary_begin; ++l) add(l);
   }
-  return sets;
+  for (std::uint32_t l = 0; l < system.boundary_levels; ++l) {
+    for (const LinkBlock& block : blocks) add(block.boundary_begin + l);
+  }
+  return groups;
 }
+
+// What a pivot holds, see link_kernels.h.
+inline Eigen::Matrix<double, 6, 6> inverse_of(const Pivot& pivot) {
+  const auto at = [&](int row, int place) { return static_cast<double>(pivot.rows[row].v[place]); };
+  Eigen::Matrix<double, 6, 6> inverse;
+  for (int half = 0; half < 2; ++half) {
+    Eigen::Matrix3d own;
+    const int k = 4 * half;
+    own << at(0, k), at(1, k), at(1, k + 1), at(1, k), at(0, k + 1), at(1, k + 2), at(1, k + 1), at(1, k + 2),
+        at(0, k + 2);
+    inverse.block<3, 3>(3 * half, 3 * half) = own;
+  }
+  Eigen::Matrix3d across;
+  across << at(2, 0), at(3, 0), at(3, 6), at(3, 4), at(2, 1), at(3, 1), at(3, 2), at(3, 5), at(2, 2);
+  inverse.topRightCorner<3, 3>() = across;
+  inverse.bottomLeftCorner<3, 3>() = across.transpose();
+  return inverse;
+}
+
+inline Eigen::Vector3d normal_of(const LinkGroup& group, int k) {
+  const auto at = [&](int c) { return static_cast<double>(group.normal[c][k]); };
+  return {at(0), at(1), at(2)};
+}
+
+// What is in the rows before means nothing: it may be left from a step that went wrong.
+struct SolverStorage {
+  explicit SolverStorage(std::size_t count)
+      : of(7, std::vector<MotionRow>(count, MotionRow{Floats{} / 0.0F})) {}
+  SolverRows view() {
+    return {of[0].data(), of[1].data(), of[2].data(), of[3].data(), of[4].data(), of[5].data(), of[6].data()};
+  }
+
+  std::vector<std::vector<MotionRow>> of;
+};
 
 }  // namespace peclet::engine

@@ -13,7 +13,7 @@ namespace peclet::engine {
 
 // OpenMP's library is not compiled with the thread sanitizer, which has to be told where one thread hands its
 // work to another: it releases here and acquires there. (What OpenMP itself passes on is written after that,
-// which is why for_each_range() is not checked; the bodies are.) Nothing in other builds.
+// which is why in_parallel() is not checked; the bodies are.) Nothing in other builds.
 inline char handed_over = 0;
 inline void release_work() {
 #ifdef __SANITIZE_THREAD__
@@ -26,6 +26,19 @@ inline void acquire_work() {
 #endif
 }
 
+// Calls body(part, parts) on each of some threads: `threads` of them, or fewer where OpenMP has no more.
+template <class Body>
+[[gnu::no_sanitize("thread")]] void in_parallel(int threads, Body&& body) {
+  release_work();
+#pragma omp parallel num_threads(threads)
+  {
+    acquire_work();
+    body(static_cast<std::size_t>(omp_get_thread_num()), static_cast<std::size_t>(omp_get_num_threads()));
+    release_work();
+  }
+  acquire_work();
+}
+
 // Calls body(begin, end) for consecutive parts of [0, count), one per thread. One thread never enters OpenMP:
 // a parallel region of a single thread still takes and frees a team, which costs more than a step of two
 // spheres.
@@ -35,16 +48,9 @@ template <class Body>
     body(std::size_t{0}, count);
     return;
   }
-  release_work();
-#pragma omp parallel num_threads(threads)
-  {
-    acquire_work();
-    const auto parts = static_cast<std::size_t>(omp_get_num_threads());
-    const auto part = static_cast<std::size_t>(omp_get_thread_num());
+  in_parallel(threads, [&](std::size_t part, std::size_t parts) {
     body(count * part / parts, count * (part + 1) / parts);
-    release_work();
-  }
-  acquire_work();
+  });
 }
 
 }  // namespace peclet::engine

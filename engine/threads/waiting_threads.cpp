@@ -1,4 +1,4 @@
-#include "engine/state/waiting_threads.h"
+#include "engine/threads/waiting_threads.h"
 
 #include <unistd.h>
 
