@@ -1,15 +1,20 @@
 // The kernels of the implicit system once more, with single-precision numbers that count.
 //
 // Their rows and links are then other types. So they, and all headers that they stand on, have a namespace of
-// their own here, and nothing of the engine's may be included but what says counts.
+// their own here, and nothing of the engine's may be included but what says counts, and
+// teams, which have no numbers.
 #include "engine/benchmark/counted_links.h"
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <span>
 #include <vector>
+
+#include "engine/threads/team.h"
 
 namespace peclet::counting_engine {
 
@@ -25,83 +30,103 @@ struct CountedFloat {
   float value = 0;
 };
 
-constexpr int lanes = 8;
-
-class alignas(32) CountedFloats {
+template <int width>
+class alignas(4 * width) CountedVector {
  public:
-  CountedFloats() = default;
+  CountedVector() = default;
   template <class... Numbers>
-  requires(sizeof...(Numbers) == lanes) CountedFloats(const Numbers&... numbers) : lane_{numbers...} {}
+  requires(sizeof...(Numbers) == width) CountedVector(const Numbers&... numbers) : lane_{numbers...} {}
 
   const CountedFloat& operator[](int k) const { return lane_[k]; }
   CountedFloat& operator[](int k) { return lane_[k]; }
 
-  friend CountedFloats operator+(const CountedFloats& a, const CountedFloats& b) {
-    return done.sums += lanes, each([&](int k) { return a[k].value + b[k].value; });
+  friend CountedVector operator+(const CountedVector& a, const CountedVector& b) {
+    return done.sums += width, each([&](int k) { return a[k].value + b[k].value; });
   }
-  friend CountedFloats operator-(const CountedFloats& a, const CountedFloats& b) {
-    return done.sums += lanes, each([&](int k) { return a[k].value - b[k].value; });
+  friend CountedVector operator-(const CountedVector& a, const CountedVector& b) {
+    return done.sums += width, each([&](int k) { return a[k].value - b[k].value; });
   }
-  friend CountedFloats operator*(const CountedFloats& a, const CountedFloats& b) {
-    return done.products += lanes, each([&](int k) { return a[k].value * b[k].value; });
+  friend CountedVector operator*(const CountedVector& a, const CountedVector& b) {
+    return done.products += width, each([&](int k) { return a[k].value * b[k].value; });
   }
-  friend CountedFloats operator*(const CountedFloats& a, float b) {
-    return done.products += lanes, each([&](int k) { return a[k].value * b; });
+  friend CountedVector operator*(const CountedVector& a, float b) {
+    return done.products += width, each([&](int k) { return a[k].value * b; });
   }
-  friend CountedFloats operator*(float a, const CountedFloats& b) { return b * a; }
-  friend CountedFloats operator-(float a, const CountedFloats& b) {
-    return done.sums += lanes, each([&](int k) { return a - b[k].value; });
+  friend CountedVector operator*(float a, const CountedVector& b) { return b * a; }
+  friend CountedVector operator-(float a, const CountedVector& b) {
+    return done.sums += width, each([&](int k) { return a - b[k].value; });
   }
-  friend CountedFloats operator/(float a, const CountedFloats& b) {
-    return done.quotients += lanes, each([&](int k) { return a / b[k].value; });
+  friend CountedVector operator/(float a, const CountedVector& b) {
+    return done.quotients += width, each([&](int k) { return a / b[k].value; });
   }
-  friend CountedFloats operator-(const CountedFloats& a) {
+  friend CountedVector operator-(const CountedVector& a) {
     return each([&](int k) { return -a[k].value; });
   }
-  CountedFloats& operator+=(const CountedFloats& b) { return *this = *this + b; }
-  CountedFloats& operator-=(const CountedFloats& b) { return *this = *this - b; }
+  CountedVector& operator+=(const CountedVector& b) { return *this = *this + b; }
+  CountedVector& operator-=(const CountedVector& b) { return *this = *this - b; }
 
- private:
+  // The numbers that `number` gives for each lane.
   template <class Number>
-  static CountedFloats each(const Number& number) {
-    CountedFloats result;
-    for (int k = 0; k < lanes; ++k) {
+  static CountedVector each(const Number& number) {
+    CountedVector result;
+    for (int k = 0; k < width; ++k) {
       result.lane_[k].value = number(k);
     }
     return result;
   }
 
-  CountedFloat lane_[lanes];
+ private:
+  CountedFloat lane_[width];
 };
 
-using Floats = CountedFloats;
+using Floats = CountedVector<8>;
+using FourFloats = CountedVector<4>;
 
-// As __builtin_shuffle: from one vector, and from two that count as one of twice the length.
-template <class Places>
-CountedFloats shuffled(const CountedFloats& a, const Places& from) {
-  CountedFloats result;
-  for (int k = 0; k < lanes; ++k) {
-    result[k] = a[from[k] % lanes];
+// What the compiler has for vectors of its own, by the names of the macros below. None of it counts.
+template <int width>
+float lane_of_both(const CountedVector<width>& a, const CountedVector<width>& b, int place) {
+  return place < width ? a[place].value : b[place - width].value;
+}
+template <int width, class Places>
+CountedVector<width> shuffled(const CountedVector<width>& a, const Places& from) {
+  return CountedVector<width>::each([&](int k) { return a[from[k] % width].value; });
+}
+template <int width, class Places>
+CountedVector<width> shuffled(const CountedVector<width>& a, const CountedVector<width>& b,
+                              const Places& from) {
+  return CountedVector<width>::each([&](int k) { return lane_of_both(a, b, from[k] % (2 * width)); });
+}
+template <int width, class... Places>
+CountedVector<sizeof...(Places)> of_lanes(const CountedVector<width>& a, const CountedVector<width>& b,
+                                          Places... places) {
+  const int from[] = {places...};
+  return CountedVector<sizeof...(Places)>::each([&](int k) { return lane_of_both(a, b, from[k]); });
+}
+template <class To, class From>
+To converted(const From& numbers) {
+  To result{};
+  for (int k = 0; k < 4; ++k) {
+    result[k] = static_cast<float>(numbers[k]);
   }
   return result;
 }
-template <class Places>
-CountedFloats shuffled(const CountedFloats& a, const CountedFloats& b, const Places& from) {
-  CountedFloats result;
-  for (int k = 0; k < lanes; ++k) {
-    const int place = from[k] % (2 * lanes);
-    result[k] = place < lanes ? a[place] : b[place - lanes];
-  }
-  return result;
-}
+
+using engine::Team;
 
 }  // namespace peclet::counting_engine
 
 #define PECLET_FLOATS
 #define engine counting_engine
-#define __builtin_shuffle shuffled  // NOLINT(bugprone-reserved-identifier): the kernels call it by this name
+// The kernels call these by their names. NOLINTBEGIN(bugprone-reserved-identifier)
+#define __builtin_shuffle shuffled
+#define __builtin_shufflevector of_lanes
+#define __builtin_convertvector(numbers, To) converted<To>(numbers)
+// NOLINTEND(bugprone-reserved-identifier)
 #include "engine/kernels/links/link_pivots.h"
+#include "engine/kernels/links/link_solver.h"
 #undef __builtin_shuffle
+#undef __builtin_shufflevector
+#undef __builtin_convertvector
 #undef engine
 
 namespace peclet::counting_engine {
@@ -113,35 +138,34 @@ constinit const LinkKernels counting_kernels = {nullptr,         &factorise,  &m
 
 class Counting {
  public:
-  explicit Counting(const LinkSystem& system)
-      : system_(system), inverse_pivots_(6 * system.particles), squeezing_(system.particles) {
+  explicit Counting(const LinkSystem& system) : system_(system), pivots_(system.particles) {
     for (std::vector<MotionRow>& row : rows_) {
       row.resize(system.particles);
     }
-    std::vector<MotionRow> scratch(rows_of_scratch(system.particles));
+    system_.pivots = pivots_.data();
+    Team alone;
     done = {};
-    counting_kernels.factorise(system_, scratch.data(), inverse_pivots_.data(), squeezing_.data());
+    counting_kernels.factorise(system_, pivots_.data(), alone);
     factorisation_ = done;
-    system_.inverse_pivots = inverse_pivots_.data();
-    system_.squeezing = squeezing_.data();
   }
 
   const engine::Operations& factorisation() const { return factorisation_; }
 
   engine::Operations of_iterations(const MotionRow* right, int iterations, double& squared_residual) {
+    rows_[0].assign(right, right + system_.particles);
     const SolverRows rows = {rows_[0].data(), rows_[1].data(), rows_[2].data(), rows_[3].data(),
-                             rows_[4].data(), rows_[5].data(), rows_[6].data(), rows_[7].data()};
-    const double squared = counting_kernels.begin(system_, right, rows);
+                             rows_[4].data(), rows_[5].data(), rows_[6].data()};
+    Team alone;
+    const double squared = counting_kernels.begin(system_, rows, alone);
     done = {};
-    squared_residual = counting_kernels.solve(system_, rows, squared, 0, iterations).squared_residual;
+    squared_residual = counting_kernels.solve(system_, rows, squared, 0, iterations, alone).squared_residual;
     return done;
   }
 
  private:
   LinkSystem system_;
-  std::vector<MotionRow> inverse_pivots_;
-  std::vector<SqueezingRow> squeezing_;
-  std::array<std::vector<MotionRow>, 8> rows_;
+  std::vector<Pivot> pivots_;
+  std::array<std::vector<MotionRow>, 7> rows_;
   engine::Operations factorisation_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <limits>
+#include <span>
 
 #include "engine/benchmark/counted_links.h"
 #include "engine/integrators/velocity_solver.h"
@@ -33,30 +34,40 @@ std::vector<MotionRow> ones(std::size_t count) {
 
 // Each of the three walks of an iteration through all rows reads and writes what is named here once, and
 // finds nothing that the walk before has left in a cache; what is overwritten is fetched first.
-// - Back through the levels: z, p, s and P t, t; all but z are written. P^-1, K and links are read.
-// - Forward: s and y, which are written, p and t. P^-1 and links are read.
-// - New solution: x, r, z and s, which are written, y, t and P t.
-// What links read of other levels' rows and add to them is among these.
+// - Back through the levels: z, p, t and s; all but z are written. Pivots and links are read.
+// - Forward: y and s, which are written, p and t. Pivots and links are read.
+// - New solution: x, r, z and s, which are written, t and y.
+// What links read of other levels' rows and add to them is among these, but not what is put aside for other
+// blocks.
 double bytes_of_iteration(std::size_t rows, std::size_t groups) {
-  constexpr std::size_t row = sizeof(MotionRow), changed = 2 * row, pivot = 6 * row;
-  constexpr std::size_t back = row + 4 * changed + pivot + sizeof(SqueezingRow);
-  constexpr std::size_t forward = 2 * changed + 2 * row + pivot;
-  constexpr std::size_t solution = 4 * changed + 3 * row;
+  constexpr std::size_t row = sizeof(MotionRow), changed = 2 * row;
+  constexpr std::size_t back = row + 3 * changed + sizeof(Pivot);
+  constexpr std::size_t forward = 2 * changed + 2 * row + sizeof(Pivot);
+  constexpr std::size_t solution = 4 * changed + 2 * row;
   return static_cast<double>(rows * (back + forward + solution) + groups * 2 * sizeof(LinkGroup));
 }
 
 std::size_t room_of_iteration(std::size_t rows, std::size_t groups) {
-  constexpr std::size_t vectors = 8, pivot = 6;
-  return rows * ((vectors + pivot) * sizeof(MotionRow) + sizeof(SqueezingRow)) + groups * sizeof(LinkGroup);
+  constexpr std::size_t vectors = 7;
+  return rows * (vectors * sizeof(MotionRow) + sizeof(Pivot)) + groups * sizeof(LinkGroup);
+}
+
+std::span<const LinkLevel> levels_of(const LinkSystem& system) {
+  return {system.levels, system.blocks[system.count_of_blocks - 1].levels_end};
+}
+
+std::size_t groups_of_crossing(const LinkLevel& level) {
+  return (level.count_of_crossing + links_per_group - 1) / links_per_group;
 }
 
 // The same system without its links.
 class RowsAlone {
  public:
   explicit RowsAlone(const LinkSystem& system)
-      : system_(system), levels_(system.levels, system.levels + system.count_of_levels) {
+      : system_(system), levels_(levels_of(system).begin(), levels_of(system).end()) {
     for (LinkLevel& level : levels_) {
-      level.count_of_groups = 0;
+      level.count_of_groups = level.count_of_crossing = 0;
+      level.incoming_end = level.incoming_begin;
     }
     system_.levels = levels_.data();
   }
@@ -69,16 +80,18 @@ class RowsAlone {
 
   // Seconds of an iteration.
   double time(const LinkKernels& kernels, const std::vector<MotionRow>& right) const {
-    std::array<std::vector<MotionRow>, 8> v;
+    std::array<std::vector<MotionRow>, 7> v;
     v.fill(std::vector<MotionRow>(right.size()));
     const SolverRows rows = {v[0].data(), v[1].data(), v[2].data(), v[3].data(),
-                             v[4].data(), v[5].data(), v[6].data(), v[7].data()};
+                             v[4].data(), v[5].data(), v[6].data()};
     constexpr int few = 3;  // so that something is left to solve
     std::vector<double> times(repetitions);
+    Team alone;
     for (double& time : times) {
-      const double squared = kernels.begin(system_, right.data(), rows);
-      time = -seconds_of([&] { kernels.solve(system_, rows, squared, 0, 0); });
-      time += seconds_of([&] { kernels.solve(system_, rows, squared, 0, few); });
+      v[0] = right;
+      const double squared = kernels.begin(system_, rows, alone);
+      time = -seconds_of([&] { kernels.solve(system_, rows, squared, 0, 0, alone); });
+      time += seconds_of([&] { kernels.solve(system_, rows, squared, 0, few, alone); });
       time /= few;
     }
     return spread_of(times).median;
@@ -89,16 +102,12 @@ class RowsAlone {
   std::vector<LinkLevel> levels_;
 };
 
-double links_in(const LinkSystem& system) {
+double links_in(const LinkGroup* groups, std::size_t count) {
   std::size_t links = 0;
-  for (std::size_t l = 0; l < system.count_of_levels; ++l) {
-    const LinkLevel& level = system.levels[l];
-    for (std::size_t g = 0; g < level.count_of_groups; ++g) {
-      for (int k = 0; k < links_per_group; ++k) {
-        // What fills a group up has no normal.
-        const LinkGroup& group = system.groups[level.groups_begin + g];
-        links += group.normal[0][k] != 0 || group.normal[1][k] != 0 || group.normal[2][k] != 0 ? 1 : 0;
-      }
+  for (const LinkGroup& group : std::span(groups, count)) {
+    for (int k = 0; k < links_per_group; ++k) {
+      // What fills a group up has no normal.
+      links += group.normal[0][k] != 0 || group.normal[1][k] != 0 || group.normal[2][k] != 0 ? 1 : 0;
     }
   }
   return static_cast<double>(links);
@@ -109,24 +118,26 @@ void count(const LinkSystem& system, const std::vector<MotionRow>& right, Solver
   cost.of_rows = RowsAlone(system).operations(right);
   cost.of_links = all.iteration - cost.of_rows;
   cost.of_factorisation = all.factorisation;
-  std::size_t groups = 0;
-  for (std::size_t l = 0; l < system.count_of_levels; ++l) {
-    groups += system.levels[l].count_of_groups;
-  }
   cost.rows = static_cast<double>(system.particles);
-  cost.links = links_in(system);
-  cost.levels = system.count_of_levels;
+  std::size_t groups = 0;
+  for (const LinkLevel& level : levels_of(system)) {
+    groups += level.count_of_groups + groups_of_crossing(level);
+    cost.links += links_in(system.groups + level.groups_begin, level.count_of_groups) +
+                  links_in(system.groups + level.crossing_begin, groups_of_crossing(level));
+  }
+  cost.levels = levels_of(system).size();
   cost.bytes = bytes_of_iteration(system.particles, groups);
   cost.room = room_of_iteration(system.particles, groups);
 }
 
 double time_of_factorisation(const LinkSystem& system, const LinkKernels& kernels) {
-  std::vector<MotionRow> scratch(rows_of_scratch(system.particles)), inverse_pivots(6 * system.particles);
-  std::vector<SqueezingRow> squeezing(system.particles);
+  std::vector<Pivot> pivots(system.particles);
+  LinkSystem with_own_pivots = system;
+  with_own_pivots.pivots = pivots.data();
+  Team alone;
   std::vector<double> times(repetitions);
   for (double& time : times) {
-    time = seconds_of(
-        [&] { kernels.factorise(system, scratch.data(), inverse_pivots.data(), squeezing.data()); });
+    time = seconds_of([&] { kernels.factorise(with_own_pivots, pivots.data(), alone); });
   }
   return spread_of(times).median;
 }
@@ -150,7 +161,7 @@ SolverCost solver_cost(const Scene& scene, const System& given, double timestep)
   StepOrigin origin;
   origin.velocity = particles.velocity;
   origin.spin = particles.angular_velocity;
-  VelocitySolver solver(scene.physics, particles, timestep, scene.solver_tolerance, set);
+  VelocitySolver solver(scene.physics, particles, timestep, scene.solver_tolerance, 1, set);
   solver.assemble(system, field);  // with the order of rows, which later ones have already
   std::vector<double> assembly, residuals, iteration;
   for (int r = 0; r < repetitions; ++r) {

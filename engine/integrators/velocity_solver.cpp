@@ -54,8 +54,8 @@ void VelocitySolver::assemble(System& system, ForceField& field) {
     sums_.resize(order_.blocks().size());
     ordered_ = system.list.builds();
   }
-  const ForceField::AssembleLinks assemble_block = field.assemble_links(
-      system, {.timestep = timestep_, .normal_time = 0.5 * timestep_}, order_, groups_);
+  const ForceField::AssembleLinks assemble_block =
+      field.assemble_links(system, {.timestep = timestep_, .normal_time = 0.5 * timestep_}, order_, groups_);
   const LinkSystem matrix = links(system);
   run_team(threads_, [&](Team& team) {
     const Team::Part mine = team.part_of(matrix.count_of_blocks);

@@ -51,7 +51,9 @@ PECLET_ALWAYS_INLINE const Row& vector_row(const double* rows, std::size_t i) {
   return reinterpret_cast<const Row*>(rows)[i];
 }
 
+#ifndef PECLET_FLOATS
 typedef float FourFloats __attribute__((vector_size(16)));
+#endif
 
 PECLET_ALWAYS_INLINE void set_motion(MotionRow& to, const Row& velocity, const Row& spin) {
   reinterpret_cast<FourFloats*>(&to)[0] = __builtin_convertvector(velocity, FourFloats);

@@ -53,7 +53,7 @@ PECLET_ALWAYS_INLINE Floats over_pivot(const Pivot& pivot, const Floats& r) {
 // K t of one row.
 PECLET_ALWAYS_INLINE Floats squeezed(const Pivot& pivot, const Floats& t) {
   const auto three = [&](int place) {
-    return FourFloats{pivot.rows[0].v[place], pivot.rows[1].v[place], pivot.rows[2].v[place], 0};
+    return FourFloats{pivot.rows[0].v[place], pivot.rows[1].v[place], pivot.rows[2].v[place], 0.0F};
   };
   const FourFloats diagonal = three(3), beside = three(7), v = __builtin_shufflevector(t, t, 0, 1, 2, 3);
   constexpr FourIntegers xxy = {0, 0, 1, 3}, yxx = {1, 0, 0, 3}, yzz = {1, 2, 2, 3}, zzy = {2, 2, 1, 3};

@@ -16,16 +16,21 @@ Links links_of(InstructionSet set = InstructionSet::baseline) {
   return Links(physics, dense_suspension(physics, 300, 5), set);
 }
 
+std::span<const LinkLevel> levels_of(const LinkSystem& system) {
+  return {system.levels, system.blocks[system.count_of_blocks - 1].levels_end};
+}
+
 // What the compiled kernels leave after as many iterations.
 double squared_residual(const Links& links, const std::vector<MotionRow>& right, int iterations) {
-  std::vector<MotionRow> rows[8];
+  std::vector<MotionRow> rows[7];
   for (std::vector<MotionRow>& each : rows) {
-    each.resize(right.size());
+    each = right;
   }
   const SolverRows places = {rows[0].data(), rows[1].data(), rows[2].data(), rows[3].data(),
-                             rows[4].data(), rows[5].data(), rows[6].data(), rows[7].data()};
-  const double squared = links.kernels().begin(links.view(), right.data(), places);
-  return links.kernels().solve(links.view(), places, squared, 0, iterations).squared_residual;
+                             rows[4].data(), rows[5].data(), rows[6].data()};
+  Team alone;
+  const double squared = links.kernels().begin(links.view(), places, alone);
+  return links.kernels().solve(links.view(), places, squared, 0, iterations, alone).squared_residual;
 }
 
 TEST(SolverOperations, AreThoseOfWorkThatGivesTheKernelsResult) {
@@ -53,7 +58,7 @@ TEST(SolverOperations, OfTheFactorisationAreSixQuotientsForEachRow) {
   const Links links = links_of();
   const LinkSystem system = links.view();
   std::uint64_t rows = 0;
-  for (const LinkLevel& level : std::span(system.levels, system.count_of_levels)) {
+  for (const LinkLevel& level : levels_of(system)) {
     rows += (level.rows_end - level.rows_begin + 7) / 8 * 8;
   }
   const std::vector<MotionRow> right = random_rows(links.system().particles.count(), 7);
@@ -62,23 +67,25 @@ TEST(SolverOperations, OfTheFactorisationAreSixQuotientsForEachRow) {
   EXPECT_EQ(done.iteration.quotients, 0u);
 }
 
-// In each of the two sweeps of an iteration a row of eight numbers is multiplied by the six columns of P^-1,
-// in one by K, two halves of three columns; and a link's load, six numbers, is added to its row.
+// In each of the two sweeps of an iteration six numbers of a row are multiplied by the six columns of P^-1,
+// in one by K; and a link's load, six numbers, is added to its row.
 TEST(SolverOperations, OfAnIterationAreAtLeastThoseOfItsProducts) {
   const Links links = links_of();
   const LinkSystem system = links.view();
-  std::vector<LinkLevel> levels(system.levels, system.levels + system.count_of_levels);
+  const std::span<const LinkLevel> given = levels_of(system);
+  std::vector<LinkLevel> levels(given.begin(), given.end());
   std::uint64_t places = 0;
   for (LinkLevel& level : levels) {
-    places += std::uint64_t{level.count_of_groups} * links_per_group;
-    level.count_of_groups = 0;
+    places += std::uint64_t{level.count_of_groups + (level.count_of_crossing + 7) / 8} * links_per_group;
+    level.count_of_groups = level.count_of_crossing = 0;
+    level.incoming_end = level.incoming_begin;
   }
   LinkSystem without_links = system;
   without_links.levels = levels.data();
   const std::vector<MotionRow> right = random_rows(system.particles, 7);
   const Operations of_rows = count_solver_operations(without_links, right.data(), 1).iteration;
   const Operations of_links = count_solver_operations(system, right.data(), 1).iteration - of_rows;
-  EXPECT_GE(of_rows.products, (2 * 6 + 2) * 8 * system.particles);
+  EXPECT_GE(of_rows.products, (2 * 36 + 9) * system.particles);
   EXPECT_EQ(of_rows.products % system.particles, 0u);
   EXPECT_GE(of_links.sums, 2 * 6 * places);
   EXPECT_EQ(of_links.products % places, 0u);
