@@ -87,15 +87,6 @@ template <int width>
 float lane_of_both(const CountedVector<width>& a, const CountedVector<width>& b, int place) {
   return place < width ? a[place].value : b[place - width].value;
 }
-template <int width, class Places>
-CountedVector<width> shuffled(const CountedVector<width>& a, const Places& from) {
-  return CountedVector<width>::each([&](int k) { return a[from[k] % width].value; });
-}
-template <int width, class Places>
-CountedVector<width> shuffled(const CountedVector<width>& a, const CountedVector<width>& b,
-                              const Places& from) {
-  return CountedVector<width>::each([&](int k) { return lane_of_both(a, b, from[k] % (2 * width)); });
-}
 template <int width, class... Places>
 CountedVector<sizeof...(Places)> of_lanes(const CountedVector<width>& a, const CountedVector<width>& b,
                                           Places... places) {
@@ -118,13 +109,11 @@ using engine::Team;
 #define PECLET_FLOATS
 #define engine counting_engine
 // The kernels call these by their names. NOLINTBEGIN(bugprone-reserved-identifier)
-#define __builtin_shuffle shuffled
 #define __builtin_shufflevector of_lanes
 #define __builtin_convertvector(numbers, To) converted<To>(numbers)
 // NOLINTEND(bugprone-reserved-identifier)
 #include "engine/kernels/links/link_pivots.h"
 #include "engine/kernels/links/link_solver.h"
-#undef __builtin_shuffle
 #undef __builtin_shufflevector
 #undef __builtin_convertvector
 #undef engine

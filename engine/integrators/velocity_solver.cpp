@@ -50,7 +50,7 @@ VelocitySolver::VelocitySolver(const Physics& physics, const ParticleState& part
 void VelocitySolver::assemble(System& system, ForceField& field) {
   if (ordered_ != system.list.builds()) {
     order_.arrange(system.list, system.particles.count(), threads_);
-    aside_.resize(std::size_t{rows_of_block} * links_per_group * order_.crossing_groups());
+    aside_.resize(rows_of_block * links_per_group * order_.crossing_groups());
     sums_.resize(order_.blocks().size());
     ordered_ = system.list.builds();
   }

@@ -21,9 +21,10 @@ PECLET_ALWAYS_INLINE int place_of_link(std::uint32_t number) {
 // Groups of many levels are written at a time, which no processor sees coming: a line of the next ones with
 // each link, so that they are at hand when these are full.
 PECLET_ALWAYS_INLINE void fetch_next_groups(LinkGroup* groups, std::uint32_t number) {
-  const LinkGroup* const next = groups + (number / links_side_by_side + 1) * groups_side_by_side;
+  const LinkGroup* const next = groups + std::size_t{number / links_side_by_side + 1} * groups_side_by_side;
   constexpr int for_writing = 1;
-  __builtin_prefetch(reinterpret_cast<const char*>(next) + 64 * (number % links_side_by_side), for_writing);
+  __builtin_prefetch(reinterpret_cast<const char*>(next) + std::size_t{64} * (number % links_side_by_side),
+                     for_writing);
 }
 
 void couple_nothing(LinkGroup& group, int place, std::uint32_t first, std::uint32_t second) {

@@ -35,7 +35,7 @@ struct alignas(32) MotionRow {
 };
 
 constexpr int links_per_group = 8;
-constexpr int rows_of_block = 2;  // what a link adds to a particle's own block
+constexpr std::size_t rows_of_block = 2;  // what a link adds to a particle's own block
 
 // Rows of particles; `first` is in a later level than `second`.
 struct alignas(32) LinkGroup {

@@ -108,9 +108,9 @@ PECLET_ALWAYS_INLINE void transpose(Floats* rows) {
 // What eight links give to the blocks of their particles: calls add(k, part, row).
 template <class Add>
 PECLET_ALWAYS_INLINE void for_each_row_of_blocks(Floats* blocks, Add&& add) {
-  for (int part = 0; part < rows_of_block; ++part) {
+  for (std::size_t part = 0; part < rows_of_block; ++part) {
     transpose(blocks + 8 * part);
-    for (int k = 0; k < links_per_group; ++k) {
+    for (std::size_t k = 0; k < links_per_group; ++k) {
       add(k, part, blocks[8 * part + k]);
     }
   }
@@ -119,7 +119,7 @@ PECLET_ALWAYS_INLINE void for_each_row_of_blocks(Floats* blocks, Add&& add) {
 // D and what links add, of the own block of each row; no K. What belongs to other blocks' rows is put aside.
 PECLET_ALWAYS_INLINE void set_own_blocks(const LinkSystem& system, const LinkBlock& of, Pivot* pivots) {
   const auto add_to = [&](const std::uint32_t* index, Floats* block) PECLET_INLINE_LAMBDA {
-    for_each_row_of_blocks(block, [&](int k, int part, const Floats& row)
+    for_each_row_of_blocks(block, [&](std::size_t k, std::size_t part, const Floats& row)
                                       PECLET_INLINE_LAMBDA { pivots[index[k]].rows[part].v += row; });
   };
   const auto add_to_first = [&](const LinkGroup& group) PECLET_INLINE_LAMBDA {
@@ -150,7 +150,7 @@ PECLET_ALWAYS_INLINE void set_own_blocks(const LinkSystem& system, const LinkBlo
       Floats block[16];
       add_to_first(*group);
       block_of_second(*group, block);
-      for_each_row_of_blocks(block, [&](int k, int part, const Floats& row)
+      for_each_row_of_blocks(block, [&](std::size_t k, std::size_t part, const Floats& row)
                                         PECLET_INLINE_LAMBDA { aside[rows_of_block * k + part].v = row; });
       aside += rows_of_block * links_per_group;
     }
@@ -244,7 +244,7 @@ void factorise(const LinkSystem& system, Pivot* pivots, Team& team) {
       [&](const GroupRange& groups) PECLET_INLINE_LAMBDA { add_squeezing(groups, pivots); },
       [&](const LinkLevel& level, std::size_t) PECLET_INLINE_LAMBDA {
         for_each_incoming(system, level, [&](std::uint32_t row, std::uint32_t crossing) PECLET_INLINE_LAMBDA {
-          for (int part = 0; part < rows_of_block; ++part) {
+          for (std::size_t part = 0; part < rows_of_block; ++part) {
             pivots[row].rows[part].v += system.aside[rows_of_block * crossing + part].v;
           }
         });

@@ -9,19 +9,16 @@
 namespace peclet::engine {
 namespace {
 
-typedef int FourIntegers __attribute__((vector_size(16)));
-typedef int EightIntegers __attribute__((vector_size(32)));
-
 // The first three numbers of both halves in this order.
 template <int a, int b, int c>
 PECLET_ALWAYS_INLINE Floats arranged(const Floats& v) {
 #ifdef __AVX2__
-  return __builtin_shuffle(v, EightIntegers{a, b, c, 3, 4 + a, 4 + b, 4 + c, 7});
+  return __builtin_shufflevector(v, v, a, b, c, 3, 4 + a, 4 + b, 4 + c, 7);
 #else
   Floats result;
   for (int half = 0; half < 2; ++half) {
-    reinterpret_cast<FourFloats*>(&result)[half] =
-        __builtin_shuffle(reinterpret_cast<const FourFloats*>(&v)[half], FourIntegers{a, b, c, 3});
+    const FourFloats& from = reinterpret_cast<const FourFloats*>(&v)[half];
+    reinterpret_cast<FourFloats*>(&result)[half] = __builtin_shufflevector(from, from, a, b, c, 3);
   }
   return result;
 #endif
@@ -29,7 +26,7 @@ PECLET_ALWAYS_INLINE Floats arranged(const Floats& v) {
 
 PECLET_ALWAYS_INLINE Floats with_halves_changed(const Floats& v) {
 #ifdef __AVX2__
-  return __builtin_shuffle(v, EightIntegers{4, 5, 6, 7, 0, 1, 2, 3});
+  return __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3);
 #else
   Floats result;
   for (int half = 0; half < 2; ++half) {
@@ -56,9 +53,10 @@ PECLET_ALWAYS_INLINE Floats squeezed(const Pivot& pivot, const Floats& t) {
     return FourFloats{pivot.rows[0].v[place], pivot.rows[1].v[place], pivot.rows[2].v[place], 0.0F};
   };
   const FourFloats diagonal = three(3), beside = three(7), v = __builtin_shufflevector(t, t, 0, 1, 2, 3);
-  constexpr FourIntegers xxy = {0, 0, 1, 3}, yxx = {1, 0, 0, 3}, yzz = {1, 2, 2, 3}, zzy = {2, 2, 1, 3};
-  const FourFloats sum = diagonal * v + __builtin_shuffle(beside, xxy) * __builtin_shuffle(v, yxx) +
-                         __builtin_shuffle(beside, yzz) * __builtin_shuffle(v, zzy);
+  const FourFloats sum =
+      diagonal * v +
+      __builtin_shufflevector(beside, beside, 0, 0, 1, 3) * __builtin_shufflevector(v, v, 1, 0, 0, 3) +
+      __builtin_shufflevector(beside, beside, 1, 2, 2, 3) * __builtin_shufflevector(v, v, 2, 2, 1, 3);
   return __builtin_shufflevector(sum, FourFloats{}, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 

@@ -148,9 +148,8 @@ PECLET_ALWAYS_INLINE void push(const LinkSystem& system, const LinkLevel& level,
 }
 
 // Where what the crossing links of a level do is put aside, that many rows for each.
-PECLET_ALWAYS_INLINE MotionRow* aside_of(const LinkSystem& system, const LinkLevel& level, int rows) {
-  return system.aside +
-         static_cast<std::size_t>(rows) * links_per_group * (level.crossing_begin - system.crossing_begin);
+PECLET_ALWAYS_INLINE MotionRow* aside_of(const LinkSystem& system, const LinkLevel& level, std::size_t rows) {
+  return system.aside + rows * links_per_group * (level.crossing_begin - system.crossing_begin);
 }
 
 constexpr std::uint32_t in_order[links_per_group] = {0, 1, 2, 3, 4, 5, 6, 7};
