@@ -47,9 +47,9 @@ struct OnALine {
   // Over the distances of a way from h, by the midpoint rule.
   double mean_resistance(double h, double way) const {
     constexpr int parts = 200'000;
-    double sum = 0;
-    for (int k = 0; k < parts; ++k) sum += resistance(h + way * (k + 0.5) / parts) / parts;
-    return sum;
+    double total = 0;
+    for (int k = 0; k < parts; ++k) total += resistance(h + way * (k + 0.5) / parts) / parts;
+    return total;
   }
   // The part that jumps to zero at the outer gap, and the other one on a predicted way from h.
   double jump(double h) const { return lubricated(h) ? squeeze(outer_gap) : 0; }
