@@ -18,12 +18,11 @@ struct Iterations {
   double first_forcing, forcing;
 };
 constexpr Iterations with_springs = {3, 8, 0.3, 0.2}, without_springs = {6, 6, 0.2, 0.05};
-constexpr double far = 7, default_tolerance = 2e-3;
+constexpr double far = 7;
 
 // Springs that push after half of their advance are of second order. A little more than half damps those that
 // stick and are stiff: with z = dt k / R a step multiplies them by (1 - (1 - s) z) / (1 + s z), which tends
-// to
-// -(1 - s)/s; what remains of first order is a fifth of what whole advances have.
+// to -(1 - s) / s; what remains of first order is a fifth of what whole advances have.
 constexpr double felt_share = 0.6;
 
 }  // namespace
@@ -66,7 +65,7 @@ std::optional<StepReport> Midpoint::find_velocities(System& system) {
     if (iteration > 0) {
       solver_.assemble(system, field_);
     }
-    const double left = std::min(solver_.tolerance() / default_tolerance, 1.0) *
+    const double left = std::min(solver_.tolerance() / usual_tolerance, 1.0) *
                         (iteration == 0 ? iterations.first_forcing : iterations.forcing);
     if (!solver_.correct(system, std::max(0.25 * target, left * left * residual.squared), report)) {
       report.sums.finite = false;

@@ -225,9 +225,9 @@ Scene read_scene(const Json& document, const std::string& file) {
 
   const Json& integrator = filled["integrator"];
   if (integrator["method"] == "implicit") scene.method = Method::implicit_steps;
-  // Errors of steps with noise average out.
-  const double usual_tolerance = scene.physics.thermal_energy > 0 ? 4e-3 : 2e-3;
-  scene.solver_tolerance = integrator.value("tolerance", usual_tolerance);
+  const bool noise = scene.physics.thermal_energy > 0;
+  scene.solver_tolerance =
+      integrator.value("tolerance", noise ? usual_tolerance_with_noise : usual_tolerance);
   if (integrator.contains("tolerance") && scene.method != Method::implicit_steps) {
     throw InputError(file, "/integrator/tolerance", shortened(integrator["tolerance"]),
                      "must be left out unless /integrator/method is \"implicit\"");

@@ -29,6 +29,9 @@ struct Physics : EachConservativeLaw<std::optional> {
   std::optional<LubricationParameters> lubrication;
 };
 
+// Of the residual of implicit steps, where the document gives none. With noise errors average out.
+inline constexpr double usual_tolerance = 2e-3, usual_tolerance_with_noise = 4e-3;
+
 struct Species {
   double radius = 0;
   double share = 0;  // of the volume or of the number, see Particles; the shares add up to 1
@@ -74,8 +77,8 @@ struct Scene {
   double volume_fraction = 0;
   Physics physics;
   Method method = Method::explicit_steps;
-  std::optional<double> timestep;  // absent: "auto"
-  double solver_tolerance = 0;     // of implicit steps
+  std::optional<double> timestep;             // absent: "auto"
+  double solver_tolerance = usual_tolerance;  // of implicit steps
   Duration equilibration, production;
   std::map<std::string, Json> observables;  // asked for besides the stress: name, settings with defaults
   Guard guard;

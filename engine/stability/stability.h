@@ -27,20 +27,25 @@ constexpr double packing_factor = 2.8;
 double largest_timestep(const Scene& scene);
 
 // The automatic implicit step, the smallest of these:
-// - 0.005 / (rate (1 + 2 St)), half of that with friction above 1, friction and rolling, or friction and
-//   noise; St = rho a^2 rate / eta with the largest radius. Pairs that the flow presses together pass through
-//   the gaps of lubrication in many steps; inertia is of first order only.
-// - 0.004 eta a^3 / kT, a the smallest radius, without lubrication 0.0017. Noise moves a pair through these
+// - A strain over rate (1 + 2 St), St = rho a^2 rate / eta with the largest radius, and a multiple of X_A /
+// k,
+//   the time in which lubrication at the inner gap holds up the stiffest contact and conservative law:
+//     0.01 (above a volume fraction phi of 0.6: 0.2 (0.65 - phi), at least 0.002) and 20;
+//     with noise 0.005 and 7;
+//     with conservative laws 0.005 and 5;
+//     with friction 0.005 and 4, with conservative laws too 2;
+//     with friction above 1, friction and rolling, or friction and noise 0.0025 and 2.
+//   Pairs that the flow presses together pass through the gaps of lubrication in many steps; inertia is of
+//   first order only.
+// - 0.0045 eta a^3 / kT, a the smallest radius, without lubrication 0.0017. Noise moves a pair through these
 //   gaps in many steps, too.
-// - 10 X_A / k, with friction 4, half of that in the same cases, with noise and with conservative laws: the
-//   time in which lubrication at the inner gap holds up the stiffest contact and conservative law.
 // - 20 drag / k of the conservative laws from the outer gap on, where the drag of single spheres alone
 //   resists them. Larger steps throw the spheres of unbalanced packings apart.
 // - Resistance / -V'' where the conservative laws together attract: the time in which the approach of a pair
 //   grows e-fold. Steps are explicit in that part.
 // - With noise and lubrication, the longest step in which inertia carries the spheres across the outer gap
-//   (terms/inertial_step.h). Where this makes it shorter, instead of it and of 0.004 eta a^3 / kT: 0.0017 eta
-//   a^3 / kT and the step at which five standard deviations of a leap out of the range of lubrication are
+//   (terms/inertial_step.h). Where this makes it shorter, instead of it and of 0.0045 eta a^3 / kT: 0.0017
+//   eta a^3 / kT and the step at which five standard deviations of a leap out of the range of lubrication are
 //   twice the outer gap. Either way no sphere is hit that was out of range before.
 // A scene without flow and temperature has those of contact and repulsion alone. Infinite where nothing sets
 // a time.

@@ -5,10 +5,10 @@
 // changes continuously where pairs enter or leave the range, and Newton's iterations find its zeros.
 //
 // With noise, where inertia carries a pair across the outer gap (integrators/noisy_midpoint.h): with R_o the
-// resistance at the outer gap, within the range, and zero beyond, R = R_o + R_b: R_b is
-// continuous, R_o jumps. R_o is that of the gap at which the step begins and acts on (V_n + V) / 2; so the
-// new velocities feel R_b + R_o / 2. R_b is the mean of its average over the gaps from xi_0 to xi_1 and of
-// its value at sqrt(xi_0 xi_1),
+// resistance at the outer gap, within the range, and zero beyond, R = R_o + R_b: R_b is continuous, R_o
+// jumps. R_o is that of the gap at which the step begins and acts on (V_n + V) / 2; so the new velocities
+// feel R_b + R_o / 2. R_b is the mean of its average over the gaps from xi_0 to xi_1 and of its value at
+// sqrt(xi_0 xi_1),
 //   xi_1 = xi_0 + w [1 - s + s (1/xi_0 + e) / (1/sqrt(xi_0 xi_w) + e)],  xi_w = xi_0 + w,
 // with the way w of the predicted step and no gap below the inner one xi_min under the roots: to first order
 // in w it is R_b in the middle, as in Fixman's step. xi_1 is where the step ends with what a resistance

@@ -22,28 +22,11 @@ from studies.estimates import estimate, relative_difference, student_quantile
 from studies.scenes import REFERENCE_SCENE, during, merged
 from studies.tables import write_table
 from studies.viscosities import values_by_seed
+from columns import COLUMNS
 
 STRAIN = 2
 SEEDS = 16
 TARGET = 0.02
-COLUMNS = (
-    "panel",
-    "method",
-    "step",
-    "timestep",
-    "tolerance",
-    "seeds",
-    "lost",
-    "flags",
-    "viscosity",
-    "viscosity_error",
-    "bias_percent",
-    "bias_half_width_percent",
-    "seconds_per_strain",
-    "seconds_to_2_percent",
-    "particles",
-    "commit",
-)
 
 
 def main():

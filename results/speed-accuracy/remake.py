@@ -21,6 +21,7 @@ from studies.estimates import estimate, relative_difference, student_quantile
 from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
 from studies.tables import markdown_head, markdown_row, write_table
 from studies.viscosities import counts_text, flags, values_by_seed
+from columns import COLUMNS
 
 import numpy as np
 
@@ -67,24 +68,6 @@ OVERVIEW = ["reference", "friction 1, phi 0.45", "Pe 1"]
 QUICK_PANELS = ("reference", "Pe 100")
 QUICK = {"particles": {"count": 100}, **during({"strain": 0.5}, {"strain": 1.5})}
 QUICK_SEEDS = 8
-COLUMNS = (
-    "panel",
-    "method",
-    "step",
-    "timestep",
-    "tolerance",
-    "seeds",
-    "lost",
-    "flags",
-    "viscosity",
-    "viscosity_error",
-    "bias_percent",
-    "bias_half_width_percent",
-    "seconds_per_strain",
-    "seconds_to_2_percent",
-    "particles",
-    "commit",
-)
 SUMMARY = (
     "case",
     "η_r",

@@ -82,7 +82,7 @@ TEST(PairDensity, IsKeptByImplicitSteps) {
                         .timestep = 0.1192,
                         .steps = 500'000,
                         .realisations = 40,
-                        .solver_tolerance = 2e-3};
+                        .solver_tolerance = 4e-3};
   const auto shares = sampled_shares(run);
   const std::vector<double> expected = expected_shares(run, StepBias::none);
   const Estimate touching = ratio(shares, expected, 0, 3), near = ratio(shares, expected, 4, 5);

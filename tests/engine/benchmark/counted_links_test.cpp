@@ -59,7 +59,7 @@ TEST(SolverOperations, OfTheFactorisationAreSixQuotientsForEachRow) {
   const LinkSystem system = links.view();
   std::uint64_t rows = 0;
   for (const LinkLevel& level : levels_of(system)) {
-    rows += (level.rows_end - level.rows_begin + 7) / 8 * 8;
+    rows += std::uint64_t{(level.rows_end - level.rows_begin + 7) / 8} * 8;
   }
   const std::vector<MotionRow> right = random_rows(links.system().particles.count(), 7);
   const SolverOperations done = count_solver_operations(system, right.data(), 1);
@@ -87,7 +87,7 @@ TEST(SolverOperations, OfAnIterationAreAtLeastThoseOfItsProducts) {
   const Operations of_links = count_solver_operations(system, right.data(), 1).iteration - of_rows;
   EXPECT_GE(of_rows.products, (2 * 36 + 9) * system.particles);
   EXPECT_EQ(of_rows.products % system.particles, 0u);
-  EXPECT_GE(of_links.sums, 2 * 6 * places);
+  EXPECT_GE(of_links.sums, 12 * places);
   EXPECT_EQ(of_links.products % places, 0u);
 }
 

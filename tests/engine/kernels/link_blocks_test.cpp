@@ -34,12 +34,12 @@ std::vector<MotionRow> product(const Links& links, const std::vector<MotionRow>&
 std::vector<Block> own_blocks(const Links& links) {
   std::vector<Block> blocks(links.system().particles.count());
   for (const LinkLevel& level : links.order().levels()) {
-    for (int k = 0; k < 6; ++k) {
+    for (std::size_t k = 0; k < 6; ++k) {
       std::vector<MotionRow> units(blocks.size());
       for (std::size_t i = level.rows_begin; i < level.rows_end; ++i) units[i].v[of_a_motion[k]] = 1;
       const std::vector<MotionRow> moved = product(links, units);
       for (std::size_t i = level.rows_begin; i < level.rows_end; ++i) {
-        blocks[i].col(k) = entries(moved[i])(of_a_motion);
+        blocks[i].col(static_cast<Eigen::Index>(k)) = entries(moved[i])(of_a_motion);
       }
     }
   }

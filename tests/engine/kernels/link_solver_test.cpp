@@ -70,8 +70,8 @@ TEST_P(LinkSolverOf, CoupleNoTwoRowsOfALevel) {
   EXPECT_GE(links.order().levels().size(), 4);  // four spheres that touch each other
   EXPECT_LE(links.order().levels().size(), 12);
   for (const LinkLevel& level : links.order().levels()) {
-    for (std::uint32_t i = level.rows_begin; i < level.rows_end; ++i) {
-      for (std::uint32_t j = level.rows_begin; j < i; ++j) {
+    for (Eigen::Index i = level.rows_begin; i < level.rows_end; ++i) {
+      for (Eigen::Index j = level.rows_begin; j < i; ++j) {
         EXPECT_EQ((matrix.block<6, 6>(6 * i, 6 * j).cwiseAbs().maxCoeff()), 0);
       }
     }

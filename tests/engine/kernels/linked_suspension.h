@@ -171,9 +171,9 @@ inline std::vector<LinkGroup> groups_in_order(const LinkSystem& system) {
 inline Eigen::Matrix<double, 6, 6> inverse_of(const Pivot& pivot) {
   const auto at = [&](int row, int place) { return static_cast<double>(pivot.rows[row].v[place]); };
   Eigen::Matrix<double, 6, 6> inverse;
-  for (int half = 0; half < 2; ++half) {
+  for (const Eigen::Index half : {0, 1}) {
     Eigen::Matrix3d own;
-    const int k = 4 * half;
+    const int k = 4 * static_cast<int>(half);
     own << at(0, k), at(1, k), at(1, k + 1), at(1, k), at(0, k + 1), at(1, k + 2), at(1, k + 1), at(1, k + 2),
         at(0, k + 2);
     inverse.block<3, 3>(3 * half, 3 * half) = own;

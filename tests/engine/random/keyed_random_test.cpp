@@ -242,15 +242,16 @@ TEST(NormalBlock, HalvesOfAPartRefineItsPath) {
     for (const std::uint64_t part : {1U, 2U, 3U, 4U, 5U, 6U, 7U, 511U, 1022U, 1023U}) {
       of_part[part] = normals_of_part(step, part);
     }
-    for (int c = 0; c < 6; ++c) {
-      for (int k = 0; k < identities_per_block; ++k) {
-        const auto z = [&](std::uint64_t part) { return static_cast<double>(of_part[part].value[c][k]); };
-        for (const std::uint64_t part : {1U, 2U, 3U, 511U}) {
-          ASSERT_NEAR(std::sqrt(0.5) * (z(2 * part) + z(2 * part + 1)), z(part), 2e-6) << part;
-        }
-        for (const std::uint64_t part : {2U, 3U, 5U, 7U, 1023U}) moments[part].add(z(part));
-        for (const auto& [a, b] : apart) products[{a, b}] += z(a) * z(b);
+    const auto value = [&](std::uint64_t part, int entry) {
+      return static_cast<double>(of_part[part].value[entry % 6][entry / 6]);
+    };
+    for (int entry = 0; entry < 6 * identities_per_block; ++entry) {
+      const auto z = [&](std::uint64_t part) { return value(part, entry); };
+      for (const std::uint64_t part : {1U, 2U, 3U, 511U}) {
+        ASSERT_NEAR(std::sqrt(0.5) * (z(2 * part) + z(2 * part + 1)), z(part), 2e-6) << part;
       }
+      for (const std::uint64_t part : {2U, 3U, 5U, 7U, 1023U}) moments[part].add(z(part));
+      for (const auto& [a, b] : apart) products[{a, b}] += z(a) * z(b);
     }
   }
   for (const auto& [part, of_part] : moments) expect_normal(of_part, "part " + std::to_string(part));

@@ -95,7 +95,8 @@ TEST(StepResistance, OfAPairAtRestIsThatOfItsGap) {
 // The way that the head describes, with the averages by quadrature.
 TEST(StepResistance, AheadIsTheMeanOfItsTwoRulesAndHalfOfTheJump) {
   const double inner = lubrication.inner_gap, outer = lubrication.outer_gap;
-  for (const auto& [from, to] : ways) {
+  for (const auto& way : ways) {
+    const double from = way.from, to = way.to;
     const double start = std::max(from, inner), e = 1 / (4 * inner);
     const auto root = [&](double end) { return std::sqrt(start * std::max(end, inner)); };
     const double left = (1 / start + e) / (1 / root(to) + e);
