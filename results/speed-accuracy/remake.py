@@ -7,7 +7,6 @@ systems and few seeds, writes into FOLDER and fails where a default step loses a
 viscosity by more than 1 % and more than chance does in one run of ten thousand: without noise it compares the two
 methods and sees half a percent; with noise it sees little.
 """
-import dataclasses
 import math
 import subprocess
 import sys
@@ -18,52 +17,14 @@ sys.path.insert(0, str(HERE.parent))
 from studies.campaigns import Program
 from studies.command_line import drive
 from studies.estimates import estimate, relative_difference, student_quantile
-from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
+from studies.scenes import REFERENCE_SCENE, during, merged
 from studies.tables import markdown_head, markdown_row, write_table
 from studies.viscosities import counts_text, flags, values_by_seed
-from columns import COLUMNS
+from panels import COLUMNS, PANELS
 
 import numpy as np
 
 
-@dataclasses.dataclass
-class Case:
-    """What differs from the reference scene, and steps: explicit ones over the largest stable one, implicit ones over
-    the automatic one, each with its seeds where those are others; tolerances at the automatic step."""
-
-    patch: dict
-    seeds: int
-    explicit: dict = dataclasses.field(default_factory=lambda: {0.5: None})
-    implicit: dict = dataclasses.field(default_factory=lambda: dict.fromkeys((0.5, 1, 2)))
-    tolerances: tuple = ()
-
-
-BROWNIAN = {**during({"brownian_times": 10}, {"brownian_times": 40}), "particles": {"count": 250}}
-ONE_AND_TWO = dict.fromkeys((1, 2))
-UP_TO_FOUR = dict.fromkeys((0.5, 1, 2, 3.99))
-NARROW = {"lubrication": {"inner_gap": 1e-4}, "particles": {"count": 250}}
-SIZES = {
-    "particles": {"count": 3000, "species": [{"radius": radius, "volume_share": 0.25} for radius in (1, 1.4, 5, 7)]}
-}
-ROUGH = {"contact": {"friction": 1}}
-
-PANELS = {
-    "reference": Case({}, 8, dict.fromkeys((0.5, 0.999)), dict.fromkeys((0.25, 0.5, 1, 2, 3.99)), (1e-4,)),
-    "friction 1, phi 0.45": Case({**ROUGH, "volume_fraction": 0.45}, 8, implicit=UP_TO_FOUR, tolerances=(1e-4,)),
-    "friction 1": Case(ROUGH, 4),
-    "N 250": Case({"particles": {"count": 250}}, 16, implicit=ONE_AND_TWO),
-    "N 4000": Case({"particles": {"count": 4000}}, 2, implicit=ONE_AND_TWO),
-    "outer gap 0.2": Case({"lubrication": {"outer_gap": 0.2}}, 4, implicit=ONE_AND_TWO),
-    "outer gap 0.5": Case({"lubrication": {"outer_gap": 0.5}}, 2, implicit=ONE_AND_TWO),
-    "inner gap 0.01": Case({"lubrication": {"inner_gap": 1e-2}}, 4),
-    "inner gap 0.0001": Case(NARROW, 8, explicit={0.5: 4}),
-    "stiffness 1000": Case({"contact": {"normal_stiffness": 1e3}}, 4),
-    "stiffness 100000": Case({"contact": {"normal_stiffness": 1e5}}, 4),
-    "radii 1 to 7": Case(SIZES, 2, implicit=dict.fromkeys((0.5, 1, 2))),
-    "Pe 100": Case(at_peclet(100), 48, {0.5: 16}, UP_TO_FOUR),
-    "Pe 1": Case({**at_peclet(1), **BROWNIAN}, 32, {0.5: 16}, {0.25: 48, 0.5: 48, 1: 64, 2: None, 3.99: None}, (1e-4,)),
-    "Pe 0.1": Case({**at_peclet(0.1), **BROWNIAN}, 64, {0.5: 24}, {0.5: None, 1: 128, 2: None}),
-}
 OVERVIEW = ["reference", "friction 1, phi 0.45", "Pe 1"]
 QUICK_PANELS = ("reference", "Pe 100")
 QUICK = {"particles": {"count": 100}, **during({"strain": 0.5}, {"strain": 1.5})}

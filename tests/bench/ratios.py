@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""ratios.py BEFORE NOW [SCENE ...] [--rounds 5] [--instruction-sets avx2 avx512] [--large]
+"""ratios.py BEFORE NOW [SCENE ...] [--rounds 5] [--instruction-sets avx2 avx512] [--large] [--panels]
 
 Processor time per unit of strain of two engines at their default steps, on one thread, in scenes whose files are the
 same byte for byte: what a change is worth to who runs it. BEFORE is the engine of an earlier commit (build_before.sh).
@@ -9,8 +9,11 @@ the whole run. A round in which a realisation broke off counts for nothing, and 
 
 --instruction-sets  by default all that this machine and both engines have, but the baseline
 --large             also N = 16384 and 65536, which take minutes a round
+--panels            only the panels of results/speed-accuracy, some seconds each, with the seconds to a standard error of
+                    2 %: of NOW those of table.csv there, of BEFORE these over the ratio
 """
 import argparse
+import csv
 import json
 import os
 import pathlib
@@ -19,7 +22,10 @@ import subprocess
 import sys
 import tempfile
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "results"))
+RESULTS = pathlib.Path(__file__).resolve().parents[2] / "results"
+SPEED_ACCURACY = RESULTS / "speed-accuracy"
+sys.path[:0] = [str(RESULTS), str(SPEED_ACCURACY)]
+from panels import PANELS
 from studies.scenes import REFERENCE_SCENE, during, merged
 
 VECTOR_SETS = ("avx2", "avx512")
@@ -57,9 +63,25 @@ LARGE_SCENES = {
 }
 
 
-def scene_of(name):
+SECONDS_OF_A_PANEL = 2
+
+
+def read_panels():
+    """Of each panel, patches of the published scene that take an engine some seconds, and its seconds to 2 %."""
+    scenes, seconds = {}, {}
+    with open(SPEED_ACCURACY / "table.csv", encoding="utf-8", newline="") as file:
+        for row in csv.DictReader(file):
+            if (row["method"], float(row["step"]), row["tolerance"]) == ("implicit", 1, "default"):
+                name = row["panel"]
+                strain = float(f"{SECONDS_OF_A_PANEL / float(row['seconds_per_strain']):.1g}")
+                scenes[name] = [PANELS[name].patch, {"duration": None}, lasting(strain / 4, strain)]
+                seconds[name] = float(row["seconds_to_2_percent"])
+    return scenes, seconds
+
+
+def scene_of(patches):
     scene = REFERENCE_SCENE
-    for patch in {**SCENES, **LARGE_SCENES}[name]:
+    for patch in patches:
         scene = merged(scene, patch)
     return scene
 
@@ -73,7 +95,7 @@ def answer_of(engine, scene, seed, instruction_set):
 def has_set(engine, instruction_set, folder):
     path = os.path.join(folder, "probe.json")
     with open(path, "w", encoding="utf-8") as file:
-        json.dump(merged(scene_of("quiet"), {**of_spheres(20), **lasting(0, 0.01)}), file)
+        json.dump(merged(REFERENCE_SCENE, {**of_spheres(20), **lasting(0, 0.01)}), file)
     done = answer_of(engine, path, 0, instruction_set)
     if done.returncode != 0 and "PECLET_INSTRUCTION_SET" not in done.stderr:
         sys.exit(f"{engine}: {done.stderr.strip()}")
@@ -100,10 +122,10 @@ def spread(values, digits="3g"):
     return f"{statistics.median(values):.{digits}} ({min(values):.{digits}} .. {max(values):.{digits}})"
 
 
-def compare(engines, name, instruction_set, rounds, folder):
-    path = os.path.join(folder, f"{name}.json")
+def compare(engines, name, patches, seconds, instruction_set, rounds, folder):
+    path = os.path.join(folder, "scene.json")
     with open(path, "w", encoding="utf-8") as file:
-        json.dump(scene_of(name), file)
+        json.dump(scene_of(patches), file)
     complete, broken = [], []
     for seed in range(1, rounds + 1):
         turn = engines if seed % 2 else engines[::-1]
@@ -115,16 +137,19 @@ def compare(engines, name, instruction_set, rounds, folder):
             broken.append(f"{name}, seed {seed}: before {ends[0]}, now {ends[1]}")
     if complete:
         before, now = zip(*complete)
+        ratios = [b.seconds / a.seconds for a, b in complete]
         columns = [
             spread([run.seconds for run in before]),
             spread([run.seconds for run in now]),
-            spread([b.seconds / a.seconds for a, b in complete], "3f"),
+            spread(ratios, "3f"),
             *(
                 " -> ".join(f"{statistics.median(getattr(run, number) for run in runs):.1f}" for runs in (before, now))
                 for number in ("iterations", "steps")
             ),
         ]
-        print(f"{name:14} {instruction_set:8} " + " ".join(f"{column:>26}" for column in columns), flush=True)
+        if seconds:
+            columns.append(f"{seconds / statistics.median(ratios):.3g} -> {seconds:.3g}")
+        print(f"{name:20} {instruction_set:8} " + " ".join(f"{column:>26}" for column in columns), flush=True)
     for line in broken:
         print(line, flush=True)
 
@@ -137,16 +162,18 @@ def main():
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--instruction-sets", nargs="+", metavar="SET")
     parser.add_argument("--large", action="store_true")
+    parser.add_argument("--panels", action="store_true")
     arguments = parser.parse_intermixed_args()
-    unknown = [name for name in arguments.scenes if name not in {**SCENES, **LARGE_SCENES}]
+    scenes, seconds = read_panels() if arguments.panels else ({**SCENES, **LARGE_SCENES}, {})
+    unknown = [name for name in arguments.scenes if name not in scenes]
     if unknown:
-        parser.error(f"SCENE: {', '.join(unknown)}: must be of {', '.join([*SCENES, *LARGE_SCENES])}")
+        parser.error(f"SCENE: {', '.join(unknown)}: must be of {', '.join(scenes)}")
     if arguments.rounds < 1:
         parser.error(f"--rounds: {arguments.rounds}: must be at least 1")
     engines = [os.path.abspath(arguments.before), os.path.abspath(arguments.now)]
     if engines[0] == engines[1]:
         parser.error("NOW: must be another file than BEFORE")
-    names = arguments.scenes or [*SCENES, *(LARGE_SCENES if arguments.large else ())]
+    names = arguments.scenes or [name for name in scenes if arguments.large or name not in LARGE_SCENES]
     with tempfile.TemporaryDirectory() as folder:
         sets = arguments.instruction_sets or VECTOR_SETS
         had = [name for name in sets if all(has_set(engine, name, folder) for engine in engines)]
@@ -159,12 +186,13 @@ def main():
             "now over before",
             "iterations / step",
             "steps / strain",
+            *(["s to 2 %"] if seconds else ()),
         )
         print(f"medians (extremes) of {arguments.rounds} rounds")
-        print(f"{'scene':14} {'set':8} " + " ".join(f"{head:>26}" for head in heads))
+        print(f"{'scene':20} {'set':8} " + " ".join(f"{head:>26}" for head in heads))
         for name in names:
             for instruction_set in had or ["baseline"]:
-                compare(engines, name, instruction_set, arguments.rounds, folder)
+                compare(engines, name, scenes[name], seconds.get(name), instruction_set, arguments.rounds, folder)
 
 
 if __name__ == "__main__":
