@@ -110,6 +110,16 @@ Group implicit_size() {
   return group;
 }
 
+Group implicit_threads() {
+  Group group{"implicit-threads", "How much faster are implicit steps on several threads?", {}, 9};
+  for (int threads = 1; threads <= omp_get_num_procs(); threads *= 2) {
+    group.contestants.push_back(
+        implicit_contestant(fmt::format("implicit-threads-{}", threads), "contact and lubrication", 16384));
+    group.contestants.back().threads = threads;
+  }
+  return group;
+}
+
 Group species() {
   return {"species",
           "What does a near pair cost among small and large spheres?",
@@ -141,6 +151,7 @@ std::vector<Group> catalogue() {
       reference(),
       implicit(),
       implicit_size(),
+      implicit_threads(),
       size(),
       species(),
       threads(),

@@ -6,6 +6,7 @@ from the reference over the processor time to a standard error of 2 %. Bars are 
 the panel. lammps.csv beside this script, where there is one, has points of LAMMPS.
 """
 import csv
+import math
 import sys
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from studies.figure import BLUE, GREEN, RED, Figure
 
 COLUMNS = 4
 RANGE = 6  # percent, of every panel
+TEXT = 0.06, 1.0  # width over that of a panel, height in percent
 STYLES = {  # point type, colour
     "explicit": (5, RED),
     "implicit": (7, BLUE),
@@ -44,6 +46,18 @@ def bar_of(row):
     return float(row["seconds_to_2_percent"]), shown, float(row["bias_half_width_percent"] or 0), text
 
 
+def rows_of_texts(bars, span):
+    """How many rows higher than above its point each text must stand to cover none before it."""
+    taken, rows = [], []
+    for x, y, *_ in bars:
+        place, row = math.log(x, span), 0
+        while any(abs(place - p) < TEXT[0] and abs(y + row * TEXT[1] - q) < 0.8 * TEXT[1] for p, q in taken):
+            row += 1
+        taken.append((place, y + row * TEXT[1]))
+        rows.append(row)
+    return rows
+
+
 def add_panel(figure, name, rows):
     chosen = [r for r in rows if r["viscosity"] and float(r["seconds_to_2_percent"]) > 0]
     dropped = [f"{r['method']} {float(r['step']):.2g}" for r in rows if not r["viscosity"]]
@@ -61,11 +75,11 @@ def add_panel(figure, name, rows):
         settings=["set xlabel offset 0,0.6", "set ylabel offset 1.2", "set title offset 0,-0.6"],
     )
     panel.box("graph 0", "graph 1", "first -2", "first 2", "#eef4e8")
-    for style, (mark, colour) in STYLES.items():
-        bars = [bar_of(r) for r in chosen if style_of(r) == style]
-        if bars:
-            panel.points([bar[:3] for bar in bars], None, colour, mark, 1.1)
-            panel.texts([(x, y, text) for x, y, _, text in bars], colour)
+    bars = sorted((*bar_of(r), style_of(r)) for r in chosen)
+    for (x, y, half, text, style), row in zip(bars, rows_of_texts(bars, 9 * max(times) / min(times))):
+        mark, colour = STYLES[style]
+        panel.points([(x, y, half)], None, colour, mark, 1.1)
+        panel.texts([(x, y, text)], colour, above=1 + row)
 
 
 def add_legend(figure):
