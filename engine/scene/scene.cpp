@@ -96,10 +96,7 @@ Particles Reading::particles() const {
 }
 
 ImposedFlow Reading::flow(double rate) const {
-  if (!has("/flow/waves")) {
-    if (has("/flow/faxen")) refuse("/flow/faxen", "must be left out without /flow/waves");
-    return steady_shear(rate);
-  }
+  if (!has("/flow/waves")) return steady_shear(rate);
   if (!has("/flow/faxen")) miss("/flow/faxen", "must be true or false where there are /flow/waves");
   std::vector<Wave> waves;
   for (const Json& wave : at("/flow/waves")) {

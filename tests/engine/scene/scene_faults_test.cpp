@@ -63,7 +63,6 @@ const Fault faults[] = {
      "\"large\"", "must be a number"},
     {R"({"flow": {"waves": [{"periods": 1, "sine": 1}]}})", "/flow/faxen", "missing",
      "must be true or false where there are /flow/waves"},
-    {R"({"flow": {"faxen": false}})", "/flow/faxen", "false", "must be left out without /flow/waves"},
     {R"({"peclet": 1})", "/flow/shear_rate", "0.009", "left out together with /peclet"},
     {R"({"flow": null, "peclet": 1})", "/fluid/thermal_energy", "0.017", "left out together with /peclet"},
     {R"({"flow": null, "fluid": {"thermal_energy": null}, "peclet": 1})", "/limits", "missing",
