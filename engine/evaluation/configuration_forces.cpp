@@ -96,7 +96,11 @@ std::vector<TermRecipe> recipes_of(const Physics& physics) {
   add(terms.lubrication, "lubrication", {.lubrication = true}, {});
   add(terms.noise, "brownian_lubrication", {.lubrication = true, .noise = true}, {.lubrication = true});
   add(terms.contact, "contact_normal", touching, {});
-  add(terms.damping, "contact_damping", {.contact = true, .damping = true}, touching);
+  if (terms.damping) {
+    // Without the normal force, beside which it would lose its digits.
+    recipes.push_back({"contact_damping", {.contact = true, .damping = true}, touching, physics});
+    recipes.back().physics.contact->normal_stiffness = 0;
+  }
   add(terms.friction, "friction", sliding, touching);
   add(terms.rolling, "rolling", {.contact = true, .friction = true, .rolling = true}, sliding);
   for_each_conservative_law(
