@@ -128,6 +128,8 @@ class Evaluation {
     sort_contacts(held);
     springs_ = placed_contacts(list_, particles, held, spring_kinds(terms_));
     noise_.resize(list_.pairs().size());
+    varying_ = FlowAtCentres(particles.count(), /*threads=*/1);
+    varying_.set(configuration.physics.flow.at(configuration.box), particles, 0, particles.count());
     if (configuration.noise) {
       find_noise(*configuration.noise);
     }
@@ -180,6 +182,7 @@ class Evaluation {
         .parameters = parameters,
         .noise = {},
         .given_noise = &noise_,
+        .varying = feels_varying_flow(physics) ? &varying_ : nullptr,
     };
     if (!list_.pairs().empty()) {
       loads.sums = PairPass(terms, set_).evaluate(input, springs, loads.force, loads.torque);
@@ -266,6 +269,7 @@ class Evaluation {
   NeighbourList list_;
   SpringField springs_;
   std::vector<NormalPair> noise_;  // of each pair
+  FlowAtCentres varying_;
 };
 
 }  // namespace
