@@ -93,8 +93,10 @@ std::vector<TermRecipe> recipes_of(const Physics& physics) {
       recipes.push_back({name, with, without, physics});
     }
   };
-  add(terms.lubrication, "lubrication", {.lubrication = true}, {});
-  add(terms.noise, "brownian_lubrication", {.lubrication = true, .noise = true}, {.lubrication = true});
+  const Terms lubricated = {.lubrication = true, .strained = terms.strained};
+  const Terms noisy = {.lubrication = true, .noise = true, .strained = terms.strained};
+  add(terms.lubrication, "lubrication", lubricated, {});
+  add(terms.noise, "brownian_lubrication", noisy, lubricated);
   add(terms.contact, "contact_normal", touching, {});
   if (terms.damping) {
     // Without the normal force, beside which it would lose its digits.

@@ -60,20 +60,32 @@ struct ResistanceModesOf {
   Real lever;      // q
 };
 
-template <class Real>
+// `shifted`: of any form; otherwise the caller knows that it is kim-karrila, which adds nothing to gap and
+// lever.
+template <bool shifted = true, class Real>
 PECLET_ALWAYS_INLINE Real lever_of(const LubricatedGap& gap, const PairGeometryOf<Real>& pair) {
-  return gap.lever_per_distance * pair.distance + gap.lever_at_distance_0;
+  const Real lever = gap.lever_per_distance * pair.distance;
+  if constexpr (shifted) return lever + gap.lever_at_distance_0;
+  return lever;
+}
+
+// Before it is bound to x_min.
+template <bool shifted = true, class Real>
+PECLET_ALWAYS_INLINE Real gap_of(const LubricatedGap& gap, const PairGeometryOf<Real>& pair) {
+  const Real here = gap.per_distance * pair.surface_distance();
+  if constexpr (shifted) return here + gap.shift;
+  return here;
 }
 
 // Within the range, a distance of the centres, and zero beyond, where there is no lubrication.
-template <class Real>
+template <bool shifted = true, class Real>
 PECLET_ALWAYS_INLINE ResistanceModesOf<Real> resistance_modes(const LubricatedGap& gap, double range,
                                                               const PairGeometryOf<Real>& pair) {
-  const Real here = larger(gap.per_distance * pair.surface_distance() + gap.shift, Real{gap.inner});
+  const Real here = larger(gap_of<shifted>(gap, pair), Real{gap.inner});
   const Real inverse = 1.0 / here;
   const auto lubricated = pair.distance <= range;
   return {select(lubricated, inverse, Real{0.0}), select(lubricated, logarithm(inverse), Real{0.0}),
-          lever_of(gap, pair)};
+          lever_of<shifted>(gap, pair)};
 }
 
 template <class Real>

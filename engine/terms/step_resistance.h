@@ -100,18 +100,18 @@ PECLET_ALWAYS_INLINE ResistanceModesOf<Real> mean_modes(const LubricatedGap& ran
   return {(to.inverse - from.inverse) * way.per_way, (to.logarithm - from.logarithm) * way.per_way, lever};
 }
 
-template <class Real>
+template <bool shifted = true, class Real>
 PECLET_ALWAYS_INLINE ResistanceModesOf<Real> resistance_modes(const StepResistance& step,
                                                               const LubricatedGap& range,
                                                               double lubrication_range,
                                                               const PairGeometryOf<Real>& pair,
                                                               const Real& closing) {
   if (__builtin_expect(step.part == StepResistance::Part::whole, 1)) {
-    return resistance_modes(range, lubrication_range, pair);
+    return resistance_modes<shifted>(range, lubrication_range, pair);
   }
   const double jump = 1 / range.outer, log_jump = range.outer_logarithm;
-  const Real inner{range.inner}, zero{0.0}, lever = lever_of(range, pair);
-  const Real here = range.per_distance * pair.surface_distance() + range.shift;
+  const Real inner{range.inner}, zero{0.0}, lever = lever_of<shifted>(range, pair);
+  const Real here = gap_of<shifted>(range, pair);
   if (step.part == StepResistance::Part::at_beginning) {
     const auto within = pair.distance <= lubrication_range;
     const Real inverse = 1.0 / larger(here, inner);

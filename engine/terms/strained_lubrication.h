@@ -21,7 +21,6 @@ namespace peclet::engine {
 
 // The uniform part of the flow; what varies within the cell comes with each pair.
 struct FlowFrame {
-  bool is_subtracted = false;  // whether lubrication is relative to the flow
   bool varies = false;
   Vector3 spin;
   SymmetricTensor strain;
@@ -61,11 +60,15 @@ PECLET_ALWAYS_INLINE Vector3Of<Real> strained(const SymmetricTensorOf<Number>& e
           e.xz * n.x + e.yz * n.y + e.zz * n.z};
 }
 
-// `motion` in the laboratory frame. `variation()` is called where the flow varies.
-template <class Real, class Variation>
-PECLET_ALWAYS_INLINE PairLoadOf<Real> strained_lubrication_load(
-    const PairResistanceOf<Real>& R, const FlowFrame& flow, const StrainLengths& length,
-    const PairGeometryOf<Real>& pair, const PairMotionOf<Real>& motion, Variation&& variation) {
+// `motion` in the laboratory frame; `varying` counts where the flow varies. Not inlined: one copy serves all
+// recipes.
+template <class Real>
+[[gnu::noinline]] PairLoadOf<Real> strained_lubrication_load(const PairResistanceOf<Real>& R,
+                                                             const FlowFrame& flow,
+                                                             const StrainLengths& length,
+                                                             const PairGeometryOf<Real>& pair,
+                                                             const PairMotionOf<Real>& motion,
+                                                             const PairVariationOf<Real>& varying) {
   using Vector = Vector3Of<Real>;
   const Vector& n = pair.normal;
   const Vector spin = {Real{flow.spin.x}, Real{flow.spin.y}, Real{flow.spin.z}};
@@ -75,7 +78,6 @@ PECLET_ALWAYS_INLINE PairLoadOf<Real> strained_lubrication_load(
   if (!flow.varies) {
     return lubrication_load(R, pair, relative);
   }
-  const PairVariationOf<Real> varying = variation();
   relative.velocity -= varying.velocity;
   relative.spin_first -= varying.spin_first;
   relative.spin_second -= varying.spin_second;

@@ -119,16 +119,16 @@ PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& paramete
   if constexpr (terms.lubrication) {
     if (any(pair.distance <= kind.lubrication_range + kind_reach(parameters, kind))) {
       // Noise belongs to the resistance as it is.
-      const ResistanceModesOf<Real> modes =
-          resistance_modes(terms.noise ? StepResistance{} : parameters.step_resistance, kind.gap,
-                           kind.lubrication_range, pair, dot(motion.velocity, pair.normal));
+      const ResistanceModesOf<Real> modes = resistance_modes<terms.strained>(
+          terms.noise ? StepResistance{} : parameters.step_resistance, kind.gap, kind.lubrication_range, pair,
+          dot(motion.velocity, pair.normal));
       const PairResistanceOf<Real> resistance = pair_resistance(kind.resistance, modes);
-      // The same for all pairs of a run.
-      if (__builtin_expect(!parameters.flow.is_subtracted, 1)) {
-        loads.lubrication = lubrication_load(resistance, pair, motion);
-      } else {
+      if constexpr (terms.strained) {
         loads.lubrication =
-            strained_lubrication_load(resistance, parameters.flow, kind.strain, pair, motion, variation);
+            strained_lubrication_load(resistance, parameters.flow, kind.strain, pair, motion,
+                                      parameters.flow.varies ? variation() : PairVariationOf<Real>{});
+      } else {
+        loads.lubrication = lubrication_load(resistance, pair, motion);
       }
       if constexpr (terms.noise) {
         const PairNormalsOf<Real> drawn = normals();

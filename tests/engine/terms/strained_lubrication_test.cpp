@@ -34,10 +34,10 @@ Matrix3 any_gradient(Draws& draws) {
 }
 
 FlowFrame frame_of(const Matrix3& gradient) {
-  return {.is_subtracted = true, .varies = false, .spin = spin_of(gradient), .strain = strain_of(gradient)};
+  return {.varies = false, .spin = spin_of(gradient), .strain = strain_of(gradient)};
 }
 
-const auto nothing = [] { return PairVariationOf<double>{}; };
+const PairVariationOf<double> nothing;
 
 double size_of_load(const PairLoad& load) {
   return norm(load.force) + norm(load.torque_first) + norm(load.torque_second);
@@ -158,10 +158,8 @@ TEST(StrainedLubrication, OfAUniformGradientDoesNotAskHowItIsGiven) {
     const PairMotion motion = random_motion(draws);
     FlowFrame flow = frame_of(part);
     flow.varies = true;
-    const auto variation = [&] {
-      return PairVariationOf<double>{rest * pair.separation, spin_of(rest), spin_of(rest), strain_of(rest),
-                                     strain_of(rest)};
-    };
+    const PairVariationOf<double> variation = {rest * pair.separation, spin_of(rest), spin_of(rest),
+                                               strain_of(rest), strain_of(rest)};
     const PairLoad varying = strained_lubrication_load(R, flow, length, pair, motion, variation);
     const PairLoad uniform =
         strained_lubrication_load(R, frame_of(part + rest), length, pair, motion, nothing);
@@ -180,15 +178,13 @@ TEST(StrainedLubrication, ForcesAreEqualAndOppositeWhereStrainsDiffer) {
     flow.varies = true;
     const PairVariationOf<double> varying = {draws.vector(), draws.vector(), draws.vector(),
                                              strain_of(any_gradient(draws)), strain_of(any_gradient(draws))};
-    const PairLoad first =
-        strained_lubrication_load(mari_resistance(1, ratio, here), flow, strain_lengths(1, ratio), here,
-                                  motion, [&] { return varying; });
+    const PairLoad first = strained_lubrication_load(mari_resistance(1, ratio, here), flow,
+                                                     strain_lengths(1, ratio), here, motion, varying);
     const PairLoad second = strained_lubrication_load(
         mari_resistance(ratio, 1, there), flow, strain_lengths(ratio, 1), there,
-        {-motion.velocity, motion.spin_second, motion.spin_first}, [&] {
-          return PairVariationOf<double>{-varying.velocity, varying.spin_second, varying.spin_first,
-                                         varying.strain_second, varying.strain_first};
-        });
+        {-motion.velocity, motion.spin_second, motion.spin_first},
+        PairVariationOf<double>{-varying.velocity, varying.spin_second, varying.spin_first,
+                                varying.strain_second, varying.strain_first});
     const double tolerance = 1e-12 * size_of_load(first);
     EXPECT_LT(norm(first.force + second.force), tolerance) << ratio;
     EXPECT_LT(norm(first.torque_first - second.torque_second), tolerance) << ratio;
@@ -220,7 +216,7 @@ TEST(StrainedLubrication, EndsAtTheOuterDistanceOfAllSizes) {
     const auto force_at = [&](double h) {
       const PairGeometry pair = pair_at(first, second, 2 * h / (first + second), {1, 0, 0});
       PairSpringsOf<double> springs;
-      return pair_terms<Terms{.lubrication = true}>(
+      return pair_terms<Terms{.lubrication = true, .strained = true}>(
                  pair_parameters(physics, 0), kind, pair, {{1, 0, 0}, {}, {}}, springs,
                  [] { return PairNormalsOf<double>{}; }, [](StressTerm /*part*/, const Vector3& /*force*/) {})
           .lubrication.force.x;
