@@ -94,15 +94,11 @@ void expect_second_order(const Physics& physics) {
   }
 }
 
+// Rates of strain that differ from place to place count where the forces do.
 TEST(Implicit, IsOfSecondOrderForAnEncounter) {
   Physics physics;
   physics.lubrication = LubricationParameters{1e-3, 0.9};
   expect_second_order(physics);
-}
-
-// Rates of strain that differ from place to place count where the forces do.
-TEST(Implicit, IsOfSecondOrderForAnEncounterInWaves) {
-  Physics physics;
   physics.lubrication = LubricationParameters{
       .inner_gap = 1e-3, .form = LubricationParameters::Form::mari, .outer_distance = 1.08};
   physics.flow = ImposedFlow(std::make_shared<SteadyShear>(0.7),
