@@ -17,7 +17,6 @@ namespace {
 using std::numbers::pi;
 
 constexpr double tight = 1e-5;
-
 System system_of(const Physics& physics, const std::vector<double>& radius, double density, double edge) {
   System system;
   system.particles = make_particles(radius, density);
