@@ -26,10 +26,13 @@ PairSums total_of(const std::vector<PairSums>& blocks) {
 PairParameters pair_parameters(const Physics& physics, double timestep) {
   PairParameters parameters;
   parameters.contact = physics.contact.value_or(ContactParameters{});
-  parameters.lubrication = physics.lubrication.value_or(LubricationParameters{});
   parameters.spring_timestep = timestep;
   parameters.noise_amplitude = timestep > 0 ? std::sqrt(2 * physics.thermal_energy / timestep) : 0;
   return parameters;
+}
+
+bool feels_varying_flow(const Physics& physics) {
+  return physics.lubrication && physics.lubrication->is_relative_to_flow() && physics.flow.varies();
 }
 
 SpringKinds spring_kinds(const Terms& terms) {
@@ -62,6 +65,9 @@ PairKernelInput PairPass::kernel_input(const PairPassInput& input, SpringField& 
   kernel.image_velocity = image_velocity_.data();
   kernel.kinds = input.kinds.data();
   kernel.parameters = input.parameters;
+  const Matrix3& gradient = input.box.velocity_gradient();
+  kernel.parameters.flow = {input.varying != nullptr, spin_of(gradient), strain_of(gradient)};
+  if (input.varying != nullptr) kernel.varying = input.varying->rows();
   for (std::size_t c = 0; c < springs.components(); ++c) {
     kernel.springs[c] = springs.component(c);
   }

@@ -13,7 +13,8 @@ namespace peclet::engine {
 // exactly these.
 struct Terms {
   bool lubrication = false;
-  bool noise = false;  // of lubricated pairs; needs lubrication
+  bool noise = false;     // of lubricated pairs; needs lubrication
+  bool strained = false;  // lubrication relative to the flow; needs lubrication
   bool contact = false;
   bool damping = false;       // needs contact
   bool friction = false;      // needs contact
@@ -23,7 +24,8 @@ struct Terms {
   friend constexpr bool operator==(const Terms&, const Terms&) = default;
 
   constexpr bool valid() const {
-    return (lubrication || !noise) && (contact || !(damping || friction)) && (friction || !rolling);
+    return (lubrication || !(noise || strained)) && (contact || !(damping || friction)) &&
+           (friction || !rolling);
   }
 };
 
@@ -35,7 +37,7 @@ struct NamedTerm {
 constexpr NamedTerm every_term[] = {
     {"lubrication", &Terms::lubrication},   {"noise", &Terms::noise},       {"contact", &Terms::contact},
     {"damping", &Terms::damping},           {"friction", &Terms::friction}, {"rolling", &Terms::rolling},
-    {"conservative", &Terms::conservative},
+    {"conservative", &Terms::conservative}, {"strained", &Terms::strained},
 };
 constexpr std::size_t count_of_terms = sizeof(every_term) / sizeof(every_term[0]);
 

@@ -63,6 +63,10 @@ Physics physics_with(const Terms& terms) {
   }
   if (terms.lubrication) {
     physics.lubrication = LubricationParameters{.inner_gap = 1e-3, .outer_gap = 0.05};
+    if (terms.strained) {
+      physics.lubrication->form = LubricationParameters::Form::mari;
+      physics.lubrication->outer_distance = 0.1;
+    }
   }
   if (terms.conservative) {
     physics.repulsion = RepulsionParameters{.strength = 0.17, .relative_length = 0.01, .cutoff_lengths = 5};

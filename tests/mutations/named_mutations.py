@@ -3,6 +3,8 @@
 What is broken; file, text in it that occurs once, what takes its place; program and test.
 """
 
+from strained_mutations import STRAINED
+
 IMPLICIT, NOISY = "engine/integrators/implicit.cpp", "engine/integrators/noisy_midpoint.cpp"
 SIMULATION, STRESS = "engine/realisation/simulation.cpp", "engine/output/stress_means.cpp"
 LINE = "engine_tests:NoisyStep.OfTwoSpheresOnALineIsThatOfItsEquations"
@@ -313,3 +315,5 @@ NAMED = [
         "engine_tests:ReferenceForces.EveryTermOfEveryMixtureEqualsTheIndependentEvaluation",
     ),
 ]
+
+NAMED += STRAINED

@@ -27,6 +27,20 @@ struct EightPairs {
   NormalBlock normals;
 };
 
+// One copy for all recipes, as of strained_lubrication_load().
+template <class Real>
+[[gnu::noinline]] PairVariationOf<Real> variation_at(const FlowRows& flow, const std::uint32_t* first,
+                                                     const std::uint32_t* second) {
+  const auto strain = [&](const std::uint32_t* index) PECLET_INLINE_LAMBDA {
+    const Vector3Of<Real> along = gather_rows(flow.strain_along, index, Real{});
+    const Vector3Of<Real> across = gather_rows(flow.strain_across, index, Real{});
+    return SymmetricTensorOf<Real>{along.x, along.y, along.z, across.x, across.y, across.z};
+  };
+  return {gather_rows(flow.velocity, second, Real{}) - gather_rows(flow.velocity, first, Real{}),
+          gather_rows(flow.spin, first, Real{}), gather_rows(flow.spin, second, Real{}), strain(first),
+          strain(second)};
+}
+
 // Up to as many pairs of one run as a number holds. `mirrored`: of a run whose first particles are away.
 template <class Real, Terms terms, bool mirrored>
 class PairGroup {
@@ -77,7 +91,8 @@ class PairGroup {
     const TermLoadsOf<Real> loads = pair_terms<terms>(
         in_.parameters, kind_, shape, motion, springs, [this] { return normals(); },
         [&](StressTerm part, const Vector3Of<Real>& force)
-            PECLET_INLINE_LAMBDA { add_stress(part, shape, force, sums); });
+            PECLET_INLINE_LAMBDA { add_stress(part, shape, force, sums); },
+        [this]() PECLET_INLINE_LAMBDA { return variation_at<Real>(in_.varying, first_, second_); });
     store_springs(springs);
     add_sums(shape, loads, sums);
     leave(total(loads), out);

@@ -1,7 +1,7 @@
 // Every combination of terms that is compiled, in one place.
 //
-// Two independent choices (conservative laws; lubrication without or with noise or none) times the ways in
-// which spheres can touch make 42 recipes.
+// Two independent choices (conservative laws; lubrication of either form without or with noise or none) times
+// the ways in which spheres can touch make 70 recipes.
 #pragma once
 
 #include "engine/terms/laws.h"

@@ -8,6 +8,7 @@ Terms required_terms(const Physics& physics) {
   Terms terms;
   terms.lubrication = physics.lubrication.has_value();
   terms.noise = terms.lubrication && physics.thermal_energy > 0;
+  terms.strained = terms.lubrication && physics.lubrication->is_relative_to_flow();
   for_each_conservative_law(
       [&](StressTerm /*part*/, const auto& law) {
         terms.conservative = terms.conservative || law.has_value();

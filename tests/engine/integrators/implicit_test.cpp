@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "engine/flow/waves.h"
 #include "engine/integrators/midpoint.h"
 #include "engine/integrators/noisy_midpoint.h"
 #include "engine/integrators/velocity_verlet.h"
@@ -16,7 +17,6 @@ namespace {
 using std::numbers::pi;
 
 constexpr double tight = 1e-5;
-
 System system_of(const Physics& physics, const std::vector<double>& radius, double density, double edge) {
   System system;
   system.particles = make_particles(radius, density);
@@ -60,7 +60,7 @@ TEST(Implicit, SpheresRelaxToTheStreamingFlow) {
 Vector3 end_of_pair(Physics physics, const Vector3& first_place, const Vector3& second_place, double time,
                     int steps, double tolerance) {
   physics.viscosity = 0.1;
-  physics.flow = steady_shear(1);
+  if (!physics.flow.varies()) physics.flow = steady_shear(1);
   System system = system_of(physics, {1, 1.4}, 1e-6, 30);
   system.particles.position.set(0, first_place);
   system.particles.position.set(1, second_place);
@@ -78,21 +78,31 @@ Vector3 end_of_pair(Physics physics, const Vector3& first_place, const Vector3& 
 
 // Two spheres pass each other, between the inner and the outer gap all the time. Where they end depends on
 // the square of the step.
-Vector3 end_of_encounter(int steps) {
-  Physics physics;
-  physics.lubrication = LubricationParameters{1e-3, 0.9};
+Vector3 end_of_encounter(const Physics& physics, int steps) {
   return end_of_pair(physics, {10, 3, 15}, {8.2, 4.9, 15.9}, 1.2, steps, 1e-6);
 }
 
-TEST(Implicit, IsOfSecondOrderForAnEncounter) {
-  const Vector3 exact = end_of_encounter(960);
+void expect_second_order(const Physics& physics) {
+  const Vector3 exact = end_of_encounter(physics, 960);
   ASSERT_LT(norm(exact), 2.4 * 1.45);  // still within the range
-  double coarse = norm(end_of_encounter(15) - exact);
+  double coarse = norm(end_of_encounter(physics, 15) - exact);
   for (const int steps : {30, 60, 120}) {
-    const double fine = norm(end_of_encounter(steps) - exact);
+    const double fine = norm(end_of_encounter(physics, steps) - exact);
     EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1) << steps;
     coarse = fine;
   }
+}
+
+// Rates of strain that differ from place to place count where the forces do.
+TEST(Implicit, IsOfSecondOrderForAnEncounter) {
+  Physics physics;
+  physics.lubrication = LubricationParameters{1e-3, 0.9};
+  expect_second_order(physics);
+  physics.lubrication = LubricationParameters{
+      .inner_gap = 1e-3, .form = LubricationParameters::Form::mari, .outer_distance = 1.08};
+  physics.flow = ImposedFlow(std::make_shared<SteadyShear>(0.7),
+                             std::make_shared<Waves>(std::vector<Wave>{{2, 0.5, 0.3}}, true));
+  expect_second_order(physics);
 }
 
 // Two spheres that touch and stick are turned and pressed together by the flow.
@@ -118,7 +128,11 @@ TEST(Implicit, IsNearlyOfSecondOrderForSpheresThatStick) {
 
 // A sheared packing with friction, from the same places: the stress that explicit steps of a five hundredth
 // give.
-class AgainstExplicit : public testing::TestWithParam<double> {
+struct Rough {
+  double friction;
+  bool strained;  // lubrication by rates of strain
+};
+class AgainstExplicit : public testing::TestWithParam<Rough> {
  protected:
   static Json document() {
     Json document = small_scene(
@@ -128,12 +142,21 @@ class AgainstExplicit : public testing::TestWithParam<double> {
     document["flow"]["shear_rate"] = 0.045;
     document["lubrication"]["inner_gap"] = 1e-3;
     document["contact"] = {{"normal_stiffness", 1e4}};
-    if (GetParam() > 0) document["contact"]["friction"] = GetParam();
+    if (GetParam().friction > 0) document["contact"]["friction"] = GetParam().friction;
+    if (GetParam().strained) {
+      document["lubrication"] = {{"form", "mari"}, {"regularisation", 1e-3}, {"outer_distance", 0.1}};
+    }
     document["duration"] = {{"equilibration", {{"strain", 0.05}}}, {"production", {{"strain", 0.2}}}};
     return document;
   }
 };
-INSTANTIATE_TEST_SUITE_P(Frictions, AgainstExplicit, testing::Values(0.0, 0.5));
+INSTANTIATE_TEST_SUITE_P(Packings, AgainstExplicit,
+                         testing::Values(Rough{0, false}, Rough{0.5, false}, Rough{0, true},
+                                         Rough{0.5, true}),
+                         [](const auto& packing) {
+                           return std::string(packing.param.friction > 0 ? "Rough" : "Smooth") +
+                                  (packing.param.strained ? "Strained" : "");
+                         });
 TEST_P(AgainstExplicit, TheStressIsTheSame) {
   Json document = this->document();
   const auto stress = [&](const char* method) {

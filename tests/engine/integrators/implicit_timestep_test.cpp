@@ -167,6 +167,36 @@ TEST(ImplicitTimestep, OfSpheresThatInertiaCarriesIsBoundByTheirFlight) {
   EXPECT_NEAR(step(0.02, 0.05), 0.45 / 17, 1e-12);
 }
 
+// The form mari has X_A = 6 pi eta a / 4 (xi + eps), and its range as a distance of the surfaces: of spheres
+// of radius 2 that is xi_o. Contacts press against X_A at eps.
+TEST(ImplicitTimestep, KnowsTheRangeOfLubricationRelativeToTheFlow) {
+  const auto light = [](double density, double outer_distance) {
+    Json patch = light_spheres(density, 0.05, Json::parse(R"([{"radius": 2}])"));
+    patch["lubrication"] = {{"form", "mari"},
+                            {"inner_gap", nullptr},
+                            {"outer_gap", nullptr},
+                            {"regularisation", 1e-3},
+                            {"outer_distance", outer_distance}};
+    return patch;
+  };
+  const auto mass = [](double density) { return density * 4 * pi / 3 * 8; };
+  EXPECT_NEAR(automatic_timestep(scene_with(light(2e-4, 0.02))) /
+                  (2 * 0.02 / (5 * std::sqrt(2 * 0.017 / mass(2e-4)))),
+              1, 1e-12);
+  const double step = automatic_timestep(scene_with(light(1e-7, 0.04)));
+  const double zeta = 6 * pi * 0.1 * 2, m = mass(1e-7), squeeze = zeta * 0.25 / (0.5 * 0.04 + 1e-3);
+  const double parting = std::pow(step / (m + step * zeta), 2) * 2 * 0.017 * squeeze / step;
+  const double free = 0.017 / (m + 0.5 * step * zeta);
+  ASSERT_LT(step, 0.9 * 0.0017 * 0.8 / 0.017);
+  EXPECT_NEAR(2 * 0.04 / (step * std::sqrt(parting + 2 * free)), 5, 1e-6);
+  Json stiff = light(1e-7, 0.04);
+  stiff["fluid"] = {{"thermal_energy", nullptr}};
+  stiff["contact"]["normal_stiffness"] = 1e9;
+  stiff["duration"]["production"] = {{"time", 1}};
+  // X_A with the drag of each, over k.
+  EXPECT_NEAR(automatic_timestep(scene_with(stiff)) / (20 * (zeta * 250 + zeta / 2) / 1e9), 1, 1e-9);
+}
+
 // At the step of the Brownian time alone the largest overlap is 0.0088 here; thermal ones are about 0.005.
 TEST(ImplicitTimestep, LetsNoLightSphereLeapIntoAnother) {
   const Json two = Json::parse(R"([{"radius": 1, "volume_share": 1}, {"radius": 1.4, "volume_share": 1}])");

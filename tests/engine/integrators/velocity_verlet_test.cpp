@@ -6,6 +6,7 @@
 #include <numbers>
 #include <set>
 
+#include "engine/flow/waves.h"
 #include "engine/terms/drag.h"
 #include "tests/engine/dense_suspension.h"
 #include "tests/engine/every_image.h"
@@ -272,8 +273,7 @@ TEST(VelocityVerlet, StepsThatAreLeftOpenHaveTheSameBits) {
 
 // One thread moves particles and computes pairs in one walk through the blocks, several do it in two; where
 // the list no longer holds, the walk comes too early.
-TEST(VelocityVerlet, OneWalkOrTwoHaveTheSameBits) {
-  const Physics physics = physics_with({.lubrication = true, .noise = true, .contact = true});
+void expect_the_same_bits_of_one_walk_or_two(const Physics& physics) {
   const auto after = [&](int threads) {
     System system = dense_suspension(physics, 9000, 12);
     constexpr double dt = 5e-4;
@@ -291,6 +291,21 @@ TEST(VelocityVerlet, OneWalkOrTwoHaveTheSameBits) {
   EXPECT_EQ(one.particles.position, two.particles.position);
   EXPECT_EQ(one.particles.velocity, two.particles.velocity);
   EXPECT_EQ(one.particles.angular_velocity, two.particles.angular_velocity);
+}
+
+TEST(VelocityVerlet, OneWalkOrTwoHaveTheSameBits) {
+  expect_the_same_bits_of_one_walk_or_two(
+      physics_with({.lubrication = true, .noise = true, .contact = true}));
+}
+
+// In one walk a block moves, and finds the flow where it now is, before the pairs of the next one do.
+TEST(VelocityVerlet, OneWalkOrTwoHaveTheSameBitsInWavesThatLubricationFeels) {
+  Physics physics = physics_with({.lubrication = true, .noise = true, .contact = true});
+  physics.lubrication = LubricationParameters{
+      .inner_gap = 1e-3, .form = LubricationParameters::Form::mari, .outer_distance = 0.05};
+  physics.flow = ImposedFlow(std::make_shared<SteadyShear>(physics.flow.rate()),
+                             std::make_shared<Waves>(std::vector<Wave>{{1, 0.4, 0.1}}, true));
+  expect_the_same_bits_of_one_walk_or_two(physics);
 }
 
 // The loops over particles of each instruction set beside those of the baseline.

@@ -60,6 +60,15 @@ TEST(Stability, StepOfThePublishedSceneIsTheRootOfItsStiffestPair) {
   EXPECT_EQ(resolved_timestep(scene, "scene.json"), automatic_timestep(scene));
 }
 
+// The form mari: X_A = 6 pi eta a / (4 eps) between touching spheres.
+TEST(Stability, StepOfLubricationRelativeToTheFlowIsThatOfItsRegularisation) {
+  const Scene scene =
+      scene_with({{"lubrication", {{"form", "mari"}, {"regularisation", 2e-3}, {"outer_distance", 0.2}}}});
+  const double mass = 4 * pi / 3 * 0.1, drag = 6 * pi * 0.1;
+  const double damping = 2 * 125 * drag / mass + drag / mass, frequency_squared = 2 * 1e4 / mass;
+  EXPECT_NEAR(automatic_timestep(scene) / (0.5 * root(2.8 * frequency_squared, 2.8 * damping)), 1, 1e-10);
+}
+
 TEST(Stability, AGivenStepUpToTheBoundIsTakenAsItIs) {
   const double largest = largest_timestep(scene_with(Json::object()));
   const Scene scene = scene_with({{"integrator", {{"timestep", 0.999 * largest}}}});
@@ -190,6 +199,8 @@ TEST(Stability, TheAutomaticStepIsStableWhateverLimitsIt) {
     Json patch;
   } scenes[] = {
       {"lubrication at a wide inner gap", {{"lubrication", {{"inner_gap", 0.04}}}, {"contact", nullptr}}},
+      {"lubrication relative to the flow",
+       {{"lubrication", {{"form", "mari"}, {"outer_distance", 0.2}}}, {"contact", nullptr}}},
       {"drag and soft contacts", {{"lubrication", nullptr}, {"contact", {{"normal_stiffness", 1}}}}},
       {"contacts", {{"lubrication", nullptr}, {"fluid", thick}}},
       {"contacts with friction",
