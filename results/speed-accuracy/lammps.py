@@ -75,7 +75,8 @@ def main():
         "commit": commit,
     }
     write_table(HERE / "lammps.csv", COLUMNS, [row], digits=5)
-    print("{viscosity:.2f} ± {viscosity_error:.2f}, {bias_percent:.1f} ± {bias_half_width_percent:.1f} %".format(**row))
+    text = "{viscosity:.2f} ± {viscosity_error:.2f}, {bias_percent:.1f} ± {bias_half_width_percent:.1f} %"
+    print(text.format(**row))
 
 
 if __name__ == "__main__":

@@ -9,8 +9,8 @@ the whole run. A round in which a realisation broke off counts for nothing, and 
 
 --instruction-sets  by default all that this machine and both engines have, but the baseline
 --large             also N = 16384 and 65536, which take minutes a round
---panels            only the panels of results/speed-accuracy, some seconds each, with the seconds to a standard error of
-                    2 %: of NOW those of table.csv there, of BEFORE these over the ratio
+--panels            only the panels of results/speed-accuracy, some seconds each, with the seconds to a standard error
+                    of 2 %: of NOW those of table.csv there, of BEFORE these over the ratio
 """
 import argparse
 import csv
