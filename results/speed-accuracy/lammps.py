@@ -22,7 +22,7 @@ from studies.estimates import estimate, relative_difference, student_quantile
 from studies.scenes import REFERENCE_SCENE, during, merged
 from studies.tables import write_table
 from studies.viscosities import values_by_seed
-from panels import COLUMNS
+from studies.speed_accuracy import COLUMNS
 
 STRAIN = 2
 SEEDS = 16

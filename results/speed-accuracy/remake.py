@@ -20,7 +20,7 @@ from studies.estimates import estimate, relative_difference, student_quantile
 from studies.scenes import REFERENCE_SCENE, during, merged
 from studies.tables import markdown_head, markdown_row, write_table
 from studies.viscosities import counts_text, flags, values_by_seed
-from panels import COLUMNS, PANELS
+from studies.speed_accuracy import COLUMNS, PANELS
 
 import numpy as np
 

@@ -6,6 +6,7 @@
     estimates      means, quotients and other numbers with their standard errors
     fits           lines and curves through such numbers
     published      fits that others have published
+    speed_accuracy    the panels of results/speed-accuracy, and the columns of its tables
     green_kubo     the viscosity at rest from the correlation of the structural Brownian stress
     tables         csv files
     figure         pictures

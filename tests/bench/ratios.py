@@ -24,8 +24,8 @@ import tempfile
 
 RESULTS = pathlib.Path(__file__).resolve().parents[2] / "results"
 SPEED_ACCURACY = RESULTS / "speed-accuracy"
-sys.path[:0] = [str(RESULTS), str(SPEED_ACCURACY)]
-from panels import PANELS
+sys.path.insert(0, str(RESULTS))
+from studies.speed_accuracy import PANELS
 from studies.scenes import REFERENCE_SCENE, during, merged
 
 VECTOR_SETS = ("avx2", "avx512")

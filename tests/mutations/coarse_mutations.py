@@ -92,7 +92,7 @@ COARSE = [
     (
         "gap clamped at ten times the inner gap",
         "engine/terms/pair_resistance.h",
-        "pair.surface_distance(), Real{inner_gap})",
-        "pair.surface_distance(), Real{10 * inner_gap})",
+        "Real here = larger(gap_of<shifted>(gap, pair), Real{gap.inner});",
+        "Real here = larger(gap_of<shifted>(gap, pair), Real{10 * gap.inner});",
     ),
 ]

@@ -1,4 +1,4 @@
-"""What the chart has panels of, and the columns of the tables that it is drawn from."""
+"""What the chart of results/speed-accuracy has panels of, and the columns of the tables that it is drawn from."""
 import dataclasses
 
 from studies.scenes import at_peclet, during
