@@ -6,6 +6,7 @@
     estimates      means, quotients and other numbers with their standard errors
     fits           lines and curves through such numbers
     published      fits that others have published
+    monti          scenes of the suspensions of Monti et al. (2021)
     green_kubo     the viscosity at rest from the correlation of the structural Brownian stress
     tables         csv files
     figure         pictures

@@ -39,6 +39,7 @@ STUDIES = [
     "inertia",
     "literature",
     "microstructure",
+    "monti-viscosity",
     "pair-potential",
     "zero-shear",
     "speed-accuracy",
