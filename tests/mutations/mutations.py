@@ -39,6 +39,7 @@ STUDIES = [
     "inertia",
     "literature",
     "microstructure",
+    "monti-silica",
     "monti-viscosity",
     "pair-potential",
     "zero-shear",
