@@ -41,6 +41,7 @@ STUDIES = [
     "microstructure",
     "monti-silica",
     "monti-viscosity",
+    "monti-waves",
     "pair-potential",
     "zero-shear",
     "speed-accuracy",
