@@ -14,7 +14,7 @@ from studies.command_line import main
 from studies.estimates import over, propagated, quotient, relative_difference
 from studies.figure import BLUE, GREY, RED, Figure
 from studies.fits import divergence
-from studies.monti import OUTER, PAIRS, contact, in_units, lubrication
+from studies.monti import PAIRS, contact, in_units, lubrication
 from studies.published import MARI_FITS, diverging, mari_fit
 from studies.scenes import during, merged
 from studies.tables import columns_of, entries, number, write_table
@@ -35,11 +35,11 @@ SEEDS = {0: 24, 1: 16}
 
 # What might move a viscosity away from the fit: of FL at 0.50, of FR at 0.50 and denser, at the gap of 0.05.
 VARIED = {0: (0.50,), 1: (0.50, 0.53, 0.55)}
-VARIANTS = {
-    "regularisation 1e-4": {"lubrication": lubrication(0.05, 1e-4)},
-    "regularisation 1e-2": {"lubrication": lubrication(0.05, 1e-2)},
-    "ten times k_n": {"contact": contact(4e6, 0)},
+LUBRICATIONS = {
+    "regularisation 1e-4": lambda gap: lubrication(gap, 1e-4),
+    "regularisation 1e-2": lambda gap: lubrication(gap, 1e-2),
 }
+STIFF = contact(4e6, 0)
 OTHER_COUNTS = {0: 1000, 1: 250}
 VARIANT_SEEDS = 12
 
@@ -48,11 +48,11 @@ ROLLED = (0.45, 0.50)
 LONG = during({"strain": 20}, {"strain": 10})
 
 
-def rows_of(program, name, cases, seeds, patch=None):
-    """Rows of (friction, volume fraction, gap)."""
+def rows_of(program, name, cases, seeds, patch=None, block=lubrication):
+    """Rows of (friction, volume fraction, gap); block(gap) is their lubrication."""
     friction = cases[0][0]
     fixed = {"particles": {"count": COUNTS[friction]}, "contact": {"friction": friction}}
-    settings = [{"/volume_fraction": f, OUTER: g} for _, f, g in cases]
+    settings = [{"/volume_fraction": f, "/lubrication": block(g)} for _, f, g in cases]
     points = program.run(name, merged(merged(SCENE, fixed), patch or {}), settings, seeds)
     return [row_of(case, point) for case, point in zip(cases, points)]
 
@@ -171,11 +171,12 @@ def measure_variants(program):
     """Rows with the name of what was varied."""
     for friction, fractions in VARIED.items():
         cases = [(friction, f, 0.05) for f in fractions]
-        patches = VARIANTS | {f"N = {OTHER_COUNTS[friction]}": {"particles": {"count": OTHER_COUNTS[friction]}}}
-        for k, (name, patch) in enumerate(patches.items()):
-            if "contact" in patch:
-                patch = {"contact": patch["contact"] | {"friction": friction}}
-            for row in rows_of(program, f"variant-{friction}-{k}", cases, VARIANT_SEEDS, patch):
+        variants = [(name, {}, block) for name, block in LUBRICATIONS.items()]
+        variants.append(("ten times k_n", {"contact": STIFF | {"friction": friction}}, lubrication))
+        count = OTHER_COUNTS[friction]
+        variants.append((f"N = {count}", {"particles": {"count": count}}, lubrication))
+        for k, (name, patch, block) in enumerate(variants):
+            for row in rows_of(program, f"variant-{friction}-{k}", cases, VARIANT_SEEDS, patch, block):
                 yield {"variant": name, **row}
 
 

@@ -14,8 +14,6 @@ ATTRACTION_REGULARISATION = 0.01  # eps over the pair's radius
 # cost. The silica study compares the two.
 ATTRACTION_RANGE, PUBLISHED_RANGE = 0.5, 4
 
-OUTER = "/lubrication/outer_gap"
-
 
 def lubrication(outer, inner=REGULARISATION):
     """The block, with terms for surfaces nearer than `outer`."""
