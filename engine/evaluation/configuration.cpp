@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "contract/input_error.h"
+#include "engine/scene/lubrication_block.h"
 
 namespace peclet::engine {
 namespace {
@@ -64,6 +67,7 @@ class Reader {
     Configuration configuration;
     configuration.physics = read_physics(document_.at("scene"), file_, "/scene");
     const auto radius = state.at("radius").get<std::vector<double>>();
+    check_lubrication(configuration.physics, radius);
     configuration.particles = make_particles(radius, 1);
     ParticleState& particles = configuration.particles;
     particles.position = field("/state/position", radius.size());
@@ -99,6 +103,16 @@ class Reader {
   [[noreturn]] void refuse(const std::string& pointer, const std::string& value,
                            const std::string& allowed) const {
     throw InputError(file_, pointer, value, allowed);
+  }
+
+  void check_lubrication(const Physics& physics, const std::vector<double>& radius) const {
+    if (!physics.lubrication || radius.empty()) return;
+    const std::optional<std::string> fault =
+        fault_of_outer_distance(*physics.lubrication, *std::ranges::min_element(radius));
+    if (fault) {
+      const std::string pointer = "/scene/lubrication/outer_distance";
+      refuse(pointer, shortened(at(pointer)), *fault);
+    }
   }
 
   void check_three(const std::string& pointer) const {

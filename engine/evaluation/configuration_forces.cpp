@@ -96,7 +96,11 @@ std::vector<TermRecipe> recipes_of(const Physics& physics) {
   add(terms.lubrication, "lubrication", {.lubrication = true}, {});
   add(terms.noise, "brownian_lubrication", {.lubrication = true, .noise = true}, {.lubrication = true});
   add(terms.contact, "contact_normal", touching, {});
-  add(terms.damping, "contact_damping", {.contact = true, .damping = true}, touching);
+  if (terms.damping) {
+    // Without the normal force, beside which it would lose its digits.
+    recipes.push_back({"contact_damping", {.contact = true, .damping = true}, touching, physics});
+    recipes.back().physics.contact->normal_stiffness = 0;
+  }
   add(terms.friction, "friction", sliding, touching);
   add(terms.rolling, "rolling", {.contact = true, .friction = true, .rolling = true}, sliding);
   for_each_conservative_law(
@@ -124,6 +128,8 @@ class Evaluation {
     sort_contacts(held);
     springs_ = placed_contacts(list_, particles, held, spring_kinds(terms_));
     noise_.resize(list_.pairs().size());
+    varying_ = FlowAtCentres(particles.count(), /*threads=*/1);
+    varying_.set(configuration.physics.flow.at(configuration.box), particles, 0, particles.count());
     if (configuration.noise) {
       find_noise(*configuration.noise);
     }
@@ -176,6 +182,7 @@ class Evaluation {
         .parameters = parameters,
         .noise = {},
         .given_noise = &noise_,
+        .varying = feels_varying_flow(physics) ? &varying_ : nullptr,
     };
     if (!list_.pairs().empty()) {
       loads.sums = PairPass(terms, set_).evaluate(input, springs, loads.force, loads.torque);
@@ -262,6 +269,7 @@ class Evaluation {
   NeighbourList list_;
   SpringField springs_;
   std::vector<NormalPair> noise_;  // of each pair
+  FlowAtCentres varying_;
 };
 
 }  // namespace

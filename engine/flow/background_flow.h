@@ -64,6 +64,16 @@ class BackgroundFlow {
     const FlowVariation::Local local = variation_->at(x, cell_);
     return {local.velocity + (radius * radius / 6) * local.laplacian, spin_of(local.gradient)};
   }
+  // At a point, which has no radius.
+  struct PointMotion {
+    Vector3 velocity, spin;
+    SymmetricTensor strain;
+  };
+  PointMotion varying_at(const Vector3& x) const {
+    if (variation_ == nullptr) return {};
+    const FlowVariation::Local local = variation_->at(x, cell_);
+    return {local.velocity, spin_of(local.gradient), strain_of(local.gradient)};
+  }
   SymmetricTensor varying_strain(const Vector3& x, double radius) const {
     if (variation_ == nullptr) return {};
     const FlowVariation::Local local = variation_->at(x, cell_);

@@ -20,7 +20,7 @@ ForceField::ForceField(const Physics& physics, const ParticleState& particles, d
       link_(link_kernels(set)),
       threads_(threads) {
   parameters_.approach_time = approach_time;
-  parameters_.step_resistance = step_resistance(part, timestep, parameters_.lubrication);
+  parameters_.step_resistance = {part, timestep};
   for (const double radius : distinct_radii(particles.radius)) {
     const double zeta = translational_drag(physics.viscosity, radius);
     const double zeta_r = rotational_drag(physics.viscosity, radius);
@@ -44,6 +44,7 @@ PairPassInput ForceField::pair_input(const System& system) const {
       .kinds = kinds_,
       .parameters = parameters_,
       .noise = pair_noise_.key(system.step, system.part),
+      .varying = feels_varying_flow(physics_) ? &varying_ : nullptr,
       .threads = threads_,
   };
 }
@@ -83,9 +84,22 @@ PairSums ForceField::evaluate_blocks(System& system, VectorField& force, VectorF
 
 PairSums ForceField::evaluate_blocks(System& system, VectorField& force, VectorField& torque,
                                      const SetDrag& set_drag) {
+  const bool feels_varying = feels_varying_flow(physics_);
+  if (feels_varying && varying_.size() != system.particles.count()) {
+    varying_ = FlowAtCentres(system.particles.count(), threads_);
+  }
+  // Pairs ask for particles of other blocks: all of them, but on one thread, where blocks may move in turn.
+  const bool in_turn = threads_ <= 1;
+  if (feels_varying && !in_turn) {
+    for_each_range(system.particles.count(), threads_,
+                   [&](std::size_t begin, std::size_t end) { set_varying_flow(system, begin, end); });
+  }
   return pair_pass_.add_pairs(pair_input(system), system.springs, force, torque,
                               [&](const ParticleBlock& block) {
                                 set_drag(block);
+                                if (feels_varying && in_turn) {
+                                  set_varying_flow(system, block.begin, block.end);
+                                }
                                 if (physics_.flow.varies()) {
                                   add_varying_drag(system, block.begin, block.end, force, torque);
                                 }
@@ -93,6 +107,10 @@ PairSums ForceField::evaluate_blocks(System& system, VectorField& force, VectorF
                                   add_drag_noise(system, block.begin, block.end, force, torque);
                                 }
                               });
+}
+
+void ForceField::set_varying_flow(const System& system, std::size_t begin, std::size_t end) {
+  varying_.set(physics_.flow.at(system.box), system.particles, begin, end);
 }
 
 void ForceField::add_varying_drag(const System& system, std::size_t begin, std::size_t end,

@@ -68,6 +68,7 @@ class ForceField {
 
  private:
   PairPassInput pair_input(const System& system) const;
+  void set_varying_flow(const System& system, std::size_t begin, std::size_t end);
   void add_drag_noise(const System& system, std::size_t begin, std::size_t end, VectorField& force,
                       VectorField& torque) const;
 
@@ -80,6 +81,7 @@ class ForceField {
   FillNormals fill_normals_;
   OneBodyKernels one_body_;
   LinkKernels link_;
+  FlowAtCentres varying_;                          // of the last evaluation, where pairs feel it
   std::vector<OneBodyFactors> drag_, drag_noise_;  // coefficients of each size class, amplitudes of the noise
   int threads_;
 };

@@ -26,10 +26,14 @@ PairSums total_of(const std::vector<PairSums>& blocks) {
 PairParameters pair_parameters(const Physics& physics, double timestep) {
   PairParameters parameters;
   parameters.contact = physics.contact.value_or(ContactParameters{});
-  parameters.lubrication = physics.lubrication.value_or(LubricationParameters{});
+  parameters.flow.is_subtracted = physics.lubrication && physics.lubrication->is_relative_to_flow();
   parameters.spring_timestep = timestep;
   parameters.noise_amplitude = timestep > 0 ? std::sqrt(2 * physics.thermal_energy / timestep) : 0;
   return parameters;
+}
+
+bool feels_varying_flow(const Physics& physics) {
+  return physics.lubrication && physics.lubrication->is_relative_to_flow() && physics.flow.varies();
 }
 
 SpringKinds spring_kinds(const Terms& terms) {
@@ -62,6 +66,12 @@ PairKernelInput PairPass::kernel_input(const PairPassInput& input, SpringField& 
   kernel.image_velocity = image_velocity_.data();
   kernel.kinds = input.kinds.data();
   kernel.parameters = input.parameters;
+  if (FlowFrame& flow = kernel.parameters.flow; flow.is_subtracted) {
+    flow.spin = spin_of(input.box.velocity_gradient());
+    flow.strain = strain_of(input.box.velocity_gradient());
+    flow.varies = input.varying != nullptr;
+    if (flow.varies) kernel.varying = input.varying->rows();
+  }
   for (std::size_t c = 0; c < springs.components(); ++c) {
     kernel.springs[c] = springs.component(c);
   }

@@ -9,6 +9,7 @@
 #include <functional>
 #include <vector>
 
+#include "engine/kernels/flow_at_centres.h"
 #include "engine/kernels/instruction_set.h"
 #include "engine/kernels/pairs/pair_access.h"
 #include "engine/random/keyed_random.h"
@@ -17,6 +18,9 @@
 namespace peclet::engine {
 
 PairParameters pair_parameters(const Physics& physics, double timestep);
+
+// Whether pairs are to be given what varies of the flow.
+bool feels_varying_flow(const Physics& physics);
 
 // The springs that these terms stretch.
 SpringKinds spring_kinds(const Terms& terms);
@@ -29,6 +33,7 @@ struct PairPassInput {
   PairParameters parameters;
   NoiseKey noise;                                        // of pairs
   const std::vector<NormalPair>* given_noise = nullptr;  // of each pair of the list, instead
+  const FlowAtCentres* varying = nullptr;                // what varies, where lubrication is relative to it
   int threads = 1;
 };
 

@@ -26,6 +26,7 @@ class Reading : private SceneDocument {
 
   Particles particles() const;
   Physics physics() const;
+  void check_lubrication(const Particles& particles, const Physics& physics) const;
   // Rate and temperature, given as they are or by Péclet number and limits.
   void set_flow(const Particles& particles, Physics& physics) const;
   Duration duration(const std::string& pointer, const Physics& physics) const;
@@ -96,10 +97,7 @@ Particles Reading::particles() const {
 }
 
 ImposedFlow Reading::flow(double rate) const {
-  if (!has("/flow/waves")) {
-    if (has("/flow/faxen")) refuse("/flow/faxen", "must be left out without /flow/waves");
-    return steady_shear(rate);
-  }
+  if (!has("/flow/waves")) return steady_shear(rate);
   if (!has("/flow/faxen")) miss("/flow/faxen", "must be true or false where there are /flow/waves");
   std::vector<Wave> waves;
   for (const Json& wave : at("/flow/waves")) {
@@ -120,6 +118,15 @@ Physics Reading::physics() const {
     if (has("/" + std::string(law.name))) law.read(*this, physics);
   }
   return physics;
+}
+
+void Reading::check_lubrication(const Particles& particles, const Physics& physics) const {
+  if (!physics.lubrication) return;
+  const auto by_radius = [](const Species& a, const Species& b) { return a.radius < b.radius; };
+  const double smallest = std::ranges::min_element(particles.species, by_radius)->radius;
+  if (const std::optional<std::string> fault = fault_of_outer_distance(*physics.lubrication, smallest)) {
+    refuse("/lubrication/outer_distance", *fault);
+  }
 }
 
 // Of all pairs with rate / kT = Pe / (6 pi eta a^3) within the limits, the one with the larger values.
@@ -217,10 +224,12 @@ Scene read_scene(const Json& document, const std::string& file) {
   const Json& filled = scene.document;
   const Reading reading(filled, file);
   fill_method_and_guard(scene.document);
+  fill_lubrication(scene.document);
 
   scene.particles = reading.particles();
   scene.volume_fraction = filled["volume_fraction"].get<double>();
   scene.physics = reading.physics();
+  reading.check_lubrication(scene.particles, scene.physics);
   reading.set_flow(scene.particles, scene.physics);
 
   const Json& integrator = filled["integrator"];
@@ -266,6 +275,7 @@ Physics read_physics(const Json& document, const std::string& file, const std::s
       throw error.within(file, pointer + '/' + name);
     }
   }
+  fill_lubrication(filled);
   if (!filled.contains("fluid")) throw InputError(file, pointer + "/fluid", "missing", "must be an object");
   try {
     return Reading(filled, "").physics();

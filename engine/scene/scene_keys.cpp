@@ -82,7 +82,8 @@ Keys flow_keys() {
        .kind = KeyKind::boolean,
        .meaning =
            "Whether spheres feel the curvature of the waves: their velocity with the factor 1 - a^2 k^2 / "
-           "6, the strain of their stresslet with 1 - a^2 k^2 / 10. Given with waves, and only with them."},
+           "6, the strain of their stresslet with 1 - a^2 k^2 / 10. Must be given with waves; without them "
+           "nothing is curved."},
       positive("/peclet", "",
                "Pe = 6 pi eta a^3 rate / k_B T, in place of shear_rate and thermal_energy; needs limits."),
       block("/limits",

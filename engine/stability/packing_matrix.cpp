@@ -16,8 +16,7 @@ PairResistance coupling_of(const Physics& physics, const Terms& terms, const Pai
                            const PairGeometry& shape, const MatrixWeights& weights) {
   PairResistance coupling{};
   if (physics.lubrication && shape.distance <= kind.lubrication_range) {
-    add_scaled(coupling, weights.resistance,
-               pair_resistance(kind.resistance, physics.lubrication->inner_gap, shape));
+    add_scaled(coupling, weights.resistance, pair_resistance(kind.resistance, kind.gap, shape));
   }
   add_stiffness(coupling, terms, physics.contact.value_or(ContactParameters{}), kind, shape,
                 {weights.resistance, weights.stiffness, weights.stiffness}, [] {

@@ -54,7 +54,7 @@ PairRates rates_of_pair(const Scene& scene, double first, double second) {
   PairResistance resistance{};
   if (physics.lubrication) {
     const PairGeometry touching = {{sum, 0, 0}, {1, 0, 0}, sum, sum};
-    resistance = pair_resistance(kind.resistance, physics.lubrication->inner_gap, touching);
+    resistance = pair_resistance(kind.resistance, kind.gap, touching);
   }
   const double normal_damping = physics.contact ? physics.contact->normal_damping : 0;
   PairRates rates{};
@@ -101,7 +101,7 @@ double time_of_pulling(const Physics& physics, double first, double second) {
     double resistance = drag;
     if (physics.lubrication && sum + h <= kind.lubrication_range) {
       const PairGeometry near = {{sum + h, 0, 0}, {1, 0, 0}, sum + h, sum};
-      resistance += pair_resistance(kind.resistance, physics.lubrication->inner_gap, near).squeeze;
+      resistance += pair_resistance(kind.resistance, kind.gap, near).squeeze;
     }
     shortest = std::min(shortest, resistance / pulling);
   }
@@ -116,8 +116,7 @@ double largest_resistance_at_the_outer_gap(const Scene& scene, double smallest) 
     const PairKind kind = make_pair_kind(physics, smallest, partner.radius);
     const double distance = kind.lubrication_range;
     const PairGeometry parting = {{distance, 0, 0}, {1, 0, 0}, distance, kind.sum_of_radii};
-    largest =
-        std::max(largest, pair_resistance(kind.resistance, physics.lubrication->inner_gap, parting).squeeze);
+    largest = std::max(largest, pair_resistance(kind.resistance, kind.gap, parting).squeeze);
   }
   return largest;
 }
@@ -133,7 +132,8 @@ double room_over_leap(const Scene& scene, double smallest, double resistance, do
   const double inertia = mass + timestep * drag;
   const double parting = 2 * energy * resistance * timestep / (inertia * inertia);
   const double free = energy / (mass + 0.5 * timestep * drag);
-  return 2 * scene.physics.lubrication->outer_gap * smallest / (timestep * std::sqrt(parting + 2 * free));
+  return 2 * outer_distance(*scene.physics.lubrication, 2 * smallest) /
+         (timestep * std::sqrt(parting + 2 * free));
 }
 
 // `longest`, or the step at which so many standard deviations of a leap are that room.

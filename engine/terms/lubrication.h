@@ -5,17 +5,6 @@
 
 namespace peclet::engine {
 
-// Squeeze, shear and pump modes between near spheres, gaps as 2 (r - a_i - a_j) / (a_i + a_j).
-struct LubricationParameters {
-  double inner_gap = 1e-3;
-  double outer_gap = 0.05;
-};
-
-// The outer gap as a distance of the centres.
-inline double lubrication_range(const LubricationParameters& lubrication, double sum_of_radii) {
-  return sum_of_radii * (1 + 0.5 * lubrication.outer_gap);
-}
-
 // With U = U_j - U_i, T = 1 - n n:
 //   F_i = (X_A n n + Y_A T).U + Y_B11 Omega_i x n + Y_B21 Omega_j x n
 //   T_i = Y_B11 U x n - T.(Y_C11 Omega_i + Y_C12 Omega_j)

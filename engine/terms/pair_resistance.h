@@ -13,10 +13,12 @@
 // rotation of the pair feel nothing at any gap; the matrix stays symmetric, positive semidefinite, of rank
 // five. Below the inner gap, also in overlap, the coefficients keep their value there (q does not); beyond
 // the outer gap there is no lubrication, and no offset makes it vanish smoothly.
+// The form mari has the same modes, X_A without L, at another gap and with q = 1 (terms/lubricated_gap.h).
 #pragma once
 
 #include <numbers>
 
+#include "engine/terms/lubricated_gap.h"
 #include "engine/terms/pair.h"
 
 namespace peclet::engine {
@@ -29,7 +31,9 @@ struct ResistanceConstants {
   double twist_first, twist_cross, twist_second;  // Y_C11, Y_C12, Y_C22
 };
 
-inline ResistanceConstants resistance_constants(double viscosity, double radius_first, double radius_second) {
+inline ResistanceConstants resistance_constants(
+    double viscosity, double radius_first, double radius_second,
+    LubricationParameters::Form form = LubricationParameters::Form::kim_karrila) {
   const double b = radius_second / radius_first, c = 1 / b;
   const double one = 1 + b, cube = one * one * one;
   const double pi_eta = std::numbers::pi * viscosity;
@@ -37,7 +41,8 @@ inline ResistanceConstants resistance_constants(double viscosity, double radius_
   const double eight = 8 * pi_eta * radius_first * radius_first * radius_first;
   return {
       .squeeze_inverse = six * 2 * b * b / cube,
-      .squeeze_logarithm = six * b * (1 + 7 * b + b * b) / (5 * cube),
+      .squeeze_logarithm =
+          form == LubricationParameters::Form::mari ? 0 : six * b * (1 + 7 * b + b * b) / (5 * cube),
       .shear = six * 4 * b * (2 + b + 2 * b * b) / (15 * cube),
       .pump_first = -4 * pi_eta * radius_first * radius_first * b * (4 + b) / (5 * one * one),
       .pump_second = -4 * pi_eta * radius_second * radius_second * c * (4 + c) / (5 * (1 + c) * (1 + c)),
@@ -50,20 +55,25 @@ inline ResistanceConstants resistance_constants(double viscosity, double radius_
 // How far the modes of a pair are excited at its distance: what pair_resistance() and its roots share.
 template <class Real>
 struct ResistanceModesOf {
-  Real inverse;    // 1/xi
+  Real inverse;    // 1/x, of kim-karrila 1/xi
   Real logarithm;  // L
   Real lever;      // q
 };
 
-// Within the outer gap, and zero beyond, where there is no lubrication.
 template <class Real>
-PECLET_ALWAYS_INLINE ResistanceModesOf<Real> resistance_modes(double inner_gap, double range,
+PECLET_ALWAYS_INLINE Real lever_of(const LubricatedGap& gap, const PairGeometryOf<Real>& pair) {
+  return gap.lever_per_distance * pair.distance + gap.lever_at_distance_0;
+}
+
+// Within the range, a distance of the centres, and zero beyond, where there is no lubrication.
+template <class Real>
+PECLET_ALWAYS_INLINE ResistanceModesOf<Real> resistance_modes(const LubricatedGap& gap, double range,
                                                               const PairGeometryOf<Real>& pair) {
-  const Real gap = larger((2 / pair.sum_of_radii) * pair.surface_distance(), Real{inner_gap});
-  const Real inverse = 1.0 / gap;
+  const Real here = larger(gap.per_distance * pair.surface_distance() + gap.shift, Real{gap.inner});
+  const Real inverse = 1.0 / here;
   const auto lubricated = pair.distance <= range;
   return {select(lubricated, inverse, Real{0.0}), select(lubricated, logarithm(inverse), Real{0.0}),
-          (1 / pair.sum_of_radii) * pair.distance};
+          lever_of(gap, pair)};
 }
 
 template <class Real>
@@ -101,10 +111,10 @@ PECLET_ALWAYS_INLINE void add_scaled(PairResistanceOf<Real>& sum, const Real& we
   sum.twist_second += weight * part.twist_second;
 }
 
-// Of a pair of which the caller knows that it lies within the outer gap.
-inline PairResistanceOf<double> pair_resistance(const ResistanceConstants& k, double inner_gap,
+// Of a pair of which the caller knows that it lies within the range.
+inline PairResistanceOf<double> pair_resistance(const ResistanceConstants& k, const LubricatedGap& gap,
                                                 const PairGeometry& pair) {
-  return pair_resistance(k, resistance_modes(inner_gap, pair.distance, pair));
+  return pair_resistance(k, resistance_modes(gap, pair.distance, pair));
 }
 
 // A square root of the resistance, what the noise of a pair is made of:

@@ -16,6 +16,8 @@
 // the mean of two rules are fitted: they keep the density of pairs flat across the inner gap
 // (tests/physics/README.md).
 //
+// xi is the shifted gap of terms/lubricated_gap.h where the form has one.
+//
 // The stress has R averaged over the way that is made: then the squeezing part of a pair's r F is the change
 // of a function of the gap, whose mean is zero in equilibrium at any step.
 #pragma once
@@ -33,18 +35,12 @@ struct StepResistance {
   };
   Part part = Part::whole;
   double timestep = 0;
-  double inner_logarithm = 0, outer_logarithm = 0;  // L at the inner and at the outer gap
 
   // How much farther than its range a pair may stand and still have a resistance.
-  double reach(const LubricationParameters& lubrication, double sum_of_radii) const {
-    return part == Part::ahead || part == Part::on_the_way ? 0.5 * lubrication.outer_gap * sum_of_radii : 0;
+  double reach(const LubricatedGap& gap) const {
+    return part == Part::ahead || part == Part::on_the_way ? gap.outer_distance : 0;
   }
 };
-
-inline StepResistance step_resistance(StepResistance::Part part, double timestep,
-                                      const LubricationParameters& lubrication) {
-  return {part, timestep, -std::log(lubrication.inner_gap), -std::log(lubrication.outer_gap)};
-}
 
 // A gap, the nearest one that is neither below the inner gap nor beyond the outer one, and its L.
 template <class Real>
@@ -53,10 +49,9 @@ struct BoundedGapOf {
 };
 
 template <class Real>
-PECLET_ALWAYS_INLINE BoundedGapOf<Real> bounded_gap(const LubricationParameters& lubrication,
-                                                    const Real& gap) {
-  const Real outer{lubrication.outer_gap};
-  const Real bounded = select(gap < outer, larger(gap, Real{lubrication.inner_gap}), outer);
+PECLET_ALWAYS_INLINE BoundedGapOf<Real> bounded_gap(const LubricatedGap& range, const Real& gap) {
+  const Real outer{range.outer};
+  const Real bounded = select(gap < outer, larger(gap, Real{range.inner}), outer);
   return {gap, bounded, -logarithm(bounded)};
 }
 
@@ -67,40 +62,37 @@ struct WayOf {
 };
 
 template <class Real>
-PECLET_ALWAYS_INLINE WayOf<Real> way_of(const LubricationParameters& lubrication, const Real& begin,
+PECLET_ALWAYS_INLINE WayOf<Real> way_of(const LubricatedGap& range, const Real& begin,
                                         const Real& given_way) {
-  const Real shortest{1e-5 * lubrication.inner_gap};  // of which differences keep ten digits
+  const Real shortest{1e-5 * range.inner};  // of which differences keep ten digits
   const Real way = select(larger(given_way, -given_way) < shortest, shortest, given_way);
-  return {bounded_gap(lubrication, begin), bounded_gap(lubrication, begin + way), 1.0 / way};
+  return {bounded_gap(range, begin), bounded_gap(range, begin + way), 1.0 / way};
 }
 
 // Of a pair in the middle of a step, with this closing velocity.
 template <class Real>
-PECLET_ALWAYS_INLINE WayOf<Real> way_of_step(const StepResistance& step,
-                                             const LubricationParameters& lubrication,
+PECLET_ALWAYS_INLINE WayOf<Real> way_of_step(const StepResistance& step, const LubricatedGap& range,
                                              const PairGeometryOf<Real>& pair, const Real& closing) {
-  const double per_radius = 2 / pair.sum_of_radii;
-  const Real way = (per_radius * step.timestep) * closing;
-  return way_of(lubrication, per_radius * pair.surface_distance() - 0.5 * way, way);
+  const Real way = (range.per_distance * step.timestep) * closing;
+  return way_of(range, (range.per_distance * pair.surface_distance() - 0.5 * way) + range.shift, way);
 }
 
 // Averages over a way. Beyond the outer gap there is nothing, or what is there.
 enum class Beyond { nothing, as_at_the_gap };
 template <Beyond beyond, class Real>
-PECLET_ALWAYS_INLINE ResistanceModesOf<Real> mean_modes(const StepResistance& step,
-                                                        const LubricationParameters& lubrication,
-                                                        const WayOf<Real>& way, const Real& lever) {
-  const double inner = lubrication.inner_gap, outer = lubrication.outer_gap;
+PECLET_ALWAYS_INLINE ResistanceModesOf<Real> mean_modes(const LubricatedGap& range, const WayOf<Real>& way,
+                                                        const Real& lever) {
+  const double inner = range.inner, outer = range.outer;
   struct Integrals {
     Real inverse, logarithm;
   };
   const auto up_to = [&](const BoundedGapOf<Real>& there) PECLET_INLINE_LAMBDA {
     const Real &L = there.logarithm, below = larger(inner - there.gap, Real{0.0});
-    Integrals sum = {-L - (1 / inner) * below, (1.0 + L) * there.bounded - step.inner_logarithm * below};
+    Integrals sum = {-L - (1 / inner) * below, (1.0 + L) * there.bounded - range.inner_logarithm * below};
     if constexpr (beyond == Beyond::as_at_the_gap) {
       const Real out = larger(there.gap - outer, Real{0.0});
       sum.inverse += (1 / outer) * out;
-      sum.logarithm += step.outer_logarithm * out;
+      sum.logarithm += range.outer_logarithm * out;
     }
     return sum;
   };
@@ -110,29 +102,28 @@ PECLET_ALWAYS_INLINE ResistanceModesOf<Real> mean_modes(const StepResistance& st
 
 template <class Real>
 PECLET_ALWAYS_INLINE ResistanceModesOf<Real> resistance_modes(const StepResistance& step,
-                                                              const LubricationParameters& lubrication,
-                                                              double range, const PairGeometryOf<Real>& pair,
+                                                              const LubricatedGap& range,
+                                                              double lubrication_range,
+                                                              const PairGeometryOf<Real>& pair,
                                                               const Real& closing) {
   if (__builtin_expect(step.part == StepResistance::Part::whole, 1)) {
-    return resistance_modes(lubrication.inner_gap, range, pair);
+    return resistance_modes(range, lubrication_range, pair);
   }
-  const double jump = 1 / lubrication.outer_gap, log_jump = step.outer_logarithm;
-  const double per_radius = 2 / pair.sum_of_radii;
-  const Real inner{lubrication.inner_gap}, zero{0.0}, lever = (1 / pair.sum_of_radii) * pair.distance;
-  const Real here = per_radius * pair.surface_distance();
+  const double jump = 1 / range.outer, log_jump = range.outer_logarithm;
+  const Real inner{range.inner}, zero{0.0}, lever = lever_of(range, pair);
+  const Real here = range.per_distance * pair.surface_distance() + range.shift;
   if (step.part == StepResistance::Part::at_beginning) {
-    const auto within = pair.distance <= range;
+    const auto within = pair.distance <= lubrication_range;
     const Real inverse = 1.0 / larger(here, inner);
     return {select(within, inverse - 0.5 * jump, zero),
             select(within, logarithm(inverse) - 0.5 * log_jump, zero), lever};
   }
   if (step.part == StepResistance::Part::on_the_way) {
-    return mean_modes<Beyond::nothing>(step, lubrication, way_of_step(step, lubrication, pair, closing),
-                                       lever);
+    return mean_modes<Beyond::nothing>(range, way_of_step(step, range, pair, closing), lever);
   }
-  const Real way = (per_radius * step.timestep) * closing, begin = here - 0.5 * way;
+  const Real way = (range.per_distance * step.timestep) * closing, begin = here - 0.5 * way;
   constexpr double changed = 0.65;
-  const double around = 0.25 / lubrication.inner_gap;
+  const double around = 0.25 / range.inner;
   const Real from = larger(begin, inner);
   const auto inverse_mean = [&](const Real& made) PECLET_INLINE_LAMBDA {
     return 1.0 / square_root(from * larger(begin + made, inner));
@@ -140,9 +131,9 @@ PECLET_ALWAYS_INLINE ResistanceModesOf<Real> resistance_modes(const StepResistan
   const Real left = (1.0 / from + around) / (inverse_mean(way) + around);
   const Real made = way * ((1 - changed) + changed * left);
   const ResistanceModesOf<Real> average =
-      mean_modes<Beyond::as_at_the_gap>(step, lubrication, way_of(lubrication, begin, made), lever);
+      mean_modes<Beyond::as_at_the_gap>(range, way_of(range, begin, made), lever);
   const Real inverse = larger(inverse_mean(made), Real{jump});
-  const auto was_within = begin <= Real{lubrication.outer_gap};
+  const auto was_within = begin <= Real{range.outer};
   return {larger(0.5 * (average.inverse + inverse) - jump, zero) + select(was_within, Real{0.5 * jump}, zero),
           larger(0.5 * (average.logarithm + logarithm(inverse)) - log_jump, zero) +
               select(was_within, Real{0.5 * log_jump}, zero),
@@ -153,20 +144,17 @@ PECLET_ALWAYS_INLINE ResistanceModesOf<Real> resistance_modes(const StepResistan
 // squeezing force at the closing velocity c is (1/t) times the integral of X_A from xi_0 to xi_0 + t c; its
 // derivative is X_A where the step ends.
 template <class Real>
-PECLET_ALWAYS_INLINE PairResistanceOf<Real> tangent_resistance(const ResistanceConstants& k,
-                                                               const StepResistance& step,
-                                                               const LubricationParameters& lubrication,
-                                                               double range, const PairGeometryOf<Real>& pair,
-                                                               const Real& closing) {
+PECLET_ALWAYS_INLINE PairResistanceOf<Real> tangent_resistance(
+    const ResistanceConstants& k, const StepResistance& step, const LubricatedGap& range,
+    double lubrication_range, const PairGeometryOf<Real>& pair, const Real& closing) {
   if (step.part != StepResistance::Part::on_the_way) {
-    return pair_resistance(k, resistance_modes(step, lubrication, range, pair, closing));
+    return pair_resistance(k, resistance_modes(step, range, lubrication_range, pair, closing));
   }
-  const WayOf<Real> way = way_of_step(step, lubrication, pair, closing);
-  const Real lever = (1 / pair.sum_of_radii) * pair.distance;
+  const WayOf<Real> way = way_of_step(step, range, pair, closing);
   PairResistanceOf<Real> tangent =
-      pair_resistance(k, mean_modes<Beyond::nothing>(step, lubrication, way, lever));
+      pair_resistance(k, mean_modes<Beyond::nothing>(range, way, lever_of(range, pair)));
   tangent.squeeze =
-      select(way.to.gap <= Real{lubrication.outer_gap},
+      select(way.to.gap <= Real{range.outer},
              k.squeeze_inverse / way.to.bounded + k.squeeze_logarithm * way.to.logarithm, Real{0.0});
   return tangent;
 }

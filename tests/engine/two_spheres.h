@@ -17,13 +17,18 @@ inline PairGeometry pair_at(double first, double second, double gap, const Vecto
   return {distance * normal, normal, distance, first + second};
 }
 
+inline LubricatedGap gap_of(const PairGeometry& pair) {
+  return lubricated_gap({.inner_gap = inner_gap}, pair.sum_of_radii);
+}
+
+// Of the form kim-karrila.
 inline PairResistance resistance_of(double viscosity, double first, double second, const PairGeometry& pair) {
-  return pair_resistance(resistance_constants(viscosity, first, second), inner_gap, pair);
+  return pair_resistance(resistance_constants(viscosity, first, second), gap_of(pair), pair);
 }
 
 inline ResistanceRoots roots_of(double viscosity, double first, double second, const PairGeometry& pair) {
   const ResistanceConstants constants = resistance_constants(viscosity, first, second);
-  const ResistanceModes modes = resistance_modes(inner_gap, pair.distance, pair);
+  const ResistanceModes modes = resistance_modes(gap_of(pair), pair.distance, pair);
   return resistance_roots(root_constants(constants), pair_resistance(constants, modes).squeeze, modes);
 }
 

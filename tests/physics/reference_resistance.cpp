@@ -37,12 +37,10 @@ Eigen::Matrix3d cross(const Eigen::Vector3d& d) {
   return (Eigen::Matrix3d() << 0, d.z(), -d.y(), -d.z(), 0, d.x(), d.y(), -d.x(), 0).finished();
 }
 
-}  // namespace
-
-Matrix12 reference_resistance(double viscosity, double radius_i, double radius_j, const Vector3& separation,
-                              double inner_gap) {
+// Of spins that count once. `squeezing`: what is taken of a function of squeezing.
+Matrix12 resistance_at(double xi, double viscosity, double radius_i, double radius_j,
+                       const Vector3& separation, Divergent (*squeezing)(const Divergent&)) {
   const double pi_eta = std::numbers::pi * viscosity, S = radius_i + radius_j;
-  const double lever = norm(separation) / S, xi = std::max(2 * lever - 2, inner_gap);
   const auto at_gap = [&](const Divergent& g) { return g.inverse / xi - g.logarithm * std::log(xi); };
 
   const Eigen::Vector3d n = to_eigen(separation).normalized();
@@ -56,9 +54,10 @@ Matrix12 reference_resistance(double viscosity, double radius_i, double radius_j
     const double a = one == 0 ? radius_i : radius_j, lambda = (S - a) / a;
     // The formulas are those of sphere 1, whose partner lies along d.
     const Eigen::Matrix3d turn = cross(one == 0 ? n : Eigen::Vector3d(-n));
-    block(one, one) = 6 * pi_eta * a * (at_gap(x_a_own(lambda)) * along + at_gap(y_a_own(lambda)) * across);
+    block(one, one) =
+        6 * pi_eta * a * (at_gap(squeezing(x_a_own(lambda))) * along + at_gap(y_a_own(lambda)) * across);
     block(one, other) =
-        3 * pi_eta * S * (at_gap(x_a_other(lambda)) * along + at_gap(y_a_other(lambda)) * across);
+        3 * pi_eta * S * (at_gap(squeezing(x_a_other(lambda))) * along + at_gap(y_a_other(lambda)) * across);
     // Torque of velocities; forces of spins are the transposed block.
     block(2 + one, one) = 4 * pi_eta * a * a * at_gap(y_b_own(lambda)) * turn;
     block(2 + one, other) = pi_eta * S * S * at_gap(y_b_other(lambda)) * turn;
@@ -66,10 +65,29 @@ Matrix12 reference_resistance(double viscosity, double radius_i, double radius_j
     block(2 + one, 2 + other) = pi_eta * std::pow(S, 3) * at_gap(y_c_other(lambda)) * across;
   }
   R.topRightCorner<6, 6>() = R.bottomLeftCorner<6, 6>().transpose();
+  return R;
+}
 
+}  // namespace
+
+Matrix12 reference_resistance(double viscosity, double radius_i, double radius_j, const Vector3& separation,
+                              double inner_gap) {
+  const double lever = norm(separation) / (radius_i + radius_j);
+  const double xi = std::max(2 * lever - 2, inner_gap);
+  const Matrix12 R =
+      resistance_at(xi, viscosity, radius_i, radius_j, separation, [](const Divergent& g) { return g; });
   Vector12 levers;
   levers << Eigen::Vector<double, 6>::Ones(), Eigen::Vector<double, 6>::Constant(lever);
   return levers.asDiagonal() * R * levers.asDiagonal();
+}
+
+Matrix12 reference_relative_resistance(double viscosity, double radius_i, double radius_j,
+                                       const Vector3& separation, double regularisation) {
+  const double xi = 2 * norm(separation) / (radius_i + radius_j) - 2;
+  return resistance_at(std::max(xi, 0.0) + regularisation, viscosity, radius_i, radius_j, separation,
+                       [](const Divergent& g) {
+                         return Divergent{g.inverse, 0};
+                       });
 }
 
 }  // namespace peclet::engine

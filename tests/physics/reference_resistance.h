@@ -13,4 +13,9 @@ namespace peclet::engine {
 Matrix12 reference_resistance(double viscosity, double radius_i, double radius_j, const Vector3& separation,
                               double inner_gap);
 
+// The same as Monti et al. (2021) take them, Phys. Fluids 33, 103314, A.6 and A.7: at the gap max(xi, 0) +
+// `regularisation`, without the logarithm of X_A, spins once. The motion is that relative to the flow.
+Matrix12 reference_relative_resistance(double viscosity, double radius_i, double radius_j,
+                                       const Vector3& separation, double regularisation);
+
 }  // namespace peclet::engine

@@ -93,7 +93,7 @@ class LinkedPairs {
     if (terms.lubrication) {
       const Real closing = dot(motion_.velocity, shape_.normal);
       add_scaled(sum, Real{weights.timestep},
-                 tangent_resistance(kind_.resistance, parameters.step_resistance, parameters.lubrication,
+                 tangent_resistance(kind_.resistance, parameters.step_resistance, kind_.gap,
                                     kind_.lubrication_range, shape_, closing));
     }
     add_stiffness(sum, terms, parameters.contact, kind_, ahead_,

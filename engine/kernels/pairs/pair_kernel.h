@@ -77,7 +77,8 @@ class PairGroup {
     const TermLoadsOf<Real> loads = pair_terms<terms>(
         in_.parameters, kind_, shape, motion, springs, [this] { return normals(); },
         [&](StressTerm part, const Vector3Of<Real>& force)
-            PECLET_INLINE_LAMBDA { add_stress(part, shape, force, sums); });
+            PECLET_INLINE_LAMBDA { add_stress(part, shape, force, sums); },
+        [this]() PECLET_INLINE_LAMBDA { return variation(); });
     store_springs(springs);
     add_sums(shape, loads, sums);
     leave(total(loads), out);
@@ -215,6 +216,18 @@ class PairGroup {
       }
     }
     return result;
+  }
+
+  PECLET_ALWAYS_INLINE PairVariationOf<Real> variation() const {
+    const FlowRows& flow = in_.varying;
+    const auto strain = [&](const std::uint32_t* index) PECLET_INLINE_LAMBDA {
+      const Vector3Of<Real> along = gather_rows(flow.strain_along, index, Real{});
+      const Vector3Of<Real> across = gather_rows(flow.strain_across, index, Real{});
+      return SymmetricTensorOf<Real>{along.x, along.y, along.z, across.x, across.y, across.z};
+    };
+    return {gather_rows(flow.velocity, second_, Real{}) - gather_rows(flow.velocity, first_, Real{}),
+            gather_rows(flow.spin, first_, Real{}), gather_rows(flow.spin, second_, Real{}), strain(first_),
+            strain(second_)};
   }
 
   // For all pairs of the eight.

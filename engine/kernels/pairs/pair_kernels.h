@@ -12,6 +12,12 @@
 
 namespace peclet::engine {
 
+// What varies of the flow at the centres of the particles: rows of velocity and spin, and of the rate of
+// strain xx, yy, zz and xy, xz, yz.
+struct FlowRows {
+  const double *velocity, *spin, *strain_along, *strain_across;
+};
+
 // What the pairs of all blocks are computed from. Rows are those of a VectorField.
 struct PairKernelInput {
   const double *position, *velocity, *spin;
@@ -26,6 +32,7 @@ struct PairKernelInput {
   const std::uint32_t* id;          // of each particle
   const std::uint64_t* image_keys;  // of each image
   const double* given_normals;      // six of each pair, instead of drawn ones; or null
+  FlowRows varying;                 // null unless parameters.flow varies
 };
 
 // Where the pairs of one block leave their loads: rows of the block's own particles, and of each crossing

@@ -12,8 +12,10 @@ PairKind make_pair_kind(const Physics& physics, double first, double second) {
   kind.smaller_radius = std::min(first, second);
   kind.reduced_diameter = 2 * first * second / kind.sum_of_radii;
   if (physics.lubrication) {
-    kind.resistance = resistance_constants(physics.viscosity, first, second);
+    kind.gap = lubricated_gap(*physics.lubrication, kind.sum_of_radii);
+    kind.resistance = resistance_constants(physics.viscosity, first, second, physics.lubrication->form);
     kind.roots = root_constants(kind.resistance);
+    kind.strain = strain_lengths(first, second);
     kind.lubrication_range = engine::lubrication_range(*physics.lubrication, kind.sum_of_radii);
   }
   kind.range = std::max(kind.sum_of_radii, kind.lubrication_range);

@@ -7,17 +7,16 @@
 #include "engine/terms/contact.h"
 #include "engine/terms/friction.h"
 #include "engine/terms/laws.h"
-#include "engine/terms/lubrication.h"
 #include "engine/terms/pair_noise.h"
 #include "engine/terms/rolling.h"
 #include "engine/terms/step_resistance.h"
+#include "engine/terms/strained_lubrication.h"
 
 namespace peclet::engine {
 
 // What is the same for all pairs of one evaluation.
 struct PairParameters {
   ContactParameters contact;
-  LubricationParameters lubrication;
   double spring_timestep = 0;  // by which the springs advance; 0: the springs are taken as they are
   // Forces that depend on the distance are those at the distance that the present motion leads to in this
   // time; their direction stays.
@@ -25,11 +24,12 @@ struct PairParameters {
   double felt_share = 1;       // of the springs' advance, after which they push
   double noise_amplitude = 0;  // sqrt(2 kT / dt)
   StepResistance step_resistance = {};
+  FlowFrame flow = {};
 };
 
 // How much farther than its range a pair of this kind may be and still feel something.
 inline double kind_reach(const PairParameters& parameters, const PairKind& kind) {
-  return parameters.step_resistance.reach(parameters.lubrication, kind.sum_of_radii);
+  return parameters.step_resistance.reach(kind.gap);
 }
 
 template <class Real>
@@ -96,15 +96,21 @@ PECLET_ALWAYS_INLINE void add_contact_terms(const PairParameters& parameters, co
   }
 }
 
+template <class Real>
+struct NoVariation {
+  PairVariationOf<Real> operator()() const { return {}; }
+};
+
 // Every pair lies within kind.range. `normals()` returns theta and chi and is called only where a pair is
 // lubricated and there is noise. `of_law(part, force)` is told the force of each conservative law that acts
-// on any of the pairs. The springs advance with the motion and are forgotten when the contact opens.
-template <Terms terms, class Real, class Normals, class OfLaw>
+// on any of the pairs. `variation()` returns what varies of the flow at the spheres, where any of it is asked
+// for. The springs advance with the motion and are forgotten when the contact opens.
+template <Terms terms, class Real, class Normals, class OfLaw, class Variation = NoVariation<Real>>
 PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& parameters, const PairKind& kind,
                                                   const PairGeometryOf<Real>& pair,
                                                   const PairMotionOf<Real>& motion,
                                                   PairSpringsOf<Real>& springs, Normals&& normals,
-                                                  OfLaw&& of_law) {
+                                                  OfLaw&& of_law, Variation&& variation = {}) {
   TermLoadsOf<Real> loads;
   PairGeometryOf<Real> ahead = pair;
   if constexpr (terms.contact || terms.conservative) {
@@ -113,11 +119,17 @@ PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& paramete
   if constexpr (terms.lubrication) {
     if (any(pair.distance <= kind.lubrication_range + kind_reach(parameters, kind))) {
       // Noise belongs to the resistance as it is.
-      const ResistanceModesOf<Real> modes = resistance_modes(
-          terms.noise ? StepResistance{} : parameters.step_resistance, parameters.lubrication,
-          kind.lubrication_range, pair, dot(motion.velocity, pair.normal));
+      const ResistanceModesOf<Real> modes =
+          resistance_modes(terms.noise ? StepResistance{} : parameters.step_resistance, kind.gap,
+                           kind.lubrication_range, pair, dot(motion.velocity, pair.normal));
       const PairResistanceOf<Real> resistance = pair_resistance(kind.resistance, modes);
-      loads.lubrication = lubrication_load(resistance, pair, motion);
+      // The same for all pairs of a run.
+      if (__builtin_expect(!parameters.flow.is_subtracted, 1)) {
+        loads.lubrication = lubrication_load(resistance, pair, motion);
+      } else {
+        loads.lubrication =
+            strained_lubrication_load(resistance, parameters.flow, kind.strain, pair, motion, variation);
+      }
       if constexpr (terms.noise) {
         const PairNormalsOf<Real> drawn = normals();
         loads.noise = pair_noise_load(parameters.noise_amplitude,

@@ -1,6 +1,7 @@
 // Implicit steps on several threads, and on more of them than there are processors or blocks of particles.
 #include <gtest/gtest.h>
 
+#include "engine/flow/waves.h"
 #include "engine/integrators/implicit.h"
 #include "tests/engine/available_sets.h"
 #include "tests/engine/bits.h"
@@ -46,10 +47,12 @@ struct Kind {
   const char* name;
   Terms terms;
   double thermal_energy;
+  bool strained = false;  // lubrication by rates of strain, in waves
 };
 constexpr Kind kinds[] = {
     {"quiet", {.lubrication = true, .contact = true, .friction = true, .rolling = true}, 0},
     {"noisy", {.lubrication = true, .noise = true, .contact = true, .friction = true}, 0.02},
+    {"strained", {.lubrication = true, .contact = true}, 0, true},
 };
 
 class ThreadsOf : public testing::TestWithParam<InstructionSet> {};
@@ -60,6 +63,12 @@ TEST_P(ThreadsOf, ImplicitStepsHaveTheSameBitsWhateverTheirNumber) {
   for (const Kind& kind : kinds) {
     Physics physics = physics_with(kind.terms);
     physics.thermal_energy = kind.thermal_energy;
+    if (kind.strained) {
+      physics.lubrication =
+          LubricationParameters{.form = LubricationParameters::Form::mari, .outer_distance = 0.05};
+      physics.flow = ImposedFlow(std::make_shared<SteadyShear>(physics.flow.rate()),
+                                 std::make_shared<Waves>(std::vector<Wave>{{1, 0.4, 0.1}}, false));
+    }
     const System start = dense_suspension(physics, 8200, 7);
     const Outcome one = after_steps(physics, start, GetParam(), 1);
     ASSERT_EQ(one.system.list.blocks().size(), 4u);

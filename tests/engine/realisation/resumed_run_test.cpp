@@ -20,6 +20,12 @@ struct Way {
   const char* name;
   Json patch;
 };
+const Json strained_lubrication = {{"form", "mari"},
+                                   {"inner_gap", nullptr},
+                                   {"outer_gap", nullptr},
+                                   {"regularisation", 0.03},
+                                   {"outer_distance", 0.1}};
+const Json waves = {{"waves", {{{"periods", 1}, {"sine", 0.4}}}}, {"faxen", true}};
 const Way ways[] = {
     {"explicit", Json::object()},
     // With less inertia, which large steps follow in a part of the range only.
@@ -37,6 +43,13 @@ const Way ways[] = {
       {"particles", {{"density", 0.01}}},
       {"fluid", {{"thermal_energy", nullptr}}},
       {"guard", {{"largest_displacement", 0.04}}}}},
+    {"with_strained_lubrication_in_waves", {{"lubrication", strained_lubrication}, {"flow", waves}}},
+    {"implicit_with_strained_lubrication_in_waves",
+     {{"lubrication", strained_lubrication},
+      {"flow", waves},
+      {"integrator", {{"method", "implicit"}}},
+      {"particles", {{"density", 0.01}}},
+      {"fluid", {{"thermal_energy", nullptr}}}}},
     {"with_every_observable_of_a_flow",
      {{"observables", {"mean_squared_displacement", "pair_distribution", "contact_network", "profiles"}},
       {"pair_distribution", {{"range", 3}}}}},

@@ -197,6 +197,37 @@ TEST(Scene, ScreenedRepulsionHasKeysOfItsOwn) {
                    .repulsion);
 }
 
+TEST(Scene, EachFormOfLubricationHasKeysAndDefaultsOfItsOwn) {
+  const auto scene_of = [](const char* lubrication) {
+    return scene_with({{"lubrication", Json::parse(lubrication)}});
+  };
+  const Scene plain = scene_of(R"({"form": "kim-karrila"})");
+  EXPECT_EQ(plain.physics.lubrication->inner_gap, 1e-3);
+  EXPECT_EQ(plain.physics.lubrication->outer_gap, 0.05);
+  EXPECT_EQ(plain.document["lubrication"],
+            Json::parse(R"({"form": "kim-karrila", "inner_gap": 0.001, "outer_gap": 0.05})"));
+  const Scene strained = scene_of(R"({"form": "mari", "outer_distance": 0.2})");
+  EXPECT_EQ(strained.physics.lubrication->form, LubricationParameters::Form::mari);
+  EXPECT_EQ(strained.physics.lubrication->inner_gap, 1e-3);
+  EXPECT_EQ(strained.physics.lubrication->outer_distance, 0.2);
+  EXPECT_EQ(strained.document["lubrication"],
+            Json::parse(R"({"form": "mari", "regularisation": 0.001, "outer_distance": 0.2})"));
+}
+
+// 1 - regularisation times the smallest radius, where ln(1/d) becomes negative; of a configuration, the radii
+// of its state.
+TEST(Scene, TheOuterDistanceOfLubricationIsBoundByTheSmallestSphere) {
+  const auto scene_of = [](double smallest, double distance) {
+    return scene_with(
+        {{"particles",
+          {{"species", {{{"radius", 3}, {"volume_share", 1}}, {{"radius", smallest}, {"volume_share", 1}}}}}},
+         {"lubrication", {{"form", "mari"}, {"regularisation", 0.5}, {"outer_distance", distance}}}});
+  };
+  EXPECT_EQ(scene_of(0.4, 0.1999).physics.lubrication->outer_distance, 0.1999);
+  EXPECT_THROW(scene_of(0.4, 0.2001), InputError);
+  EXPECT_THROW(scene_of(0.3, 0.1999), InputError);
+}
+
 TEST(Scene, AConfigurationsBlocksAreReadByTheSameKeys) {
   const Json blocks = Json::parse(R"({"fluid": {"viscosity": 0.1, "thermal_energy": 0.017},
       "contact": {"normal_stiffness": 7, "friction": 0.5}, "lubrication": {"form": "kim-karrila"},

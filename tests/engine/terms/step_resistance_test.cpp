@@ -9,7 +9,17 @@ namespace peclet::engine {
 namespace {
 
 constexpr double first = 1, second = 1.4, sum = first + second, timestep = 0.3;
+// Of both forms, with the same bounds of what the resistance is a function of: xi, and xi + inner_gap.
 constexpr LubricationParameters lubrication = {1e-2, 0.1};
+constexpr LubricationParameters shifted = {
+    .inner_gap = lubrication.inner_gap,
+    .form = LubricationParameters::Form::mari,
+    .outer_distance = 0.5 * sum * (lubrication.outer_gap - lubrication.inner_gap)};
+constexpr LubricationParameters forms[] = {lubrication, shifted};
+
+constexpr double shift_of(const LubricationParameters& form) {
+  return form.form == LubricationParameters::Form::mari ? form.inner_gap : 0;
+}
 
 // Of a gap: 1/xi and L within the range.
 double inverse(double gap) {
@@ -26,13 +36,16 @@ double average(const std::function<double(double)>& f, double from, double to) {
   return mean;
 }
 
+PairGeometry pair_of(const LubricationParameters& form, double gap) {
+  const double distance = sum * (1 + 0.5 * (gap - shift_of(form)));
+  return {{distance, 0, 0}, {1, 0, 0}, distance, sum};
+}
+
 // Of a pair in the middle of a way of gaps.
-ResistanceModes modes(StepResistance::Part part, double from, double to) {
-  const double gap = 0.5 * (from + to), distance = sum * (1 + 0.5 * gap);
-  const PairGeometry pair = {{distance, 0, 0}, {1, 0, 0}, distance, sum};
+ResistanceModes modes(const LubricationParameters& form, StepResistance::Part part, double from, double to) {
   const double closing = 0.5 * sum * (to - from) / timestep;
-  return resistance_modes(step_resistance(part, timestep, lubrication), lubrication,
-                          lubrication_range(lubrication, sum), pair, closing);
+  return resistance_modes(StepResistance{part, timestep}, lubricated_gap(form, sum),
+                          lubrication_range(form, sum), pair_of(form, 0.5 * (from + to)), closing);
 }
 
 struct Way {
@@ -44,35 +57,39 @@ constexpr Way ways[] = {{0.02, 0.05}, {0.05, 0.02}, {0.03, -0.02}, {-0.02, 0.03}
 
 TEST(StepResistance, OnTheWayIsTheAverageOverItsGaps) {
   for (const auto& [from, to] : ways) {
-    const ResistanceModes found = modes(StepResistance::Part::on_the_way, from, to);
-    EXPECT_NEAR(found.inverse, average(inverse, from, to), 1e-4 / lubrication.inner_gap) << from << ' ' << to;
-    EXPECT_NEAR(found.logarithm, average(logarithm_of, from, to), 1e-4) << from << ' ' << to;
-    EXPECT_NEAR(found.lever, 1 + 0.25 * (from + to), 1e-12);
+    const double inverse_mean = average(inverse, from, to), logarithm_mean = average(logarithm_of, from, to);
+    for (const LubricationParameters& form : forms) {
+      const ResistanceModes found = modes(form, StepResistance::Part::on_the_way, from, to);
+      EXPECT_NEAR(found.inverse, inverse_mean, 1e-4 / lubrication.inner_gap) << from << ' ' << to;
+      EXPECT_NEAR(found.logarithm, logarithm_mean, 1e-4) << from << ' ' << to;
+      EXPECT_NEAR(found.lever, shift_of(form) > 0 ? 1 : 1 + 0.25 * (from + to), 1e-12);
+    }
   }
 }
 
 // From the same gap at the beginning of the step, beside differences of the force X_A dr/dt; other modes keep
 // their averages.
 TEST(StepResistance, TheTangentIsTheDerivativeOfTheSqueezingForce) {
-  const ResistanceConstants k = resistance_constants(0.1, first, second);
-  const auto mean = [&](double from, double to) {
-    return pair_resistance(k, modes(StepResistance::Part::on_the_way, from, to));
-  };
-  const auto force = [&](double from, double to) {
-    return mean(from, to).squeeze * 0.5 * sum * (to - from) / timestep;
-  };
-  for (const auto& [from, to] : ways) {
-    const double d = 1e-6, gap = 0.5 * (from + to), distance = sum * (1 + 0.5 * gap);
-    const PairGeometry pair = {{distance, 0, 0}, {1, 0, 0}, distance, sum};
-    const double closing = 0.5 * sum * (to - from) / timestep, change = sum * d / timestep;
-    const PairResistance tangent =
-        tangent_resistance(k, step_resistance(StepResistance::Part::on_the_way, timestep, lubrication),
-                           lubrication, lubrication_range(lubrication, sum), pair, closing);
-    EXPECT_NEAR(tangent.squeeze, (force(from, to + d) - force(from, to - d)) / change,
-                1e-4 * k.squeeze_inverse / lubrication.inner_gap)
-        << from << ' ' << to;
-    EXPECT_DOUBLE_EQ(tangent.shear, mean(from, to).shear);
-    EXPECT_DOUBLE_EQ(tangent.twist_cross, mean(from, to).twist_cross);
+  for (const LubricationParameters& form : forms) {
+    const ResistanceConstants k = resistance_constants(0.1, first, second, form.form);
+    const auto mean = [&](double from, double to) {
+      return pair_resistance(k, modes(form, StepResistance::Part::on_the_way, from, to));
+    };
+    const auto force = [&](double from, double to) {
+      return mean(from, to).squeeze * 0.5 * sum * (to - from) / timestep;
+    };
+    for (const auto& [from, to] : ways) {
+      const double d = 1e-6;
+      const double closing = 0.5 * sum * (to - from) / timestep, change = sum * d / timestep;
+      const PairResistance tangent = tangent_resistance(
+          k, StepResistance{StepResistance::Part::on_the_way, timestep}, lubricated_gap(form, sum),
+          lubrication_range(form, sum), pair_of(form, 0.5 * (from + to)), closing);
+      EXPECT_NEAR(tangent.squeeze, (force(from, to + d) - force(from, to - d)) / change,
+                  1e-4 * k.squeeze_inverse / lubrication.inner_gap)
+          << from << ' ' << to;
+      EXPECT_DOUBLE_EQ(tangent.shear, mean(from, to).shear);
+      EXPECT_DOUBLE_EQ(tangent.twist_cross, mean(from, to).twist_cross);
+    }
   }
 }
 
@@ -81,13 +98,16 @@ TEST(StepResistance, OfAPairAtRestIsThatOfItsGap) {
   const double jump = 1 / lubrication.outer_gap, log_jump = std::log(jump);
   for (const double gap : {-0.02, 0.005, 0.02, 0.09, 0.11}) {
     const double within = gap <= lubrication.outer_gap ? 1 : 0;
-    for (const auto part : {StepResistance::Part::at_beginning, StepResistance::Part::ahead}) {
-      EXPECT_NEAR(modes(part, gap, gap).inverse, inverse(gap) - 0.5 * jump * within, 1e-3) << gap;
-      EXPECT_NEAR(modes(part, gap, gap).logarithm, logarithm_of(gap) - 0.5 * log_jump * within, 1e-5) << gap;
-    }
-    for (const auto part : {StepResistance::Part::whole, StepResistance::Part::on_the_way}) {
-      EXPECT_NEAR(modes(part, gap, gap).inverse, inverse(gap), 1e-3) << gap;
-      EXPECT_NEAR(modes(part, gap, gap).logarithm, logarithm_of(gap), 1e-5) << gap;
+    for (const LubricationParameters& form : forms) {
+      for (const auto part : {StepResistance::Part::at_beginning, StepResistance::Part::ahead}) {
+        const ResistanceModes found = modes(form, part, gap, gap);
+        EXPECT_NEAR(found.inverse, inverse(gap) - 0.5 * jump * within, 1e-3) << gap;
+        EXPECT_NEAR(found.logarithm, logarithm_of(gap) - 0.5 * log_jump * within, 1e-5) << gap;
+      }
+      for (const auto part : {StepResistance::Part::whole, StepResistance::Part::on_the_way}) {
+        EXPECT_NEAR(modes(form, part, gap, gap).inverse, inverse(gap), 1e-3) << gap;
+        EXPECT_NEAR(modes(form, part, gap, gap).logarithm, logarithm_of(gap), 1e-5) << gap;
+      }
     }
   }
 }
@@ -106,9 +126,12 @@ TEST(StepResistance, AheadIsTheMeanOfItsTwoRulesAndHalfOfTheJump) {
       return 0.5 * (average(continuous, from, end) + continuous(root(end))) +
              (from <= outer ? 0.5 * mode(outer) : 0);
     };
-    const ResistanceModes found = modes(StepResistance::Part::ahead, from, to);
-    EXPECT_NEAR(found.inverse, rest(inverse), 1e-6 / inner) << from << ' ' << to;
-    EXPECT_NEAR(found.logarithm, rest(logarithm_of), 1e-6) << from << ' ' << to;
+    const double inverse_there = rest(inverse), logarithm_there = rest(logarithm_of);
+    for (const LubricationParameters& form : forms) {
+      const ResistanceModes found = modes(form, StepResistance::Part::ahead, from, to);
+      EXPECT_NEAR(found.inverse, inverse_there, 1e-6 / inner) << from << ' ' << to;
+      EXPECT_NEAR(found.logarithm, logarithm_there, 1e-6) << from << ' ' << to;
+    }
   }
 }
 
@@ -116,7 +139,7 @@ TEST(StepResistance, AheadIsTheMeanOfItsTwoRulesAndHalfOfTheJump) {
 TEST(StepResistance, AheadIsThatOfTheMiddleToFirstOrder) {
   const double gap = 0.03;
   const auto error = [&](double way) {
-    return modes(StepResistance::Part::ahead, gap - 0.5 * way, gap + 0.5 * way).inverse -
+    return modes(lubrication, StepResistance::Part::ahead, gap - 0.5 * way, gap + 0.5 * way).inverse -
            (1 / gap - 0.5 / lubrication.outer_gap);
   };
   for (const double sign : {-1, 1}) {
