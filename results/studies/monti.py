@@ -15,8 +15,13 @@ ATTRACTION_REGULARISATION = 0.01  # eps over the pair's radius
 ATTRACTION_RANGE, PUBLISHED_RANGE = 0.5, 4
 
 
-def lubrication(outer, inner=REGULARISATION):
+def lubrication(outer, regularisation=REGULARISATION):
     """The block, with terms for surfaces nearer than `outer`."""
+    return {"form": "mari", "regularisation": regularisation, "outer_distance": outer}
+
+
+def kim_karrila(outer, inner=REGULARISATION):
+    """The block of the other studies, with the same gaps of two spheres of radius 1."""
     return {"form": "kim-karrila", "inner_gap": inner, "outer_gap": outer}
 
 
@@ -77,5 +82,6 @@ def in_units(scene, viscosity, rate, length):
             "fluid": {"viscosity": scene["fluid"]["viscosity"] * viscosity},
             "flow": {"shear_rate": scene["flow"]["shear_rate"] * rate},
             "contact": {"normal_stiffness": stiffness, "normal_damping": damping},
+            "lubrication": {"outer_distance": scene["lubrication"]["outer_distance"] * length},
         },
     )
