@@ -24,11 +24,11 @@ import numpy as np
 TITLE = "A wave in the shear of Monti et al."
 FRACTION, SHARE, LARGE = 0.5, 0.2, 3.0  # V2/V1 = 0.25
 COUNT, SMALL_COUNT = 65536, 8192
-AMPLITUDE, STRAIN, SKIPPED = 20, 8, 2  # the wave at N = 65536; the window from the start, and what means leave out
-BLOCKS, QUARTERS = 32, 4
+AMPLITUDE, STRAIN = 20, 6  # the wave at N = 65536; the window, from the start
+BLOCKS, QUARTERS, PARTS = 32, 4, 6  # of the window; of its last three quarters, of which means are
 # Touching forces F_R + F_A of the small spheres and F_R/F_A, at rate = rate_0.
 FORCES = {"table": (1.0, TABLE_RATIO), "program": (DRAG, PROGRAM_RATIO)}
-SEEDS = 8
+SEEDS = 4
 # Runs: spheres, forces, whether there is a wave, and whether the spheres feel its curvature.
 RUNS = [
     *((SMALL_COUNT, forces, wave, True) for forces in FORCES for wave in (False, True)),
@@ -85,9 +85,10 @@ def results_of(program, name, patch, seeds):
 
 
 def later_mean(result):
-    """Of eta_r from a strain of 2 on, and its standard error within the run: of means over a unit of strain."""
-    series = np.array(result["blocks"]["relative_viscosity"])[SKIPPED * BLOCKS // STRAIN :]
-    return estimate(series.reshape(STRAIN - SKIPPED, -1).mean(axis=1))
+    """Of eta_r over the last three quarters of the window, and its standard error within the run: of means over six
+    parts, which are 0.75 of strain."""
+    series = np.array(result["blocks"]["relative_viscosity"])[BLOCKS // QUARTERS :]
+    return estimate(series.reshape(PARTS, -1).mean(axis=1))
 
 
 def mean_of(results):
@@ -156,7 +157,7 @@ def row_of(run, results, paths):
 
 
 def ratio_statement(text, source, above, below, low, high, essential=True):
-    degrees = min(r["seeds"] if r["seeds"] > 1 else STRAIN - SKIPPED for r in (above, below)) - 1
+    degrees = min(r["seeds"] if r["seeds"] > 1 else PARTS for r in (above, below)) - 1
     ratio = quotient(number(above, "viscosity"), number(below, "viscosity"))
     return Statement(text, source, *ratio, low, high, degrees, essential)
 
