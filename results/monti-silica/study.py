@@ -41,12 +41,12 @@ SCENE = merged(
 # rate / rate_0 with rate_0 = (F_R + F_A) / (eta a^2).
 RATES = [10 ** (k / 2) for k in (-10, -8, *range(-6, 3))]
 SEEDS = 6
-SLOPE_RATES, SLOPE_SEEDS = [10**-0.5, 10**0.5], 32  # on both sides of 1
-SCANNED = {SALTED: (PROGRAM_RATIO, 3, 1, 0.5, 0.2), FREE: (PROGRAM_RATIO, 3, 1)}
-SCAN_RATES, SCAN_SEEDS = [1e-4, 1e-3, 1e-2, 0.1, 1, 10], 4
+SLOPE_RATES, SLOPE_SEEDS = [10**-0.5, 10**0.5], 24  # on both sides of 1
+SCANNED = {SALTED: (PROGRAM_RATIO, 3, 1, 0.5), FREE: (PROGRAM_RATIO, 1)}
+SCAN_RATES, SCAN_SEEDS = [1e-4, 1e-3, 1e-2, 0.1, 1, 10], 3
 OTHER_LENGTH = 0.005  # of 0.4 M, another rounding
 CHECKED, CHECK_SEEDS = [(FREE, 1e-5), (SALTED, 1e-5), (FREE, 0.1)], 4
-SHORT = during({"strain": 1}, {"strain": 3})
+SHORT = {"particles": {"count": 200}, **during({"strain": 1}, {"strain": 3})}
 # Where attraction wins at contact, contacts are so stiff that it presses them by a hundredth of a radius.
 STIFFNESS, STIFFNESS_OVER_ATTRACTION = 4e5, 100
 
@@ -121,7 +121,8 @@ def slope_statements(rows, ends):
 
 
 def change(program, name, case, patch=None, **others):
-    """The relative change of the viscosity of the same packings over short windows, and its degrees of freedom."""
+    """The relative change of the viscosity of the same packings of 200 spheres, over short windows, and its degrees of
+    freedom."""
     points = []
     for kind, block, more in (("", {}, {}), ("-changed", patch or {}, others)):
         length, rate = case
@@ -171,7 +172,7 @@ def draw(rows):
         points = [(r["rate"], *number(r, "viscosity")) for r in curve_of(rows, length, TABLE_RATIO)]
         panel.points(points, f"{SALTS[length]}, λ = {length} a", colour, 7, 0.8, joined=True)
     panel = figure.panel("γ̇/γ̇_0, F(0) = F_R + F_A", "η_r", f"λ = {SALTED} a (0.4 M)", **ends)
-    for ratio, colour in zip((TABLE_RATIO, *SCANNED[SALTED]), (RED, ORANGE, GREEN, BLUE, PURPLE, GREY)):
+    for ratio, colour in zip((TABLE_RATIO, *SCANNED[SALTED]), (RED, ORANGE, GREEN, BLUE, PURPLE)):
         points = [(r["rate"], *number(r, "viscosity")) for r in curve_of(rows, SALTED, ratio)]
         panel.points(points, f"F_R/F_A = {ratio}", colour, 7, 0.8, joined=True)
     figure.draw()
