@@ -24,7 +24,8 @@ import numpy as np
 TITLE = "A wave in the shear of Monti et al."
 FRACTION, SHARE, LARGE = 0.5, 0.2, 3.0  # V2/V1 = 0.25
 COUNT, SMALL_COUNT, SMALLEST_COUNT = 65536, 8192, 2048
-AMPLITUDE, STRAIN = 20, 6  # the wave at N = 65536; the window, from the start
+AMPLITUDE = 20  # of the wave at N = 65536
+STRAIN, LARGE_STRAIN = 6, 3  # of the window, from the start; of N = 65536
 BLOCKS, QUARTERS, PARTS = 32, 4, 6  # of the window; of its last three quarters, of which means are
 # Touching forces F_R + F_A of the small spheres and F_R/F_A, at rate = rate_0.
 FORCES = {"table": (1.0, TABLE_RATIO), "program": (DRAG, PROGRAM_RATIO)}
@@ -45,9 +46,12 @@ SCENE = merged(
         "lubrication": lubrication(0.25),
         "observables": ["profiles"],
         "files": {"final_configuration": True},
-        **during({"strain": 0}, {"strain": STRAIN}),
     },
 )
+
+
+def strain_of(count):
+    return LARGE_STRAIN if count == COUNT else STRAIN
 
 
 def edge(count):
@@ -67,6 +71,7 @@ def patch_of(count, forces, wave, faxen=True):
     if wave:
         flow |= {"waves": [{"periods": 1, "sine": amplitude(count)}], "faxen": faxen}
     return {
+        **during({"strain": 0}, {"strain": strain_of(count)}),
         "particles": {"count": count},
         "flow": flow,
         "profiles": {"bins": round(edge(count) / 2)},
@@ -77,7 +82,7 @@ def patch_of(count, forces, wave, faxen=True):
 def results_of(program, name, patch, seeds):
     """Whole results of one point, by seed, and the paths of their final configurations."""
     if seeds == 1:
-        result = program.run_alone(name, merged(SCENE, patch), threads=2)
+        result = program.run_alone(name, merged(SCENE, patch), threads=1)
         return [result], [os.path.join(program.folder, f"{name}.final.xyz")]
     (point,) = program.run(name, merged(SCENE, patch), [{"/volume_fraction": FRACTION}], seeds)
     (results,) = program.stored_results(name)
@@ -88,7 +93,7 @@ def results_of(program, name, patch, seeds):
 
 def later_mean(result):
     """Of eta_r over the last three quarters of the window, and its standard error within the run: of means over six
-    parts, which are 0.75 of strain."""
+    parts."""
     series = np.array(result["blocks"]["relative_viscosity"])[BLOCKS // QUARTERS :]
     return estimate(series.reshape(PARTS, -1).mean(axis=1))
 
@@ -154,7 +159,7 @@ def row_of(run, results, paths):
     small, large = zip(*(shares_where_slow(path) for path in paths))
     row |= entries("small_slow", estimate(small)) | entries("large_slow", estimate(large))
     row["soft"] = sum(r["largest_overlap"] > 0.01 for r in results)
-    row["processor_seconds"] = np.mean([r["cost"]["cpu_seconds"] for r in results]) / STRAIN
+    row["processor_seconds"] = np.mean([r["cost"]["cpu_seconds"] for r in results]) / strain_of(count)
     return row
 
 
@@ -216,14 +221,21 @@ def rates_of(velocity, count):
     return np.arange(1, bins + 1) / bins, 1 + (np.roll(velocity, -1) - velocity) * bins / edge(count)
 
 
+def strains_of(run):
+    """In the middle of the blocks."""
+    return ((np.arange(BLOCKS) + 0.5) * strain_of(run[0]) / BLOCKS).tolist()
+
+
 def write_tables(rows, series, profiles):
     names = ["count", "forces", "wave", "faxen", "seeds", "soft", *columns_of("viscosity", "followed", "gathered")]
     names += [*columns_of("small_slow", "large_slow"), "processor_seconds"]
     write_table(HERE / "table.csv", names, rows.values(), 4)
-    strains = (np.arange(BLOCKS) + 0.5) * STRAIN / BLOCKS
-    columns = [name_of(run) for run in series]
-    lines = [dict(zip(["strain", *columns], map(float, line))) for line in zip(strains, *series.values())]
-    write_table(HERE / "series.csv", ["strain", *columns], lines, 5)
+    lines = [
+        {"run": name_of(run), "strain": strain, "viscosity": float(viscosity)}
+        for run, values in series.items()
+        for strain, viscosity in zip(strains_of(run), values)
+    ]
+    write_table(HERE / "series.csv", ["run", "strain", "viscosity"], lines, 5)
     lines = []
     for run, (volume, velocity) in profiles.items():
         for k, (fraction, speed) in enumerate(zip(volume, velocity)):
@@ -236,13 +248,14 @@ def draw(series, profiles):
     figure = Figure(HERE / "chart.png", columns=3, size=(1300, 430))
     still, waved = (COUNT, "table", False, True), (COUNT, "table", True, True)
     small = [(SMALL_COUNT, "table", wave, True) for wave in (False, True)]
-    strains = (np.arange(BLOCKS) + 0.5) * STRAIN / BLOCKS
     panel = figure.panel("strain", "η_r", "φ = 0.5, μ = 1", key="bottom right", x_range=(0, STRAIN), y_range=(0, None))
     for run, colour in ((still, BLUE), (waved, RED)):
-        panel.line(zip(strains, series[run]), f"N = {COUNT}, {'with' if run[2] else 'no'} wave", colour, width=2)
+        panel.line(
+            zip(strains_of(run), series[run]), f"N = {COUNT}, {'with' if run[2] else 'no'} wave", colour, width=2
+        )
     for run, colour in zip(small, (BLUE, RED)):
         title = f"N = {SMALL_COUNT}, {'with' if run[2] else 'no'} wave, {RUNS[run]} seeds"
-        panel.line(zip(strains, series[run]), title, colour, dash=2)
+        panel.line(zip(strains_of(run), series[run]), title, colour, dash=2)
     panel = figure.panel("y / L", "local rate / mean rate", key="top center", x_range=(0, 1), y_range=(-1, 4))
     wave = AMPLITUDE * 2 * math.pi / edge(COUNT)
     panel.curve(lambda y: 1 + wave * math.cos(2 * math.pi * y), "of the fluid (published)", BLACK)
