@@ -100,15 +100,15 @@ def shape_statements(rows):
         curve = curve_of(rows, length, ratio)
         degrees = curve[0]["seeds"] - 1
         text = f"{SALTS[length]}, F_R/F_A = {ratio}: η_r at the lowest rate over the least: thinning"
-        yield Statement(text, "expected", *over_least(curve, 0), 1.05, math.inf, degrees, essential=False)
+        yield Statement(text, "expected", *over_least(curve, 0), 1.1, math.inf, degrees, essential=False)
     curve = curve_of(rows, FREE, TABLE_RATIO)
     text = f"salt-free, F_R/F_A = {TABLE_RATIO}: η_r at the highest rate over the least: thickening"
-    yield Statement(text, "expected", *over_least(curve, -1), low=1.05, degrees=degrees, essential=False)
+    yield Statement(text, "expected", *over_least(curve, -1), low=1.1, degrees=degrees, essential=False)
     for ratio in (TABLE_RATIO, *SCANNED[SALTED]):
         curve = curve_of(rows, SALTED, ratio)
         text = f"0.4 M, F_R/F_A = {ratio}: η_r at the highest rate over the least (1: no thickening)"
         found = over_least(curve, -1)
-        yield Statement(text, "expected", *found, high=1.05, degrees=curve[0]["seeds"] - 1, essential=False)
+        yield Statement(text, "expected", *found, high=1.1, degrees=curve[0]["seeds"] - 1, essential=False)
 
 
 def slope_statements(rows, ends):
