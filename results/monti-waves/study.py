@@ -13,7 +13,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
 from studies.estimates import estimate, quotient, relative_difference
-from studies.figure import BLACK, BLUE, GREY, RED, Figure
+from studies.figure import BLACK, BLUE, GREEN, RED, Figure
 from studies.monti import DRAG, PROGRAM_RATIO, SCENE, TABLE_RATIO, contact, electrochemistry, lubrication, spheres
 from studies.scenes import during, merged
 from studies.tables import columns_of, entries, number, write_table
@@ -36,9 +36,8 @@ RUNS = {
     (SMALL_COUNT, "table", True, False): 2,
     (SMALLEST_COUNT, "program", False, True): 4,
     (SMALLEST_COUNT, "program", True, True): 4,
-    (COUNT, "table", False, True): 1,
-    (COUNT, "table", True, True): 1,
 }
+LARGE_RUNS = {(COUNT, "table", False, True): 1, (COUNT, "table", True, True): 1}  # with --long
 SCENE = merged(
     merged(SCENE, spheres(SMALL_COUNT, FRACTION, LARGE, SHARE)),
     {
@@ -170,7 +169,9 @@ def ratio_statement(text, source, above, below, low, high, essential=True):
 
 
 def statements_of(rows, by_seed):
-    for count, forces in ((COUNT, "table"), (SMALL_COUNT, "table"), (SMALLEST_COUNT, "program")):
+    for count, forces, wave, faxen in rows:
+        if not wave or not faxen:
+            continue
         text = f"N = {count}, forces of the {forces}: η_r with the wave over that without"
         above, below = rows[count, forces, True, True], rows[count, forces, False, True]
         yield ratio_statement(text, "M fig 10", above, below, 0, 1)
@@ -204,7 +205,7 @@ def name_of(run):
 
 def measure(program):
     rows, by_seed, series, profiles = {}, {}, {}, {}
-    for run, seeds in RUNS.items():
+    for run, seeds in (RUNS | (LARGE_RUNS if program.long else {})).items():
         results, paths = results_of(program, name_of(run), patch_of(*run), seeds)
         rows[run] = row_of(run, results, paths)
         by_seed[run] = {r["seed"]: later_mean(r)[0] for r in results}
@@ -246,30 +247,26 @@ def write_tables(rows, series, profiles):
 
 def draw(series, profiles):
     figure = Figure(HERE / "chart.png", columns=3, size=(1300, 430))
-    still, waved = (COUNT, "table", False, True), (COUNT, "table", True, True)
-    small = [(SMALL_COUNT, "table", wave, True) for wave in (False, True)]
-    panel = figure.panel("strain", "η_r", "φ = 0.5, μ = 1", key="bottom right", x_range=(0, STRAIN), y_range=(0, None))
-    for run, colour in ((still, BLUE), (waved, RED)):
-        panel.line(
-            zip(strains_of(run), series[run]), f"N = {COUNT}, {'with' if run[2] else 'no'} wave", colour, width=2
-        )
-    for run, colour in zip(small, (BLUE, RED)):
-        title = f"N = {SMALL_COUNT}, {'with' if run[2] else 'no'} wave, {RUNS[run]} seeds"
-        panel.line(zip(strains_of(run), series[run]), title, colour, dash=2)
+    shown = [run for run in series if run[3]]
+    colours = {COUNT: RED, SMALL_COUNT: BLUE, SMALLEST_COUNT: GREEN}
+    ends = {"x_range": (0, STRAIN), "y_range": (0, None)}
+    panel = figure.panel("strain", "η_r", "φ = 0.5, μ = 1", key="bottom right", **ends)
+    for run in shown:
+        count, forces, wave, _ = run
+        title = f"N = {count}, {forces}, {'with' if wave else 'no'} wave"
+        panel.line(zip(strains_of(run), series[run]), title, colours[count], dash=1 if wave else 2, width=2)
     panel = figure.panel("y / L", "local rate / mean rate", key="top center", x_range=(0, 1), y_range=(-1, 4))
-    wave = AMPLITUDE * 2 * math.pi / edge(COUNT)
-    panel.curve(lambda y: 1 + wave * math.cos(2 * math.pi * y), "of the fluid (published)", BLACK)
-    for run, colour in ((waved, RED), (small[1], GREY)):
-        panel.line(zip(*rates_of(profiles[run][1], run[0])), f"of the spheres, N = {run[0]}", colour, width=2)
+    published = AMPLITUDE * 2 * math.pi / edge(COUNT)
+    panel.curve(lambda y: 1 + published * math.cos(2 * math.pi * y), "of the fluid (published)", BLACK)
+    waved = [run for run in shown if run[2]]
+    for run in waved:
+        panel.line(zip(*rates_of(profiles[run][1], run[0])), f"of the spheres, N = {run[0]}", colours[run[0]], width=2)
     panel = figure.panel("y / L", "volume fraction", key="bottom right", x_range=(0, 1), y_range=(0.4, 0.6))
-    for run, title, colour in (
-        (still, f"N = {COUNT}, no wave", BLUE),
-        (waved, f"N = {COUNT}, with wave", RED),
-        (small[1], f"N = {SMALL_COUNT}, with wave", GREY),
-    ):
+    for run in [r for r in shown if r[0] == SMALL_COUNT and not r[2]] + waved:
         volume = profiles[run][0]
         heights = (np.arange(len(volume)) + 0.5) / len(volume)
-        panel.line(zip(heights, volume), title, colour, width=2)
+        title = f"N = {run[0]}, {'with' if run[2] else 'no'} wave"
+        panel.line(zip(heights, volume), title, colours[run[0]], dash=1 if run[2] else 2, width=2)
     figure.draw()
 
 
