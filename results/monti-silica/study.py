@@ -45,7 +45,7 @@ SLOPE_RATES, SLOPE_SEEDS = [10**-0.5, 10**0.5], 24  # on both sides of 1
 SCANNED = {SALTED: (PROGRAM_RATIO, 3, 1, 0.5), FREE: (PROGRAM_RATIO, 1)}
 SCAN_RATES, SCAN_SEEDS = [1e-4, 1e-3, 1e-2, 0.1, 1, 10], 3
 OTHER_LENGTH = 0.005  # of 0.4 M, another rounding
-CHECKED, CHECK_SEEDS = [(FREE, 1e-5), (SALTED, 1e-5), (FREE, 0.1)], 4
+CHECKED, CHECK_SEEDS = [(FREE, 1e-5), (SALTED, 1e-5), (FREE, 0.1)], 8
 SHORT = {"particles": {"count": 200}, **during({"strain": 1}, {"strain": 3})}
 # Where attraction wins at contact, contacts are so stiff that it presses them by a hundredth of a radius.
 STIFFNESS, STIFFNESS_OVER_ATTRACTION = 4e5, 100
