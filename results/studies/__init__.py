@@ -7,6 +7,7 @@
     fits           lines and curves through such numbers
     published      fits that others have published
     speed_accuracy    the panels of results/speed-accuracy, and the columns of its tables
+    monti          scenes of the suspensions of Monti et al. (2021)
     green_kubo     the viscosity at rest from the correlation of the structural Brownian stress
     tables         csv files
     figure         pictures

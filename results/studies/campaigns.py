@@ -70,6 +70,23 @@ class Program:
         self.processor_seconds += sum(r["cost"]["cpu_seconds"] for r in realisations)
         return export["points"]
 
+    def run_alone(self, name, scene, threads):
+        """Runs seed 0 of a scene without a campaign and returns its whole result, with blocks; NAME.final.xyz beside it
+        has what the scene leaves."""
+        path, output = (os.path.join(self.folder, f"{name}.{kind}") for kind in ("scene.json", "json"))
+        if not os.path.exists(output):
+            with open(path, "w") as f:
+                json.dump(scene, f, indent=1)
+            arguments = ["--threads", str(threads), "--checkpoint", output + ".checkpoint", "--output", output]
+            done = subprocess.run([self.engine, "run", path, "--quiet", *arguments])
+            if done.returncode != 0:
+                sys.exit(f"{path}: peclet-engine run ended with {done.returncode}")
+        with open(output) as f:
+            result = json.load(f)
+        self.commits.add(result["engine"]["git_commit"][:7] + ("+" if result["engine"]["git_dirty"] else ""))
+        self.processor_seconds += result["cost"]["cpu_seconds"]
+        return result
+
     def stored_results(self, name):
         """Of a campaign that run() made: the whole results, with blocks, of every point in the order of its settings;
         those that have means."""

@@ -2,6 +2,7 @@
 import math
 
 import numpy as np
+from scipy.optimize import curve_fit
 
 
 def line_through(x, y, errors):
@@ -39,3 +40,24 @@ def log_minimum(abscissae, values):
         x[[lowest - 1, lowest + 1]],
     )
     return float((ends[0] + x[lowest]) / 2 - left * (ends[1] - ends[0]) / 2 / (right - left))
+
+
+def divergence(fractions, numbers, start):
+    """c, phi_J and lambda of c (1 - phi / phi_J)^-lambda through numbers with errors: least squares in the logarithm
+    with weights 1 / (relative error)^2, from the three of `start`. Each has its standard error, multiplied by the root
+    of chi^2 per degree of freedom where that is above 1: then the form, not the noise, is what is left."""
+    fractions, (values, errors) = np.asarray(fractions, float), np.transpose(numbers)
+
+    def logarithm(fraction, factor, jammed, exponent):
+        return factor - exponent * np.log1p(-fraction / jammed)
+
+    weights = errors / values
+    guess = (math.log(start[0]), max(start[1], fractions.max() + 0.005), start[2])
+    bounds = (-np.inf, fractions.max() + 1e-6, 0), (np.inf, 1, np.inf)
+    found, covariance = curve_fit(
+        logarithm, fractions, np.log(values), guess, weights, absolute_sigma=True, bounds=bounds
+    )
+    left = np.square((np.log(values) - logarithm(fractions, *found)) / weights).sum() / max(len(values) - 3, 1)
+    wide = np.sqrt(np.diag(covariance) * max(left, 1))
+    factor = math.exp(found[0])
+    return (factor, float(factor * wide[0])), (float(found[1]), float(wide[1])), (float(found[2]), float(wide[2]))

@@ -1,10 +1,14 @@
 """Fits to viscosities that others have published."""
 
 
+# c, phi_J and lambda of c (1 - phi / phi_J)^-lambda, relative viscosities without noise, with solvent and stresslet, by
+# friction coefficient: Mari et al. (2014), as Monti et al. (2021) quote them.
+MARI_FITS = {0: (1.4, 0.66, 1.6), 1: (0.71, 0.575, 2.3)}
+
+
 def mari_fit(fraction, friction):
-    """Relative viscosity without noise, with solvent and stresslet: Mari et al. (2014) without friction and with a
-    coefficient of 1, as Monti et al. (2021) quote them."""
-    return 0.71 * (1 - fraction / 0.575) ** -2.3 if friction else 1.4 * (1 - fraction / 0.66) ** -1.6
+    factor, jammed, exponent = MARI_FITS[friction]
+    return factor * diverging(fraction, jammed, exponent)
 
 
 def diverging(fraction, jammed, exponent=1.5):

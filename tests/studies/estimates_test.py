@@ -21,7 +21,7 @@ from studies.estimates import (
     student_quantile,
     weighted_mean,
 )
-from studies.fits import line_through, lines, log_minimum, multiples
+from studies.fits import divergence, line_through, lines, log_minimum, multiples
 from studies.green_kubo import fit_with_errors, fitted
 from studies.published import JAMMED_AT_REST, diverging, mari_fit
 from studies.tables import columns_of, markdown_head, markdown_row, number_text
@@ -143,6 +143,27 @@ class Fits(unittest.TestCase):
     def test_the_minimum_at_an_end_is_that_point(self):
         self.assertEqual(log_minimum([1, 10, 100], [1, 2, 3]), 0)
         self.assertEqual(log_minimum([1, 10, 100], [3, 2, 1]), 2)
+
+    def test_a_divergence_is_found_with_the_errors_that_redrawing_gives(self):
+        fractions = np.array([0.3, 0.4, 0.45, 0.5, 0.55])
+        values = diverging(fractions, 0.66, 1.6) * 1.4
+        exact = divergence(fractions, [(v, 0.01 * v) for v in values], (1, 0.62, 2))
+        for (found, _), true in zip(exact, (1.4, 0.66, 1.6)):
+            self.assertAlmostEqual(found, true, delta=1e-4 * true)
+        draws = np.random.default_rng(1).normal(values, 0.01 * values, (300, 5))
+        for k, (_, error) in enumerate(exact):
+            weighted = [
+                divergence(fractions, [(v, 0.01 * w) for v, w in zip(d, values)], (1.4, 0.66, 1.6)) for d in draws
+            ]
+            self.assertAlmostEqual(np.std([w[k][0] for w in weighted]) / error, 1, delta=0.2)
+
+    def test_a_divergence_that_is_none_has_wider_errors(self):
+        fractions, bent = [0.3, 0.4, 0.5, 0.55, 0.57], [3, 6, 20, 30, 200]
+        narrow, exact = (
+            divergence(fractions, [(v, 0.01 * v) for v in values], (1, 0.6, 2))
+            for values in (bent, diverging(np.array(fractions), 0.6, 2))
+        )
+        self.assertGreater(narrow[1][1], 3 * exact[1][1])
 
     def test_a_relaxing_viscosity_is_found_within_the_grid(self):
         times = np.geomspace(1e-3, 10, 200)

@@ -87,6 +87,41 @@ TEST(VelocityVerlet, SpheresRelaxToTheStreamingFlow) {
   EXPECT_NEAR(p.angular_velocity[0].z, -0.35, 1e-12);
 }
 
+// Two unit spheres with a gap of 0.01 that move slowly along the line of their centres, apart from each other
+// or, without lubrication, each for itself: their velocity falls as exp(-l t), l = (zeta + 2 X_A) / m. X_A =
+// 6 pi eta (1 / (4 xi) + 9/40 ln(1 / xi)), Jeffrey & Onishi (1984) as Li, Royer & Ness (2023) have it. Its
+// error at t = 1 / l, relative.
+double error_of_slowing(bool lubrication, int steps) {
+  Physics physics;
+  physics.viscosity = 0.1;
+  if (lubrication) physics.lubrication = LubricationParameters{};
+  System system = system_of(physics, {1, 1}, {20, 20, 20});
+  constexpr double speed = 1e-9, gap = 0.01;
+  system.particles.position.set(0, {10, 10, 10});
+  system.particles.position.set(1, {12 + gap, 10, 10});
+  system.particles.velocity.set(0, {-speed, 0, 0});
+  system.particles.velocity.set(1, {speed, 0, 0});
+  const double drag = 6 * pi * 0.1, squeeze = drag * (0.25 / gap - 9.0 / 40 * std::log(gap));
+  const double rate = (drag + (lubrication ? 2 * squeeze : 0)) / system.particles.mass[0];
+  VelocityVerlet integrator = integrator_of(physics, system, 1 / rate / steps);
+  integrator.start(system);
+  for (int step = 0; step < steps; ++step) integrator.advance(system);
+  return std::abs(system.particles.velocity[1].x / speed * std::exp(1.0) - 1);
+}
+
+// Resistances act on velocities of half a step before: U(n + 1/2) = (1 - l dt) U(n - 1/2).
+TEST(VelocityVerlet, IsOfFirstOrderForDragAndLubrication) {
+  for (const bool lubrication : {false, true}) {
+    double coarse = error_of_slowing(lubrication, 40);
+    EXPECT_LT(coarse, 0.05);
+    for (const int steps : {80, 160, 320}) {
+      const double fine = error_of_slowing(lubrication, steps);
+      EXPECT_NEAR(std::log2(coarse / fine), 1, 0.05) << steps;
+      coarse = fine;
+    }
+  }
+}
+
 // Two equal spheres in a box that is a little shorter than four radii touch each other on both sides: a
 // harmonic oscillator w^2 = 2 k_n (1/m + 1/m), damped by drag alone at zeta / m. Largest amplitude after many
 // steps, in units of the first.

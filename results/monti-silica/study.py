@@ -1,0 +1,194 @@
+#!/usr/bin/python3
+"""Flow curves of silica spheres that repel and attract each other, with two concentrations of salt, of Monti et al.
+(2021), Fig. 8.
+
+study.py BIN [FOLDER] [--quick]
+"""
+import math
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from studies.command_line import main
+from studies.estimates import logarithm, over, propagated, quotient, relative_difference
+from studies.figure import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
+from studies.monti import (
+    DRAG,
+    PROGRAM_RATIO,
+    PUBLISHED_RANGE,
+    SCENE,
+    TABLE_RATIO,
+    contact,
+    electrochemistry,
+    lubrication,
+    spheres,
+)
+from studies.published import mari_fit
+from studies.scenes import during, merged
+from studies.tables import columns_of, number, write_table
+from studies.verdicts import Statement
+from studies.viscosities import completed, flags, values_by_seed, viscosity_row
+
+TITLE = "Silica with two concentrations of salt"
+FRACTION, FRICTION = 0.46, 0.5
+SALTS = {0.0214: "salt-free", 0.0048: "0.4 M"}  # by the Debye length: 9 and 2 nm of 420
+FREE, SALTED = SALTS
+SCENE = merged(
+    merged(SCENE, spheres(512, FRACTION, 1.1, 0.5)),
+    {"lubrication": lubrication(0.15), **during({"strain": 2}, {"strain": 8})},
+)
+# rate / rate_0 with rate_0 = (F_R + F_A) / (eta a^2).
+RATES = [10 ** (k / 2) for k in (-10, -8, *range(-6, 3))]
+SEEDS = 6
+SLOPE_RATES, SLOPE_SEEDS = [10**-0.5, 10**0.5], 24  # on both sides of 1
+SCANNED = {SALTED: (PROGRAM_RATIO, 3, 1, 0.5), FREE: (PROGRAM_RATIO, 1)}
+SCAN_RATES, SCAN_SEEDS = [1e-4, 1e-3, 1e-2, 0.1, 1, 10], 3
+OTHER_LENGTH = 0.005  # of 0.4 M, another rounding
+CHECKED, CHECK_SEEDS = [(FREE, 1e-5), (SALTED, 1e-5), (FREE, 0.1)], 8
+SHORT = {"particles": {"count": 200}, **during({"strain": 1}, {"strain": 3})}
+# Where attraction wins at contact, contacts are so stiff that it presses them by a hundredth of a radius.
+STIFFNESS, STIFFNESS_OVER_ATTRACTION = 4e5, 100
+
+
+def patch_of(rate, length, ratio, **others):
+    """Of one point; forces are in units of the viscosity and the rate."""
+    force = 1 / rate
+    stiffness = max(STIFFNESS, STIFFNESS_OVER_ATTRACTION * force / (1 + ratio))
+    return {"contact": contact(stiffness, FRICTION), **electrochemistry(force, ratio, length, **others)}
+
+
+def rows_of(program, name, cases, seeds, patch=None, **others):
+    """Rows of (Debye length, F_R / F_A, rate / rate_0)."""
+    patches = [patch_of(rate, length, ratio, **others) for length, ratio, rate in cases]
+    settings = [{f"/{key}": block for key, block in p.items()} for p in patches]
+    scene = merged(merged(SCENE, patches[0]), patch or {})
+    points = program.run(name, scene, settings, seeds)
+    return [row_of(case, point) for case, point in zip(cases, points)]
+
+
+def row_of(case, point):
+    length, ratio, rate = case
+    row = {"length": length, "ratio": ratio, "rate": rate}
+    row["rate_of_difference"] = rate * (ratio + 1) / (ratio - 1) if ratio > 1 else math.nan
+    row["rate_of_drag"] = rate * DRAG
+    row |= viscosity_row(point, "contacts_per_particle")
+    attraction = [m["stress"]["attraction"][3] for m in completed(point)]
+    row["attraction"] = sum(attraction) / len(attraction) if attraction else math.nan
+    row["soft"] = flags(point["realisations"])["overlap"]
+    return row
+
+
+def curve_of(rows, length, ratio):
+    chosen = [r for r in rows if (r["length"], r["ratio"]) == (length, ratio)]
+    return sorted(chosen, key=lambda r: r["rate"])
+
+
+def slope(low, high):
+    """d ln eta / d ln rate between two rows."""
+    rise = logarithm(quotient(number(high, "viscosity"), number(low, "viscosity")))
+    return over(rise, math.log(high["rate"] / low["rate"]))
+
+
+def over_least(curve, end):
+    """The viscosity at one end over the least of the curve."""
+    return propagated([number(r, "viscosity") for r in curve], lambda values: values[end] / min(values))
+
+
+def shape_statements(rows):
+    for length, ratio in ((FREE, TABLE_RATIO), (SALTED, TABLE_RATIO)):
+        curve = curve_of(rows, length, ratio)
+        degrees = curve[0]["seeds"] - 1
+        text = f"{SALTS[length]}, F_R/F_A = {ratio}: η_r at the lowest rate over the least: thinning"
+        yield Statement(text, "expected", *over_least(curve, 0), 1.1, math.inf, degrees, essential=False)
+    curve = curve_of(rows, FREE, TABLE_RATIO)
+    text = f"salt-free, F_R/F_A = {TABLE_RATIO}: η_r at the highest rate over the least: thickening"
+    yield Statement(text, "expected", *over_least(curve, -1), low=1.1, degrees=degrees, essential=False)
+    for ratio in (TABLE_RATIO, *SCANNED[SALTED]):
+        curve = curve_of(rows, SALTED, ratio)
+        text = f"0.4 M, F_R/F_A = {ratio}: η_r at the highest rate over the least (1: no thickening)"
+        found = over_least(curve, -1)
+        yield Statement(text, "expected", *found, high=1.1, degrees=curve[0]["seeds"] - 1, essential=False)
+
+
+def slope_statements(rows, ends):
+    by_rate = {round(2 * math.log10(r["rate"])): r for r in curve_of(rows, FREE, TABLE_RATIO)}
+    text = "salt-free: d ln η_r/d ln γ̇ at γ̇/γ̇₀ = 1"
+    found = slope(*ends)
+    yield Statement(f"{text}, F(0) = (F_R ± F_A)/(η a²)", "M 4.2", *found, 0, math.inf, ends[0]["seeds"] - 1)
+    found = slope(by_rate[-3], by_rate[-2])
+    yield Statement(f"{text}, F(0) = (F_R + F_A)/(6π η a²)", "program", *found, 0, math.inf, SEEDS - 1)
+
+
+def change(program, name, case, patch=None, **others):
+    """The relative change of the viscosity of the same packings of 200 spheres, over short windows, and its degrees of
+    freedom."""
+    points = []
+    for kind, block, more in (("", {}, {}), ("-changed", patch or {}, others)):
+        length, rate = case
+        scene = merged(merged(SCENE, patch_of(rate, length, TABLE_RATIO, **more)), merged(SHORT, block))
+        points += program.run(name + kind, scene, [{"/volume_fraction": FRACTION}], CHECK_SEEDS)
+    reference, changed = (values_by_seed(p["realisations"]) for p in points)
+    return relative_difference(changed, reference, paired=True)
+
+
+def method_statements(program):
+    for length, rate in CHECKED:
+        automatic = program.derived(merged(SCENE, patch_of(rate, length, TABLE_RATIO)))["timestep"]
+        name = f"steps-{length:g}-{rate:g}"
+        *found, degrees = change(program, name, (length, rate), {"integrator": {"timestep": automatic / 2}})
+        text = f"{SALTS[length]}, rate {rate:g}: change of η_r with half of the automatic step of {automatic:.1e}"
+        yield Statement(text, "method", *found, -0.05, 0.05, degrees)
+    for length in SALTS:
+        *found, degrees = change(program, f"range-{length:g}", (length, 1e-5), attraction_range=PUBLISHED_RANGE)
+        text = f"{SALTS[length]}, rate 1e-05: change of η_r with attraction to 4 a, not to 0.5 a"
+        yield Statement(text, "method", *found, -0.1, 0.1, degrees)
+
+
+def measure(program):
+    rows = rows_of(program, "curves", [(d, TABLE_RATIO, x) for d in SALTS for x in RATES], SEEDS)
+    scans = [(d, ratio, x) for d, ratios in SCANNED.items() for ratio in ratios for x in SCAN_RATES]
+    rows += rows_of(program, "scan", [*scans, *((OTHER_LENGTH, TABLE_RATIO, x) for x in SCAN_RATES)], SCAN_SEEDS)
+    ends = rows_of(program, "slope", [(FREE, TABLE_RATIO, x) for x in SLOPE_RATES], SLOPE_SEEDS)
+    names = ["length", "ratio", "rate", "rate_of_difference", "rate_of_drag", "seeds", "lost", "transient", "soft"]
+    names += columns_of("viscosity", "lubrication", "contact", "repulsion")
+    names += ["attraction", *columns_of("contacts_per_particle")]
+    write_table(HERE / "table.csv", names, rows + ends, 4)
+    draw(rows)
+    return [*slope_statements(rows, ends), *shape_statements(rows), *method_statements(program)]
+
+
+def draw(rows):
+    figure = Figure(HERE / "chart.png", columns=2)
+    ends = {"x_range": (5e-6, 20), "y_range": (5, 1000), "log": "xy", "powers": "x", "key": "top right"}
+    panel = figure.panel("γ̇/γ̇_0, F(0) = F_R + F_A", "η_r", f"φ = {FRACTION}, μ = {FRICTION}, F_R/F_A = 19", **ends)
+    both = (5e-6, 20)
+    panel.level(mari_fit(FRACTION, 1), "Mari fit (published), μ = 1", GREY, span=both, dash=2)
+    panel.level(mari_fit(FRACTION, 0), "Mari fit (published), μ = 0", GREY, span=both, dash=3)
+    for x, text in ((1, "γ̇_0, in the published thickening"), (1 / DRAG, "γ̇_0 with 6π")):
+        panel.upright(x)
+        panel.text(text, x * 0.8, 90, "right", "rotate by 90 font ',9'")
+    for length, colour in ((FREE, BLUE), (SALTED, RED)):
+        points = [(r["rate"], *number(r, "viscosity")) for r in curve_of(rows, length, TABLE_RATIO)]
+        panel.points(points, f"{SALTS[length]}, λ = {length} a", colour, 7, 0.8, joined=True)
+    panel = figure.panel("γ̇/γ̇_0, F(0) = F_R + F_A", "η_r", f"λ = {SALTED} a (0.4 M)", **ends)
+    for ratio, colour in zip((TABLE_RATIO, *SCANNED[SALTED]), (RED, ORANGE, GREEN, BLUE, PURPLE)):
+        points = [(r["rate"], *number(r, "viscosity")) for r in curve_of(rows, SALTED, ratio)]
+        panel.points(points, f"F_R/F_A = {ratio}", colour, 7, 0.8, joined=True)
+    figure.draw()
+
+
+def quick_measure(program):
+    cases = [(FREE, TABLE_RATIO, x) for x in (1e-5, 1e-3, 0.1)] + [(SALTED, 0.5, x) for x in (1e-3, 1)]
+    small = {"particles": {"count": 200}, **during({"strain": 1}, {"strain": 3})}
+    slow, least, fast, sticky, torn = rows_of(program, "quick", cases, 6, small)
+    name = f"salt-free, F_R/F_A = {TABLE_RATIO}"
+    for text, row, low, high in (("10⁻⁵", slow, 1.05, 1.6), ("0.1", fast, 1.7, 4)):
+        ratio = quotient(number(row, "viscosity"), number(least, "viscosity"))
+        yield Statement(f"{name}: η_r at rate {text} over that at 10⁻³", "expected", *ratio, low, high, 5)
+    text = "0.4 M, F_R/F_A = 0.5: η_r at rate 10⁻³ over that at 1"
+    ratio = quotient(number(sticky, "viscosity"), number(torn, "viscosity"))
+    yield Statement(text, "expected", *ratio, 1.3, 6, 5)
+
+
+main(HERE, TITLE, measure, quick_measure)

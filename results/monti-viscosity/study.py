@@ -1,0 +1,271 @@
+#!/usr/bin/python3
+"""Viscosities without noise of the suspensions of Monti et al. (2021), without and with friction, beside the fits of
+their Fig. 7.
+
+study.py BIN [FOLDER] [--quick]
+"""
+import itertools
+import math
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from studies.command_line import main
+from studies.estimates import over, propagated, quotient, relative_difference
+from studies.figure import BLUE, GREY, RED, Figure
+from studies.fits import divergence
+from studies.monti import PAIRS, contact, in_units, kim_karrila, lubrication
+from studies.published import MARI_FITS, diverging, mari_fit
+from studies.scenes import during, merged
+from studies.tables import columns_of, entries, number, write_table
+from studies.verdicts import Statement
+from studies.viscosities import flags, values_by_seed, viscosity_row
+
+import numpy as np
+
+TITLE = "Viscosities of Monti et al. with and without friction"
+GAPS = (0.05, 0.2)
+NAMES = {0: "FL", 1: "FR"}  # of their Table 1, by friction
+COUNTS = {0: 200, 1: 1000}
+FRACTIONS = {0: (0.30, 0.40, 0.45, 0.50, 0.55, 0.57), 1: (0.30, 0.40, 0.45, 0.50, 0.53, 0.55)}
+# Where their fits are compared: 1.4 and 0.71 of them are not 1 without spheres, and near phi_J every error is large.
+COMPARED = {0: (0.40, 0.55, 0.1), 1: (0.30, 0.50, 0.15)}  # from, to, and how far off counts as agreement
+# Of free fits: all points, and those of one power of 1 - phi / phi_J (chosen after looking): not the dilute ones, nor
+# the densest with friction, where the contacts are too soft.
+FITTED = {"all": {0: (0.30, 0.57), 1: (0.30, 0.55)}, "one power": {0: (0.45, 0.57), 1: (0.40, 0.53)}}
+SCENE = merged(PAIRS, during({"strain": 2}, {"strain": 8}))
+SEEDS = {0: 48, 1: 8}
+
+# What might move a viscosity away from the fit: of FL at 0.50, of FR at 0.50 and denser, at the gap of 0.05.
+VARIED = {0: (0.50,), 1: (0.50, 0.53, 0.55)}
+LUBRICATIONS = {
+    "regularisation 1e-4": lambda gap: lubrication(gap, 1e-4),
+    "regularisation 1e-2": lambda gap: lubrication(gap, 1e-2),
+    "kim-karrila": kim_karrila,
+}
+STIFF = contact(4e6, 0)
+OTHER_COUNTS = {0: 1000, 1: 250}
+VARIANT_SEEDS = 6
+
+ROLLING = {"contact": {"rolling_stiffness": 4e5 / 7, "rolling_friction": 0.1}}  # of their program
+ROLLED = (0.45, 0.50)
+LONG = during({"strain": 20}, {"strain": 8})
+
+
+def rows_of(program, name, cases, seeds, patch=None, block=lubrication):
+    """Rows of (friction, volume fraction, gap); block(gap) is their lubrication."""
+    friction = cases[0][0]
+    fixed = {"particles": {"count": COUNTS[friction]}, "contact": {"friction": friction}}
+    settings = [{"/volume_fraction": f, "/lubrication": block(g)} for _, f, g in cases]
+    points = program.run(name, merged(merged(SCENE, fixed), patch or {}), settings, seeds)
+    return [row_of(case, point) for case, point in zip(cases, points)]
+
+
+def row_of(case, point):
+    friction, fraction, gap = case
+    row = {"system": NAMES[friction], "fraction": fraction, "gap": gap, "fit": mari_fit(fraction, friction)}
+    row |= viscosity_row(point, "first_normal_difference", "second_normal_difference", "pressure")
+    row["soft"] = flags(point["realisations"])["overlap"]
+    pairs = number(row, "pairs")
+    row |= entries("double", (1 + 2.5 * fraction + 2 * pairs[0], 2 * pairs[1]))
+    for of in ("viscosity", "double"):
+        row |= entries(f"{of}_over_fit", over(number(row, of), row["fit"]))
+    return row
+
+
+def chosen(rows, friction, gap):
+    return [r for r in rows if (r["system"], r["gap"]) == (NAMES[friction], gap) and math.isfinite(r["viscosity"])]
+
+
+def compared(rows, friction, gap):
+    low, high, _ = COMPARED[friction]
+    return [r for r in chosen(rows, friction, gap) if low <= r["fraction"] <= high]
+
+
+def fitted(rows, friction, gap, part):
+    low, high = FITTED[part][friction]
+    return [r for r in chosen(rows, friction, gap) if low <= r["fraction"] <= high]
+
+
+def free_fit(rows, friction, gap, part):
+    """c, phi_J and lambda through these points of a curve, each with its error."""
+    curve = fitted(rows, friction, gap, part)
+    return divergence([r["fraction"] for r in curve], [number(r, "viscosity") for r in curve], MARI_FITS[friction])
+
+
+def distance_from(rows):
+    """Root of the mean square of ln(eta / fit) with pairs counted twice, less that with pairs counted once."""
+
+    def found(ratios):
+        logs = np.log(np.maximum(np.reshape(ratios, (2, -1)), 1e-9))
+        double, single = np.sqrt(np.square(logs).mean(axis=1))
+        return float(double - single)
+
+    # Both are of the same pairs: drawn together, twice the pairs has twice the deviation.
+    numbers = [number(r, "pairs") for r in rows]
+    base = [1 + 2.5 * r["fraction"] for r in rows]
+    fits = [r["fit"] for r in rows]
+    return propagated(
+        numbers, lambda pairs: found([(b + k * p) / f for k in (2, 1) for b, p, f in zip(base, pairs, fits)])
+    )
+
+
+def fit_statements(rows, fits):
+    for friction, name in NAMES.items():
+        _, jammed, _ = MARI_FITS[friction]
+        low, high, share = COMPARED[friction]
+        for gap in GAPS:
+            here = compared(rows, friction, gap)
+            worst = max(here, key=lambda r: abs(math.log(r["viscosity_over_fit"])))
+            text = f"{name}, gap {gap}: η_r over the fit where it is farthest from 1 of φ = {low:g} to {high:g}"
+            place = f"{text} (at {worst['fraction']:g})"
+            ratio = number(worst, "viscosity_over_fit")
+            yield Statement(place, "M fig 7", *ratio, 1 - share, 1 + share, worst["seeds"] - 1, essential=False)
+        for gap, part in itertools.product(GAPS, FITTED):
+            width = 0.005 if friction else 0.01
+            low, high = FITTED[part][friction]
+            text = f"{name}, gap {gap}: φ_J of a free fit from φ = {low:g} to {high:g} (published: {jammed})"
+            found = fits[friction, gap, part][1]
+            degrees = chosen(rows, friction, gap)[0]["seeds"] - 1
+            yield Statement(text, "M fig 7", *found, jammed - width, jammed + width, degrees, essential=False)
+        both = [r for gap in GAPS for r in compared(rows, friction, gap)]
+        text = f"{name}: rms of ln(η_r/fit) with the pairs' stress counted twice, less that counted once"
+        yield Statement(text, "M eq 8", *distance_from(both), low=0)
+
+
+def unit_statements(program):
+    """The same point in two other systems of units; numbers that are powers of two round alike."""
+    name = "FL, φ = 0.5, gap 0.05, 8 seeds"
+    base = merged(SCENE, {"particles": {"count": 200}, **during({"strain": 1}, {"strain": 2})})
+    points = {}
+    for key, units in (("first", (1, 1, 1)), ("binary", (0.25, 0.5, 2)), ("other", (0.1, 0.045, 1.7))):
+        scene = in_units(base, *units)
+        (points[key],) = program.run(f"units-{key}", scene, [{"/volume_fraction": 0.5}], 8)
+    first, binary = (values_by_seed(points[k]["realisations"]) for k in ("first", "binary"))
+    largest = max(abs(binary[s] / first[s] - 1) for s in first)
+    text = f"{name}: largest relative difference of η_r in units of η/4, rate/2, 2 a"
+    yield Statement(text, "M eq 11", largest, 0, 0, 1e-4)
+    other = values_by_seed(points["other"]["realisations"])
+    text = f"{name}: relative difference of η_r in units of 0.1 η, 0.045 rate, 1.7 a, paired by seeds"
+    value, error, degrees = relative_difference(other, first, paired=True)
+    yield Statement(text, "M eq 11", value, error, -0.03, 0.03, degrees)
+
+
+def rolling_statements(rows, rolled):
+    plain = {r["fraction"]: r for r in chosen(rows, 1, 0.05)}
+    ratios = [quotient(number(r, "viscosity"), number(plain[r["fraction"]], "viscosity")) for r in rolled]
+    degrees = min(r["seeds"] for r in rolled) - 1
+    for row, ratio in zip(rolled, ratios):
+        text = f"FR, φ = {row['fraction']:g}: η_r with rolling resistance over that without"
+        yield Statement(text, "M app B", *ratio, low=1, degrees=degrees)
+    text = "the second of these over the first (above 1: φ_J falls)"
+    yield Statement(text, "M app B", *quotient(ratios[1], ratios[0]), low=1, degrees=degrees)
+
+
+def start_statements(rows, later):
+    for row in later:
+        friction = {v: k for k, v in NAMES.items()}[row["system"]]
+        (early,) = (r for r in chosen(rows, friction, row["gap"]) if r["fraction"] == row["fraction"])
+        ratio = quotient(number(row, "viscosity"), number(early, "viscosity"))
+        text = f"{row['system']}, φ = {row['fraction']:g}: η_r after a strain of 20 over that after 2"
+        yield Statement(text, "M 3", *ratio, 0.95, 1.05, row["seeds"] - 1)
+
+
+def measure_variants(program):
+    """Rows with the name of what was varied."""
+    for friction, fractions in VARIED.items():
+        cases = [(friction, f, 0.05) for f in fractions]
+        variants = [(name, {}, block) for name, block in LUBRICATIONS.items()]
+        variants.append(("ten times k_n", {"contact": STIFF | {"friction": friction}}, lubrication))
+        count = OTHER_COUNTS[friction]
+        variants.append((f"N = {count}", {"particles": {"count": count}}, lubrication))
+        for k, (name, patch, block) in enumerate(variants):
+            for row in rows_of(program, f"variant-{friction}-{k}", cases, VARIANT_SEEDS, patch, block):
+                yield {"variant": name, **row}
+
+
+def measure(program):
+    rows = []
+    for friction in (0, 1):
+        cases = [(friction, f, g) for g in GAPS for f in FRACTIONS[friction]]
+        rows += rows_of(program, NAMES[friction], cases, SEEDS[friction])
+    fits = {key: free_fit(rows, *key) for key in itertools.product((0, 1), GAPS, FITTED)}
+    variants = list(measure_variants(program))
+    rolled = rows_of(program, "rolling", [(1, f, 0.05) for f in ROLLED], SEEDS[1], ROLLING)
+    later = [
+        *rows_of(program, "later-FL", [(0, 0.5, 0.05)], SEEDS[0], LONG),
+        *rows_of(program, "later-FR", [(1, 0.5, 0.05)], SEEDS[1], LONG),
+    ]
+    write_tables(rows, [*variants, *({"variant": "rolling", **r} for r in rolled)], later, fits)
+    draw(rows, fits)
+    return [
+        *fit_statements(rows, fits),
+        *unit_statements(program),
+        *rolling_statements(rows, rolled),
+        *start_statements(rows, later),
+    ]
+
+
+def write_tables(rows, variants, later, fits):
+    names = ["variant", "system", "fraction", "gap", "seeds", "lost", "transient", "soft", "fit"]
+    names += columns_of("viscosity", "viscosity_over_fit", "double_over_fit", "lubrication", "contact")
+    names += columns_of("first_normal_difference", "second_normal_difference", "pressure")
+    table = [{"variant": "", **r} for r in rows] + variants + [{"variant": "strain of 20 before", **r} for r in later]
+    write_table(HERE / "table.csv", names, table, 4)
+    found = []
+    for (friction, gap, part), numbers in fits.items():
+        low, high = (end(r["fraction"] for r in fitted(rows, friction, gap, part)) for end in (min, max))
+        row = {"system": NAMES[friction], "gap": gap, "from": low, "to": high}
+        for name, pair, published in zip(("factor", "jammed", "exponent"), numbers, MARI_FITS[friction]):
+            row |= entries(name, pair) | {f"{name}_published": published}
+        found.append(row)
+    columns = [c for n in ("factor", "jammed", "exponent") for c in (n, f"{n}_error", f"{n}_published")]
+    write_table(HERE / "fits.csv", ["system", "gap", "from", "to", *columns], found, 4)
+
+
+def draw(rows, fits):
+    figure = Figure(HERE / "chart.png", columns=2)
+    for friction, name in NAMES.items():
+        top = (2, 100) if friction == 0 else (2, 2000)
+        title = f"{name}: μ = {friction}, N = {COUNTS[friction]}"
+        ends = {"x_range": (0.28, 0.58), "y_range": top}
+        panel = figure.panel("φ", "η_r", title, log="y", key="top left", **ends)
+        span = (0.28, min(0.58, MARI_FITS[friction][1] - 0.004))
+        panel.curve(lambda phi, m=friction: mari_fit(phi, m), "Mari fit (published)", span=span, width=2)
+        for gap, colour in zip(GAPS, (BLUE, RED)):
+            points = chosen(rows, friction, gap)
+            panel.points([(r["fraction"], *number(r, "viscosity")) for r in points], f"gap {gap} a", colour, 7, 0.9)
+            factor, jammed, exponent = (n[0] for n in fits[friction, gap, "one power"])
+            ends = (0.28, min(0.58, jammed - 0.002))
+            panel.curve(
+                lambda phi, c=factor, j=jammed, e=exponent: c * diverging(phi, j, e),
+                f"fit to them: φ_J = {jammed:.3f}",
+                colour,
+                span=ends,
+                dash=2,
+            )
+        points = chosen(rows, friction, GAPS[0])
+        twice = [(r["fraction"], *number(r, "double")) for r in points]
+        panel.points(twice, f"gap {GAPS[0]} a, pairs counted twice", GREY, 6, 0.9)
+    figure.draw()
+
+
+def quick_measure(program):
+    small = during({"strain": 1}, {"strain": 4})
+    (smooth,) = rows_of(program, "quick-FL", [(0, 0.45, 0.05)], 8, small)
+    rough, rolled = (
+        rows_of(program, name, [(1, 0.45, 0.05)], 8, merged({"particles": {"count": 250}, **small}, patch))[0]
+        for name, patch in (("quick-FR", {}), ("quick-rolling", ROLLING))
+    )
+    for row, low in ((smooth, 0.88), (rough, 0.7)):
+        text = f"{row['system']}, φ = 0.45, gap 0.05: η_r over the fit"
+        yield Statement(text, "M fig 7", *number(row, "viscosity_over_fit"), low, 1.12, 7)
+    text = "FL, φ = 0.45: rms of ln(η_r/fit) with the pairs' stress counted twice, less that counted once"
+    yield Statement(text, "M eq 8", *distance_from([smooth]), low=0.1)
+    text = "FR, φ = 0.45: η_r with rolling resistance over that without"
+    yield Statement(text, "M app B", *quotient(number(rolled, "viscosity"), number(rough, "viscosity")), 1.1, 2, 7)
+    yield from unit_statements(program)
+
+
+main(HERE, TITLE, measure, quick_measure)

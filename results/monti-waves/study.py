@@ -1,0 +1,282 @@
+#!/usr/bin/python3
+"""Shear with and without a wave of the rate, large and small spheres with friction, repulsion and attraction: Monti et
+al. (2021), Table 3 and Fig. 10.
+
+study.py BIN [FOLDER] [--quick]
+"""
+import math
+import os
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from studies.command_line import main
+from studies.estimates import estimate, quotient, relative_difference
+from studies.figure import BLACK, BLUE, GREEN, RED, Figure
+from studies.monti import DRAG, PROGRAM_RATIO, SCENE, TABLE_RATIO, contact, electrochemistry, lubrication, spheres
+from studies.scenes import during, merged
+from studies.tables import columns_of, entries, number, write_table
+from studies.verdicts import Statement
+
+import numpy as np
+
+TITLE = "A wave in the shear of Monti et al."
+FRACTION, SHARE, LARGE = 0.5, 0.2, 3.0  # V2/V1 = 0.25
+COUNT, SMALL_COUNT, SMALLEST_COUNT = 65536, 8192, 2048
+AMPLITUDE = 20  # of the wave at N = 65536
+STRAIN, LARGE_STRAIN = 6, 3  # of the window, from the start; of N = 65536
+BLOCKS, QUARTERS, PARTS = 32, 4, 6  # of the window; of its last three quarters, of which means are
+# Touching forces F_R + F_A of the small spheres and F_R/F_A, at rate = rate_0.
+FORCES = {"table": (1.0, TABLE_RATIO), "program": (DRAG, PROGRAM_RATIO)}
+# Spheres, forces, whether there is a wave, and whether the spheres feel its curvature; seeds.
+RUNS = {
+    (SMALL_COUNT, "table", False, True): 4,
+    (SMALL_COUNT, "table", True, True): 4,
+    (SMALL_COUNT, "table", True, False): 2,
+    (SMALLEST_COUNT, "program", False, True): 4,
+    (SMALLEST_COUNT, "program", True, True): 4,
+}
+LARGE_RUNS = {(COUNT, "table", False, True): 1, (COUNT, "table", True, True): 1}  # with --long
+SCENE = merged(
+    merged(SCENE, spheres(SMALL_COUNT, FRACTION, LARGE, SHARE)),
+    {
+        "contact": contact(4e5, 1),
+        "lubrication": lubrication(0.25),
+        "observables": ["profiles"],
+        "files": {"final_configuration": True},
+    },
+)
+
+
+def strain_of(count):
+    return LARGE_STRAIN if count == COUNT else STRAIN
+
+
+def edge(count):
+    """Of the cell: N spheres of mean volume 4 pi / 3 over the sum of shares / a^3."""
+    volume = count * 4 * math.pi / 3 / (1 - SHARE + SHARE / LARGE**3)
+    return (volume / FRACTION) ** (1 / 3)
+
+
+def amplitude(count):
+    """Of the wave that changes the rate as much as theirs does: by 20 k = 1.429 of it, k = 2 pi / L."""
+    return AMPLITUDE * edge(count) / edge(COUNT)
+
+
+def patch_of(count, forces, wave, faxen=True):
+    """Bins of two radii."""
+    flow = {"shear_rate": 1.0}
+    if wave:
+        flow |= {"waves": [{"periods": 1, "sine": amplitude(count)}], "faxen": faxen}
+    return {
+        **during({"strain": 0}, {"strain": strain_of(count)}),
+        "particles": {"count": count},
+        "flow": flow,
+        "profiles": {"bins": round(edge(count) / 2)},
+        **electrochemistry(FORCES[forces][0], FORCES[forces][1], 0.02),
+    }
+
+
+def results_of(program, name, patch, seeds):
+    """Whole results of one point, by seed, and the paths of their final configurations."""
+    if seeds == 1:
+        result = program.run_alone(name, merged(SCENE, patch), threads=1)
+        return [result], [os.path.join(program.folder, f"{name}.final.xyz")]
+    (point,) = program.run(name, merged(SCENE, patch), [{"/volume_fraction": FRACTION}], seeds)
+    (results,) = program.stored_results(name)
+    folder = os.path.join(program.folder, name + ".peclet")
+    paths = [os.path.join(folder, f["path"]) for r in point["realisations"] for f in r.get("files") or []]
+    return results, paths
+
+
+def later_mean(result):
+    """Of eta_r over the last three quarters of the window, and its standard error within the run: of means over six
+    parts."""
+    series = np.array(result["blocks"]["relative_viscosity"])[BLOCKS // QUARTERS :]
+    return estimate(series.reshape(PARTS, -1).mean(axis=1))
+
+
+def mean_of(results):
+    """Of several seeds: of their means; of a single one: within it."""
+    if len(results) == 1:
+        return later_mean(results[0])
+    return estimate([later_mean(r)[0] for r in results])
+
+
+def slowed(heights):
+    """Whether the wave lowers the rate at these heights y / L."""
+    return np.cos(2 * math.pi * heights) < 0
+
+
+def profiles_of(result):
+    """Volume fraction, and the velocity relative to the uniform shear, over the last half of the window."""
+    parts = result["blocks"]["profiles"]
+    volume, flux = (
+        np.array(p)[QUARTERS // 2 :].mean(axis=0) for p in (parts["volume_fraction"], parts["velocity"]["flux"])
+    )
+    return volume, flux / volume
+
+
+def wave_of(values):
+    """Factors of sin(k y) and cos(k y) in values of equal bins."""
+    phase = 2 * math.pi * (np.arange(len(values)) + 0.5) / len(values)
+    return 2 * np.mean(values * np.sin(phase)), 2 * np.mean(values * np.cos(phase))
+
+
+def followed(result, count):
+    """The wave of the spheres' velocity over that of the fluid."""
+    return wave_of(profiles_of(result)[1])[0] / amplitude(count)
+
+
+def gathered(result):
+    """Volume fraction of the half of the cell where the wave lowers the rate less that of the other half, over the
+    mean."""
+    volume, _ = profiles_of(result)
+    slow = slowed((np.arange(len(volume)) + 0.5) / len(volume))
+    return (volume[slow].mean() - volume[~slow].mean()) / volume.mean()
+
+
+def shares_where_slow(path):
+    """Of a final configuration: the shares of the small and of the large spheres in the half of the cell where the wave
+    lowers the rate."""
+    with open(path) as f:
+        f.readline()
+        length = float(f.readline().split('Lattice="')[1].split('"')[0].split()[4])
+        height, radius = np.loadtxt(f, usecols=(2, 4)).T
+    slow = slowed(height / length)
+    return [slow[chosen].mean() for chosen in (radius < 2, radius > 2)]
+
+
+def row_of(run, results, paths):
+    count, forces, wave, faxen = run
+    row = {"count": count, "forces": forces, "wave": int(wave), "faxen": int(wave and faxen), "seeds": len(results)}
+    row |= entries("viscosity", mean_of(results))
+    if wave:
+        row |= entries("followed", estimate([followed(r, count) for r in results]))
+    row |= entries("gathered", estimate([gathered(r) for r in results]))
+    small, large = zip(*(shares_where_slow(path) for path in paths))
+    row |= entries("small_slow", estimate(small)) | entries("large_slow", estimate(large))
+    row["soft"] = sum(r["largest_overlap"] > 0.01 for r in results)
+    row["processor_seconds"] = np.mean([r["cost"]["cpu_seconds"] for r in results]) / strain_of(count)
+    return row
+
+
+def ratio_statement(text, source, above, below, low, high, essential=True):
+    degrees = min(r["seeds"] if r["seeds"] > 1 else PARTS for r in (above, below)) - 1
+    ratio = quotient(number(above, "viscosity"), number(below, "viscosity"))
+    return Statement(text, source, *ratio, low, high, degrees, essential)
+
+
+def statements_of(rows, by_seed):
+    for count, forces, wave, faxen in rows:
+        if not wave or not faxen:
+            continue
+        text = f"N = {count}, forces of the {forces}: η_r with the wave over that without"
+        above, below = rows[count, forces, True, True], rows[count, forces, False, True]
+        yield ratio_statement(text, "M fig 10", above, below, 0, 1)
+    curved, plain = (by_seed[SMALL_COUNT, "table", True, faxen] for faxen in (True, False))
+    text = f"N = {SMALL_COUNT}, wave: relative change of η_r by the terms of the curvature, paired by seeds"
+    value, error, degrees = relative_difference(curved, plain, paired=True)
+    yield Statement(text, "M eq 9", value, error, -0.03, 0.03, degrees)
+    row = rows[SMALL_COUNT, "table", True, True]
+    text = f"N = {SMALL_COUNT}, wave: volume fraction where it lowers the rate less that elsewhere, over the mean"
+    yield Statement(text, "expected", *number(row, "gathered"), 0, math.inf, row["seeds"] - 1, essential=False)
+
+
+def step_statement(program, seeds):
+    """Nothing in a result tells the step's error in a wave. Over a strain of 1 packings have not forgotten their
+    seeds."""
+    patch = merged(patch_of(1000, "program", True), during({"strain": 0}, {"strain": 1}))
+    automatic = program.derived(merged(SCENE, patch))["timestep"]
+    whole, half = (
+        {r["seed"]: r["mean"]["relative_viscosity"] for r in results_of(program, name, merged(patch, step), seeds)[0]}
+        for name, step in (("step-auto", {}), ("step-half", {"integrator": {"timestep": automatic / 2}}))
+    )
+    value, error, degrees = relative_difference(half, whole, paired=True)
+    text = f"N = 1000, wave, to a strain of 1: change of η_r with half of the automatic step of {automatic:.1e}"
+    return Statement(text, "method", value, error, -0.03, 0.03, degrees)
+
+
+def name_of(run):
+    count, forces, wave, faxen = run
+    return f"{'YW' if wave else 'NW'}-{count}-{forces}{'' if faxen else '-no-faxen'}"
+
+
+def measure(program):
+    rows, by_seed, series, profiles = {}, {}, {}, {}
+    for run, seeds in (RUNS | (LARGE_RUNS if program.long else {})).items():
+        results, paths = results_of(program, name_of(run), patch_of(*run), seeds)
+        rows[run] = row_of(run, results, paths)
+        by_seed[run] = {r["seed"]: later_mean(r)[0] for r in results}
+        series[run] = np.mean([r["blocks"]["relative_viscosity"] for r in results], axis=0)
+        profiles[run] = np.mean([profiles_of(r) for r in results], axis=0)
+    write_tables(rows, series, profiles)
+    draw(series, profiles)
+    return [*statements_of(rows, by_seed), step_statement(program, 12)]
+
+
+def rates_of(velocity, count):
+    """Rates between the bins, over the mean rate: heights y / L and 1 + du/dy."""
+    bins = len(velocity)
+    return np.arange(1, bins + 1) / bins, 1 + (np.roll(velocity, -1) - velocity) * bins / edge(count)
+
+
+def strains_of(run):
+    """In the middle of the blocks."""
+    return ((np.arange(BLOCKS) + 0.5) * strain_of(run[0]) / BLOCKS).tolist()
+
+
+def write_tables(rows, series, profiles):
+    names = ["count", "forces", "wave", "faxen", "seeds", "soft", *columns_of("viscosity", "followed", "gathered")]
+    names += [*columns_of("small_slow", "large_slow"), "processor_seconds"]
+    write_table(HERE / "table.csv", names, rows.values(), 4)
+    lines = [
+        {"run": name_of(run), "strain": strain, "viscosity": float(viscosity)}
+        for run, values in series.items()
+        for strain, viscosity in zip(strains_of(run), values)
+    ]
+    write_table(HERE / "series.csv", ["run", "strain", "viscosity"], lines, 5)
+    lines = []
+    for run, (volume, velocity) in profiles.items():
+        for k, (fraction, speed) in enumerate(zip(volume, velocity)):
+            height = (k + 0.5) / len(volume)
+            lines.append({"run": name_of(run), "height": height, "fraction": float(fraction), "velocity": float(speed)})
+    write_table(HERE / "profiles.csv", ["run", "height", "fraction", "velocity"], lines, 5)
+
+
+def draw(series, profiles):
+    figure = Figure(HERE / "chart.png", columns=3, size=(1300, 430))
+    shown = [run for run in series if run[3]]
+    colours = {COUNT: RED, SMALL_COUNT: BLUE, SMALLEST_COUNT: GREEN}
+    ends = {"x_range": (0, STRAIN), "y_range": (0, None)}
+    panel = figure.panel("strain", "η_r", "φ = 0.5, μ = 1", key="bottom right", **ends)
+    for run in shown:
+        count, forces, wave, _ = run
+        title = f"N = {count}, {forces}, {'with' if wave else 'no'} wave"
+        panel.line(zip(strains_of(run), series[run]), title, colours[count], dash=1 if wave else 2, width=2)
+    panel = figure.panel("y / L", "local rate / mean rate", key="top center", x_range=(0, 1), y_range=(-1, 4))
+    published = AMPLITUDE * 2 * math.pi / edge(COUNT)
+    panel.curve(lambda y: 1 + published * math.cos(2 * math.pi * y), "of the fluid (published)", BLACK)
+    waved = [run for run in shown if run[2]]
+    for run in waved:
+        panel.line(zip(*rates_of(profiles[run][1], run[0])), f"of the spheres, N = {run[0]}", colours[run[0]], width=2)
+    panel = figure.panel("y / L", "volume fraction", key="bottom right", x_range=(0, 1), y_range=(0.4, 0.6))
+    for run in [r for r in shown if r[0] == SMALL_COUNT and not r[2]] + waved:
+        volume = profiles[run][0]
+        heights = (np.arange(len(volume)) + 0.5) / len(volume)
+        title = f"N = {run[0]}, {'with' if run[2] else 'no'} wave"
+        panel.line(zip(heights, volume), title, colours[run[0]], dash=1 if run[2] else 2, width=2)
+    figure.draw()
+
+
+def quick_measure(program):
+    results, paths = results_of(program, "quick", patch_of(500, "program", True), 6)
+    row = row_of((500, "program", True, True), results, paths)
+    text = "N = 500: the wave of the spheres' velocity over that of the fluid"
+    yield Statement(text, "expected", *number(row, "followed"), 0.3, 0.9, 5)
+    text = "N = 500: volume fraction where the wave lowers the rate less that elsewhere, over the mean"
+    yield Statement(text, "expected", *number(row, "gathered"), 0, 0.4, 5)
+
+
+main(HERE, TITLE, measure, quick_measure)
