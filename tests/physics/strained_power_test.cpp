@@ -131,7 +131,8 @@ PairPower power_of_all(const System& system, const std::vector<Peculiar>& sphere
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     for (std::size_t j = i + 1; j < spheres.size(); ++j) {
       for (int image = 0; image < 125; ++image) {
-        const Vector3 shift = edges * Vector3{image % 5 - 2.0, image / 5 % 5 - 2.0, image / 25 - 2.0};
+        const int along_x = image % 5 - 2, along_y = image / 5 % 5 - 2, along_z = image / 25 - 2;
+        const Vector3 shift = edges * Vector3{1.0 * along_x, 1.0 * along_y, 1.0 * along_z};
         const Vector3 r = place[j] - place[i] + shift;
         if (norm(r) > spheres[i].radius + spheres[j].radius + outer) continue;
         const PairPower power = power_of_pair(spheres[i], spheres[j], r);

@@ -211,7 +211,8 @@ TEST(StrainedLubrication, EndsAtTheOuterDistanceOfAllSizes) {
   physics.viscosity = fluid_eta;
   physics.lubrication =
       LubricationParameters{.inner_gap = regularisation, .form = mari, .outer_distance = 0.2};
-  for (const auto& [first, second] : {std::pair{1.0, 1.0}, {1.0, 1.4}, {5.0, 7.0}}) {
+  for (const auto& radii : {std::pair{1.0, 1.0}, {1.0, 1.4}, {5.0, 7.0}}) {
+    const double first = radii.first, second = radii.second;
     const PairKind kind = make_pair_kind(physics, first, second);
     const auto force_at = [&](double h) {
       const PairGeometry pair = pair_at(first, second, 2 * h / (first + second), {1, 0, 0});
