@@ -25,8 +25,8 @@ import tempfile
 RESULTS = pathlib.Path(__file__).resolve().parents[2] / "results"
 SPEED_ACCURACY = RESULTS / "speed-accuracy"
 sys.path.insert(0, str(RESULTS))
-from studies.speed_accuracy import PANELS
 from studies.scenes import REFERENCE_SCENE, during, merged
+from studies.speed_accuracy import PANELS, ROUGH, SIZES
 
 VECTOR_SETS = ("avx2", "avx512")
 
@@ -44,18 +44,14 @@ def at_peclet(number):
     return {"flow": None, "peclet": number, "limits": limits}
 
 
-FRICTION = {"contact": {"friction": 1}}
-FOUR_SIZES = {
-    "particles": {"count": 3000, "species": [{"radius": radius, "volume_share": 0.25} for radius in (1, 1.4, 5, 7)]}
-}
 # Of each scene, patches of the published one. Two engines with two instruction sets take ten seconds a round.
 SCENES = {
     "quiet": [lasting(0.5, 1)],
-    "friction-0.45": [FRICTION, {"volume_fraction": 0.45}, lasting(0.5, 1)],
-    "friction-0.5": [FRICTION, lasting(0.5, 1)],
+    "friction-0.45": [ROUGH, {"volume_fraction": 0.45}, lasting(0.5, 1)],
+    "friction-0.5": [ROUGH, lasting(0.5, 1)],
     "peclet-1": [at_peclet(1), lasting(0.05, 0.1)],
     "peclet-100": [at_peclet(100), lasting(0.2, 1)],
-    "four-sizes": [FOUR_SIZES, lasting(0.2, 0.5)],
+    "four-sizes": [SIZES, lasting(0.2, 0.5)],
 }
 LARGE_SCENES = {
     "quiet-16384": [of_spheres(16384), lasting(0.1, 0.2)],

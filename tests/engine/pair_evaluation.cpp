@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "tests/engine/bits.h"
 
 namespace peclet::engine {
 
@@ -73,6 +76,27 @@ void expect_near(const std::vector<double>& expected, const std::vector<double>&
     worst = std::max(worst, difference);
   }
   EXPECT_EQ(differing, 0u) << what << ": up to " << worst << " of " << scale;
+}
+
+void expect_near(const Evaluation& expected, const Evaluation& found, const std::string& what) {
+  expect_near(components(expected.force), components(found.force), what + " force");
+  expect_near(components(expected.torque), components(found.torque), what + " torque");
+  expect_near(components(expected.sums), components(found.sums), what + " stress");
+  expect_near(components(expected.springs), components(found.springs), what + " springs");
+  EXPECT_EQ(expected.sums.contacts, found.sums.contacts) << what;
+  EXPECT_NEAR(expected.sums.largest_overlap, found.sums.largest_overlap, 1e-15) << what;
+}
+
+void expect_same_bits(const Evaluation& expected, const Evaluation& found, const std::string& what) {
+  EXPECT_EQ(components(expected.force), components(found.force)) << what;
+  EXPECT_EQ(components(expected.torque), components(found.torque)) << what;
+  EXPECT_EQ(bits_of(std::to_array(expected.sums.stress)), bits_of(std::to_array(found.sums.stress))) << what;
+  EXPECT_EQ(expected.sums.contacts, found.sums.contacts) << what;
+  EXPECT_EQ(expected.sums.largest_overlap, found.sums.largest_overlap) << what;
+  ASSERT_EQ(expected.springs.size(), found.springs.size()) << what;
+  for (std::size_t p = 0; p < expected.springs.size(); ++p) {
+    EXPECT_EQ(bits_of(expected.springs[p]), bits_of(found.springs[p])) << what;
+  }
 }
 
 }  // namespace peclet::engine

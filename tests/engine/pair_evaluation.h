@@ -38,4 +38,8 @@ std::vector<double> components(const SpringField& springs);
 void expect_near(const std::vector<double>& expected, const std::vector<double>& found,
                  const std::string& what, double bound = tolerance);
 
+// All of an evaluation within that tolerance, or bit by bit.
+void expect_near(const Evaluation& expected, const Evaluation& found, const std::string& what);
+void expect_same_bits(const Evaluation& expected, const Evaluation& found, const std::string& what);
+
 }  // namespace peclet::engine

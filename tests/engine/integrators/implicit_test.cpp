@@ -17,6 +17,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double tight = 1e-5;
+
 System system_of(const Physics& physics, const std::vector<double>& radius, double density, double edge) {
   System system;
   system.particles = make_particles(radius, density);
@@ -39,8 +40,7 @@ TEST(Implicit, SpheresRelaxToTheStreamingFlow) {
     system.particles.angular_velocity.set(0, {0.01, 0, -0.005});
     const double m = 0.1 * 4 * pi / 3 * std::pow(1.4, 3), rate = 6 * pi * 0.1 * 1.4 / m;
     const double spin_rate = 8 * pi * 0.1 * std::pow(1.4, 3) / (0.4 * m * 1.4 * 1.4);
-    const double step = decay / rate;
-    const double first = system.particles.velocity[0].z;
+    const double step = decay / rate, first = system.particles.velocity[0].z;
     Midpoint integrator(physics, system.particles, step, tight, 1, 1);
     integrator.start(system);
     constexpr int steps = 3;

@@ -2,13 +2,11 @@
 // are the same but for how they are given.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <memory>
 
 #include "engine/flow/waves.h"
 #include "engine/start/packing.h"
 #include "tests/engine/available_sets.h"
-#include "tests/engine/bits.h"
 #include "tests/engine/dense_suspension.h"
 #include "tests/engine/draws.h"
 #include "tests/engine/pair_evaluation.h"
@@ -23,12 +21,6 @@ Physics wavy(Physics physics) {
   return physics;
 }
 
-void expect_equal_loads(const Evaluation& a, const Evaluation& b, const std::string& what) {
-  expect_near(components(a.force), components(b.force), what + " force");
-  expect_near(components(a.torque), components(b.torque), what + " torque");
-  expect_near(components(a.sums), components(b.sums), what + " stress");
-}
-
 // In waves; recipes in uniform flow stand beside their twins with all others.
 TEST(StrainedPairs, EqualTheirSingleTwinOnEveryInstructionSetForEveryRecipe) {
   for (const InstructionSet set : available_sets()) {
@@ -36,8 +28,8 @@ TEST(StrainedPairs, EqualTheirSingleTwinOnEveryInstructionSetForEveryRecipe) {
       if (!terms.strained) continue;
       const Physics physics = wavy(physics_with(terms));
       const System system = dense_suspension(physics, 200, 12);
-      expect_equal_loads(evaluated(physics, system, 1, InstructionSet::baseline),
-                         evaluated(physics, system, 1, set), text(terms) + name_of(set));
+      expect_near(evaluated(physics, system, 1, InstructionSet::baseline), evaluated(physics, system, 1, set),
+                  text(terms) + name_of(set));
     }
   }
 }
@@ -51,9 +43,7 @@ TEST(StrainedPairs, HaveTheSameBitsOnAnyNumberOfThreads) {
   const Evaluation one = evaluated(physics, system, 1);
   for (const int threads : {2, 3}) {
     const Evaluation many = evaluated(physics, system, threads);
-    EXPECT_EQ(components(one.force), components(many.force)) << threads;
-    EXPECT_EQ(components(one.torque), components(many.torque)) << threads;
-    EXPECT_EQ(bits_of(std::to_array(one.sums.stress)), bits_of(std::to_array(many.sums.stress))) << threads;
+    expect_same_bits(one, many, std::to_string(threads) + " threads");
   }
 }
 
