@@ -196,7 +196,24 @@ struct ImplicitStep {
   double strain, contact_times;
 };
 
-ImplicitStep longest_implicit_step(const Scene& scene) {
+// Towards jamming spheres move farther in a strain, and many steps would be divided.
+double strain_without_noise(const Scene& scene) {
+  return std::clamp(0.2 * (0.65 - scene.volume_fraction), 0.002, 0.01);
+}
+
+// At the Peclet number Pe of the rate noise widens the layer through which the flow presses a pair to 1 / Pe
+// of a radius. Where that is ten inner gaps xi, Pe xi = 0.1, steps may be as long as without noise.
+double strain_with_noise(const Scene& scene, double rate, double radius) {
+  const Physics& physics = scene.physics;
+  constexpr double shortest = 0.005;
+  if (!physics.lubrication || !(rate > 0)) return shortest;
+  const double work = translational_drag(physics.viscosity, radius) * radius * radius * rate;
+  const double layers = work / physics.thermal_energy * physics.lubrication->inner_gap / 0.1;
+  const double longest = std::max(shortest, strain_without_noise(scene));
+  return std::clamp(0.01 * std::pow(layers, -0.3), shortest, longest);
+}
+
+ImplicitStep longest_implicit_step(const Scene& scene, double rate, double smallest_radius) {
   const Physics& physics = scene.physics;
   const bool conservative = required_terms(physics).conservative, noise = physics.thermal_energy > 0;
   if (physics.contact && physics.contact->friction > 0) {
@@ -205,14 +222,12 @@ ImplicitStep longest_implicit_step(const Scene& scene) {
     return {demanding ? 0.0025 : 0.005, demanding || conservative ? 2.0 : 4.0};
   }
   if (conservative) return {0.005, 5};
-  if (noise) return {0.005, 7};
-  // Towards jamming spheres move farther in a strain, and many steps would be divided.
-  return {std::clamp(0.2 * (0.65 - scene.volume_fraction), 0.002, 0.01), 20};
+  if (noise) return {strain_with_noise(scene, rate, smallest_radius), 7};
+  return {strain_without_noise(scene), 20};
 }
 
 double automatic_implicit_timestep(const Scene& scene) {
   const Physics& physics = scene.physics;
-  const auto [strain, contact_times] = longest_implicit_step(scene);
   constexpr double brownian_times = 0.0017, pushing_times = 20, leaps = 5;
   constexpr double inertial_brownian_times = 0.0045;
   double step = std::numeric_limits<double>::infinity();
@@ -221,7 +236,9 @@ double automatic_implicit_timestep(const Scene& scene) {
     smallest = std::min(smallest, species.radius);
     largest = std::max(largest, species.radius);
   }
-  if (const double rate = physics.flow.largest_rate(cell_of(scene)); rate > 0) {
+  const double rate = physics.flow.largest_rate(cell_of(scene));
+  const auto [strain, contact_times] = longest_implicit_step(scene, rate, smallest);
+  if (rate > 0) {
     const double stokes = scene.particles.density * largest * largest * rate / physics.viscosity;
     step = strain / ((1 + 2 * stokes) * rate);
   }

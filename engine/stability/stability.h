@@ -31,7 +31,8 @@ double largest_timestep(const Scene& scene);
 //   X_A / k, the time in which lubrication at the inner gap holds up the stiffest contact and conservative
 //   law:
 //     0.01 (above a volume fraction phi of 0.6: 0.2 (0.65 - phi), at least 0.002) and 20;
-//     with noise 0.005 and 7;
+//     with noise 0.01 (0.1 / (Pe xi))^0.3, no less than 0.005 and no more than without noise, and 7; Pe is
+//     the Peclet number of the smallest radius, xi the inner gap;
 //     with conservative laws 0.005 and 5;
 //     with friction 0.005 and 4, with conservative laws too 2;
 //     with friction above 1, friction and rolling, or friction and noise 0.0025 and 2.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "contract/input_error.h"
@@ -21,9 +22,9 @@ Scene scene_with(const Json& patch) {
   return read_scene(document, "scene.json");
 }
 
-// 0.01 / rate (1 + 2 St), half of that with friction, noise or repulsion, a quarter where friction asks for
-// more; 0.0045 eta a^3 / kT, 0.0017 without lubrication; and the contact, whose rates are those of the
-// explicit step's bound.
+// 0.01 / rate (1 + 2 St), half of that with friction, repulsion or noise at large Peclet numbers, a quarter
+// where friction asks for more; 0.0045 eta a^3 / kT, 0.0017 without lubrication; and the contact, whose rates
+// are those of the explicit step's bound.
 TEST(ImplicitTimestep, IsTheLeastOfStrainBrownianAndContactTimes) {
   const Json soft = {{"contact", {{"normal_stiffness", 1e-3}, {"friction", 0.5}}}, {"repulsion", nullptr}};
   const double stokes = 0.1 * 1.4 * 1.4 * 2 / 0.1;
@@ -41,6 +42,15 @@ TEST(ImplicitTimestep, IsTheLeastOfStrainBrownianAndContactTimes) {
                        {"friction", nullptr},
                        {"rolling_friction", nullptr}};
   EXPECT_NEAR(automatic_timestep(scene_with(smooth)), 0.005 / 2 / (1 + 2 * stokes), 1e-12);
+  smooth["lubrication"] = {{"inner_gap", 1e-3}};
+  const double peclet = 6 * pi * 0.1 * 2 / 0.02;
+  EXPECT_NEAR(automatic_timestep(scene_with(smooth)),
+              0.01 * std::pow(0.1 / (1e-3 * peclet), 0.3) / 2 / (1 + 2 * stokes), 1e-12);
+  smooth["lubrication"] = {{"inner_gap", 1e-4}};
+  EXPECT_NEAR(automatic_timestep(scene_with(smooth)), 0.01 / 2 / (1 + 2 * stokes), 1e-12);
+  smooth["volume_fraction"] = 0.63;
+  EXPECT_NEAR(automatic_timestep(scene_with(smooth)), 0.005 / 2 / (1 + 2 * stokes), 1e-12);
+  smooth.erase("lubrication");
   smooth["fluid"] = {{"thermal_energy", nullptr}};
   for (const auto& [volume_fraction, strain] :
        {std::pair{0.5, 0.01}, std::pair{0.6, 0.01}, std::pair{0.63, 0.004}, std::pair{0.66, 0.002}}) {
