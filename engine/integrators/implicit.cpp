@@ -46,6 +46,10 @@ StepReport joined(const StepReport& first, const StepReport& second) {
   for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
     both.sums.stress[t] = 0.5 * (first.sums.stress[t] + second.sums.stress[t]);
   }
+  const auto mean = [](const SymmetricTensor& a, const SymmetricTensor& b) { return 0.5 * (a + b); };
+  both.flux = {mean(first.flux.acted, second.flux.acted),
+               mean(first.flux.conservative, second.flux.conservative),
+               mean(first.flux.dissipative, second.flux.dissipative)};
   both.sums.contacts = 0.5 * (first.sums.contacts + second.sums.contacts);
   both.sums.largest_overlap = std::max(first.sums.largest_overlap, second.sums.largest_overlap);
   both.largest_displacement = std::max(first.largest_displacement, second.largest_displacement);
@@ -136,6 +140,7 @@ StepReport Implicit::advance_halves(System& system) {
   if (!half_) {
     half_ = with_timestep(0.5 * timestep_, system.particles);
     half_->divisions_left_ = divisions_left_ - 1;
+    if (watches_flux()) half_->watch_momentum_flux();
   }
   half_->forget_change();
   half_->displacement_bound_ = displacement_bound_;

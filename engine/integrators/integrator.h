@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "engine/kernels/momentum_flux.h"
 #include "engine/kernels/pair_pass.h"
 #include "engine/state/system.h"
 
@@ -17,6 +18,7 @@ struct StepReport {
   double solver_residual = 0;  // what its equations are left with, relative to the motion
   int division = 0;        // of a method that divides steps: the smallest part was 2^-division of the step
   bool broke_off = false;  // the step was not made: not even its smallest part has velocities
+  MomentumFlux flux{};     // of a fluid at rest, where it is asked for
 };
 
 // Owns the forces between steps; the system belongs to the caller. After start() or load(), each advance()
@@ -33,6 +35,9 @@ class Integrator {
     int compared_steps;  // in one comparison with half steps
   };
   virtual Intervals intervals() const = 0;
+
+  // From now on steps report their flux of momentum. Of a fluid at rest with noise.
+  void watch_momentum_flux() { watches_flux_ = true; }
 
   virtual void start(System& system) = 0;
   StepReport advance(System& system) {
@@ -64,6 +69,12 @@ class Integrator {
   // What the integrator keeps between steps besides the system.
   virtual void save(ArchiveWriter& archive) const = 0;
   virtual void load(const System& system, ArchiveReader& archive) = 0;
+
+ protected:
+  bool watches_flux() const { return watches_flux_; }
+
+ private:
+  bool watches_flux_ = false;
 };
 
 }  // namespace peclet::engine

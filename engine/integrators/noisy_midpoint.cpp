@@ -45,24 +45,32 @@ NoisyMidpoint::NoisyMidpoint(const Physics& physics, const ParticleState& partic
 std::optional<StepReport> NoisyMidpoint::find_velocities(System& system) {
   StepReport report;
   solver_.assemble(system, at_beginning_);
-  at_beginning_.evaluate(system, noise_.force, noise_.torque);
+  const PairSums counted = at_beginning_.evaluate(system, noise_.force, noise_.torque);
   restore_springs(system);
   const PairSums drawn = with_noise_.evaluate(system, loads_.force, loads_.torque);
   restore_springs(system);
   array(noise_.force) = array(loads_.force) - array(noise_.force);
   array(noise_.torque) = array(loads_.torque) - array(noise_.torque);
+  if (watches_flux()) {
+    acted_flux_.begin(system, drawn, counted, noise_, with_noise_);
+  }
   const bool predicted = solve(system, nullptr, of_prediction, report);
 
   if (!move_half_a_step(system)) {
     return std::nullopt;
   }
   solver_.assemble(system, ahead_);
-  ahead_.evaluate(system, loads_.force, loads_.torque);
+  const PairSums ahead = ahead_.evaluate(system, loads_.force, loads_.torque);
   restore_springs(system);
+  if (watches_flux()) {
+    acted_flux_.predict(system, ahead, loads_, field_.physics());
+  }
   if (inertial_) {
     leave_half_of_the_drag(system);
   }
   const bool solved = solve(system, &noise_, 1, report);
+  const SymmetricTensor acted =
+      watches_flux() ? acted_flux_.end(system, solver_, timestep_) : SymmetricTensor{};
 
   if (!move_half_a_step(system)) {
     return std::nullopt;
@@ -70,7 +78,20 @@ std::optional<StepReport> NoisyMidpoint::find_velocities(System& system) {
   report.sums = on_the_way_.evaluate(system, loads_.force, loads_.torque);
   report.sums.finite = report.sums.finite && predicted && solved;
   report.sums.of(StressTerm::brownian_lubrication) = drawn.of(StressTerm::brownian_lubrication);
+  if (watches_flux()) {
+    report.flux = flux(system, report.sums, acted);
+  }
   return report;
+}
+
+// `acted`: by pairs.
+MomentumFlux NoisyMidpoint::flux(const System& system, const PairSums& sums, SymmetricTensor acted) {
+  VectorField mean_velocity = origin_.velocity;
+  array(mean_velocity) = 0.5 * (array(mean_velocity) + array(system.particles.velocity));
+  const SymmetricTensor motion = flux_by_motion(system.particles, mean_velocity);
+  MomentumFlux flux = flux_of(sums, motion);
+  flux.acted = acted + motion;
+  return flux;
 }
 
 // The drag on V becomes that on (V_n + V) / 2.

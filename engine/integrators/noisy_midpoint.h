@@ -17,6 +17,7 @@
 // The stress is that of V at x_n + dt/2 V, R averaged over the way; of the noise, at x_n.
 #pragma once
 
+#include "engine/integrators/acted_flux.h"
 #include "engine/integrators/implicit.h"
 
 namespace peclet::engine {
@@ -32,6 +33,7 @@ class NoisyMidpoint final : public Implicit {
 
   std::optional<StepReport> find_velocities(System& system) override;
   void leave_half_of_the_drag(const System& system);
+  MomentumFlux flux(const System& system, const PairSums& sums, SymmetricTensor acted);
   // Down to `factor` times the tolerance.
   [[nodiscard]] bool solve(System& system, const Loads* noise, double factor, StepReport& report);
 
@@ -39,6 +41,7 @@ class NoisyMidpoint final : public Implicit {
   ForceField ahead_, on_the_way_;
   Loads noise_;
   bool inertial_;
+  ActedFlux acted_flux_;
 };
 
 }  // namespace peclet::engine

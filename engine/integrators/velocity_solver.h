@@ -48,6 +48,10 @@ class VelocitySolver {
   // report what it took. Returns whether the result is finite.
   [[nodiscard]] bool correct(System& system, double target, StepReport& report);
 
+  // Adds to the rows of `force` the forces of the links at the last correction, and returns their sum of
+  // sym(r F_i) with the places that the system has.
+  SymmetricTensor add_corrected_forces(const System& system, VectorField& force);
+
   // What has been assembled.
   LinkSystem links(const System& system);
 

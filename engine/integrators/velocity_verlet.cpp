@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "engine/integrators/acted_flux.h"
 #include "engine/stability/spectral_bound.h"
 #include "engine/stability/spurious_energy.h"
 #include "engine/threads/for_each_range.h"
@@ -74,7 +75,11 @@ StepReport VelocityVerlet::advance_open(System& system) {
     sums = field_.evaluate_blocks(system, force_, torque_);
   }
   open_ = true;
-  return {sums, speed * timestep_};
+  StepReport report{sums, speed * timestep_};
+  if (watches_flux()) {
+    report.flux = flux_of(sums, flux_by_motion(system.particles, system.particles.velocity));
+  }
+  return report;
 }
 
 // A mode z of z^2 - (2 - l - k) z + (1 - l) = 0, with l and k the means of dt M^-1 R and dt^2 M^-1 K over its

@@ -57,6 +57,10 @@ class ForceField {
     torque.add(i, amplitude.rotational * normals.second);
   }
 
+  // Adds to the rows of particles [begin, end) the noise of their drag in system.step.
+  void add_drag_noise(const System& system, std::size_t begin, std::size_t end, VectorField& force,
+                      VectorField& torque) const;
+
   // From now on springs push after that share of their advance by a step; before, after all of it.
   void feel_springs_after(double share) { parameters_.felt_share = share; }
 
@@ -69,8 +73,6 @@ class ForceField {
  private:
   PairPassInput pair_input(const System& system) const;
   void set_varying_flow(const System& system, std::size_t begin, std::size_t end);
-  void add_drag_noise(const System& system, std::size_t begin, std::size_t end, VectorField& force,
-                      VectorField& torque) const;
 
   Physics physics_;
   Terms terms_;

@@ -38,10 +38,11 @@ ObservableKind stress_correlation();
 ObservableKind pair_distribution();
 ObservableKind contact_network();
 ObservableKind profiles();
+ObservableKind linear_response();
 
-inline std::array<ObservableKind, 5> observable_kinds() {
-  return {mean_squared_displacement(), stress_correlation(), pair_distribution(), contact_network(),
-          profiles()};
+inline std::array<ObservableKind, 6> observable_kinds() {
+  return {mean_squared_displacement(), stress_correlation(), pair_distribution(),
+          contact_network(),           profiles(),           linear_response()};
 }
 
 // Of an observable that is sampled at every step, or that costs a walk over all pairs and changes slowly.

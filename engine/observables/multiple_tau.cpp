@@ -4,19 +4,21 @@
 
 namespace peclet::engine {
 
-void MultipleTau::add(double value) {
+void MultipleTau::add(double value, double partner) {
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
-    level.last[level.pushed % kept] = value;
+    level.last[level.pushed % kept] = partner;
     ++level.pushed;
     for (std::size_t k = first_lag(l); k < kept && k < level.pushed; ++k) {
       level.products[k] += value * level.last[(level.pushed - 1 - k) % kept];
       ++level.count[k];
     }
     level.sum += value;
+    level.partner_sum += partner;
     if (level.pushed % block != 0) return;
     value = level.sum / block;
-    level.sum = 0;
+    partner = level.partner_sum / block;
+    level.sum = level.partner_sum = 0;
   }
 }
 

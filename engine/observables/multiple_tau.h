@@ -1,4 +1,5 @@
-// Autocorrelation of a series over lags from one sample to many, at a cost per sample that does not grow.
+// Correlation of a series with itself or with another one, over lags from one sample to many, at a cost per
+// sample that does not grow.
 //
 // Level l holds the last 16 means of 2^l consecutive samples. It correlates them over lags of 0 ... 15 of its
 // own spacings (8 ... 15 beyond the first level): the multiple-tau scheme with m = 2 and p = 16 of Ramirez,
@@ -17,11 +18,13 @@ class MultipleTau {
  public:
   explicit MultipleTau(std::size_t levels) : levels_(levels) {}
 
-  void add(double value);
+  void add(double value) { add(value, value); }
+  // A sample of the series and one of its partner, which is correlated with later ones of the series.
+  void add(double value, double partner);
 
   struct Value {
     std::uint64_t lag;   // samples
-    double correlation;  // <v(s) v(s + lag)>; the mean is not taken away
+    double correlation;  // <p(s) v(s + lag)>; the means are not taken away
   };
   // In order of the lags; those that were never met are left out.
   std::vector<Value> values() const;
@@ -35,10 +38,10 @@ class MultipleTau {
   static constexpr std::size_t kept = 16, block = 2;
   struct Level {
     std::uint64_t pushed = 0;
-    std::array<double, kept> last{};  // a ring
+    std::array<double, kept> last{};  // of the partner, a ring
     std::array<double, kept> products{};
     std::array<std::uint64_t, kept> count{};
-    double sum = 0;  // for the next level
+    double sum = 0, partner_sum = 0;  // for the next level
   };
   static std::size_t first_lag(std::size_t level) { return level == 0 ? 0 : kept / block; }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "contract/json.h"
+#include "engine/kernels/momentum_flux.h"
 #include "engine/state/system.h"
 
 namespace peclet::engine {
@@ -15,6 +16,9 @@ class Observable {
   virtual ~Observable() = default;
 
   std::uint64_t interval() const { return interval_; }
+  // Whether it takes the flux of momentum, and what it does with that of every step of the window.
+  virtual bool takes_flux() const { return false; }
+  virtual void take_flux(const MomentumFlux& /*flux*/) {}
   // Requires a complete step (integrator.h) and the system that every other sample is of. `block` counts the
   // 32 blocks of the window from 0.
   virtual void sample(const System& system, std::size_t block) = 0;

@@ -79,6 +79,9 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
         schedule.timestep);
   }
   observables_ = make_observables(scene, system_, {schedule.timestep, schedule.production, edge});
+  if (std::ranges::any_of(observables_, [](const auto& observable) { return observable->takes_flux(); })) {
+    integrator_->watch_momentum_flux();
+  }
 }
 
 void Simulation::start() {
@@ -138,6 +141,7 @@ void Simulation::observe(const StepReport& report) {
                            kinetic_temperatures(system_, scene_.physics.flow));
   }
   for (const std::unique_ptr<Observable>& observable : observables_) {
+    observable->take_flux(report.flux);
     if (index % observable->interval() != 0) continue;
     integrator_->complete(system_);
     observable->sample(system_, production_.block_at(index));

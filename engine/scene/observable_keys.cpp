@@ -14,12 +14,35 @@ constexpr double most_bins = 1000;
 
 std::optional<ObservableFault> none(const Scene&, const Json&) { return std::nullopt; }
 
-std::optional<ObservableFault> must_rest(const Scene& scene, const Json&) {
+std::optional<ObservableFault> not_at_rest(const Scene& scene, const char* name) {
   const bool rests = scene.physics.flow.rate() == 0 && !scene.physics.flow.varies();
   if (rests && scene.physics.thermal_energy > 0) return std::nullopt;
   return ObservableFault{
       "/observables",
-      "must not list stress_correlation unless the thermal energy is > 0 and the fluid at rest"};
+      fmt::format("must not list {} unless the thermal energy is > 0 and the fluid at rest", name)};
+}
+
+std::optional<ObservableFault> must_rest(const Scene& scene, const Json&) {
+  return not_at_rest(scene, "stress_correlation");
+}
+
+// Linear response knows the equilibrium that it starts from: exp(-H / kT).
+std::optional<ObservableFault> must_have_equilibrium(const Scene& scene, const Json&) {
+  if (std::optional<ObservableFault> fault = not_at_rest(scene, "linear_response")) return fault;
+  const Physics& physics = scene.physics;
+  const auto because = [](const char* reason) {
+    return ObservableFault{"/observables", fmt::format("must not list linear_response {}", reason)};
+  };
+  if (physics.contact && physics.contact->friction > 0) {
+    return because("with /contact/friction > 0: friction leads to no equilibrium of known probabilities");
+  }
+  if (physics.contact && physics.contact->normal_damping > 0) {
+    return because("with /contact/normal_damping > 0: what it dissipates no noise gives back");
+  }
+  if (physics.lubrication && physics.lubrication->form == LubricationParameters::Form::mari) {
+    return because("with /lubrication/form mari: its stress is not that of the forces alone");
+  }
+  return std::nullopt;
 }
 
 std::optional<ObservableFault> must_have_whole_bins(const Scene&, const Json& settings) {
@@ -72,6 +95,13 @@ std::vector<ObservableEntry> entries() {
                       .maximum = most_bins},
                      20)},
        none},
+      {"linear_response",
+       "the viscosity of a fluid at rest, exactly, from the flux of momentum of every step; its curves over "
+       "time "
+       "and frequency",
+       "",
+       {},
+       must_have_equilibrium},
   };
 }
 
@@ -89,6 +119,7 @@ std::vector<Key> observable_keys() {
   for (const ObservableEntry& entry : observable_entries()) {
     meaning += fmt::format(" {}: {}.", entry.name, entry.meaning);
     names.push_back(entry.name);
+    if (!entry.has_settings()) continue;
     blocks.push_back(block('/' + entry.name, "How the observable of that name is measured."));
     blocks.push_back(positive(
         fmt::format("/{}/interval", entry.name), "time",

@@ -20,10 +20,12 @@ struct ObservableFault {
 struct ObservableEntry {
   std::string name;
   std::string meaning;         // behind its name in the list of all
-  std::string usual_interval;  // between samples: "one step"
+  std::string usual_interval;  // between samples: "one step"; empty: all steps count, whatever the scene says
   std::vector<Key> settings;   // in the block "/NAME", besides its interval
   // Rules that bind several keys; nothing where the scene keeps them. `settings` have their defaults.
   std::optional<ObservableFault> (*fault)(const Scene& scene, const Json& settings);
+
+  bool has_settings() const { return !usual_interval.empty() || !settings.empty(); }
 };
 
 const std::vector<ObservableEntry>& observable_entries();

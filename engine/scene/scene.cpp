@@ -189,14 +189,17 @@ void Reading::set_observables(Scene& scene) const {
   const Json& list = at("/observables");
   for (const ObservableEntry& entry : observable_entries()) {
     const std::string pointer = '/' + entry.name;
-    const bool has_settings = has(pointer);
+    const bool has_settings = entry.has_settings() && has(pointer);
     if (std::find(list.begin(), list.end(), entry.name) == list.end()) {
       if (has_settings) refuse(pointer, "must be left out unless /observables lists it");
       continue;
     }
     // The defaults of a block that is left out are no part of the scene.
-    const Json& settings = scene.observables[entry.name] =
-        has_settings ? at(pointer) : scene_keys().validate(Json::object(), file(), pointer);
+    Json& settings = scene.observables[entry.name];
+    settings = Json::object();
+    if (entry.has_settings()) {
+      settings = has_settings ? at(pointer) : scene_keys().validate(settings, file(), pointer);
+    }
     if (const std::optional<ObservableFault> fault = entry.fault(scene, settings)) {
       refuse(fault->pointer, fault->allowed);
     }

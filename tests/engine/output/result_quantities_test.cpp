@@ -29,7 +29,16 @@ TEST(Result, DescribesItsQuantitiesAsTheyAre) {
   EXPECT_TRUE(sheared.at("quantities").contains("profiles/velocity"));
   const Json at_rest = result_of(
       {{"flow", {{"shear_rate", 0}}}, {"observables", {"mean_squared_displacement", "stress_correlation"}}});
-  for (const Json& result : {sheared, at_rest}) {
+  const Json responding = result_of({{"flow", {{"shear_rate", 0}}},
+                                     {"contact",
+                                      {{"friction", nullptr},
+                                       {"normal_damping", nullptr},
+                                       {"rolling_stiffness", nullptr},
+                                       {"rolling_friction", nullptr}}},
+                                     {"duration", {{"production", {{"time", 1.2}}}}},
+                                     {"observables", {"linear_response"}}});
+  EXPECT_TRUE(responding.at("quantities").contains("zero_shear_viscosity"));
+  for (const Json& result : {sheared, at_rest, responding}) {
     for (const auto& [name, quantity] : result.at("quantities").items()) {
       const Json& value = at_path(result.at("mean"), name);
       const bool is_ratio = quantity.at("estimator") == "ratio";

@@ -108,7 +108,8 @@ bool is_no_target(const std::string& name) {
   const std::string last = name.substr(name.rfind('/') + 1);
   return name.starts_with("pair_distribution/") || name.starts_with("profiles/velocity/") ||
          name == "mean_squared_displacement/time/*" || name == "stress_correlation/time/*" ||
-         last == "radius";
+         name == "linear_response/time/*" || name == "linear_response/lag/*" ||
+         name == "linear_response/frequency/*" || last == "radius";
 }
 
 TEST(NamesOfTargets, AreThoseOfTheNumbersThatTheResultHas) {
@@ -122,7 +123,15 @@ TEST(NamesOfTargets, AreThoseOfTheNumbersThatTheResultHas) {
       {{"contact", {{"friction", nullptr}, {"rolling_stiffness", nullptr}, {"rolling_friction", nullptr}}},
        {"observables", {"contact_network"}}},
       rest,
-      {{"flow", {{"shear_rate", 0}}}, {"observables", {"mean_squared_displacement", "stress_correlation"}}}};
+      {{"flow", {{"shear_rate", 0}}}, {"observables", {"mean_squared_displacement", "stress_correlation"}}},
+      {{"flow", {{"shear_rate", 0}}},
+       {"contact",
+        {{"friction", nullptr},
+         {"normal_damping", nullptr},
+         {"rolling_stiffness", nullptr},
+         {"rolling_friction", nullptr}}},
+       {"duration", {{"production", {{"time", 1.2}}}}},
+       {"observables", {"linear_response"}}}};
   for (const Json& patch : patches) {
     JobSpecification job;
     job.scene = small_scene(patch);

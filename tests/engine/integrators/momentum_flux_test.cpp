@@ -1,0 +1,176 @@
+// The flux of momentum that steps report, beside the momentum that particles have gained.
+//
+// Of spheres that stand together, away from the faces of the cell, sum m x V changes in a step of time dt by
+//   dt [sum x F_body + sum m V V'] + (sum over pairs of forces at distances), so that
+//   V J = sum sym(x F_body) - (change of sum m sym(x V)) / dt:
+// no force of a pair is in it, and so no account of which forces acted.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/integrators/implicit.h"
+#include "engine/integrators/velocity_verlet.h"
+#include "tests/engine/draws.h"
+
+namespace peclet::engine {
+namespace {
+
+constexpr double fluid_viscosity = 0.1, fluid_energy = 0.02, usual_density = 0.1;
+constexpr std::uint64_t noise_seed = 5;
+constexpr std::size_t sphere_count = 27;
+
+Physics cluster_physics() {
+  Physics physics;
+  physics.viscosity = fluid_viscosity;
+  physics.thermal_energy = fluid_energy;
+  physics.contact = ContactParameters{.normal_stiffness = 1e3};
+  physics.lubrication = LubricationParameters{1e-3, 0.05};
+  physics.repulsion = RepulsionParameters{.strength = 0.3, .relative_length = 0.02, .cutoff_lengths = 10};
+  return physics;
+}
+
+// On a grid that is a little disturbed: contacts and gaps.
+System cluster(const Physics& physics, double density) {
+  System system;
+  std::vector<double> radius(sphere_count);
+  for (std::size_t i = 0; i < sphere_count; ++i) radius[i] = i % 2 == 0 ? 1 : 1.4;
+  system.particles = make_particles(radius, density);
+  system.box = PeriodicCell({40, 40, 40}, simple_shear(0));
+  Draws draws(3);
+  for (std::size_t i = 0; i < sphere_count; ++i) {
+    const Vector3 place = {double(i % 3), double(i / 3 % 3), double(i / 9)};
+    system.particles.position.set(i, Vector3{17, 17, 17} + 2.42 * place + draws.vector(0.03));
+    system.particles.velocity.set(i, draws.vector(0.1));
+    system.particles.angular_velocity.set(i, draws.vector(0.1));
+  }
+  const std::vector<double> sizes = distinct_radii(radius);
+  system.list = NeighbourList(range_table(make_pair_kinds(physics, sizes), sizes.size()), 0.1);
+  return system;
+}
+
+// By the number that a particle has for life.
+struct Motion {
+  std::vector<Vector3> position, velocity;
+};
+Motion motion_of(const System& system) {
+  Motion motion{std::vector<Vector3>(sphere_count), std::vector<Vector3>(sphere_count)};
+  for (std::size_t i = 0; i < sphere_count; ++i) {
+    motion.position[system.particles.id[i]] = system.particles.position[i];
+    motion.velocity[system.particles.id[i]] = system.particles.velocity[i];
+  }
+  return motion;
+}
+
+double mass_of(std::size_t id, double density) {
+  return density * 4 * std::numbers::pi / 3 * std::pow(id % 2 == 0 ? 1 : 1.4, 3);
+}
+double drag_of(std::size_t id) { return 6 * std::numbers::pi * fluid_viscosity * (id % 2 == 0 ? 1 : 1.4); }
+
+struct Step {
+  double dt, density;
+  bool inertial;  // short: the drag acts on (V_n + V)/2, otherwise on V
+};
+
+// The right-hand side above.
+SymmetricTensor gained(const Motion& before, const Motion& after, std::uint64_t name, const Step& step) {
+  const double dt = step.dt;
+  const KeyedRandom noise(noise_seed, Purpose::one_body_noise);
+  SymmetricTensor flux;
+  for (std::uint32_t i = 0; i < sphere_count; ++i) {
+    const Vector3 &x = before.position[i], &u = before.velocity[i], &v = after.velocity[i];
+    const Vector3 dragged = step.inertial ? 0.5 * (u + v) : v;
+    const Vector3 body =
+        std::sqrt(2 * fluid_energy * drag_of(i) / dt) * noise.normals(name, i).first - drag_of(i) * dragged;
+    const Vector3 middle = x + (0.5 * dt) * v;
+    flux += symmetric_dyad(middle, body);
+    flux += (-mass_of(i, step.density) / dt) * symmetric_dyad(after.position[i], v);
+    flux += (mass_of(i, step.density) / dt) * symmetric_dyad(x, u);
+  }
+  return flux;
+}
+
+double largest_difference(const SymmetricTensor& a, const SymmetricTensor& b) {
+  const SymmetricTensor d = a + -1.0 * b;
+  double largest = 0;
+  for (const double part : {d.xx, d.yy, d.zz, d.xy, d.xz, d.yz}) largest = std::max(largest, std::abs(part));
+  return largest;
+}
+
+// Of the rows that the solver works on, and what it leaves of the equations.
+constexpr double of_single_precision = 2e-4;
+
+// Steps in which inertia carries pairs across the outer gap, and longer ones than four times a small sphere's
+// m / drag, which is 0.22 or 0.011.
+TEST(MomentumFlux, OfImplicitStepsIsWhatParticlesGain) {
+  for (const Step& how :
+       {Step{0.002, usual_density, true}, {0.02, usual_density, true}, {0.1, 0.005, false}}) {
+    const double dt = how.dt;
+    const Physics physics = cluster_physics();
+    System system = cluster(physics, how.density);
+    const auto integrator = implicit_steps(physics, system.particles, dt, 1e-7, noise_seed, 1);
+    integrator->watch_momentum_flux();
+    integrator->start(system);
+    double contacts = 0, changed = 0;
+    for (int step = 0; step < 20; ++step) {
+      const Motion before = motion_of(system);
+      const std::uint64_t name = system.step;
+      const StepReport report = integrator->advance(system);
+      ASSERT_FALSE(report.broke_off);
+      const SymmetricTensor expected = gained(before, motion_of(system), name, how);
+      const double tolerance = of_single_precision * (1 + std::abs(expected.xx));
+      EXPECT_LT(largest_difference(report.flux.acted, expected), tolerance) << dt;
+      contacts += report.sums.contacts;
+      SymmetricTensor reported;
+      for (const SymmetricTensor& part : report.sums.stress) reported += part;
+      changed = std::max(changed, largest_difference(reported, report.flux.acted) / tolerance);
+    }
+    EXPECT_GT(contacts, 20) << dt;
+    EXPECT_GT(changed, 10) << dt;  // what the step reports as its stress is not what acted
+  }
+}
+
+// What moves at u' from x_n to x_n+1 carries m u' u'; pairs act at the places that they have.
+TEST(MomentumFlux, OfVelocityVerletIsTheStressAndTheMotion) {
+  const Physics physics = cluster_physics();
+  System system = cluster(physics, usual_density);
+  constexpr double dt = 1e-4;
+  VelocityVerlet integrator(ForceField(physics, system.particles, dt, noise_seed, 1), system.particles, dt);
+  integrator.watch_momentum_flux();
+  integrator.start(system);
+  for (int step = 0; step < 5; ++step) {
+    const Motion before = motion_of(system);
+    const StepReport report = integrator.advance(system);
+    const Motion after = motion_of(system);
+    SymmetricTensor expected;
+    for (const SymmetricTensor& part : report.sums.stress) expected += part;
+    for (std::size_t i = 0; i < sphere_count; ++i) {
+      const Vector3 u = (1 / dt) * (after.position[i] - before.position[i]);
+      expected += -mass_of(i, usual_density) * symmetric_dyad(u, u);
+    }
+    EXPECT_LT(largest_difference(report.flux.acted, expected), 1e-9 * (1 + std::abs(expected.xx)));
+  }
+}
+
+// Even and odd parts are those of the velocities: of a step at rest nothing is odd.
+TEST(MomentumFlux, HasConservativeAndDissipativeParts) {
+  const Physics physics = cluster_physics();
+  System system = cluster(physics, usual_density);
+  constexpr double dt = 1e-4;
+  VelocityVerlet integrator(ForceField(physics, system.particles, dt, noise_seed, 1), system.particles, dt);
+  integrator.watch_momentum_flux();
+  integrator.start(system);
+  const StepReport report = integrator.advance(system);
+  const auto of = [&](StressTerm term) { return report.sums.of(term).xy; };
+  EXPECT_NE(of(StressTerm::lubrication), 0);
+  EXPECT_EQ(report.flux.dissipative.xy, of(StressTerm::lubrication));
+  const double motion =
+      report.flux.conservative.xy - of(StressTerm::contact_normal) - of(StressTerm::repulsion);
+  EXPECT_NEAR(report.flux.acted.xy,
+              motion + of(StressTerm::contact_normal) + of(StressTerm::repulsion) +
+                  of(StressTerm::lubrication) + of(StressTerm::brownian_lubrication),
+              1e-12);
+}
+
+}  // namespace
+}  // namespace peclet::engine
