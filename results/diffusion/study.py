@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Mean squared displacements of dilute spheres, and self-diffusion from dilute to dense.
 
-study.py BIN [FOLDER] [--quick]
+study.py BIN [FOLDER] [--quick] [--from-table]
 """
 import math
 import sys
@@ -10,12 +10,12 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
-from studies.estimates import estimate, over, quotient, weighted_mean
+from studies.estimates import difference, estimate, over, quotient, weighted_mean
 from studies.figure import BLACK, BLUE, GREEN, RED, Figure
 from studies.fits import line_through
 from studies.scenes import REFERENCE_SCENE, during, merged
-from studies.tables import write_table
-from studies.verdicts import Statement
+from studies.tables import read_rows, read_table, write_table
+from studies.verdicts import Check, Finding, Statement
 
 import numpy as np
 
@@ -146,30 +146,40 @@ def line_of(rows):
     return intercept, ratio, ratio_error, (y - intercept - slope * x).tolist()
 
 
-def crowded_statements(table, seeds):
-    of = {(r["ratio"], r["fraction"]): r for r in table}
-    degrees = seeds - 1
-    # Two sizes: the mean of 1 / a over the number of spheres, 2.744 of the small ones to one large.
-    expected = (2.744 + 1 / 1.4) / 3.744
-    free = over(measured(of[COLD, FRACTIONS[0]]), expected)
-    yield Statement("dilute limit of D / D_0 over the mean of a / a_i", "L4.2d", *free, 0.95, 1.05, degrees)
+def crossover_row(rows, ratio, seeds):
+    """Half a decade either way is what "0.01" says of an order of magnitude."""
+    times, displacements = np.log([(r["time"], r["displacement"]) for r in rows]).T
+    found = float(np.interp(math.log(INERTIAL_TIME), times, displacements)) / math.log(10)
+    error = next(r for r in rows if r["time"] >= INERTIAL_TIME)["standard_error"] / math.log(10)
+    text = f"τ_I/τ_B = {ratio}: log10 of ⟨x²⟩ / a² at t = τ_I (published: crossover at 0.01 for τ_I/τ_B of order 10⁻²)"
+    return Statement(text, "L 4.2.4", found, error, -2.5, -1.5, seeds - 1, essential=False)
+
+
+def temperature_rows(of, degrees):
     for fraction in FRACTIONS:
         text = f"φ = {fraction:g}: D / D_0 at τ_I/τ_B = 0.17 over that at 0.017"
         yield Statement(text, "L4.2d", *beside(of[WARM, fraction], of[COLD, fraction]), 0.9, 1.1, degrees)
+    # The converse, that it depends on the temperature above, is not said in print.
+    text = "φ = 0.5: D / D_0 at τ_I/τ_B = 1.7 over that at 0.017"
+    yield Finding(text, "L4.2d", *quotient(measured(of[HOT, 0.5]), measured(of[COLD, 0.5])), degrees)
+
+
+def short_time_rows(of, degrees):
+    """Of lags of 1.5 and 3 Brownian times, at which spheres have not felt their neighbours whole."""
     intercept, slope, slope_error, residuals = line_of([of[COLD, f] for f in FRACTIONS])
     residual, fraction = max(zip(residuals, FRACTIONS), key=lambda r: abs(r[0]))
-    text = f"largest distance of D / D_0 from a line in φ (at φ = {fraction:g}) over its dilute value"
+    text = f"lags to 3 τ_B: largest distance of D / D_0 from a line in φ (at φ = {fraction:g}) over its dilute value"
     distance = over((residual, of[COLD, fraction]["standard_error"]), intercept)
-    yield Statement(text, "L4.2d", *distance, -0.05, 0.05, degrees, essential=False)
-    text = "slope of that line over the dilute value"
-    yield Statement(text, "L4.2d", slope, slope_error, high=-1, degrees=degrees)
-    text = "φ = 0.5: D / D_0 at τ_I/τ_B = 1.7 over that at 0.017 (L4.2d: it depends on the temperature there)"
-    dense = quotient(measured(of[HOT, 0.5]), measured(of[COLD, 0.5]))
-    yield Statement(text, "L4.2d", *dense, low=1.05, degrees=degrees, essential=False)
+    yield Finding(text, "L4.2d", *distance, degrees)
+    yield Finding("lags to 3 τ_B: slope of that line over the dilute value", "L4.2d", slope, slope_error, degrees)
 
 
-def long_time_statement(table):
+def long_time_rows(table):
     """The middle volume fractions against the straight line through the first and the last."""
+    degrees = table[0]["seeds"] - 1
+    for low, high in zip(table, table[1:]):
+        text = f"lags to 24 τ_B: D / D_0 at φ = {high['fraction']:g} over that at {low['fraction']:g}: it falls"
+        yield Statement(text, "L4.2c", *quotient(measured(high), measured(low)), high=1, degrees=degrees)
     first, *middle, last = table
     distances = []
     for row in middle:
@@ -179,18 +189,54 @@ def long_time_statement(table):
         distances.append((row["diffusion"] - on_line, math.hypot(*errors), row["fraction"]))
     *distance, fraction = max(distances, key=lambda d: abs(d[0]))
     text = (
-        "windows of 90 Brownian times: largest distance of D / D_0 from the line through the first and the last φ "
+        "lags to 24 τ_B: largest distance of D / D_0 from the line through the first and the last φ "
         f"(at φ = {fraction:g}) over its dilute value"
     )
-    share = over(distance, first["diffusion"])
-    return Statement(text, "L4.2d", *share, -0.05, 0.05, table[0]["seeds"] - 1, essential=False)
+    yield Statement(text, "L4.2d", *over(distance, first["diffusion"]), -0.05, 0.05, degrees)
+    slope = quotient(difference(measured(last), measured(first)), measured(first))
+    text = "lags to 24 τ_B: slope of that line over the dilute value (hard spheres without hydrodynamics: about -2)"
+    yield Finding(text, "L4.2d", *over(slope, last["fraction"] - first["fraction"]), degrees)
+
+
+LAGS = {"implicit": 3, "implicit, windows of 90": 24}  # the longest
+
+
+def rows_with(table, method):
+    return [r for r in table if r["method"] == method]
+
+
+def lag_rows(table):
+    """What the time is that D is called long-time after."""
+    short, long = ({r["fraction"]: r for r in rows_with(table, m) if r["ratio"] == COLD} for m in LAGS)
+    for fraction, row in long.items():
+        text = f"φ = {fraction:g}: D / D_0 between lags of 1.5 and 3 τ_B over that between 12 and 24"
+        yield Finding(text, "L4.2c", *quotient(measured(short[fraction]), measured(row)), row["seeds"] - 1)
+
+
+def judge():
+    curves = {}
+    for row in read_table(HERE / "displacement.csv"):
+        curves.setdefault(row["ratio"], []).append(row)
+    table = read_rows(HERE / "table.csv")
+    crowded, (explicit,) = (rows_with(table, method) for method in ("implicit", "explicit"))
+    of, seeds = {(r["ratio"], r["fraction"]): r for r in crowded}, min(r["seeds"] for r in crowded)
+    yield from dilute_statements(curves, seeds, 0.02)
+    yield crossover_row(curves[COLD], COLD, seeds)
+    yield from temperature_rows(of, seeds - 1)
+    yield from long_time_rows(rows_with(table, "implicit, windows of 90"))
+    yield from short_time_rows(of, seeds - 1)
+    yield from lag_rows(table)
+    # Two sizes: the mean of 1 / a over the number of spheres, 2.744 of the small ones to one large.
+    free = over(measured(of[COLD, FRACTIONS[0]]), (2.744 + 1 / 1.4) / 3.744)
+    yield Check("dilute limit of D / D_0 over the mean of a / a_i", "formula", *free, 0.95, 1.05, seeds - 1)
+    methods = beside(of[WARM, 0.3], explicit)
+    yield Check("φ = 0.3: implicit steps over explicit ones", "method", *methods, 0.9, 1.1, explicit["seeds"] - 1)
 
 
 def measure(program):
     seeds = 32
     curves = dilute_curves(program, RATIOS, seeds)
     table = diffusion(program, RATIOS, FRACTIONS, seeds)
-    seeds = min(row["seeds"] for row in table)
     one = {"integrator": {"method": "explicit"}}
     explicit = diffusion(program, [WARM], [0.3], 8, one, "crowded-explicit")[0]
     long = diffusion(program, [COLD], LONG_FRACTIONS, 8, LONG, "crowded-long")
@@ -201,15 +247,6 @@ def measure(program):
     rows += [{"method": "implicit, windows of 90", **row} for row in long]
     write_table(HERE / "table.csv", list(rows[0]), rows, 5)
     draw(curves, table, long)
-    implicit = next(r for r in table if (r["ratio"], r["fraction"]) == (WARM, 0.3))
-    methods = beside(implicit, explicit)
-    text = "φ = 0.3: implicit steps over explicit ones"
-    return [
-        *dilute_statements(curves, seeds, 0.02),
-        *crowded_statements(table, seeds),
-        long_time_statement(long),
-        Statement(text, "method", *methods, 0.9, 1.1, explicit["seeds"] - 1),
-    ]
 
 
 def draw(curves, table, long):
@@ -244,4 +281,4 @@ def quick_measure(program):
     ]
 
 
-main(HERE, TITLE, measure, quick_measure)
+main(HERE, TITLE, measure, quick_measure, judge)

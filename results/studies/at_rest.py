@@ -1,0 +1,24 @@
+"""The viscosity at rest, Pe → 0."""
+from pathlib import Path
+
+from studies.tables import entries, number, read_rows
+
+RESULTS = Path(__file__).resolve().parents[1]
+SLOWEST = 0.046  # the lowest Peclet number that slow shear knows to a few per cent
+
+
+def rows_at_rest():
+    """By volume fraction: seeds or whatever the degrees of freedom are of, `viscosity` with 1 + 2.5 phi and `pairs`
+    without, with their standard errors; and where they are from. From the study at-rest if it has been made (its table:
+    fraction, count, viscosity with 1 + 2.5 phi, viscosity_error; the largest count of each fraction), else from slow
+    shear, as flow-curve has it."""
+    exact = RESULTS / "at-rest" / "table.csv"
+    if not exact.exists():
+        table = read_rows(RESULTS / "flow-curve" / "table.csv")
+        rows = [r for r in table if (r["method"], r["count"], r["peclet"]) == ("implicit", 250, SLOWEST)]
+        return {r["fraction"]: r for r in rows}, f"slow shear, Pe = {SLOWEST:g}"
+    found = {}
+    for row in sorted(read_rows(exact), key=lambda r: r["count"]):
+        value, error = number(row, "viscosity")
+        found[row["fraction"]] = row | entries("pairs", (value - 1 - 2.5 * row["fraction"], error))
+    return found, "linear response"
