@@ -5,6 +5,7 @@ from studies.tables import entries, number, read_rows
 
 RESULTS = Path(__file__).resolve().parents[1]
 SLOWEST = 0.046  # the lowest Peclet number that slow shear knows to a few per cent
+SLOW_SHEAR = f"slow shear, Pe = {SLOWEST:g}"
 
 
 def rows_at_rest():
@@ -16,7 +17,7 @@ def rows_at_rest():
     if not exact.exists():
         table = read_rows(RESULTS / "flow-curve" / "table.csv")
         rows = [r for r in table if (r["method"], r["count"], r["peclet"]) == ("implicit", 250, SLOWEST)]
-        return {r["fraction"]: r for r in rows}, f"slow shear, Pe = {SLOWEST:g}"
+        return {r["fraction"]: r for r in rows}, SLOW_SHEAR
     found = {}
     for row in sorted(read_rows(exact), key=lambda r: r["count"]):
         value, error = number(row, "viscosity")

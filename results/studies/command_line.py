@@ -76,9 +76,9 @@ def earlier_provenance(path):
 def write_study(folder, title, rows, of_runs):
     """study.json, and the rows on the study's page."""
     study = {"title": title, "verdict": verdict(rows), **of_runs, "statements": [row.as_json() for row in rows]}
+    text = json.dumps(study, indent=1, ensure_ascii=False) + "\n"
     with open(os.path.join(folder, "study.json"), "w") as f:
-        json.dump(study, f, indent=1, ensure_ascii=False)
-        f.write("\n")
+        f.write(text)
     rewrite(os.path.join(folder, "README.md"), rows)
 
 

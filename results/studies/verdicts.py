@@ -70,8 +70,8 @@ class Judged(Row):
         """Whether the whole interval of 95 % lies on the side of the bounds that the value lies on."""
         ends = self.value - self.half_width, self.value + self.half_width
         if self.within():
-            return self.low <= ends[0] and ends[1] <= self.high
-        return ends[1] < self.low or ends[0] > self.high
+            return bool(self.low <= ends[0] and ends[1] <= self.high)
+        return bool(ends[1] < self.low or ends[0] > self.high)
 
     def known(self):
         """Whether the value may answer: it is sure, or its interval of 95 % is no wider than the range between the
