@@ -199,6 +199,8 @@ def measure(program):
         summary += [summary_row(number, kind, series, steps) for kind in KINDS]
         spreads += spread_rows(number, series, steps)
         numbers |= dict([*exponents(number, series), saving_of(number, series)])
+        mean = over(estimate(series.control), series.mean())
+        numbers[f"Pe = {number:g}: {BROWNIAN_MEAN}"] = (*mean, seeds * program.times - 1)
         savings[number] = [(blocks * series.steps / BLOCKS, *saving(series, blocks)) for blocks in WINDOWS]
     for name, table in (("table", summary), ("spread", spreads)):
         write_table(HERE / f"{name}.csv", list(table[0]), table, 5)
@@ -206,6 +208,7 @@ def measure(program):
     draw(spreads, savings)
 
 
+BROWNIAN_MEAN = "mean of the pairs' Brownian stress over η_r"
 OF_COUNT = "Pe = 10^4: variance times N, N = 1000 over N = 250"
 OF_METHOD = "Pe = 1: standard deviation over four Brownian times, implicit steps over explicit ones"
 
@@ -248,9 +251,18 @@ def exponent_rows(numbers):
             yield Finding(name, "steps", value, error, degrees)
 
 
+def mean_rows(numbers):
+    """It "averages to zero": within three standard errors."""
+    for name, (value, error, _) in numbers.items():
+        if BROWNIAN_MEAN in name:
+            yield Statement(f"{name}, in standard errors", "L 3.6", value / error, 1, -3, 3)
+            yield Finding(name, "L 3.6", value, error)
+
+
 def judge():
     numbers = read_numbers(HERE / "numbers.csv")
     yield from sample_rows(read_rows(HERE / "table.csv"))
+    yield from mean_rows(numbers)
     yield from exponent_rows(numbers)
     for number, *_ in RUNS:
         name = f"Pe = {number:g}: variance with the control variate over that without"

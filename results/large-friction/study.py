@@ -121,7 +121,8 @@ def contact_rows(table):
     last = {}
     for friction, published in PUBLISHED_CONTACTS.items():
         row = last[friction] = [r for r in without_noise(table, friction) if not r["lost"]][-1]
-        text = f"μ = {friction}, no noise, φ = {row['fraction']:g}: contacts of a sphere that carries (published: {published})"
+        name = f"μ = {friction}, no noise, φ = {row['fraction']:g}"
+        text = f"{name}: contacts of a sphere that carries (published: about {published})"
         yield Statement(text, "L 4.2.7", *number(row, "contacts"), published - 1, published + 1, row["seeds"] - 1)
     text = "the first of these less the second (published: 2)"
     yield Statement(text, "L 4.2.7", *difference(*(number(last[m], "contacts") for m in (0, 1))), 0, degrees=SEEDS - 1)

@@ -96,7 +96,7 @@ def weak_rows(numbers):
     rest = table_at_rest()
     for fraction in FRACTIONS:
         name = f"Pe = {WEAK:g}, φ = {fraction:g}"
-        text = f"{name}, from a random packing: η_r from 3 to 6 τ_B over that from 63 to 96 (published: steady after 3 to 4)"
+        text = f"{name}, from a random packing: η_r from 3 to 6 τ_B over that from 63 to 96 (published: 3 to 4 suffice)"
         *found, degrees = numbers[f"{name}: early over steady"]
         yield Statement(text, "L 4.2.1", *found, 1 - TOLERANCE, 1 + TOLERANCE, degrees)
         *found, degrees = numbers[f"{name}: time to 95 %"]

@@ -6,7 +6,6 @@ import io
 import json
 import math
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -163,24 +162,6 @@ class Tables(unittest.TestCase):
             first, second = read_rows(path)
         self.assertEqual(first, {"name": "a", "x": 1000})
         self.assertTrue(math.isnan(second["x"]))
-
-
-class Judging(unittest.TestCase):
-    def test_again_gives_what_study_json_has(self):
-        """Of a copy, so that nothing of the source is written."""
-        with tempfile.TemporaryDirectory() as folder:
-            copy = os.path.join(folder, "results")
-            shutil.copytree(RESULTS, copy, ignore=shutil.ignore_patterns("__pycache__", "*.png"))
-            for name in JUDGED:
-                with self.subTest(name):
-                    done = subprocess.run(
-                        ["/usr/bin/python3", os.path.join(copy, name, "study.py"), "--from-table"],
-                        capture_output=True,
-                        text=True,
-                    )
-                    self.assertEqual(done.returncode, 0, done.stderr)
-                    with open(os.path.join(copy, name, "study.json")) as f:
-                        self.assertEqual(json.load(f), study_of(name))
 
 
 class Folders(unittest.TestCase):
