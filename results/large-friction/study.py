@@ -23,24 +23,34 @@ import numpy as np
 
 TITLE = "Large friction"
 # Without noise: volume fractions by friction.
-FRACTIONS = {0: (0.58, 0.60, 0.61, 0.62), 1: (0.40, 0.45, 0.50, 0.53, 0.55, 0.56)}
-FITTED = 0.55  # of friction 1, the densest of the fit; at 0.56 some seeds jam
+FRACTIONS = {0: (0.58, 0.60, 0.61, 0.62), 1: (0.40, 0.45, 0.50, 0.53, 0.54, 0.55, 0.56)}
+FITTED = 0.55  # of friction 1, the densest of the fit
+SOFT = {"guard": {"largest_overlap": 0.3}}  # jammed spheres of this stiffness overlap by more than the guard's 0.05
 NETWORK = {"observables": ["stress", "contact_network"]}
 STEADY = merged(
     REFERENCE_SCENE,
-    {"particles": {"count": 250}, "contact": {"friction": 0}, **NETWORK, **during({"strain": 2}, {"strain": 4})},
+    {
+        "particles": {"count": 250},
+        "contact": {"friction": 0},
+        **NETWORK,
+        **SOFT,
+        **during({"strain": 2}, {"strain": 4}),
+    },
 )
 SEEDS = 8
-# Spheres with fewer contacts carry nothing: three hold one without friction, two with it.
+# Spheres with fewer contacts carry nothing: forces balance with four of them without friction, with two with it.
 CARRYING = {0: 4, 1: 2}
 # With noise: between 0.57, where the fits for friction 1 diverge, and 0.587, that at rest.
-DENSE, PECLET, LOWEST = 0.58, (0.1, 1, 4.6, 22, 100, 1e3, 1e4), 4.6
+DENSE, PECLET, LOWEST = 0.58, (1, 4.6, 10, 22, 100, 1e3, 1e4), 4.6
+SLOW_PECLET = (0.02, 0.1)
+SLOW = during({"brownian_times": 100}, {"brownian_times": 100})
+STIFF = 4  # times
 NOISY = merged(
     TABLE_SCENE,
     {
         "contact": {"friction": 1},
-        "guard": {"largest_overlap": 0.3},
         **NETWORK,
+        **SOFT,
         **during({"strain": 1, "brownian_times": 40}, {"strain": 2, "brownian_times": 40}),
     },
 )
@@ -84,8 +94,12 @@ def measure(program):
     rows = []
     for friction, fractions in FRACTIONS.items():
         rows += steady(program, f"steady-{friction}", friction, fractions, SEEDS)
+    rows += noisy(program, "slow", SLOW_PECLET, NOISY_SEEDS, SLOW)
     rows += noisy(program, "noisy", PECLET, NOISY_SEEDS)
-    names = ["peclet", "friction", "fraction", "seeds", "lost", "transient"]
+    stiff = {"contact": {"normal_stiffness": STIFF * NOISY["contact"]["normal_stiffness"]}}
+    rows += [{"stiffness": STIFF, **row} for row in noisy(program, "stiff", PECLET[-1:], NOISY_SEEDS, stiff)]
+    rows = [{"stiffness": 1} | row for row in rows]
+    names = ["peclet", "friction", "fraction", "stiffness", "seeds", "lost", "transient"]
     names += columns_of("viscosity", "pairs", "lubrication", "contact", "contacts", "rattlers")
     write_table(HERE / "table.csv", names, rows, 5)
     draw()
@@ -96,7 +110,7 @@ def without_noise(table, friction):
 
 
 def with_noise(table):
-    return [r for r in table if r["peclet"] != "no noise"]
+    return [r for r in table if r["peclet"] != "no noise" and r["stiffness"] == 1]
 
 
 def fit_of(rows):
@@ -133,11 +147,17 @@ def between_rows(table):
     middle = rows[LOWEST]
     text = f"φ = {DENSE:g}, μ = 1: seeds that end at Pe = {LOWEST:g} (finite), of {NOISY_SEEDS}"
     yield Statement(text, "L 4.2.6", middle["seeds"] / NOISY_SEEDS, 0, 1)
-    for peclet in (min(rows), max(rows)):
+    for peclet in (*SLOW_PECLET, 22, 1e4):
         row = rows[peclet]
         text = f"φ = {DENSE:g}, μ = 1: η_r of pairs at Pe = {peclet:g} over that at {LOWEST:g}"
         ratio = quotient(number(row, "pairs"), number(middle, "pairs"))
         yield Statement(text, "L 4.2.6", *ratio, 1, degrees=row["seeds"] - 1)
+    (stiff,) = (r for r in table if r["stiffness"] == STIFF)
+    text = f"φ = {DENSE:g}, μ = 1, Pe = 10⁴: η_r of pairs with four times k_n over that with k_n (jammed: above 1)"
+    yield Finding(text, "L 4.2.6", *quotient(number(stiff, "pairs"), number(rows[1e4], "pairs")), stiff["seeds"] - 1)
+    for peclet in (LOWEST, 22):
+        text = f"φ = {DENSE:g}, μ = 1, Pe = {peclet:g}: contacts of a sphere that carries"
+        yield Finding(text, "L 4.2.7", *number(rows[peclet], "contacts"), rows[peclet]["seeds"] - 1)
 
 
 def judge():
