@@ -2,7 +2,7 @@
 """Friction of 1: where the viscosity diverges without noise, how many contacts spheres have there, and which Peclet
 numbers flow between the two volume fractions of jamming.
 
-study.py BIN [FOLDER] [--quick]
+study.py BIN [FOLDER] [--quick] [--from-table]
 """
 import sys
 from pathlib import Path
@@ -102,7 +102,6 @@ def measure(program):
     names = ["peclet", "friction", "fraction", "stiffness", "seeds", "lost", "transient"]
     names += columns_of("viscosity", "pairs", "lubrication", "contact", "contacts", "rattlers")
     write_table(HERE / "table.csv", names, rows, 5)
-    draw()
 
 
 def without_noise(table, friction):
@@ -168,7 +167,7 @@ def judge():
 def draw():
     table = read_rows(HERE / "table.csv")
     figure = Figure(HERE / "chart.png", columns=3, size=(1400, 440))
-    ends = {"x_range": (0.38, 0.64), "y_range": (2, 2000)}
+    ends = {"x_range": (0.38, 0.64), "y_range": (2, 2e4)}
     panel = figure.panel("φ", "η_r of pairs, no noise", log="y", key="top left", **ends)
     contacts = figure.panel(
         "φ", "contacts of a sphere that carries", key="top left", x_range=(0.38, 0.64), y_range=(2, 7)
@@ -179,7 +178,7 @@ def draw():
         contacts.points([(r["fraction"], *number(r, "contacts")) for r in rows], f"μ = {friction}", colour, 7, 0.9)
         contacts.level(PUBLISHED_CONTACTS[friction], None, colour, (0.38, 0.64), dash=2)
     panel.curve(lambda f: mari_fit(f, 1), "Mari fit (published), μ = 1", RED, (0.38, 0.57), dash=2)
-    ends = {"x_range": (0.05, 3e4), "y_range": (10, 3e5)}
+    ends = {"x_range": (0.01, 3e4), "y_range": (10, 3e5)}
     panel = figure.panel("Pe", "η_r of pairs, μ = 1", f"φ = {DENSE:g}", log="xy", powers="xy", **ends)
     panel.points([(r["peclet"], *number(r, "pairs")) for r in with_noise(table)], None, RED, 7, 0.9, joined=True)
     figure.draw()
@@ -199,4 +198,4 @@ def quick_measure(program):
     ]
 
 
-main(HERE, TITLE, measure, quick_measure, judge)
+main(HERE, TITLE, measure, quick_measure, judge, draw)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """How long the viscosity takes to become steady, from a random packing, in weak and in strong flow.
 
-study.py BIN [FOLDER] [--quick]
+study.py BIN [FOLDER] [--quick] [--from-table]
 """
 import math
 import sys
@@ -88,7 +88,6 @@ def measure(program):
                 table.append(place | entries("pairs", estimate(values)))
     write_table(HERE / "table.csv", list(table[0]), table, 5)
     write_numbers(HERE / "numbers.csv", numbers)
-    draw()
 
 
 def weak_rows(numbers):
@@ -165,4 +164,4 @@ def quick_measure(program):
     ]
 
 
-main(HERE, TITLE, measure, quick_measure, judge)
+main(HERE, TITLE, measure, quick_measure, judge, draw)
