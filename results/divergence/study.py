@@ -168,7 +168,7 @@ def judge():
     curves, table = curves_of_table()
     rest, how = rows_at_rest()
     name = f"Pe → 0 ({how})"
-    recipe, curves[0] = curves[0], [rest[f] for f in sorted(rest)]
+    recipe, curves[0] = curves[0], [rest[f] for f in sorted(rest) if f >= FRACTIONS[0]]
     yield from fit_rows(0, name, curves[0])
     yield from fit_rows(1e4, NAMES[1e4], curves[1e4])
     yield from shift_rows(curves)

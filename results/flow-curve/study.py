@@ -162,7 +162,8 @@ def rest_rows(curves):
             text = f"η_r of pairs at Pe = {SLOWEST:g} over that at rest ({how}): plateau"
             found = quotient(number(curve.at[SLOWEST], "pairs"), number(rest[fraction], "pairs"))
             yield curve.row(Statement, text, found, SLOWEST, low=0.8, high=1.25)
-    for low, high in zip(FRACTIONS, FRACTIONS[1:]):
+    known = [f for f in FRACTIONS if f in rest]
+    for low, high in zip(known, known[1:]):
         text = f"η_r of pairs at rest ({how}) over that at φ = {low:g}"
         yield curves[high].row(
             Statement, text, quotient(*(number(rest[f], "pairs") for f in (high, low))), SLOWEST, low=1
