@@ -168,7 +168,7 @@ def draw():
     table = read_rows(HERE / "table.csv")
     figure = Figure(HERE / "chart.png", columns=3, size=(1400, 440))
     ends = {"x_range": (0.38, 0.64), "y_range": (2, 2e4)}
-    panel = figure.panel("φ", "η_r of pairs, no noise", log="y", key="top left", **ends)
+    panel = figure.panel("φ", "η_r of pairs, no noise", log="y", key="bottom right", **ends)
     contacts = figure.panel(
         "φ", "contacts of a sphere that carries", key="top left", x_range=(0.38, 0.64), y_range=(2, 7)
     )
