@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Relative spread of the viscosity against the number of samples, with and without the control variate.
 
-study.py BIN [FOLDER] [--quick]
+study.py BIN [FOLDER] [--quick] [--from-table]
 """
 import math
 import sys
@@ -10,13 +10,13 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
-from studies.estimates import estimate, jackknife, over, quotient
+from studies.estimates import difference, estimate, jackknife, over, quotient
 from studies.figure import BLACK, BLUE, GREEN, RED, Figure
 from studies.fits import line_through
 from studies.published import JAMMED_AT_REST, diverging
 from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
-from studies.tables import entries, write_table
-from studies.verdicts import Statement
+from studies.tables import entries, read_numbers, read_rows, write_numbers, write_table
+from studies.verdicts import Check, Finding, Statement
 
 import numpy as np
 
@@ -140,16 +140,17 @@ def run(program, number, seeds, duration, patch=None, name=None):
     return Series(program.stored_results(name)[0], PUBLISHED_MEAN.get(number))
 
 
-def exponent_statements(number, series, over_what, width, essential):
-    for kind, word in KINDS.items():
-        text = f"Pe = {number:g}: exponent of the spread over {over_what}, {word} the control variate"
-        value, error, degrees = exponent(series, kind, over_what)
-        yield Statement(text, "L4.3a", value, error, -0.5 - width, -0.5 + width, degrees, essential)
+def exponents(number, series):
+    """Of the spread over seeds and over steps, of both kinds."""
+    for over_what in ("seeds", "steps"):
+        for kind, word in KINDS.items():
+            name = f"Pe = {number:g}: exponent of the spread over {over_what}, {word} the control variate"
+            yield name, exponent(series, kind, over_what)
 
 
-def saving_statement(number, series, high, low=-math.inf):
-    text = f"Pe = {number:g}: variance with the control variate over that without"
-    return Statement(text, "results/control-variates", *saving(series), low, high, len(series.plain) - 1)
+def saving_of(number, series):
+    name = f"Pe = {number:g}: variance with the control variate over that without"
+    return name, (*saving(series), len(series.plain) - 1)
 
 
 def summary_row(number, kind, series, steps):
@@ -190,45 +191,87 @@ def spread_rows(number, series, steps):
             yield row
 
 
-def statements_of(number, series, published, summary):
-    yield from exponent_statements(number, series, "seeds", 0.1, True)
-    yield from exponent_statements(number, series, "steps", 0.1, False)
-    yield saving_statement(number, series, *((0.75,) if number <= 1 else (1.1, 0.9)))
-    if published:
-        text = f"Pe = {number:g}: log10 of explicit steps for 10 %, N = 1000"
-        found = summary["log10_explicit_steps_1000"], summary["log10_error"]
-        yield Statement(text, "L4.3a", *found, published - 1, published + 1, len(series.plain) - 1)
-
-
 def measure(program):
-    statements, spreads, savings, summary, found = [], [], {}, [], {}
-    for number, seeds, duration, published in RUNS:
+    spreads, savings, summary, found, numbers = [], {}, [], {}, {}
+    for number, seeds, duration, _ in RUNS:
         series = found[number] = run(program, number, seeds, duration)
         steps = explicit_steps(program, number, series, 250)
-        rows = [summary_row(number, kind, series, steps) for kind in KINDS]
-        summary += rows
+        summary += [summary_row(number, kind, series, steps) for kind in KINDS]
         spreads += spread_rows(number, series, steps)
-        statements += statements_of(number, series, published, rows[0])
+        numbers |= dict([*exponents(number, series), saving_of(number, series)])
+        mean = over(estimate(series.control), series.mean())
+        numbers[f"Pe = {number:g}: {BROWNIAN_MEAN}"] = (*mean, seeds * program.times - 1)
         savings[number] = [(blocks * series.steps / BLOCKS, *saving(series, blocks)) for blocks in WINDOWS]
-    write_table(HERE / "table.csv", list(summary[0]), summary, 5)
-    write_table(HERE / "spread.csv", list(spreads[0]), spreads, 5)
+    for name, table in (("table", summary), ("spread", spreads)):
+        write_table(HERE / f"{name}.csv", list(table[0]), table, 5)
+    write_numbers(HERE / "numbers.csv", numbers | dict(comparisons(program, found)))
     draw(spreads, savings)
-    return [*statements, *comparisons(program, found)]
+
+
+BROWNIAN_MEAN = "mean of the pairs' Brownian stress over η_r"
+OF_COUNT = "Pe = 10^4: variance times N, N = 1000 over N = 250"
+OF_METHOD = "Pe = 1: standard deviation over four Brownian times, implicit steps over explicit ones"
 
 
 def comparisons(program, found):
     """That spreads are those of another number of spheres, and of explicit steps, as the samples for 10 % suppose."""
     large = run(program, 1e4, 48, SHEARED, {"particles": {"count": 1000}}, "convergence-1000")
     value, error = quotient(spread(large, "plain"), spread(found[1e4], "plain"))
-    text = "Pe = 10^4: variance times N, N = 1000 over N = 250"
-    yield Statement(text, "method", 4 * value**2, 4 * 2 * value * error, 0.5, 2, 47)
+    yield OF_COUNT, (4 * value**2, 4 * 2 * value * error, 47)
     short = during({"brownian_times": 1}, {"brownian_times": 4})
     explicit = run(program, 1, 32, short, {"integrator": {"method": "explicit"}}, "convergence-explicit")
     values = explicit.whole("plain")
     implicit = math.sqrt(variance_over_seeds(averaged(found[1].plain, 8))), 0
     ratio = quotient(implicit, jackknife(lambda seeds: values[seeds].std(ddof=1), len(values)))
-    text = "Pe = 1: standard deviation over four Brownian times, implicit steps over explicit ones"
-    yield Statement(text, "method", *ratio, 0.5, 2, 31)
+    yield OF_METHOD, (*ratio, 31)
+
+
+def sample_rows(table):
+    """The published numbers of samples are orders of magnitude: a decade either way."""
+    rows = {r["peclet"]: r for r in table if r["estimate"] == "plain"}
+    found = {p: (r["log10_explicit_steps_1000"], r["log10_error"]) for p, r in rows.items()}
+    for number, _, _, published in RUNS:
+        if published:
+            text = f"Pe = {number:g}: log10 of explicit steps for 10 %, N = 1000 (published: {published})"
+            ends = published - 1, published + 1
+            yield Statement(text, "L4.3a", *found[number], *ends, rows[number]["seeds"] - 1)
+    for low, high in zip(sorted(rows), sorted(rows)[1:]):
+        text = f"log10 of samples for 10 % at Pe = {low:g} less that at {high:g}: more are needed as Pe is reduced"
+        yield Statement(text, "L4.3a", *difference(found[low], found[high]), 0, degrees=rows[low]["seeds"] - 1)
+
+
+def exponent_rows(numbers):
+    """Seeds are independent. Consecutive steps are not, and no exponent is published: the spread must only fall."""
+    for name, (value, error, degrees) in numbers.items():
+        if "over seeds" in name:
+            yield Check(name, "seeds", value, error, -0.6, -0.4, degrees)
+        elif "over steps, without" in name:
+            yield Statement(f"{name}: it falls", "L4.3a", value, error, high=0, degrees=degrees)
+        elif "over steps" in name:
+            yield Finding(name, "steps", value, error, degrees)
+
+
+def mean_rows(numbers):
+    """It "averages to zero": within three standard errors."""
+    for name, (value, error, _) in numbers.items():
+        if BROWNIAN_MEAN in name:
+            yield Statement(f"{name}, in standard errors", "L 3.6", value / error, 1, -3, 3)
+            yield Finding(name, "L 3.6", value, error)
+
+
+def judge():
+    numbers = read_numbers(HERE / "numbers.csv")
+    yield from sample_rows(read_rows(HERE / "table.csv"))
+    yield from mean_rows(numbers)
+    yield from exponent_rows(numbers)
+    for number, *_ in RUNS:
+        name = f"Pe = {number:g}: variance with the control variate over that without"
+        value, error, degrees = numbers[name]
+        ends = (-math.inf, 0.75) if number <= 1 else (0.9, 1.1)
+        yield Check(name, "control variate", value, error, *ends, degrees)
+    for name in (OF_COUNT, OF_METHOD):
+        value, error, degrees = numbers[name]
+        yield Check(name, "conversion", value, error, 0.5, 2, degrees)
 
 
 def draw(spreads, savings):
@@ -271,17 +314,20 @@ def quick_measure(program):
     small = {"particles": {"count": 50}}
     brownian = run(program, 1, 96, during({"brownian_times": 1}, {"brownian_times": 8}), small)
     sheared = run(program, 1e4, 96, during({"strain": 1}, {"strain": 2}), small)
-    statements = []
+    rows = []
     for number, series in ((1, brownian), (1e4, sheared)):
-        statements += exponent_statements(number, series, "seeds", 0.2, True)
+        for name, (value, error, degrees) in exponents(number, series):
+            if "over seeds" in name:
+                rows.append(Check(name, "seeds", value, error, -0.7, -0.3, degrees))
     control = over(estimate(brownian.control), brownian.mean())
     samples = samples_for_target(explicit_steps(program, 1e4, sheared, 50), spread(sheared, "plain"))
+    name, (*found, degrees) = saving_of(1, brownian)
     return [
-        *statements,
-        saving_statement(1, brownian, 0.8),
-        Statement("Pe = 1: mean of the control variate over η_r", "PHYSICS.md", *control, -0.2, 0.2, 95),
+        *rows,
+        Check(name, "control variate", *found, high=0.8, degrees=degrees),
+        Check("Pe = 1: mean of the control variate over η_r", "PHYSICS.md", *control, -0.2, 0.2, 95),
         Statement("Pe = 10^4: log10 of explicit steps for 10 %, N = 1000", "L4.3a", *samples, 4, 6, 95),
     ]
 
 
-main(HERE, TITLE, measure, quick_measure)
+main(HERE, TITLE, measure, quick_measure, judge)

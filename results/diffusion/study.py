@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Mean squared displacements of dilute spheres, and self-diffusion from dilute to dense.
 
-study.py BIN [FOLDER] [--quick]
+study.py BIN [FOLDER] [--quick] [--from-table]
 """
 import math
 import sys
@@ -10,12 +10,12 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
-from studies.estimates import estimate, over, quotient, weighted_mean
+from studies.estimates import difference, estimate, over, quotient, weighted_mean
 from studies.figure import BLACK, BLUE, GREEN, RED, Figure
 from studies.fits import line_through
 from studies.scenes import REFERENCE_SCENE, during, merged
-from studies.tables import write_table
-from studies.verdicts import Statement
+from studies.tables import read_rows, read_table, write_table
+from studies.verdicts import Check, Finding, Statement
 
 import numpy as np
 
@@ -51,9 +51,21 @@ CROWDED = merged(
     },
 )
 
-# Displacements over windows ten times longer, for the limit of long times.
-LONG_FRACTIONS = (0.001, 0.1, 0.3, 0.5)
-LONG = {"duration": {"production": {"brownian_times": 90}}}
+# Displacements over windows ten and twenty times longer, for the limit of long times: volume fractions, ratios.
+LONG = {90: ((0.001, 0.1, 0.3, 0.5), (WARM, COLD)), 180: ((0.1, 0.3, 0.5), (COLD,))}
+LONG_SEEDS = 18
+
+# At short times, with the inertia of the hot ones.
+BALLISTIC_FRACTIONS, BALLISTIC_SEEDS = (0.001, 0.1, 0.3, 0.5, 0.55), 8
+BALLISTIC = merged(
+    CROWDED,
+    {
+        "integrator": {"method": "explicit"},
+        "mean_squared_displacement": {"interval": 0.005},
+        **during({"brownian_times": 10}, {"time": 4}),
+    },
+)
+SHORT_LAG = 0.05  # over tau_I
 
 
 def thermal_energy(ratio, viscosity, density):
@@ -125,6 +137,31 @@ def diffusion(program, ratios, fractions, seeds, patch=None, name="crowded"):
     return table
 
 
+def long_times(program):
+    """Rows with windows of so many Brownian times."""
+    for times, (fractions, ratios) in LONG.items():
+        patch = {"duration": {"production": {"brownian_times": times}}}
+        for row in diffusion(program, ratios, fractions, LONG_SEEDS, patch, f"crowded-{times}"):
+            yield {"method": f"implicit, windows of {times}", **row}
+
+
+def short_times(program):
+    """Displacements of the small spheres over those without any force, kT t^2 / m along each axis."""
+    energy = thermal_energy(HOT, 0.1, 0.1)
+    scene = merged(BALLISTIC, {"fluid": {"thermal_energy": energy}})
+    settings = [{"/volume_fraction": f} for f in BALLISTIC_FRACTIONS]
+    points = program.run("ballistic", scene, settings, BALLISTIC_SEEDS, "kinetic_temperature")
+    for fraction, point in zip(BALLISTIC_FRACTIONS, points):
+        found = [r["mean"]["mean_squared_displacement"] for r in point["realisations"] if r.get("mean")]
+        times = np.array(found[0]["time"])
+        free = energy * times**2 / (4 / 3 * math.pi * 0.1)
+        small = [np.mean([d["species"][0][axis] for axis in "xyz"], axis=0) / free for d in found]
+        for k, time in enumerate(times.tolist()):
+            value, error = estimate([values[k] for values in small])
+            row = {"fraction": fraction, "seeds": len(small), "time": time, "over_ballistic": value}
+            yield {**row, "standard_error": error}
+
+
 def measured(row):
     return row["diffusion"], row["standard_error"]
 
@@ -146,30 +183,46 @@ def line_of(rows):
     return intercept, ratio, ratio_error, (y - intercept - slope * x).tolist()
 
 
-def crowded_statements(table, seeds):
-    of = {(r["ratio"], r["fraction"]): r for r in table}
-    degrees = seeds - 1
-    # Two sizes: the mean of 1 / a over the number of spheres, 2.744 of the small ones to one large.
-    expected = (2.744 + 1 / 1.4) / 3.744
-    free = over(measured(of[COLD, FRACTIONS[0]]), expected)
-    yield Statement("dilute limit of D / D_0 over the mean of a / a_i", "L4.2d", *free, 0.95, 1.05, degrees)
+def crossover_row(rows, ratio, seeds):
+    """Half a decade either way is what "0.01" says of an order of magnitude."""
+    times, displacements = np.log([(r["time"], r["displacement"]) for r in rows]).T
+    found = float(np.interp(math.log(INERTIAL_TIME), times, displacements)) / math.log(10)
+    error = next(r for r in rows if r["time"] >= INERTIAL_TIME)["standard_error"] / math.log(10)
+    text = f"τ_I/τ_B = {ratio}: log10 of ⟨x²⟩ / a² at t = τ_I (published: crossover at 0.01 for τ_I/τ_B of order 10⁻²)"
+    return Statement(text, "L 4.2.4", found, error, -2.5, -1.5, seeds - 1, essential=False)
+
+
+def temperature_rows(long, short):
+    """At long times; at short ones, with more volume fractions, it is a finding. The converse, that it depends on the
+    temperature above 0.17, is not said in print."""
+    text = "D / D_0 at τ_I/τ_B = 0.17 over that at 0.017"
+    for warm, cold in zip(long[WARM], long[COLD]):
+        name, degrees = f"φ = {cold['fraction']:g}, lags to 24 τ_B: {text}", cold["seeds"] - 1
+        yield Statement(name, "L4.2d", *beside(warm, cold), 0.9, 1.1, degrees)
     for fraction in FRACTIONS:
-        text = f"φ = {fraction:g}: D / D_0 at τ_I/τ_B = 0.17 over that at 0.017"
-        yield Statement(text, "L4.2d", *beside(of[WARM, fraction], of[COLD, fraction]), 0.9, 1.1, degrees)
+        warm, cold = short[WARM, fraction], short[COLD, fraction]
+        yield Finding(f"φ = {fraction:g}, lags to 3 τ_B: {text}", "L4.2d", *beside(warm, cold), cold["seeds"] - 1)
+    text = "φ = 0.5, lags to 3 τ_B: D / D_0 at τ_I/τ_B = 1.7 over that at 0.017"
+    found = quotient(measured(short[HOT, 0.5]), measured(short[COLD, 0.5]))
+    yield Finding(text, "L4.2d", *found, short[HOT, 0.5]["seeds"] - 1)
+
+
+def short_time_rows(of, degrees):
+    """Of lags of 1.5 and 3 Brownian times, at which spheres have not felt their neighbours whole."""
     intercept, slope, slope_error, residuals = line_of([of[COLD, f] for f in FRACTIONS])
     residual, fraction = max(zip(residuals, FRACTIONS), key=lambda r: abs(r[0]))
-    text = f"largest distance of D / D_0 from a line in φ (at φ = {fraction:g}) over its dilute value"
+    text = f"lags to 3 τ_B: largest distance of D / D_0 from a line in φ (at φ = {fraction:g}) over its dilute value"
     distance = over((residual, of[COLD, fraction]["standard_error"]), intercept)
-    yield Statement(text, "L4.2d", *distance, -0.05, 0.05, degrees, essential=False)
-    text = "slope of that line over the dilute value"
-    yield Statement(text, "L4.2d", slope, slope_error, high=-1, degrees=degrees)
-    text = "φ = 0.5: D / D_0 at τ_I/τ_B = 1.7 over that at 0.017 (L4.2d: it depends on the temperature there)"
-    dense = quotient(measured(of[HOT, 0.5]), measured(of[COLD, 0.5]))
-    yield Statement(text, "L4.2d", *dense, low=1.05, degrees=degrees, essential=False)
+    yield Finding(text, "L4.2d", *distance, degrees)
+    yield Finding("lags to 3 τ_B: slope of that line over the dilute value", "L4.2d", slope, slope_error, degrees)
 
 
-def long_time_statement(table):
+def long_time_rows(table):
     """The middle volume fractions against the straight line through the first and the last."""
+    degrees = table[0]["seeds"] - 1
+    for low, high in zip(table, table[1:]):
+        text = f"lags to 24 τ_B: D / D_0 at φ = {high['fraction']:g} over that at {low['fraction']:g}: it falls"
+        yield Statement(text, "L4.2c", *quotient(measured(high), measured(low)), high=1, degrees=degrees)
     first, *middle, last = table
     distances = []
     for row in middle:
@@ -179,40 +232,87 @@ def long_time_statement(table):
         distances.append((row["diffusion"] - on_line, math.hypot(*errors), row["fraction"]))
     *distance, fraction = max(distances, key=lambda d: abs(d[0]))
     text = (
-        "windows of 90 Brownian times: largest distance of D / D_0 from the line through the first and the last φ "
+        "lags to 24 τ_B: largest distance of D / D_0 from the line through the first and the last φ "
         f"(at φ = {fraction:g}) over its dilute value"
     )
-    share = over(distance, first["diffusion"])
-    return Statement(text, "L4.2d", *share, -0.05, 0.05, table[0]["seeds"] - 1, essential=False)
+    yield Statement(text, "L4.2d", *over(distance, first["diffusion"]), -0.05, 0.05, degrees)
+    slope = quotient(difference(measured(last), measured(first)), measured(first))
+    text = "lags to 24 τ_B: slope of that line over the dilute value (hard spheres without hydrodynamics: about -2)"
+    yield Finding(text, "L4.2d", *over(slope, last["fraction"] - first["fraction"]), degrees)
+
+
+def constant_rows(of):
+    """That D approaches a constant: within a tenth, which a curve on logarithmic axes does not show."""
+    for fraction in LONG[180][0]:
+        long, longer = of["implicit, windows of 90", fraction], of["implicit, windows of 180", fraction]
+        text = (
+            f"φ = {fraction:g}: D between lags of 24 and 48 τ_B over that between 12 and 24: it approaches a constant"
+        )
+        yield Statement(text, "L4.2c", *quotient(measured(longer), measured(long)), 0.9, 1.1, long["seeds"] - 1)
+    for fraction in LONG[90][0]:
+        short, long = of["implicit", fraction], of["implicit, windows of 90", fraction]
+        text = f"φ = {fraction:g}: D between lags of 1.5 and 3 τ_B over that between 12 and 24"
+        yield Finding(text, "L4.2c", *quotient(measured(short), measured(long)), long["seeds"] - 1)
+
+
+def ballistic_rows(table):
+    """ "Roughly independent" of the volume fraction: within a tenth, at a lag well below τ_I; print gives none."""
+    for lag, kind in ((SHORT_LAG, Statement), (SHORT_LAG / 5, Finding)):
+        dilute, *crowded = (
+            min((r for r in table if r["fraction"] == f), key=lambda r: abs(r["time"] - lag))
+            for f in BALLISTIC_FRACTIONS
+        )
+        for row in crowded:
+            text = f"φ = {row['fraction']:g}, τ_I/τ_B = 1.7: ⟨x²⟩ at t = {lag:g} τ_I over that at φ = 0.001"
+            found = quotient(*((r["over_ballistic"], r["standard_error"]) for r in (row, dilute)))
+            bounds = {} if kind is Finding else {"low": 0.9, "high": 1.1, "essential": False}
+            yield kind(text, "L4.2b", *found, degrees=row["seeds"] - 1, **bounds)
+
+
+def rows_with(table, method, ratio):
+    return [r for r in table if (r["method"], r["ratio"]) == (method, ratio)]
+
+
+def judge():
+    curves = {}
+    for row in read_table(HERE / "displacement.csv"):
+        curves.setdefault(row["ratio"], []).append(row)
+    table = read_rows(HERE / "table.csv")
+    crowded, (explicit,) = ([r for r in table if r["method"] == method] for method in ("implicit", "explicit"))
+    of, seeds = {(r["ratio"], r["fraction"]): r for r in crowded}, min(r["seeds"] for r in crowded)
+    long = {ratio: rows_with(table, "implicit, windows of 90", ratio) for ratio in (WARM, COLD)}
+    yield from dilute_statements(curves, seeds, 0.02)
+    yield crossover_row(curves[COLD], COLD, seeds)
+    yield from ballistic_rows(read_table(HERE / "ballistic.csv"))
+    yield from temperature_rows(long, of)
+    yield from long_time_rows(long[COLD])
+    yield from constant_rows({(r["method"], r["fraction"]): r for r in table if r["ratio"] == COLD})
+    yield from short_time_rows(of, seeds - 1)
+    # Two sizes: the mean of 1 / a over the number of spheres, 2.744 of the small ones to one large.
+    free = over(measured(of[COLD, FRACTIONS[0]]), (2.744 + 1 / 1.4) / 3.744)
+    yield Check("dilute limit of D / D_0 over the mean of a / a_i", "formula", *free, 0.95, 1.05, seeds - 1)
+    methods = beside(of[WARM, 0.3], explicit)
+    yield Check("φ = 0.3: implicit steps over explicit ones", "method", *methods, 0.9, 1.1, explicit["seeds"] - 1)
 
 
 def measure(program):
     seeds = 32
     curves = dilute_curves(program, RATIOS, seeds)
-    table = diffusion(program, RATIOS, FRACTIONS, seeds)
-    seeds = min(row["seeds"] for row in table)
     one = {"integrator": {"method": "explicit"}}
-    explicit = diffusion(program, [WARM], [0.3], 8, one, "crowded-explicit")[0]
-    long = diffusion(program, [COLD], LONG_FRACTIONS, 8, LONG, "crowded-long")
+    rows = [{"method": "implicit", **row} for row in diffusion(program, RATIOS, FRACTIONS, seeds)]
+    rows += [{"method": "explicit", **row} for row in diffusion(program, [WARM], [0.3], 8, one, "crowded-explicit")]
+    rows += long_times(program)
+    write_table(HERE / "table.csv", list(rows[0]), rows, 5)
     rows = [row for rows in curves.values() for row in rows]
     write_table(HERE / "displacement.csv", list(rows[0]), rows, 5)
-    rows = [{"method": "implicit", **row} for row in table]
-    rows.append({"method": "explicit", **explicit})
-    rows += [{"method": "implicit, windows of 90", **row} for row in long]
-    write_table(HERE / "table.csv", list(rows[0]), rows, 5)
-    draw(curves, table, long)
-    implicit = next(r for r in table if (r["ratio"], r["fraction"]) == (WARM, 0.3))
-    methods = beside(implicit, explicit)
-    text = "φ = 0.3: implicit steps over explicit ones"
-    return [
-        *dilute_statements(curves, seeds, 0.02),
-        *crowded_statements(table, seeds),
-        long_time_statement(long),
-        Statement(text, "method", *methods, 0.9, 1.1, explicit["seeds"] - 1),
-    ]
+    rows = list(short_times(program))
+    write_table(HERE / "ballistic.csv", list(rows[0]), rows, 5)
 
 
-def draw(curves, table, long):
+def draw():
+    table, curves = read_rows(HERE / "table.csv"), {}
+    for row in read_table(HERE / "displacement.csv"):
+        curves.setdefault(row["ratio"], []).append(row)
     figure = Figure(HERE / "chart.png", columns=2)
     colours = dict(zip(RATIOS, (RED, GREEN, BLUE)))
     panel = figure.panel("t / τ_I", "⟨x²⟩ / a², φ = 0.001", log="xy", powers="xy", key="bottom right")
@@ -226,9 +326,10 @@ def draw(curves, table, long):
         return [(r["fraction"], r["diffusion"], 2 * r["standard_error"]) for r in rows]
 
     for ratio in RATIOS:
-        rows = [r for r in table if r["ratio"] == ratio]
+        rows = rows_with(table, "implicit", ratio)
         panel.points(bars(rows), f"τ_I/τ_B = {ratio:g}", colours[ratio], size=0.7, joined=True)
-    panel.points(bars(long), "τ_I/τ_B = 0.017, windows of 90 τ_B", BLACK, mark=6, size=1.2)
+    long = bars(rows_with(table, "implicit, windows of 90", COLD))
+    panel.points(long, "τ_I/τ_B = 0.017, windows of 90 τ_B", BLACK, mark=6, size=1.2)
     figure.draw()
 
 
@@ -244,4 +345,4 @@ def quick_measure(program):
     ]
 
 
-main(HERE, TITLE, measure, quick_measure)
+main(HERE, TITLE, measure, quick_measure, judge, draw)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """How the viscosity of frictionless spheres diverges with their volume fraction, at rest, at Pe = 4.6 and at Pe = 10^4.
 
-study.py BIN [FOLDER] [--quick]
+study.py BIN [FOLDER] [--quick] [--from-table]
 """
 import math
 import sys
@@ -9,22 +9,23 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+from studies.at_rest import rows_at_rest
 from studies.command_line import main
 from studies.estimates import difference, jackknife, propagated, quotient
-from studies.figure import BLUE, GREEN, RED, Figure
-from studies.fits import lines, multiples
+from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
+from studies.fits import jammed_and_exponent, lines, shapes_of
 from studies.green_kubo import table_at_rest
 from studies.published import JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, diverging
 from studies.scenes import TABLE_SCENE, during, merged
-from studies.tables import columns_of, entries, number, write_table
-from studies.verdicts import Statement
+from studies.tables import columns_of, entries, number, read_rows, write_table
+from studies.verdicts import Check, Finding, Statement
 from studies.viscosities import viscosity_row
 
 import numpy as np
 
 TITLE = "Divergence of the viscosity with volume fraction"
 PECLET = (4.6, 1e4)
-NAMES = {0: "Pe → 0", 4.6: "Pe = 4.6", 1e4: "Pe = 10⁴"}
+NAMES = {0: "Pe → 0, published recipe", 4.6: "Pe = 4.6", 1e4: "Pe = 10⁴"}
 FRACTIONS = (0.40, 0.45, 0.48, 0.50, 0.52, 0.54, 0.56, 0.58, 0.59, 0.60, 0.61)
 SHEARED = merged(TABLE_SCENE, {"duration": {"production": {"strain": 3}}})
 SEEDS = 5
@@ -34,31 +35,23 @@ REST_FRACTIONS = FRACTIONS[:7]
 SLOW = merged(TABLE_SCENE, {"peclet": 0.22, **during({"brownian_times": 20}, {"brownian_times": 20})})
 SLOW_SEEDS = 3
 
-PUBLISHED = {0: (JAMMED_AT_REST, 1.5), 4.6: (None, 1.5), 1e4: (JAMMED_IN_STRONG_FLOW, 1.5)}
+PUBLISHED = {0: (JAMMED_AT_REST, 1.5), 4.6: (None, None), 1e4: (JAMMED_IN_STRONG_FLOW, 1.5)}  # phi_J and lambda
 
 
-def candidates(fractions):
-    """Values of phi_J to be tried, and a row of -ln(1 - phi / phi_J) for each."""
-    jammed = max(fractions) + 0.0005 * np.arange(1, 401)
-    return jammed, -np.log(1 - np.asarray(fractions) / jammed[:, None])
+def jammed_at(fractions, values):
+    """phi_J of (1 - phi / phi_J)^-1.5, the published exponent, by the same search; twice, as of two parameters."""
+    jammed, shapes = shapes_of(fractions)
+    best = jammed[np.argmin(np.square(np.log(np.maximum(values, 1e-9)) - 1.5 * shapes).sum(axis=1))]
+    return float(best), float(best)
 
 
-def fitted(fractions, values):
-    """phi_J and lambda of (1 - phi / phi_J)^-lambda: least squares in the logarithm, all points with the same weight;
-    phi_J by a search in steps of 0.0005, lambda as the linear coefficient."""
-    jammed, shapes = candidates(fractions)
-    exponents, left = multiples(shapes, np.log(np.maximum(values, 1e-9)))
-    best = np.argmin(left)
-    return float(jammed[best]), float(exponents[best])
-
-
-def fit_with_error(rows, quantity):
+def fit_with_error(rows, quantity, function=jammed_and_exponent):
     """The fit, and of both numbers the standard error: that of the viscosities by drawing them again, and what leaving
     out one volume fraction at a time does, in quadrature; and these two."""
     fractions, numbers = np.array([r["fraction"] for r in rows]), [number(r, quantity) for r in rows]
     values = np.array([v for v, _ in numbers])
-    whole, by_fractions = jackknife(lambda chosen: fitted(fractions[chosen], values[chosen]), len(rows))
-    _, by_seeds = propagated(numbers, lambda drawn: fitted(fractions, drawn), 100)
+    whole, by_fractions = jackknife(lambda chosen: function(fractions[chosen], values[chosen]), len(rows))
+    _, by_seeds = propagated(numbers, lambda drawn: function(fractions, drawn), 100)
     return [(value, math.hypot(a, b), a, b) for value, a, b in zip(whole, by_seeds, by_fractions)]
 
 
@@ -68,7 +61,7 @@ def other_forms(rows, quantity, lowest):
     left."""
     chosen = [r for r in rows if r["fraction"] >= lowest]
     values = np.log([r[quantity] for r in chosen])
-    jammed, shapes = candidates([r["fraction"] for r in chosen])
+    jammed, shapes = shapes_of([r["fraction"] for r in chosen])
     fixed_rest = np.sqrt(np.square(values - 1.5 * shapes).mean(axis=1))
     constants, exponents, left = lines(shapes, values)
     free_rest = np.sqrt(left / len(values))
@@ -106,32 +99,85 @@ def at_rest(program):
     return rows
 
 
-def fit_statements(peclet, fits, degrees):
+READINGS = {"pairs": "η_r of pairs", "viscosity": "η_r with 1 + 2.5 φ"}
+
+
+def fit_rows(peclet, name, curve):
+    """Which η_r is fitted is not in print: that of the pairs, which the figures plot, or with 1 + 2.5 φ. The nearer
+    reading decides. φ_J has three digits in print, λ an ≈."""
     jammed, exponent = PUBLISHED[peclet]
-    for quantity, text, essential in (("pairs", "η_r of pairs", True), ("viscosity", "η_r with 1 + 2.5 φ", False)):
-        (found_jammed, jammed_error, *_), (found_exponent, exponent_error, *_) = fits[peclet, quantity]
-        if jammed:
-            line = f"{NAMES[peclet]}: φ_J of {text} (published: {jammed})"
-            bounds = jammed - 0.01, jammed + 0.01
-            yield Statement(line, "L4.9a", found_jammed, jammed_error, *bounds, degrees, essential)
-        line = f"{NAMES[peclet]}: λ of {text} (published: 1.5)"
-        bounds = exponent - 0.2, exponent + 0.2
-        yield Statement(line, "L4.9a", found_exponent, exponent_error, *bounds, degrees, essential)
+    fits = {reading: fit_with_error(curve, reading) for reading in READINGS}
+    nearer = min(fits, key=lambda reading: abs(fits[reading][0][0] - jammed))
+    degrees = max(len(curve) - 2, 1)
+    for reading, of in READINGS.items():
+        # The errors that judge are of the seeds; leaving out volume fractions tests the form.
+        (found, whole, error, _), (power, _, power_error, _) = fits[reading]
+        ends, seeds = (jammed - 0.01, jammed + 0.01), min(r["seeds"] for r in curve) - 1
+        text = f"{name}: φ_J of {of} (published: {jammed})"
+        yield Statement(text, "L4.9a", found, error, *ends, seeds, reading == nearer)
+        text = f"{name}: λ of {of} (published: about 1.5)"
+        yield Statement(text, "L4.9a", power, power_error, exponent - 0.2, exponent + 0.2, seeds, reading == nearer)
+        text = f"{name}: φ_J of {of}, its error with that by leaving out volume fractions"
+        yield Finding(text, "form", found, whole, degrees)
 
 
-def statements_of(curves, fits):
-    for peclet, rows in curves.items():
-        yield from fit_statements(peclet, fits, len(rows) - 2)
-    shift = difference(*(fits[peclet, "pairs"][0][:2] for peclet in PECLET))
-    text = "φ_J at Pe = 4.6 less that at 10⁴ (marginally above)"
-    yield Statement(text, "L4.9a", *shift, 0, 0.02, len(FRACTIONS) - 2, essential=False)
+def recipe_rows(curve):
+    """The published way to the limit: Green and Kubo's integral of the structural stress, and lubrication."""
+    for reading, of in READINGS.items():
+        fit = fit_with_error(curve, reading)
+        for (value, error, *_), what in zip(fit, ("φ_J", "λ")):
+            yield Finding(f"Pe → 0 by the published recipe: {what} of {of}", "L4.9a", value, error, len(curve) - 2)
+
+
+def shift_rows(curves):
+    """In the published form, λ = 1.5 for both; and with λ free."""
+    for reading, of in READINGS.items():
+        held = difference(*(fit_with_error(curves[p], reading, jammed_at)[0][::2][:2] for p in PECLET))
+        free = difference(*(fit_with_error(curves[p], reading)[0][:2] for p in PECLET))
+        text = f"φ_J of {of} at Pe = 4.6 less that at 10⁴, λ = 1.5 (published: marginally increased)"
+        yield Statement(text, "L4.9a", *held, 0, 0.02, len(FRACTIONS) - 2, essential=False)
+        yield Finding(f"φ_J of {of} at Pe = 4.6 less that at 10⁴, λ free", "form", *free, len(FRACTIONS) - 2)
+
+
+def lowest_rows(curves, name):
+    """That the intermediate curve lies below both others."""
     middle = {r["fraction"]: r for r in curves[4.6]}
-    degrees = min(r["seeds"] for r in curves[4.6]) - 1
-    for peclet in (0, 1e4):
-        ratios = [(quotient(number(middle[r["fraction"]], "pairs"), number(r, "pairs")), r) for r in curves[peclet]]
+    for peclet, of in ((0, name), (1e4, NAMES[1e4])):
+        both = [(middle[r["fraction"]], r) for r in curves[peclet] if r["fraction"] in middle]
+        ratios = [(quotient(number(a, "pairs"), number(b, "pairs")), b) for a, b in both]
         ratio, row = max(ratios, key=lambda r: r[0][0])
-        text = f"largest η_r of pairs at Pe = 4.6 over that at {NAMES[peclet]} (at φ = {row['fraction']:g})"
-        yield Statement(text, "L4.9a", *ratio, high=1, degrees=degrees)
+        text = f"largest η_r of pairs at Pe = 4.6 over that at {of} (at φ = {row['fraction']:g})"
+        yield Statement(text, "L4.9a", *ratio, high=1, degrees=SEEDS - 1)
+    for fraction in (FRACTIONS[0], FRACTIONS[-1]):
+        pair = (next(r for r in curves[p] if r["fraction"] == fraction) for p in PECLET)
+        text = f"φ = {fraction:g}: η_r of pairs at Pe = 4.6 over that at 10⁴ (one φ_J for both: the same at every φ)"
+        yield Finding(text, "form", *quotient(*(number(r, "pairs") for r in pair)), SEEDS - 1)
+    for peclet in PECLET:
+        steps = [quotient(number(b, "pairs"), number(a, "pairs")) for a, b in zip(curves[peclet], curves[peclet][1:])]
+        text = f"{NAMES[peclet]}: least η_r of pairs at a φ over that at the next lower one (increasing sharply)"
+        yield Statement(text, "L4.5d", *min(steps), 1, degrees=SEEDS - 1)
+
+
+def curves_of_table():
+    table = read_rows(HERE / "table.csv")
+    rows = [r for r in table if r["method"] == "implicit"]
+    return {p: [r for r in rows if r["peclet"] == p] for p in (0, *PECLET)}, table
+
+
+def judge():
+    curves, table = curves_of_table()
+    rest, how = rows_at_rest()
+    name = f"Pe → 0 ({how})"
+    recipe, curves[0] = curves[0], [rest[f] for f in sorted(rest) if f >= FRACTIONS[0]]
+    yield from fit_rows(0, name, curves[0])
+    yield from fit_rows(1e4, NAMES[1e4], curves[1e4])
+    yield from shift_rows(curves)
+    yield from lowest_rows(curves, name)
+    yield from recipe_rows(recipe)
+    methods = [next(r for r in table if r["method"] == f"{m} at rate 0.045") for m in ("implicit", "explicit")]
+    text = "φ = 0.5, Pe = 10⁴, rate 0.045: η_r with implicit steps over that with explicit ones"
+    ratio = quotient(*(number(r, "viscosity") for r in methods))
+    yield Check(text, "method", *ratio, 0.9, 1.1, methods[1]["seeds"] - 1)
 
 
 def write_tables(curves, methods, fits):
@@ -159,11 +205,6 @@ def measure(program):
         patch = merged(fast, {"integrator": {"method": method}})
         methods[method] = sheared(program, method, [(1e4, 0.5)], 6, patch)[0]
     write_tables(curves, methods, fits)
-    draw(curves, {peclet: [found[0] for found in fits[peclet, "pairs"]] for peclet in curves})
-    ratio = quotient(*(number(methods[m], "viscosity") for m in ("implicit", "explicit")))
-    text = "φ = 0.5, Pe = 10⁴, rate 0.045: η_r with implicit steps over that with explicit ones"
-    comparison = Statement(text, "method", *ratio, 0.9, 1.1, methods["explicit"]["seeds"] - 1)
-    return [*statements_of(curves, fits), comparison]
 
 
 def draw_divergence(panel, title, colour, power, jammed, exponent, **style):
@@ -171,8 +212,10 @@ def draw_divergence(panel, title, colour, power, jammed, exponent, **style):
     panel.curve(lambda f: diverging(f, jammed, exponent) ** power, title, colour, ends, **style)
 
 
-def draw(curves, fits):
-    """`fits`: of each curve phi_J and lambda."""
+def draw():
+    curves, _ = curves_of_table()
+    rest, how = rows_at_rest()
+    fits = {p: [found[0] for found in fit_with_error(rows, "pairs")] for p, rows in curves.items()}
     figure = Figure(HERE / "chart.png", columns=2)
     ends = {"x_range": (0.38, 0.66)}
     of_pairs = figure.panel("φ", "η_r of pairs", log="y", y_range=(1, 300), key="top left", **ends)
@@ -187,6 +230,9 @@ def draw(curves, fits):
             draw_divergence(panel, None, colour, power, *fit)
             if jammed:
                 draw_divergence(panel, f"published, φ_J = {jammed}", colour, power, jammed, exponent, dash=2)
+    slow = [(r["fraction"], *number(r, "pairs")) for r in rest.values()]
+    of_pairs.points(slow, how, ORANGE, 5, 0.9)
+    straight.points([(f, v ** (-2 / 3), e * 2 / 3 * v ** (-5 / 3)) for f, v, e in slow], how, ORANGE, 5, 0.9)
     figure.draw()
 
 
@@ -194,7 +240,7 @@ def quick_measure(program):
     fractions = (0.40, 0.50, 0.55)
     cases = [*((1e4, f) for f in fractions), (4.6, 0.5)]
     *fast, slow = sheared(program, "quick", cases, 8, {"particles": {"count": 150}})
-    found = propagated([number(r, "pairs") for r in fast], lambda values: fitted(fractions, values), 100)
+    found = propagated([number(r, "pairs") for r in fast], lambda values: jammed_and_exponent(fractions, values), 100)
     jammed, exponent = zip(*found)
     ratio = quotient(number(slow, "pairs"), number(fast[1], "pairs"))
     return [
@@ -204,4 +250,4 @@ def quick_measure(program):
     ]
 
 
-main(HERE, TITLE, measure, quick_measure)
+main(HERE, TITLE, measure, quick_measure, judge, draw)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The published flow curves, split by term, at three volume fractions, and with other contact stiffnesses.
 
-study.py BIN [FOLDER] [--quick] [--long]
+study.py BIN [FOLDER] [--quick] [--long] [--from-table]
 """
 import math
 import sys
@@ -9,15 +9,16 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+from studies.at_rest import SLOW_SHEAR, SLOWEST, rows_at_rest
 from studies.command_line import main
-from studies.estimates import estimate, propagated, quotient
+from studies.estimates import estimate, logarithm, over, propagated, quotient
 from studies.figure import BLACK, BLUE, GREEN, GREY, RED, Figure
 from studies.fits import log_minimum
 from studies.green_kubo import table_at_rest
 from studies.published import JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, diverging
 from studies.scenes import TABLE_SCENE, during, merged
-from studies.tables import columns_of, entries, number, write_table
-from studies.verdicts import Statement
+from studies.tables import columns_of, entries, number, read_rows, write_table
+from studies.verdicts import Check, Finding, Statement
 from studies.viscosities import completed, pair_viscosity, term, viscosity_row
 
 import numpy as np
@@ -25,15 +26,14 @@ import numpy as np
 TITLE = "Flow curves of Brownian suspensions"
 FRACTIONS = (0.45, 0.50, 0.55)
 SOURCES = {0.45: "L4.5a", 0.50: "L4.5b", 0.55: "L4.5c"}
-# Campaigns: Peclet numbers, seeds, seeds with --long, and Brownian times of production; those without seeds take hours.
+# Campaigns: Peclet numbers, seeds, and Brownian times of production.
 CAMPAIGNS = {
-    "flow-curve": ((1, 4.6, 22, 100, 460, 2200, 1e4), 8, 16, 40),
-    "flow-curve-0.22": ((0.22,), 6, 16, 60),
-    "flow-curve-0.046": ((0.046,), 0, 16, 200),
-    "flow-curve-0.01": ((0.01,), 0, 8, 400),
+    "flow-curve": ((1, 4.6, 22, 100, 460, 2200, 1e4), 16, 40),
+    "flow-curve-0.22": ((0.22,), 16, 60),
+    "flow-curve-0.046": ((0.046,), 16, 200),
+    "flow-curve-0.01": ((0.01,), 8, 400),
 }
 STIFFNESSES, STIFFNESS_PECLET = (2.5e3, 1e4, 4e4), (1, 1e4)
-UNKNOWN = math.nan, math.inf
 
 
 def structural_over(means, contact_of):
@@ -67,16 +67,6 @@ def rows_of(program, name, cases, seeds, patch=None):
     return rows
 
 
-def at_rest():
-    """By volume fraction: the structural Brownian viscosity at rest over the solvent's, by Green and Kubo, and its
-    standard error."""
-    rows = {fraction: number(row, "viscosity") for fraction, row in table_at_rest().items()}
-    # 0.55 lies between two: their geometric mean.
-    (low, low_error), (high, high_error) = rows[0.54], rows[0.56]
-    middle = math.sqrt(low * high)
-    return {**rows, 0.55: (middle, middle / 2 * math.hypot(low_error / low, high_error / high))}
-
-
 def pick(rows, **keys):
     return next((r for r in rows if all(r[k] == v for k, v in keys.items())), None)
 
@@ -85,82 +75,174 @@ def curve_of(rows, fraction):
     return sorted((r for r in rows if r["fraction"] == fraction), key=lambda r: r["peclet"])
 
 
-def curve_statements(rows, fraction):
-    curve = curve_of(rows, fraction)
-    at = {r["peclet"]: r for r in curve}
-    slowest = curve[0]["peclet"]
+LOWEST = 4.6  # of the published points
+KNOWN = 0.22  # below, errors are as large as the differences between points
 
-    def statement(text, found, low=-math.inf, high=math.inf, peclet=1e4, essential=True):
-        degrees = at[peclet]["seeds"] - 1
-        return Statement(f"φ = {fraction:g}: {text}", SOURCES[fraction], *found, low, high, degrees, essential)
 
-    def ratio(name, a, b):
-        return quotient(number(at[a], name), number(at[b], name))
+class Curve:
+    """Rows of one volume fraction by Peclet number, and rows about them."""
 
-    yield statement("η_r of pairs at Pe = 0.22 over that at 1 (thinning)", ratio("pairs", 0.22, 1), low=1)
-    yield statement("at Pe = 1 over that at 4.6 (thinning)", ratio("pairs", 1, 4.6), low=1)
-    known = [r for r in curve if r["peclet"] >= 0.22]  # below, errors are as large as the differences
-    numbers, x = [number(r, "pairs") for r in known], [r["peclet"] for r in known]
-    minimum = propagated(numbers, lambda values: log_minimum(x, values))
-    yield statement("log10 Pe of the minimum (4.6 within a step of the table)", minimum, 0, math.log10(22))
-    yield statement("at Pe = 10⁴ over that at 4.6 (thickening)", ratio("pairs", 1e4, 4.6), low=1)
-    text = "lubrication at Pe = 10⁴ over that at 1 (rises weakly: at most twice)"
-    yield statement(text, ratio("lubrication", 1e4, 1), 1, 2, essential=False)
-    text = "structural Brownian stress over contact stress at Pe = "
-    yield statement(f"{text}0.22", number(at[0.22], "structural_over_contact"), 0.8, 1.2, 0.22, essential=False)
-    over_contact, over_plain = (
-        number(at[0.01], f"structural_over_{contact}") if 0.01 in at else UNKNOWN
-        for contact in ("contact", "plain_contact")
+    def __init__(self, rows, fraction):
+        self.fraction, self.at = fraction, {r["peclet"]: r for r in curve_of(rows, fraction)}
+
+    def row(self, kind, text, found, peclet=LOWEST, **bounds):
+        degrees = self.at[peclet]["seeds"] - 1
+        return kind(f"φ = {self.fraction:g}: {text}", SOURCES[self.fraction], *found, degrees=degrees, **bounds)
+
+    def ratio(self, name, a, b):
+        return quotient(number(self.at[a], name), number(self.at[b], name))
+
+    def over_least(self, name):
+        """What is at 4.6 over the least of all other points."""
+        least = min((p for p in self.at if p != LOWEST), key=lambda p: self.at[p][name])
+        return self.ratio(name, LOWEST, least), least
+
+    def logs(self, *names):
+        """Of the points that are known: numbers of all names, one after the other."""
+        return [number(self.at[p], name) for name in names for p in sorted(self.at) if p >= KNOWN]
+
+
+def shape_rows(curve):
+    yield curve.row(
+        Statement, "η_r of pairs at Pe = 0.22 over that at 1: thinning", curve.ratio("pairs", 0.22, 1), low=1
     )
-    yield statement(f"{text}0.01", over_contact, 0.8, 1.2, slowest)
-    text = "the same with the contact stress as it is, without the control variate, at Pe = 0.01"
-    yield statement(text, over_plain, 0.8, 1.2, slowest, essential=False)
-    rest = at_rest()[fraction]
-    rising = fraction == 0.55
-    for peclet in (0.22, 0.046):
-        if peclet in at:
-            share = quotient(number(at[peclet], "structural"), rest)
-            text = f"structural Brownian stress at Pe = {peclet} over that at rest by Green and Kubo"
-            if rising:
-                yield statement(f"{text} (still rising)", share, high=0.9, peclet=peclet, essential=False)
-            else:
-                yield statement(f"{text} (plateau)", share, 0.8, 1.2, peclet, essential=False)
-    last = ratio("pairs", 0.01, 0.046) if 0.01 in at else UNKNOWN
-    if rising:
-        yield statement("at Pe = 0.01 over that at 0.046 (still rising)", last, low=1.1, peclet=slowest)
+    for name, what in (("pairs", "η_r of pairs"), ("contact", "contact stress")):
+        found, least = curve.over_least(name)
+        text = f"{what} at Pe = 4.6 over the least of all other Pe (at {least:g}): 4.6 is lowest"
+        yield curve.row(Statement, text, found, high=1)
+    for name, what in (("pairs", "η_r of pairs"), ("contact", "contact stress")):
+        text = f"{what} at Pe = 10⁴ over that at 4.6: thickening"
+        yield curve.row(Statement, text, curve.ratio(name, 1e4, LOWEST), low=1)
+    x = sorted(p for p in curve.at if p >= KNOWN)
+    minimum = propagated(curve.logs("pairs"), lambda values: log_minimum(x, values))
+    yield curve.row(Finding, "log10 Pe of the minimum, by a parabola", minimum)
+    following = propagated(
+        curve.logs("pairs", "contact"),
+        lambda values: float(np.corrcoef(np.log(np.maximum(np.reshape(values, (2, -1)), 1e-9)))[0, 1]),
+    )
+    yield curve.row(Finding, "correlation of ln contact stress with ln η_r of pairs from Pe = 0.22 on", following)
+
+
+def lubrication_rows(curve):
+    """It increases. How weakly has no number in print, and depends on what "hydrodynamic" holds."""
+    pairs = curve.ratio("lubrication", 1e4, 1)
+    yield curve.row(Statement, "lubrication at Pe = 10⁴ over that at 1: it increases", pairs, low=1)
+    for text, more in (("2.5 φ", 2.5 * curve.fraction), ("1 + 2.5 φ", 1 + 2.5 * curve.fraction)):
+        parts = ((number(curve.at[p], "lubrication")[0] + more, curve.at[p]["lubrication_error"]) for p in (1e4, 1))
+        yield curve.row(Finding, f"lubrication + {text} at Pe = 10⁴ over that at 1", quotient(*parts))
+    exponent = over(logarithm(pairs), math.log(1e4))
+    yield curve.row(Finding, "d ln lubrication / d ln Pe from 1 to 10⁴", exponent)
+
+
+def low_rows(curve):
+    """The structural Brownian stress beside the contact stress: "maps quite closely" on axes of three decades is a
+    factor of 1.5 either way, at the lowest Pe at which it is known."""
+    text = "structural Brownian stress over contact stress at Pe = "
+    slow = SLOWEST
+    closely = number(curve.at[slow], "structural_over_contact")
+    yield curve.row(Statement, f"{text}{slow:g}", closely, slow, low=2 / 3, high=1.5, essential=False)
+    for peclet in (0.22, 0.01):
+        yield curve.row(Finding, f"{text}{peclet:g}", number(curve.at[peclet], "structural_over_contact"), peclet)
+    text = "structural Brownian stress over contact stress without the control variate at Pe = 0.01"
+    yield curve.row(Finding, text, number(curve.at[0.01], "structural_over_plain_contact"), 0.01)
+    last = curve.ratio("pairs", 0.01, slow)
+    text = f"η_r of pairs at Pe = 0.01 over that at {slow:g}"
+    if curve.fraction == 0.55:
+        yield curve.row(Statement, f"{text}: still rising", last, 0.01, low=1)
     else:
-        yield statement("at Pe = 0.01 over that at 0.046 (plateau)", last, 0.9, 1.1, slowest)
+        yield curve.row(Finding, text, last, 0.01)
 
 
-def comparison(text, source, a, b, width, degrees, essential=True):
+def rest_rows(curves):
+    """The plateau is known by the exact viscosity at rest alone: 0.8 to 1.25 are twice the published errors of two
+    points. Its height rises with the volume fraction."""
+    rest, how = rows_at_rest()
+    for fraction, curve in curves.items():
+        if how != SLOW_SHEAR and fraction in rest and fraction != 0.55:
+            text = f"η_r of pairs at Pe = {SLOWEST:g} over that at rest ({how}): plateau"
+            found = quotient(number(curve.at[SLOWEST], "pairs"), number(rest[fraction], "pairs"))
+            yield curve.row(Statement, text, found, SLOWEST, low=0.8, high=1.25)
+    known = [f for f in FRACTIONS if f in rest]
+    for low, high in zip(known, known[1:]):
+        text = f"η_r of pairs at rest ({how}) over that at φ = {low:g}"
+        yield curves[high].row(
+            Statement, text, quotient(*(number(rest[f], "pairs") for f in (high, low))), SLOWEST, low=1
+        )
+
+
+def high_rows(curves):
+    """Beside the same suspensions without noise, of the study literature."""
+    steady = read_rows(HERE.parent / "literature" / "table.csv")
+    for fraction, curve in curves.items():
+        bare = next(
+            r
+            for r in steady
+            if (r["method"], r["fraction"], r["friction"], r["gap"]) == ("implicit", fraction, 0, 0.05)
+        )
+        text = "η_r of pairs at Pe = 10⁴ over that without noise"
+        found = quotient(number(curve.at[1e4], "pairs"), number(bare, "pairs"))
+        yield curve.row(Statement, text, found, low=0.9, high=1.1)
+    noisy = read_rows(HERE.parent / "literature" / "peclet.csv")
+    for fraction in FRACTIONS[:2]:
+        wide = {r["peclet"]: r for r in noisy if (r["fraction"], r["gap"]) == (fraction, 0.5)}
+        text = f"φ = {fraction:g}, μ = 1, outer gap 0.5: lubrication at Pe = 10⁴ over that at 1"
+        found = quotient(*(number(wide[p], "lubrication") for p in (1e4, 1)))
+        yield Finding(text, "literature", *found, wide[1]["seeds"] - 1)
+
+
+def comparison(kind, text, source, a, b, width, degrees):
     """That the viscosities of two rows are the same within `width`."""
     ratio = quotient(number(a, "viscosity"), number(b, "viscosity"))
-    return Statement(text, source, *ratio, 1 - width, 1 + width, degrees, essential)
+    return kind(text, source, *ratio, 1 - width, 1 + width, degrees)
 
 
-def comparisons(rows, stiffness, large, methods):
-    for row in stiffness:
-        text = f"φ = 0.5, Pe = {row['peclet']:g}: η_r at k_n = {row['stiffness']:g} over that at 10⁴"
-        standard = pick(rows, fraction=0.5, peclet=row["peclet"])
-        yield comparison(text, "L4.5b", row, standard, 0.05, row["seeds"] - 1)
-    for row in large:
+def rows_with(table, method, count=250):
+    return [r for r in table if (r["method"], r["count"]) == (method, count)]
+
+
+def comparison_rows(table):
+    rows = rows_with(table, "implicit")
+    for row in rows:
+        if row["stiffness"] != 1e4:
+            text = f"φ = 0.5, Pe = {row['peclet']:g}: η_r at k_n = {row['stiffness']:g} over that at 10⁴"
+            standard = pick(rows, fraction=0.5, stiffness=1e4, peclet=row["peclet"])
+            yield comparison(Statement, text, "L4.5b", row, standard, 0.05, row["seeds"] - 1)
+    for row in rows_with(table, "implicit", 1000):
         text = f"φ = 0.45, Pe = {row['peclet']:g}: η_r with N = 1000 over that with 250"
-        standard = pick(rows, fraction=0.45, peclet=row["peclet"])
-        yield comparison(text, "method", row, standard, 0.05, row["seeds"] - 1, essential=False)
+        standard = pick(rows, fraction=0.45, stiffness=1e4, peclet=row["peclet"])
+        yield comparison(Check, text, "N", row, standard, 0.05, row["seeds"] - 1)
     text = "φ = 0.45, Pe = 100, rate 0.045: η_r with implicit steps over that with explicit ones"
-    implicit, explicit = methods["implicit"], methods["explicit"]
-    yield comparison(text, "method", implicit, explicit, 0.1, explicit["seeds"] - 1)
+    implicit, explicit = (rows_with(table, f"{m} at rate 0.045")[0] for m in ("implicit", "explicit"))
+    yield comparison(Check, text, "method", implicit, explicit, 0.1, explicit["seeds"] - 1)
+
+
+def curves_of_table():
+    table = read_rows(HERE / "table.csv")
+    rows = [r for r in rows_with(table, "implicit") if r["stiffness"] == 1e4]
+    return {f: Curve(rows, f) for f in FRACTIONS}, table
+
+
+def judge():
+    curves, table = curves_of_table()
+    for curve in curves.values():
+        yield from shape_rows(curve)
+        yield from low_rows(curve)
+        yield from lubrication_rows(curve)
+    yield from rest_rows(curves)
+    yield from high_rows(curves)
+    yield from comparison_rows(table)
 
 
 def measure(program):
+    if not program.long:
+        print("flow-curve: rows are made of Pe = 0.046 and 0.01, too, which take an hour: say --long", file=sys.stderr)
+        sys.exit(2)
     rows = []
-    for name, (peclets, few, many, times) in CAMPAIGNS.items():
-        seeds = many if program.long else few
-        if seeds:
-            patch = {"duration": {"production": {"brownian_times": times}}}
-            rows += rows_of(program, name, [(f, 1e4, p) for f in FRACTIONS for p in peclets], seeds, patch)
+    for name, (peclets, seeds, times) in CAMPAIGNS.items():
+        patch = {"duration": {"production": {"brownian_times": times}}}
+        rows += rows_of(program, name, [(f, 1e4, p) for f in FRACTIONS for p in peclets], seeds, patch)
     cases = [(0.5, k, p) for k in STIFFNESSES if k != 1e4 for p in STIFFNESS_PECLET]
-    stiffness = rows_of(program, "stiffness", cases, 16 if program.long else 8)
+    stiffness = rows_of(program, "stiffness", cases, 16)
     large = rows_of(program, "large", [(0.45, 1e4, p) for p in (100, 1e4)], 8, {"particles": {"count": 1000}})
     methods = {}
     for method in ("implicit", "explicit"):
@@ -174,11 +256,10 @@ def measure(program):
     ratios = ("structural_over_contact", "structural_over_plain_contact")
     names = ["method", "count", "fraction", "stiffness", "peclet", "seeds", "lost", "transient"]
     write_table(HERE / "table.csv", [*names, *columns_of(*stresses, *ratios)], table, 4)
-    draw(rows)
-    return [*(s for f in FRACTIONS for s in curve_statements(rows, f)), *comparisons(rows, stiffness, large, methods)]
 
 
-def draw(rows):
+def draw():
+    curves, _ = curves_of_table()
     terms = {
         "pairs": (BLACK, 7, "all pairs"),
         "controlled_contact": (RED, 5, "contact"),
@@ -186,18 +267,20 @@ def draw(rows):
         "structural": (GREEN, 4, "structural Brownian"),
     }
     figure = Figure(HERE / "chart.png", columns=3, size=(1400, 460))
-    rest = at_rest()
+    rest = table_at_rest()
     for fraction, largest in zip(FRACTIONS, (100, 200, 600)):
         ends = {"x_range": (5e-3, 3e4), "y_range": (0.1, largest)}
         panel = figure.panel("Pe", "σ / (η γ̇)", f"φ = {fraction:g}", log="xy", powers="x", **ends)
         for name, (colour, mark, title) in terms.items():
-            curve = [(r["peclet"], *number(r, name)) for r in curve_of(rows, fraction)]
+            curve = [(p, *number(r, name)) for p, r in sorted(curves[fraction].at.items())]
             panel.points(curve, title, colour, mark, 0.8, joined=True)
         title = "published fits of both ends"
         for jammed, span in ((JAMMED_AT_REST, (5e-3, 0.02)), (JAMMED_IN_STRONG_FLOW, (3e3, 3e4))):
             panel.level(diverging(fraction, jammed), title, GREY, span, width=3)
             title = None
-        panel.level(rest[fraction][0], "structural Brownian at rest", GREEN, (5e-3, 0.1), width=2, dash=2)
+        if fraction in rest:
+            recipe = rest[fraction]["viscosity"]
+            panel.level(recipe, "its integral at rest (zero-shear)", GREEN, (5e-3, 0.1), width=2, dash=2)
     figure.draw()
 
 
@@ -218,4 +301,4 @@ def quick_measure(program):
     ]
 
 
-main(HERE, TITLE, measure, quick_measure)
+main(HERE, TITLE, measure, quick_measure, judge, draw)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Viscosity against inertia: of the flow without noise, and of the thermal motion.
 
-study.py BIN [FOLDER] [--quick]
+study.py BIN [FOLDER] [--quick] [--from-table]
 """
 import math
 import sys
@@ -15,8 +15,8 @@ from studies.figure import BLUE, GREEN, ORANGE, PURPLE, RED, Figure
 from studies.fits import line_through
 from studies.published import mari_fit
 from studies.scenes import REFERENCE_SCENE, during, merged
-from studies.tables import write_table
-from studies.verdicts import Statement
+from studies.tables import read_rows, write_table
+from studies.verdicts import Check, Finding, Statement
 from studies.viscosities import counts_text, flags, pair_viscosity
 
 import numpy as np
@@ -129,14 +129,14 @@ def leaves(rows, flat):
     return math.nan, math.nan
 
 
-def leaving_statement(text, source, row, flat, **more):
-    """That the viscosity of a row is off its flat value."""
+def leaving_row(kind, text, source, row, flat, **more):
+    """How far the viscosity of a row is off its flat value."""
     value, error = change_of(row, flat)
     text = f"{text}: η_r over its flat value, less 1, without its sign"
-    return Statement(text, source, abs(value), error, FLAT, degrees=row["seeds"] - 1, **more)
+    return kind(text, source, abs(value), error, degrees=row["seeds"] - 1, **more)
 
 
-def flow_statements(rows):
+def flow_judged(rows):
     below, flat = flat_part(rows, FLOW_BOUND)
     degrees = rows[0]["seeds"] - 1
     row, found = furthest(below)
@@ -147,13 +147,13 @@ def flow_statements(rows):
     yield Statement(text, "L4.6a", *found, -FLAT, FLAT, degrees)
     text = "change of ln η_r from τ_I/τ_S = 0.005 to 0.1, by a line"
     yield Statement(text, "L4.6a", *change(below), -FLAT, FLAT, degrees)
-    yield leaving_statement(f"τ_I/τ_S = {rows[-1]['ratio']:g}", "L4.6a", rows[-1], flat)
+    yield leaving_row(Statement, f"τ_I/τ_S = {rows[-1]['ratio']:g}", "L4.6a", rows[-1], flat, low=FLAT)
     place, error = leaves(rows, flat)
-    text = f"log10 of τ_I/τ_S where η_r is 10 % off its flat value ({10**place:.2g})"
+    text = f"log10 of τ_I/τ_S where η_r is 10 % off its flat value ({10**place:.2g}; published: not below 0.1)"
     yield Statement(text, "L4.6a", place, error, math.log10(FLOW_BOUND), degrees=degrees)
 
 
-def thermal_statements(curves):
+def thermal_judged(curves):
     for number, rows in curves.items():
         below, _ = flat_part(rows, THERMAL_BOUND)
         degrees = rows[0]["seeds"] - 1
@@ -166,17 +166,47 @@ def thermal_statements(curves):
             yield Statement(text, "L4.6b", *found, -FLAT, FLAT, degrees)
             text = f"Pe = {number:g}: change of ln η_r from τ_I/τ_B = {below[0]['ratio']:g} to 0.01, by a line"
             yield Statement(text, "L4.6b", *change(below), -FLAT, FLAT, degrees)
-    # The curve leaves its flat part somewhere: with the largest values there are.
-    for number in sorted(curves)[:2]:
+    # Where the curve leaves its flat part is not in print; "only when > 0.01" is, and holds wherever it is flat below.
+    for number in sorted(curves):
         last = curves[number][-1]
-        text = f"Pe = {number:g}, τ_I/τ_B = {last['ratio']:g}"
         flat = flat_part(curves[number], THERMAL_BOUND)[1]
-        yield leaving_statement(text, "L4.6b", last, flat, essential=False)
+        yield leaving_row(Finding, f"Pe = {number:g}, τ_I/τ_B = {last['ratio']:g}", "L4.6b", last, flat)
 
 
 def comparison(text, implicit, explicit, what="implicit steps over that by explicit ones"):
     ratio = ratio_of(implicit, explicit)
-    return Statement(f"{text}: η_r by {what}", "method", *ratio, 1 - FLAT, 1 + FLAT, explicit["seeds"] - 1)
+    return Check(f"{text}: η_r by {what}", "method", *ratio, 1 - FLAT, 1 + FLAT, explicit["seeds"] - 1)
+
+
+def groups_of_table():
+    """tau_I / tau_B and tau_I / tau_S of the published Table 4.1, a = 1, rho = eta = 0.1, at Pe = 0.01 and 1: what
+    print asks for in what follows, by arithmetic."""
+    thermal = 0.1 * THERMAL_ENERGY / VISCOSITY**2
+    text = "Table 4.1, Pe ≤ 1: τ_I/τ_B (published: below 0.01 in what follows)"
+    yield Statement(text, "L 4.2.4", thermal, 0, high=THERMAL_BOUND, essential=False)
+    text = "Table 4.1: largest τ_I/τ_S, at a rate of 0.009 (published: below 0.1)"
+    yield Statement(text, "L 4.2.4", 0.1 * 0.009 / VISCOSITY, 0, high=FLOW_BOUND)
+
+
+def judge():
+    table = read_rows(HERE / "table.csv")
+
+    def curve(name, method="implicit"):
+        return [r for r in table if (r["curve"], r["method"]) == (name, method)]
+
+    def at(rows, ratio):
+        return next(r for r in rows if r["ratio"] == ratio)
+
+    flow, curves = curve("flow"), {run[0]: curve(f"Pe {run[0]:g}") for run in THERMAL_RUNS}
+    yield from flow_judged(flow)
+    yield from thermal_judged(curves)
+    yield from groups_of_table()
+    for row in curve("flow", "explicit"):
+        yield comparison(f"τ_I/τ_S = {row['ratio']:g}", at(flow, row["ratio"]), row)
+    yield comparison("Pe = 1, τ_I/τ_B = 0.18", at(curves[1], 0.18), curve("Pe 1", "explicit")[0])
+    of_step = "the automatic step over that by a quarter of it"
+    (fine,) = curve("Pe 10", "implicit, a quarter of the step")
+    yield comparison("Pe = 10, τ_I/τ_B = 0.001", at(curves[10], 0.001), fine, of_step)
 
 
 def measure(program):
@@ -198,18 +228,6 @@ def measure(program):
     table = [{"method": method, **row} for method, rows in by_method.items() for row in rows]
     write_table(HERE / "table.csv", list(table[0]), table, 5)
     draw(flow, flow_explicit, curves, thermal_explicit)
-
-    def at(rows, ratio):
-        return next(r for r in rows if r["ratio"] == ratio)
-
-    of_step = "the automatic step over that by a quarter of it"
-    return [
-        *flow_statements(flow),
-        *thermal_statements(curves),
-        *(comparison(f"τ_I/τ_S = {row['ratio']:g}", at(flow, row["ratio"]), row) for row in flow_explicit),
-        comparison("Pe = 1, τ_I/τ_B = 0.18", at(curves[1], 0.18), thermal_explicit[0]),
-        comparison("Pe = 10, τ_I/τ_B = 0.001", at(curves[10], 0.001), fine[0], of_step),
-    ]
 
 
 def draw(flow, flow_explicit, curves, thermal_explicit):
@@ -254,4 +272,4 @@ def quick_measure(program):
     ]
 
 
-main(HERE, TITLE, measure, quick_measure)
+main(HERE, TITLE, measure, quick_measure, judge)

@@ -1,19 +1,20 @@
 #!/usr/bin/python3
 """Where neighbours are in the plane of flow and gradient, from weak to strong flow.
 
-study.py BIN [FOLDER] [--quick]
+study.py BIN [FOLDER] [--quick] [--from-table]
 """
+import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
-from studies.estimates import difference, estimate, over, quotient
+from studies.estimates import difference, estimate, over, propagated, quotient
 from studies.figure import BLUE, GREEN, RED, Figure
 from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
-from studies.tables import entries, write_table
-from studies.verdicts import Statement
+from studies.tables import entries, number, read_numbers, read_rows, write_numbers, write_table
+from studies.verdicts import Check, Finding, Statement
 
 import numpy as np
 
@@ -106,84 +107,119 @@ def point_of(program, number, seeds, duration, patch=None, name=None):
     return Structure(program.run(name or f"microstructure-{number:g}", scene, [{"/peclet": number}], seeds)[0])
 
 
-def sharpness_statements(found, degrees):
+def sharpness_rows(found, degrees):
     weak, *between, strong = sorted(found)
     for ring in RINGS:
-        lowest = min(found, key=lambda n: found[n][ring]["prominence"][0])
+        lowest = min(found, key=lambda n: found[n][ring]["prominence"])
         text = f"ring at {ring:g} a: g there over that 0.1 a before and after, the least of all Pe (Pe = {lowest:g})"
-        yield Statement(text, "L4.8", *found[lowest][ring]["prominence"], 1, degrees=degrees)
+        yield Statement(text, "L4.8", *number(found[lowest][ring], "prominence"), 1, degrees=degrees)
     for ring in RINGS:
-        for number in (strong, *between):
-            text = f"ring at {ring:g} a: sharpness at Pe = {number:g} over that at {weak:g}"
-            ratio = quotient(found[number][ring]["sharpness"], found[weak][ring]["sharpness"])
-            yield Statement(text, "L4.8", *ratio, 1, degrees=degrees, essential=number == strong)
+        for peclet in (strong, *between):
+            text = f"ring at {ring:g} a: sharpness at Pe = {peclet:g} over that at {weak:g}"
+            ratio = quotient(*(number(found[p][ring], "sharpness") for p in (peclet, weak)))
+            yield Statement(text, "L4.8", *ratio, 1, degrees=degrees)
 
 
-def anisotropy_statements(found, degrees):
-    numbers = weak, *between, strong = sorted(found)
-    for ring in RINGS[:2]:
+def variation(sectors):
+    """Root of the mean square of g over the angle about its mean, over that mean, less what the noise of the sectors
+    makes; with its standard error."""
+    numbers = [(r["g"], r["standard_error"]) for r in sectors]
+    noise = np.mean([error**2 for _, error in numbers])
+
+    def relative(values):
+        return math.sqrt(max(0, np.var(values) - noise)) / float(np.mean(values))
+
+    # Drawn again, the values have the noise twice.
+    value, _ = propagated(numbers, relative)
+    _, error = propagated(numbers, lambda values: float(np.std(values) / np.mean(values)))
+    return value, error
+
+
+def anisotropy_rows(found, sectors, degrees):
+    """Over the whole angle: quadrants miss what pairs do along the flow."""
+    peclets = weak, *_, strong = sorted(found)
+    for ring in RINGS:
         name = f"ring at {ring:g} a"
-        text = f"{name}, Pe = {weak:g}: compressive less extensional quadrant over their sum"
-        yield Statement(text, "L4.8", *found[weak][ring]["anisotropy"], -0.05, 0.05, degrees)
-        for low, high in zip(numbers, numbers[1:]):
-            text = f"{name}: compressive less extensional g at Pe = {high:g} less that at {low:g}"
-            rise = difference(found[high][ring]["difference"], found[low][ring]["difference"])
-            yield Statement(text, "L4.8", *rise, 0, degrees=degrees)
-        for middle in between:
-            text = f"{name}: the same over their sum at Pe = {strong:g} less that at {middle:g}"
-            rise = difference(found[strong][ring]["anisotropy"], found[middle][ring]["anisotropy"])
-            yield Statement(text, "L4.8", *rise, 0, degrees=degrees, essential=False)
+        text = f"{name}, Pe = {weak:g}: compressive less extensional quadrant over their sum: isotropic"
+        yield Statement(text, "L4.8", *number(found[weak][ring], "anisotropy"), -0.05, 0.05, degrees)
+        varied = {p: variation([r for r in sectors if (r["peclet"], r["distance"]) == (p, ring)]) for p in peclets}
+        for low, high in zip(peclets, peclets[1:]):
+            text = f"{name}: relative rms of g over the angle, at Pe = {high:g} less that at {low:g}: anisotropy grows"
+            yield Statement(text, "L4.8", *difference(varied[high], varied[low]), 0, degrees=degrees)
+    for ring in RINGS[:2]:
+        for low, high in zip(peclets, peclets[1:]):
+            for quantity, words in (("difference", "g"), ("anisotropy", "quadrant over their sum")):
+                text = (
+                    f"ring at {ring:g} a: compressive less extensional {words}, at Pe = {high:g} less that at {low:g}"
+                )
+                risen = difference(*(number(found[p][ring], quantity) for p in (high, low)))
+                yield Finding(text, "quadrants", *risen, degrees)
 
 
-def touching_statement(structure):
+TOUCHING = "Pe = 0.01: g up to 0.05 a beyond contact over that of hard spheres in contact at rest, from which it falls"
+
+
+def touching(structure):
     """g just beyond contact, overlaps included, beside that of hard spheres."""
     r, edge = structure.distance, 2 + BIN
     counts = structure.counts[:, r < edge].sum(axis=1)
     ideal = structure.ideal[:, (2 < r) & (r < edge)].sum(axis=1)
-    text = "Pe = 0.01: g up to 0.05 a beyond contact over that of hard spheres in contact at rest, from which it falls"
-    ratio = over(estimate(counts / ideal), contact_value(FRACTION))
-    return Statement(text, "Mansoori et al.", *ratio, 0.8, 1, structure.seeds - 1, essential=False)
+    return (*over(estimate(counts / ideal), contact_value(FRACTION)), structure.seeds - 1)
 
 
-def method_statement(number, implicit, explicit, degrees):
-    text = f"Pe = {number}: ring at 2 a by implicit steps over that by explicit ones"
-    return Statement(text, "method", *quotient(implicit[2.0]["height"], explicit[2.0]["height"]), 0.9, 1.1, degrees)
+def method_row(peclet, implicit, explicit):
+    text = f"Pe = {peclet}: ring at 2 a by implicit steps over that by explicit ones"
+    ratio = quotient(number(implicit, "height"), number(explicit, "height"))
+    return Check(text, "method", *ratio, 0.9, 1.1, explicit["seeds"] - 1)
 
 
-def ring_rows(method, number, rings):
-    for ring, quantities in rings.items():
-        row = {"method": method, "peclet": number, "distance": ring}
+def judge():
+    table, sectors = read_rows(HERE / "table.csv"), read_rows(HERE / "sectors.csv")
+    of = {(r["method"], r["peclet"], r["distance"]): r for r in table}
+    found = {p: {ring: of["implicit", p, ring] for ring in RINGS} for p, _, _ in RUNS}
+    degrees = min(r["seeds"] for rings in found.values() for r in rings.values()) - 1
+    yield from sharpness_rows(found, degrees)
+    yield from anisotropy_rows(found, sectors, degrees)
+    value, error, seeds = read_numbers(HERE / "numbers.csv")[TOUCHING]
+    yield Check(TOUCHING, "Mansoori et al.", value, error, 0.8, 1, seeds)
+    yield method_row("10^4", of["implicit", 1e4, 2], of["explicit", 1e4, 2])
+    short = (of[f"{method}, 10 Brownian times", 0.01, 2] for method in ("implicit", "explicit"))
+    yield method_row("0.01", *short)
+
+
+def ring_rows(method, peclet, structure):
+    for ring, quantities in structure.rings().items():
+        row = {"method": method, "peclet": peclet, "seeds": structure.seeds, "distance": ring}
         for name, found in quantities.items():
             row |= entries(name, found)
         yield row
 
 
 def radial_rows(structures):
-    for number, structure in structures.items():
+    for peclet, structure in structures.items():
         for r, values in zip(structure.distance.tolist(), (structure.counts / structure.ideal).T):
             mean, error = estimate(values)
-            yield {"peclet": number, "distance": r, "g": mean, "standard_error": error}
+            yield {"peclet": peclet, "distance": r, "g": mean, "standard_error": error}
 
 
 def sector_rows(structures):
-    for number, structure in structures.items():
+    for peclet, structure in structures.items():
         for ring in RINGS:
             for k, values in enumerate(structure.sectors(ring, SECTORS).T):
                 mean, error = estimate(values)
-                place = {"peclet": number, "distance": ring, "from_degrees": 180 * k / SECTORS}
+                place = {"peclet": peclet, "distance": ring, "from_degrees": 180 * k / SECTORS}
                 yield {**place, "g": mean, "standard_error": error}
 
 
 def measure(program):
-    structures = {number: point_of(program, number, seeds, duration) for number, seeds, duration in RUNS}
-    found = {number: s.rings() for number, s in structures.items()}
+    structures = {peclet: point_of(program, peclet, seeds, duration) for peclet, seeds, duration in RUNS}
     explicit = {"integrator": {"method": "explicit"}}
-    strong = point_of(program, 1e4, 4, SHEARED, explicit, "microstructure-explicit-10000").rings()
+    strong = point_of(program, 1e4, 4, SHEARED, explicit, "microstructure-explicit-10000")
     # Explicit steps do not reach equilibrium here; both methods from the same packings over the same time.
     short = during({"brownian_times": 5}, {"brownian_times": 5})
-    weak = point_of(program, 0.01, 8, short, explicit, "microstructure-explicit-0.01").rings()
-    weak_implicit = point_of(program, 0.01, 16, short, None, "microstructure-short-0.01").rings()
-    table = [row for number, rings in found.items() for row in ring_rows("implicit", number, rings)]
+    weak = point_of(program, 0.01, 8, short, explicit, "microstructure-explicit-0.01")
+    weak_implicit = point_of(program, 0.01, 16, short, None, "microstructure-short-0.01")
+    table = [row for peclet, structure in structures.items() for row in ring_rows("implicit", peclet, structure)]
     table += ring_rows("explicit", 1e4, strong)
     table += ring_rows("explicit, 10 Brownian times", 0.01, weak)
     table += ring_rows("implicit, 10 Brownian times", 0.01, weak_implicit)
@@ -191,14 +227,7 @@ def measure(program):
     for name, rows in (("table", table), ("radial", radial), ("sectors", sectors)):
         write_table(HERE / f"{name}.csv", list(rows[0]), rows, 5)
     draw(structures, radial)
-    degrees = min(s.seeds for s in structures.values()) - 1
-    return [
-        *sharpness_statements(found, degrees),
-        *anisotropy_statements(found, degrees),
-        touching_statement(structures[0.01]),
-        method_statement("10^4", found[1e4], strong, 4 * program.times - 1),
-        method_statement("0.01", weak_implicit, weak, 8 * program.times - 1),
-    ]
+    write_numbers(HERE / "numbers.csv", {TOUCHING: touching(structures[0.01])})
 
 
 def map_rows(structure):
@@ -213,19 +242,19 @@ def map_rows(structure):
 def draw(structures, radial):
     figure = Figure(HERE / "chart.png", columns=1, size=(1200, 760))
     square = {"x_range": (-4, 4), "y_range": (-4, 4), "settings": ["unset grid", "set size ratio -1"]}
-    for k, (number, structure) in enumerate(structures.items()):
+    for k, (peclet, structure) in enumerate(structures.items()):
         place = 0.05 + 0.3 * k, 0.315 + 0.3 * k, 0.52, 0.94
         gradient = "" if k else "y / a (gradient)"
-        panel = figure.panel("x / a (flow)", gradient, f"Pe = {number:g}", place=place, **square)
+        panel = figure.panel("x / a (flow)", gradient, f"Pe = {peclet:g}", place=place, **square)
         scale = "g(x, y), |z| < 0.1 a" if k == len(structures) - 1 else None
         panel.image(map_rows(structure), MAP_COLOURS, scale)
     ends = {"x_range": (1.8, 5), "y_range": (0, None)}
     panel = figure.panel("r / a", "g(r)", "all directions", place=(0.05, 0.97, 0.08, 0.39), **ends)
     for ring in RINGS:
         panel.upright(ring)
-    for number, colour in zip(structures, (BLUE, GREEN, RED)):
-        rows = [(r["distance"], r["g"], 2 * r["standard_error"]) for r in radial if r["peclet"] == number]
-        panel.points(rows, f"Pe = {number:g}", colour, size=0.5, joined=True)
+    for peclet, colour in zip(structures, (BLUE, GREEN, RED)):
+        rows = [(r["distance"], r["g"], 2 * r["standard_error"]) for r in radial if r["peclet"] == peclet]
+        panel.points(rows, f"Pe = {peclet:g}", colour, size=0.5, joined=True)
     figure.draw()
 
 
@@ -246,4 +275,4 @@ def quick_measure(program):
     ]
 
 
-main(HERE, TITLE, measure, quick_measure)
+main(HERE, TITLE, measure, quick_measure, judge)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Two spheres in a cube of edge 4 a: their distances, and the potential of mean force that follows.
 
-study.py BIN [FOLDER] [--quick]
+study.py BIN [FOLDER] [--quick] [--from-table]
 """
 import math
 import sys
@@ -13,8 +13,8 @@ from studies.command_line import main
 from studies.estimates import difference, estimate, logarithm, over
 from studies.figure import BLUE, RED, Figure
 from studies.scenes import during
-from studies.tables import write_table
-from studies.verdicts import Statement
+from studies.tables import read_numbers, write_numbers, write_table
+from studies.verdicts import Check, Statement
 
 import numpy as np
 
@@ -74,31 +74,45 @@ def contact_ratio(distance, rows):
     return over(mean_density(distance, rows, low, 2), expected)
 
 
-def statements_of(method, distance, rows, tolerance):
+INSIDE, BEYOND = "U / kT = 0 between contact and the outer gap", "U / kT = 0 beyond the outer gap, to 2.155 a"
+AT_OUTER, AT_INNER = (
+    "no step of U / kT at the outer gap, means over 0.04 and 0.1 a",
+    "no step of U / kT at the inner gap",
+)
+OVERLAPS = "density of overlaps over that of U = k_n δ² / 2"
+SHELLS = "no step of U / kT from the shell of 0.005 a within the outer gap to the next one"
+# What the automatic step of a method is known to get wrong: its row is a check of the method, and the other method
+# judges. Velocity Verlet makes overlaps too rare by 1 - λ Δt / 2; an implicit step crosses the outer gap.
+KNOWN = {("explicit", OVERLAPS), ("implicit", SHELLS)}
+
+
+def numbers_of(method, distance, rows):
+    """By name: value, standard error, degrees of freedom."""
     inner, outer = (potential(distance, rows, *ends) for ends in ((2.005, 2.045), (2.055, 2.155)))
     touching = potential(distance, rows, 2.0, 2.005)
-
-    def statement(text, found, middle=0):
-        bounds = middle - tolerance, middle + tolerance
-        return Statement(f"{text}, {method} steps", "L4.1", *found, *bounds, len(rows) - 1)
-
-    ratio = contact_ratio(distance, rows)
-    return [
-        statement("U / kT = 0 between contact and the outer gap", inner),
-        statement("U / kT = 0 beyond the outer gap", outer),
-        statement("no step of U / kT at the outer gap", difference(inner, outer)),
-        statement("no step of U / kT at the inner gap", difference(touching, inner)),
-        statement("density of overlaps over that of U = k_n delta^2 / 2", ratio, 1),
-    ]
-
-
-def local_step(method, distance, rows):
-    """ln of the density in the last shell within the outer gap over that in the first one beyond. Implicit steps have
-    one of their own."""
     inside, outside = (potential(distance, rows, *ends) for ends in ((2.045, 2.05), (2.05, 2.055)))
-    text = f"no step of U / kT from the shell within the outer gap to the next one, {method} steps"
-    found = difference(outside, inside)
-    return Statement(text, "L4.1", *found, -0.1, 0.1, len(rows) - 1, essential=method != "implicit")
+    found = {
+        INSIDE: inner,
+        BEYOND: outer,
+        AT_OUTER: difference(inner, outer),
+        AT_INNER: difference(touching, inner),
+        OVERLAPS: contact_ratio(distance, rows),
+        SHELLS: difference(outside, inside),
+    }
+    return {f"{method} steps: {name}": (*of, len(rows) - 1) for name, of in found.items()}
+
+
+def judged(numbers, tolerance):
+    """A tenth of kT, or of the density, is what the published pictures show."""
+    for name, (value, error, degrees) in numbers.items():
+        method, what = name.split(" steps: ")
+        kind, source = (Check, "step") if (method, what) in KNOWN else (Statement, "L4.1")
+        middle = 1 if what == OVERLAPS else 0
+        yield kind(name, source, value, error, middle - tolerance, middle + tolerance, degrees)
+
+
+def judge():
+    return judged(read_numbers(HERE / "numbers.csv"), 0.1)
 
 
 def point_of(program, method, seeds, brownian_times):
@@ -108,18 +122,18 @@ def point_of(program, method, seeds, brownian_times):
 
 
 def measure(program):
-    statements, table = [], []
+    numbers, table = {}, []
     for run in RUNS:
         method = run[0]
         distance, rows = densities(point_of(program, *run))
-        statements += [*statements_of(method, distance, rows, 0.1), local_step(method, distance, rows)]
+        numbers |= numbers_of(method, distance, rows)
         for r, values in zip(distance.tolist(), rows.T):
             if r > 1.95:
                 density, error = estimate(values)
                 table.append({"method": method, "distance": r, "density": density, "standard_error": error})
     write_table(HERE / "table.csv", ["method", "distance", "density", "standard_error"], table, 5)
+    write_numbers(HERE / "numbers.csv", numbers)
     draw(table)
-    return statements
 
 
 def draw(table):
@@ -141,10 +155,9 @@ def draw(table):
 
 
 def quick_measure(program):
-    statements = []
     for run in QUICK_RUNS:
-        statements += statements_of(run[0], *densities(point_of(program, *run)), 0.25)
-    return statements
+        numbers = numbers_of(run[0], *densities(point_of(program, *run)))
+        yield from judged({name: of for name, of in numbers.items() if SHELLS not in name}, 0.25)
 
 
-main(HERE, TITLE, measure, quick_measure)
+main(HERE, TITLE, measure, quick_measure, judge)

@@ -9,13 +9,17 @@
     speed_accuracy    the panels of results/speed-accuracy, and the columns of its tables
     monti          scenes of the suspensions of Monti et al. (2021)
     green_kubo     the viscosity at rest from the correlation of the structural Brownian stress
+    at_rest        the viscosity at rest, of the study of it or of slow shear
     tables         csv files
     figure         pictures
-    verdicts       statements that are judged, and the verdict of a study
+    verdicts       statements, checks and findings, and the verdict of a study
+    pages          these on the page of a study
     command_line   the command lines of the drivers
+    overnight      all studies, one after another
 
 A study is a folder beside this one with study.py, README.md, table.csv, a picture, and study.json: what was found,
-which `peclet study --list` shows.
+which `peclet study --list` shows. What only the seeds tell is in numbers.csv, so that rows can be judged again from the
+tables alone.
 """
 import sys
 

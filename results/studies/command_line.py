@@ -8,6 +8,7 @@ import sys
 import tempfile
 
 from studies.campaigns import Program
+from studies.pages import rewrite, tables_of
 from studies.verdicts import verdict
 
 
@@ -17,17 +18,21 @@ def processor():
     return names[0] if names else platform.processor()
 
 
-def read_arguments(folder, title):
+def read_arguments(folder, title, from_table):
     parser = argparse.ArgumentParser(description=title)
-    parser.add_argument("binaries", help="folder of peclet and peclet-engine")
+    parser.add_argument("binaries", help="folder of peclet and peclet-engine", nargs="?")
     parser.add_argument(
         "folder", nargs="?", help="of the campaigns, with which a second call goes on; a temporary one unless given"
     )
-    parser.add_argument("--quick", action="store_true", help="half a minute; fails where the physics is broken")
-    parser.add_argument(
+    how = parser.add_mutually_exclusive_group()
+    how.add_argument("--quick", action="store_true", help="half a minute; fails where the physics is broken")
+    how.add_argument(
         "--long",
         action="store_true",
         help="also the points that take hours, where the study has such; goes on with FOLDER",
+    )
+    how.add_argument(
+        "--from-table", action="store_true", help="judge what the tables beside study.py have, without running anything"
     )
     parser.add_argument(
         "--times",
@@ -39,6 +44,10 @@ def read_arguments(folder, title):
     arguments = parser.parse_args()
     if arguments.times < 1:
         parser.error("--times: must be at least 1")
+    if arguments.from_table and not from_table:
+        parser.error("--from-table: the tables of this study do not have all that its rows are made of")
+    if not arguments.binaries and not arguments.from_table:
+        parser.error("binaries: missing; must be the folder of peclet and peclet-engine, or --from-table")
     if not arguments.quick and not os.access(folder, os.W_OK):
         # Said before hours of work, not after them.
         parser.error(
@@ -48,37 +57,68 @@ def read_arguments(folder, title):
     return arguments
 
 
-def study_as_json(title, found, statements, program):
+def provenance(program):
     return {
-        "title": title,
-        "verdict": found,
         "processor_hours": float(f"{program.processor_seconds / 3600:.2g}"),
         "date": datetime.date.today().isoformat(),
         "engine": sorted(program.commits),
         "machine": processor(),
-        "statements": [s.as_json() for s in statements],
     }
 
 
-def main(folder, title, measure, quick_measure):
-    """The command line of a study. measure(program) runs it whole, writes its table and picture beside study.py and
-    returns its statements; quick_measure(program) is a version of half a minute, whose statements must all hold: the
-    tests run it."""
-    arguments = read_arguments(folder, title)
+def earlier_provenance(path):
+    """Of the runs that the tables are of."""
+    with open(path) as f:
+        found = json.load(f)
+    return {name: found[name] for name in ("processor_hours", "date", "engine", "machine")}
+
+
+def write_study(folder, title, rows, of_runs):
+    """study.json, and the rows on the study's page."""
+    study = {"title": title, "verdict": verdict(rows), **of_runs, "statements": [row.as_json() for row in rows]}
+    text = json.dumps(study, indent=1, ensure_ascii=False) + "\n"
+    with open(os.path.join(folder, "study.json"), "w") as f:
+        f.write(text)
+    rewrite(os.path.join(folder, "README.md"), rows)
+
+
+def with_program(arguments, run):
+    """run(program) with the programs and a folder of campaigns, and the program."""
     with tempfile.TemporaryDirectory() as temporary:
         program = Program(arguments.binaries, arguments.folder or temporary)
         program.long, program.times = arguments.long, arguments.times
-        statements = list((quick_measure if arguments.quick else measure)(program))
-    print("| statement | source | value ± standard error | must be | answer |\n|---|---|---|---|---|")
-    for statement in statements:
-        print(statement.row())
-    found = verdict(statements)
-    print(f"\n{title}: {found}")
+        return run(program), program
+
+
+def quick(title, rows):
+    """Prints the rows, and ends with 0 where every interval lies within its bounds."""
+    print(tables_of(rows))
+    unsure = [row.text for row in rows if not (row.within() and row.sure())]
+    for text in unsure:
+        print(f"\nnot surely within its bounds: {text}")
+    print(f"\n{title}: {len(rows) - len(unsure)} of {len(rows)}")
+    sys.exit(1 if unsure else 0)
+
+
+def main(folder, title, measure, quick_measure, judge=None, draw=None):
+    """The command line of a study. measure(program) runs it whole and writes its tables beside study.py, and its
+    picture; judge() makes its rows of the tables alone, so that they may be judged again without a run, and draw() the
+    picture, where the tables have all of it. Without `judge` measure returns the rows. quick_measure(program)
+    is a version of half a minute: the tests run it, and the interval of each of its rows must lie within the row's
+    bounds."""
+    arguments = read_arguments(folder, title, judge)
     if arguments.quick:
-        sys.exit(0 if found == "holds" else 1)
-    with open(os.path.join(folder, "study.json"), "w") as f:
-        json.dump(study_as_json(title, found, statements, program), f, indent=1, ensure_ascii=False)
-        f.write("\n")
+        quick(title, with_program(arguments, lambda program: list(quick_measure(program)))[0])
+    if arguments.from_table:
+        rows, of_runs = list(judge()), earlier_provenance(os.path.join(folder, "study.json"))
+    else:
+        found, program = with_program(arguments, lambda program: list(measure(program) or ()))
+        rows, of_runs = list(judge() if judge else found), provenance(program)
+    if draw:
+        draw()
+    print(tables_of(rows))
+    print(f"\n{title}: {verdict(rows)}")
+    write_study(folder, title, rows, of_runs)
 
 
 def drive(description, panels, remake):

@@ -45,6 +45,11 @@ def over(a, scale):
     return a[0] / scale, a[1] / abs(scale)
 
 
+def scaled(a, factor):
+    """A number times another one that has no error."""
+    return a[0] * factor, a[1] * abs(factor)
+
+
 def logarithm(a):
     """ln of a number."""
     return math.log(a[0]), a[1] / a[0]

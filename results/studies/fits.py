@@ -28,6 +28,21 @@ def lines(shapes, values):
     return values.mean() - slopes * shapes.mean(axis=1), slopes, left
 
 
+def shapes_of(fractions):
+    """Values of phi_J to be tried, and a row of -ln(1 - phi / phi_J) for each."""
+    jammed = max(fractions) + 0.0005 * np.arange(1, 401)
+    return jammed, -np.log(1 - np.asarray(fractions) / jammed[:, None])
+
+
+def jammed_and_exponent(fractions, values):
+    """phi_J and lambda of (1 - phi / phi_J)^-lambda: least squares in the logarithm, all points with the same weight;
+    phi_J by a search in steps of 0.0005, lambda as the linear coefficient."""
+    jammed, shapes = shapes_of(fractions)
+    exponents, left = multiples(shapes, np.log(np.maximum(values, 1e-9)))
+    best = np.argmin(left)
+    return float(jammed[best]), float(exponents[best])
+
+
 def log_minimum(abscissae, values):
     """log10 of where a curve of positive numbers is lowest: the vertex of the parabola through the logarithms of the
     lowest point and its neighbours; the lowest point itself where it has only one."""

@@ -18,6 +18,29 @@ def read_table(path):
         return [{name: float(value) for name, value in row.items()} for row in csv.DictReader(f)]
 
 
+def read_rows(path):
+    """Rows of a table with texts; what is a number becomes one, an empty cell nan."""
+
+    def value(text):
+        try:
+            return float(text or "nan")
+        except ValueError:
+            return text
+
+    with open(path, newline="") as f:
+        return [{name: value(text) for name, text in row.items()} for row in csv.DictReader(f)]
+
+
+def write_numbers(path, numbers):
+    """Numbers that only the seeds tell, by name: value, standard error, degrees of freedom."""
+    rows = [dict(zip(("name", "value", "standard_error", "degrees"), (name, *of))) for name, of in numbers.items()]
+    write_table(path, list(rows[0]), rows, 5)
+
+
+def read_numbers(path):
+    return {r["name"]: (r["value"], r["standard_error"], r["degrees"]) for r in read_rows(path)}
+
+
 def number(row, name):
     """A number of a row and its standard error."""
     return row[name], row[f"{name}_error"]

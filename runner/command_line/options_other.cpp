@@ -22,11 +22,17 @@ criterion that can fail. The list shows what was found, when and at what cost; a
 its quick form half a minute.
 )",
            {{"peclet study --list", "all of them, with their verdicts"},
-            {"peclet study zero-shear --folder /scratch/zero-shear", "hours, which may be interrupted"}},
+            {"peclet study zero-shear --folder /scratch/zero-shear", "hours, which may be interrupted"},
+            {"peclet study --all --overnight", "every one, cheap ones first; the same command goes on"}},
            {0, 1, 2}));
   CLI::Option* const name =
       verb->add_option("study", options->name, "Which; the list unless given")->type_name("STUDY");
   verb->add_flag("--list", options->list, "List them with their verdicts, as without a name")->excludes(name);
+  CLI::Option* const all =
+      verb->add_flag("--all", options->all, "Every study in turn, with --overnight")->excludes(name);
+  verb->add_flag("--overnight", options->overnight,
+                 "All of them whole, with the points that take hours; goes on where an interruption was")
+      ->needs(all);
   verb->add_flag("--quick", options->quick, "Half a minute of it, which fails where the physics is broken")
       ->needs(name);
   verb->add_flag("--long", options->with_long,
@@ -38,13 +44,12 @@ its quick form half a minute.
       ->type_name("NUMBER")
       ->needs(name)
       ->excludes("--quick");
-  verb->add_flag("--json", options->json, "The list, for programs")->excludes(name);
+  verb->add_flag("--json", options->json, "The list, for programs")->excludes(name)->excludes(all);
   verb->add_option(
           "--folder", options->folder,
           "Folder of the study's campaigns, with which a second call goes on; a temporary one unless "
-          "given")
-      ->type_name(value_name::folder)
-      ->needs(name);
+          "given, with --all studies")
+      ->type_name(value_name::folder);
   verb->add_option("--results", options->results,
                    "Folder of the studies; those that came with peclet unless given")
       ->type_name(value_name::folder);

@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* interpreter = "/usr/bin/python3";
 constexpr const char* driver_name = "study.py";
+constexpr const char* folder_of_all = "studies";  // where the command was typed
 
 fs::path results_folder(const fs::path& chosen) {
   if (!chosen.empty()) {
@@ -31,6 +32,16 @@ fs::path results_folder(const fs::path& chosen) {
                    fmt::format("must name the folder `results` of the source or of an installation: there is "
                                "none in {}, and no build tree around this program",
                                (own_folder().parent_path() / "share" / "peclet").string()));
+}
+
+// A row without a kind is of a time when all were statements.
+void count(const Json& row, StudySummary& study) {
+  const std::string kind = row.value("kind", "statement");
+  if (kind == "finding") return;
+  const std::string answer = row.at("answer").get<std::string>();
+  ++(kind == "check" ? study.checks : study.statements);
+  if (answer == "holds") ++study.holding;
+  if (answer == "ok") ++study.passed;
 }
 
 StudySummary read_study(const fs::path& folder) {
@@ -45,10 +56,7 @@ StudySummary read_study(const fs::path& folder) {
     study.verdict = document.at("verdict").get<std::string>();
     study.processor_hours = document.at("processor_hours").get<double>();
     study.date = document.at("date").get<std::string>();
-    for (const Json& statement : document.at("statements")) {
-      ++study.statements;
-      if (statement.at("answer") == "holds") ++study.holding;
-    }
+    for (const Json& row : document.at("statements")) count(row, study);
   } catch (const Json::exception& error) {
     throw InputError(found.string(), "", "", fmt::format("is not what a study leaves: {}", error.what()));
   }
@@ -61,7 +69,16 @@ void print(const std::string& text) {
   }
 }
 
-// This process becomes the study's driver: signals and exit code are its own.
+// This process becomes the driver: signals and exit code are its own.
+[[noreturn]] void become(std::vector<std::string> words) {
+  std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  execv(interpreter, arguments.data());
+  throw std::system_error(errno, std::generic_category(), interpreter);
+}
+
 [[noreturn]] void become_driver(const StudyOptions& options, const fs::path& results) {
   std::vector<std::string> words = {interpreter, (results / options.name / driver_name).string(),
                                     own_folder().string()};
@@ -69,12 +86,20 @@ void print(const std::string& text) {
   if (options.quick) words.emplace_back("--quick");
   if (options.with_long) words.emplace_back("--long");
   if (options.times > 1) words.insert(words.end(), {"--times", std::to_string(options.times)});
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  execv(interpreter, arguments.data());
-  throw std::system_error(errno, std::generic_category(), interpreter);
+  become(std::move(words));
+}
+
+[[noreturn]] void become_driver_of_all(const StudyOptions& options, const fs::path& results,
+                                       const std::vector<StudySummary>& studies) {
+  if (!options.overnight) {
+    double hours = 0;
+    for (const StudySummary& study : studies) hours += study.processor_hours.value_or(0);
+    throw InputError("", "--all", "alone",
+                     fmt::format("must stand with --overnight: {:.2g} hours of processor time", hours));
+  }
+  const fs::path folder = options.folder.empty() ? fs::path(folder_of_all) : options.folder;
+  become({interpreter, (results / "studies" / "overnight.py").string(), own_folder().string(),
+          fs::absolute(folder).string()});
 }
 
 }  // namespace
@@ -94,12 +119,14 @@ std::string studies_table(const std::vector<StudySummary>& studies) {
   table.add_column("study", TextTable::Align::left);
   table.add_column("verdict", TextTable::Align::left);
   table.add_column("statements that hold");
+  table.add_column("checks passed");
   table.add_column("CPU h");
   table.add_column("made");
   for (const StudySummary& study : studies) {
     const bool made = study.processor_hours.has_value();
     table.add_row({study.name, study.verdict,
                    made ? fmt::format("{} of {}", study.holding, study.statements) : "-",
+                   made ? fmt::format("{} of {}", study.passed, study.checks) : "-",
                    made ? fmt::format("{:.2g}", *study.processor_hours) : "-", made ? study.date : "-"});
   }
   return table.text();
@@ -114,6 +141,8 @@ Json studies_json(const std::vector<StudySummary>& studies) {
                     {"verdict", study.verdict},
                     {"statements", study.statements},
                     {"statements_that_hold", study.holding},
+                    {"checks", study.checks},
+                    {"checks_passed", study.passed},
                     {"processor_hours", made ? Json(*study.processor_hours) : Json()},
                     {"date", made ? Json(study.date) : Json()}});
   }
@@ -123,7 +152,11 @@ Json studies_json(const std::vector<StudySummary>& studies) {
 int perform_study(const StudyOptions& options) {
   const fs::path results = results_folder(options.results);
   const std::vector<StudySummary> studies = read_studies(results);
+  if (options.all) become_driver_of_all(options, results, studies);
   if (options.name.empty()) {
+    if (!options.folder.empty()) {
+      throw InputError("", "--folder", options.folder.string(), "must stand with a study, or with --all");
+    }
     print(options.json ? studies_json(studies).dump(2) + '\n' : studies_table(studies));
     return 0;
   }

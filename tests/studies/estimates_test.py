@@ -3,7 +3,10 @@
 import math
 import os
 import sys
+import tempfile
 import unittest
+import unittest.mock
+from pathlib import Path
 
 import numpy as np
 
@@ -18,10 +21,12 @@ from studies.estimates import (
     propagated,
     quotient,
     relative_difference,
+    scaled,
     student_quantile,
     weighted_mean,
 )
-from studies.fits import divergence, line_through, lines, log_minimum, multiples
+from studies.at_rest import SLOW_SHEAR, rows_at_rest
+from studies.fits import divergence, jammed_and_exponent, line_through, lines, log_minimum, multiples
 from studies.green_kubo import fit_with_errors, fitted
 from studies.published import JAMMED_AT_REST, diverging, mari_fit
 from studies.tables import columns_of, markdown_head, markdown_row, number_text
@@ -55,6 +60,9 @@ class Means(unittest.TestCase):
 class Functions(unittest.TestCase):
     def test_errors_add_in_quadrature(self):
         self.assertEqual(difference((5, 3), (2, 4)), (3, 5))
+
+    def test_a_factor_has_no_error(self):
+        self.assertEqual(scaled((2, 0.5), -3), (-6, 1.5))
 
     def test_relative_errors_of_a_quotient_add_in_quadrature(self):
         for sign in (1, -1):
@@ -178,6 +186,45 @@ class Fits(unittest.TestCase):
         self.assertAlmostEqual(viscosity, 5, delta=0.05)
         self.assertAlmostEqual(error, estimate(scales)[1], delta=0.01)
         self.assertAlmostEqual(tau_error, 0)
+
+
+class Jamming(unittest.TestCase):
+    def test_has_the_place_and_the_power_of_the_form(self):
+        fractions = [0.4, 0.5, 0.55]
+        jammed, exponent = jammed_and_exponent(fractions, [(1 - f / 0.6) ** -1.5 for f in fractions])
+        self.assertAlmostEqual(jammed, 0.6)
+        self.assertAlmostEqual(exponent, 1.5)
+
+
+class AtRest(unittest.TestCase):
+    """From the study of it where there is one, else from slow shear."""
+
+    def rows(self, tables):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in tables.items():
+                os.mkdir(os.path.join(folder, name))
+                with open(os.path.join(folder, name, "table.csv"), "w") as f:
+                    f.write(text)
+            with unittest.mock.patch("studies.at_rest.RESULTS", Path(folder)):
+                return rows_at_rest()
+
+    SLOW = (
+        "method,count,fraction,peclet,seeds,pairs,pairs_error\n"
+        "implicit,250,0.45,0.046,16,5.5,0.4\nimplicit,250,0.45,0.01,8,4.4,1.3\nimplicit,1000,0.45,0.046,8,9,1\n"
+        "explicit,250,0.45,0.046,8,9,1\n"
+    )
+    EXACT = "fraction,count,viscosity,viscosity_error\n0.5,1000,15.25,0.5\n0.5,250,14,1\n0.4,250,4,0.25\n"
+
+    def test_slow_shear_is_of_the_lowest_known_peclet_number(self):
+        rows, how = self.rows({"flow-curve": self.SLOW})
+        self.assertEqual(how, SLOW_SHEAR)
+        self.assertEqual([(f, r["pairs"], r["pairs_error"]) for f, r in rows.items()], [(0.45, 5.5, 0.4)])
+
+    def test_exact_values_are_of_most_spheres_and_less_the_solvent(self):
+        rows, how = self.rows({"flow-curve": self.SLOW, "at-rest": self.EXACT})
+        self.assertEqual(how, "linear response")
+        # 15.25 - 1 - 2.5 0.5; 4 - 1 - 2.5 0.4.
+        self.assertEqual({f: (r["pairs"], r["pairs_error"]) for f, r in rows.items()}, {0.5: (13, 0.5), 0.4: (2, 0.25)})
 
 
 class Published(unittest.TestCase):

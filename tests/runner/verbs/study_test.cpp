@@ -23,8 +23,9 @@ class Studies : public testing::Test {
 
 constexpr const char* found = R"({"title": "Diffusion", "verdict": "holds with a difference",
   "processor_hours": 0.25, "date": "2026-01-31", "engine": ["1234567"], "machine": "x",
-  "statements": [{"statement": "a", "answer": "holds"}, {"statement": "b", "answer": "fails"},
-                 {"statement": "c", "answer": "holds"}]})";
+  "statements": [{"kind": "statement", "answer": "holds"}, {"kind": "statement", "answer": "does not hold"},
+                 {"kind": "statement", "answer": "holds"}, {"kind": "check", "answer": "ok"},
+                 {"kind": "check", "answer": "failed"}, {"kind": "finding", "value": 1}]})";
 
 TEST_F(Studies, AreListedInOrderWithWhatTheyFound) {
   add("zero-shear", "");
@@ -32,11 +33,12 @@ TEST_F(Studies, AreListedInOrderWithWhatTheyFound) {
   std::filesystem::create_directories(folder_.path() / "no-study");
   const std::vector<StudySummary> studies = read_studies(folder_.path());
   EXPECT_EQ(studies_table(studies),
-            "study       verdict                  statements that hold  CPU h        made\n"
-            "diffusion   holds with a difference                2 of 3   0.25  2026-01-31\n"
-            "zero-shear  not yet                                     -      -           -\n");
+            "study       verdict                  statements that hold  checks passed  CPU h        made\n"
+            "diffusion   holds with a difference                2 of 3         1 of 2   0.25  2026-01-31\n"
+            "zero-shear  not yet                                     -              -      -           -\n");
   const Json list = studies_json(studies)["studies"];
   EXPECT_EQ(list[0]["statements_that_hold"], 2);
+  EXPECT_EQ(list[0]["checks_passed"], 1);
   EXPECT_EQ(list[0]["title"], "Diffusion");
   EXPECT_TRUE(list[1]["processor_hours"].is_null());
 }
@@ -71,6 +73,49 @@ TEST_F(Studies, RunTheirDriverAndReturnItsExitCode) {
   options.name = "diffusion";
   options.results = folder_.path();
   EXPECT_EXIT(perform_study(options), testing::ExitedWithCode(3), "");
+}
+
+TEST_F(Studies, ThatHaveNoKindsOfRowsAreOfStatements) {
+  add("diffusion", R"({"title": "Diffusion", "verdict": "not yet", "processor_hours": 1, "date": "2026-01-31",
+    "statements": [{"answer": "holds"}, {"answer": "open"}]})");
+  const std::vector<StudySummary> studies = read_studies(folder_.path());
+  EXPECT_EQ(studies[0].holding, 1);
+  EXPECT_EQ(studies[0].statements, 2);
+  EXPECT_EQ(studies[0].checks, 0);
+}
+
+TEST_F(Studies, AreAllMadeOnlyWhenHoursAreMeant) {
+  add("diffusion", found);
+  StudyOptions options;
+  options.all = true;
+  options.results = folder_.path();
+  try {
+    perform_study(options);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.pointer(), "--all");
+    EXPECT_EQ(error.allowed(), "must stand with --overnight: 0.25 hours of processor time");
+  }
+}
+
+TEST_F(Studies, AreAllMadeByTheDriverOfAll) {
+  add("diffusion", found);
+  std::filesystem::create_directories(folder_.path() / "studies");
+  std::ofstream(folder_.path() / "studies" / "overnight.py") << R"(import sys
+raise SystemExit(7 if sys.argv[2:] == ["/campaigns"] else 8)
+)";
+  StudyOptions options;
+  options.all = options.overnight = true;
+  options.results = folder_.path();
+  options.folder = "/campaigns";
+  EXPECT_EXIT(perform_study(options), testing::ExitedWithCode(7), "");
+}
+
+TEST_F(Studies, NeedNoFolderToBeListed) {
+  StudyOptions options;
+  options.results = folder_.path();
+  options.folder = "/campaigns";
+  EXPECT_THROW(perform_study(options), InputError);
 }
 
 TEST_F(Studies, TellTheirDriverWhatWasAsked) {

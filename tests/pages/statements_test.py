@@ -1,0 +1,81 @@
+#!/usr/bin/python3
+"""docs/statements.md says of every source in print what the study.json files say, and leaves none out."""
+import json
+import re
+import sys
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "results"))
+from studies.verdicts import rows_of, verdict
+
+PAGE = ROOT / "docs" / "statements.md"
+LINES, WIDTH = 45, 130  # as it is read: without the targets of links
+# | where in print | what it says | verdict | statements that hold | study |
+ROW = re.compile(
+    r"\| (?P<sources>[^|]+?) \| (?P<says>[^|]+?) \| (?P<verdict>[^|]+?) \| (?P<holding>\d+) of (?P<count>\d+) "
+    r"\| \[(?P<study>[\w-]+)\]\(\.\./results/(?P=study)/README\.md\) \|"
+)
+
+
+def study_of(name):
+    return json.loads((ROOT / "results" / name / "study.json").read_text())
+
+
+def statements_of(name):
+    """Those of a publication; of a study whose rows have no kinds yet none."""
+    entries = study_of(name)["statements"]
+    return [row for row in rows_of(study_of(name)) if row.kind == "statement"] if "kind" in entries[0] else []
+
+
+def found_of(rows):
+    """As of a study, but of a group of rows: where none holds, none of it does."""
+    holding = sum(row.answer() == "holds" for row in rows)
+    return ("does not hold" if rows and not holding else verdict(rows)), str(holding), str(len(rows))
+
+
+def faults(page):
+    """What the page says otherwise than the studies, or not at all."""
+    said = set()
+    for row in map(ROW.fullmatch, page.split("\n")):
+        if not row:
+            continue
+        name, sources = row["study"], row["sources"].split(", ")
+        said.update((name, source) for source in sources)
+        rows = [r for r in statements_of(name) if r.source in sources]
+        found = found_of(rows)
+        if (row["verdict"], row["holding"], row["count"]) != found:
+            yield f"{name}, {row['sources']}: the page has {row['verdict']}, the study {', '.join(found)}"
+    there = {
+        (path.parent.name, row.source)
+        for path in (ROOT / "results").glob("*/study.json")
+        for row in statements_of(path.parent.name)
+    }
+    yield from (f"{name}, {source}: not on the page" for name, source in sorted(there - said))
+    yield from (f"{name}, {source}: of no study" for name, source in sorted(said - there))
+
+
+class Statements(unittest.TestCase):
+    def test_of_the_page_are_those_of_the_studies(self):
+        self.assertEqual(list(faults(PAGE.read_text())), [])
+
+    def test_that_say_something_else_are_noticed(self):
+        lines = PAGE.read_text().split("\n")
+        rows = [k for k, line in enumerate(lines) if ROW.fullmatch(line)]
+        self.assertGreaterEqual(len(rows), 20)
+        for k in rows:
+            verdict_of = ROW.fullmatch(lines[k])["verdict"]
+            other = "does not hold" if verdict_of == "holds" else "holds"
+            for line in (lines[k].replace(f"| {verdict_of} |", f"| {other} |"), ""):
+                self.assertTrue(list(faults("\n".join([*lines[:k], line, *lines[k + 1 :]]))), lines[k])
+
+    def test_take_a_screen_at_most(self):
+        lines = PAGE.read_text().rstrip("\n").split("\n")
+        self.assertLessEqual(len(lines), LINES)
+        read = [re.sub(r"\]\([^)]*\)", "]", line) for line in lines]
+        self.assertEqual([line for line in read if len(line) > WIDTH], [])
+
+
+if __name__ == "__main__":
+    unittest.main()

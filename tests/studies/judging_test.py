@@ -1,0 +1,45 @@
+#!/usr/bin/python3
+"""That studies judge alike when they judge again, from their tables alone; some draw their pictures on the way."""
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+RESULTS = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "results")
+# Those that have rows, but for one that judges what its runs return.
+JUDGED = sorted(
+    name
+    for name in os.listdir(RESULTS)
+    if os.path.exists(os.path.join(RESULTS, name, "study.json")) and name != "monti-waves"
+)
+
+
+def again(results, name):
+    command = ["/usr/bin/python3", os.path.join(results, name, "study.py"), "--from-table"]
+    return subprocess.run(command, capture_output=True, text=True)
+
+
+class Judging(unittest.TestCase):
+    def test_again_gives_what_study_json_and_the_page_have(self):
+        """Of a copy, so that nothing of the source is written."""
+        self.assertGreaterEqual(len(JUDGED), 13)
+        with tempfile.TemporaryDirectory() as folder:
+            copy = os.path.join(folder, "results")
+            shutil.copytree(RESULTS, copy, ignore=shutil.ignore_patterns("__pycache__", "*.png"))
+            for name in JUDGED:
+                with self.subTest(name):
+                    done = again(copy, name)
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    for file in ("study.json", "README.md"):
+                        with open(os.path.join(copy, name, file)) as a, open(os.path.join(RESULTS, name, file)) as b:
+                            self.assertEqual(a.read(), b.read())
+
+    def test_without_what_rows_are_made_of_is_refused(self):
+        done = again(RESULTS, "monti-waves")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--from-table: the tables of this study do not have all that its rows are made of", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
