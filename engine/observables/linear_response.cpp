@@ -51,6 +51,7 @@ Axis axis_of(const char* name, const char* unit, const std::vector<double>& valu
 
 std::vector<double> times_of(const std::vector<std::uint64_t>& lags, double timestep) {
   std::vector<double> times;
+  times.reserve(lags.size());
   for (const std::uint64_t lag : lags) times.push_back(lag_time(lag, timestep));
   return times;
 }
