@@ -39,7 +39,8 @@ System cluster(const Physics& physics, double density) {
   system.box = PeriodicCell({40, 40, 40}, simple_shear(0));
   Draws draws(3);
   for (std::size_t i = 0; i < sphere_count; ++i) {
-    const Vector3 place = {double(i % 3), double(i / 3 % 3), double(i / 9)};
+    const std::size_t column = i % 3, row = i / 3 % 3, layer = i / 9;
+    const Vector3 place = {static_cast<double>(column), static_cast<double>(row), static_cast<double>(layer)};
     system.particles.position.set(i, Vector3{17, 17, 17} + 2.42 * place + draws.vector(0.03));
     system.particles.velocity.set(i, draws.vector(0.1));
     system.particles.angular_velocity.set(i, draws.vector(0.1));
