@@ -7,12 +7,7 @@ import tempfile
 import unittest
 
 RESULTS = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "results")
-# Those that have rows, but for one that judges what its runs return.
-JUDGED = sorted(
-    name
-    for name in os.listdir(RESULTS)
-    if os.path.exists(os.path.join(RESULTS, name, "study.json")) and name != "monti-waves"
-)
+JUDGED = sorted(name for name in os.listdir(RESULTS) if os.path.exists(os.path.join(RESULTS, name, "study.json")))
 
 
 def again(results, name):
@@ -36,7 +31,18 @@ class Judging(unittest.TestCase):
                             self.assertEqual(a.read(), b.read())
 
     def test_without_what_rows_are_made_of_is_refused(self):
-        done = again(RESULTS, "monti-waves")
+        """Of a study that judges what its runs return, as some may."""
+        with tempfile.TemporaryDirectory() as folder:
+            copy = os.path.join(folder, "results")
+            shutil.copytree(os.path.join(RESULTS, "studies"), os.path.join(copy, "studies"))
+            os.mkdir(os.path.join(copy, "bare"))
+            with open(os.path.join(copy, "bare", "study.py"), "w") as f:
+                f.write(
+                    "import sys\nfrom pathlib import Path\nHERE = Path(__file__).resolve().parent\n"
+                    "sys.path.insert(0, str(HERE.parent))\nfrom studies.command_line import main\n"
+                    "main(HERE, 'A study', lambda program: [], lambda program: [])\n"
+                )
+            done = again(copy, "bare")
         self.assertEqual(done.returncode, 2)
         self.assertIn("--from-table: the tables of this study do not have all that its rows are made of", done.stderr)
 
