@@ -114,8 +114,8 @@ NAMED = [
     (
         "springs stretched twice in a step with noise",
         NOISY,
-        "  ahead_.evaluate(system, loads_.force, loads_.torque);\n  restore_springs(system);",
-        "  ahead_.evaluate(system, loads_.force, loads_.torque);",
+        "  const PairSums ahead = ahead_.evaluate(system, loads_.force, loads_.torque);\n  restore_springs(system);",
+        "  const PairSums ahead = ahead_.evaluate(system, loads_.force, loads_.torque);",
         "engine_tests:Implicit.StretchesSpringsOnceAStep",
     ),
     (
