@@ -26,23 +26,11 @@ std::optional<ObservableFault> must_rest(const Scene& scene, const Json&) {
   return not_at_rest(scene, "stress_correlation");
 }
 
-// Linear response knows the equilibrium that it starts from: exp(-H / kT).
 std::optional<ObservableFault> must_have_equilibrium(const Scene& scene, const Json&) {
   if (std::optional<ObservableFault> fault = not_at_rest(scene, "linear_response")) return fault;
-  const Physics& physics = scene.physics;
-  const auto because = [](const char* reason) {
-    return ObservableFault{"/observables", fmt::format("must not list linear_response {}", reason)};
-  };
-  if (physics.contact && physics.contact->friction > 0) {
-    return because("with /contact/friction > 0: friction leads to no equilibrium of known probabilities");
-  }
-  if (physics.contact && physics.contact->normal_damping > 0) {
-    return because("with /contact/normal_damping > 0: what it dissipates no noise gives back");
-  }
-  if (physics.lubrication && physics.lubrication->form == LubricationParameters::Form::mari) {
-    return because("with /lubrication/form mari: its stress is not that of the forces alone");
-  }
-  return std::nullopt;
+  const std::string reason = lacking_equilibrium(scene.physics);
+  if (reason.empty()) return std::nullopt;
+  return ObservableFault{"/observables", "must not list linear_response with " + reason};
 }
 
 std::optional<ObservableFault> must_have_whole_bins(const Scene&, const Json& settings) {
@@ -106,6 +94,19 @@ std::vector<ObservableEntry> entries() {
 }
 
 }  // namespace
+
+std::string lacking_equilibrium(const Physics& physics) {
+  if (physics.contact && physics.contact->friction > 0) {
+    return "/contact/friction > 0: friction leads to no equilibrium of known probabilities";
+  }
+  if (physics.contact && physics.contact->normal_damping > 0) {
+    return "/contact/normal_damping > 0: what it dissipates no noise gives back";
+  }
+  if (physics.lubrication && physics.lubrication->form == LubricationParameters::Form::mari) {
+    return "/lubrication/form mari: its stress is not that of the forces alone";
+  }
+  return "";
+}
 
 const std::vector<ObservableEntry>& observable_entries() {
   static const std::vector<ObservableEntry> all = entries();

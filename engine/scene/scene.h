@@ -29,6 +29,10 @@ struct Physics : EachConservativeLaw<std::optional> {
   std::optional<LubricationParameters> lubrication;
 };
 
+// Why there is no equilibrium whose probabilities are known to be exp(-H / kT); empty where there is one.
+std::string lacking_equilibrium(const Physics& physics);
+inline bool has_known_equilibrium(const Physics& physics) { return lacking_equilibrium(physics).empty(); }
+
 // Of the residual of implicit steps, where the document gives none. With noise errors average out.
 inline constexpr double usual_tolerance = 2e-3, usual_tolerance_with_noise = 4e-3;
 

@@ -17,6 +17,27 @@ namespace {
 constexpr double largest_inertia_over_shear = 0.1;
 constexpr double largest_inertia_over_brownian = 0.17;
 
+double mean_sphere_volume(const Particles& particles) {
+  double sum = 0;
+  const bool by_volume = particles.shares == Particles::Shares::volume;
+  for (const Species& species : particles.species) {
+    const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(species.radius, 3);
+    sum += by_volume ? species.share / volume : species.share * volume;
+  }
+  return by_volume ? 1 / sum : sum;
+}
+
+std::optional<double> flow_over_rest(const Scene& scene, double peclet) {
+  const Physics& physics = scene.physics;
+  const double fraction = scene.volume_fraction, jammed = 0.587;
+  const bool refused = physics.flow.varies() || !has_known_equilibrium(physics);
+  if (refused || !(peclet > 0) || peclet >= nearly_at_rest || fraction >= jammed) return std::nullopt;
+  const double viscosity = std::pow(1 - fraction / jammed, -1.5), of_pairs = viscosity - 1 - 2.5 * fraction;
+  if (!(of_pairs > 0)) return std::nullopt;
+  const double size = std::pow(scene.particles.reference_radius, 3) / mean_sphere_volume(scene.particles);
+  return std::pow(6 * std::numbers::pi / peclet, 2) * fraction * size / (300 * viscosity * of_pairs);
+}
+
 // A ratio that was chosen to be the bound, in decimals, counts as having reached it.
 bool reaches(double ratio, double bound) { return ratio >= bound * (1 - 1e-9); }
 
@@ -36,6 +57,7 @@ DerivedGroups derived_groups(const Scene& scene) {
   if (physics.thermal_energy > 0) {
     groups.brownian_time = physics.viscosity * a_cubed / physics.thermal_energy;
     groups.peclet = 6 * std::numbers::pi * *groups.brownian_time * physics.flow.rate();
+    groups.flow_over_rest = flow_over_rest(scene, *groups.peclet);
   }
   if (physics.contact) {
     groups.contact_time = std::sqrt(density * a_cubed / physics.contact->normal_stiffness);
@@ -55,7 +77,8 @@ Json to_json(const DerivedGroups& groups) {
           {"contact_time", number(groups.contact_time)},
           {"inertial_time", number(groups.inertial_time)},
           {"brownian_time", number(groups.brownian_time)},
-          {"shear_time", number(groups.shear_time)}};
+          {"shear_time", number(groups.shear_time)},
+          {"flow_over_rest", number(groups.flow_over_rest)}};
 }
 
 std::vector<Warning> scene_warnings(const Scene& scene) {

@@ -12,11 +12,22 @@ namespace peclet::engine {
 // Dimensionless groups and time scales, a = reference_radius: tau_C = sqrt(rho a^3 / k_n), tau_I = rho a^2 /
 // eta, tau_B = eta a^3 / kT, tau_S = 1 / rate, Pe = 6 pi eta a^3 rate / kT, St = tau_I / tau_S, k_hat = k_n /
 // (eta a rate). A group without meaning in the scene (tau_B without temperature) is infinite or absent in the
-// JSON (null).
+// JSON (null). flow_over_rest: see below.
 struct DerivedGroups {
   std::optional<double> peclet, stokes, relative_stiffness;
   std::optional<double> contact_time, inertial_time, brownian_time, shear_time;
+  std::optional<double> flow_over_rest;
 };
+
+// Nearly at rest, below Pe = 0.1: the processor time of a mean in the flow over that of the same relative
+// error at rest, by the observable linear_response. Both are averages over the time T of all seeds; with
+// eta_p = eta_r - 1 - 2.5 phi and N T the work,
+//   error^2 in the flow = 2 kT eta_p / (eta V T rate^2 eta_r^2),  the floor of any mean of the stress,
+//   error^2 at rest = 1.2 (t/T) (eta_p / eta_r)^2,  t = 5 eta_r tau_B,  of N = 100 (results/at-rest),
+// of which the quotient is (6 pi / Pe)^2 phi a^3 / (300 v eta_r eta_p) with the mean volume v of a sphere.
+// eta_r is taken to be (1 - phi / 0.587)^-1.5, as published for the limit. A guess: nothing where that has no
+// meaning or linear_response is refused.
+inline constexpr double nearly_at_rest = 0.1;
 
 DerivedGroups derived_groups(const Scene& scene);
 Json to_json(const DerivedGroups& groups);

@@ -35,6 +35,9 @@ struct PointPlan {
   std::optional<Look> decided{};
   Prediction prediction{};    // of a point that is not decided
   std::vector<int> places{};  // of its deciding look in the schedule, in the futures of the sums
+  // Processor time over that of the same error at rest, where the engine says so (its derived
+  // flow_over_rest).
+  std::optional<double> flow_over_rest{};
 
   // Nothing is expected of a point that is decided, and nothing is known of one with an obstacle.
   bool is_predicted() const;

@@ -151,6 +151,18 @@ std::string ending_text(const Plan& plan) {
                      fmt::localtime(plan.made_at + std::llround(totals.wall_seconds_to_come.likely)));
 }
 
+// A way that people may not know of; which one is taken is theirs to say.
+std::string rest_text(const Plan& plan) {
+  std::string text;
+  for (const PointPlan& point : plan.points) {
+    if (point.flow_over_rest) text += fmt::format("  {}: {}\n", point.label, rough(*point.flow_over_rest));
+  }
+  if (text.empty()) return text;
+  return "\nNearly at rest. Processor time over that of the same error at rest, by linear_response (a "
+         "guess):\n" +
+         text;
+}
+
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 template <typename Number>
@@ -191,10 +203,10 @@ Json totals_json(const Plan& plan) {
 
 std::string plan_text(const Plan& plan) {
   const bool predicted = has_values(plan);
-  return fmt::format("{}: {}, {} to {} seeds each\n\n{}\n{}{}", plan.campaign,
+  return fmt::format("{}: {}, {} to {} seeds each\n\n{}\n{}{}{}", plan.campaign,
                      counted(plan.points.size(), "point"), plan.minimum, plan.maximum,
                      table_text(plan, predicted), legend(plan, predicted),
-                     predicted ? '\n' + ending_text(plan) : "");
+                     predicted ? '\n' + ending_text(plan) : "", rest_text(plan));
 }
 
 Json plan_json(const Plan& plan) {
@@ -210,6 +222,7 @@ Json plan_json(const Plan& plan) {
                       {"verdict", point.decided ? Json(to_string(point.decided->verdict)) : Json(nullptr)},
                       {"seeds_ended", point.ended},
                       {"prediction", prediction_json(point)},
+                      {"flow_over_rest", number(point.flow_over_rest.value_or(std::nan("")))},
                       {"obstacle", obstacle.empty() ? Json(nullptr) : Json(obstacle)}});
   }
   return {{"schema_version", 1},

@@ -105,6 +105,10 @@ Plan plan_of(const Campaign& campaign, const std::vector<SceneAnswer>& scenes,
              const std::map<std::string, PointHistory>& known, const RunOptions& options,
              const std::optional<CostGuess>& guess = {}) {
   Plan plan = make_plan(campaign, work_of(scenes), known, worker_count(options).workers, guess);
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const Json found = scenes[i].derived.value("flow_over_rest", Json());
+    if (found.is_number()) plan.points.at(i).flow_over_rest = found.get<double>();
+  }
   plan.made_at = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   return plan;
 }

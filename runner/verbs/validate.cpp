@@ -17,10 +17,14 @@ namespace {
 
 // Headings of the derived numbers that we know, in the order in which people look for them; an engine may
 // have others, which follow under their own names.
-const std::pair<const char*, const char*> known_numbers[] = {
-    {"peclet", "Pe"},        {"stokes", "St"},         {"relative_stiffness", "k_hat"},
-    {"contact_time", "τ_C"}, {"inertial_time", "τ_I"}, {"brownian_time", "τ_B"},
-    {"shear_time", "τ_S"}};
+const std::pair<const char*, const char*> known_numbers[] = {{"peclet", "Pe"},
+                                                             {"stokes", "St"},
+                                                             {"relative_stiffness", "k_hat"},
+                                                             {"contact_time", "τ_C"},
+                                                             {"inertial_time", "τ_I"},
+                                                             {"brownian_time", "τ_B"},
+                                                             {"shear_time", "τ_S"},
+                                                             {"flow_over_rest", "flow/rest"}};
 
 struct Derived {
   std::string key, heading;

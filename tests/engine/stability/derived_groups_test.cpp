@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "engine/scene/scene.h"
 
@@ -65,7 +66,29 @@ TEST(DerivedGroups, WhatHasNoMeaningIsNull) {
                                                   {"contact_time", nullptr},
                                                   {"inertial_time", 1.0},
                                                   {"brownian_time", nullptr},
-                                                  {"shear_time", nullptr}}));
+                                                  {"shear_time", nullptr},
+                                                  {"flow_over_rest", nullptr}}));
+}
+
+// Of the published system at Pe = 0.01: (600 pi)^2 phi / (300 v eta_r (eta_r - 1 - 2.5 phi)), v = 4 pi / 3
+// over (0.5 + 0.5 / 1.4^3) = 6.1400, eta_r = 17.526 at phi = 0.5 and 2.9251 at 0.3. As 1 / Pe^2.
+TEST(DerivedGroups, NearRestTheFlowIsComparedWithRest) {
+  Scene scene = scene_of(1, 1);
+  scene.particles.species = {{1, 0.5}, {1.4, 0.5}};
+  scene.physics.contact = ContactParameters{.normal_stiffness = 1e4};
+  const auto compared = [&](double peclet, double fraction) {
+    Scene near = scene;
+    near.volume_fraction = fraction;
+    near.physics.flow = steady_shear(peclet / (6 * std::numbers::pi * 0.1));
+    return derived_groups(near).flow_over_rest;
+  };
+  EXPECT_NEAR(compared(0.01, 0.5).value(), 3.6025, 5e-4);
+  EXPECT_NEAR(compared(0.01, 0.3).value(), 168.361, 5e-3);
+  EXPECT_NEAR(compared(0.001, 0.5).value() / compared(0.01, 0.5).value(), 100, 1e-6);
+  EXPECT_FALSE(compared(0.1001, 0.5));
+  EXPECT_FALSE(compared(0.01, 0.6));
+  scene.physics.contact->friction = 0.1;
+  EXPECT_FALSE(compared(0.01, 0.5));
 }
 
 TEST(SceneWarnings, InertiaIsReportedFromTheBoundOn) {

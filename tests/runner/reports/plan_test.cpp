@@ -20,6 +20,18 @@ TEST(Plan, ACampaignWithoutASeedHasUnknownHours) {
   EXPECT_NE(plan_text(plan).find("not known before a seed has ended"), std::string::npos);
 }
 
+TEST(Plan, SaysWhatRestWouldSaveOfThePointsThatAreNearIt) {
+  Plan plan = make_plan(plain_campaign(2, 10, 800, 0.05), {1e6, 2e6}, {}, 1);
+  EXPECT_EQ(plan_text(plan).find("at rest"), std::string::npos);
+  plan.points[1].flow_over_rest = 250;
+  EXPECT_NE(plan_text(plan).find("Nearly at rest. Processor time over that of the same error at rest, by "
+                                 "linear_response (a guess):\n  point=1: 250\n"),
+            std::string::npos)
+      << plan_text(plan);
+  EXPECT_TRUE(plan_json(plan)["points"][0]["flow_over_rest"].is_null());
+  EXPECT_EQ(plan_json(plan)["points"][1]["flow_over_rest"], 250);
+}
+
 // 3 s for 1e6 particle-steps of the first point; 10 and 800 seeds of 3 + 6 s.
 TEST(Plan, AGuessIsCalledOne) {
   const Plan plan = make_plan(plain_campaign(2, 10, 800, 0.05), {1e6, 2e6}, {}, 1, CostGuess{0, 3});
