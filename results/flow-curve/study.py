@@ -9,7 +9,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.at_rest import SLOW_SHEAR, SLOWEST, rows_at_rest
+from studies.at_rest import SLOWEST, rows_at_rest
 from studies.command_line import main
 from studies.estimates import estimate, logarithm, over, propagated, quotient
 from studies.figure import BLACK, BLUE, GREEN, GREY, RED, Figure
@@ -158,7 +158,7 @@ def rest_rows(curves):
     points. Its height rises with the volume fraction."""
     rest, how = rows_at_rest()
     for fraction, curve in curves.items():
-        if how != SLOW_SHEAR and fraction in rest and fraction != 0.55:
+        if "by" in rest.get(fraction, {}) and fraction != 0.55:  # of linear response
             text = f"η_r of pairs at Pe = {SLOWEST:g} over that at rest ({how}): plateau"
             found = quotient(number(curve.at[SLOWEST], "pairs"), number(rest[fraction], "pairs"))
             yield curve.row(Statement, text, found, SLOWEST, low=0.8, high=1.25)

@@ -92,14 +92,15 @@ class Program:
         those that have means."""
         return [results for _, results in read_results(os.path.join(self.folder, name + ".peclet"))]
 
-    def derived(self, scene):
-        """What `peclet validate` says of one scene: its time step, groups and warnings."""
+    def derived(self, scene, observable="relative_viscosity"):
+        """What `peclet validate` says of one scene: its time step, groups and warnings. `observable` only has to be a
+        number that its results have."""
         path = os.path.join(self.folder, "scene.json")
         campaign = {
             "name": "scene",
             "scene": scene,
             "sweep": [],
-            "target": {"observable": "relative_viscosity", "relative_tolerance": 0.1},
+            "target": {"observable": observable, "relative_tolerance": 0.1},
             "realisations": {"minimum": 2, "maximum": 2},
             "engine": [self.engine, "serve"],
         }

@@ -197,7 +197,7 @@ class Jamming(unittest.TestCase):
 
 
 class AtRest(unittest.TestCase):
-    """From the study of it where there is one, else from slow shear."""
+    """From the study of it, and from slow shear where that has no row."""
 
     def rows(self, tables):
         with tempfile.TemporaryDirectory() as folder:
@@ -213,18 +213,22 @@ class AtRest(unittest.TestCase):
         "implicit,250,0.45,0.046,16,5.5,0.4\nimplicit,250,0.45,0.01,8,4.4,1.3\nimplicit,1000,0.45,0.046,8,9,1\n"
         "explicit,250,0.45,0.046,8,9,1\n"
     )
-    EXACT = "fraction,count,viscosity,viscosity_error\n0.5,1000,15.25,0.5\n0.5,250,14,1\n0.4,250,4,0.25\n"
+    EXACT = (
+        "fraction,count,step,by,seeds,viscosity,viscosity_error\n0.5,100,automatic,momentum,60,15.25,0.5\n"
+        "0.5,250,automatic,momentum,8,14,1\n0.5,100,half of it,momentum,60,15,0.25\n"
+        "0.5,100,automatic,correlation,60,15,0.25\n0.4,100,automatic,momentum,60,4,0.25\n"
+    )
 
-    def test_slow_shear_is_of_the_lowest_known_peclet_number(self):
-        rows, how = self.rows({"flow-curve": self.SLOW})
-        self.assertEqual(how, SLOW_SHEAR)
-        self.assertEqual([(f, r["pairs"], r["pairs_error"]) for f, r in rows.items()], [(0.45, 5.5, 0.4)])
-
-    def test_exact_values_are_of_most_spheres_and_less_the_solvent(self):
-        rows, how = self.rows({"flow-curve": self.SLOW, "at-rest": self.EXACT})
+    def test_is_of_linear_response_with_the_usual_step_and_less_the_solvent(self):
+        rows, how = self.rows({"flow-curve": self.SLOW.replace("0.45", "0.5"), "at-rest": self.EXACT})
         self.assertEqual(how, "linear response")
         # 15.25 - 1 - 2.5 0.5; 4 - 1 - 2.5 0.4.
         self.assertEqual({f: (r["pairs"], r["pairs_error"]) for f, r in rows.items()}, {0.5: (13, 0.5), 0.4: (2, 0.25)})
+
+    def test_is_of_slow_shear_at_the_lowest_known_peclet_number_elsewhere(self):
+        rows, how = self.rows({"flow-curve": self.SLOW, "at-rest": self.EXACT})
+        self.assertEqual(how, f"linear response; φ = 0.45: {SLOW_SHEAR}")
+        self.assertEqual((rows[0.45]["pairs"], rows[0.45]["pairs_error"]), (5.5, 0.4))
 
 
 class Published(unittest.TestCase):

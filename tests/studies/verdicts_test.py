@@ -107,7 +107,10 @@ class Verdicts(unittest.TestCase):
     def test_of_the_studies_are_given(self):
         for name in STUDIES:
             with self.subTest(name):
-                self.assertIn(study_of(name)["verdict"], ("holds", "holds with a difference", "does not hold"))
+                rows = rows_of(study_of(name))
+                judged = ("holds", "holds with a difference", "does not hold")
+                found = judged if any(row.kind == "statement" for row in rows) else ("findings only",)
+                self.assertIn(study_of(name)["verdict"], found)
 
 
 class Pages(unittest.TestCase):
