@@ -31,12 +31,14 @@ from named_mutations import NAMED
 
 CRASH = "ended by signal"
 STUDIES = [
+    "at-rest",
     "convergence",
     "diffusion",
     "divergence",
     "flow-curve",
     "friction-repulsion",
     "inertia",
+    "large-friction",
     "literature",
     "microstructure",
     "monti-silica",
@@ -46,6 +48,7 @@ STUDIES = [
     "zero-shear",
     "speed-accuracy",
     "stability",
+    "steady-state",
 ]
 
 

@@ -3,6 +3,7 @@
 What is broken; file, text in it that occurs once, what takes its place; program and test.
 """
 
+from response_mutations import RESPONSE
 from strained_mutations import STRAINED
 
 IMPLICIT, NOISY = "engine/integrators/implicit.cpp", "engine/integrators/noisy_midpoint.cpp"
@@ -316,4 +317,4 @@ NAMED = [
     ),
 ]
 
-NAMED += STRAINED
+NAMED += RESPONSE + STRAINED
