@@ -8,6 +8,8 @@
 // found, with its noise.
 #pragma once
 
+#include <initializer_list>
+
 #include "engine/kernels/pairs/pair_sums.h"
 
 namespace peclet::engine {
