@@ -7,6 +7,8 @@ set(unwanted PATTERN __pycache__ EXCLUDE PATTERN "*.peclet" EXCLUDE)
 install(DIRECTORY adapters results templates DESTINATION ${own} USE_SOURCE_PERMISSIONS ${unwanted})
 install(DIRECTORY schema DESTINATION ${own} FILES_MATCHING PATTERN "*.json" PATTERN "*.sql" PATTERN "*.md")
 install(DIRECTORY docs DESTINATION ${own})
+# Where Debian's python3 looks when the prefix is /usr.
+install(DIRECTORY python/peclet DESTINATION lib/python3/dist-packages ${unwanted})
 # The other pages that these lead to; tests/pages/links.py is shown what was installed.
 foreach(page README.md CHANGELOG.md LICENSE CITATION.cff engine/PHYSICS.md runner/HANDOVER.md tests/bench/README.md
     tests/end_to_end/README.md tests/end_to_end/MISTAKES.md tests/mutations/mutations.md tests/physics/README.md

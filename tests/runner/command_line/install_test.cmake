@@ -8,6 +8,7 @@ set(prefix ${prefix}-moved)
 foreach(file
     bin/peclet
     bin/peclet-engine
+    lib/python3/dist-packages/peclet/__init__.py
     share/doc/peclet/LICENSE
     share/man/man1/peclet.1
     share/man/man1/peclet-run.1

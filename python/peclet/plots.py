@@ -1,0 +1,102 @@
+"""Figures, with matplotlib."""
+import re
+
+import numpy as np
+
+from peclet.program import PecletError
+
+# What is swept, as axes name it; beside these the parameter's own name.
+NAMES = {
+    "peclet": "Pe",
+    "volume_fraction": r"$\varphi$",
+    "friction": r"$\mu$",
+    "rolling_friction": r"$\mu_r$",
+    "shear_rate": r"$\dot\gamma$",
+    "normal_stiffness": r"$k_n$",
+    "thermal_energy": r"$k_B T$",
+    "inner_gap": "inner gap",
+    "outer_gap": "outer gap",
+    "count": "$N$",
+}
+GREEK = "alpha beta gamma delta eta theta kappa lambda mu rho sigma tau phi omega".split()
+# Told apart in grey and by eyes that see few colours: Okabe & Ito (2008).
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
+MARKS = "os^Dv<>"
+
+
+def formula_of(symbol):
+    """A symbol as quantities have it, such as eta_r or sigma^noise_xy, in matplotlib's mathematics."""
+    text = re.sub(r"([_^])([A-Za-z0-9]{2,})", r"\1{\\mathrm{\2}}", symbol)
+    text = re.sub(r"(?<![\\A-Za-z])(" + "|".join(GREEK) + r")(?![A-Za-z])", r"\\\1", text)
+    return f"${text}$"
+
+
+def spans_a_decade(values):
+    values = np.asarray(values, float)
+    values = values[np.isfinite(values)]
+    return len(values) > 1 and values.min() > 0 and values.max() >= 10 * values.min()
+
+
+def swept(table):
+    """Names of the parameters of a table of estimates, those with most values first."""
+    axes = list(table.columns)[: list(table.columns).index("label")]
+    return sorted(axes, key=lambda name: -len(set(table[name].tolist())))
+
+
+def label_of(results, quantity):
+    rows = {row["quantity"]: row for row in results.quantities()}
+    row = rows.get(quantity)
+    if row is None:
+        return quantity
+    unit = f"  [{row['unit']}]" if row["unit"] not in ("", "1") else ""
+    return formula_of(row["symbol"]) + unit
+
+
+def plot(results, quantity=None, x=None, by=None, axes=None, label=None, log=None):
+    """Draws an estimate of every point over one swept parameter, with 95 % intervals, and returns matplotlib's Axes.
+
+    quantity  the campaign's target unless given
+    x         the swept parameter on the axis; the one with most values unless given
+    by        another one, of which each value is a series; all others unless given
+    axes      matplotlib's Axes to draw in; new ones unless given
+    label     of the series, where it is a single one
+    log       logarithmic axes: "", "x", "y" or "xy"; those that span a decade unless given
+
+    Open marks are points that have not converged; without a bar they have had no look yet.
+    """
+    try:
+        import matplotlib.pyplot as pyplot
+    except ImportError as missing:
+        raise PecletError("plots need matplotlib: install python3-matplotlib") from missing
+    table = results.estimates(quantity)
+    parameters = swept(table)
+    if x is None and not parameters:
+        raise PecletError("nothing is swept in this campaign: no axis to draw over")
+    x = x or parameters[0]
+    others = [name for name in parameters if name != x] if by is None else [by]
+    axes = axes or pyplot.subplots(figsize=(4.5, 3.4), layout="constrained")[1]
+    table = table.take(np.isfinite(table["mean"])).sorted_by(*others, x)
+    groups = [tuple(row[name] for name in others) for row in table]
+    for k, group in enumerate(sorted(set(groups), key=groups.index)):
+        rows = table.take([g == group for g in groups])
+        names = ", ".join(f"{NAMES.get(name, name)} = {value:g}" for name, value in zip(others, group))
+        draw_series(axes, rows, x, COLOURS[k % len(COLOURS)], MARKS[k % len(MARKS)], names or label)
+    if log is None:
+        log = "".join(name for name, column in (("x", x), ("y", "mean")) if spans_a_decade(table[column]))
+    axes.set_xscale("log" if "x" in log else "linear")
+    axes.set_yscale("log" if "y" in log else "linear")
+    axes.set_xlabel(NAMES.get(x, x.replace("_", " ")))
+    axes.set_ylabel(label_of(results, quantity or results.target["observable"]))
+    axes.tick_params(which="both", direction="in", top=True, right=True)
+    if others or label:
+        axes.legend(frameon=False)
+    return axes
+
+
+def draw_series(axes, rows, x, colour, mark, label):
+    """Joined by a line; filled marks where the point has converged."""
+    bars = np.nan_to_num(rows["half_width"])
+    axes.errorbar(rows[x], rows["mean"], bars, color=colour, capsize=2, linewidth=1, marker="none")
+    axes.plot(rows[x], rows["mean"], mark, color=colour, markersize=4.5, label=label)
+    still = rows["verdict"] != "converged"
+    axes.plot(rows[x][still], rows["mean"][still], mark, color=colour, markersize=4.5, markerfacecolor="white")

@@ -1,0 +1,156 @@
+"""What a campaign has found so far."""
+import csv
+import io
+import json
+import os
+
+from peclet.program import PecletError, ask
+from peclet.table import Table
+
+ESTIMATE = ("mean", "standard_error", "half_width")
+
+
+def open_results(campaign, program=None):
+    """The results of a campaign: of its file NAME.json, of its folder NAME.peclet, also while it runs. Nothing is read
+    before it is asked for, and every question reads what is there then."""
+    path = os.fspath(campaign)
+    if not os.path.exists(path):
+        raise PecletError(f"{path}: no such file or folder; must be a campaign file, or its .peclet folder")
+    return Results(path, program)
+
+
+def short_names(pointers):
+    """Of each JSON pointer into the scene its last word, and as many before it as tell it from the others."""
+    words = {pointer: pointer.strip("/").split("/") for pointer in pointers}
+    names = {}
+    for pointer, own in words.items():
+        others = [w for p, w in words.items() if p != pointer]
+        count = 1
+        while count < len(own) and any(w[-count:] == own[-count:] for w in others):
+            count += 1
+        names[pointer] = "_".join(own[-count:])
+    return names
+
+
+def number_of(text):
+    """Of a cell of a CSV table."""
+    if text == "":
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        return {"true": True, "false": False}.get(text, text)
+
+
+class Results:
+    """`path` is that of the campaign, `program` the peclet that is asked."""
+
+    def __init__(self, path, program=None):
+        self.path, self.program = path, program
+
+    def _rows(self, form):
+        return list(csv.DictReader(io.StringIO(self._ask("export", "--" + form))))
+
+    def _ask(self, verb, *options):
+        return ask(self.program, verb, *options, "--", self.path)
+
+    def _named(self, rows):
+        """Rows with the short names of what is swept first, and these names."""
+        names = short_names([key for key in (rows[0] if rows else {}) if key.startswith("/")])
+        return [{names.get(k, k): number_of(v) for k, v in row.items()} for row in rows], list(names.values())
+
+    def export(self):
+        """The whole export, as `peclet export` prints it: points, and every realisation of each."""
+        return json.loads(self._ask("export"))
+
+    @property
+    def target(self):
+        """Observable, tolerance and confidence, as the campaign has them."""
+        return self._status()["target"]
+
+    @property
+    def name(self):
+        return self._status()["campaign"]
+
+    def _status(self):
+        # The code of `status` is the state of the campaign: 3 some points are not converged, 4 not finished.
+        return json.loads(ask(self.program, "status", "--json", "--", self.path, allowed=(0, 3, 4)))
+
+    def quantities(self):
+        """What was measured: quantity, symbol, unit, estimator, and the names of its axes (none of a single number)."""
+        found = {}
+        for row in self._rows("long"):
+            axes = [row[f"axis_{k}"] for k in (1, 2, 3) if row.get(f"axis_{k}")]
+            known = ("quantity", "symbol", "unit", "estimator")
+            found.setdefault(row["quantity"], {name: row[name] for name in known} | {"axes": ", ".join(axes)})
+        return Table.of_rows(["quantity", "symbol", "unit", "estimator", "axes"], list(found.values()))
+
+    def estimates(self, quantity=None):
+        """A row for each point: the swept parameters, label, verdict, seeds and lost ones; and `count`, `mean`,
+        `standard_error` and `half_width` of the 95 % interval (of the campaign's confidence) at the point's last look,
+        with the control variate. Those of the target, by which the campaign stops, or of another quantity that is a
+        single number; the half-width of such is Student's. `provisional` rows have had no look yet: their mean is that
+        of all seeds so far, and has no interval."""
+        rows, axes = self._named(self._rows("csv"))
+        for row in rows:
+            row["provisional"] = row["mean"] is None
+            if row["provisional"]:
+                row |= {name: row.get(f"so_far_{name}") for name in ("count", "mean", "standard_error")}
+        if quantity not in (None, self.target["observable"]):
+            self._replace_by(quantity, rows)
+        known = ["label", "verdict", "seeds", "lost", "count", *ESTIMATE, "provisional"]
+        return Table.of_rows(axes + known, rows)
+
+    def _replace_by(self, quantity, rows):
+        of_label = {row["label"]: row for row in self.profile(quantity)}
+        for row in rows:
+            other = of_label.get(row["label"], {})
+            row |= {name: other.get(name) for name in ("count", *ESTIMATE)}
+
+    def profile(self, quantity, **wanted):
+        """A row for each point and each element of a quantity with axes, such as a profile, a distribution or the
+        components of a stress: the swept parameters, label, the axes by their names, count, mean, standard error and
+        half-width. Of the points with these values of swept parameters, of all without."""
+        everything = self._rows("long")
+        chosen = [row for row in everything if row["quantity"] == quantity]
+        if not chosen:
+            there = sorted({row["quantity"] for row in everything})
+            raise PecletError(f"{quantity}: not measured; there are {', '.join(there) or 'no results yet'}")
+        rows, axes = self._named(chosen)
+        names = [chosen[0][f"axis_{k}"] for k in (1, 2, 3) if chosen[0].get(f"axis_{k}")]
+        for row in rows:
+            row |= {name: row[f"axis_{k + 1}_value"] for k, name in enumerate(names)}
+        return Table.of_rows(axes + ["label", *names, "count", *ESTIMATE], rows).where(**wanted)
+
+    def realisations(self, **wanted):
+        """A row for each seed that has ended: the swept parameters, label, seed, whether it is in the estimate
+        (`deciding`), how it ended, processor seconds, and every mean that is a single number, without control
+        variate. Reads the whole export."""
+        document = self.export()
+        names = short_names(sorted({pointer for point in document["points"] for pointer in point["settings"]}))
+        rows, scalars = [], {}
+        for point in document["points"]:
+            settings = {names[pointer]: value for pointer, value in point["settings"].items()}
+            for deciding, kind in ((True, "realisations"), (False, "surplus")):
+                for result in point[kind]:
+                    means = {k: v for k, v in (result.get("mean") or {}).items() if isinstance(v, (int, float))}
+                    scalars |= dict.fromkeys(means)
+                    ending = result["ending"]["cause"] if result.get("ending") else ""
+                    own = {"label": point["label"], "seed": result["seed"], "deciding": deciding, "ending": ending}
+                    rows.append({**settings, **own, "cpu_seconds": result["cost"]["cpu_seconds"], **means})
+        known = ["label", "seed", "deciding", "ending", "cpu_seconds"]
+        return Table.of_rows([*names.values(), *known, *scalars], rows).where(**wanted)
+
+    def files(self, point=None):
+        """Paths of what realisations have left beside their results."""
+        options = [] if point is None else [point]
+        return ask(self.program, "files", "--paths", "--", self.path, *options).splitlines()
+
+    def plot(self, quantity=None, **how):
+        """Draws estimates() over what was swept; see peclet.plots.plot."""
+        from peclet.plots import plot
+
+        return plot(self, quantity, **how)
+
+    def __repr__(self):
+        return f"peclet.open({self.path!r})"

@@ -1,0 +1,177 @@
+#!/usr/bin/python3
+"""package_test.py PECLET ENGINE: the Python package says of a campaign what `peclet export` says, and draws it."""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "python"))
+import matplotlib
+import numpy as np
+import peclet
+from peclet.plots import formula_of
+from peclet.results import short_names
+
+matplotlib.use("Agg")
+PECLET, ENGINE = (os.path.abspath(path) for path in sys.argv[1:3])
+SCENE = {
+    "particles": {
+        "count": 20,
+        "density": 0.1,
+        "species": [{"radius": 1.0, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}],
+    },
+    "volume_fraction": 0.3,
+    "fluid": {"viscosity": 0.1},
+    "limits": {"shear_rate": 0.045, "thermal_energy": 0.01},
+    "peclet": 10,
+    "contact": {"normal_stiffness": 1e4},
+    "lubrication": {"form": "kim-karrila", "inner_gap": 1e-3, "outer_gap": 0.05},
+    "duration": {"equilibration": {"strain": 0.1}, "production": {"strain": 0.2}},
+    "files": {"final_configuration": True},
+}
+SWEEP = {"/peclet": [10, 1000], "/volume_fraction": [0.2, 0.3]}
+
+
+def export_of(path):
+    return json.loads(subprocess.run([PECLET, "export", path], check=True, capture_output=True).stdout)
+
+
+class OfACampaign(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.path = os.path.join(cls.scratch.name, "small.json")
+        campaign = peclet.Campaign(
+            "small", SCENE, SWEEP, tolerance=1e-3, minimum=8, maximum=8, engine=[ENGINE, "serve"]
+        )
+        cls.results = campaign.run(cls.path, PECLET, ["--quiet"])
+        cls.export = export_of(cls.path)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    def test_estimates_are_the_looks_of_the_export(self):
+        table = self.results.estimates()
+        self.assertEqual(list(table.columns)[:3], ["peclet", "volume_fraction", "label"])
+        self.assertEqual(len(table), 4)
+        for row, point in zip(table, self.export["points"]):
+            look = point["look"]
+            for name in ("mean", "standard_error", "half_width", "count", "lost"):
+                self.assertAlmostEqual(row[name], look[name], delta=1e-12 * abs(look[name]), msg=name)
+            self.assertEqual((row["label"], row["verdict"]), (point["label"], point["verdict"]))
+            self.assertEqual(row["peclet"], point["settings"]["/peclet"])
+            self.assertFalse(row["provisional"])
+
+    def test_estimates_of_another_quantity_are_its_means(self):
+        for row, point in zip(self.results.estimates("pressure"), self.export["points"]):
+            self.assertAlmostEqual(row["mean"], point["quantities"]["pressure"]["mean"], delta=1e-9)
+            self.assertEqual(row["verdict"], point["verdict"])
+
+    def test_a_stress_has_a_row_for_each_component(self):
+        table = self.results.profile("stress/total", peclet=1000, volume_fraction=0.3)
+        self.assertEqual(table["component"].tolist(), ["xx", "yy", "zz", "xy", "xz", "yz"])
+        (point,) = (p for p in self.export["points"] if set(p["settings"].values()) == {1000, 0.3})
+        np.testing.assert_allclose(table["mean"], point["quantities"]["stress/total"]["mean"])
+        self.assertIn("stress/total", self.results.quantities()["quantity"])
+
+    def test_realisations_have_every_seed(self):
+        table = self.results.realisations(peclet=10)
+        points = [p for p in self.export["points"] if p["settings"]["/peclet"] == 10]
+        expected = [(p["label"], r["seed"], r["mean"]["relative_viscosity"]) for p in points for r in p["realisations"]]
+        deciding = table.take(table["deciding"])
+        self.assertEqual(list(zip(*(deciding[n].tolist() for n in ("label", "seed", "relative_viscosity")))), expected)
+
+    def test_files_are_where_it_says(self):
+        paths = self.results.files()
+        self.assertGreaterEqual(len(paths), 32)
+        for path in paths:
+            self.assertTrue(os.path.exists(path), path)
+        label = self.export["points"][0]["label"]
+        self.assertLess(len(self.results.files(label)), len(paths))
+
+    def test_a_plot_has_a_series_for_each_value_and_the_intervals_as_bars(self):
+        axes = self.results.plot(x="peclet")
+        self.assertEqual(axes.get_xscale(), "log")
+        self.assertEqual(axes.get_xlabel(), "Pe")
+        labels = [text.get_text() for text in axes.get_legend().get_texts()]
+        self.assertEqual(labels, [r"$\varphi$ = 0.2", r"$\varphi$ = 0.3"])
+        table = self.results.estimates().where(volume_fraction=0.2).sorted_by("peclet")
+        bars = axes.containers[0].lines[2][0].get_segments()
+        for bar, row in zip(bars, table):
+            np.testing.assert_allclose(bar[:, 1], [row["mean"] - row["half_width"], row["mean"] + row["half_width"]])
+
+    def test_tables_go_to_pandas(self):
+        frame = self.results.estimates().to_pandas()
+        self.assertEqual(list(frame["label"]), [p["label"] for p in self.export["points"]])
+
+    def test_what_is_not_there_is_said(self):
+        with self.assertRaisesRegex(peclet.PecletError, "viscosty: not measured; there are .*relative_viscosity"):
+            self.results.profile("viscosty")
+        with self.assertRaisesRegex(peclet.PecletError, "absent.peclet: no such file or folder"):
+            peclet.open("absent.peclet")
+        with self.assertRaisesRegex(KeyError, "colour: no such column; there are peclet"):
+            self.results.estimates().where(colour=1)
+        with self.assertRaisesRegex(peclet.PecletError, "no-such-peclet: no such program"):
+            peclet.open(self.path, program="no-such-peclet").estimates()
+
+    def test_faulty_input_is_said_as_the_program_says_it(self):
+        campaign = peclet.Campaign("faulty", {**SCENE, "volume_fraction": 2}, engine=[ENGINE, "serve"])
+        path = os.path.join(self.scratch.name, "faulty.json")
+        with self.assertRaisesRegex(peclet.PecletError, "volume_fraction"):
+            campaign.validate(path, PECLET)
+
+
+class Tables(unittest.TestCase):
+    TABLE = peclet.Table({"a": [1.0, 2.0, 0.1 + 0.2], "b": ["x", "<y>", "x"]})
+
+    def test_rows_are_chosen_by_value(self):
+        self.assertEqual(self.TABLE.where(b="x")["a"].tolist(), [1.0, 0.1 + 0.2])
+        self.assertEqual(len(self.TABLE.where(a=0.3, b="x")), 1)
+
+    def test_rows_are_shown_in_columns_and_escaped_in_html(self):
+        self.assertEqual(repr(self.TABLE).split("\n")[1].split(), ["1", "x"])
+        self.assertIn("<td>&lt;y&gt;</td>", self.TABLE._repr_html_())
+
+    def test_columns_have_one_length(self):
+        with self.assertRaises(ValueError):
+            peclet.Table({"a": [1], "b": [1, 2]})
+
+
+class Names(unittest.TestCase):
+    def test_of_what_is_swept_are_as_short_as_they_can_be(self):
+        names = short_names(["/contact/friction", "/rolling/friction", "/peclet"])
+        self.assertEqual(list(names.values()), ["contact_friction", "rolling_friction", "peclet"])
+
+    def test_of_symbols_are_formulas(self):
+        self.assertEqual(formula_of("eta_r"), r"$\eta_r$")
+        self.assertEqual(formula_of("sigma^noise_xy"), r"$\sigma^{\mathrm{noise}}_{\mathrm{xy}}$")
+        self.assertEqual(formula_of("N_1"), "$N_1$")
+
+
+class Installed(unittest.TestCase):
+    def test_by_pip_from_the_checkout_it_imports_with_the_version_of_the_project(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pip = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation"]
+            # pip builds where the source is: in a copy, so that nothing is left in the checkout.
+            subprocess.run(["cp", "-r", ROOT / "python", os.path.join(folder, "source")], check=True)
+            target = os.path.join(folder, "target")
+            subprocess.run([*pip, "--target", target, os.path.join(folder, "source")], check=True, capture_output=True)
+            said = subprocess.run(
+                [sys.executable, "-c", "import importlib.metadata as m, peclet; print(m.version('peclet'))"],
+                env={**os.environ, "PYTHONPATH": target},
+                check=True,
+                capture_output=True,
+                text=True,
+                cwd=folder,
+            ).stdout
+        version = subprocess.run([PECLET, "--version"], check=True, capture_output=True, text=True).stdout
+        self.assertEqual(said.strip(), version.split()[1])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
