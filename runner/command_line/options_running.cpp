@@ -91,7 +91,9 @@ end to standard output; with --jsonl events take its place, which schema/README.
 )",
            {{"peclet run flow-curve.json --time-limit 28800", "eight hours of it; the same again tomorrow"},
             {"peclet run flow-curve.json --jsonl | jq -r 'select(.event == \"decided\") | .point.label'",
-             "follow it with a program"}},
+             "follow it with a program"},
+            {"peclet run flow-curve.json --notify 'echo \"$PECLET_SUMMARY\" | mail -s peclet me@example.org'",
+             "and write to me when it ends"}},
            {0, 1, 2, 3, 5, 6, 75}));
   add_file(verb, options->campaign);
   add_directory(verb, options->directory);
@@ -109,6 +111,10 @@ end to standard output; with --jsonl events take its place, which schema/README.
   add_seconds(verb, "--backup", options->backup_seconds, "Seconds between backups of the database");
   verb->add_flag("--jsonl", options->jsonl,
                  "What happens as JSON on standard output, one object a line, instead of the table");
+  verb->add_option("--notify", options->notify,
+                   "Command of the shell for the end, whatever ends the run but a faulty file or another "
+                   "owner; told by PECLET_SUMMARY, PECLET_EXIT_CODE, PECLET_CAMPAIGN and PECLET_DIRECTORY")
+      ->type_name("COMMAND");
   add_accept_engine(verb, options->accept_engine);
   verb->add_flag("--quiet", options->quiet, "No progress on stderr");
   verb->add_flag("--force", options->force, "Use a network file system all the same, at your own risk");

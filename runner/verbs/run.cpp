@@ -27,6 +27,7 @@
 #include "runner/statistics/budget.h"
 #include "runner/text/duration_text.h"
 #include "runner/verbs/exit_code.h"
+#include "runner/verbs/notification.h"
 
 namespace peclet::runner {
 namespace {
@@ -187,7 +188,7 @@ int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion&
     log.record(fmt::format("ends with exit code {}", code));
     log.happened(RunEnded{code, ""});
   }
-  if (opened && !options.jsonl) conclude(claimed, *opened, code);
+  if (opened) conclude(claimed, *opened, code);
   return code;
 }
 
@@ -201,9 +202,15 @@ WorkerCount worker_count(const RunOptions& options) {
   return {std::max(1, cores / threads), threads};
 }
 
-int run_campaign(const RunOptions& options) {
+namespace {
+
+// With the table at the end, and its totals on one line.
+int run_and_conclude(const RunOptions& options, std::string& summary) {
   return run(options, std::nullopt, [&](const ClaimedCampaign&, OpenedRun& opened, int code) {
     CampaignStatus status = read_status(opened.database);
+    summary = fmt::format("{}: {}{}", status.campaign.name, code == ExitCode::stopped ? "stopped; " : "",
+                          point_totals(status));
+    if (options.jsonl) return;
     status.owner = getpid();
     std::string text = status_table(status);
     if (options.budget_hours) {
@@ -213,6 +220,30 @@ int run_campaign(const RunOptions& options) {
     if (code == ExitCode::stopped) text += how_to_go_on(options, status);
     std::fputs(text.c_str(), stdout);
   });
+}
+
+// A faulty file and another owner are answered at once, to whom has asked.
+bool is_answered_at_once(int code) { return code == ExitCode::usage || code == ExitCode::owned; }
+
+void notify_of(const RunOptions& options, int code, const std::string& summary) {
+  if (options.notify.empty() || is_answered_at_once(code)) return;
+  const CampaignDirectory directory = campaign_directory(options.campaign, options.directory);
+  const std::string failure = notify(options.notify, {options.campaign, directory.root(), code, summary});
+  if (!failure.empty()) std::fputs(fmt::format("peclet: {}\n", failure).c_str(), stderr);
+}
+
+}  // namespace
+
+int run_campaign(const RunOptions& options) {
+  std::string summary;
+  try {
+    const int code = run_and_conclude(options, summary);
+    notify_of(options, code, summary);
+    return code;
+  } catch (const std::exception& error) {
+    notify_of(options, exit_code_of(error), message_of(error));
+    throw;
+  }
 }
 
 int run_pilot(const RunOptions& options, int seeds,

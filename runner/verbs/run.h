@@ -24,6 +24,7 @@ struct RunOptions {
   double checkpoint_seconds = 60;      // between two checkpoints of a realisation
   double backup_seconds = 600;         // between two backups of the database
   std::optional<double> budget_hours;  // of processor time, that this run may spend
+  std::string notify;                  // a command of the shell for the end; "": none
 };
 
 // What is not given follows from what is: together they fill the machine.
