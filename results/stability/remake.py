@@ -55,39 +55,39 @@ def repulsion(strength, length):
 STARTUP = during({"strain": 0}, {"strain": 0.75})
 PANELS = {
     "stiffness and volume fraction": [
-        (f"k {k:g}, phi {phi:g}", {**stiffness(k), "volume_fraction": phi}, 4)
+        (f"k {k:g}, phi {phi:g}", {**stiffness(k), "volume_fraction": phi}, 4 if phi < 0.5 else 16)
         for k in (1e3, 1e4, 1e5)
         for phi in (0.3, 0.5, 0.6, 0.63, 0.66)
     ],
     "friction": [
-        (f"mu {mu:g}, phi {phi:g}", {**friction(mu), "volume_fraction": phi}, 4)
+        (f"mu {mu:g}, phi {phi:g}", {**friction(mu), "volume_fraction": phi}, 8 if phi < 0.5 else 16)
         for mu in (0.1, 0.5, 1, 10)
         for phi in (0.4, 0.5, 0.55, 0.6)
     ],
     "gaps": [
-        (f"gaps {inner:g} to {outer:g}", {"lubrication": {"inner_gap": inner, "outer_gap": outer}}, 3)
+        (f"gaps {inner:g} to {outer:g}", {"lubrication": {"inner_gap": inner, "outer_gap": outer}}, 8)
         for inner, outer in ((1e-2, 0.05), (1e-4, 0.05), (1e-3, 0.2), (1e-3, 0.5))
     ],
-    "sizes": [(f"radii 1 : {ratio:g}", large_spheres(ratio), 2) for ratio in (1, 2, 4, 7)],
+    "sizes": [(f"radii 1 : {ratio:g}", large_spheres(ratio), 6) for ratio in (1, 2, 4, 7)],
     "small boxes": [(f"N {count}", {"particles": {"count": count}}, 8) for count in (6, 8, 12, 20, 40)],
     "start-up": [
         ("mu 0", STARTUP, 8),
         ("mu 1", merged(STARTUP, friction(1)), 8),
-        ("phi 0.62", merged(STARTUP, {"volume_fraction": 0.62}), 8),
+        ("phi 0.62", merged(STARTUP, {"volume_fraction": 0.62}), 16),
         ("A 1, kappa 0.01", merged(STARTUP, repulsion(1, 0.01)), 8),
-        ("A 100, kappa 0.01", merged(STARTUP, repulsion(100, 0.01)), 8),
+        ("A 100, kappa 0.01", merged(STARTUP, repulsion(100, 0.01)), 32),
         ("A 1, kappa 0.05", merged(STARTUP, repulsion(1, 0.05)), 8),
-        ("A 100, kappa 0.05", merged(STARTUP, repulsion(100, 0.05)), 8),
+        ("A 100, kappa 0.05", merged(STARTUP, repulsion(100, 0.05)), 32),
     ],
     "inertia": [
         (f"St {stokes:g}", {"particles": {"density": 0.1 * stokes / 0.045}}, 4) for stokes in (0.001, 0.01, 0.1, 1, 10)
     ],
     "Peclet number": [
-        (f"Pe {pe:g}, phi {phi:g}", {**brownian(pe), "volume_fraction": phi}, 12)
+        (f"Pe {pe:g}, phi {phi:g}", {**brownian(pe), "volume_fraction": phi}, 16 if phi < 0.5 else 32)
         for phi in (0.3, 0.5)
         for pe in (0.1, 1, 10, 100, 1e4)
     ],
-    "Peclet number and friction": [(f"Pe {pe:g}, mu 1", merged(brownian(pe), friction(1)), 12) for pe in (1, 100)],
+    "Peclet number and friction": [(f"Pe {pe:g}, mu 1", merged(brownian(pe), friction(1)), 32) for pe in (1, 100)],
 }
 QUICK = {"stiffness and volume fraction": 4, "start-up": 2}
 COLUMNS = [
