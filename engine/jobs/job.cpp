@@ -117,7 +117,8 @@ class Job {
                          "file, beside which they are put");
   }
 
-  // Tries until there is room. False: nobody wants to wait for it.
+  // Tries until there is room. False: nobody wants to wait for it. Without a checkpoint, from which the job
+  // could go on another time, that is an error.
   template <class Write>
   bool write_patiently(const Write& write) const {
     while (true) {
@@ -125,7 +126,9 @@ class Job {
         write();
         return true;
       } catch (const NoRoomError& error) {
-        if (!events_.wait_for_room(error)) return false;
+        if (events_.wait_for_room(error)) continue;
+        if (job_.checkpoint.empty()) throw;
+        return false;
       }
     }
   }

@@ -64,7 +64,7 @@ NAMED = [
     ),
     (
         "Brownian times with 6 pi",
-        "engine/realisation/schedule.cpp",
+        "engine/scene/scene.cpp",
         "duration.brownian_times * physics.viscosity",
         "duration.brownian_times * 18.85 * physics.viscosity",
         "engine_tests:Schedule.ABrownianTimeIsEtaACubedOverTheThermalEnergy",
