@@ -240,9 +240,9 @@ NAMED = [
     ),
     (
         "friction mobilised without its coefficient",
-        "engine/observables/contact_network.cpp",
-        "(contact_.friction * contact_.normal_stiffness * overlap)",
-        "(contact_.normal_stiffness * overlap)",
+        "engine/observables/touching_pairs.h",
+        "(contact.friction * contact.normal_stiffness * overlap)",
+        "(contact.normal_stiffness * overlap)",
         "engine_tests:ContactNetwork.CountsContactsAndTheirMobilisation",
     ),
     (
