@@ -23,6 +23,7 @@ to_test=(
   slurm-wlm munge                                                         # a Slurm to be tested with
   python3-numpy python3-scipy gnuplot-nox                                 # numbers and pictures of the studies
   python3-matplotlib python3-pandas python3-pip python3-setuptools python3-wheel  # the Python package
+  python3-gsd                                                             # another reader of trajectories
   clang-format black flake8                                               # the form of the sources
 )
 to_lint=(clang-tidy)

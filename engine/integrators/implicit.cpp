@@ -122,6 +122,9 @@ StepReport Implicit::advance_part(System& system) {
     ++system.clock.steps;
     return report;
   }
+  if (shares() != nullptr) {
+    reported().share_stress(system, origin_.springs, false, weight_of_shares(), *shares());
+  }
   keep_change(system);
   move(system, timestep_);
   ++system.clock.steps;
@@ -142,6 +145,7 @@ StepReport Implicit::advance_halves(System& system) {
     half_->divisions_left_ = divisions_left_ - 1;
     if (watches_flux()) half_->watch_momentum_flux();
   }
+  half_->share_stress(shares(), 0.5 * weight_of_shares());
   half_->forget_change();
   half_->displacement_bound_ = displacement_bound_;
   const Clock whole = system.clock;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "engine/kernels/momentum_flux.h"
 #include "engine/kernels/pair_pass.h"
@@ -39,6 +40,13 @@ class Integrator {
   // From now on steps report their flux of momentum. Of a fluid at rest with noise.
   void watch_momentum_flux() { watches_flux_ = true; }
 
+  // Until this is said again, steps add to each sphere, by its id, `weight` times half of the stress, times
+  // the volume, that their report has of its pairs, that of the noise apart. Null: nobody asks for it.
+  void share_stress(std::vector<SymmetricTensor>* shares, double weight = 1) {
+    shares_ = shares;
+    weight_of_shares_ = weight;
+  }
+
   virtual void start(System& system) = 0;
   StepReport advance(System& system) {
     const StepReport report = advance_open(system);
@@ -72,9 +80,13 @@ class Integrator {
 
  protected:
   bool watches_flux() const { return watches_flux_; }
+  std::vector<SymmetricTensor>* shares() const { return shares_; }
+  double weight_of_shares() const { return weight_of_shares_; }
 
  private:
   bool watches_flux_ = false;
+  std::vector<SymmetricTensor>* shares_ = nullptr;
+  double weight_of_shares_ = 1;
 };
 
 }  // namespace peclet::engine

@@ -32,6 +32,7 @@ class NoisyMidpoint final : public Implicit {
                 std::uint64_t seed, int threads, InstructionSet set, bool inertial);
 
   std::optional<StepReport> find_velocities(System& system) override;
+  ForceField& reported() override { return on_the_way_; }
   void leave_half_of_the_drag(const System& system);
   MomentumFlux flux(const System& system, const PairSums& sums, SymmetricTensor acted);
   // Down to `factor` times the tolerance.

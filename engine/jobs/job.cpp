@@ -1,6 +1,8 @@
 #include "engine/jobs/job.h"
 
+#include <fmt/format.h>
 #include <omp.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -13,10 +15,13 @@
 #include "contract/provenance.h"
 #include "contract/sha256.h"
 #include "engine/output/final_configuration.h"
+#include "engine/output/growing_file.h"
 #include "engine/start/packing.h"
 
 namespace peclet::engine {
 namespace {
+
+namespace fs = std::filesystem;
 
 using Clock = std::chrono::steady_clock;
 
@@ -71,10 +76,9 @@ class Job {
                   provenance().at("binary_sha256").get<std::string>()} {}
 
   std::optional<Json> run() {
-    if (scene_.final_configuration && job_.files.empty()) {
-      throw InputError(job_.scene_name, "/files", shortened(scene_.document["files"]),
-                       "must be left out where files cannot be left: `peclet-engine run` needs --output with "
-                       "the name of a file, beside which they are put");
+    if (job_.files.empty()) {
+      if (scene_.final_configuration) refuse_files("/files", "must be left out");
+      if (scene_.observables.contains("trajectory")) refuse_files("/observables", "must not list trajectory");
     }
     std::optional<Ending> ending;
     try {
@@ -91,24 +95,51 @@ class Job {
     std::string state;
     if (!save_state(*ending, state)) return std::nullopt;
     Json result = make_result(job_.header, scene_, *simulation_, *ending, state, meter_.spent());
+    const auto leave_final = [&](const fs::path& path) {
+      write_durably(path, extended_xyz(simulation_->system()));
+    };
+    const auto leave_trajectory = [&](const fs::path& path) {
+      frames_file_->take(*simulation_->frames());
+      frames_file_->finish(*simulation_->frames(), path);
+    };
     if (scene_.final_configuration && ending->cause == Ending::Cause::completed) {
-      if (!leave("final.xyz", extended_xyz(simulation_->system()), result)) return std::nullopt;
+      if (!leave("final.xyz", leave_final, result)) return std::nullopt;
     }
+    if (frames_file_ && !leave("trajectory.gsd", leave_trajectory, result)) return std::nullopt;
     return result;
   }
 
  private:
-  // A file beside the result, which lists it. False: there is no room, and nobody wants to wait for it.
-  bool leave(const std::string& name, const std::string& bytes, Json& result) const {
+  [[noreturn]] void refuse_files(const char* pointer, const char* rule) const {
+    throw InputError(job_.scene_name, pointer, shortened(scene_.document.at(Json::json_pointer(pointer))),
+                     std::string(rule) +
+                         " where files cannot be left: `peclet-engine run` needs --output with the name of a "
+                         "file, beside which they are put");
+  }
+
+  // Tries until there is room. False: nobody wants to wait for it. Without a checkpoint, from which the job
+  // could go on another time, that is an error.
+  template <class Write>
+  bool write_patiently(const Write& write) const {
     while (true) {
       try {
-        write_durably(job_.files + name, bytes);
-        break;
+        write();
+        return true;
       } catch (const NoRoomError& error) {
-        if (!events_.wait_for_room(error)) return false;
+        if (events_.wait_for_room(error)) continue;
+        if (job_.checkpoint.empty()) throw;
+        return false;
       }
     }
-    result["files"].push_back({{"name", name}, {"bytes", bytes.size()}, {"sha256", sha256(bytes)}});
+  }
+
+  // A file beside the result, which lists it: `write` puts it there, durably. False: there was no room.
+  template <class Write>
+  bool leave(const std::string& name, const Write& write, Json& result) const {
+    const fs::path path = job_.files + name;
+    if (!write_patiently([&] { write(path); })) return false;
+    result["files"].push_back(
+        {{"name", name}, {"bytes", fs::file_size(path)}, {"sha256", sha256_of_file(path)}});
     return true;
   }
 
@@ -119,18 +150,35 @@ class Job {
     simulation_ = std::make_unique<Simulation>(scene_, schedule_, job_.header.seed, threads, job_.scene_name);
   }
 
+  // Where its frames go, as far as it has come.
+  void open_frames_file() {
+    const gsd::Frames* const frames = simulation_->frames();
+    if (frames == nullptr) return;
+    frames_file_.reset();
+    if (job_.checkpoint.empty()) {
+      frames_file_.emplace(fmt::format("{}trajectory.gsd.{}.tmp", job_.files, ::getpid()),
+                           /*has_name=*/false);
+    } else {
+      frames_file_.emplace(job_.checkpoint.string() + "@growing");
+    }
+    frames_file_->go_on(*frames);
+  }
+
   void begin() {
     construct();
     if (!job_.checkpoint.empty() && !kind_of(job_.checkpoint).empty() && resume()) {
       return;
     }
+    open_frames_file();
     events_.progress({"packing", 0, schedule_.total(), 0});
     simulation_->start();
   }
 
   bool resume() {
     try {
-      meter_.add(read_checkpoint(job_.checkpoint, identity_, *simulation_));
+      const Spent spent = read_checkpoint(job_.checkpoint, identity_, *simulation_);
+      open_frames_file();
+      meter_.add(spent);
       return true;
     } catch (const CheckpointError& error) {
       if (!job_.restart_on_bad_checkpoint) {
@@ -138,7 +186,7 @@ class Job {
       }
       // Results depend on scene, seed and binary alone, so starting again only costs time.
       events_.remark(std::string(error.what()) + ": set aside, the realisation starts again");
-      std::filesystem::rename(job_.checkpoint, free_name(job_.checkpoint.string() + ".rejected"));
+      fs::rename(job_.checkpoint, free_name(job_.checkpoint.string() + ".rejected"));
       construct();
       return false;
     }
@@ -156,6 +204,7 @@ class Job {
         return ending;
       }
       events_.progress(progress_of(*simulation_));
+      if (!relieve_memory()) return std::nullopt;
       if (job_.checkpoint.empty()) {
         continue;
       }
@@ -166,11 +215,27 @@ class Job {
     }
   }
 
+  // Frames that have come together go to their file. False: there is no room, and nobody wants to wait.
+  bool relieve_memory() {
+    constexpr std::size_t many = std::size_t{8} << 20;
+    if (!frames_file_ || simulation_->frames()->pending().size() < many) return true;
+    return write_patiently([this] { frames_file_->take(*simulation_->frames()); });
+  }
+
+  // Frames are on disk before the checkpoint that knows of them.
+  void put_checkpoint(const fs::path& path) {
+    if (frames_file_) {
+      frames_file_->take(*simulation_->frames());
+      frames_file_->synchronise();
+    }
+    write_checkpoint(path, identity_, meter_.spent(), *simulation_);
+  }
+
   // Returns when the next one is due. Want of room is no reason to give up work that is in memory.
   Clock::duration checkpoint_on_the_way() {
     const std::chrono::duration<double> interval(job_.checkpoint_seconds);
     try {
-      write_checkpoint(job_.checkpoint, identity_, meter_.spent(), *simulation_);
+      put_checkpoint(job_.checkpoint);
       return std::chrono::duration_cast<Clock::duration>(interval);
     } catch (const NoRoomError& error) {
       events_.skipped(error);
@@ -179,20 +244,13 @@ class Job {
   }
 
   // False: there is no room, and nobody wants to wait for it.
-  bool save(const std::filesystem::path& path) const {
-    for (;;) {
-      try {
-        write_checkpoint(path, identity_, meter_.spent(), *simulation_);
-        return true;
-      } catch (const NoRoomError& error) {
-        if (!events_.wait_for_room(error)) return false;
-      }
-    }
+  bool save(const fs::path& path) {
+    return write_patiently([&] { put_checkpoint(path); });
   }
 
   // A realisation that broke off leaves its last state where people can look at it: `name` in the folder of
   // failures. False: there was no room.
-  bool save_state(const Ending& ending, std::string& name) const {
+  bool save_state(const Ending& ending, std::string& name) {
     if (ending.cause == Ending::Cause::completed || job_.failures.empty()) return true;
     name = job_.header.point.substr(0, 12) + "-" + std::to_string(job_.header.seed) + ".state";
     return save(job_.failures / name);
@@ -205,6 +263,7 @@ class Job {
   Schedule schedule_;
   CheckpointIdentity identity_;
   std::unique_ptr<Simulation> simulation_;
+  std::optional<GrowingFile> frames_file_;  // where there are frames
 };
 
 }  // namespace

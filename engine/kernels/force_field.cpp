@@ -49,6 +49,17 @@ PairPassInput ForceField::pair_input(const System& system) const {
   };
 }
 
+void ForceField::share_stress(const System& system, SpringField springs, bool advanced, double weight,
+                              std::vector<SymmetricTensor>& shares) {
+  PairPassInput input = pair_input(system);
+  if (advanced) input.parameters.spring_timestep = 0;
+  pair_pass_.each_pair(input, springs, [&](const Pair& pair, const PairSums& sums) {
+    const SymmetricTensor half = (0.5 * weight) * stress_of_forces(sums);
+    shares[system.particles.id[pair.first]] += half;
+    shares[system.particles.id[pair.second]] += half;
+  });
+}
+
 ForceField::AssembleLinks ForceField::assemble_links(System& system, const LinkWeights& weights,
                                                      LinkOrder& order, std::vector<LinkGroup>& groups) {
   const std::size_t room = order.inner_groups() + order.crossing_groups();

@@ -40,6 +40,12 @@ class ForceField {
   AssembleLinks assemble_links(System& system, const LinkWeights& weights, LinkOrder& order,
                                std::vector<LinkGroup>& groups);
 
+  // Adds to each sphere, by its id, `weight` times half of the stress (times the volume) of its pairs, that
+  // of the noise apart, as the last evaluation had it: at these positions and velocities. `springs` are those
+  // from before that evaluation, or, `advanced`, those that it has left.
+  void share_stress(const System& system, SpringField springs, bool advanced, double weight,
+                    std::vector<SymmetricTensor>& shares);
+
   // What the loops over particles take: the rows of all of them, the flow, and the caller's kicks, if any.
   OneBodyInput one_body_input(System& system, VectorField& force, VectorField& torque,
                               const OneBodyFactors* kicks = nullptr) const;

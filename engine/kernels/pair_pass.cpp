@@ -126,6 +126,28 @@ void PairPass::add_incoming(const NeighbourList& list, int threads, VectorField&
   });
 }
 
+void PairPass::each_pair(const PairPassInput& input, SpringField& springs, const VisitPair& visit) {
+  const NeighbourList& list = input.list;
+  const PairKernelInput kernel = kernel_input(input, springs);
+  // Rows of crossing pairs, which the step may still need, stay as they are.
+  VectorField force(input.particles.count()), torque(input.particles.count()), crossing(2 * list.crossings());
+  for (const ParticleBlock& block : list.blocks()) {
+    const std::size_t offset = 4 * std::size_t{block.begin};
+    for (std::uint32_t r = block.runs_begin; r < block.runs_end; ++r) {
+      PairRun single = list.runs()[r];
+      for (std::uint32_t p = list.runs()[r].begin; p < list.runs()[r].end; ++p) {
+        single.begin = p;
+        single.end = p + 1;
+        PairSums sums[2];
+        kernel_(kernel, &single, 1,
+                {block.begin, force.data() + offset, torque.data() + offset, crossing.data(), sums});
+        visit(list.pairs()[p], sums[single.first_is_away ? 1 : 0]);
+        if (single.crossing != within_block) ++single.crossing;
+      }
+    }
+  }
+}
+
 PairSums PairPass::evaluate(const PairPassInput& input, SpringField& springs, VectorField& force,
                             VectorField& torque) {
   const auto clear = [&](const ParticleBlock& block) {

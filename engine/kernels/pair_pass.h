@@ -65,6 +65,11 @@ class PairPass {
   // What the loops over pairs take; valid until the next call, and while the system stands.
   PairKernelInput kernel_input(const PairPassInput& input, SpringField& springs);
 
+  // Computes each pair alone and calls `visit` with it and its part of the sums. Loads go nowhere; `springs`
+  // advance as in add_pairs(). Slow: for what is looked at seldom.
+  using VisitPair = std::function<void(const Pair& pair, const PairSums& sums)>;
+  void each_pair(const PairPassInput& input, SpringField& springs, const VisitPair& visit);
+
   // Sets force and torque to the sums over pairs.
   PairSums evaluate(const PairPassInput& input, SpringField& springs, VectorField& force,
                     VectorField& torque);

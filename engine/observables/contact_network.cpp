@@ -2,13 +2,10 @@
 
 #include <algorithm>
 
-#include "engine/kernels/pairs/pair_access.h"
+#include "engine/observables/touching_pairs.h"
 
 namespace peclet::engine {
 namespace {
-
-// A spring that is cut at each step is as long as it may be but for what the step itself changes.
-constexpr double sliding_from = 0.99;
 
 // Particles by their contacts, the last with as many or more; contacts by equal parts of their mobilisation.
 constexpr std::size_t counts_of_contacts = 13, parts_of_mobilisation = 20;
@@ -41,27 +38,19 @@ ContactNetwork::ContactNetwork(const Scene& scene, const System& system, const W
       by_mobilisation_(parts_of_mobilisation) {}
 
 void ContactNetwork::sample(const System& system, std::size_t block) {
-  const std::vector<ImageFrame> frames = image_frames(system.list, system.box);
-  const std::vector<Pair>& pairs = system.list.pairs();
   std::vector<std::size_t> touching(system.particles.count());
-  for (std::size_t p = 0; p < pairs.size(); ++p) {
-    const Pair& pair = pairs[p];
-    const double distance = norm(separation(system.particles, pair, frames[pair.image]));
-    const double overlap = kinds_[pair.kind].sum_of_radii - distance;
-    if (!(overlap > 0)) continue;
-    ++touching[pair.first];
-    ++touching[pair.second];
-    if (contact_.friction > 0) add_contact(block, norm(system.springs[p].tangential), overlap);
-  }
+  for_each_touching_pair(system, kinds_, contact_, [&](const TouchingPair& contact) {
+    ++touching[contact.pair.first];
+    ++touching[contact.pair.second];
+    if (contact_.friction > 0) add_contact(block, contact.mobilised);
+  });
   for (const std::size_t contacts : touching) {
     by_contacts_.add(block, std::min<std::size_t>(contacts, counts_of_contacts - 1), 1);
   }
   by_contacts_.weigh(block, static_cast<double>(system.particles.count()));
 }
 
-void ContactNetwork::add_contact(std::size_t block, double spring, double overlap) {
-  const double mobilised =
-      contact_.tangential_stiffness * spring / (contact_.friction * contact_.normal_stiffness * overlap);
+void ContactNetwork::add_contact(std::size_t block, double mobilised) {
   const auto part = static_cast<std::size_t>(parts_of_mobilisation * std::min(mobilised, 1.0));
   by_mobilisation_.add(block, std::min<std::size_t>(part, parts_of_mobilisation - 1), 1);
   by_mobilisation_.weigh(block, 1);

@@ -27,8 +27,7 @@ class ContactNetwork : public Observable {
   void load(ArchiveReader& archive) override;
 
  private:
-  // `spring`: length of the tangential one.
-  void add_contact(std::size_t block, double spring, double overlap);
+  void add_contact(std::size_t block, double mobilised);
 
   ContactParameters contact_;
   std::vector<PairKind> kinds_;

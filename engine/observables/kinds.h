@@ -39,10 +39,12 @@ ObservableKind pair_distribution();
 ObservableKind contact_network();
 ObservableKind profiles();
 ObservableKind linear_response();
+ObservableKind trajectory();
 
-inline std::array<ObservableKind, 6> observable_kinds() {
-  return {mean_squared_displacement(), stress_correlation(), pair_distribution(),
-          contact_network(),           profiles(),           linear_response()};
+inline std::array<ObservableKind, 7> observable_kinds() {
+  return {
+      mean_squared_displacement(), stress_correlation(), pair_distribution(), contact_network(), profiles(),
+      linear_response(),           trajectory()};
 }
 
 // Of an observable that is sampled at every step, or that costs a walk over all pairs and changes slowly.

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "contract/json.h"
+#include "engine/gsd/frames.h"
 #include "engine/kernels/momentum_flux.h"
 #include "engine/state/system.h"
 
@@ -19,6 +21,10 @@ class Observable {
   // Whether it takes the flux of momentum, and what it does with that of every step of the window.
   virtual bool takes_flux() const { return false; }
   virtual void take_flux(const MomentumFlux& /*flux*/) {}
+  // Whether it takes the stress of the steps that it samples, and what it does with it before the sample:
+  // the sums of the step, and of each sphere, by its id, its share of them (Integrator::share_stress()).
+  virtual bool takes_stress() const { return false; }
+  virtual void take_stress(const PairSums& /*sums*/, const std::vector<SymmetricTensor>& /*shares*/) {}
   // Requires a complete step (integrator.h) and the system that every other sample is of. `block` counts the
   // 32 blocks of the window from 0.
   virtual void sample(const System& system, std::size_t block) = 0;
@@ -27,6 +33,9 @@ class Observable {
   virtual void add_to(Json& mean) const = 0;
   // The same of the blocks that it keeps. A function of lags up to the whole window has none.
   virtual void add_blocks_to(Json& blocks) const = 0;
+
+  // What it writes beside the result; null: nothing.
+  virtual gsd::Frames* frames() { return nullptr; }
 
   // Everything that samples have left, bit by bit.
   virtual void save(ArchiveWriter& archive) const = 0;

@@ -15,17 +15,6 @@ namespace {
 // Thousands of years of computing; step counters hold far more.
 constexpr double most_steps = 1e15;
 
-// The time after which the first of the limits is reached.
-double time_of(const Duration& duration, const Scene& scene) {
-  const Physics& physics = scene.physics;
-  double time = std::min(duration.time, physics.flow.deformation().time_of(duration.strain));
-  if (physics.thermal_energy > 0) {
-    const double a = scene.particles.reference_radius;
-    time = std::min(time, duration.brownian_times * physics.viscosity * a * a * a / physics.thermal_energy);
-  }
-  return time;
-}
-
 // Steps of the phase called `name`. Throws InputError when there are too many to count.
 std::uint64_t steps_of(const Duration& duration, const char* name, const Scene& scene, double timestep,
                        const std::string& file) {

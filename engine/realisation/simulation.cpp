@@ -111,6 +111,7 @@ std::optional<Ending> Simulation::advance(std::uint64_t steps) {
     if (std::optional<Ending> ending = gate_.check(*integrator_, system_)) {
       return ending;
     }
+    ask_for_stress();
     const StepReport report = integrator_->advance_open(system_);
     if (std::optional<Ending> ending = ending_of(report, system_, scene_.guard, smallest_radius_)) {
       integrator_->complete(system_);
@@ -125,6 +126,24 @@ std::optional<Ending> Simulation::advance(std::uint64_t steps) {
     return Ending{Ending::Cause::completed, system_.step, "the production window is complete"};
   }
   return std::nullopt;
+}
+
+// Of the step to come, where it will be sampled.
+void Simulation::ask_for_stress() {
+  const std::uint64_t index = system_.step - schedule_.equilibration;
+  const bool asked = system_.step >= schedule_.equilibration &&
+                     std::ranges::any_of(observables_, [&](const auto& observable) {
+                       return observable->takes_stress() && index % observable->interval() == 0;
+                     });
+  if (asked) stress_shares_.assign(system_.particles.count(), {});
+  integrator_->share_stress(asked ? &stress_shares_ : nullptr);
+}
+
+gsd::Frames* Simulation::frames() {
+  for (const std::unique_ptr<Observable>& observable : observables_) {
+    if (gsd::Frames* const frames = observable->frames()) return frames;
+  }
+  return nullptr;
 }
 
 void Simulation::observe(const StepReport& report) {
@@ -144,6 +163,7 @@ void Simulation::observe(const StepReport& report) {
     observable->take_flux(report.flux);
     if (index % observable->interval() != 0) continue;
     integrator_->complete(system_);
+    if (observable->takes_stress()) observable->take_stress(report.sums, stress_shares_);
     observable->sample(system_, production_.block_at(index));
   }
 }

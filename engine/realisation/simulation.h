@@ -37,10 +37,14 @@ class Simulation {
   const StepErrors& step_errors() const { return gate_.errors(); }
   double largest_overlap() const { return largest_overlap_; }  // over the smaller radius, in production
 
+  // What an observable writes beside the result; null: nothing.
+  gsd::Frames* frames();
+
   void save(ArchiveWriter& archive) const;
   void load(ArchiveReader& archive);
 
  private:
+  void ask_for_stress();
   void observe(const StepReport& report);
 
   Scene scene_;
@@ -52,6 +56,7 @@ class Simulation {
   std::unique_ptr<Integrator> integrator_;
   Production production_;
   std::vector<std::unique_ptr<Observable>> observables_;  // that the scene asks for
+  std::vector<SymmetricTensor> stress_shares_;            // of each id, in the step that is sampled
   StepGate gate_;
   double smallest_radius_;
   double largest_overlap_ = 0;

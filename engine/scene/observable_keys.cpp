@@ -47,6 +47,11 @@ std::optional<ObservableFault> must_touch(const Scene& scene, const Json&) {
   return ObservableFault{"/observables", "must not list contact_network without /contact"};
 }
 
+std::optional<ObservableFault> must_have_contacts(const Scene& scene, const Json& settings) {
+  if (scene.physics.contact || !settings.at("contacts").get<bool>()) return std::nullopt;
+  return ObservableFault{"/trajectory/contacts", "must be false without /contact"};
+}
+
 std::vector<ObservableEntry> entries() {
   return {
       {"mean_squared_displacement", "of each species", "one step", {}, none},
@@ -90,6 +95,15 @@ std::vector<ObservableEntry> entries() {
        "",
        {},
        must_have_equilibrium},
+      {"trajectory",
+       "trajectory.gsd beside the result, with places, motion and stress of each sphere in every frame",
+       "a 256th of the production window",
+       {with_default({.pointer = "/trajectory/contacts",
+                      .kind = KeyKind::boolean,
+                      .meaning = "Whether frames list the contacts, with their forces."},
+                     false)},
+       must_have_contacts,
+       /*interval_is_a_duration=*/true},
   };
 }
 
@@ -122,9 +136,15 @@ std::vector<Key> observable_keys() {
     names.push_back(entry.name);
     if (!entry.has_settings()) continue;
     blocks.push_back(block('/' + entry.name, "How the observable of that name is measured."));
-    blocks.push_back(positive(
-        fmt::format("/{}/interval", entry.name), "time",
-        fmt::format("Time between samples, in whole steps; {} unless given.", entry.usual_interval)));
+    const std::string interval = fmt::format("/{}/interval", entry.name);
+    const std::string unless_given = fmt::format("in whole steps; {} unless given.", entry.usual_interval);
+    if (entry.interval_is_a_duration) {
+      const Keys limits =
+          duration_keys(interval, "From one to the next, " + unless_given, positive, /*is_required=*/false);
+      blocks.insert(blocks.end(), limits.begin(), limits.end());
+    } else {
+      blocks.push_back(positive(interval, "time", "Time between samples, " + unless_given));
+    }
     blocks.insert(blocks.end(), entry.settings.begin(), entry.settings.end());
   }
   blocks.insert(blocks.begin(), choice("/observables/*", meaning, names));

@@ -25,6 +25,8 @@ struct ObservableEntry {
   // Rules that bind several keys; nothing where the scene keeps them. `settings` have their defaults.
   std::optional<ObservableFault> (*fault)(const Scene& scene, const Json& settings);
 
+  bool interval_is_a_duration = false;  // in strain, Brownian times or time; else it is a time
+
   bool has_settings() const { return !usual_interval.empty() || !settings.empty(); }
 };
 

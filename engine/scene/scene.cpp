@@ -203,6 +203,9 @@ void Reading::set_observables(Scene& scene) const {
     if (const std::optional<ObservableFault> fault = entry.fault(scene, settings)) {
       refuse(fault->pointer, fault->allowed);
     }
+    if (entry.interval_is_a_duration && settings.contains("interval")) {
+      settings["interval"] = time_of(duration(pointer + "/interval", scene.physics), scene);
+    }
   }
 }
 
@@ -220,6 +223,16 @@ void fill_method_and_guard(Json& document) {
 }
 
 }  // namespace
+
+double time_of(const Duration& duration, const Scene& scene) {
+  const Physics& physics = scene.physics;
+  double time = std::min(duration.time, physics.flow.deformation().time_of(duration.strain));
+  if (physics.thermal_energy > 0) {
+    const double a = scene.particles.reference_radius;
+    time = std::min(time, duration.brownian_times * physics.viscosity * a * a * a / physics.thermal_energy);
+  }
+  return time;
+}
 
 Scene read_scene(const Json& document, const std::string& file) {
   Scene scene;

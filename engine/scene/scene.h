@@ -84,11 +84,14 @@ struct Scene {
   std::optional<double> timestep;             // absent: "auto"
   double solver_tolerance = usual_tolerance;  // of implicit steps
   Duration equilibration, production;
-  std::map<std::string, Json> observables;  // asked for besides the stress: name, settings with defaults
+  std::map<std::string, Json> observables;  // besides the stress: settings with defaults, intervals as times
   Guard guard;
   bool final_configuration = false;  // is left beside the result
   Json document;                     // as given, defaults filled
 };
+
+// The time after which the first of the limits is reached.
+double time_of(const Duration& duration, const Scene& scene);
 
 const KeyTable& scene_keys();
 

@@ -93,16 +93,6 @@ Keys flow_keys() {
   };
 }
 
-Keys duration_keys(const std::string& pointer, const std::string& meaning, bool zero_is_allowed) {
-  const auto limit = zero_is_allowed ? not_negative : positive;
-  return {
-      block(pointer, meaning + " Ends with the first of its limits that is reached; one at least.", required),
-      limit(pointer + "/strain", "", "Strain: shear rate times time.", false),
-      limit(pointer + "/brownian_times", "eta a^3 / k_B T", "Time in units of the Brownian time.", false),
-      limit(pointer + "/time", "time", "Time.", false),
-  };
-}
-
 Keys run_keys() {
   Keys keys = {
       with_default(block("/integrator", "How the equations of motion are solved."), Json::object()),
@@ -128,9 +118,9 @@ Keys run_keys() {
       block("/duration", "How long a realisation runs.", required),
   };
   const auto append = [&](const Keys& more) { keys.insert(keys.end(), more.begin(), more.end()); };
-  append(
-      duration_keys("/duration/equilibration", "Before anything is measured; a limit of 0 skips it.", true));
-  append(duration_keys("/duration/production", "The window of all means.", false));
+  append(duration_keys("/duration/equilibration", "Before anything is measured; a limit of 0 skips it.",
+                       not_negative));
+  append(duration_keys("/duration/production", "The window of all means.", positive));
   append({
       {.pointer = "/observables",
        .kind = KeyKind::array,

@@ -6,8 +6,10 @@
 #include <array>
 
 #include "contract/durable_file.h"
+#include "contract/guarded_file.h"
 #include "contract/sha256.h"
 #include "runner/batch/bundles.h"
+#include "runner/folder/spool.h"
 #include "runner/text/host_name.h"
 
 namespace peclet::runner {
@@ -123,7 +125,11 @@ void Bundles::write(const BundleFolder& folder, const Manifest& manifest, const 
   for (const BundledSeed& seed : manifest.seeds) {
     const fs::path here = directory_.checkpoint(seed.point, seed.seed);
     const fs::path there = folder.shared().checkpoint(seed.point, seed.seed);
-    if (fs::exists(here) && !fs::exists(there)) write_durably(there, read_file(here));
+    if (!fs::exists(here) || fs::exists(there)) continue;
+    if (fs::exists(growing_beside(here))) {
+      copy_regular(growing_beside(here), growing_beside(there), largest_copied_file);
+    }
+    write_durably(there, read_file(here));
   }
   const BatchTemplate scripts =
       filled_in(settings.scripts, folder, manifest.name, tasks, manifest.threads, settings.program);

@@ -77,7 +77,7 @@ int copy_files(const fs::path& from, const fs::path& to) {
   fs::create_directories(to);
   int copied = 0;
   for (const fs::path& file : whole_files(from)) {
-    if (copy_file_that_may_go(file, to)) ++copied;
+    if (copy_file_that_may_go(file, to) && !is_growing(file)) ++copied;
   }
   return copied;
 }

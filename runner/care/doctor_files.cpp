@@ -102,7 +102,7 @@ void examine_checkpoints(Database& database, const CampaignUnderExamination& exa
   const std::map<std::string, Need> names = checkpoint_names(database, examined.directory);
   std::vector<fs::path> ended, surplus, rejected, strays;
   for (const fs::path& file : files_in(examined.directory.checkpoints())) {
-    const auto seed = names.find(file.filename().string());
+    const auto seed = names.find(checkpoint_of(file).filename().string());
     if (seed != names.end()) {
       if (seed->second == Need::none) ended.push_back(file);
       if (seed->second == Need::surplus) surplus.push_back(file);

@@ -101,7 +101,7 @@ int bring(const fs::path& from, const fs::path& to) {
     const fs::path target = to / file.filename();
     if (!kind_of(target).empty()) continue;
     copy_regular(file, target, largest_copied_file);
-    ++brought;
+    if (!is_growing(file)) ++brought;
   }
   return brought;
 }

@@ -31,10 +31,24 @@ constexpr std::array<std::pair<unsigned long, const char*>, 9> network_kinds{{{0
                                                                               {0x19830326, "BeeGFS"},
                                                                               {0x5346414f, "AFS"}}};
 
+constexpr std::string_view suffix_of_growing = "@growing";
+
 }  // namespace
 
 fs::path CampaignDirectory::checkpoint(const std::string& hash, int seed) const {
   return checkpoints() / (stem(hash, seed) + ".checkpoint");
+}
+
+fs::path growing_beside(const fs::path& checkpoint) {
+  fs::path file = checkpoint;
+  return file += suffix_of_growing;
+}
+
+bool is_growing(const fs::path& file) { return file.string().ends_with(suffix_of_growing); }
+
+fs::path checkpoint_of(const fs::path& file) {
+  const std::string name = file.string();
+  return is_growing(file) ? name.substr(0, name.size() - suffix_of_growing.size()) : name;
 }
 
 fs::path CampaignDirectory::spool_file(const std::string& hash, int seed, std::int64_t attempt) const {

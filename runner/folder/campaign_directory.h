@@ -44,6 +44,13 @@ class CampaignDirectory {
   std::filesystem::path root_;
 };
 
+// What an engine may keep beside a checkpoint: one file that grows, and that the checkpoint refers to. It
+// goes wherever the checkpoint goes, and with it.
+std::filesystem::path growing_beside(const std::filesystem::path& checkpoint);
+bool is_growing(const std::filesystem::path& file);
+// The checkpoint that a file is or belongs to.
+std::filesystem::path checkpoint_of(const std::filesystem::path& file);
+
 // `chosen`, or when that is empty "<stem>.peclet" beside the campaign file; an absolute path.
 CampaignDirectory campaign_directory(const std::filesystem::path& campaign_file,
                                      const std::filesystem::path& chosen);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "contract/durable_file.h"
+#include "runner/folder/campaign_directory.h"
 #include "runner/folder/spool.h"
 
 namespace peclet::runner {
@@ -24,7 +25,10 @@ void AfterCommit::carry_out(RunListener& listener) {
     // `peclet doctor` names one that somebody has taken away meanwhile.
     if (is_there(from)) rename_durably(from, place);
   }
-  for (const std::filesystem::path& file : to_discard_) std::filesystem::remove(file);
+  for (const std::filesystem::path& checkpoint : to_discard_) {
+    std::filesystem::remove(checkpoint);
+    std::filesystem::remove(growing_beside(checkpoint));
+  }
   removal_.add(to_remove_);
   for (const std::filesystem::path& file : to_reject_) peclet::runner::reject(home_of_spool_file(file), file);
   to_keep_.clear();

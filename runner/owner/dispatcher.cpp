@@ -233,7 +233,7 @@ void Dispatcher::handle(const ShortOfRoom& event) {
   const std::filesystem::path folder = event.path.parent_path();
   const bool is_beside_result =
       folder == left_folder(job.spool) && event.path.filename().string().starts_with(left_stem(job.spool));
-  if (event.path != job.spool && event.path != job.checkpoint && folder != job.failures &&
+  if (event.path != job.spool && checkpoint_of(event.path) != job.checkpoint && folder != job.failures &&
       !is_beside_result) {
     condemn(event.worker, {AttemptOutcome::garbled, "wrote a file that is none of its job"});
     return;

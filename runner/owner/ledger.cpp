@@ -58,7 +58,7 @@ void Ledger::load() {
 // seeds are many.
 void Ledger::remove_late_checkpoints() {
   for (const fs::path& file : whole_files(directory_.checkpoints())) {
-    const std::optional<SeedId> id = seed_of_checkpoint(file);
+    const std::optional<SeedId> id = seed_of_checkpoint(checkpoint_of(file));
     if (id && has_ended(*id)) fs::remove(file);
   }
 }

@@ -123,6 +123,7 @@ void Ledger::take(const RealisationResult& result, const fs::path& spool) {
            std::set{directory_.checkpoint(result.point, result.seed),
                     home_of_spool_file(spool).checkpoint(result.point, result.seed)}) {
         after_.remove(checkpoint);
+        after_.remove(growing_beside(checkpoint));
       }
       break;
     case Stored::conflict:

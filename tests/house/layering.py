@@ -46,6 +46,7 @@ ENGINE = [
         for room in (
             "threads",
             "state",
+            "gsd",
             "flow",
             "random",
             "terms",

@@ -64,7 +64,7 @@ NAMED = [
     ),
     (
         "Brownian times with 6 pi",
-        "engine/realisation/schedule.cpp",
+        "engine/scene/scene.cpp",
         "duration.brownian_times * physics.viscosity",
         "duration.brownian_times * 18.85 * physics.viscosity",
         "engine_tests:Schedule.ABrownianTimeIsEtaACubedOverTheThermalEnergy",
@@ -240,9 +240,9 @@ NAMED = [
     ),
     (
         "friction mobilised without its coefficient",
-        "engine/observables/contact_network.cpp",
-        "(contact_.friction * contact_.normal_stiffness * overlap)",
-        "(contact_.normal_stiffness * overlap)",
+        "engine/observables/touching_pairs.h",
+        "(contact.friction * contact.normal_stiffness * overlap)",
+        "(contact.normal_stiffness * overlap)",
         "engine_tests:ContactNetwork.CountsContactsAndTheirMobilisation",
     ),
     (

@@ -39,6 +39,8 @@ REAL = {
         "lubrication": {"form": "kim-karrila", "inner_gap": 0.01, "outer_gap": 0.05},
         "duration": {"equilibration": {"strain": 0.3}, "production": {"strain": 2.7}},
         "files": {"final_configuration": True},
+        "observables": ["stress", "trajectory"],
+        "trajectory": {"interval": {"strain": 0.05}, "contacts": True},
     },
     "sweep": [{"set": "/peclet", "values": [10, 1000]}],
     "target": {"observable": "relative_viscosity", "relative_tolerance": 0.15},
@@ -233,8 +235,14 @@ class Campaign:
                 if hashlib.sha256(f.read()).hexdigest() != files[path]:
                     wrong.append(path)
         ended = self.count("SELECT count(*) FROM realisations WHERE cause = 'completed'")
-        each = int(self.environment["PECLET_FAKE_FILES"]) if self.document["engine"][0] == self.lab.fake_engine else 1
+        each = int(self.environment["PECLET_FAKE_FILES"]) if self.document["engine"][0] == self.lab.fake_engine else 2
         return wrong or ([] if len(files) == each * ended else [f"{len(files)} files of {ended} results"])
+
+    def hashes_of_files(self):
+        """Of what realisations of the real engine have left: (point, seed, name) -> hash."""
+        if self.document["engine"][0] != self.lab.engine:
+            return {}
+        return {tuple(row[:3]): row[3] for row in self.query("SELECT hash, seed, name, sha256 FROM files")}
 
     def last_attempt(self):
         return self.count("SELECT coalesce(max(attempt_id), 0) FROM attempt")
@@ -269,7 +277,7 @@ class Lab:
         self.known = {}
 
     def undisturbed(self, campaign):
-        """Exit code and canonical export of the same campaign, run by one worker in peace."""
+        """Exit code, canonical export and hashes of files of the same campaign, run by one worker in peace."""
         steps = {name: value for name, value in campaign.environment.items() if name == "PECLET_FAKE_STEPS"}
         key = json.dumps([campaign.document, steps])
         if key not in self.known:
@@ -277,7 +285,7 @@ class Lab:
             quiet.document = campaign.document
             quiet.write()
             quiet.environment = steps
-            self.known[key] = (quiet.run(), quiet.export())
+            self.known[key] = (quiet.run(), quiet.export(), quiet.hashes_of_files())
             if self.known[key][0] not in (0, 3):
                 raise RuntimeError(f"the undisturbed campaign failed:\n{quiet.log()}")
             quiet.close()

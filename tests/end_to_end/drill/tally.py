@@ -29,11 +29,14 @@ class Tally:
         campaign.settle()
         campaign.acknowledge()
         ended = campaign.run()
-        expected, export = campaign.lab.undisturbed(campaign)
+        expected, export, files = campaign.lab.undisturbed(campaign)
         code = code or expected
         self.expect(campaign, ended == code, f"the last run ended with exit code {ended}, not {code}")
         if campaign.export() != export:
             self.complain(campaign, "the export differs from the undisturbed one", "different")
+        others = [key for key, hash in campaign.hashes_of_files().items() if files.get(key, hash) != hash]
+        if others:
+            self.complain(campaign, f"files differ from the undisturbed ones: {others[:5]}", "different", len(others))
         self._count_losses(campaign)
         self._count_doubles(campaign)
         wrong = campaign.misplaced_files()

@@ -85,10 +85,12 @@ TEST(Backups, TakeNoLinksAlong) {
   write_durably(target.path() / "secret", "secret");
   fs::create_symlink(target.path() / "secret", stored.directory().checkpoints() / "a.checkpoint");
   write_durably(stored.directory().checkpoints() / "b.checkpoint", "b");
+  write_durably(stored.directory().checkpoints() / "b.checkpoint@growing", "beside b");
   const Backup backup = make_backup(stored.directory(), target.path() / "copies", true);
   EXPECT_EQ(backup.checkpoints, 1);
   EXPECT_FALSE(fs::exists(target.path() / "copies" / "checkpoints" / "a.checkpoint"));
   EXPECT_EQ(read_file(target.path() / "copies" / "checkpoints" / "b.checkpoint"), "b");
+  EXPECT_EQ(read_file(target.path() / "copies" / "checkpoints" / "b.checkpoint@growing"), "beside b");
 }
 
 TEST(Backups, KeepTwoGenerations) {

@@ -189,7 +189,9 @@ TEST_F(Doctor, NamesFilesAndRemovesOnlyThoseThatNobodyNeeds) {
   const fs::path foreign = directory.checkpoints() / "0000000000000000-000001.checkpoint";
   const fs::path unfinished = directory.spool() / "x.json.999999999.0.tmp";  // no process has this number
   const fs::path rejected = directory.rejected() / "x.json";
-  for (const fs::path& file : {ended, stray, foreign, unfinished, rejected}) std::ofstream(file) << "x";
+  const fs::path growing = growing_beside(ended);
+  for (const fs::path& file : {ended, growing, stray, foreign, unfinished, rejected})
+    std::ofstream(file) << "x";
   EXPECT_EQ(severity("checkpoint-left"), "note");
   EXPECT_EQ(severity("stray-file"), "note");
   EXPECT_EQ(severity("stray-checkpoint"), "note");
@@ -197,6 +199,7 @@ TEST_F(Doctor, NamesFilesAndRemovesOnlyThoseThatNobodyNeeds) {
   EXPECT_EQ(severity("rejected-results"), "warning");
   EXPECT_EQ(examine(true).exit_code, 1);  // somebody has to look at the rejected one
   EXPECT_FALSE(fs::exists(ended));
+  EXPECT_FALSE(fs::exists(growing));
   EXPECT_FALSE(fs::exists(unfinished));
   for (const fs::path& file : {stray, foreign, rejected}) EXPECT_TRUE(fs::exists(file)) << file;
 }

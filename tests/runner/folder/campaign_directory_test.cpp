@@ -28,6 +28,16 @@ TEST(CampaignDirectory, AttemptsShareACheckpointAndNeverASpoolFile) {
   EXPECT_NE(directory.checkpoint(hash, 3), directory.checkpoint(other, 3));
 }
 
+TEST(CampaignDirectory, KnowsWhatGrowsBesideACheckpoint) {
+  const std::filesystem::path checkpoint = CampaignDirectory("/data/flow.peclet").checkpoint("a", 3);
+  const std::filesystem::path growing = growing_beside(checkpoint);
+  EXPECT_EQ(growing, checkpoint.string() + "@growing");
+  EXPECT_TRUE(is_growing(growing));
+  EXPECT_FALSE(is_growing(checkpoint));
+  EXPECT_EQ(checkpoint_of(growing), checkpoint);
+  EXPECT_EQ(checkpoint_of(checkpoint), checkpoint);
+}
+
 TEST(CampaignDirectory, ALocalFileSystemIsNoNetwork) {
   const TemporaryFolder folder;
   EXPECT_EQ(network_file_system(folder.path() / "not" / "there" / "yet"), std::nullopt);

@@ -232,18 +232,23 @@ TEST_F(Dispatching, ACheckpointThatCameAfterTheResultGoesAtTheNextStart) {
   run();
   const std::filesystem::path stale = directory_.checkpoint(campaign_.points[0].hash, 1);
   write_durably(stale, "of a worker that outlived its owner");
+  write_durably(growing_beside(stale), "and what grew beside it");
   // Seeds that have not ended, of no point, and no checkpoints at all.
   std::string hash = campaign_.points[0].hash;
   const std::string open = directory_.checkpoint(hash, 30).filename().string();
   const std::string copied = stale.filename().string() + ".rejected";
   hash[0] = hash[0] == '0' ? '1' : '0';
   const std::string of_another = directory_.checkpoint(hash, 1).filename().string();
-  for (const std::string& name : {open, copied, of_another, std::string("-"), std::string("notes")}) {
+  const std::string growing = open + "@growing";
+  for (const std::string& name :
+       {open, growing, copied, of_another, std::string("-"), std::string("notes")}) {
     write_durably(directory_.checkpoints() / name, "of somebody");
   }
   run();
   EXPECT_FALSE(std::filesystem::exists(stale));
-  for (const std::string& name : {open, copied, of_another, std::string("-"), std::string("notes")}) {
+  EXPECT_FALSE(std::filesystem::exists(growing_beside(stale)));
+  for (const std::string& name :
+       {open, growing, copied, of_another, std::string("-"), std::string("notes")}) {
     EXPECT_TRUE(std::filesystem::exists(directory_.checkpoints() / name)) << name;
   }
 }

@@ -23,6 +23,7 @@ TEST_F(CarryingOut, AnEngineThatIsAcceptedStartsAfreshBesideTheOld) {
   begin();
   EXPECT_THROW(ledger_->admit_engine(plain_engine("new")), OtherEngine);
   write_durably(directory_.checkpoint(hash(0), 5), "of the old engine");
+  write_durably(growing_beside(directory_.checkpoint(hash(0), 5)), "of the old engine");
   const std::int64_t old_row = id(0);
   EXPECT_EQ(ledger_->accept_engine(engine_identity(plain_engine("new"))), 1);
   ledger_->admit_engine(plain_engine("new"));
@@ -31,6 +32,7 @@ TEST_F(CarryingOut, AnEngineThatIsAcceptedStartsAfreshBesideTheOld) {
   EXPECT_EQ(ledger_->scheduler().begun(0), 0);
   EXPECT_TRUE(ledger_->scheduler().decided(1));  // decided points stay as they are
   EXPECT_FALSE(fs::exists(directory_.checkpoint(hash(0), 5)));
+  EXPECT_FALSE(fs::exists(growing_beside(directory_.checkpoint(hash(0), 5))));
   const std::vector<KeptApart> kept = database_.kept_apart(hash(0));
   ASSERT_EQ(kept.size(), 1U);
   EXPECT_EQ(kept[0].results, 3);

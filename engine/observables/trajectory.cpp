@@ -1,0 +1,225 @@
+#include "engine/observables/trajectory.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "contract/input_error.h"
+#include "engine/kernels/pairs/terms.h"
+#include "engine/start/packing.h"
+#include "engine/terms/drag.h"
+
+namespace peclet::engine {
+namespace {
+
+// An index that stays small beside a checkpoint, and the largest file that a campaign takes.
+constexpr std::uint64_t most_frames = 50'000, most_bytes = std::uint64_t{1} << 32;
+
+// Bytes of a frame: of each sphere position, image, velocity, spin, stress and contacts; of a contact the
+// group, three numbers and the state; no packing of spheres has more than six contacts each, on average.
+constexpr std::uint64_t of_sphere = 4 * 12 + 24 + 4, of_contact = 8 + 3 * 4 + 1, contacts_of_sphere = 6,
+                        of_frame = 2048;
+
+enum class State : std::uint8_t { frictionless, sticking, sliding };
+
+std::vector<double> components(const SymmetricTensor& t) { return {t.xx, t.yy, t.zz, t.xy, t.xz, t.yz}; }
+
+void append(std::vector<float>& values, const Vector3& v) {
+  for (const double x : {v.x, v.y, v.z}) values.push_back(static_cast<float>(x));
+}
+
+// "A", "B" ... "Z", "27", "28" ...: rows of equal length that end with a zero.
+std::vector<std::int8_t> names_of_species(std::uint32_t count, std::uint32_t& columns) {
+  constexpr std::uint32_t letters = 26;
+  columns = 4;
+  std::vector<std::int8_t> names;
+  for (std::uint32_t s = 0; s < count; ++s) {
+    std::string name = s < letters ? std::string(1, static_cast<char>('A' + s)) : std::to_string(s + 1);
+    name.resize(columns, '\0');
+    names.insert(names.end(), name.begin(), name.end());
+  }
+  return names;
+}
+
+std::vector<std::uint32_t> places_of_ids(const ParticleState& particles) {
+  std::vector<std::uint32_t> place(particles.count());
+  for (std::uint32_t i = 0; i < place.size(); ++i) place[particles.id[i]] = i;
+  return place;
+}
+
+void check_trajectory(const Scene& scene, const Window& window, const std::string& file) {
+  const std::uint64_t frames = samples_in(window.steps, interval_of(scene, trajectory(), window));
+  const bool contacts = scene.observables.at("trajectory").at("contacts").get<bool>();
+  const std::uint64_t bytes =
+      of_frame + scene.particles.count * (of_sphere + (contacts ? contacts_of_sphere * of_contact : 0));
+  const std::uint64_t most = std::min(most_frames, most_bytes / bytes);
+  if (frames <= most) return;
+  throw InputError(
+      file, "/trajectory/interval", fmt::format("{} frames", frames),
+      fmt::format("must leave at most {} frames of up to {} bytes in the production window of {} steps", most,
+                  bytes, window.steps));
+}
+
+}  // namespace
+
+Trajectory::Trajectory(const Scene& scene, const System& system, const Window& window)
+    : Observable(interval_of(scene, trajectory(), window)),
+      physics_(scene.physics),
+      kinds_(make_pair_kinds(scene.physics, distinct_radii(system.particles.radius))),
+      with_contacts_(scene.observables.at("trajectory").at("contacts").get<bool>()),
+      count_of_species_(static_cast<std::uint32_t>(scene.particles.species.size())) {
+  const std::vector<std::size_t> number = species_numbers(scene.particles);
+  for (std::uint32_t s = 0; s < count_of_species_; ++s) species_.insert(species_.end(), number[s], s);
+}
+
+void Trajectory::take_stress(const PairSums& sums, const std::vector<SymmetricTensor>& shares) {
+  sums_ = sums;
+  shares_ = shares;
+}
+
+void Trajectory::sample(const System& system, std::size_t /*block*/) {
+  frames_.add_single<std::uint64_t>("configuration/step", system.step);
+  add_places(system);
+  if (frames_.count() == 0) add_kinds_of_spheres(system);
+  frames_.add_single("log/time", system.clock.time());
+  frames_.add_single("log/strain", system.box.strain());
+  add_stress(system);
+  add_contacts(system);
+  frames_.end_frame();
+}
+
+void Trajectory::add_kinds_of_spheres(const System& system) {
+  const ParticleState& particles = system.particles;
+  std::uint32_t columns = 0;
+  const std::vector<std::int8_t> names = names_of_species(count_of_species_, columns);
+  std::vector<float> diameter, mass;
+  for (const std::uint32_t i : places_of_ids(particles)) {
+    diameter.push_back(static_cast<float>(2 * particles.radius[i]));
+    mass.push_back(static_cast<float>(particles.mass[i]));
+  }
+  frames_.add("particles/types", names, columns);
+  frames_.add("particles/typeid", species_);
+  frames_.add("particles/diameter", diameter);
+  frames_.add("particles/mass", mass);
+}
+
+void Trajectory::add_places(const System& system) {
+  const ParticleState& particles = system.particles;
+  const PeriodicCell& box = system.box;
+  const CellFrame cell = box.frame();
+  if (cell.axes != identity()) throw std::logic_error("a turned cell has no place in a trajectory");
+  std::vector<float> shape, position, velocity, spin;
+  std::vector<std::int32_t> image;
+  append(shape, cell.lengths);
+  append(shape, {cell.tilt_xy / cell.lengths.y, cell.xz / cell.lengths.z, cell.yz / cell.lengths.z});
+  for (const std::uint32_t i : places_of_ids(particles)) {
+    const Vector3 place = cell.fractional(particles.position[i]);
+    const auto cells = [](double x) { return static_cast<std::int32_t>(std::floor(x + 0.5)); };
+    const LatticeShift removed = {cells(place.x), cells(place.y), cells(place.z)};
+    const LatticeShift all = particles.image[i] + removed;
+    append(position, particles.position[i] - box.displacement(removed));
+    append(velocity, particles.velocity[i] - box.velocity(removed));
+    append(spin, particles.angular_velocity[i]);
+    image.insert(image.end(), {all.x, all.y, all.z});
+  }
+  frames_.add("configuration/box", shape);
+  frames_.add_single("particles/N", static_cast<std::uint32_t>(particles.count()));
+  frames_.add("particles/position", position, 3);
+  frames_.add("particles/image", image, 3);
+  frames_.add("particles/velocity", velocity, 3);
+  frames_.add("log/particles/angular_velocity", spin, 3);
+}
+
+void Trajectory::add_stress(const System& system) {
+  const ParticleState& particles = system.particles;
+  const double volume = system.box.volume();
+  const BackgroundFlow flow = physics_.flow.at(system.box);
+  const SymmetricTensor uniform = strain_of(system.box.velocity_gradient());
+  const SymmetricTensor solvent = solvent_stress(physics_.viscosity, system.box.velocity_gradient());
+  SymmetricTensor alone;
+  std::vector<float> of_spheres;
+  for (const std::uint32_t i : places_of_ids(particles)) {
+    const double a = particles.radius[i];
+    const SymmetricTensor own =
+        stresslet_of_sphere(physics_.viscosity, a, uniform + flow.varying_strain(particles.position[i], a));
+    alone += own;
+    for (const double x : components(own + shares_[particles.id[i]])) {
+      of_spheres.push_back(static_cast<float>(x));
+    }
+  }
+  const SymmetricTensor stresslet = (1 / volume) * alone;
+  frames_.add("log/particles/stress", of_spheres, 6);
+  frames_.add("log/stress/total", components(solvent + stresslet + (1 / volume) * stress_of_forces(sums_)));
+  frames_.add("log/stress/solvent", components(solvent));
+  frames_.add("log/stress/stresslet", components(stresslet));
+  for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
+    const auto term = static_cast<StressTerm>(t);
+    if (term == StressTerm::brownian_lubrication || !has_stress_term(physics_, term)) continue;
+    frames_.add(std::string("log/stress/") + name_of(term), components((1 / volume) * sums_.of(term)));
+  }
+}
+
+void Trajectory::add_contacts(const System& system) {
+  if (!physics_.contact) return;
+  const ContactParameters& contact = *physics_.contact;
+  const ParticleState& particles = system.particles;
+  std::vector<std::uint32_t> number(particles.count());
+  struct Bond {
+    std::array<std::uint32_t, 2> group;
+    float gap, normal, tangential;
+    State state;
+  };
+  std::vector<Bond> bonds;
+  for_each_touching_pair(system, kinds_, contact, [&](const TouchingPair& touching) {
+    const std::uint32_t i = particles.id[touching.pair.first], j = particles.id[touching.pair.second];
+    ++number[i];
+    ++number[j];
+    const PairKind& kind = kinds_[touching.pair.kind];
+    const State state = !(contact.friction > 0)             ? State::frictionless
+                        : touching.mobilised > sliding_from ? State::sliding
+                                                            : State::sticking;
+    bonds.push_back({{std::min(i, j), std::max(i, j)},
+                     static_cast<float>(-2 * touching.overlap / kind.sum_of_radii),
+                     static_cast<float>(contact_push(contact.normal_stiffness, touching.overlap)),
+                     static_cast<float>(touching.tangential_force),
+                     state});
+  });
+  frames_.add("log/particles/contact_number", number);
+  if (!with_contacts_) return;
+  // Two images of one sphere may be touched at once: these stay in the order of the list.
+  std::ranges::stable_sort(bonds, {}, &Bond::group);
+  std::vector<std::uint32_t> group;
+  std::vector<float> gap, normal, tangential;
+  std::vector<std::uint8_t> state;
+  for (const Bond& bond : bonds) {
+    group.insert(group.end(), bond.group.begin(), bond.group.end());
+    gap.push_back(bond.gap);
+    normal.push_back(bond.normal);
+    tangential.push_back(bond.tangential);
+    state.push_back(static_cast<std::uint8_t>(bond.state));
+  }
+  frames_.add_single("bonds/N", static_cast<std::uint32_t>(bonds.size()));
+  if (frames_.count() == 0) {
+    constexpr char name[] = "contact";
+    frames_.add("bonds/types", std::vector<std::int8_t>(std::begin(name), std::end(name)), sizeof name);
+  }
+  frames_.add("bonds/group", group, 2);
+  frames_.add("log/bonds/gap", gap);
+  frames_.add("log/bonds/normal_force", normal);
+  frames_.add("log/bonds/tangential_force", tangential);
+  frames_.add("log/bonds/state", state);
+}
+
+ObservableKind trajectory() {
+  return {"trajectory", seldom, check_trajectory,
+          [](const Scene&, const Window&) { return std::vector<Quantity>(); },
+          [](const Scene& scene, const System& system, const Window& window) -> std::unique_ptr<Observable> {
+            return std::make_unique<Trajectory>(scene, system, window);
+          }};
+}
+
+}  // namespace peclet::engine

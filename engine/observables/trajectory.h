@@ -1,0 +1,54 @@
+// Frames of a realisation for other programs: centres, motion, stress of each sphere and, where asked for,
+// contacts, as a GSD file of the schema "hoomd" 1.4. All numbers are in the units of the scene.
+//
+// Spheres stand in the order of their ids. A centre is the image in the cell around the origin, -1/2 <=
+// fractional < 1/2, velocity is that of this image (the streaming flow there is rate y), and centre + image .
+// lattice vectors of the frame is the way that the sphere has gone, also when the basis of the cell changes.
+//
+// Positions, motion and contacts are those at the end of a step, stress is that of the step: what the means
+// of the result add up. log/particles/stress is V sigma_i, xx yy zz xy xz yz, tension positive: half of sym(r
+// F_i) of each pair of the sphere, without noise, and its stresslet as if it were alone, so that
+//   log/stress/total = solvent + (1/V) sum_i V sigma_i.
+#pragma once
+
+#include <vector>
+
+#include "engine/gsd/frames.h"
+#include "engine/observables/kinds.h"
+#include "engine/observables/touching_pairs.h"
+
+namespace peclet::engine {
+
+class Trajectory : public Observable {
+ public:
+  Trajectory(const Scene& scene, const System& system, const Window& window);
+
+  bool takes_stress() const override { return true; }
+  void take_stress(const PairSums& sums, const std::vector<SymmetricTensor>& shares) override;
+  void sample(const System& system, std::size_t block) override;
+  gsd::Frames* frames() override { return &frames_; }
+
+  // The result has nothing of it.
+  void add_to(Json& /*mean*/) const override {}
+  void add_blocks_to(Json& /*blocks*/) const override {}
+
+  void save(ArchiveWriter& archive) const override { frames_.save(archive); }
+  void load(ArchiveReader& archive) override { frames_.load(archive); }
+
+ private:
+  void add_kinds_of_spheres(const System& system);
+  void add_places(const System& system);
+  void add_stress(const System& system);
+  void add_contacts(const System& system);
+
+  Physics physics_;
+  std::vector<PairKind> kinds_;
+  bool with_contacts_;
+  std::vector<std::uint32_t> species_;  // of each id
+  std::uint32_t count_of_species_;
+  PairSums sums_;
+  std::vector<SymmetricTensor> shares_;
+  gsd::Frames frames_;
+};
+
+}  // namespace peclet::engine

@@ -1,0 +1,290 @@
+// Frames of a realisation against the realisation itself: places, motion, stress, contacts.
+#include "engine/observables/trajectory.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "contract/input_error.h"
+#include "engine/realisation/simulation.h"
+#include "engine/terms/drag.h"
+#include "tests/engine/gsd/gsd_reader.h"
+#include "tests/engine/small_scene.h"
+
+namespace peclet::engine {
+namespace {
+
+constexpr std::uint64_t seed = 3, equilibration = 100, production = 320;
+constexpr double rounding = 0x1p-24;  // of a number to the nearest float
+
+Json scene_with_trajectory(const Json& patch = Json::object(), const Json& interval = {{"time", 0.002}}) {
+  Json scene = small_scene(
+      {{"observables", {"trajectory"}}, {"trajectory", {{"interval", interval}, {"contacts", true}}}});
+  scene.merge_patch(patch);
+  return scene;
+}
+
+Simulation started(const Json& document, int threads = 1) {
+  const Scene scene = read_scene(document, "scene.json");
+  Simulation simulation(scene, make_schedule(scene, "scene.json"), seed, threads, "scene.json");
+  simulation.start();
+  return simulation;
+}
+
+GsdReader file_of(Simulation& simulation) {
+  const gsd::Frames& frames = *simulation.frames();
+  return GsdReader(frames.head() + frames.pending() + frames.tail());
+}
+
+struct Way {
+  const char* name;
+  Json patch;
+};
+const Json implicit = {{"integrator", {{"method", "implicit"}}}, {"particles", {{"density", 0.01}}}};
+Json implicit_and(const Json& patch) {
+  Json all = implicit;
+  all.update(patch);  // with the nulls that take keys away
+  return all;
+}
+const Way ways[] = {
+    {"explicit", Json::object()},
+    {"implicit", implicit},
+    {"implicit_without_noise", implicit_and({{"fluid", {{"thermal_energy", nullptr}}}})},
+    {"implicit_with_divided_steps", implicit_and({{"guard", {{"largest_displacement", 0.01}}}})},
+    {"implicit_without_noise_with_divided_steps",
+     implicit_and({{"fluid", {{"thermal_energy", nullptr}}}, {"guard", {{"largest_displacement", 0.04}}}})},
+    {"explicit_in_waves",
+     {{"flow", {{"waves", {{{"periods", 1}, {"sine", 0.4}}}}, {"faxen", true}}},
+      {"lubrication",
+       {{"form", "mari"},
+        {"inner_gap", nullptr},
+        {"outer_gap", nullptr},
+        {"regularisation", 0.03},
+        {"outer_distance", 0.1}}}}},
+};
+
+class TrajectoryStress : public testing::TestWithParam<Way> {};
+INSTANTIATE_TEST_SUITE_P(EveryWay, TrajectoryStress, testing::ValuesIn(ways),
+                         [](const auto& way) { return std::string(way.param.name); });
+
+// V (total - solvent) is the sum over the spheres, each rounded to a float.
+TEST_P(TrajectoryStress, OfTheSpheresAddsUpToThatOfTheFrame) {
+  Simulation simulation = started(scene_with_trajectory(GetParam().patch));
+  ASSERT_EQ(simulation.advance(equilibration + production)->cause, Ending::Cause::completed);
+  const GsdReader file = file_of(simulation);
+  ASSERT_EQ(file.frames(), production);
+  const double volume = simulation.system().box.volume();
+  double largest = 0;
+  for (std::uint64_t k = 0; k < production; ++k) {
+    const auto of_spheres = file.get<float>(k, "log/particles/stress");
+    const auto total = file.get<double>(k, "log/stress/total"),
+               solvent = file.get<double>(k, "log/stress/solvent");
+    for (std::size_t c = 0; c < 6; ++c) {
+      double sum = 0, sizes = 0;
+      for (std::size_t i = c; i < of_spheres.size(); i += 6) {
+        sum += of_spheres[i];
+        sizes += std::abs(of_spheres[i]);
+      }
+      EXPECT_NEAR(sum, volume * (total[c] - solvent[c]), 1.01 * rounding * sizes) << "frame " << k;
+      largest = std::max(largest, std::abs(sum));
+    }
+  }
+  EXPECT_GT(largest, 0);
+  const bool divides = std::string(GetParam().name).ends_with("divided_steps");
+  EXPECT_EQ(simulation.step_errors().divided_steps > 50, divides);
+}
+
+// Frames of all steps have the mean of the window.
+TEST_P(TrajectoryStress, HasTheMeanOfTheResult) {
+  Simulation simulation = started(scene_with_trajectory(GetParam().patch));
+  simulation.advance(equilibration + production);
+  const GsdReader file = file_of(simulation);
+  const BlockSums window = sum_of(simulation.production().blocks());
+  std::set<std::string> terms;
+  for (const std::string& name : file.names()) {
+    if (name.starts_with("log/stress/")) terms.insert(name);
+  }
+  for (const char* alone : {"total", "solvent", "stresslet"})
+    EXPECT_EQ(terms.erase(std::string("log/stress/") + alone), 1U);
+  EXPECT_GE(terms.size(), 5U);
+  for (const std::string& name : terms) {
+    std::optional<StressTerm> term;
+    for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
+      if (name == std::string("log/stress/") + stress_parts[t].name) term = static_cast<StressTerm>(t);
+    }
+    ASSERT_TRUE(term) << name;
+    double xy = 0;
+    for (std::uint64_t k = 0; k < production; ++k) xy += file.get<double>(k, name)[3] / production;
+    const double expected =
+        window.stress[static_cast<std::size_t>(*term)].xy / (production * simulation.system().box.volume());
+    EXPECT_NEAR(xy, expected, 1e-11 * (std::abs(expected) + 1e-3)) << name;
+  }
+}
+
+// Through three changes of the basis: the way of each sphere is that of its unwrapped place.
+TEST(Trajectory, HasPlacesAndMotionOfEverySphereInTheCell) {
+  Simulation simulation = started(scene_with_trajectory());
+  simulation.advance(equilibration);
+  std::set<std::int32_t> bases;
+  std::vector<System> systems;
+  for (std::uint64_t k = 0; k < production; ++k) {
+    simulation.advance(1);
+    systems.push_back(simulation.system());
+    bases.insert(simulation.system().box.basis().column[1].x);
+  }
+  EXPECT_GE(bases.size(), 2U);
+  const GsdReader file = file_of(simulation);
+  std::uint64_t wrapped = 0;
+  for (std::uint64_t k = 0; k < production; ++k) {
+    const System& system = systems[k];
+    const ParticleState& particles = system.particles;
+    EXPECT_EQ(file.get<std::uint64_t>(k, "configuration/step"), std::vector{equilibration + 1 + k});
+    EXPECT_EQ(file.get<double>(k, "log/time"), std::vector{system.clock.time()});
+    EXPECT_EQ(file.get<double>(k, "log/strain"), std::vector{system.box.strain()});
+    const Matrix3& edges = system.box.edges();
+    const double lx = edges.column[0].x, ly = edges.column[1].y, lz = edges.column[2].z;
+    const double tilt = edges.column[1].x / ly;
+    const auto f = [](double x) { return static_cast<float>(x); };
+    EXPECT_EQ(file.get<float>(k, "configuration/box"),
+              (std::vector<float>{f(lx), f(ly), f(lz), f(tilt), 0, 0}));
+    const auto position = file.get<float>(k, "particles/position"),
+               velocity = file.get<float>(k, "particles/velocity"),
+               spin = file.get<float>(k, "log/particles/angular_velocity");
+    const auto image = file.get<std::int32_t>(k, "particles/image");
+    for (std::size_t i = 0; i < particles.count(); ++i) {
+      const std::size_t at = 3 * std::size_t{particles.id[i]};
+      // By whole cells, and into [-1/2, 1/2).
+      const double y = position[at + 1] / ly, x = (position[at] - tilt * ly * y) / lx;
+      for (const double fraction : {x, y, position[at + 2] / lz}) EXPECT_LE(std::abs(fraction), 0.5 + 1e-6);
+      const LatticeShift shift = {image[at], image[at + 1], image[at + 2]};
+      const LatticeShift removed = shift - particles.image[i];
+      wrapped += removed == LatticeShift{} ? 0 : 1;
+      const Vector3 place =
+          particles.position[i] - edges * Vector3{double(removed.x), double(removed.y), double(removed.z)};
+      EXPECT_EQ(position[at], f(place.x));
+      EXPECT_EQ(position[at + 1], f(place.y));
+      EXPECT_EQ(position[at + 2], f(place.z));
+      // An image that lies so many Ly higher moves faster by rate Ly.
+      EXPECT_EQ(velocity[at], f(particles.velocity[i].x - 2 * ly * removed.y)) << "rate 2";
+      EXPECT_EQ(velocity[at + 1], f(particles.velocity[i].y));
+      EXPECT_EQ(spin[at + 2], f(particles.angular_velocity[i].z));
+    }
+  }
+  EXPECT_GT(wrapped, 1000U);
+}
+
+TEST(Trajectory, HasKindsOfSpheresInItsFirstFrame) {
+  Simulation simulation = started(scene_with_trajectory());
+  simulation.advance(equilibration + 3);
+  const GsdReader file = file_of(simulation);
+  // The volume of radius 1.4 is shared equally: numbers as 1.4^3 to 1 of 60.
+  const std::size_t small = 44;
+  const auto species = file.get<std::uint32_t>(0, "particles/typeid");
+  const auto diameter = file.get<float>(0, "particles/diameter"), mass = file.get<float>(0, "particles/mass");
+  ASSERT_EQ(species.size(), 60U);
+  for (std::size_t i = 0; i < 60; ++i) {
+    const double a = i < small ? 1 : 1.4;
+    EXPECT_EQ(species[i], i < small ? 0U : 1U);
+    EXPECT_EQ(diameter[i], static_cast<float>(2 * a));
+    EXPECT_FLOAT_EQ(mass[i], static_cast<float>(4.0 / 3.0 * M_PI * 0.1 * a * a * a));
+  }
+  const auto names = file.get<std::int8_t>(0, "particles/types");
+  EXPECT_EQ(std::string(names.begin(), names.end()), std::string("A\0\0\0B\0\0\0", 8));
+  EXPECT_EQ(file.get<std::uint32_t>(1, "particles/N"), std::vector<std::uint32_t>{60});
+  EXPECT_FALSE(file.has(1, "particles/typeid")) << "the first frame is the default of all";
+}
+
+// F_n = k_n delta, gap = -2 delta / (a_i + a_j) from the places; Coulomb's law bounds the other force.
+TEST(Trajectory, ListsContactsWithTheirForces) {
+  Simulation simulation = started(scene_with_trajectory());
+  simulation.advance(equilibration + production);
+  const GsdReader file = file_of(simulation);
+  const double stiffness = 1e4, friction = 0.5;
+  std::map<int, int> states;
+  for (std::uint64_t k = 0; k < production; ++k) {
+    const auto group = file.get<std::uint32_t>(k, "bonds/group"),
+               number = file.get<std::uint32_t>(k, "log/particles/contact_number");
+    const auto gap = file.get<float>(k, "log/bonds/gap"),
+               normal = file.get<float>(k, "log/bonds/normal_force"),
+               tangential = file.get<float>(k, "log/bonds/tangential_force"),
+               diameter = file.get<float>(0, "particles/diameter"),
+               position = file.get<float>(k, "particles/position"),
+               box = file.get<float>(k, "configuration/box");
+    const auto state = file.get<std::uint8_t>(k, "log/bonds/state");
+    ASSERT_EQ(file.get<std::uint32_t>(k, "bonds/N"),
+              std::vector<std::uint32_t>{static_cast<std::uint32_t>(gap.size())});
+    std::vector<std::uint32_t> counted(60);
+    for (std::size_t b = 0; b < gap.size(); ++b) {
+      const std::size_t i = group[2 * b], j = group[2 * b + 1];
+      ++counted[i];
+      ++counted[j];
+      EXPECT_LT(i, j);
+      const double sum = 0.5 * (diameter[i] + diameter[j]);
+      // The nearest image: the box is wider than four diameters.
+      double r[3];
+      for (std::size_t c = 0; c < 3; ++c) r[c] = position[3 * j + c] - position[3 * i + c];
+      const double up = std::round(r[1] / box[1]);
+      r[1] -= up * box[1];
+      r[0] -= up * box[1] * box[3];
+      r[0] -= box[0] * std::round(r[0] / box[0]);
+      r[2] -= box[2] * std::round(r[2] / box[2]);
+      const double overlap = sum - std::hypot(r[0], r[1], r[2]);
+      EXPECT_NEAR(gap[b], -2 * overlap / sum, 1e-5);
+      EXPECT_LT(gap[b], 0);
+      EXPECT_NEAR(normal[b], stiffness * -0.5 * gap[b] * sum, 1e-6 * normal[b]);
+      EXPECT_LE(tangential[b], friction * normal[b] * (1 + 1e-2));
+      EXPECT_EQ(state[b], tangential[b] > 0.99F * friction * normal[b] ? 2 : 1);
+      ++states[state[b]];
+    }
+    EXPECT_EQ(counted, number);
+  }
+  EXPECT_GT(states[1], 100);
+  EXPECT_GT(states[2], 100);
+}
+
+TEST(Trajectory, HasTheSameBytesOnAnyNumberOfThreads) {
+  Json document = scene_with_trajectory({{"particles", {{"count", 5000}}}}, {{"time", 0.02}});
+  document["duration"] = {{"equilibration", {{"time", 0.02}}}, {"production", {{"time", 0.08}}}};
+  for (const Json& patch : {Json::object(), implicit}) {
+    document.merge_patch(patch);
+    Simulation one = started(document, 1), two = started(document, 2);
+    ASSERT_TRUE(one.advance(1000) && two.advance(1000));
+    EXPECT_EQ(one.frames()->count(), 4U);
+    EXPECT_TRUE(one.frames()->pending() == two.frames()->pending());
+    EXPECT_TRUE(one.frames()->tail() == two.frames()->tail());
+  }
+}
+
+// Rate 2; the Brownian time eta a^3 / kT is 5.
+TEST(Trajectory, HasAnIntervalInStrainTimeOrBrownianTimes) {
+  const auto interval = [](const Json& limits) {
+    return read_scene(scene_with_trajectory(Json::object(), limits), "scene.json")
+        .observables.at("trajectory")
+        .at("interval");
+  };
+  EXPECT_DOUBLE_EQ(interval({{"time", 0.01}}).get<double>(), 0.01);
+  EXPECT_DOUBLE_EQ(interval({{"strain", 0.1}}).get<double>(), 0.05);
+  EXPECT_DOUBLE_EQ(interval({{"brownian_times", 0.01}}).get<double>(), 0.05);
+  EXPECT_DOUBLE_EQ(interval({{"strain", 0.1}, {"time", 0.01}}).get<double>(), 0.01)
+      << "the first that is reached";
+  EXPECT_THROW(interval(Json::object()), InputError);
+}
+
+TEST(Trajectory, IsRefusedWhereNobodyCouldKeepIt) {
+  const Scene scene = read_scene(scene_with_trajectory(), "scene.json");
+  const auto check = trajectory().check;
+  EXPECT_NO_THROW(check(scene, {0.002, 50'000, 8}, "scene.json"));
+  EXPECT_THROW(check(scene, {0.002, 50'001, 8}, "scene.json"), InputError);
+  // 10^6 spheres of 76 bytes and 6 contacts of 21 each, in 4 GiB: 21 frames.
+  Scene large = scene;
+  large.particles.count = 1'000'000;
+  EXPECT_NO_THROW(check(large, {0.002, 21, 8}, "scene.json"));
+  EXPECT_THROW(check(large, {0.002, 22, 8}, "scene.json"), InputError);
+  EXPECT_THROW(read_scene(scene_with_trajectory({{"contact", nullptr}}), "scene.json"), InputError);
+}
+
+}  // namespace
+}  // namespace peclet::engine
