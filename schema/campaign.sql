@@ -1,11 +1,11 @@
--- The database of one campaign, version 6; its views are in views.sql. One process writes it (the one that holds
+-- The database of one campaign, version 7; its views are in views.sql. One process writes it (the one that holds
 -- campaign.lock); everybody else opens it read-only. schema/README.md explains the tables and views to pandas
 -- users. A version-N.sql makes version N of the one before it and leaves the same tables as this file.
 --
 -- Times ending in _at are wall-clock times in UTC, for people to look at: no decision is made from them.
 
 PRAGMA application_id = 1346587724;  -- "PCLL" as a big-endian integer
-PRAGMA user_version = 6;
+PRAGMA user_version = 7;
 
 -- What a verdict was reached for. Old targets stay, with the looks that were made for them.
 CREATE TABLE target (
@@ -100,6 +100,24 @@ CREATE TABLE result (
   PRIMARY KEY (point_id, seed),
   FOREIGN KEY (point_id, seed) REFERENCES realisation
 ) STRICT;
+
+-- The quantities of a result that are no larger than a tensor, described as results describe their "quantities".
+CREATE TABLE number_layout (
+  layout_id  INTEGER PRIMARY KEY,
+  quantities TEXT NOT NULL UNIQUE CHECK (json_valid(quantities))
+) STRICT;
+
+-- Their numbers in each completed result, as little-endian doubles (NaN: null): quantity by quantity in the order of
+-- their names, of a mean its elements and then those of its control variate, of a ratio its numerators and then its
+-- denominators. So the means of a point are made without inflating results.
+CREATE TABLE numbers (
+  point_id  INTEGER NOT NULL,
+  seed      INTEGER NOT NULL,
+  layout_id INTEGER NOT NULL REFERENCES number_layout,
+  numbers   BLOB    NOT NULL,
+  PRIMARY KEY (point_id, seed),
+  FOREIGN KEY (point_id, seed) REFERENCES realisation
+) STRICT, WITHOUT ROWID;
 
 -- A file that a realisation left beside its result. Kept ones are in files/, in the folder of point and seed; others
 -- were thrown away as the campaign asked for. Their engine is that of the realisation.

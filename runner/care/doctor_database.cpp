@@ -8,6 +8,7 @@
 #include "runner/care/doctor.h"
 #include "runner/database/checked_look.h"
 #include "runner/database/further_values.h"
+#include "runner/database/number_book.h"
 #include "runner/database/result_text.h"
 #include "runner/folder/realisation_result.h"
 #include "runner/statistics/cohorts.h"
@@ -43,6 +44,7 @@ void run_again(Database& owner, const CampaignDirectory& directory, std::int64_t
   }
   Transaction booking(connection);
   for (const char* const sql : {"DELETE FROM result WHERE point_id = ? AND seed = ?",
+                                "DELETE FROM numbers WHERE point_id = ? AND seed = ?",
                                 "DELETE FROM file WHERE point_id = ? AND seed = ?",
                                 "UPDATE realisation SET state = 'queued', cause = NULL, value = NULL, "
                                 "control = NULL, content_sha256 = NULL, "
@@ -77,7 +79,8 @@ void remove_impossible_seeds(Database& owner, const CampaignDirectory& directory
                       fmt::format("point-{}-seed-{}-impossible.json", stored.integer(2), stored.integer(3)),
                   readable(stored));
   }
-  for (const char* const table : {"result", "file", "lease", "attempt", "bundle_seed", "realisation"}) {
+  for (const char* const table :
+       {"result", "numbers", "file", "lease", "attempt", "bundle_seed", "realisation"}) {
     Statement(connection, fmt::format("DELETE FROM {} WHERE {}", table, impossible))
         .bind(most_realisations)
         .run();
@@ -104,6 +107,8 @@ std::string fault_of(Database& database, const PointRecord& point, const Realisa
         (observed.value != record.value || observed.control != record.control || further != record.further)) {
       return "has another value than its result";
     }
+    if (!NumberBook(database.connection()).agrees(point.id, record.seed, result.document))
+      return "has other numbers than its result";
     return "";
   } catch (const ResultError& error) {
     return fmt::format("has a result that is none: {}", error.what());

@@ -10,5 +10,6 @@ extern const char* const version_3_sql;  // from version 2
 extern const char* const version_4_sql;  // from version 3
 extern const char* const version_5_sql;  // from version 4
 extern const char* const version_6_sql;  // from version 5
+extern const char* const version_7_sql;  // from version 6
 
 }  // namespace peclet::runner

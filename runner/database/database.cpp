@@ -20,7 +20,7 @@ namespace {
 
 // As in schema/campaign.sql.
 constexpr std::int64_t our_application = 1346587724;
-constexpr std::int64_t newest_version = 6;
+constexpr std::int64_t newest_version = 7;
 
 constexpr std::array<std::pair<SeedState, const char*>, 5> state_names{
     {{SeedState::queued, "queued"},

@@ -8,6 +8,8 @@
 #include "contract/integrity_error.h"
 #include "runner/database/campaign_sql.h"
 #include "runner/database/database_copy.h"
+#include "runner/database/number_book.h"
+#include "runner/database/result_text.h"
 #include "runner/folder/realisation_result.h"
 
 namespace peclet::runner {
@@ -41,6 +43,23 @@ void take_parts_of_windows(Connection& connection) {
   }
 }
 
+// What version 6 did not take from the results. One that cannot be read stays without numbers: the doctor
+// says so, and has the seed run again.
+void take_numbers(Connection& connection) {
+  Statement stored(connection,
+                   "SELECT document, text, point_id, seed FROM result LEFT JOIN dictionary USING (point_id)");
+  while (stored.step()) {
+    try {
+      const Json result = Json::parse(result_text(stored, 0, 1));
+      store_numbers(connection, stored.integer(2), static_cast<int>(stored.integer(3)), result);
+    } catch (const IntegrityError&) {
+      continue;
+    } catch (const Json::exception&) {
+      continue;
+    }
+  }
+}
+
 void change_tables(Connection& connection, std::int64_t from) {
   Transaction migration(connection);
   drop_views(connection);
@@ -55,6 +74,10 @@ void change_tables(Connection& connection, std::int64_t from) {
     if (has_column(connection, "target", "criterion"))
       connection.execute("ALTER TABLE target RENAME COLUMN criterion TO relative_tolerance");
     connection.execute(version_6_sql);
+  }
+  if (from < 7) {
+    connection.execute(version_7_sql);
+    take_numbers(connection);
   }
   connection.execute(views_sql);
   if (const std::string found = damage(connection); !found.empty()) {

@@ -100,14 +100,14 @@ std::string export_csv(Database& database, bool canonical) {
   }
   std::vector<std::vector<std::string>> rows;
   ScalarColumns scalars;
+  NumberBook numbers(database.connection());
   for (const PointSummary& point : points) {
     std::vector<std::string> fields{csv_text(point.point.label), point.point.hash};
     append(fields, settings.fields(point.point));
     const std::optional<Look> look = checked_look(database, point.point, target);
     append(fields, look_fields(look));
     if (!canonical) append(fields, full_fields(point));
-    scalars.add(rows.size(),
-                point_estimates(database, point.point, look, QuantityEstimates::Wanted::scalars));
+    scalars.add(rows.size(), scalar_estimates(numbers, point.point, look));
     rows.push_back(std::move(fields));
   }
   append(titles, scalars.titles(titles));

@@ -5,11 +5,22 @@
 namespace peclet::runner {
 
 std::vector<QuantityEstimate> point_estimates(Database& database, const PointRecord& point,
-                                              const std::optional<Look>& look,
-                                              QuantityEstimates::Wanted wanted) {
-  QuantityEstimates estimates(wanted);
+                                              const std::optional<Look>& look) {
+  QuantityEstimates estimates;
   if (look) {
     database.for_each_result(point.id, look->seeds, [&](int, const Json& result) { estimates.add(result); });
+  }
+  return estimates.estimates();
+}
+
+std::vector<QuantityEstimate> scalar_estimates(NumberBook& numbers, const PointRecord& point,
+                                               const std::optional<Look>& look) {
+  QuantityEstimates estimates(QuantityEstimates::Wanted::scalars);
+  if (look) {
+    numbers.for_each(point.id, look->seeds,
+                     [&](int, const NumberLayout& layout, std::span<const double> of_seed) {
+                       estimates.add(layout, of_seed);
+                     });
   }
   return estimates.estimates();
 }

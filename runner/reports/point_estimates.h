@@ -7,14 +7,17 @@
 #include <vector>
 
 #include "runner/database/database_summary.h"
+#include "runner/database/number_book.h"
 #include "runner/statistics/quantity_estimates.h"
 
 namespace peclet::runner {
 
 // Of the seeds of the look; nothing before the first one.
-std::vector<QuantityEstimate> point_estimates(
-    Database& database, const PointRecord& point, const std::optional<Look>& look,
-    QuantityEstimates::Wanted wanted = QuantityEstimates::Wanted::all);
+std::vector<QuantityEstimate> point_estimates(Database& database, const PointRecord& point,
+                                              const std::optional<Look>& look);
+// The same of scalars alone, for which no result is read.
+std::vector<QuantityEstimate> scalar_estimates(NumberBook& numbers, const PointRecord& point,
+                                               const std::optional<Look>& look);
 
 // One column for each pointer that the sweep has set at any point.
 class SettingColumns {

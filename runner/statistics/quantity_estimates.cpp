@@ -13,22 +13,6 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-void flatten(const Json& value, std::vector<double>& numbers) {
-  if (value.is_array()) {
-    for (const Json& element : value) flatten(element, numbers);
-  } else {
-    numbers.push_back(value.is_number() ? value.get<double>() : nan);
-  }
-}
-
-// The numbers at a path of the means; one alone, or a null, stands for all `elements`.
-std::vector<double> numbers_at(const Json& mean, const std::string& path, std::size_t elements) {
-  std::vector<double> numbers;
-  if (const Json* const value = at_path(mean, path)) flatten(*value, numbers);
-  if (numbers.size() == elements) return numbers;
-  return std::vector<double>(elements, numbers.size() == 1 ? numbers.front() : nan);
-}
-
 bool is_like(const Quantity& one, const Quantity& other) {
   const auto same_axis = [](const QuantityAxis& a, const QuantityAxis& b) {
     return a.name == b.name && a.unit == b.unit && a.values == b.values;
@@ -109,23 +93,31 @@ QuantityEstimates::Sums& QuantityEstimates::sums_of(const Quantity& quantity) {
   return *sums_.insert(place, std::move(sums));
 }
 
-void QuantityEstimates::add(Sums& sums, const Json& mean) {
+void QuantityEstimates::add_numbers(Sums& sums, std::span<const double> numbers) {
   const Quantity& quantity = sums.quantity;
   const std::size_t elements = quantity.elements();
+  const std::span<const double> values = numbers.first(elements), second = numbers.subspan(elements);
   if (quantity.ratio) {
-    const std::string object = quantity.name + '/';
-    sums.numerators.push_back(numbers_at(mean, object + quantity.ratio->numerator, elements));
-    sums.denominators.push_back(numbers_at(mean, object + quantity.ratio->denominator, elements));
+    sums.numerators.emplace_back(values.begin(), values.end());
+    sums.denominators.emplace_back(second.begin(), second.end());
     return;
   }
-  const std::vector<double> values = numbers_at(mean, quantity.name, elements);
   for (std::size_t k = 0; k < elements; ++k) sums.plain[k].add(values[k]);
   if (!quantity.control) return;
-  const std::vector<double> controls = numbers_at(mean, quantity.control->quantity, elements);
   // As in a look: a value without its control counts as it is.
   for (std::size_t k = 0; k < elements; ++k) {
-    sums.controlled[k].add(values[k] + (std::isnan(controls[k]) ? 0 : controls[k] - quantity.control->mean));
+    sums.controlled[k].add(values[k] + (std::isnan(second[k]) ? 0 : second[k] - quantity.control->mean));
   }
+}
+
+void QuantityEstimates::add(Sums& sums, const Json& mean) {
+  std::vector<double> numbers;
+  append_numbers(sums.quantity, mean, numbers);
+  add_numbers(sums, numbers);
+}
+
+bool QuantityEstimates::is_wanted(const Quantity& quantity) const {
+  return wanted_ == Wanted::all || quantity.axes.empty();
 }
 
 void QuantityEstimates::add(const Json& result) {
@@ -140,7 +132,7 @@ void QuantityEstimates::add(const Json& result) {
     return;
   }
   for (const Quantity& quantity : quantities_of(result)) {
-    if (wanted_ == Wanted::scalars && !quantity.axes.empty()) continue;
+    if (!is_wanted(quantity)) continue;
     Sums& sums = sums_of(quantity);
     if (is_like(sums.quantity, quantity)) {
       add(sums, mean);
@@ -149,6 +141,22 @@ void QuantityEstimates::add(const Json& result) {
     }
   }
   if (is_first && descriptions != result.end()) descriptions_ = *descriptions;
+}
+
+void QuantityEstimates::add(const NumberLayout& layout, std::span<const double> numbers) {
+  for (const Quantity& quantity : layout.quantities()) {
+    const std::span<const double> its = numbers.first(numbers_needed(quantity));
+    numbers = numbers.subspan(its.size());
+    if (!is_wanted(quantity)) continue;
+    Sums& sums = sums_of(quantity);
+    // To compare every axis for every seed would take longer than all else.
+    if (sums.followed != &layout && is_like(sums.quantity, quantity)) sums.followed = &layout;
+    if (sums.followed == &layout) {
+      add_numbers(sums, its);
+    } else {
+      ++sums.unlike;
+    }
+  }
 }
 
 std::vector<QuantityEstimate> QuantityEstimates::estimates() const {

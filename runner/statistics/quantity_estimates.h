@@ -10,10 +10,12 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "contract/json.h"
+#include "runner/statistics/number_layout.h"
 #include "runner/statistics/quantities.h"
 #include "runner/statistics/statistics.h"
 
@@ -35,6 +37,9 @@ class QuantityEstimates {
   // One more result, in the order of the seeds; one that has not completed adds nothing. Memory: a few
   // numbers for each element of a mean, two for each element and seed of a ratio.
   void add(const Json& result);
+  // The same of numbers that were taken from a result before; quantities that the layout leaves out stay out.
+  // A layout must outlive the last call.
+  void add(const NumberLayout& layout, std::span<const double> numbers);
 
   // In the order of the names.
   std::vector<QuantityEstimate> estimates() const;
@@ -55,10 +60,13 @@ class QuantityEstimates {
     std::vector<Running> plain, controlled;
     std::vector<std::vector<double>> numerators, denominators;  // by seed
     int unlike = 0;
+    const NumberLayout* followed = nullptr;  // describes the quantity as it is described here
   };
 
+  bool is_wanted(const Quantity& quantity) const;
   Sums& sums_of(const Quantity& quantity);
   static void add(Sums& sums, const Json& mean);
+  static void add_numbers(Sums& sums, std::span<const double> numbers);
 
   Wanted wanted_;
   Json descriptions_;       // of the first result, which the sums follow

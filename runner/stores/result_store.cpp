@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runner/database/further_values.h"
+#include "runner/database/number_book.h"
 #include "runner/database/result_text.h"
 #include "runner/statistics/look_json.h"
 #include "runner/stores/engine_row.h"
@@ -106,6 +107,7 @@ void ResultStore::store_numbers(std::int64_t point, const RealisationResult& res
       .bind(further)
       .run();
   store_result_text(connection_, point, result.seed, text_without_engine(document), result.completed());
+  runner::store_numbers(connection_, point, result.seed, document);
 }
 
 void ResultStore::store_looks(std::int64_t point, const std::vector<Look>& looks) {

@@ -80,6 +80,9 @@ TEST_F(Doctor, FindsWhatContradictsItself) {
       {"DELETE FROM dictionary", "dictionary-altered", "integrity"},
       {"DELETE FROM result WHERE seed = 1", "result-altered", "integrity"},
       {"UPDATE realisation SET value = value + 1 WHERE seed = 1", "result-altered", "integrity"},
+      {"DELETE FROM numbers WHERE seed = 1", "result-altered", "integrity"},
+      {"UPDATE numbers SET numbers = zeroblob(length(numbers)) WHERE seed = 1", "result-altered",
+       "integrity"},
       {"UPDATE look SET mean = mean + 1", "look-differs", "integrity"},
       {"UPDATE point SET suspect = 1", "suspect", "integrity"},
       {"PRAGMA foreign_keys = OFF; DELETE FROM engine", "database-damaged", "integrity"},
@@ -120,7 +123,7 @@ TEST_F(Doctor, RepairsAnAlteredResultByRunningItsSeedAgain) {
 // Taken in by a peclet that took any number for a seed.
 TEST_F(Doctor, ASeedThatNoCampaignCanHaveDoesNotCountAndIsRemoved) {
   const std::string before = exported();
-  for (const std::string table : {"realisation", "result"}) {
+  for (const std::string table : {"realisation", "result", "numbers"}) {
     edit("PRAGMA foreign_keys = OFF; CREATE TEMP TABLE copy AS SELECT * FROM " + table +
          " WHERE seed = 1; UPDATE copy SET seed = 2147483647; INSERT INTO " + table + " SELECT * FROM copy");
   }

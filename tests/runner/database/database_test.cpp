@@ -28,7 +28,7 @@ TEST_F(Databases, IsDurableStrictAndOurs) {
   EXPECT_EQ(connection.text("PRAGMA journal_mode"), "wal");
   EXPECT_EQ(connection.integer("PRAGMA synchronous"), 2);  // FULL
   EXPECT_EQ(connection.integer("PRAGMA foreign_keys"), 1);
-  EXPECT_EQ(connection.integer("PRAGMA user_version"), 6);
+  EXPECT_EQ(connection.integer("PRAGMA user_version"), 7);
   EXPECT_EQ(connection.integer("PRAGMA application_id"), 0x50434c4c);  // "PCLL"
   EXPECT_EQ(connection.integer("PRAGMA page_size"), 16384);
   EXPECT_EQ(connection.integer(
@@ -53,13 +53,13 @@ TEST_F(Databases, SomebodyElsesDatabaseIsLeftAlone) {
 }
 
 TEST_F(Databases, ANewerVersionAsksForANewerProgram) {
-  Database::open_owner(path()).connection().execute("PRAGMA user_version = 7");
+  Database::open_owner(path()).connection().execute("PRAGMA user_version = 8");
   for (const bool owner : {true, false}) {
     try {
       owner ? Database::open_owner(path()) : Database::open_reader(path());
       FAIL() << "opened";
     } catch (const IntegrityError& error) {
-      EXPECT_NE(std::string(error.what()).find("newer peclet (version 7"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("newer peclet (version 8"), std::string::npos) << error.what();
     }
   }
 }

@@ -8,6 +8,7 @@
 #include "contract/input_error.h"
 #include "runner/database/campaign_sql.h"
 #include "runner/database/checked_look.h"
+#include "runner/database/number_book.h"
 #include "runner/reports/export.h"
 #include "tests/runner/runner_fixture.h"
 
@@ -90,7 +91,7 @@ std::string indices(Connection& connection) {
 void expect_newest_layout(const std::filesystem::path& path) {
   Database old = Database::open_owner(path);
   Database fresh = Database::open_owner(path.parent_path() / "fresh.db");
-  EXPECT_EQ(old.connection().integer("PRAGMA user_version"), 6);
+  EXPECT_EQ(old.connection().integer("PRAGMA user_version"), 7);
   EXPECT_EQ(columns(old.connection()), columns(fresh.connection()));
   EXPECT_EQ(indices(old.connection()), indices(fresh.connection()));
   EXPECT_EQ(old.connection().text("PRAGMA integrity_check"), "ok");
@@ -163,6 +164,26 @@ TEST_F(Migration, KeepsWhatTheCampaignHadAndTakesWhatItLacked) {
     EXPECT_NEAR(outcome.first_half, result["blocks"]["relative_viscosity"][0].get<double>(), 1e-12);
   }
   EXPECT_FALSE(database.looks(point.id).empty());
+}
+
+TEST_F(Migration, TakesTheNumbersOfEachResult) {
+  Database database = Database::open_owner(path());
+  const PointRecord point = database.points().at(0);
+  NumberBook book(database.connection());
+  for (const int seed : {0, 1, 3})
+    EXPECT_TRUE(book.agrees(point.id, seed, database.result(point.id, seed).value()));
+  // Of the result that ended early there are none.
+  EXPECT_EQ(database.connection().integer("SELECT count(*) FROM numbers"), 3);
+}
+
+// The doctor is to find them.
+TEST_P(MigrationFromVersion5, LeavesResultsThatCannotBeReadWithoutNumbers) {
+  Connection(path().string(), Connection::Access::read_write, 0)
+      .execute(
+          "UPDATE result SET document = zeroblob(9) WHERE seed = 1; UPDATE result SET document = '{}' WHERE "
+          "seed = 0");
+  Database database = Database::open_owner(path());
+  EXPECT_EQ(database.connection().integer("SELECT count(*) FROM numbers"), 1);
 }
 
 // Looks that an earlier rule made are read, checked and shown by it, until the campaign is run again.

@@ -212,7 +212,8 @@ TEST_F(Dispatching, AResultWithAWarningThatIsNoneDoesNotCount) {
     EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM realisation WHERE value > 11"), 0);
     EXPECT_EQ(database_.looks(1).back().look.verdict, Verdict::converged);
     database_.connection().execute(
-        "DELETE FROM attempt; DELETE FROM look; DELETE FROM result; DELETE FROM dictionary; DELETE FROM "
+        "DELETE FROM attempt; DELETE FROM look; DELETE FROM numbers; DELETE FROM result; DELETE FROM "
+        "dictionary; DELETE FROM "
         "realisation");
   }
 }
