@@ -20,6 +20,14 @@ void require_library() {
   if (!ready) throw std::runtime_error("libsodium cannot be initialised");
 }
 
+Digest digest_of(std::string_view bytes) {
+  require_library();
+  Digest digest{};
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes are bytes
+  crypto_hash_sha256(digest.data(), reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  return digest;
+}
+
 std::string hexadecimal(const Digest& digest) {
   std::string text(2 * digest.size() + 1, '\0');  // sodium ends it with a zero
   sodium_bin2hex(text.data(), text.size(), digest.data(), digest.size());
@@ -29,12 +37,15 @@ std::string hexadecimal(const Digest& digest) {
 
 }  // namespace
 
-std::string sha256(std::string_view bytes) {
-  require_library();
-  Digest digest{};
-  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes are bytes
-  crypto_hash_sha256(digest.data(), reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
-  return hexadecimal(digest);
+std::string sha256(std::string_view bytes) { return hexadecimal(digest_of(bytes)); }
+
+std::string sha256_base64(std::string_view bytes) {
+  const Digest digest = digest_of(bytes);
+  constexpr int variant = sodium_base64_VARIANT_ORIGINAL;
+  std::string text(sodium_base64_ENCODED_LEN(digest.size(), variant), '\0');  // with the zero at its end
+  sodium_bin2base64(text.data(), text.size(), digest.data(), digest.size(), variant);
+  text.pop_back();
+  return text;
 }
 
 std::string sha256_of_open(int file, const std::filesystem::path& path) {

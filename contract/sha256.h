@@ -8,6 +8,8 @@
 namespace peclet {
 
 std::string sha256(std::string_view bytes);
+// The same in base64, as web browsers want it.
+std::string sha256_base64(std::string_view bytes);
 
 // Of what is left to read of an open file, which need not fit into memory. Throws std::system_error naming
 // the path.

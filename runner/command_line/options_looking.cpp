@@ -7,9 +7,9 @@
 #include "runner/command_line/verb_set.h"
 #include "runner/folder/owner_lock.h"
 #include "runner/owner/open_campaign.h"
+#include "runner/page/page_html.h"
 #include "runner/reports/explain.h"
 #include "runner/reports/export.h"
-#include "runner/reports/report.h"
 #include "runner/reports/results.h"
 #include "runner/reports/status.h"
 #include "runner/verbs/files.h"
@@ -208,7 +208,7 @@ must not enter a mean: which seeds end first depends on the machine. Also while 
 
 void write_report(const ReportOptions& options) {
   OpenCampaign open = open_campaign(options.campaign, options.directory);
-  deliver(report_html(open.database), options.output, options.quiet);
+  deliver(report_html(open.database, current_owner(open.directory)), options.output, options.quiet);
 }
 
 void add_report(VerbSet& verbs) {
@@ -217,10 +217,11 @@ void add_report(VerbSet& verbs) {
       verbs.add("report", "Make one HTML page of a campaign, for a colleague or a notebook",
                 "peclet report flow-curve.json --output flow-curve.html",
                 page(R"(
-The page holds what was asked, the table of estimates with their intervals, a chart over the swept
-variable, lost seeds by cause, what every mark means, where the numbers come from and the commands that
-make them again. It needs no other file and no network, reads well on paper, and depends on the database
-alone: the same one gives the same bytes.
+The page has every measured quantity over any swept parameter with its intervals, how the mean of each
+point came about, tables that sort, lost seeds by cause, what every mark means, where the numbers come from
+and the commands that make them again. Every chart can be saved as CSV, SVG and a script of matplotlib. It
+is one file that needs no other and no network, and runs in a browser with JavaScript; print it from there.
+A database at rest gives the same bytes at any time.
 )",
                      {}, {0, 1, 2, 6}));
   add_file_or_folder(verb, options->campaign);

@@ -57,6 +57,7 @@ TEST_F(DurableFile, ManyWritersOfOneFileNeverMixTheirBytes) {
 // FIPS 180-2, appendix B.1 and B.3.
 TEST_F(DurableFile, Sha256IsThePublishedOne) {
   EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256_base64("abc"), "ungWv48Bz+pBQUDeXa4iI7ADYaOWF3qctBD/YfIAFa0=");
   write_durably(folder() / "f", std::string(1'000'000, 'a'));
   EXPECT_EQ(sha256_of_file(folder() / "f"),
             "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");

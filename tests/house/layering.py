@@ -34,6 +34,7 @@ RUNNER = [
             "batch",
             "care",
             "reports",
+            "page",
             "verbs",
             "command_line",
         )

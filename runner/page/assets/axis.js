@@ -1,0 +1,90 @@
+
+// The part of the whole that the widest gap between neighbours takes. Requires numbers in order, not all equal.
+function widestGap(numbers) {
+  let widest = 0;
+  for (let i = 1; i < numbers.length; ++i) widest = Math.max(widest, numbers[i] - numbers[i - 1]);
+  return widest / (numbers[numbers.length - 1] - numbers[0]);
+}
+
+// Whether positive numbers lie more evenly on a logarithmic axis, over a factor of five or more: a viscosity that
+// diverges, Péclet numbers of 1, 10, 100; not volume fractions of 0.1, 0.2 ... 0.6.
+function isLogarithmic(values) {
+  const leastRatio = 5;  // below, there are too few round numbers
+  const numbers = [...values].sort((a, b) => a - b);
+  if (numbers.length === 0 || numbers[0] <= 0 || numbers[numbers.length - 1] < leastRatio * numbers[0]) return false;
+  return widestGap(numbers.map(Math.log)) < widestGap(numbers);
+}
+
+// Where a number lies between `begin` and `end`, and which numbers are written beside it.
+class Axis {
+  // From `low` to `high` with a margin on both sides; of a logarithmic one both are positive. `categories`: words that
+  // stand at 0, 1, 2 ... in the place of numbers.
+  constructor({ log = false, low, high, begin, end, mostTicks = 9, categories = null, margin = 0.05 }) {
+    Object.assign(this, { log, begin, end, mostTicks, categories });
+    this.low = log ? Math.log10(low) : low;
+    this.high = log ? Math.log10(high) : high;
+    if (categories) [this.low, this.high] = [-0.5, categories.length - 0.5];
+    const size = Math.max(Math.abs(this.low), Math.abs(this.high));
+    let width = this.high - this.low;
+    if (width <= 1e-9 * size || width === 0) width = size > 0 ? size : 1;
+    this.low -= margin * width;
+    this.high += margin * width;
+  }
+
+  place(value) {
+    const number = this.log ? Math.log10(value) : value;
+    return this.begin + (number - this.low) / (this.high - this.low) * (this.end - this.begin);
+  }
+
+  // The same, but not beyond the ends; what has no logarithm is at the beginning.
+  clamped(value) {
+    if (this.log && !(value > 0)) return this.begin;
+    const [from, to] = this.begin < this.end ? [this.begin, this.end] : [this.end, this.begin];
+    return Math.min(to, Math.max(from, this.place(value)));
+  }
+
+  ticks() {
+    if (this.categories) return this.categories.map((text, value) => ({ value, text }));
+    return (this.log ? this.logarithmicTicks() : this.linearTicks()).map(value => ({ value, text: Format.plain(value) }));
+  }
+
+  // 1, 2 or 5 times a power of ten apart.
+  linearTicks() {
+    for (let unit = 10 ** (Math.floor(Math.log10(this.high - this.low)) - 1); ; unit *= 10) {
+      for (const multiple of [1, 2, 5]) {
+        const step = multiple * unit, first = Math.ceil(this.low / step), last = Math.floor(this.high / step);
+        if (last - first >= this.mostTicks) continue;
+        return Array.from({ length: last - first + 1 }, (_, i) => Number(((first + i) * step).toPrecision(12)));
+      }
+    }
+  }
+
+  // Powers of ten, every `stride`-th, times each of `multiples`.
+  powers(stride, multiples) {
+    const ticks = [];
+    for (let power = Math.floor(this.low); power <= this.high + 1; ++power) {
+      if (power % stride !== 0) continue;
+      for (const multiple of multiples) {
+        const value = Number(`${multiple}e${power}`), place = Math.log10(value);
+        if (place >= this.low && place <= this.high) ticks.push(value);
+      }
+    }
+    return ticks;
+  }
+
+  logarithmicTicks() {
+    for (const multiples of [[1, 2, 5], [1], [1, 2, 3, 4, 5, 6, 7, 8, 9], [1, 2, 3, 5, 7]]) {
+      const ticks = this.powers(1, multiples);
+      if (ticks.length >= 3 && ticks.length <= this.mostTicks) return ticks;
+    }
+    if (this.high - this.low < 1) {  // less than a factor of ten: as on a linear axis
+      const linear = new Axis({ low: 10 ** this.low, high: 10 ** this.high, begin: 0, end: 1, margin: 0,
+        mostTicks: this.mostTicks });
+      return linear.linearTicks().filter(value => value > 0);
+    }
+    for (let stride = 1; ; ++stride) {
+      const ticks = this.powers(stride, [1]);
+      if (ticks.length <= this.mostTicks) return ticks;
+    }
+  }
+}

@@ -1,0 +1,116 @@
+
+// Elements, marks and text of charts. Text only ever enters as text, so nothing in a name is obeyed.
+const Svg = {
+  element(name, attributes = {}, ...children) {
+    const made = document.createElementNS('http://www.w3.org/2000/svg', name);
+    for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+    made.append(...children);
+    return made;
+  },
+
+  number(value) { return String(Math.round(value * 10) / 10); },
+
+  line(style, x1, y1, x2, y2) {
+    const n = Svg.number;
+    return Svg.element('line', { class: style, x1: n(x1), y1: n(y1), x2: n(x2), y2: n(y2) });
+  },
+
+  path(style, places, closed = false) {
+    const d = places.map(([x, y], i) => `${i ? 'L' : 'M'}${Svg.number(x)} ${Svg.number(y)}`).join('');
+    return Svg.element('path', { class: style, d: d + (closed ? 'Z' : '') });
+  },
+
+  // Parts of Format.symbol() one after another; lowered and raised ones are smaller.
+  text(parts, attributes) {
+    const made = Svg.element('text', attributes);
+    let shift = 0;
+    for (const part of typeof parts === 'string' ? [{ text: parts, level: 0 }] : parts) {
+      const wanted = part.level > 0 ? -5 : part.level < 0 ? 4 : 0;
+      const span = Svg.element('tspan', part.level ? { 'font-size': 10 } : {}, part.text);
+      if (wanted !== shift) span.setAttribute('dy', wanted - shift);
+      shift = wanted;
+      made.append(span);
+    }
+    return made;
+  },
+
+  // What text of 13 px is expected to take; fonts differ.
+  width(parts) {
+    return (typeof parts === 'string' ? [{ text: parts, level: 0 }] : parts)
+      .reduce((sum, part) => sum + part.text.length * (part.level ? 5.4 : 7), 0);
+  },
+
+  // Corners around the middle, for a radius of 1; null: a circle. As many as are not confused with each other.
+  shapes: [null, [[-.9, -.9], [.9, -.9], [.9, .9], [-.9, .9]], [[0, -1.3], [1.3, 0], [0, 1.3], [-1.3, 0]],
+    [[0, -1.2], [1.2, 1], [-1.2, 1]], [[0, 1.2], [1.2, -1], [-1.2, -1]],
+    [[-.4, -1.2], [.4, -1.2], [.4, -.4], [1.2, -.4], [1.2, .4], [.4, .4], [.4, 1.2], [-.4, 1.2], [-.4, .4], [-1.2, .4],
+      [-1.2, -.4], [-.4, -.4]],
+    [[-1.2, 0], [-.6, -1.05], [.6, -1.05], [1.2, 0], [.6, 1.05], [-.6, 1.05]]],
+  colours: 8,
+
+  mark(series, x, y, kind, radius = 4.5) {
+    const style = `mark s${series % Svg.colours} ${kind === 'decided' ? 'solid' : 'hollow'}`;
+    const shape = Svg.shapes[series % Svg.shapes.length], n = Svg.number;
+    if (!shape) return Svg.element('circle', { class: style, cx: n(x), cy: n(y), r: radius });
+    return Svg.path(style, shape.map(([dx, dy]) => [x + radius * dx, y + radius * dy]), true);
+  },
+
+  // A file of its own, in the colours of a light page and without variables, which drawing programs do not know.
+  standalone(svg) {
+    const copy = svg.cloneNode(true), colours = new Map();
+    copy.removeAttribute('tabindex');
+    for (const extra of copy.querySelectorAll('.target, .chosen')) extra.remove();
+    let style = '';
+    for (const rule of document.styleSheets[0].cssRules) {
+      if (rule.selectorText === ':root') {
+        for (const name of rule.style) if (name.startsWith('--')) colours.set(name, rule.style.getPropertyValue(name).trim());
+      } else if (rule.selectorText && rule.selectorText.startsWith('.chart')) {
+        style += rule.cssText.replace(/var\((--\w+)\)/g, (_, name) => colours.get(name)) + '\n';
+      }
+    }
+    copy.setAttribute('xmlns', 'http://www.w3.org/2000/svg');
+    const box = copy.getAttribute('viewBox').split(' ');
+    copy.setAttribute('width', box[2]);
+    copy.setAttribute('height', box[3]);
+    copy.prepend(Svg.element('style', {}, style),
+      Svg.element('rect', { width: box[2], height: box[3], fill: colours.get('--page') }));
+    return new XMLSerializer().serializeToString(copy) + '\n';
+  },
+};
+
+// What a chart or table can be saved as. Links hold their files, so that they work without a network or a server.
+const Saving = {
+  // As RFC 4180 quotes; what a spreadsheet would run as a formula stands behind an apostrophe.
+  csvField(value) {
+    if (value === null || value === undefined) return '';
+    if (typeof value !== 'string') return Format.isNumber(value) ? String(value) : JSON.stringify(value);
+    const safe = /^[=+\-@\t\r]/.test(value) ? `'${value}` : value;
+    return /[",\r\n]/.test(safe) ? `"${safe.replace(/"/g, '""')}"` : safe;
+  },
+
+  csv({ columns, rows }) {
+    return [columns, ...rows].map(row => row.map(Saving.csvField).join(',') + '\n').join('');
+  },
+
+  // Text as a JSON string of ASCII, which Python reads as the same string.
+  ascii(value) {
+    return JSON.stringify(value).replace(/[^\x20-\x7e]/g, c => `\\u${c.charCodeAt(0).toString(16).padStart(4, '0')}`);
+  },
+
+  fileName(text) { return text.replace(/[^A-Za-z0-9._-]+/g, '-').replace(/^[-.]+|-+$/g, '').slice(0, 80) || 'peclet'; },
+
+  link(text, name, type, content) {
+    const link = document.createElement('a');
+    link.textContent = text;
+    link.download = Saving.fileName(name.replace(/\.\w+$/, '')) + /\.\w+$/.exec(name)[0];
+    link.href = `data:${type};charset=utf-8,${encodeURIComponent(content)}`;
+    return link;
+  },
+
+  links(...links) {
+    const place = document.createElement('p');
+    place.className = 'saves faint';
+    place.append('Save as: ', ...links);
+    return place;
+  },
+};

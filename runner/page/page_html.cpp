@@ -1,0 +1,80 @@
+#include "runner/page/page_html.h"
+
+#include <array>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "contract/sha256.h"
+#include "runner/page/page_assets.h"
+#include "runner/page/page_data.h"
+#include "runner/text/html.h"
+
+namespace peclet::runner {
+namespace {
+
+// 'sha256-...', as a Content-Security-Policy names an inline style or script by its content.
+std::string policy_hash(std::string_view content) { return "'sha256-" + sha256_base64(content) + '\''; }
+
+// JSON that may stand in a script element: nothing in it can end the element or begin another one.
+std::string inert(const Json& data) {
+  std::string safe;
+  for (const char c : data.dump()) {
+    switch (c) {
+      case '<':
+        safe += "\\u003c";
+        break;
+      case '>':
+        safe += "\\u003e";
+        break;
+      case '&':
+        safe += "\\u0026";
+        break;
+      default:
+        safe += c;
+    }
+  }
+  return safe;
+}
+
+// The template with what belongs at each mark. What is put in is not looked through again.
+std::string filled(std::string_view text,
+                   const std::array<std::pair<std::string_view, std::string>, 5>& marks) {
+  std::string page;
+  while (!text.empty()) {
+    const std::size_t at = text.find('@');
+    page += text.substr(0, at);
+    if (at == std::string_view::npos) break;
+    text.remove_prefix(at);
+    bool found = false;
+    for (const auto& [mark, content] : marks) {
+      if (!text.starts_with(mark)) continue;
+      page += content;
+      text.remove_prefix(mark.size());
+      found = true;
+      break;
+    }
+    if (!found)
+      throw std::logic_error("the page has a mark that is none: " + std::string(text.substr(0, 20)));
+  }
+  return page;
+}
+
+}  // namespace
+
+std::string page_html(const Json& data) {
+  const std::string style = page_style, script = page_script;
+  const std::string policy = "default-src 'none'; style-src " + policy_hash(style) + "; script-src " +
+                             policy_hash(script) + "; base-uri 'none'; form-action 'none'";
+  return filled(page_template, {{{"@NAME@", escaped(data.at("campaign").get<std::string>())},
+                                 {"@POLICY@", policy},
+                                 {"@STYLE@", style},
+                                 {"@SCRIPT@", script},
+                                 {"@DATA@", inert(data)}}});
+}
+
+std::string report_html(Database& database, std::optional<std::int64_t> owner) {
+  return page_html(page_data(database, owner));
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,31 @@
+// The verb `peclet report`: a campaign on one page, for an adviser or a paper's supplement.
+//
+// The page is a single file that needs no other and no network. It depends on the database alone, and on who
+// runs the campaign: the same one gives the same bytes at any time.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "contract/json.h"
+#include "runner/database/database.h"
+
+namespace peclet::runner {
+
+struct ReportOptions {
+  std::filesystem::path campaign;  // file or folder
+  std::filesystem::path directory;
+  std::filesystem::path output;  // "": standard output
+  bool quiet = false;            // does not say where it is
+};
+
+// The page with this document in it. Its policy lets nothing run but its own script, whatever the document
+// says.
+std::string page_html(const Json& data);
+
+// Throws IntegrityError when stored looks are not what the stored results say.
+std::string report_html(Database& database, std::optional<std::int64_t> owner = std::nullopt);
+
+}  // namespace peclet::runner

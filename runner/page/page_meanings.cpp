@@ -1,0 +1,58 @@
+// What the words of the page mean.
+#include <map>
+
+#include "runner/page/page_parts.h"
+
+namespace peclet::runner {
+namespace {
+
+// What a mark of the table means; the marks are those of reservations() and the verdicts.
+std::string meaning(const std::string& mark) {
+  static const std::map<std::string, std::string> meanings{
+      {"converged-with-losses",
+       "the interval is within the tolerance, but the mean leaves out the seeds that were lost; if they were "
+       "lost because of what they would have given, it is biased"},
+      {"converged-near-maximum",
+       "the interval is about as wide as the tolerance, but the seeds that are allowed are too few to tell "
+       "whether by luck: the one that is given is wider, and holds the mean as often as it says"},
+      {"capped", "all seeds that are allowed have ended, and the interval is still wider than the tolerance"},
+      {"failed", "too many seeds were lost to give an interval"},
+      {"open", "not decided yet: the numbers are provisional"},
+      {"cancelled", "somebody decided that it gets no more seeds: the numbers stay provisional"},
+      {"transient",
+       "the beginning of the measured windows differs from their end: they begin before the equilibration is "
+       "over, which more seeds do not mend"},
+      {"no-transient-test",
+       "the results have no blocks of the observable, so that nothing can tell whether the windows begin "
+       "before the equilibration is over"},
+      {"skewed",
+       "some values are far from the rest on one side, and the interval holds the mean less often than it "
+       "says"},
+      {"earlier-look",
+       "the target was tighter before: the first look within the present one decides, as if there had been "
+       "no "
+       "other, and leaves out seeds that ended later"},
+      {"suspect", "a seed gave two different results; no number of this point can be trusted"},
+      {"timestep", "seeds whose time step made too much energy, changes the stress or was often divided"},
+      {"solver", "seeds whose implicit steps were solved too inaccurately"},
+      {"overlap", "seeds in which spheres overlapped by more than a hundredth of a radius"}};
+  const auto known = meanings.find(mark);
+  return known == meanings.end() ? "the engine's own mark; its warning says more" : known->second;
+}
+
+}  // namespace
+
+Json page_meanings(const CampaignStatus& status) {
+  Json meanings = Json::object();
+  for (const PointSummary& point : status.points) {
+    const std::string standing = standing_word(point);
+    if (standing != to_string(Verdict::converged)) meanings[standing] = meaning(standing);
+    for (const std::string& mark : reservations(point)) {
+      const std::string code = mark.substr(mark.rfind(' ') + 1);
+      meanings[code == mark ? mark : "flagged " + code] = meaning(code);
+    }
+  }
+  return meanings;
+}
+
+}  // namespace peclet::runner

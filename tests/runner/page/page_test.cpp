@@ -1,0 +1,209 @@
+// The page that an adviser gets: its document, and the file that holds it. What a browser makes of it:
+// tests/pages.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "contract/sha256.h"
+#include "runner/page/page_assets.h"
+#include "runner/page/page_data.h"
+#include "runner/page/page_html.h"
+#include "runner/reports/export.h"
+#include "runner/text/html.h"
+#include "runner/text/utc_time.h"
+#include "tests/runner/stored_campaign.h"
+
+namespace peclet::runner {
+namespace {
+
+class CampaignPage : public testing::Test {
+ protected:
+  // 10.05 ± 0.41 with a control of 0.25; Student's t for 3 degrees of freedom is 3.182.
+  void complete_widely(int point) {
+    const double values[] = {9.05, 10.05, 11.05, 10.05};
+    for (int seed = 0; seed < 4; ++seed) campaign_.complete(point, seed, values[seed]);
+  }
+  Json data() { return page_data(campaign_.database(), std::nullopt); }
+  Json estimate(const Json& data, std::size_t point, const std::string& path) {
+    for (std::size_t i = 0; i < data["quantities"].size(); ++i) {
+      if (data["quantities"][i]["path"] == path) return data["points"][point]["estimates"][i];
+    }
+    return nullptr;
+  }
+
+  StoredCampaign campaign_{2, 4, 4};
+};
+
+TEST_F(CampaignPage, HasTheEstimateThatDecidesAndEveryOther) {
+  complete_widely(0);
+  const Json page = data();
+  const double error = std::sqrt(2.0 / 3) / 2;
+  const Json deciding = estimate(page, 0, "relative_viscosity");
+  EXPECT_NEAR(deciding[0], 10.3, 1e-12);
+  EXPECT_NEAR(deciding[1], error, 1e-12);
+  EXPECT_NEAR(deciding[2], 3.18244630528 * error, 1e-9);
+  EXPECT_EQ(deciding[3], 4);
+  EXPECT_NEAR(page["points"][0]["uncontrolled"]["relative_viscosity"][0], 10.05, 1e-12);
+  EXPECT_NEAR(estimate(page, 0, "pressure")[0], 20.1, 1e-12);
+  EXPECT_NEAR(page["points"][0]["good_enough"]["relative_viscosity"], 0.05 * 10.3, 1e-12);
+  EXPECT_EQ(page["points"][0]["standing"], "capped");
+  EXPECT_EQ(page["points"][1]["standing"], "open");
+  EXPECT_EQ(estimate(page, 1, "pressure"), nullptr);
+  EXPECT_EQ(page["progress"]["decided"], 1);
+  EXPECT_EQ(page["progress"]["cpu_seconds"], 8);
+  EXPECT_TRUE(page["meanings"].contains("capped"));
+}
+
+// Of an open point there is what its seeds say so far: mean 10.25, standard error |11 - 9| / 2.
+TEST_F(CampaignPage, OfAnOpenPointHasWhatIsKnownSoFar) {
+  campaign_.complete(1, 0, 9);
+  campaign_.complete(1, 2, 11);
+  const Json page = data();
+  const Json so_far = estimate(page, 1, "relative_viscosity");
+  EXPECT_EQ(so_far[0], 10.25);
+  EXPECT_EQ(so_far[1], 1);
+  EXPECT_EQ(so_far[3], 2);
+  const Json& point = page["points"][1];
+  EXPECT_EQ(point["decided"], false);
+  EXPECT_EQ(point["seeds"]["looked_at"], nullptr);
+  EXPECT_EQ(point["seeds"]["wanted_ended"], 2);
+  EXPECT_EQ(point["running_mean"]["seeds"], Json({1}));  // seed 1 has not ended
+  // Two points of four seeds each, of which two have ended, at 2 s.
+  EXPECT_EQ(page["progress"]["cpu_seconds_to_go"]["likely"], 12);
+}
+
+TEST_F(CampaignPage, ShowsHowAMeanCameAbout) {
+  complete_widely(0);
+  const Json page = data();
+  const Json& point = page["points"][0];
+  EXPECT_EQ(point["running_mean"]["seeds"], Json({1, 2, 3, 4}));
+  EXPECT_EQ(point["running_mean"]["mean"], Json({9.3, 9.8, 10.3, 10.3}));
+  EXPECT_EQ(point["running_mean"]["half_width"][0], nullptr);
+  EXPECT_NEAR(point["running_mean"]["half_width"][1], 12.7062 * 0.5, 1e-4);  // six digits are kept
+  EXPECT_EQ(point["scatter"]["seeds"], Json({1, 2, 3, 4}));
+  EXPECT_EQ(point["scatter"]["values"], Json({9.3, 10.3, 11.3, 10.3}));
+  ASSERT_EQ(point["looks"].size(), 1U);
+  EXPECT_EQ(point["looks"][0]["seeds"], 4);
+  EXPECT_EQ(point["looks"][0]["verdict"], "capped");
+}
+
+TEST_F(CampaignPage, KeepsItsSizeHoweverManySeedsThereAre) {
+  StoredCampaign large(1, 400, 400);
+  for (int seed = 0; seed < 400; ++seed) large.complete(0, seed, 10 + 0.01 * (seed % 10));
+  const Json page = page_data(large.database(), std::nullopt);
+  const Json& point = page["points"][0];
+  EXPECT_LE(point["running_mean"]["seeds"].size(), 60U);
+  EXPECT_EQ(point["running_mean"]["seeds"].back(), 400);
+  ASSERT_EQ(point["scatter"]["counts"].size(), 20U);  // the root of 400
+  int seeds = 0;
+  for (const Json& count : point["scatter"]["counts"]) seeds += count.get<int>();
+  EXPECT_EQ(seeds, 400);
+  EXPECT_EQ(point["scatter"]["counts"].front(), 40);
+  EXPECT_EQ(point["scatter"]["low"], 10.25);
+}
+
+TEST_F(CampaignPage, ListsLostSeedsByCauseAndWhatTheyMean) {
+  for (int seed = 0; seed < 2; ++seed) campaign_.complete(0, seed, 10 + 0.001 * seed);
+  campaign_.blow_up(0, 2);
+  campaign_.crash(0, 3);
+  const Json page = data();
+  EXPECT_EQ(page["points"][0]["losses"], Json({{"crashed", 1}, {"overlap", 1}}));
+  EXPECT_TRUE(page["meanings"].contains("converged-with-losses"));
+  EXPECT_EQ(page["progress"]["seeds"]["lost"], 2);
+}
+
+TEST_F(CampaignPage, ExplainsTheMarksAndShowsWhatTheEngineWarnsOf) {
+  const Json warning = {{{"code", "overlap"}, {"message", "0.02 > 0.01 & more"}}};
+  for (int seed = 0; seed < 4; ++seed) campaign_.complete(0, seed, 10, warning);
+  const Json page = data();
+  EXPECT_EQ(page["points"][0]["marks"][0], "4 flagged overlap");
+  EXPECT_TRUE(says(page["meanings"]["flagged overlap"], "spheres overlapped"));
+  EXPECT_EQ(page["warnings"][0]["message"], "0.02 > 0.01 & more");
+}
+
+TEST_F(CampaignPage, ShowsEveryCriterionOfATarget) {
+  StoredCampaign several(1, 4, 4, {{"pressure", Tolerance::absolute(0.5)}});
+  for (int seed = 0; seed < 4; ++seed) several.complete(0, seed, 10 + 0.01 * seed);
+  const Json page = page_data(several.database(), std::nullopt);
+  EXPECT_EQ(page["points"][0]["good_enough"]["pressure"], 0.5);
+  EXPECT_NEAR(estimate(page, 0, "pressure")[0], 20.03, 1e-12);
+}
+
+TEST_F(CampaignPage, SaysWhereItComesFromAndHowToMakeItAgain) {
+  complete_widely(0);
+  const Json page = data();
+  const std::string provenance = page["provenance"].dump();
+  EXPECT_TRUE(says(provenance, sha256("engine"))) << provenance;  // the binary of plain_engine()
+  EXPECT_TRUE(says(provenance, sha256(canonical_json(campaign_.database().campaign().document))));
+  EXPECT_TRUE(says(page["commands"], sha256(export_csv(campaign_.database(), true))));
+  EXPECT_TRUE(says(page["commands"], "peclet run plain.json"));
+  EXPECT_EQ(page["document"], campaign_.database().campaign().document);
+}
+
+TEST_F(CampaignPage, SaysOfAKeyOfASceneWhatTheSchemaSays) {
+  const Json schema = Json::parse(scene_schema);
+  EXPECT_TRUE(says(schema["properties"]["volume_fraction"]["description"], "over that of the box"));
+  complete_widely(0);
+  const Json page = data();
+  // The scene of the fixture, {"point": 0}, is no scene of the schema.
+  ASSERT_EQ(page["parameters"].size(), 1U);
+  EXPECT_EQ(page["parameters"][0]["meaning"], "");
+}
+
+TEST_F(CampaignPage, DependsOnTheDatabaseAlone) {
+  complete_widely(0);
+  for (const char* const aged : {"campaign SET created_at", "campaign SET updated_at", "look SET made_at",
+                                 "attempt SET started_at", "attempt SET ended_at", "event SET at"}) {
+    campaign_.database().connection().execute(fmt::format("UPDATE {} = '2001-02-03T04:05:06Z'", aged));
+  }
+  const std::string before = report_html(campaign_.database());
+  // Elsewhere, and with nothing in it that was read off a clock now.
+  const TemporaryFolder elsewhere;
+  campaign_.database().connection().execute(
+      fmt::format("VACUUM INTO '{}'", (elsewhere.path() / "copy.db").string()));
+  Database reader = Database::open_reader(elsewhere.path() / "copy.db");
+  EXPECT_EQ(report_html(reader), before);
+  EXPECT_FALSE(says(before, utc_now().substr(0, 10)));
+}
+
+TEST_F(CampaignPage, IsRefusedWhenALookIsNotWhatTheResultsSay) {
+  complete_widely(0);
+  campaign_.database().connection().execute("UPDATE look SET mean = 9");
+  EXPECT_THROW(data(), IntegrityError);
+}
+
+// What stands between the two.
+std::string between(const std::string& text, const std::string& begin, const std::string& end) {
+  const std::size_t from = text.find(begin) + begin.size();
+  return text.substr(from, text.find(end, from) - from);
+}
+
+TEST(PageFile, NothingInItsDataCanEndItsElement) {
+  const Json data{{"campaign", "</script><img onerror=alert(1)> & <!--"}};
+  const std::string page = page_html(data);
+  const std::string inside = between(page, "id=\"data\">", "</script>");
+  EXPECT_EQ(inside.find_first_of("<>&"), std::string::npos) << inside;
+  EXPECT_EQ(Json::parse(inside), data);
+  EXPECT_TRUE(says(page, "<h1>&lt;/script&gt;&lt;img onerror=alert(1)&gt; &amp; &lt;!--</h1>"));
+  EXPECT_FALSE(says(page, "<img"));
+}
+
+TEST(PageFile, AllowsNoScriptButItsOwnAndNoOtherPlace) {
+  const std::string page = page_html({{"campaign", "plain"}});
+  const std::string policy = between(page, "Content-Security-Policy\" content=\"", "\"");
+  EXPECT_TRUE(policy.starts_with("default-src 'none'; ")) << policy;
+  EXPECT_TRUE(says(policy, "script-src 'sha256-" + sha256_base64(page_script) + "'")) << policy;
+  EXPECT_TRUE(says(policy, "style-src 'sha256-" + sha256_base64(page_style) + "'")) << policy;
+  EXPECT_FALSE(says(policy, "unsafe")) << policy;
+  for (const char* const outside : {"https:", "src=", "<link", "url(", "@import", "innerHTML", "eval("}) {
+    EXPECT_FALSE(says(page, outside)) << outside;
+  }
+}
+
+TEST(Html, EveryCharacterThatMeansSomethingIsEscaped) {
+  EXPECT_EQ(escaped("<a href='x' id=\"y\">&amp;"), "&lt;a href=&#39;x&#39; id=&quot;y&quot;&gt;&amp;amp;");
+  EXPECT_EQ(escaped("φ ± 1\n\t"), "φ ± 1\n\t");
+  EXPECT_EQ(escaped(std::string("a\0b\x1b\x7f", 5)), "a\uFFFDb\uFFFD\uFFFD");
+}
+
+}  // namespace
+}  // namespace peclet::runner
