@@ -21,6 +21,7 @@ to_test=(
   groff-base systemd                                                      # read manual pages and the unit
   lammps openmpi-bin                                                      # another engine, which tests run, also with MPI
   slurm-wlm munge                                                         # a Slurm to be tested with
+  chromium                                                                # opens the page of a report
   python3-numpy python3-scipy gnuplot-nox                                 # numbers and pictures of the studies
   python3-matplotlib python3-pandas python3-pip python3-setuptools python3-wheel  # the Python package
   python3-gsd                                                             # another reader of trajectories

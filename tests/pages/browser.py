@@ -32,7 +32,14 @@ class Browser:
         self.answers, from_browser = os.pipe()
         # The browser reads from descriptor 3 and writes to 4, whatever numbers the pipes have here.
         into = [os.dup2(to_browser, 100), os.dup2(from_browser, 101)]
-        words = [PROGRAM, "--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe", "--hide-scrollbars"]
+        words = [
+            PROGRAM,
+            "--headless=new",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--remote-debugging-pipe",
+            "--hide-scrollbars",
+        ]
         words += ["--no-first-run", "--disable-extensions", f"--user-data-dir={self.profile}", "about:blank"]
         self.process = subprocess.Popen(
             ["/bin/bash", "-c", 'exec "$@" 3<&100 4>&101', "bash", *words],
@@ -107,7 +114,9 @@ class Page:
         features = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]
         self.call("Emulation.setEmulatedMedia", features=features)
         begun = time.monotonic()
-        self.call("Page.navigate", url=address)
+        refused = self.call("Page.navigate", url=address).get("errorText")
+        if refused:
+            raise Fault(f"{address}: {refused}")
         while not self.loaded:
             message = browser.read(begun + PATIENCE)
             if message is None:

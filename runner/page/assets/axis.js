@@ -1,4 +1,3 @@
-
 // The part of the whole that the widest gap between neighbours takes. Requires numbers in order, not all equal.
 function widestGap(numbers) {
   let widest = 0;
@@ -9,7 +8,7 @@ function widestGap(numbers) {
 // Whether positive numbers lie more evenly on a logarithmic axis, over a factor of five or more: a viscosity that
 // diverges, Péclet numbers of 1, 10, 100; not volume fractions of 0.1, 0.2 ... 0.6.
 function isLogarithmic(values) {
-  const leastRatio = 5;  // below, there are too few round numbers
+  const leastRatio = 5; // below, there are too few round numbers
   const numbers = [...values].sort((a, b) => a - b);
   if (numbers.length === 0 || numbers[0] <= 0 || numbers[numbers.length - 1] < leastRatio * numbers[0]) return false;
   return widestGap(numbers.map(Math.log)) < widestGap(numbers);
@@ -33,7 +32,7 @@ class Axis {
 
   place(value) {
     const number = this.log ? Math.log10(value) : value;
-    return this.begin + (number - this.low) / (this.high - this.low) * (this.end - this.begin);
+    return this.begin + ((number - this.low) / (this.high - this.low)) * (this.end - this.begin);
   }
 
   // The same, but not beyond the ends; what has no logarithm is at the beginning.
@@ -45,14 +44,19 @@ class Axis {
 
   ticks() {
     if (this.categories) return this.categories.map((text, value) => ({ value, text }));
-    return (this.log ? this.logarithmicTicks() : this.linearTicks()).map(value => ({ value, text: Format.plain(value) }));
+    return (this.log ? this.logarithmicTicks() : this.linearTicks()).map((value) => ({
+      value,
+      text: Format.plain(value),
+    }));
   }
 
   // 1, 2 or 5 times a power of ten apart.
   linearTicks() {
     for (let unit = 10 ** (Math.floor(Math.log10(this.high - this.low)) - 1); ; unit *= 10) {
       for (const multiple of [1, 2, 5]) {
-        const step = multiple * unit, first = Math.ceil(this.low / step), last = Math.floor(this.high / step);
+        const step = multiple * unit,
+          first = Math.ceil(this.low / step),
+          last = Math.floor(this.high / step);
         if (last - first >= this.mostTicks) continue;
         return Array.from({ length: last - first + 1 }, (_, i) => Number(((first + i) * step).toPrecision(12)));
       }
@@ -65,7 +69,8 @@ class Axis {
     for (let power = Math.floor(this.low); power <= this.high + 1; ++power) {
       if (power % stride !== 0) continue;
       for (const multiple of multiples) {
-        const value = Number(`${multiple}e${power}`), place = Math.log10(value);
+        const value = Number(`${multiple}e${power}`),
+          place = Math.log10(value);
         if (place >= this.low && place <= this.high) ticks.push(value);
       }
     }
@@ -77,10 +82,17 @@ class Axis {
       const ticks = this.powers(1, multiples);
       if (ticks.length >= 3 && ticks.length <= this.mostTicks) return ticks;
     }
-    if (this.high - this.low < 1) {  // less than a factor of ten: as on a linear axis
-      const linear = new Axis({ low: 10 ** this.low, high: 10 ** this.high, begin: 0, end: 1, margin: 0,
-        mostTicks: this.mostTicks });
-      return linear.linearTicks().filter(value => value > 0);
+    if (this.high - this.low < 1) {
+      // less than a factor of ten: as on a linear axis
+      const linear = new Axis({
+        low: 10 ** this.low,
+        high: 10 ** this.high,
+        begin: 0,
+        end: 1,
+        margin: 0,
+        mostTicks: this.mostTicks,
+      });
+      return linear.linearTicks().filter((value) => value > 0);
     }
     for (let stride = 1; ; ++stride) {
       const ticks = this.powers(stride, [1]);

@@ -1,9 +1,8 @@
-
 // A figure as SVG, with what it can be saved as.
 //
-// figure: {name, x, y: {about, log, categories}, panels: [{title, marks, lines, bands, columns, levels}], legend, kinds,
-// hasBand, notes, caption, table, pick}. Marks: {series, x, y, half, kind, point, text}; lines: {series, style, places:
-// [x, y]}; bands: {series, places: [x, low, high]}; columns: {from, to, height}; levels: {value, across, text}.
+// figure: {name, x, y: {about, log, categories}, panels: [{title, marks, lines, bands, columns, levels}], legend,
+// kinds, hasBand, notes, caption, table, pick}. Marks: {series, x, y, half, kind, point, text}; lines: {series, style,
+// places: [x, y]}; bands: {series, places: [x, low, high]}; columns: {from, to, height}; levels: {value, across, text}.
 class Chart {
   // `onPick(point)`: a mark of that point was chosen.
   constructor(host, onPick = null) {
@@ -28,59 +27,84 @@ class Chart {
   }
 
   draw() {
-    const { figure, host } = this, hadFocus = host.contains(document.activeElement) && document.activeElement.tagName === 'svg';
+    const { figure, host } = this,
+      hadFocus = host.contains(document.activeElement) && document.activeElement.tagName === 'svg';
     this.width = host.clientWidth;
     host.replaceChildren();
     const caption = document.createElement('figcaption');
     caption.textContent = [figure.caption, ...(figure.notes || [])].filter(Boolean).join(' ');
-    if (!figure.panels.some(panel => panel.marks.length || (panel.columns || []).length)) {
+    const isDrawn = ({ marks, lines = [], columns = [] }) => marks.length + lines.length + columns.length > 0;
+    if (!figure.panels.some(isDrawn)) {
       caption.textContent = 'There is nothing to draw yet.';
       host.append(caption);
       return;
     }
     const svg = this.svg(Math.min(1000, Math.max(280, this.width || 720)));
-    host.append(svg, caption, Saving.links(
-      Saving.link('CSV', `${figure.name}.csv`, 'text/csv', Saving.csv(figure.table)),
-      Saving.link('SVG', `${figure.name}.svg`, 'image/svg+xml', Svg.standalone(svg)),
-      Saving.link('matplotlib', `${figure.name}.py`, 'text/x-python', matplotlibScript(figure))));
+    host.append(
+      svg,
+      caption,
+      Saving.links(
+        Saving.link('CSV', `${figure.name}.csv`, 'text/csv', Saving.csv(figure.table)),
+        Saving.link('SVG', `${figure.name}.svg`, 'image/svg+xml', Svg.standalone(svg)),
+        Saving.link('matplotlib', `${figure.name}.py`, 'text/x-python', matplotlibScript(figure)),
+      ),
+    );
     if (hadFocus) svg.focus();
   }
 
   // Of the numbers that are to be seen: ends of bars, but not of those that are still to shrink.
   range(direction) {
-    const { figure } = this, numbers = [], log = figure[direction].log;
+    const { figure } = this,
+      numbers = [],
+      log = figure[direction].log;
     for (const panel of figure.panels) {
       for (const mark of panel.marks) {
         if (direction === 'x') numbers.push(mark.x);
         else {
           numbers.push(mark.y);
-          if (mark.kind !== 'provisional' && Format.isNumber(mark.half)) numbers.push(mark.y - mark.half, mark.y + mark.half);
+          if (mark.kind !== 'provisional' && Format.isNumber(mark.half))
+            numbers.push(mark.y - mark.half, mark.y + mark.half);
         }
       }
-      for (const line of panel.lines || []) numbers.push(...line.places.map(([x, y]) => direction === 'x' ? x : y));
+      for (const line of panel.lines || []) numbers.push(...line.places.map(([x, y]) => (direction === 'x' ? x : y)));
       for (const band of panel.bands || [])
-        numbers.push(...band.places.flatMap(([x, low, high]) => direction === 'x' ? [x] : [low, high]));
-      for (const column of panel.columns || []) numbers.push(...(direction === 'x' ? [column.from, column.to] : [0, column.height]));
+        numbers.push(...band.places.flatMap(([x, low, high]) => (direction === 'x' ? [x] : [low, high])));
+      for (const column of panel.columns || [])
+        numbers.push(...(direction === 'x' ? [column.from, column.to] : [0, column.height]));
       for (const level of panel.levels || []) if (level.across === (direction === 'y')) numbers.push(level.value);
     }
-    const usable = numbers.filter(number => Format.isNumber(number) && (!log || number > 0));
+    const usable = numbers.filter((number) => Format.isNumber(number) && (!log || number > 0));
     // A bar that reaches almost down to zero must not squeeze all else: it is cut off.
-    const centres = log && direction === 'y' ? figure.panels.flatMap(panel => panel.marks.map(mark => mark.y)).filter(y => y > 0) : [];
-    const low = usable.reduce((a, b) => Math.min(a, b), Infinity), high = usable.reduce((a, b) => Math.max(a, b), -Infinity);
+    const centres =
+      log && direction === 'y'
+        ? figure.panels.flatMap((panel) => panel.marks.map((mark) => mark.y)).filter((y) => y > 0)
+        : [];
+    const low = usable.reduce((a, b) => Math.min(a, b), Infinity),
+      high = usable.reduce((a, b) => Math.max(a, b), -Infinity);
     return [centres.length ? Math.max(low, Math.min(...centres) / 3) : low, high];
   }
 
   svg(width) {
-    const { figure } = this, count = figure.panels.length;
+    const { figure } = this,
+      count = figure.panels.length;
     const columns = count === 1 ? 1 : Math.min(count, width >= 900 ? 3 : width >= 560 ? 2 : 1);
-    const rows = Math.ceil(count / columns), cell = width / columns, height = figure.height || Math.max(230, Math.min(430, cell * .58));
-    const legend = this.legend(width), titled = figure.panels.some(panel => panel.title && panel.title.length);
+    const rows = Math.ceil(count / columns),
+      cell = width / columns,
+      height = figure.height || Math.max(230, Math.min(430, cell * 0.58));
+    const legend = this.legend(width),
+      titled = figure.panels.some((panel) => panel.title && panel.title.length);
     const total = rows * (height + (titled ? 22 : 0)) + legend.height;
-    const label = `${Format.plainText(Format.title(figure.y.about))} over ${Format.plainText(Format.title(figure.x.about))}`;
-    const svg = Svg.element('svg', { class: 'chart', viewBox: `0 0 ${Svg.number(width)} ${Svg.number(total)}`, role: 'img', 'aria-label': label });
+    const label = [figure.y, figure.x].map(({ about }) => Format.plainText(Format.title(about))).join(' over ');
+    const svg = Svg.element('svg', {
+      class: 'chart',
+      viewBox: `0 0 ${Svg.number(width)} ${Svg.number(total)}`,
+      role: 'img',
+      'aria-label': label,
+    });
     const ranges = { x: this.range('x'), y: this.range('y') };
     figure.panels.forEach((panel, i) => {
-      const left = (i % columns) * cell, top = Math.floor(i / columns) * (height + (titled ? 22 : 0)) + (titled ? 22 : 0);
+      const left = (i % columns) * cell,
+        top = Math.floor(i / columns) * (height + (titled ? 22 : 0)) + (titled ? 22 : 0);
       svg.append(this.panel(panel, left, top, cell, height, ranges));
     });
     legend.draw(svg, rows * (height + (titled ? 22 : 0)));
@@ -89,24 +113,48 @@ class Chart {
   }
 
   panel(panel, left, top, width, height, ranges) {
-    const { figure } = this, group = Svg.element('g');
+    const { figure } = this,
+      group = Svg.element('g');
     const frame = { left: left + 66, right: left + width - 12, top: top + 8, bottom: top + height - 48 };
     const across = Math.max(3, Math.min(9, Math.floor((frame.right - frame.left) / 58)));
-    const x = new Axis({ log: figure.x.log, low: ranges.x[0], high: ranges.x[1], begin: frame.left, end: frame.right,
-      mostTicks: across, categories: figure.x.categories });
-    const y = new Axis({ log: figure.y.log, low: ranges.y[0], high: ranges.y[1], begin: frame.bottom, end: frame.top,
-      mostTicks: Math.max(3, Math.min(9, Math.floor((frame.bottom - frame.top) / 36))) });
+    const x = new Axis({
+      log: figure.x.log,
+      low: ranges.x[0],
+      high: ranges.x[1],
+      begin: frame.left,
+      end: frame.right,
+      mostTicks: across,
+      categories: figure.x.categories,
+    });
+    const y = new Axis({
+      log: figure.y.log,
+      low: ranges.y[0],
+      high: ranges.y[1],
+      begin: frame.bottom,
+      end: frame.top,
+      mostTicks: Math.max(3, Math.min(9, Math.floor((frame.bottom - frame.top) / 36))),
+    });
     this.frame(group, frame, x, y, panel, left, height, top);
-    const visible = mark => (!figure.y.log || mark.y > 0) && (!figure.x.log || mark.x > 0);
+    const visible = (mark) => (!figure.y.log || mark.y > 0) && (!figure.x.log || mark.x > 0);
     for (const band of panel.bands || []) this.band(group, band, x, y);
     for (const column of panel.columns || []) {
-      const [from, to] = [x.place(column.from), x.place(column.to)], [low, high] = [y.clamped(0), y.place(column.height)];
-      group.append(Svg.element('rect', { class: 'column s0', x: Svg.number(from), y: Svg.number(high),
-        width: Svg.number(to - from), height: Svg.number(low - high) }));
+      const [from, to] = [x.place(column.from), x.place(column.to)],
+        [low, high] = [y.clamped(0), y.place(column.height)];
+      group.append(
+        Svg.element('rect', {
+          class: 'column s0',
+          x: Svg.number(from),
+          y: Svg.number(high),
+          width: Svg.number(to - from),
+          height: Svg.number(low - high),
+        }),
+      );
     }
     for (const level of panel.levels || []) this.level(group, level, frame, x, y);
     for (const line of panel.lines || []) {
-      const places = line.places.filter(([px, py]) => visible({ x: px, y: py })).map(([px, py]) => [x.place(px), y.clamped(py)]);
+      const places = line.places
+        .filter(([px, py]) => visible({ x: px, y: py }))
+        .map(([px, py]) => [x.place(px), y.clamped(py)]);
       if (places.length > 1) group.append(Svg.path(`${line.style} s${line.series % Svg.colours}`, places));
     }
     for (const mark of panel.marks) if (visible(mark)) group.append(this.mark(mark, x, y));
@@ -114,24 +162,48 @@ class Chart {
   }
 
   frame(group, frame, x, y, panel, left, height, top) {
-    const { figure } = this, n = Svg.number;
-    const words = x.categories ? Math.max(1, Math.ceil(x.categories.length * 60 / (frame.right - frame.left))) : 1;
+    const { figure } = this,
+      n = Svg.number;
+    const words = x.categories ? Math.max(1, Math.ceil((x.categories.length * 60) / (frame.right - frame.left))) : 1;
     x.ticks().forEach((tick, i) => {
       const place = x.place(tick.value);
       group.append(Svg.line('grid', place, frame.top, place, frame.bottom));
-      if (i % words === 0) group.append(Svg.text(tick.text, { x: n(place), y: n(frame.bottom + 18), 'text-anchor': 'middle' }));
+      if (i % words === 0)
+        group.append(Svg.text(tick.text, { x: n(place), y: n(frame.bottom + 18), 'text-anchor': 'middle' }));
     });
     for (const tick of y.ticks()) {
       const place = y.place(tick.value);
-      group.append(Svg.line('grid', frame.left, place, frame.right, place),
-        Svg.text(tick.text, { x: n(frame.left - 7), y: n(place + 4.5), 'text-anchor': 'end' }));
+      group.append(
+        Svg.line('grid', frame.left, place, frame.right, place),
+        Svg.text(tick.text, { x: n(frame.left - 7), y: n(place + 4.5), 'text-anchor': 'end' }),
+      );
     }
-    group.append(Svg.element('rect', { class: 'frame', x: n(frame.left), y: n(frame.top), width: n(frame.right - frame.left),
-      height: n(frame.bottom - frame.top) }));
-    const middle = (frame.left + frame.right) / 2, centre = (frame.top + frame.bottom) / 2;
-    group.append(Svg.text(Format.title(figure.x.about), { class: 'title', x: n(middle), y: n(top + height - 10), 'text-anchor': 'middle' }));
-    group.append(Svg.text(Chart.fitting(figure.y.about, frame.bottom - frame.top),
-      { class: 'title', transform: `translate(${n(left + 15)} ${n(centre)}) rotate(-90)`, 'text-anchor': 'middle' }));
+    group.append(
+      Svg.element('rect', {
+        class: 'frame',
+        x: n(frame.left),
+        y: n(frame.top),
+        width: n(frame.right - frame.left),
+        height: n(frame.bottom - frame.top),
+      }),
+    );
+    const middle = (frame.left + frame.right) / 2,
+      centre = (frame.top + frame.bottom) / 2;
+    group.append(
+      Svg.text(Format.title(figure.x.about), {
+        class: 'title',
+        x: n(middle),
+        y: n(top + height - 10),
+        'text-anchor': 'middle',
+      }),
+    );
+    group.append(
+      Svg.text(Chart.fitting(figure.y.about, frame.bottom - frame.top), {
+        class: 'title',
+        transform: `translate(${n(left + 15)} ${n(centre)}) rotate(-90)`,
+        'text-anchor': 'middle',
+      }),
+    );
     if (panel.title && panel.title.length)
       group.append(Svg.text(panel.title, { class: 'title', x: n(middle), y: n(top - 3), 'text-anchor': 'middle' }));
   }
@@ -145,7 +217,9 @@ class Chart {
 
   band(group, band, x, y) {
     let places = band.places;
-    const pixels = places.map(([px, low, high]) => [x.place(px), y.clamped(low), y.clamped(high)]).sort((a, b) => a[0] - b[0]);
+    const pixels = places
+      .map(([px, low, high]) => [x.place(px), y.clamped(low), y.clamped(high)])
+      .sort((a, b) => a[0] - b[0]);
     if (pixels.length === 1) {
       const [place, low, high] = pixels[0];
       pixels.splice(0, 1, [place - 14, low, high], [place + 14, low, high]);
@@ -155,27 +229,43 @@ class Chart {
   }
 
   level(group, level, frame, x, y) {
-    const place = level.across ? y.clamped(level.value) : x.clamped(level.value), style = `${level.style || 'dashed'} s${level.series || 0}`;
-    group.append(level.across ? Svg.line(style, frame.left, place, frame.right, place) :
-      Svg.line(style, place, frame.top, place, frame.bottom));
+    const place = level.across ? y.clamped(level.value) : x.clamped(level.value),
+      style = `${level.style || 'dashed'} s${level.series || 0}`;
+    group.append(
+      level.across
+        ? Svg.line(style, frame.left, place, frame.right, place)
+        : Svg.line(style, place, frame.top, place, frame.bottom),
+    );
   }
 
   mark(mark, x, y) {
     const group = Svg.element('g', mark.kind === 'provisional' ? { class: 'provisional' } : {});
-    const px = x.place(mark.x), py = y.place(mark.y), style = `bar s${mark.series % Svg.colours}`, cap = 4;
+    const px = x.place(mark.x),
+      py = y.place(mark.y),
+      style = `bar s${mark.series % Svg.colours}`,
+      cap = 4;
     if (mark.text) group.append(Svg.element('title', {}, mark.text));
     if (Format.isNumber(mark.half)) {
       for (const end of [mark.y - mark.half, mark.y + mark.half]) {
         const to = y.clamped(end);
         group.append(Svg.line(style, px, py, px, to));
-        if (!(this.figure.y.log && end <= 0) && Math.abs(to - y.place(end)) < .5) group.append(Svg.line(style, px - cap, to, px + cap, to));
+        if (!(this.figure.y.log && end <= 0) && Math.abs(to - y.place(end)) < 0.5)
+          group.append(Svg.line(style, px - cap, to, px + cap, to));
       }
     }
     group.append(Svg.mark(mark.series, px, py, mark.kind, mark.small ? 3 : 4.5));
     if (this.figure.pick && mark.point === this.chosen)
       group.append(Svg.element('circle', { class: 'chosen', cx: Svg.number(px), cy: Svg.number(py), r: 9 }));
     if (this.figure.pick && this.onPick)
-      group.append(Svg.element('circle', { class: 'target', cx: Svg.number(px), cy: Svg.number(py), r: 12, 'data-point': mark.point }));
+      group.append(
+        Svg.element('circle', {
+          class: 'target',
+          cx: Svg.number(px),
+          cy: Svg.number(py),
+          r: 12,
+          'data-point': mark.point,
+        }),
+      );
     return group;
   }
 
@@ -184,27 +274,33 @@ class Chart {
     svg.setAttribute('tabindex', '0');
     svg.setAttribute('role', 'application');
     svg.setAttribute('aria-label', `${svg.getAttribute('aria-label')}; arrow keys choose a point`);
-    svg.addEventListener('click', event => {
+    svg.addEventListener('click', (event) => {
       const { point } = event.target.dataset;
       if (point !== undefined) this.onPick(Number(point));
     });
-    svg.addEventListener('keydown', event => {
+    svg.addEventListener('keydown', (event) => {
       const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
       if (!step) return;
       event.preventDefault();
-      const drawn = [...new Set(this.figure.panels.flatMap(panel => panel.marks.map(mark => mark.point)))].sort((a, b) => a - b);
+      const drawn = [...new Set(this.figure.panels.flatMap((panel) => panel.marks.map((mark) => mark.point)))].sort(
+        (a, b) => a - b,
+      );
       this.onPick(drawn[(drawn.indexOf(this.chosen) + step + drawn.length) % drawn.length]);
     });
   }
 
   // What the marks mean, in lines as long as the chart is wide.
   legend(width) {
-    const { figure } = this, items = (figure.legend || []).map(one => ({ ...one, kind: 'decided' }));
-    const kinds = figure.kinds || [], say = (kind, text) => items.push({ series: 0, kind, name: [{ text, level: 0 }] });
+    const { figure } = this,
+      items = (figure.legend || []).map((one) => ({ ...one, kind: 'decided' }));
+    const kinds = figure.kinds || [],
+      say = (kind, text) => items.push({ series: 0, kind, name: [{ text, level: 0 }] });
     if (kinds.includes('undecided')) say('undecided', 'not converged');
     if (kinds.includes('provisional')) say('provisional', 'provisional');
-    if (figure.hasBand) items.push({ series: 0, kind: 'band', name: [{ text: figure.bandName || 'tolerance', level: 0 }] });
-    let x = 8, line = 0;
+    if (figure.hasBand)
+      items.push({ series: 0, kind: 'band', name: [{ text: figure.bandName || 'tolerance', level: 0 }] });
+    let x = 8,
+      line = 0;
     for (const item of items) {
       const length = 26 + Svg.width(item.name);
       if (x > 8 && x + length > width) [x, line] = [8, line + 1];
@@ -214,89 +310,17 @@ class Chart {
     const height = items.length ? 22 * (line + 1) + 6 : 0;
     const draw = (svg, top) => {
       for (const item of items) {
-        const y = top + 22 * item.line + 10, group = Svg.element('g', item.kind === 'provisional' ? { class: 'provisional' } : {});
-        group.append(item.kind === 'band' ?
-          Svg.element('rect', { class: `band s${item.series}`, x: item.x, y: y - 6, width: 16, height: 12 }) :
-          Svg.mark(item.series, item.x + 8, y, item.kind));
+        const y = top + 22 * item.line + 10,
+          group = Svg.element('g', item.kind === 'provisional' ? { class: 'provisional' } : {});
+        group.append(
+          item.kind === 'band'
+            ? Svg.element('rect', { class: `band s${item.series}`, x: item.x, y: y - 6, width: 16, height: 12 })
+            : Svg.mark(item.series, item.x + 8, y, item.kind),
+        );
         group.append(Svg.text(item.name, { x: item.x + 22, y: y + 4.5 }));
         svg.append(group);
       }
     };
     return { height, draw };
   }
-}
-
-// A script that draws the figure again; its data stand in it as one string.
-function matplotlibScript(figure) {
-  const name = parts => Format.mathtext(parts);
-  const names = new Map((figure.legend || []).map(one => [one.series, name(one.name)]));
-  const data = {
-    x: { title: name(Format.title(figure.x.about)), log: figure.x.log, categories: figure.x.categories || null },
-    y: { title: name(Format.title(figure.y.about)), log: figure.y.log },
-    panels: figure.panels.map(panel => {
-      const series = [...new Set(panel.marks.map(mark => mark.series))].sort((a, b) => a - b);
-      return {
-        title: name(panel.title || []),
-        series: series.map(place => {
-          const marks = panel.marks.filter(mark => mark.series === place).sort((a, b) => a.x - b.x);
-          return { place, name: names.get(place) || '', x: marks.map(mark => mark.x), y: marks.map(mark => mark.y),
-            half_width: marks.map(mark => Format.isNumber(mark.half) ? mark.half : 0), decided: marks.map(mark => mark.kind === 'decided') };
-        }),
-        lines: (panel.lines || []).filter(line => line.style !== 'guide'),
-        bands: panel.bands || [], columns: panel.columns || [], levels: panel.levels || [],
-      };
-    }),
-  };
-  return `#!/usr/bin/env python3
-"""Draws a chart of a peclet page again: python3 THIS.py [FILE.pdf]"""
-import json
-import sys
-
-import matplotlib.pyplot as plt
-
-COLOURS = ["#0072b2", "#c44e00", "#00805c", "#a8487f", "#b07700", "#3a8fc0", "#6b6b00", "#1b1b1b"]
-MARKERS = ["o", "s", "D", "^", "v", "P", "H"]
-figure = json.loads(${Saving.ascii(Saving.ascii(data))})
-
-panels = figure["panels"]
-columns = min(len(panels), 3)
-rows = -(-len(panels) // columns)
-drawing, axes = plt.subplots(rows, columns, squeeze=False, sharex=True, sharey=True, figsize=(5 * columns, 3.6 * rows))
-for axis, panel in zip(axes.flat, panels):
-    for band in panel["bands"]:
-        x, low, high = zip(*band["places"])
-        axis.fill_between(x, low, high, color=COLOURS[band["series"] % 8], alpha=0.16, linewidth=0)
-    for column in panel["columns"]:
-        axis.bar(column["from"], column["height"], column["to"] - column["from"], align="edge", color=COLOURS[0], alpha=0.55)
-    for level in panel["levels"]:
-        draw = axis.axhline if level["across"] else axis.axvline
-        draw(level["value"], color=COLOURS[level.get("series", 0)], linestyle="--", linewidth=1)
-    for line in panel["lines"]:
-        x, y = zip(*line["places"])
-        axis.plot(x, y, color=COLOURS[line["series"] % 8], linestyle="--" if line["style"] == "dashed" else "-")
-    for series in panel["series"]:
-        colour, marker = COLOURS[series["place"] % 8], MARKERS[series["place"] % 7]
-        axis.errorbar(series["x"], series["y"], yerr=series["half_width"], fmt=marker, color=colour, capsize=3,
-                      markerfacecolor="white", label=series["name"])
-        full = [i for i, decided in enumerate(series["decided"]) if decided]
-        axis.plot([series["x"][i] for i in full], [series["y"][i] for i in full], marker, color=colour)
-    if figure["x"]["log"]:
-        axis.set_xscale("log")
-    if figure["y"]["log"]:
-        axis.set_yscale("log")
-    if figure["x"]["categories"]:
-        axis.set_xticks(range(len(figure["x"]["categories"])), figure["x"]["categories"])
-    axis.set_title(panel["title"], fontsize="medium")
-    axis.set_xlabel(figure["x"]["title"])
-    axis.set_ylabel(figure["y"]["title"])
-    if any(series["name"] for series in panel["series"]):
-        axis.legend(fontsize="small")
-for axis in axes.flat[len(panels):]:
-    axis.set_visible(False)
-drawing.tight_layout()
-if len(sys.argv) > 1:
-    drawing.savefig(sys.argv[1])
-else:
-    plt.show()
-`;
 }

@@ -1,10 +1,11 @@
-
 'use strict';
 
 // Numbers, names and symbols as people read them.
 const Format = {
   // Power of ten of the leading digit after rounding to two: 0.0996 is 1.0e-1.
-  exponent(number) { return Number(number.toExponential(1).split('e')[1]); },
+  exponent(number) {
+    return Number(number.toExponential(1).split('e')[1]);
+  },
 
   // To the place of 10^-decimals, also left of the point.
   rounded(number, decimals) {
@@ -13,7 +14,9 @@ const Format = {
     return (Math.round(number / unit) * unit).toFixed(0);
   },
 
-  isNumber(value) { return typeof value === 'number' && Number.isFinite(value); },
+  isNumber(value) {
+    return typeof value === 'number' && Number.isFinite(value);
+  },
 
   // "8.93 ± 0.12": the error to two significant digits, the value to the same place.
   withError(value, error) {
@@ -23,21 +26,29 @@ const Format = {
     const decimals = 1 - Format.exponent(error);
     if (decimals <= 5 && Math.abs(value) < 1e6 && error < 1e6)
       return `${Format.rounded(value, decimals)} ± ${Format.rounded(error, decimals)}`;
-    const power = Format.exponent(Math.max(Math.abs(value), error)), unit = 10 ** power, places = decimals + power;
-    return `(${Format.rounded(value / unit, places)} ± ${Format.rounded(error / unit, places)})·10${Format.raised(power)}`;
+    const power = Format.exponent(Math.max(Math.abs(value), error)),
+      unit = 10 ** power,
+      places = decimals + power;
+    const [mean, half] = [value, error].map((one) => Format.rounded(one / unit, places));
+    return `(${mean} ± ${half})·10${Format.raised(power)}`;
   },
 
-  raised(power) { return String(power).replace(/[-0-9]/g, c => c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c]); },
+  raised(power) {
+    return String(power).replace(/[-0-9]/g, (c) => (c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c]));
+  },
 
   // "0.01", "2000", "5·10⁶"; four digits at most.
   plain(value) {
     const size = Math.abs(value);
     if (value === 0 || (size >= 1e-3 && size < 1e5)) return String(Number(value.toPrecision(4)));
-    const power = Math.floor(Math.log10(size) + 1e-9), leading = value / 10 ** power;
+    const power = Math.floor(Math.log10(size) + 1e-9),
+      leading = value / 10 ** power;
     return (Math.abs(leading - 1) < 1e-9 ? '10' : `${Number(leading.toPrecision(4))}·10`) + Format.raised(power);
   },
 
-  rough(value) { return Format.isNumber(value) ? Format.plain(Number(value.toPrecision(3))) : '–'; },
+  rough(value) {
+    return Format.isNumber(value) ? Format.plain(Number(value.toPrecision(3))) : '–';
+  },
 
   percent(fraction) {
     return Format.isNumber(fraction) ? `${(100 * fraction).toFixed(fraction < 0.0995 ? 1 : 0)} %` : '–';
@@ -46,7 +57,9 @@ const Format = {
   // "45 s", "12 min", "3 h 20 min", "2 d 4 h"
   duration(seconds) {
     if (!Format.isNumber(seconds)) return '–';
-    const whole = Math.round(seconds), minutes = Math.round(seconds / 60), hours = Math.round(seconds / 3600);
+    const whole = Math.round(seconds),
+      minutes = Math.round(seconds / 60),
+      hours = Math.round(seconds / 3600);
     if (whole < 10) return `${Format.rough(Number(seconds.toPrecision(2)))} s`;
     if (whole < 90) return `${whole} s`;
     if (minutes < 60) return `${minutes} min`;
@@ -54,61 +67,113 @@ const Format = {
     return `${Math.floor(hours / 24)} d ${hours % 24} h`;
   },
 
-  counted(number, noun) { return `${number} ${noun}${number === 1 ? '' : 's'}`; },
+  counted(number, noun) {
+    return `${number} ${noun}${number === 1 ? '' : 's'}`;
+  },
 
-  words(name) { return name.replace(/\//g, ', ').replace(/_/g, ' '); },
+  words(name) {
+    return name.replace(/\//g, ', ').replace(/_/g, ' ');
+  },
 
   value(value) {
-    if (Format.isNumber(value)) return Format.plain(value) === '' ? String(value) : String(value);
     return typeof value === 'string' ? value : JSON.stringify(value);
   },
 
-  greek: { alpha: 'α', beta: 'β', gamma: 'γ', delta: 'δ', epsilon: 'ε', eta: 'η', theta: 'θ', kappa: 'κ', lambda: 'λ',
-    mu: 'μ', nu: 'ν', xi: 'ξ', pi: 'π', rho: 'ρ', sigma: 'σ', tau: 'τ', phi: 'φ', chi: 'χ', psi: 'ψ', omega: 'ω',
-    Gamma: 'Γ', Delta: 'Δ', Theta: 'Θ', Lambda: 'Λ', Sigma: 'Σ', Phi: 'Φ', Psi: 'Ψ', Omega: 'Ω' },
+  greek: {
+    alpha: 'α',
+    beta: 'β',
+    gamma: 'γ',
+    delta: 'δ',
+    epsilon: 'ε',
+    eta: 'η',
+    theta: 'θ',
+    kappa: 'κ',
+    lambda: 'λ',
+    mu: 'μ',
+    nu: 'ν',
+    xi: 'ξ',
+    pi: 'π',
+    rho: 'ρ',
+    sigma: 'σ',
+    tau: 'τ',
+    phi: 'φ',
+    chi: 'χ',
+    psi: 'ψ',
+    omega: 'ω',
+    Gamma: 'Γ',
+    Delta: 'Δ',
+    Theta: 'Θ',
+    Lambda: 'Λ',
+    Sigma: 'Σ',
+    Phi: 'Φ',
+    Psi: 'Ψ',
+    Omega: 'Ω',
+  },
 
-  // "sigma^noise_xy" as σ, "noise" raised, "xy" lowered: [{text, level}] with level 0, 1 or -1. A word after ^ goes up to
-  // the last _ behind it, because names of terms have underscores themselves.
-  symbol(text) {
-    const parts = [], match = /^([^_^]*)(?:\^(.*?))?(?:_([^_^]*))?$/.exec(text);
-    if (!match) return [{ text, level: 0 }];
-    const translate = part => part.replace(/[A-Za-z]+/g, word => Format.greek[word] || word);
-    if (match[1]) parts.push({ text: translate(match[1]), level: 0 });
-    if (match[3]) parts.push({ text: translate(match[3]), level: -1 });
-    if (match[2]) parts.push({ text: translate(match[2]).replace(/_/g, ' '), level: 1 });
-    return parts;
+  // "N_1^noise" as N, "1" lowered, "noise" raised: [{text, level}] with level 0, -1 or 1. What is raised may be the
+  // name of a term, with underscores of its own; a few letters behind its last one are lowered: sigma^noise_xy. Of one that
+  // has elements all of it is the name, and `element` is lowered.
+  symbol(text, element = '') {
+    const [, base, below, above] = /^([^_^]*)(?:_([^^]*))?(?:\^(.*))?$/.exec(text) || [null, text, '', ''];
+    const [, name, tail] = (element ? null : /^(.*)_(\w{1,2})$/.exec(above || '')) || [null, above, ''];
+    const translate = (part) => part.replace(/[A-Za-z]+/g, (word) => Format.greek[word] || word);
+    const parts = [
+      [base, 0],
+      [[below, tail, element].filter(Boolean).join(' '), -1],
+      [(name || '').replace(/_/g, ' '), 1],
+    ];
+    return parts.filter(([part]) => part).map(([part, level]) => ({ text: translate(part), level }));
   },
 
   // The same for matplotlib.
   mathtext(parts) {
-    return parts.map(part => part.level === 0 ? part.text :
-      `$${part.level > 0 ? '^' : '_'}{\\mathrm{${part.text.replace(/[\\${}^_%#&~]/g, '').replace(/ /g, '\\ ')}}}$`).join('');
+    const inner = (text) => text.replace(/[\\${}^_%#&~]/g, '').replace(/ /g, '\\ ');
+    return parts
+      .map(({ text, level }) =>
+        level === 0 ? text.replace(/\$/g, '\\$') : `$${level > 0 ? '^' : '_'}{\\mathrm{${inner(text)}}}$`,
+      )
+      .join('');
   },
 
-  plainText(parts) { return parts.map(part => part.text).join(''); },
+  plainText(parts) {
+    return parts.map((part) => part.text).join('');
+  },
 
   unit(unit) {
     if (!unit || unit === '1') return '';
-    return unit.split(' * ').map(word => ({ viscosity: 'η', shear_rate: 'γ̇' })[word] || Format.words(word)).join(' ');
+    return unit
+      .split(' * ')
+      .map((word) => ({ viscosity: 'η', shear_rate: 'γ̇' })[word] || Format.words(word))
+      .join(' ');
   },
 
   // What the page calls keys of a scene: words and symbol.
-  keys: { '/peclet': ['Péclet number', 'Pe'], '/volume_fraction': ['volume fraction', 'phi'],
-    '/flow/shear_rate': ['shear rate', 'γ̇'], '/contact/friction': ['coefficient of friction', 'mu'],
+  keys: {
+    '/peclet': ['Péclet number', 'Pe'],
+    '/volume_fraction': ['volume fraction', 'phi'],
+    '/flow/shear_rate': ['shear rate', 'γ̇'],
+    '/contact/friction': ['coefficient of friction', 'mu'],
     '/contact/rolling_friction': ['coefficient of rolling friction', 'mu_r'],
-    '/contact/normal_stiffness': ['normal stiffness', 'k_n'], '/particles/count': ['number of particles', 'N'],
-    '/fluid/viscosity': ['viscosity of the fluid', 'eta'], '/fluid/thermal_energy': ['thermal energy', 'k_B T'],
-    '/particles/density': ['density of the particles', 'rho'] },
+    '/contact/normal_stiffness': ['normal stiffness', 'k_n'],
+    '/particles/count': ['number of particles', 'N'],
+    '/fluid/viscosity': ['viscosity of the fluid', 'eta'],
+    '/fluid/thermal_energy': ['thermal energy', 'k_B T'],
+    '/particles/density': ['density of the particles', 'rho'],
+  },
 
   groups: { peclet: ['Péclet number', 'Pe'], stokes: ['Stokes number', 'St'] },
 
   // {words, symbol: parts, unit} of a swept parameter.
   parameter(parameter) {
-    const known = Format.keys[parameter.pointer], bracket = /\[([^\]]*)\]\s*$/.exec(parameter.meaning || '');
-    const steps = parameter.pointer.split('/').filter(step => step !== '');
-    const last = steps.length && /^[0-9]+$/.test(steps[steps.length - 1]) ? steps.slice(-2) : steps.slice(-1);
-    return { words: known ? known[0] : Format.words(last.join(' ')), symbol: known ? Format.keySymbol(known[1]) : [],
-      unit: bracket ? bracket[1] : '' };
+    const known = Format.keys[parameter.pointer],
+      bracket = /\[([^\]]*)\]\s*$/.exec(parameter.meaning || '');
+    const steps = parameter.pointer.split('/').filter((step) => step !== '');
+    const last = /^[0-9]+$/.test(steps[steps.length - 1]) ? steps.slice(-2) : steps.slice(-1);
+    return {
+      words: known ? known[0] : Format.words(last.join(' ')),
+      symbol: known ? Format.keySymbol(known[1]) : [],
+      unit: bracket ? bracket[1] : '',
+    };
   },
 
   keySymbol(text) {
@@ -117,11 +182,18 @@ const Format = {
 
   // {words, symbol, unit} of what is measured.
   quantity(quantity) {
-    const element = quantity.element;
-    let symbol = quantity.symbol;
-    if (symbol && element && !symbol.includes('_')) symbol += `_${element}`;
-    return { words: Format.words(quantity.name) + (element ? `, ${element}` : ''), symbol: Format.symbol(symbol || ''),
-      unit: Format.unit(quantity.unit) };
+    const { element, name, symbol } = quantity;
+    return {
+      words: Format.words(name) + (element ? `, ${element}` : ''),
+      symbol: symbol ? Format.symbol(symbol, element) : [],
+      unit: Format.unit(quantity.unit),
+    };
+  },
+
+  // For a list to choose from, which shows plain text only.
+  option(about) {
+    const plain = about.symbol.length && about.symbol.every((part) => part.level === 0);
+    return about.words + (plain ? ` ${Format.plainText(about.symbol)}` : '') + (about.unit ? ` [${about.unit}]` : '');
   },
 
   // "relative viscosity ηr [unit]" as parts.

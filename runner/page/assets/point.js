@@ -1,21 +1,25 @@
-
-// What is known of one point: how its mean came about, how its seeds scatter, what was lost, what it cost. The figures are
+// What is known of one point: how its mean came about, how seeds scatter, what was lost, what it cost. The figures are
 // pure; `show` writes them down.
 class PointView {
   constructor(data, host) {
     Object.assign(this, { data, host });
     const path = data.target.observable.replace(/^\//, '');
-    this.column = data.quantities.findIndex(quantity => quantity.path === path);
-    this.about = this.column < 0 ? { words: Format.words(path), symbol: [], unit: '' } :
-      Format.quantity(data.quantities[this.column]);
-    this.select = Page.select(data.points.map((point, i) => [String(i), point.label]), () => this.onChoose(Number(this.select.value)));
+    this.column = data.quantities.findIndex((quantity) => quantity.path === path);
+    this.about =
+      this.column < 0
+        ? { words: Format.words(path), symbol: [], unit: '' }
+        : Format.quantity(data.quantities[this.column]);
+    this.select = Page.select(
+      data.points.map((point, i) => [String(i), point.label]),
+      () => this.onChoose(Number(this.select.value)),
+    );
     this.facts = document.createElement('div');
     this.charts = ['mean', 'width', 'scatter'].map(() => new Chart(document.createElement('figure')));
     this.losses = document.createElement('div');
     this.numbers = document.createElement('div');
     const pair = document.createElement('div');
     pair.className = 'pair';
-    pair.append(...this.charts.map(chart => chart.host));
+    pair.append(...this.charts.map((chart) => chart.host));
     const controls = document.createElement('div');
     controls.className = 'controls';
     controls.append(Page.labelled('Point', this.select));
@@ -23,93 +27,206 @@ class PointView {
     this.onChoose = () => {};
   }
 
-  seedsAxis(log) { return { about: { words: 'seeds', symbol: Format.symbol('n'), unit: '' }, log }; }
+  seedsAxis(log) {
+    return { about: { words: 'seeds', symbol: Format.symbol('n'), unit: '' }, log };
+  }
 
-  title(point, what) { return `${this.data.campaign} ${point.label} ${what}`; }
+  static isLong(seeds) {
+    return seeds[seeds.length - 1] >= 20 * seeds[0];
+  }
+
+  title(point, what) {
+    return `${this.data.campaign} ${point.label} ${what}`;
+  }
 
   // The last look's, or what the seeds so far say.
-  static last(point) { return point.looks[point.looks.length - 1] || null; }
+  static last(point) {
+    return point.looks[point.looks.length - 1] || null;
+  }
 
   lookMarks(point, value, half) {
-    return point.looks.map((look, i) => ({ series: 1, x: look.seeds, y: value(look), half: half(look), point: 0, small: true,
-      kind: look.verdict.startsWith('converged') && i === point.looks.length - 1 ? 'decided' : 'undecided',
-      text: `look at ${Format.counted(look.seeds, 'seed')}: ${Format.withError(look.mean, look.half_width)}, ${look.verdict}` }))
-      .filter(mark => Format.isNumber(mark.y));
+    return point.looks
+      .map((look, i) => ({
+        series: 1,
+        x: look.seeds,
+        y: value(look),
+        half: half(look),
+        point: 0,
+        small: true,
+        kind: look.verdict.startsWith('converged') && i === point.looks.length - 1 ? 'decided' : 'undecided',
+        text: [
+          `look at ${Format.counted(look.seeds, 'seed')}`,
+          Format.withError(look.mean, look.half_width),
+          look.verdict,
+        ].join(', '),
+      }))
+      .filter((mark) => Format.isNumber(mark.y));
   }
 
   lookRows(point) {
     return [
-      ...point.running_mean.seeds.map((seeds, i) => ['running', seeds, point.running_mean.mean[i], point.running_mean.half_width[i], null, null]),
-      ...point.looks.map(look => ['look', look.seeds, look.mean, look.half_width, look.good_enough, look.verdict]),
+      ...point.running_mean.seeds.map((seeds, i) => [
+        'running',
+        seeds,
+        point.running_mean.mean[i],
+        point.running_mean.half_width[i],
+        null,
+        null,
+      ]),
+      ...point.looks.map((look) => ['look', look.seeds, look.mean, look.half_width, look.good_enough, look.verdict]),
     ];
   }
 
   convergence(point) {
-    const { seeds, mean, half_width: half } = point.running_mean, last = PointView.last(point), levels = [];
-    const usable = seeds.map((_, i) => i).filter(i => Format.isNumber(mean[i]));
-    const settled = usable.filter(i => Format.isNumber(half[i]) && (seeds[i] > 3 || usable.length < 6));
+    const { seeds, mean, half_width: half } = point.running_mean,
+      last = PointView.last(point),
+      levels = [];
+    const usable = seeds.map((_, i) => i).filter((i) => Format.isNumber(mean[i]));
+    // The intervals of the first few seeds are enormous.
+    const few = 8;
+    const settled = usable.filter(
+      (i) => Format.isNumber(half[i]) && (seeds[i] >= few || seeds[seeds.length - 1] <= few),
+    );
     if (last && Format.isNumber(last.good_enough)) {
-      for (const sign of [-1, 1]) levels.push({ value: last.mean + sign * last.good_enough, across: true, series: 2 });
+      for (const sign of [-1, 1])
+        levels.push({ value: last.mean + sign * last.good_enough, across: true, series: 2 });
     }
-    const table = { columns: ['kind', 'seeds', 'mean', 'half_width', 'good_enough', 'verdict'], rows: this.lookRows(point) };
+    const table = {
+      columns: ['kind', 'seeds', 'mean', 'half_width', 'good_enough', 'verdict'],
+      rows: this.lookRows(point),
+    };
     const legend = [{ series: 1, name: [{ text: 'looks', level: 0 }] }];
-    return [{
-      name: this.title(point, 'running mean'), x: this.seedsAxis(isLogarithmic(seeds)), y: { about: this.about, log: false }, table, legend,
-      panels: [{ marks: this.lookMarks(point, look => look.mean, look => look.half_width), levels,
-        lines: [{ series: 0, style: 'line', places: usable.map(i => [seeds[i], mean[i]]) }],
-        bands: settled.length ? [{ series: 0, places: settled.map(i => [seeds[i], mean[i] - half[i], mean[i] + half[i]]) }] : [] }],
-      hasBand: settled.length > 0, bandName: 'its interval', height: 260,
-      caption: `Running mean over the first n seeds, its interval, and the looks at which it was judged.${
-        levels.length ? ' Dashed: the last look\'s mean ± the half-width that is good enough.' : ''}`,
-    }, {
-      name: this.title(point, 'half-width'), x: this.seedsAxis(isLogarithmic(seeds)), table, legend,
-      y: { about: { words: 'half-width', symbol: [], unit: this.about.unit }, log: isLogarithmic(half.filter(Format.isNumber)) },
-      panels: [{ marks: this.lookMarks(point, look => look.half_width, () => null),
-        levels: last && Format.isNumber(last.good_enough) ? [{ value: last.good_enough, across: true, series: 2 }] : [],
-        lines: [{ series: 0, style: 'line', places: settled.map(i => [seeds[i], half[i]]) }] }],
-      height: 260, caption: `Half-width of the interval by which looks decide.${last ? ' Dashed: what is good enough.' : ''}`,
-    }];
+    return [
+      {
+        name: this.title(point, 'running mean'),
+        x: this.seedsAxis(PointView.isLong(seeds)),
+        y: { about: this.about, log: false },
+        table,
+        legend,
+        panels: [
+          {
+            marks: this.lookMarks(
+              point,
+              (look) => look.mean,
+              (look) => look.half_width,
+            ),
+            levels,
+            lines: [{ series: 0, style: 'line', places: usable.map((i) => [seeds[i], mean[i]]) }],
+            bands: settled.length
+              ? [{ series: 0, places: settled.map((i) => [seeds[i], mean[i] - half[i], mean[i] + half[i]]) }]
+              : [],
+          },
+        ],
+        hasBand: settled.length > 0,
+        bandName: 'its interval',
+        height: 260,
+        caption: `Running mean over the first n seeds, its interval, and the looks at which it was judged.${
+          levels.length ? " Dashed: the last look's mean ± the half-width that is good enough." : ''
+        }`,
+      },
+      {
+        name: this.title(point, 'half-width'),
+        x: this.seedsAxis(PointView.isLong(seeds)),
+        table,
+        legend,
+        y: {
+          about: { words: 'half-width', symbol: [], unit: this.about.unit },
+          log: isLogarithmic(half.filter(Format.isNumber)),
+        },
+        panels: [
+          {
+            marks: this.lookMarks(
+              point,
+              (look) => look.half_width,
+              () => null,
+            ),
+            levels:
+              last && Format.isNumber(last.good_enough) ? [{ value: last.good_enough, across: true, series: 2 }] : [],
+            lines: [{ series: 0, style: 'line', places: settled.map((i) => [seeds[i], half[i]]) }],
+          },
+        ],
+        height: 260,
+        caption: `Half-width of the interval by which looks decide.${last ? ' Dashed: what is good enough.' : ''}`,
+      },
+    ];
   }
 
   scatter(point) {
-    const { scatter } = point, last = PointView.last(point), levels = [];
+    const { scatter } = point,
+      last = PointView.last(point),
+      levels = [];
     const mean = last ? last.mean : point.running_mean.mean[point.running_mean.mean.length - 1];
-    const figure = { name: this.title(point, 'seeds'), height: 260, panels: [{ marks: [], levels }] }, [panel] = figure.panels;
+    const figure = { name: this.title(point, 'seeds'), height: 260, panels: [{ marks: [], levels }] },
+      [panel] = figure.panels;
     if (scatter.counts) {
       const width = (scatter.high - scatter.low) / scatter.counts.length || 1;
       if (Format.isNumber(mean)) levels.push({ value: mean, across: false, series: 1 });
-      panel.columns = scatter.counts.map((height, i) => ({ from: scatter.low + i * width, to: scatter.low + (i + 1) * width, height }));
-      return { ...figure, x: { about: this.about, log: false }, y: { about: { words: 'seeds', symbol: [], unit: '' }, log: false },
-        table: { columns: ['from', 'to', 'seeds'], rows: panel.columns.map(column => [column.from, column.to, column.height]) },
-        caption: 'How many seeds gave which value. Dashed: their mean.' };
+      panel.columns = scatter.counts.map((height, i) => ({
+        from: scatter.low + i * width,
+        to: scatter.low + (i + 1) * width,
+        height,
+      }));
+      return {
+        ...figure,
+        x: { about: this.about, log: false },
+        y: { about: { words: 'seeds', symbol: [], unit: '' }, log: false },
+        table: {
+          columns: ['from', 'to', 'seeds'],
+          rows: panel.columns.map((column) => [column.from, column.to, column.height]),
+        },
+        caption: 'How many seeds gave which value. Dashed: their mean.',
+      };
     }
     if (Format.isNumber(mean)) levels.push({ value: mean, across: true, series: 1 });
-    panel.marks = scatter.values.map((y, i) => ({ series: 0, x: scatter.seeds[i] - 1, y, half: null, kind: 'decided', small: true, point: 0,
-      text: `seed ${scatter.seeds[i] - 1}: ${Format.plain(y)}` }));
-    return { ...figure, x: { about: { words: 'seed', symbol: [], unit: '' }, log: false }, y: { about: this.about, log: false },
+    panel.marks = scatter.values.map((y, i) => ({
+      series: 0,
+      x: scatter.seeds[i] - 1,
+      y,
+      half: null,
+      kind: 'decided',
+      small: true,
+      point: 0,
+      text: `seed ${scatter.seeds[i] - 1}: ${Format.plain(y)}`,
+    }));
+    return {
+      ...figure,
+      x: { about: { words: 'seed', symbol: [], unit: '' }, log: false },
+      y: { about: this.about, log: false },
       table: { columns: ['seed', 'value'], rows: scatter.values.map((y, i) => [scatter.seeds[i] - 1, y]) },
-      caption: 'The value of each seed. Dashed: their mean.' };
+      caption: 'The value of each seed. Dashed: their mean.',
+    };
   }
 
   // In sentences.
   sentences(point) {
-    const last = PointView.last(point), { seeds } = point, estimate = this.column < 0 ? null : point.estimates[this.column], said = [];
+    const last = PointView.last(point),
+      { seeds } = point,
+      estimate = this.column < 0 ? null : point.estimates[this.column],
+      said = [];
     if (last) {
       const relative = this.data.target.relative_tolerance !== undefined && !this.data.target.relative_to;
       const share = relative && last.mean ? ` (${Format.percent(last.half_width / Math.abs(last.mean))})` : '';
-      said.push(`${Format.withError(last.mean, last.half_width)}${share}: ${point.verdict}, at the look at ${Format.counted(last.seeds, 'seed')}.`);
+      const look = Format.counted(last.seeds, 'seed');
+      said.push(`${Format.withError(last.mean, last.half_width)}${share}: ${point.verdict}, at the look at ${look}.`);
       const plain = point.uncontrolled[this.data.target.observable.replace(/^\//, '')];
-      if (plain && plain[0] !== last.mean)
-        said.push(`Without the control variate, a quantity of known mean zero that takes away scatter: ${Format.withError(plain[0], plain[2])}.`);
+      if (plain && plain[0] !== last.mean) {
+        const text = 'Without the control variate, a quantity of known mean zero that takes away scatter';
+        said.push(`${text}: ${Format.withError(plain[0], plain[2])}.`);
+      }
     } else if (estimate && Format.isNumber(estimate[0])) {
-      said.push(`${Format.withError(estimate[0], estimate[2])} over the ${Format.counted(estimate[3], 'seed')} so far: provisional, ${point.verdict}.`);
+      const mean = Format.withError(estimate[0], estimate[2]),
+        seeds = Format.counted(estimate[3], 'seed');
+      said.push(`${mean} over the ${seeds} so far: provisional, ${point.verdict}.`);
     } else {
       said.push(`Nothing is known yet: ${point.verdict}.`);
     }
     if (!point.decided) said.push(`${seeds.wanted_ended} of the ${seeds.wanted} seeds of the next look have ended.`);
     const each = seeds.ended ? `, ${Format.duration(point.cpu_seconds / seeds.ended)} each` : '';
-    said.push(`Processor time ${Format.duration(point.cpu_seconds)} for ${Format.counted(seeds.ended, 'seed')}${each}${
-      seeds.surplus ? `; ${seeds.surplus} of them surplus, which do not count` : ''}.`);
+    said.push(
+      `Processor time ${Format.duration(point.cpu_seconds)} for ${Format.counted(seeds.ended, 'seed')}${each}${
+        seeds.surplus ? `; ${seeds.surplus} of them surplus, which do not count` : ''
+      }.`,
+    );
     return said.join(' ');
   }
 
@@ -118,39 +235,74 @@ class PointView {
     this.select.value = String(index);
     const groups = Object.entries(point.groups || {}).filter(([, value]) => Format.isNumber(value));
     this.facts.replaceChildren(Page.paragraph(this.sentences(point)));
-    if (groups.length) this.facts.append(Page.paragraph(groups.map(([name, value]) => Page.group(name, value)).join(' · '), 'faint'));
+    if (groups.length)
+      this.facts.append(Page.paragraph(groups.map(([name, value]) => Page.group(name, value)).join(' · '), 'faint'));
     const figures = [...this.convergence(point), this.scatter(point)];
     this.charts.forEach((chart, i) => chart.show(figures[i]));
     this.losses.replaceChildren();
     const causes = Object.entries(point.losses);
     if (causes.length) {
-      this.losses.append(Page.paragraph(`Lost seeds, which the mean leaves out: ${
-        causes.map(([cause, count]) => `${count} ${Format.words(cause)}`).join(', ')}.`));
+      this.losses.append(
+        Page.paragraph(
+          `Lost seeds, which the mean leaves out: ${causes
+            .map(([cause, count]) => `${count} ${Format.words(cause)}`)
+            .join(', ')}.`,
+        ),
+      );
     }
     this.showNumbers(point);
   }
 
   // Everything that was measured at the point.
   showNumbers(point) {
-    const { quantities } = this.data, rows = [];
+    const { quantities } = this.data,
+      rows = [];
     quantities.forEach((quantity, i) => {
       if (point.estimates[i] && Format.isNumber(point.estimates[i][0]))
-        rows.push({ about: Format.quantity(quantity), quantity, numbers: point.estimates[i], plain: point.uncontrolled[quantity.path] });
+        rows.push({
+          about: Format.quantity(quantity),
+          quantity,
+          numbers: point.estimates[i],
+          plain: point.uncontrolled[quantity.path],
+        });
     });
     const open = this.numbers.firstChild ? this.numbers.firstChild.open : false;
     const details = Page.details(`All that was measured at this point (${rows.length} numbers)`);
     details.open = open;
     this.numbers.replaceChildren(details);
-    new SortedTable(details, [
-      { title: 'quantity', text: true, wrap: true, cell: row => row.about.words, sort: row => row.about.words },
-      { title: 'symbol', text: true, minor: true, cell: row => row.about.symbol, sort: row => Format.plainText(row.about.symbol) },
-      { title: 'mean ± half-width', cell: row => Format.withError(row.numbers[0], row.numbers[2]), sort: row => row.numbers[0] },
-      { title: 'unit', text: true, cell: row => row.about.unit, sort: row => row.about.unit },
-      { title: 'uncontrolled', minor: true, cell: row => row.plain ? Format.withError(row.plain[0], row.plain[2]) : '',
-        sort: row => row.plain ? row.plain[0] : null },
-      { title: 'seeds', cell: row => String(row.numbers[3]), sort: row => row.numbers[3] },
-    ], rows, { name: this.title(point, 'measured'), csv: {
-      columns: ['quantity', 'symbol', 'unit', 'mean', 'standard_error', 'half_width', 'count'],
-      rows: rows.map(row => [row.quantity.path, row.quantity.symbol, row.quantity.unit, ...row.numbers]) } });
+    new SortedTable(
+      details,
+      [
+        { title: 'quantity', text: true, wrap: true, cell: (row) => row.about.words, sort: (row) => row.about.words },
+        {
+          title: 'symbol',
+          text: true,
+          minor: true,
+          cell: (row) => row.about.symbol,
+          sort: (row) => Format.plainText(row.about.symbol),
+        },
+        {
+          title: 'mean ± half-width',
+          cell: (row) => Format.withError(row.numbers[0], row.numbers[2]),
+          sort: (row) => row.numbers[0],
+        },
+        { title: 'unit', text: true, cell: (row) => row.about.unit, sort: (row) => row.about.unit },
+        {
+          title: 'uncontrolled',
+          minor: true,
+          cell: (row) => (row.plain ? Format.withError(row.plain[0], row.plain[2]) : ''),
+          sort: (row) => (row.plain ? row.plain[0] : null),
+        },
+        { title: 'seeds', cell: (row) => String(row.numbers[3]), sort: (row) => row.numbers[3] },
+      ],
+      rows,
+      {
+        name: this.title(point, 'measured'),
+        csv: {
+          columns: ['quantity', 'symbol', 'unit', 'mean', 'standard_error', 'half_width', 'count'],
+          rows: rows.map((row) => [row.quantity.path, row.quantity.symbol, row.quantity.unit, ...row.numbers]),
+        },
+      },
+    );
   }
 }

@@ -1,4 +1,3 @@
-
 // Elements, marks and text of charts. Text only ever enters as text, so nothing in a name is obeyed.
 const Svg = {
   element(name, attributes = {}, ...children) {
@@ -8,7 +7,9 @@ const Svg = {
     return made;
   },
 
-  number(value) { return String(Math.round(value * 10) / 10); },
+  number(value) {
+    return String(Math.round(value * 10) / 10);
+  },
 
   line(style, x1, y1, x2, y2) {
     const n = Svg.number;
@@ -36,35 +37,88 @@ const Svg = {
 
   // What text of 13 px is expected to take; fonts differ.
   width(parts) {
-    return (typeof parts === 'string' ? [{ text: parts, level: 0 }] : parts)
-      .reduce((sum, part) => sum + part.text.length * (part.level ? 5.4 : 7), 0);
+    return (typeof parts === 'string' ? [{ text: parts, level: 0 }] : parts).reduce(
+      (sum, part) => sum + part.text.length * (part.level ? 5.4 : 7),
+      0,
+    );
   },
 
   // Corners around the middle, for a radius of 1; null: a circle. As many as are not confused with each other.
-  shapes: [null, [[-.9, -.9], [.9, -.9], [.9, .9], [-.9, .9]], [[0, -1.3], [1.3, 0], [0, 1.3], [-1.3, 0]],
-    [[0, -1.2], [1.2, 1], [-1.2, 1]], [[0, 1.2], [1.2, -1], [-1.2, -1]],
-    [[-.4, -1.2], [.4, -1.2], [.4, -.4], [1.2, -.4], [1.2, .4], [.4, .4], [.4, 1.2], [-.4, 1.2], [-.4, .4], [-1.2, .4],
-      [-1.2, -.4], [-.4, -.4]],
-    [[-1.2, 0], [-.6, -1.05], [.6, -1.05], [1.2, 0], [.6, 1.05], [-.6, 1.05]]],
+  shapes: [
+    null,
+    [
+      [-0.9, -0.9],
+      [0.9, -0.9],
+      [0.9, 0.9],
+      [-0.9, 0.9],
+    ],
+    [
+      [0, -1.3],
+      [1.3, 0],
+      [0, 1.3],
+      [-1.3, 0],
+    ],
+    [
+      [0, -1.2],
+      [1.2, 1],
+      [-1.2, 1],
+    ],
+    [
+      [0, 1.2],
+      [1.2, -1],
+      [-1.2, -1],
+    ],
+    [
+      [-0.4, -1.2],
+      [0.4, -1.2],
+      [0.4, -0.4],
+      [1.2, -0.4],
+      [1.2, 0.4],
+      [0.4, 0.4],
+      [0.4, 1.2],
+      [-0.4, 1.2],
+      [-0.4, 0.4],
+      [-1.2, 0.4],
+      [-1.2, -0.4],
+      [-0.4, -0.4],
+    ],
+    [
+      [-1.2, 0],
+      [-0.6, -1.05],
+      [0.6, -1.05],
+      [1.2, 0],
+      [0.6, 1.05],
+      [-0.6, 1.05],
+    ],
+  ],
   colours: 8,
 
   mark(series, x, y, kind, radius = 4.5) {
     const style = `mark s${series % Svg.colours} ${kind === 'decided' ? 'solid' : 'hollow'}`;
-    const shape = Svg.shapes[series % Svg.shapes.length], n = Svg.number;
+    const shape = Svg.shapes[series % Svg.shapes.length],
+      n = Svg.number;
     if (!shape) return Svg.element('circle', { class: style, cx: n(x), cy: n(y), r: radius });
-    return Svg.path(style, shape.map(([dx, dy]) => [x + radius * dx, y + radius * dy]), true);
+    return Svg.path(
+      style,
+      shape.map(([dx, dy]) => [x + radius * dx, y + radius * dy]),
+      true,
+    );
   },
 
   // A file of its own, in the colours of a light page and without variables, which drawing programs do not know.
   standalone(svg) {
-    const copy = svg.cloneNode(true), colours = new Map();
+    const copy = svg.cloneNode(true),
+      colours = new Map();
     copy.removeAttribute('tabindex');
+    copy.setAttribute('role', 'img');
+    copy.setAttribute('aria-label', copy.getAttribute('aria-label').replace(/; arrow keys choose a point$/, ''));
     for (const extra of copy.querySelectorAll('.target, .chosen')) extra.remove();
     let style = '';
     for (const rule of document.styleSheets[0].cssRules) {
       if (rule.selectorText === ':root') {
-        for (const name of rule.style) if (name.startsWith('--')) colours.set(name, rule.style.getPropertyValue(name).trim());
-      } else if (rule.selectorText && rule.selectorText.startsWith('.chart')) {
+        for (const name of rule.style)
+          if (name.startsWith('--')) colours.set(name, rule.style.getPropertyValue(name).trim());
+      } else if (/^\.chart (?!\.target|\.chosen)/.test(rule.selectorText || '')) {
         style += rule.cssText.replace(/var\((--\w+)\)/g, (_, name) => colours.get(name)) + '\n';
       }
     }
@@ -72,8 +126,10 @@ const Svg = {
     const box = copy.getAttribute('viewBox').split(' ');
     copy.setAttribute('width', box[2]);
     copy.setAttribute('height', box[3]);
-    copy.prepend(Svg.element('style', {}, style),
-      Svg.element('rect', { width: box[2], height: box[3], fill: colours.get('--page') }));
+    copy.prepend(
+      Svg.element('style', {}, style),
+      Svg.element('rect', { width: box[2], height: box[3], fill: colours.get('--page') }),
+    );
     return new XMLSerializer().serializeToString(copy) + '\n';
   },
 };
@@ -89,15 +145,25 @@ const Saving = {
   },
 
   csv({ columns, rows }) {
-    return [columns, ...rows].map(row => row.map(Saving.csvField).join(',') + '\n').join('');
+    return [columns, ...rows].map((row) => row.map(Saving.csvField).join(',') + '\n').join('');
   },
 
   // Text as a JSON string of ASCII, which Python reads as the same string.
   ascii(value) {
-    return JSON.stringify(value).replace(/[^\x20-\x7e]/g, c => `\\u${c.charCodeAt(0).toString(16).padStart(4, '0')}`);
+    return JSON.stringify(value).replace(
+      /[^\x20-\x7e]/g,
+      (c) => `\\u${c.charCodeAt(0).toString(16).padStart(4, '0')}`,
+    );
   },
 
-  fileName(text) { return text.replace(/[^A-Za-z0-9._-]+/g, '-').replace(/^[-.]+|-+$/g, '').slice(0, 80) || 'peclet'; },
+  fileName(text) {
+    return (
+      text
+        .replace(/[^A-Za-z0-9._-]+/g, '-')
+        .replace(/^[-.]+|-+$/g, '')
+        .slice(0, 80) || 'peclet'
+    );
+  },
 
   link(text, name, type, content) {
     const link = document.createElement('a');

@@ -1,4 +1,3 @@
-
 // A table that sorts by a click on a title. columns: [{title: parts or text, text: whether words, minor: left out where
 // it is narrow, wrap, cell(row), sort(row)}].
 class SortedTable {
@@ -8,9 +7,11 @@ class SortedTable {
     const wide = document.createElement('div');
     wide.className = 'wide';
     this.table = document.createElement('table');
-    const head = document.createElement('thead'), line = document.createElement('tr');
+    const head = document.createElement('thead'),
+      line = document.createElement('tr');
     columns.forEach((column, i) => {
-      const th = document.createElement('th'), button = document.createElement('button');
+      const th = document.createElement('th'),
+        button = document.createElement('button');
       th.className = SortedTable.style(column);
       th.scope = 'col';
       button.type = 'button';
@@ -21,7 +22,7 @@ class SortedTable {
     });
     head.append(line);
     this.body = document.createElement('tbody');
-    this.lines = rows.map(row => this.line(row));
+    this.lines = rows.map((row) => this.line(row));
     this.body.append(...this.lines);
     this.table.append(head, this.body);
     wide.append(this.table);
@@ -31,7 +32,9 @@ class SortedTable {
   }
 
   static style(column) {
-    return [column.text ? 'text' : '', column.wrap ? 'words' : '', column.minor ? 'minor' : ''].filter(Boolean).join(' ');
+    return [column.text ? 'text' : '', column.wrap ? 'words' : '', column.minor ? 'minor' : '']
+      .filter(Boolean)
+      .join(' ');
   }
 
   line(row) {
@@ -57,13 +60,17 @@ class SortedTable {
   sortBy(i) {
     this.descending = this.by === i && !this.descending;
     this.by = i;
-    const { sort } = this.columns[i], turn = this.descending ? -1 : 1;
-    const missing = value => value === null || value === undefined || Number.isNaN(value);
-    const order = this.rows.map((row, place) => ({ place, value: sort(row) })).sort((a, b) => {
-      if (missing(a.value) || missing(b.value)) return missing(a.value) - missing(b.value) || a.place - b.place;
-      if (typeof a.value === 'number' && typeof b.value === 'number') return turn * (a.value - b.value) || a.place - b.place;
-      return turn * String(a.value).localeCompare(String(b.value), 'en', { numeric: true }) || a.place - b.place;
-    });
+    const { sort } = this.columns[i],
+      turn = this.descending ? -1 : 1;
+    const missing = (value) => value === null || value === undefined || Number.isNaN(value);
+    const order = this.rows
+      .map((row, place) => ({ place, value: sort(row) }))
+      .sort((a, b) => {
+        if (missing(a.value) || missing(b.value)) return missing(a.value) - missing(b.value) || a.place - b.place;
+        if (typeof a.value === 'number' && typeof b.value === 'number')
+          return turn * (a.value - b.value) || a.place - b.place;
+        return turn * String(a.value).localeCompare(String(b.value), 'en', { numeric: true }) || a.place - b.place;
+      });
     this.body.replaceChildren(...order.map(({ place }) => this.lines[place]));
     [...this.table.tHead.rows[0].cells].forEach((cell, place) => {
       if (place === i) cell.setAttribute('aria-sort', this.descending ? 'descending' : 'ascending');
