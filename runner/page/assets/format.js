@@ -111,8 +111,8 @@ const Format = {
   },
 
   // "N_1^noise" as N, "1" lowered, "noise" raised: [{text, level}] with level 0, -1 or 1. What is raised may be the
-  // name of a term, with underscores of its own; a few letters behind its last one are lowered: sigma^noise_xy. Of one that
-  // has elements all of it is the name, and `element` is lowered.
+  // name of a term, with underscores of its own; a few letters behind its last one are lowered: sigma^noise_xy. With an
+  // `element` all of it is the name, and the element is lowered.
   symbol(text, element = '') {
     const [, base, below, above] = /^([^_^]*)(?:_([^^]*))?(?:\^(.*))?$/.exec(text) || [null, text, '', ''];
     const [, name, tail] = (element ? null : /^(.*)_(\w{1,2})$/.exec(above || '')) || [null, above, ''];

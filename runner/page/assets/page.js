@@ -108,12 +108,13 @@ class SweepView {
       label.append(text);
       return label;
     };
+    const scales = document.createElement('span');
+    scales.append(switched('log x', this.logX), switched('log y', this.logY));
     controls.append(
       Page.labelled('Quantity', this.quantity),
       Page.labelled('Over', this.axis),
       Page.labelled('Panels', this.panels),
-      switched('log x', this.logX),
-      switched('log y', this.logY),
+      scales,
     );
     this.chart = new Chart(document.createElement('figure'), onPick);
     host.append(Page.heading('h2', 'Results'), controls, this.chart.host);

@@ -95,7 +95,7 @@ class PointView {
       columns: ['kind', 'seeds', 'mean', 'half_width', 'good_enough', 'verdict'],
       rows: this.lookRows(point),
     };
-    const legend = [{ series: 1, name: [{ text: 'looks', level: 0 }] }];
+    const legend = point.looks.length ? [{ series: 1, name: [{ text: 'looks', level: 0 }] }] : [];
     return [
       {
         name: this.title(point, 'running mean'),
