@@ -3,6 +3,7 @@
 
 study.py BIN [FOLDER] [--quick | --from-table]
 """
+import math
 import sys
 from pathlib import Path
 
@@ -11,11 +12,14 @@ sys.path.insert(0, str(HERE.parent))
 from studies.at_rest import SLOWEST, slow_rows
 from studies.command_line import main
 from studies.estimates import difference, estimate, quotient
-from studies.figure import BLUE, GREEN, RED, Figure
+from studies.figure import BLUE, GREEN, RED, Figure, shade
+from studies.prices import ERROR, flow_over_rest, price, seconds_of_window
 from studies.published import JAMMED_AT_REST, diverging
-from studies.scenes import REFERENCE_SCENE, during, merged
+from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
+from studies.spectra import storage_by_loss, viscosity_at_high_frequency
 from studies.tables import entries, number, read_rows, write_table
 from studies.verdicts import Check, Finding
+from studies.viscosities import controlled_viscosity
 
 import numpy as np
 
@@ -32,24 +36,41 @@ SCENE = merged(
         "observables": ["stress", "linear_response"],
     },
 )
+EQUILIBRATION = 100  # Brownian times
 # Brownian times of the window, 80 times the viscosity or more, and seeds.
-WINDOWS = {0.30: (400, 60), 0.45: (800, 60), 0.50: (1600, 32)}
-LARGER = 250, 16  # particles and seeds, at MIDDLE
+WINDOWS = {
+    0.30: (400, 60),
+    0.40: (500, 40),
+    0.45: (800, 60),
+    0.48: (1200, 40),
+    0.50: (1600, 64),
+    0.52: (2400, 24),
+    0.55: (5000, 16),
+}
 MIDDLE = 0.45
+LARGER = {0.30: (1000, 8), MIDDLE: (250, 16)}  # particles and seeds
 HALVED_SEEDS = 24
+# Prices in the flow: volume fractions, Peclet numbers, seeds, Brownian times of the window.
+PRICED, PECLETS, PRICE_SEEDS, PRICE_WINDOW = (0.30, 0.45, 0.50), (0.001, 0.003, 0.01, 0.03, 0.1), 16, 200
+USUAL = {"count": 100, "step": "automatic"}
+FROZEN = 4  # a frequency, over the Brownian one: above it inertia is felt
 # The correlation is taken up to so many Brownian times for each unit of the viscosity.
 TIMES_OF_CORRELATION = 2.5
 
 
 def scene_at(fraction, patch=None):
-    window = during({"brownian_times": 100}, {"brownian_times": WINDOWS[fraction][0]})
+    window = during({"brownian_times": EQUILIBRATION}, {"brownian_times": WINDOWS[fraction][0]})
     return merged(merged(SCENE, {"volume_fraction": fraction, **window}), patch or {})
 
 
-def means_of(program, name, scene, seeds):
-    """Of every seed."""
+def realisations_of(program, name, scene, seeds):
+    """Those that ended well."""
     points = program.run(name, scene, [{"/volume_fraction": scene["volume_fraction"]}], seeds, TARGET)
-    return [r["mean"] for r in points[0]["realisations"] if r.get("mean")]
+    return [r for r in points[0]["realisations"] if r.get("mean")]
+
+
+def means_of(*arguments):
+    return [r["mean"] for r in realisations_of(*arguments)]
 
 
 def by_correlation(means):
@@ -88,15 +109,43 @@ def curve_rows(fraction, means):
             }
 
 
+def price_row(fraction, peclet, realisations, windows, value_of, viscosity, foretold=1.0):
+    """`foretold`: the price over that at rest, as peclet plan guesses it."""
+    values = [value_of(r["mean"]) for r in realisations]
+    seconds = [seconds_of_window(r, *windows) for r in realisations]
+    row = {"fraction": fraction, "peclet": peclet, "seeds": len(values), "foretold": foretold}
+    return row | entries("viscosity", estimate(values)) | entries("seconds", price(values, seconds, viscosity))
+
+
+def price_rows(program, fraction, at_rest):
+    """At rest, and of means in the flow with their control variate."""
+    viscosity = estimate([r["mean"][TARGET] for r in at_rest])[0]
+    yield price_row(fraction, 0, at_rest, (EQUILIBRATION, WINDOWS[fraction][0]), lambda mean: mean[TARGET], viscosity)
+    for peclet in PECLETS:
+        windows = EQUILIBRATION, PRICE_WINDOW
+        patch = at_peclet(peclet) | {"observables": None, "volume_fraction": fraction}
+        patch |= during(*({"brownian_times": time} for time in windows))
+        scene = merged(merged(SCENE, {"fluid": {"thermal_energy": None}}), patch)
+        settings = [{"/volume_fraction": fraction}]
+        (point,) = program.run(f"price-{fraction:g}-{peclet:g}", scene, settings, PRICE_SEEDS)
+        found = [r for r in point["realisations"] if r.get("mean")]
+        foretold = flow_over_rest(peclet, fraction, SCENE["particles"]["species"])
+        yield price_row(fraction, peclet, found, windows, controlled_viscosity, viscosity, foretold)
+
+
 def measure(program):
-    rows, curves = [], []
+    rows, curves, prices = [], [], []
     for fraction, (_, seeds) in WINDOWS.items():
-        means = means_of(program, f"rest-{fraction:g}", scene_at(fraction), seeds)
+        at_rest = realisations_of(program, f"rest-{fraction:g}", scene_at(fraction), seeds)
+        means = [r["mean"] for r in at_rest]
         rows += rows_of(fraction, 100, "automatic", means)
         curves += curve_rows(fraction, means)
-    count, seeds = LARGER
-    means = means_of(program, "larger", scene_at(MIDDLE, {"particles": {"count": count}}), seeds)
-    rows += rows_of(MIDDLE, count, "automatic", means)
+        if fraction in PRICED:
+            prices += price_rows(program, fraction, at_rest)
+    for fraction, (count, seeds) in LARGER.items():
+        name = "larger" if fraction == MIDDLE else f"larger-{fraction:g}"
+        means = means_of(program, name, scene_at(fraction, {"particles": {"count": count}}), seeds)
+        rows += rows_of(fraction, count, "automatic", means)
     half = 0.5 * program.derived(scene_at(MIDDLE), TARGET)["timestep"]
     patch = {"integrator": {"method": "implicit", "timestep": half}}
     means = means_of(program, "halved", scene_at(MIDDLE, patch), HALVED_SEEDS)
@@ -104,6 +153,8 @@ def measure(program):
     columns = ["fraction", "count", "step", "by", "seeds", "viscosity", "viscosity_error", "rise", "rise_error"]
     write_table(HERE / "table.csv", columns, rows, 5)
     write_table(HERE / "curves.csv", ["fraction", "curve", "at", "value", "value_error"], curves, 5)
+    columns = ["fraction", "peclet", "seeds", "viscosity", "viscosity_error", "seconds", "seconds_error", "foretold"]
+    write_table(HERE / "prices.csv", columns, prices, 4)
 
 
 def select(table, **wanted):
@@ -116,60 +167,129 @@ def in_errors(a, b):
     return value / error, 1.0
 
 
-def judge():
-    table = read_rows(HERE / "table.csv")
-    usual = {"count": 100, "step": "automatic"}
+def two_forms(table):
     for fraction in WINDOWS:
-        row = select(table, fraction=fraction, by="momentum", **usual)
+        row, other = (select(table, fraction=fraction, by=by, **USUAL) for by in ("momentum", "correlation"))
         found = number(row, "viscosity")
-        other = number(select(table, fraction=fraction, by="correlation", **usual), "viscosity")
         yield Finding(f"φ = {fraction:g}: η_r at rest", "linear response", *found, row["seeds"] - 1)
         text = f"φ = {fraction:g}: by correlation less by momentum, in standard errors"
-        yield Check(text, "two forms", in_errors(other, found)[0], 0, -2, 2)
+        yield Check(text, "two forms", *in_errors(number(other, "viscosity"), found), -3, 3)
         text = f"φ = {fraction:g}: rise from half of the time on, over η_r"
         yield Check(text, "the window", *quotient(number(row, "rise"), found), -0.1, 0.1, row["seeds"] - 1)
-    found = number(select(table, fraction=MIDDLE, by="momentum", **usual), "viscosity")
-    others = {
-        f"N = {LARGER[0]} less N = 100": {"count": LARGER[0], "step": "automatic"},
-        "half the step less the automatic one": {"count": 100, "step": "half of it"},
-    }
-    for text, which in others.items():
-        other = number(select(table, fraction=MIDDLE, by="momentum", **which), "viscosity")
-        text = f"φ = {MIDDLE:g}: {text}, in standard errors"
-        yield Check(text, "size and step", in_errors(other, found)[0], 0, -2, 2)
 
 
-def draw():
-    curves = read_rows(HERE / "curves.csv")
-    table = read_rows(HERE / "table.csv")
-    figure = Figure(HERE / "chart.png", columns=3)
+def size_and_step(table):
+    others = {(f, f"N = {n} less N = 100"): {"count": n, "step": "automatic"} for f, (n, _) in LARGER.items()}
+    others[MIDDLE, "half the step less the automatic one"] = {"count": 100, "step": "half of it"}
+    for (fraction, text), which in others.items():
+        usual, other = (select(table, fraction=fraction, by="momentum", **w) for w in (USUAL, which))
+        text = f"φ = {fraction:g}: {text}, in standard errors"
+        yield Check(text, "size and step", *in_errors(*(number(r, "viscosity") for r in (other, usual))), -3, 3)
+
+
+def in_slow_shear(table):
+    for fraction, row in slow_rows().items():
+        rest = number(select(table, fraction=fraction, by="momentum", **USUAL), "viscosity")
+        text = f"φ = {fraction:g}: η_r at Pe = {SLOWEST:g} less at rest, in standard errors"
+        yield Finding(text, "slow shear", *in_errors(number(row, "viscosity"), rest))
+
+
+def modulus(curves, fraction, name):
+    """Frequencies in increasing order, values and standard errors of the storage or the loss modulus."""
+    rows = [(r["at"], *number(r, "value")) for r in curves if (r["fraction"], r["curve"]) == (fraction, name)]
+    return np.array(sorted(rows)).T
+
+
+def moduli(curves, table):
+    """The loss at the lowest frequency belongs to the viscosity at rest, the storage to the loss by Kramers and Kronig,
+    and the loss at high frequencies, where structure is frozen, to a published formula for hard spheres."""
+    for fraction in WINDOWS:
+        frequency, storage, storage_error = modulus(curves, fraction, "storage")
+        _, loss, loss_error = modulus(curves, fraction, "loss")
+        rest = number(select(table, fraction=fraction, by="momentum", **USUAL), "viscosity")
+        text = f"φ = {fraction:g}: G″/(ηω) at the lowest frequency over η_r"
+        found = quotient((loss[0] / frequency[0], loss_error[0] / frequency[0]), rest)
+        yield Check(text, "G″ = η_r ηω for ω → 0", *found, 0.8, 1.1)
+        inner = (frequency > frequency[0]) & (frequency < FROZEN)
+        ratios = storage[inner] / storage_by_loss(frequency, loss)[inner]
+        text = f"φ = {fraction:g}: G′ over that by Kramers and Kronig from G″, mean over frequencies"
+        yield Check(text, "Kramers & Kronig", *estimate(ratios), 0.9, 1.1, len(ratios) - 1)
+        steep = math.log(storage[1] / storage[0]) / math.log(frequency[1] / frequency[0])
+        relative = math.hypot(*(storage_error / storage)[:2])
+        text = f"φ = {fraction:g}: power of ω in G′ between the two lowest frequencies (2 for ω → 0)"
+        yield Finding(text, "G′ ∝ ω²", steep, relative / math.log(frequency[1] / frequency[0]))
+        place = np.searchsorted(frequency, FROZEN)
+        found = quotient((loss[place] / frequency[place], loss_error[place] / frequency[place]), (1, 0))
+        value = viscosity_at_high_frequency(fraction)
+        text = (
+            f"φ = {fraction:g}: G″/(ηω) at ωτ_B = {frequency[place]:.2g}; hard spheres, all interactions: {value:.2f}"
+        )
+        yield Finding(text, "Lionberger & Russel 1994", *found)
+
+
+def saved(prices):
+    for fraction in PRICED:
+        rest = number(select(prices, fraction=fraction, peclet=0), "seconds")
+        for row in prices:
+            if row["fraction"] == fraction and row["peclet"] in (0.001, 0.01):
+                label = f"φ = {fraction:g}, Pe = {row['peclet']:g}"
+                text = f"{label}: processor time over that at rest (foretold: {row['foretold']:.2g})"
+                yield Finding(text, "price", *quotient(number(row, "seconds"), rest), row["seeds"] - 1)
+
+
+def judge():
+    table, curves, prices = (read_rows(HERE / f"{name}.csv") for name in ("table", "curves", "prices"))
+    yield from two_forms(table)
+    yield from size_and_step(table)
+    yield from in_slow_shear(table)
+    yield from moduli(curves, table)
+    yield from saved(prices)
+
+
+def draw_curves(figure, curves):
     rise = figure.panel("t / τ_B", "η(t) / η", log="xy", key="top left")
-    moduli = figure.panel("ω τ_B", "G′, G″ (dashed) a³/kT", log="xy", key="top left")
-    divergence = figure.panel("φ", "η_r at rest", log="y", x_range=(0.25, 0.58), key="top left")
-    for fraction, colour in zip(WINDOWS, (BLUE, GREEN, RED)):
-        label = f"φ = {fraction:g}"
+    moduli = figure.panel("ω τ_B", "G′, G″ (dashed) a³/kT", log="xy", key="top left", y_range=(1e-3, None))
+    for fraction in WINDOWS:
+        colour, label = colour_of(fraction), f"φ = {fraction:g}"
+        rows = [r for r in curves if r["fraction"] == fraction and r["curve"] == "viscosity"]
+        rise.points([(r["at"], *number(r, "value")) for r in rows[::3]], label, colour, size=0.4)
+        storage, loss = (zip(*modulus(curves, fraction, name)) for name in ("storage", "loss"))
+        moduli.points([row for row in storage if row[1] > row[2]], label, colour, size=0.6)
+        moduli.line([row[:2] for row in loss], None, colour, dash=2)
 
-        def of(name):
-            return [
-                (r["at"], *number(r, "value"))
-                for r in curves
-                if r["fraction"] == fraction and r["curve"] == name and r["value"] > 0
-            ]
 
-        rise.points(of("viscosity")[::3], label, colour, size=0.5)
-        moduli.points(of("storage"), label, colour, size=0.8)
-        moduli.line([(x, y) for x, y, _ in of("loss")], None, colour, dash=2)
-    rest = [
-        (r["fraction"], *number(r, "viscosity"))
-        for r in table
-        if (r["by"], r["count"], r["step"]) == ("momentum", 100, "automatic")
-    ]
-    divergence.points(rest, "at rest", BLUE)
+def draw_viscosities(figure, table):
+    divergence = figure.panel("φ", "η_r at rest", log="y", x_range=(0.25, 0.58), y_range=(1, 300), key="top left")
+    rows = [r for r in table if (r["by"], r["count"], r["step"]) == ("momentum", 100, "automatic")]
+    divergence.points([(r["fraction"], *number(r, "viscosity")) for r in rows], "at rest", BLUE)
     sheared = [(f, *number(r, "viscosity")) for f, r in slow_rows().items()]
     divergence.points(sheared, f"Pe = {SLOWEST}", RED, size=0.8)
     divergence.curve(
         lambda f: diverging(f, JAMMED_AT_REST, 1.5), "published fit of the limit", GREEN, (0.26, 0.56), dash=2
     )
+
+
+def draw_prices(figure, prices):
+    ends = {"x_range": (min(PECLETS) / 2, max(PECLETS) * 2)}
+    panel = figure.panel(
+        "Pe", f"processor s to {100 * ERROR:g} % of η_r", log="xy", powers="x", key="top right", **ends
+    )
+    for fraction in PRICED:
+        rows = [(r["peclet"], *number(r, "seconds")) for r in prices if r["fraction"] == fraction]
+        colour = colour_of(fraction)
+        panel.points([row for row in rows if row[0]], f"in the flow, φ = {fraction:g}", colour, joined=True)
+        panel.level(rows[0][1], f"at rest, φ = {fraction:g}", colour, dash=2)
+
+
+def colour_of(fraction):
+    return shade((BLUE, GREEN, RED), (fraction - min(WINDOWS)) / (max(WINDOWS) - min(WINDOWS)))
+
+
+def draw():
+    figure = Figure(HERE / "chart.png", columns=2, rows=2, size=(1100, 900))
+    draw_curves(figure, read_rows(HERE / "curves.csv"))
+    draw_viscosities(figure, read_rows(HERE / "table.csv"))
+    draw_prices(figure, read_rows(HERE / "prices.csv"))
     figure.draw()
 
 

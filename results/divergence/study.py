@@ -129,6 +129,13 @@ def recipe_rows(curve):
             yield Finding(f"Pe → 0 by the published recipe: {what} of {of}", "L4.9a", value, error, len(curve) - 2)
 
 
+def held_rows(curve, name):
+    """At rest no exponent of one form meets all volume fractions: φ_J in the published form."""
+    for reading, of in READINGS.items():
+        value, _, error = fit_with_error(curve, reading, jammed_at)[0][:3]
+        yield Finding(f"{name}: φ_J of {of}, λ = 1.5", "form", value, error, min(r["seeds"] for r in curve) - 1)
+
+
 def shift_rows(curves):
     """In the published form, λ = 1.5 for both; and with λ free."""
     for reading, of in READINGS.items():
@@ -170,6 +177,7 @@ def judge():
     name = f"Pe → 0 ({how})"
     recipe, curves[0] = curves[0], [rest[f] for f in sorted(rest) if f >= FRACTIONS[0]]
     yield from fit_rows(0, name, curves[0])
+    yield from held_rows(curves[0], name)
     yield from fit_rows(1e4, NAMES[1e4], curves[1e4])
     yield from shift_rows(curves)
     yield from lowest_rows(curves, name)
