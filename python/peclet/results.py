@@ -146,6 +146,21 @@ class Results:
         options = [] if point is None else [point]
         return ask(self.program, "files", "--paths", "--", self.path, *options).splitlines()
 
+    def trajectory(self, point, seed=0):
+        """The frames that a seed of a point has left with the observable `trajectory`: gsd.hoomd's trajectory, a
+        sequence of them. `point` is its label, as in estimates()."""
+        try:
+            import gsd.hoomd
+        except ImportError as missing:
+            raise PecletError("trajectories need the module gsd: install python3-gsd") from missing
+        left = json.loads(self._ask("files", "--json"))
+        own = [file for file in left if file["name"] == "trajectory.gsd"]
+        for file in own:
+            if (file["point"], file["seed"]) == (point, seed):
+                return gsd.hoomd.open(file["path"], "rb")
+        there = sorted({file["point"] for file in own})
+        raise PecletError(f"{point}, seed {seed}: no trajectory; there are those of {', '.join(there) or 'no point'}")
+
     def plot(self, quantity=None, **how):
         """Draws estimates() over what was swept; see peclet.plots.plot."""
         from peclet.plots import plot

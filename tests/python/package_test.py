@@ -31,6 +31,8 @@ SCENE = {
     "contact": {"normal_stiffness": 1e4},
     "lubrication": {"form": "kim-karrila", "inner_gap": 1e-3, "outer_gap": 0.05},
     "duration": {"equilibration": {"strain": 0.1}, "production": {"strain": 0.2}},
+    "observables": ["stress", "trajectory"],
+    "trajectory": {"interval": {"strain": 0.05}},
     "files": {"final_configuration": True},
 }
 SWEEP = {"/peclet": [10, 1000], "/volume_fraction": [0.2, 0.3]}
@@ -88,11 +90,19 @@ class OfACampaign(unittest.TestCase):
 
     def test_files_are_where_it_says(self):
         paths = self.results.files()
-        self.assertGreaterEqual(len(paths), 32)
+        self.assertGreaterEqual(len(paths), 2 * 32)
         for path in paths:
             self.assertTrue(os.path.exists(path), path)
         label = self.export["points"][0]["label"]
         self.assertLess(len(self.results.files(label)), len(paths))
+
+    def test_a_trajectory_has_the_frames_of_its_seed(self):
+        label = self.results.estimates()["label"][0]
+        frames = self.results.trajectory(label, 1)
+        self.assertGreaterEqual(len(frames), 4)  # a strain of 0.2 in twentieths
+        self.assertEqual(frames[0].particles.N, 20)
+        with self.assertRaisesRegex(peclet.PecletError, f"nowhere, seed 0: no trajectory; .*{label}"):
+            self.results.trajectory("nowhere")
 
     def test_a_plot_has_a_series_for_each_value_and_the_intervals_as_bars(self):
         axes = self.results.plot(x="peclet")
