@@ -31,6 +31,7 @@ std::vector<Estimate> so_far(Database& database, const PointRecord& point, std::
     }
   }
   std::vector<Estimate> estimates;
+  estimates.reserve(sums.size());
   for (const RunningEstimate& sum : sums) estimates.push_back(sum.estimate());
   return estimates;
 }

@@ -1,5 +1,8 @@
 #include "runner/page/page_html.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <array>
 #include <stdexcept>
 #include <string_view>
@@ -63,7 +66,7 @@ std::string filled(std::string_view text,
 }  // namespace
 
 std::string page_html(const Json& data) {
-  const std::string style = page_style, script = page_script;
+  const std::string style = page_style, script = fmt::format("{}", fmt::join(page_scripts, ""));
   const std::string policy = "default-src 'none'; style-src " + policy_hash(style) + "; script-src " +
                              policy_hash(script) + "; base-uri 'none'; form-action 'none'";
   return filled(page_template, {{{"@NAME@", escaped(data.at("campaign").get<std::string>())},

@@ -227,12 +227,14 @@ class PointPage {
     for (const ObservableLook& one : each_of(*look_, target)) {
       const std::size_t column = column_of(columns, one.observable);
       by_column[column] = numbers(one.estimate, one.half_width);
-      if (one.observable == target.observable)
+      if (one.observable == target.observable) {
         uncontrolled[column] = numbers(look_->estimate, look_->half_width);
+      }
     }
-    for (const Criterion& criterion : target.criteria())
+    for (const Criterion& criterion : target.criteria()) {
       allowed[columns.drawables[column_of(columns, criterion.observable)].path] =
           good_enough(criterion, *look_, target);
+    }
   }
 
   // An observable that is named as a quantity or an element; one that the results do not describe is one

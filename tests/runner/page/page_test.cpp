@@ -1,6 +1,7 @@
 // The page that an adviser gets: its document, and the file that holds it. What a browser makes of it:
 // tests/pages.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include "contract/sha256.h"
@@ -191,7 +192,9 @@ TEST(PageFile, AllowsNoScriptButItsOwnAndNoOtherPlace) {
   const std::string page = page_html({{"campaign", "plain"}});
   const std::string policy = between(page, "Content-Security-Policy\" content=\"", "\"");
   EXPECT_TRUE(policy.starts_with("default-src 'none'; ")) << policy;
-  EXPECT_TRUE(says(policy, "script-src 'sha256-" + sha256_base64(page_script) + "'")) << policy;
+  EXPECT_TRUE(says(
+      policy, "script-src 'sha256-" + sha256_base64(fmt::format("{}", fmt::join(page_scripts, ""))) + "'"))
+      << policy;
   EXPECT_TRUE(says(policy, "style-src 'sha256-" + sha256_base64(page_style) + "'")) << policy;
   EXPECT_FALSE(says(policy, "unsafe")) << policy;
   for (const char* const outside : {"https:", "src=", "<link", "url(", "@import", "innerHTML", "eval("}) {
