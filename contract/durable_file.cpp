@@ -64,6 +64,9 @@ void replace_durably(const std::filesystem::path& path, std::uint64_t bytes, con
     const int number = error.code().value();
     if (means_no_room(number)) throw NoRoomError(number, "cannot write " + path.string(), path, bytes);
     throw;
+  } catch (...) {
+    ::unlink(temporary.c_str());
+    throw;
   }
   synchronise_folder(path);
 }
@@ -72,6 +75,12 @@ void replace_durably(const std::filesystem::path& path, std::uint64_t bytes, con
 
 void write_durably(const std::filesystem::path& path, std::string_view bytes) {
   replace_durably(path, bytes.size(), [&](int file) { write_all(file, bytes, path); });
+}
+
+void write_durably(const std::filesystem::path& path, const std::function<std::string()>& next) {
+  replace_durably(path, 0, [&](int file) {
+    for (std::string piece = next(); !piece.empty(); piece = next()) write_all(file, piece, path);
+  });
 }
 
 void copy_durably(int from, std::uint64_t bytes, const std::filesystem::path& path) {

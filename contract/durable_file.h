@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -30,6 +31,10 @@ bool means_no_room(int error);
 // Replaces `path` by `bytes` so that a crash at any moment leaves the old content or the new one.
 // Throws NoRoomError, or std::system_error naming the path; the temporary file is then removed.
 void write_durably(const std::filesystem::path& path, std::string_view bytes);
+
+// The same with the texts that `next` hands out one after the other, up to an empty one, which together need
+// not fit into memory. What `next` throws leaves the old content.
+void write_durably(const std::filesystem::path& path, const std::function<std::string()>& next);
 
 // The same with what is left to read of an open file of `bytes` bytes, which need not fit into memory.
 void copy_durably(int from, std::uint64_t bytes, const std::filesystem::path& path);

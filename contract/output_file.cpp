@@ -92,19 +92,35 @@ void check(const fs::path& given, const Target& target) {
   if (access(target.path.c_str(), W_OK) != 0) refuse(given, errno);
 }
 
+// `replace` makes a regular file anew, `write_to` writes to what is open.
+template <class Replace, class WriteTo>
+void write(const fs::path& path, const Replace& replace, const WriteTo& write_to) {
+  const Target target = follow(path);
+  check(path, target);
+  if (target.descriptor) return write_to(*target.descriptor);
+  if (!target.exists || S_ISREG(target.mode)) return replace(target.path);
+  Descriptor file = open_file(target.path, O_WRONLY | O_NOCTTY);
+  if (file.number() < 0) fail_to("cannot open", path);
+  write_to(file.number());
+  if (file.close() != 0 && errno != EINTR) fail_to("cannot close", path);
+}
+
 }  // namespace
 
 void check_output(const fs::path& path) { check(path, follow(path)); }
 
 void write_output(const fs::path& path, std::string_view bytes) {
-  const Target target = follow(path);
-  check(path, target);
-  if (target.descriptor) return write_all(*target.descriptor, bytes, path);
-  if (!target.exists || S_ISREG(target.mode)) return write_durably(target.path, bytes);
-  Descriptor file = open_file(target.path, O_WRONLY | O_NOCTTY);
-  if (file.number() < 0) fail_to("cannot open", path);
-  write_all(file.number(), bytes, path);
-  if (file.close() != 0 && errno != EINTR) fail_to("cannot close", path);
+  write(
+      path, [&](const fs::path& target) { write_durably(target, bytes); },
+      [&](int file) { write_all(file, bytes, path); });
+}
+
+void write_output(const fs::path& path, const std::function<std::string()>& next) {
+  write(
+      path, [&](const fs::path& target) { write_durably(target, next); },
+      [&](int file) {
+        for (std::string piece = next(); !piece.empty(); piece = next()) write_all(file, piece, path);
+      });
 }
 
 }  // namespace peclet

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <string>
 #include <string_view>
 
 namespace peclet {
@@ -16,5 +18,9 @@ void check_output(const std::filesystem::path& path);
 // and so is what /dev/stdout, /dev/fd/N or a shell's >(...) stand for.
 // Throws as check_output(), NoRoomError, std::system_error naming the path.
 void write_output(const std::filesystem::path& path, std::string_view bytes);
+
+// The same of texts that `next` hands out one after the other, up to an empty one, which together need not
+// fit into memory. What `next` throws leaves a regular file as it was.
+void write_output(const std::filesystem::path& path, const std::function<std::string()>& next);
 
 }  // namespace peclet

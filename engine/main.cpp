@@ -1,7 +1,9 @@
 // peclet-engine: one realisation, a worker, a single evaluation, or a benchmark.
 #include <fmt/format.h>
+#include <omp.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <csignal>
 #include <exception>
@@ -19,6 +21,9 @@
 #include "engine/jobs/job.h"
 #include "engine/jobs/serve.h"
 #include "engine/output/summary.h"
+#include "engine/pictures/colouring.h"
+#include "engine/pictures/picture.h"
+#include "engine/snapshots/conversion.h"
 #include "engine/threads/waiting_threads.h"
 
 namespace {
@@ -37,7 +42,7 @@ void request_stop(int signal) {
 constexpr InputLimits configuration_limits{std::size_t{32} << 20, 1'300'000};
 
 struct RunOptions {
-  std::string scene, output, checkpoint;
+  std::string scene, output, checkpoint, extended;
   std::uint64_t seed = 0;
   int threads = 1;
   bool quiet = false;
@@ -78,6 +83,7 @@ int run(const RunOptions& options) {
   job.scene_name = options.scene;
   job.threads = options.threads;
   job.checkpoint = target_of(options.checkpoint);
+  job.extended = target_of(options.extended);
   job.files = files_beside(options.output);
   JobEvents events;
   if (!options.checkpoint.empty()) {
@@ -141,12 +147,42 @@ int main(int argc, char** argv) {
   run_command->add_option("--output", options.output, "File for the result instead of standard output");
   run_command->add_option("--checkpoint", options.checkpoint,
                           "File that is written every five minutes and resumed from when it exists");
+  run_command->add_option("--extend", options.extended,
+                          "Checkpoint of a shorter run, final.checkpoint, from which this one goes on");
   run_command->add_flag("--quiet", options.quiet, "No summary on standard error");
   CLI::App* serve_command = app.add_subcommand("serve", "Work for `peclet run`: frames on standard input");
   std::string configuration;
   CLI::App* forces_command =
       app.add_subcommand("forces", "Forces, torques and stress of one configuration, term by term");
   forces_command->add_option("configuration", configuration, "Configuration, a JSON file")->required();
+  ConversionOptions conversion;
+  CLI::App* trajectory_command =
+      app.add_subcommand("trajectory", "Frames of a realisation as a text for other programs");
+  trajectory_command->add_option("file", conversion.file, "GSD file or extended XYZ")->required();
+  trajectory_command
+      ->add_option("--format", conversion.format, "lammps (dump) or xyz; else by the output's name")
+      ->check(CLI::IsMember({"lammps", "xyz"}));
+  trajectory_command->add_option("--output", conversion.output,
+                                 "File for the text instead of standard output");
+  trajectory_command
+      ->add_option("--frames", conversion.frames, "FIRST:LAST:STEP or one frame; -1 is the last one")
+      ->capture_default_str();
+  PictureOptions picture;
+  picture.threads = std::min(omp_get_num_procs(), 8);
+  CLI::App* snapshot_command = app.add_subcommand("snapshot", "A frame as a picture");
+  snapshot_command->add_option("file", picture.file, "GSD file or extended XYZ")->required();
+  snapshot_command->add_option("--output", picture.output, "PNG file")->required();
+  snapshot_command->add_option("--frame", picture.frame, "Number of the frame; -1 is the last one")
+      ->capture_default_str();
+  snapshot_command->add_option("--colour", picture.colour, "What the colours of spheres mean")
+      ->capture_default_str()
+      ->check(CLI::IsMember(names_of_colourings()));
+  snapshot_command->add_flag("--chains", picture.chains,
+                             "Contacts, as wide as their normal force, in glass spheres");
+  snapshot_command
+      ->add_option("--view", picture.view, "corner; x, y or z to look along; or AZIMUTH,ELEVATION in degrees")
+      ->capture_default_str();
+  snapshot_command->add_option("--size", picture.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   std::vector<std::string> cases;
   CLI::App* bench_command = app.add_subcommand("bench", "Processor time per particle and step");
   bench_command->add_option("case", cases, "Names of cases; all of them when none is given");
@@ -166,6 +202,14 @@ int main(int argc, char** argv) {
     }
     if (*forces_command) {
       return forces(configuration);
+    }
+    if (*trajectory_command) {
+      convert_trajectory(conversion);
+      return ExitCode::done;
+    }
+    if (*snapshot_command) {
+      draw_picture(picture);
+      return ExitCode::done;
     }
     if (*bench_command) {
       return run_benchmarks(cases);

@@ -172,7 +172,7 @@ void Implicit::follow_list(System& system, double way) {
   // With room for half of the next step, should it be as large as this one.
   const double next = 0.5 * way;
   if (displacement_bound_ + next >= allowed) {
-    displacement_bound_ = system.list.largest_displacement(system.particles, system.box);
+    displacement_bound_ = system.list.largest_displacement(system.particles, system.box, field_.threads());
     if (displacement_bound_ + next >= allowed) {
       rebuild_neighbours(system, field_.threads());
       displacement_bound_ = 0;
@@ -214,7 +214,7 @@ bool Implicit::move_half_a_step(System& system) {
   move(system, 0.5 * timestep_);
   const double allowed = system.list.allowed_displacement(system.box);
   return displacement_bound_ + half < allowed ||
-         system.list.largest_displacement(system.particles, system.box) < allowed;
+         system.list.largest_displacement(system.particles, system.box, field_.threads()) < allowed;
 }
 
 // To where the present velocities lead from the origin in that time.

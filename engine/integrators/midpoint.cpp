@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/state/field_array.h"
+#include "engine/threads/for_each_range.h"
 
 namespace peclet::engine {
 namespace {
@@ -38,8 +39,12 @@ Midpoint::Midpoint(const Physics& physics, const ParticleState& particles, doubl
 
 std::optional<StepReport> Midpoint::find_velocities(System& system) {
   ParticleState& particles = system.particles;
-  array(particles.velocity) += array(velocity_change_)(Eigen::all, particles.id);
-  array(particles.angular_velocity) += array(spin_change_)(Eigen::all, particles.id);
+  for_each_range(particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      particles.velocity.row(i) += velocity_change_.row(particles.id[i]);
+      particles.angular_velocity.row(i) += spin_change_.row(particles.id[i]);
+    }
+  });
   const Iterations& iterations = system.springs.kinds() == SpringKinds::none ? without_springs : with_springs;
   StepReport report;
   for (int iteration = 0;; ++iteration) {
@@ -76,8 +81,12 @@ std::optional<StepReport> Midpoint::find_velocities(System& system) {
 
 void Midpoint::keep_change(const System& system) {
   const ParticleState& particles = system.particles;
-  array(velocity_change_)(Eigen::all, particles.id) = array(particles.velocity) - array(origin_.velocity);
-  array(spin_change_)(Eigen::all, particles.id) = array(particles.angular_velocity) - array(origin_.spin);
+  for_each_range(particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      velocity_change_.row(particles.id[i]) = particles.velocity.row(i) - origin_.velocity.row(i);
+      spin_change_.row(particles.id[i]) = particles.angular_velocity.row(i) - origin_.spin.row(i);
+    }
+  });
 }
 
 void Midpoint::forget_change() {

@@ -5,6 +5,7 @@
 #include "engine/state/field_array.h"
 #include "engine/terms/drag.h"
 #include "engine/terms/inertial_step.h"
+#include "engine/threads/for_each_range.h"
 
 namespace peclet::engine {
 namespace {
@@ -15,10 +16,13 @@ constexpr double of_prediction = 5;
 
 bool carried_by_inertia(const Physics& physics, const ParticleState& particles, double timestep) {
   if (!physics.lubrication || particles.count() == 0) return false;
-  const auto smallest =
-      static_cast<std::size_t>(std::ranges::min_element(particles.radius) - particles.radius.begin());
-  return timestep <= longest_inertial_step(physics.viscosity, physics.thermal_energy, *physics.lubrication,
-                                           particles.radius[smallest], particles.mass[smallest]);
+  for (std::size_t i = 0; i < particles.count(); ++i) {
+    if (timestep > longest_inertial_step(physics.viscosity, physics.thermal_energy, *physics.lubrication,
+                                         particles.radius[i], particles.mass[i])) {
+      return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -44,13 +48,15 @@ NoisyMidpoint::NoisyMidpoint(const Physics& physics, const ParticleState& partic
 
 std::optional<StepReport> NoisyMidpoint::find_velocities(System& system) {
   StepReport report;
-  solver_.assemble(system, at_beginning_);
-  const PairSums counted = at_beginning_.evaluate(system, noise_.force, noise_.torque);
-  restore_springs(system);
+  const PairSums counted = assemble(system, at_beginning_, noise_);
   const PairSums drawn = with_noise_.evaluate(system, loads_.force, loads_.torque);
   restore_springs(system);
-  array(noise_.force) = array(loads_.force) - array(noise_.force);
-  array(noise_.torque) = array(loads_.torque) - array(noise_.torque);
+  for_each_range(system.particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      noise_.force.row(i) = loads_.force.row(i) - noise_.force.row(i);
+      noise_.torque.row(i) = loads_.torque.row(i) - noise_.torque.row(i);
+    }
+  });
   if (watches_flux()) {
     acted_flux_.begin(system, drawn, counted, noise_, with_noise_);
   }
@@ -59,9 +65,7 @@ std::optional<StepReport> NoisyMidpoint::find_velocities(System& system) {
   if (!move_half_a_step(system)) {
     return std::nullopt;
   }
-  solver_.assemble(system, ahead_);
-  const PairSums ahead = ahead_.evaluate(system, loads_.force, loads_.torque);
-  restore_springs(system);
+  const PairSums ahead = assemble(system, ahead_, loads_);
   if (watches_flux()) {
     acted_flux_.predict(system, ahead, loads_, field_.physics());
   }
@@ -84,6 +88,18 @@ std::optional<StepReport> NoisyMidpoint::find_velocities(System& system) {
   return report;
 }
 
+// The sums are those that the flux of momentum takes.
+PairSums NoisyMidpoint::assemble(System& system, ForceField& field, Loads& loads) {
+  if (field.leaves_loads_with_links() && !watches_flux()) {
+    solver_.assemble(system, field, &loads);
+    return {};
+  }
+  solver_.assemble(system, field);
+  const PairSums sums = field.evaluate(system, loads.force, loads.torque);
+  restore_springs(system);
+  return sums;
+}
+
 // `acted`: by pairs.
 MomentumFlux NoisyMidpoint::flux(const System& system, const PairSums& sums, SymmetricTensor acted) {
   VectorField mean_velocity = origin_.velocity;
@@ -98,13 +114,15 @@ MomentumFlux NoisyMidpoint::flux(const System& system, const PairSums& sums, Sym
 void NoisyMidpoint::leave_half_of_the_drag(const System& system) {
   const ParticleState& particles = system.particles;
   const double viscosity = field_.physics().viscosity;
-  for (std::size_t i = 0; i < particles.count(); ++i) {
-    const double radius = particles.radius[i];
-    const double half = 0.5 * translational_drag(viscosity, radius);
-    const double half_turning = 0.5 * rotational_drag(viscosity, radius);
-    loads_.force.row(i) += half * (particles.velocity.row(i) - origin_.velocity.row(i));
-    loads_.torque.row(i) += half_turning * (particles.angular_velocity.row(i) - origin_.spin.row(i));
-  }
+  for_each_range(particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double radius = particles.radius[i];
+      const double half = 0.5 * translational_drag(viscosity, radius);
+      const double half_turning = 0.5 * rotational_drag(viscosity, radius);
+      loads_.force.row(i) += half * (particles.velocity.row(i) - origin_.velocity.row(i));
+      loads_.torque.row(i) += half_turning * (particles.angular_velocity.row(i) - origin_.spin.row(i));
+    }
+  });
 }
 
 bool NoisyMidpoint::solve(System& system, const Loads* noise, double factor, StepReport& report) {

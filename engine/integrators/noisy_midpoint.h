@@ -33,6 +33,8 @@ class NoisyMidpoint final : public Implicit {
 
   std::optional<StepReport> find_velocities(System& system) override;
   ForceField& reported() override { return on_the_way_; }
+  // The matrix of a system of equations, and the loads that it is the derivative of.
+  PairSums assemble(System& system, ForceField& field, Loads& loads);
   void leave_half_of_the_drag(const System& system);
   MomentumFlux flux(const System& system, const PairSums& sums, SymmetricTensor acted);
   // Down to `factor` times the tolerance.

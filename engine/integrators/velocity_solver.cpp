@@ -90,15 +90,19 @@ VelocitySolver::VelocitySolver(const Physics& physics, const ParticleState& part
   }
 }
 
-void VelocitySolver::assemble(System& system, ForceField& field) {
+void VelocitySolver::assemble(System& system, ForceField& field, Loads* loads) {
   if (ordered_ != system.list.builds()) {
     order_.arrange(system.list, system.particles.count(), threads_);
     aside_.resize(rows_of_block * links_per_group * order_.crossing_groups());
     sums_.resize(order_.blocks().size());
     ordered_ = system.list.builds();
   }
+  using LoadRows = ForceField::LoadRows;
+  const std::optional<LoadRows> rows =
+      loads != nullptr ? std::optional(LoadRows{loads->force, loads->torque}) : std::nullopt;
   const ForceField::AssembleLinks assemble_block =
-      field.assemble_links(system, {.timestep = timestep_, .normal_time = 0.5 * timestep_}, order_, groups_);
+      field.assemble_links(system, {.timestep = timestep_, .normal_time = 0.5 * timestep_}, order_, groups_,
+                           rows ? &*rows : nullptr);
   const LinkSystem matrix = links(system);
   run_team(threads_, [&](Team& team) {
     const Team::Part mine = team.part_of(matrix.count_of_blocks);
@@ -108,6 +112,7 @@ void VelocitySolver::assemble(System& system, ForceField& field) {
     team.meet();
     link_.factorise(matrix, pivots_.data(), team);
   });
+  if (loads != nullptr) field.add_incoming(system, loads->force, loads->torque);
   begun_.reset();
 }
 

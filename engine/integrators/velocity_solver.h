@@ -33,8 +33,9 @@ class VelocitySolver {
 
   double tolerance() const { return tolerance_; }
 
-  // The matrix at the system's places and velocities, whose springs must be those of the origin.
-  void assemble(System& system, ForceField& field);
+  // The matrix at the system's places and velocities, whose springs must be those of the origin. Unless
+  // `loads` is null, it is set to the field's loads there, which the field must be able to leave.
+  void assemble(System& system, ForceField& field, Loads* loads = nullptr);
 
   struct Residual {
     double squared;         // r.C^-1 r with the preconditioner C, nearly r.A^-1 r

@@ -17,6 +17,7 @@
 #include "engine/output/final_configuration.h"
 #include "engine/output/growing_file.h"
 #include "engine/start/packing.h"
+#include "engine/start/placed_spheres.h"
 
 namespace peclet::engine {
 namespace {
@@ -47,10 +48,7 @@ class Meter {
     return {before_.processor_seconds + processor_seconds() - processor_,
             before_.wall_seconds + std::chrono::duration<double>(Clock::now() - start_).count()};
   }
-  void add(const Spent& earlier) {
-    before_.processor_seconds += earlier.processor_seconds;
-    before_.wall_seconds += earlier.wall_seconds;
-  }
+  void start_after(const Spent& earlier) { before_ = earlier; }
 
  private:
   Spent before_;
@@ -73,11 +71,13 @@ class Job {
         scene_(read_scene(job.scene, job.scene_name)),
         schedule_(make_schedule(scene_, job.scene_name)),
         identity_{sha256(canonical_json(scene_.document)), job.header.seed,
-                  provenance().at("binary_sha256").get<std::string>()} {}
+                  provenance().at("binary_sha256").get<std::string>(), motion_of(scene_, schedule_)} {
+    if (!job.extended.empty()) plan_extension();
+  }
 
   std::optional<Json> run() {
     if (job_.files.empty()) {
-      if (scene_.final_configuration) refuse_files("/files", "must be left out");
+      if (scene_.final_configuration || scene_.final_checkpoint) refuse_files("/files", "must be left out");
       if (scene_.observables.contains("trajectory")) refuse_files("/observables", "must not list trajectory");
     }
     std::optional<Ending> ending;
@@ -104,6 +104,12 @@ class Job {
     };
     if (scene_.final_configuration && ending->cause == Ending::Cause::completed) {
       if (!leave("final.xyz", leave_final, result)) return std::nullopt;
+    }
+    const auto leave_checkpoint = [&](const fs::path& path) {
+      write_checkpoint(path, identity_, meter_.spent(), *simulation_);
+    };
+    if (scene_.final_checkpoint && ending->cause == Ending::Cause::completed) {
+      if (!leave("final.checkpoint", leave_checkpoint, result)) return std::nullopt;
     }
     if (frames_file_ && !leave("trajectory.gsd", leave_trajectory, result)) return std::nullopt;
     return result;
@@ -170,15 +176,50 @@ class Job {
       return;
     }
     open_frames_file();
+    if (!job_.extended.empty()) {
+      extend_checkpoint(job_.extended, identity_, *simulation_);
+      return;
+    }
     events_.progress({"packing", 0, schedule_.total(), 0});
-    simulation_->start();
+    if (scene_.start) {
+      const PlacedSpheres placed = placed_spheres(scene_, job_.header.seed, job_.scene_name);
+      simulation_->start(placed.system, placed.in_motion);
+    } else {
+      simulation_->start();
+    }
+  }
+
+  // The window begins where the checkpoint is, if not later. A run whose window is another one than its scene
+  // says is not resumed as one of the scene.
+  void plan_extension() {
+    const auto progressed = [&] {
+      try {
+        return read_progress(job_.extended, identity_, scene_.particles.count);
+      } catch (const CheckpointError& error) {
+        throw InputError("--extend", "", "", error.what());
+      }
+    }();
+    const std::uint64_t total = schedule_.total();
+    if (progressed.step + count_of_blocks > total) {
+      throw InputError(
+          job_.scene_name, "/duration", fmt::format("{} steps", total),
+          fmt::format("must be {} steps at least: {} that the checkpoint has made, and one for each "
+                      "block of a window",
+                      progressed.step + count_of_blocks, progressed.step));
+    }
+    if (progressed.step > schedule_.equilibration) {
+      schedule_.equilibration = progressed.step;
+      schedule_.production = total - progressed.step;
+      identity_.scene_sha256 += fmt::format(" from step {}", progressed.step);
+    }
+    meter_.start_after(progressed.spent);
   }
 
   bool resume() {
     try {
       const Spent spent = read_checkpoint(job_.checkpoint, identity_, *simulation_);
       open_frames_file();
-      meter_.add(spent);
+      meter_.start_after(spent);
       return true;
     } catch (const CheckpointError& error) {
       if (!job_.restart_on_bad_checkpoint) {

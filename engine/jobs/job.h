@@ -18,6 +18,10 @@ struct JobSpecification {
   int threads = 1;                   // at most; a small system uses fewer
   std::filesystem::path checkpoint;  // resumed from when it exists; empty: none is written
   double checkpoint_seconds = 300;
+  // A checkpoint, of a scene that differs in durations, observables and files at most, from which the job
+  // goes on if it has none of its own; empty: it begins at the start. Windows begin where the checkpoint is,
+  // if the scene's begins before it.
+  std::filesystem::path extended;
   std::filesystem::path failures;  // folder for the state of a realisation that broke off; empty: not saved
   std::string files;  // what the names of files beside the result begin with; empty: none are taken
   bool restart_on_bad_checkpoint =

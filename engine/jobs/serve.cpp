@@ -20,6 +20,7 @@
 #include "engine/output/summary.h"
 #include "engine/realisation/scene_fit.h"
 #include "engine/stability/derived_groups.h"
+#include "engine/start/placed_spheres.h"
 
 namespace peclet::engine {
 namespace {
@@ -97,6 +98,7 @@ class Worker {
       const Scene scene = read_scene(message.at("scene"), "scene");
       const Schedule schedule = make_schedule(scene, "scene");
       check_fit(scene, schedule, "scene");
+      if (scene.start) check_start_of_campaign(scene, "scene");
       answer["type"] = "validated";
       answer["timestep"] = schedule.timestep;
       answer["steps"] = schedule.total();

@@ -1,5 +1,7 @@
 #include "engine/kernels/force_field.h"
 
+#include <optional>
+
 #include "engine/kernels/pairs/terms.h"
 #include "engine/terms/drag.h"
 
@@ -32,7 +34,7 @@ ForceField::ForceField(const Physics& physics, const ParticleState& particles, d
 
 PairSums ForceField::evaluate(System& system, VectorField& force, VectorField& torque) {
   const PairSums sums = evaluate_blocks(system, force, torque);
-  pair_pass_.add_incoming(system.list, threads_, force, torque);
+  add_incoming(system, force, torque);
   return sums;
 }
 
@@ -60,15 +62,31 @@ void ForceField::share_stress(const System& system, SpringField springs, bool ad
   });
 }
 
+bool ForceField::leaves_loads_with_links() const {
+  const bool tangent_is_secant = parameters_.step_resistance.part != StepResistance::Part::on_the_way;
+  return tangent_is_secant && !terms_.friction && !terms_.damping && !terms_.strained && !terms_.noise &&
+         physics_.thermal_energy == 0 && !physics_.flow.varies();
+}
+
 ForceField::AssembleLinks ForceField::assemble_links(System& system, const LinkWeights& weights,
-                                                     LinkOrder& order, std::vector<LinkGroup>& groups) {
+                                                     LinkOrder& order, std::vector<LinkGroup>& groups,
+                                                     const LoadRows* loads) {
   const std::size_t room = order.inner_groups() + order.crossing_groups();
   groups.resize(std::max(groups.size(), room));
+  std::optional<OneBodyInput> one_body;
+  if (loads != nullptr) one_body = one_body_input(system, loads->force, loads->torque);
   return [this, &list = system.list, &order, weights, places = order.places(), groups = groups.data(),
+          one_body, crossing = pair_pass_.crossing_rows(system.list),
           input = pair_pass_.kernel_input(pair_input(system), system.springs)](std::size_t number) {
     const ParticleBlock& block = list.blocks()[number];
+    std::optional<PairKernelOutput> output;
+    if (one_body) {
+      one_body_.set_drag(*one_body, block.begin, block.end);
+      const std::size_t offset = 4 * std::size_t{block.begin};
+      output = {block.begin, one_body->force + offset, one_body->torque + offset, crossing, nullptr};
+    }
     link_.assemble(input, list.runs().data() + block.runs_begin, block.runs_end - block.runs_begin, terms_,
-                   weights, places, order.blocks()[number], groups);
+                   weights, places, order.blocks()[number], groups, output ? &*output : nullptr);
   };
 }
 

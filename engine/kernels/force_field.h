@@ -32,13 +32,22 @@ class ForceField {
                     VectorField& torque) const {
     pair_pass_.add_incoming(system.list, block, force, torque);
   }
+  void add_incoming(const System& system, VectorField& force, VectorField& torque) const {
+    pair_pass_.add_incoming(system.list, threads_, force, torque);
+  }
 
   // The links of all pairs within their range: what is returned puts those of a block in their places. It
   // holds while the system stands and until the next evaluation. `groups` is made as long as it has to be and
-  // keeps its storage.
+  // keeps its storage. Unless `loads` is null, blocks leave there what evaluate_blocks() would, but for
+  // rounding; the field must be able to.
+  struct LoadRows {
+    VectorField &force, &torque;
+  };
   using AssembleLinks = std::function<void(std::size_t block)>;
   AssembleLinks assemble_links(System& system, const LinkWeights& weights, LinkOrder& order,
-                               std::vector<LinkGroup>& groups);
+                               std::vector<LinkGroup>& groups, const LoadRows* loads = nullptr);
+  // Not with springs, which an evaluation advances, and what few scenes have.
+  bool leaves_loads_with_links() const;
 
   // Adds to each sphere, by its id, `weight` times half of the stress (times the volume) of its pairs, that
   // of the noise apart, as the last evaluation had it: at these positions and velocities. `springs` are those

@@ -88,9 +88,7 @@ PairSums PairPass::add_pairs(const PairPassInput& input, SpringField& springs, V
   }
   const std::vector<ParticleBlock>& blocks = list.blocks();
   const PairKernelInput kernel = kernel_input(input, springs);
-  if (crossing_.size() < 2 * list.crossings()) {
-    crossing_ = VectorField(2 * list.crossings());
-  }
+  double* const crossing = crossing_rows(list);
   sums_.resize(2 * blocks.size());
   for_each_range(blocks.size(), input.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
@@ -98,10 +96,17 @@ PairSums PairPass::add_pairs(const PairPassInput& input, SpringField& springs, V
       set_rows(block);
       const std::size_t offset = 4 * std::size_t{block.begin};
       kernel_(kernel, list.runs().data() + block.runs_begin, block.runs_end - block.runs_begin,
-              {block.begin, force.data() + offset, torque.data() + offset, crossing_.data(), &sums_[2 * b]});
+              {block.begin, force.data() + offset, torque.data() + offset, crossing, &sums_[2 * b]});
     }
   });
   return total_of(sums_);
+}
+
+double* PairPass::crossing_rows(const NeighbourList& list) {
+  if (crossing_.size() < 2 * list.crossings()) {
+    crossing_ = VectorField(2 * list.crossings());
+  }
+  return crossing_.data();
 }
 
 void PairPass::add_incoming(const NeighbourList& list, const ParticleBlock& block, VectorField& force,

@@ -65,6 +65,9 @@ class PairPass {
   // What the loops over pairs take; valid until the next call, and while the system stands.
   PairKernelInput kernel_input(const PairPassInput& input, SpringField& springs);
 
+  // Room for what crosses into other blocks, which add_incoming() adds.
+  double* crossing_rows(const NeighbourList& list);
+
   // Computes each pair alone and calls `visit` with it and its part of the sums. Loads go nowhere; `springs`
   // advance as in add_pairs(). Slow: for what is looked at seldom.
   using VisitPair = std::function<void(const Pair& pair, const PairSums& sums)>;

@@ -35,6 +35,12 @@ std::uint64_t interval_of(const Scene& scene, const ObservableKind& kind, const 
   return static_cast<std::uint64_t>(std::clamp(steps, 1.0, 1e18));
 }
 
+std::vector<double> radii_in(const Scene& scene) {
+  std::vector<double> radii;
+  for (const Species& species : scene.particles.species) radii.push_back(species.radius);
+  return distinct_radii(radii);
+}
+
 void need_samples(const Scene& scene, const ObservableKind& kind, const Window& window, std::uint64_t least,
                   const std::string& file) {
   const std::uint64_t samples = samples_in(window.steps, interval_of(scene, kind, window));

@@ -54,6 +54,9 @@ std::uint64_t seldom(const Window& window);
 // Steps between the samples of an observable that the scene asks for.
 std::uint64_t interval_of(const Scene& scene, const ObservableKind& kind, const Window& window);
 
+// The distinct radii, ascending, as the size classes of the spheres are: of every species there is one.
+std::vector<double> radii_in(const Scene& scene);
+
 // Throws InputError when the window has fewer samples of the observable.
 void need_samples(const Scene& scene, const ObservableKind& kind, const Window& window, std::uint64_t least,
                   const std::string& file);

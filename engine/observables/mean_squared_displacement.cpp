@@ -60,10 +60,7 @@ std::vector<Quantity> displacement_quantities(const Scene& scene, const Window& 
   };
   squares("all", "dx");
   squares("centre", "dX");
-  std::vector<double> radii;  // of every species there is a sphere
-  for (const Species& species : scene.particles.species) radii.push_back(species.radius);
-  const std::size_t species = distinct_radii(radii).size();
-  for (std::size_t s = 0; s < species; ++s) squares(fmt::format("species/{}", s), "dx");
+  for (std::size_t s = 0; s < radii_in(scene).size(); ++s) squares(fmt::format("species/{}", s), "dx");
   if (scene.physics.thermal_energy > 0) {
     all.push_back({.name = "self_diffusion", .symbol = "D / D_0", .unit = "1"});
   }

@@ -3,6 +3,8 @@
 // `volume_fraction` is the volume of spheres in a bin over that of the bin; a sphere that reaches into
 // several gives each its slab,
 //   V(y) = pi h^2 (3 a - h) / 3 below the height y, h = y - (y_i - a) between 0 and 2 a.
+// `volume_fraction_by_radius` has the spheres of each radius apart, a list of bins for each; they add up to
+// the former.
 // `velocity` is the mean of u_x - U(y_i), with each sphere's part V_i of the bin as its weight; U is the
 // uniform part of the flow. A ratio of means: numerator sum V_i (u_x - U) and denominator sum V_i, both over
 // the bin's volume.
@@ -28,11 +30,12 @@ double volume_below(double y, double a) {
 
 class Profiles : public Observable {
  public:
-  Profiles(const Scene& scene, const Window& window)
+  Profiles(const Scene& scene, const System& system, const Window& window)
       : Observable(interval_of(scene, profiles(), window)),
         bins_(bins_of(scene)),
         volume_fraction_(bins_),
-        flux_(bins_) {}
+        flux_(bins_),
+        of_radius_(distinct_radii(system.particles.radius).size(), BlockedMean(bins_)) {}
 
   void sample(const System& system, std::size_t block) override {
     const Vector3 lengths = system.box.lengths();
@@ -43,6 +46,7 @@ class Profiles : public Observable {
       const Vector3 place = particles.position[i];
       const double velocity = particles.velocity[i].x - (system.box.velocity_gradient() * place).x;
       const double a = particles.radius[i];
+      BlockedMean& own = of_radius_[particles.size_class[i]];
       const auto count = static_cast<std::int64_t>(bins_);
       const auto last = static_cast<std::int64_t>(std::floor((place.y + a) / width));
       for (auto k = static_cast<std::int64_t>(std::floor((place.y - a) / width)); k <= last; ++k) {
@@ -51,34 +55,53 @@ class Profiles : public Observable {
         const auto bin = static_cast<std::size_t>((k % count + count) % count);
         volume_fraction_.add(block, bin, share);
         flux_.add(block, bin, share * velocity);
+        own.add(block, bin, share);
       }
     }
-    volume_fraction_.weigh(block, 1);
-    flux_.weigh(block, 1);
+    for_each([&](auto& mean) { mean.weigh(block, 1); });
   }
 
-  void add_to(Json& mean) const override { mean["profiles"] = of(volume_fraction_.value(), flux_.value()); }
+  void add_to(Json& mean) const override {
+    Json by_radius = Json::array();
+    for (const BlockedMean& own : of_radius_) by_radius.push_back(own.value());
+    mean["profiles"] = of(volume_fraction_.value(), flux_.value(), by_radius);
+  }
   void add_blocks_to(Json& blocks) const override {
-    if (blocks_kept(bins_) > 0) blocks["profiles"] = of(volume_fraction_.blocks(), flux_.blocks());
+    if (blocks_kept(bins_) == 0) return;
+    Json by_radius(count_of_quarters, Json::array());  // in each quarter all radii
+    for (const BlockedMean& own : of_radius_) {
+      const Json quarters = own.blocks();
+      for (std::size_t k = 0; k < count_of_quarters; ++k) by_radius[k].push_back(quarters[k]);
+    }
+    blocks["profiles"] = of(volume_fraction_.blocks(), flux_.blocks(), by_radius);
   }
 
   void save(ArchiveWriter& archive) const override {
     volume_fraction_.save(archive);
     flux_.save(archive);
+    for (const BlockedMean& own : of_radius_) own.save(archive);
   }
   void load(ArchiveReader& archive) override {
-    volume_fraction_.load(archive);
-    flux_.load(archive);
+    for_each([&](auto& mean) { mean.load(archive); });
   }
 
  private:
-  static Json of(const Json& volume_fraction, const Json& flux) {
+  template <class Function>
+  void for_each(Function&& function) {
+    function(volume_fraction_);
+    function(flux_);
+    for (BlockedMean& own : of_radius_) function(own);
+  }
+
+  static Json of(const Json& volume_fraction, const Json& flux, const Json& by_radius) {
     return {{"volume_fraction", volume_fraction},
+            {"volume_fraction_by_radius", by_radius},
             {"velocity", {{"flux", flux}, {"volume_fraction", volume_fraction}}}};
   }
 
   std::size_t bins_;
   BlockedMean volume_fraction_, flux_;
+  std::vector<BlockedMean> of_radius_;
 };
 
 std::vector<Quantity> profile_quantities(const Scene& scene, const Window& window) {
@@ -87,20 +110,23 @@ std::vector<Quantity> profile_quantities(const Scene& scene, const Window& windo
   for (std::size_t k = 0; k < bins; ++k) {
     y.values.push_back((static_cast<double>(k) + 0.5) * window.edge / static_cast<double>(bins));
   }
-  return {{.name = "profiles/volume_fraction", .symbol = "phi(y)", .unit = "1", .axes = {y}},
-          {.name = "profiles/velocity",
-           .symbol = "u_x(y) - U(y)",
-           .unit = "length / time",
-           .axes = {y},
-           .ratio = RatioOfMeans{"flux", "volume_fraction"}}};
+  const Axis radius{"radius", "length", radii_in(scene)};
+  return {
+      {.name = "profiles/volume_fraction", .symbol = "phi(y)", .unit = "1", .axes = {y}},
+      {.name = "profiles/volume_fraction_by_radius", .symbol = "phi_a(y)", .unit = "1", .axes = {radius, y}},
+      {.name = "profiles/velocity",
+       .symbol = "u_x(y) - U(y)",
+       .unit = "length / time",
+       .axes = {y},
+       .ratio = RatioOfMeans{"flux", "volume_fraction"}}};
 }
 
 }  // namespace
 
 ObservableKind profiles() {
   return {"profiles", seldom, [](const Scene&, const Window&, const std::string&) {}, profile_quantities,
-          [](const Scene& scene, const System&, const Window& window) -> std::unique_ptr<Observable> {
-            return std::make_unique<Profiles>(scene, window);
+          [](const Scene& scene, const System& system, const Window& window) -> std::unique_ptr<Observable> {
+            return std::make_unique<Profiles>(scene, system, window);
           }};
 }
 

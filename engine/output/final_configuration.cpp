@@ -22,13 +22,15 @@ std::string extended_xyz(const System& system) {
             [&](std::size_t i, std::size_t j) { return particles.id[i] < particles.id[j]; });
   const auto& edges = system.box.edges().column;
   std::string text = fmt::format(
-      "{}\nLattice=\"{} {} {}\" Properties=id:I:1:pos:R:3:radius:R:1:velo:R:3 pbc=\"T T T\" Time={} "
+      "{}\nLattice=\"{} {} {}\" Properties=id:I:1:pos:R:3:radius:R:1:velo:R:3:angular_velocity:R:3 pbc=\"T T "
+      "T\" Time={} "
       "Strain={}\n",
       particles.count(), spaced(edges[0]), spaced(edges[1]), spaced(edges[2]), system.clock.time(),
       system.box.strain());
   for (const std::size_t i : order) {
-    fmt::format_to(std::back_inserter(text), "{} {} {} {}\n", particles.id[i], spaced(particles.position[i]),
-                   particles.radius[i], spaced(particles.velocity[i]));
+    fmt::format_to(std::back_inserter(text), "{} {} {} {} {}\n", particles.id[i],
+                   spaced(particles.position[i]), particles.radius[i], spaced(particles.velocity[i]),
+                   spaced(particles.angular_velocity[i]));
   }
   return text;
 }

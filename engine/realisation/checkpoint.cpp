@@ -8,7 +8,7 @@ namespace peclet::engine {
 namespace {
 
 constexpr std::string_view magic = "PCLTCKPT";
-constexpr std::uint32_t version = 4;
+constexpr std::uint32_t version = 5;
 constexpr std::size_t header_size = 20;
 constexpr std::size_t checksum_size = 64;
 
@@ -37,7 +37,48 @@ std::string_view checked_payload(std::string_view bytes) {
   return payload;
 }
 
+CheckpointIdentity get_identity(ArchiveReader& payload) {
+  CheckpointIdentity found;
+  found.scene_sha256 = payload.get_string();
+  found.seed = payload.get<std::uint64_t>();
+  found.binary_sha256 = payload.get_string();
+  found.motion_sha256 = payload.get_string();
+  return found;
+}
+
+// Calls use(payload) with what is in a file. Every fault becomes a CheckpointError that names it.
+template <class Use>
+void with_payload(const std::filesystem::path& path, std::size_t particles, const Use& use) {
+  try {
+    const std::string bytes = read_regular(path, largest_checkpoint(particles));
+    ArchiveReader payload(checked_payload(bytes));
+    use(payload);
+  } catch (const UnsuitableFile& error) {
+    throw CheckpointError(error.what());
+  } catch (const std::runtime_error& error) {  // also what may not be read
+    throw CheckpointError(path.string() + ": " + error.what());
+  }
+}
+
+[[noreturn]] void refuse(const char* what) { throw CheckpointError(std::string("belongs to ") + what); }
+
+void require_same_motion(const CheckpointIdentity& found, const CheckpointIdentity& identity) {
+  if (found.seed != identity.seed) refuse("another seed");
+  if (found.binary_sha256 != identity.binary_sha256) refuse("another build of this program");
+  if (found.motion_sha256 != identity.motion_sha256) {
+    refuse("a scene that differs in more than durations, observables and files, or has another time step");
+  }
+}
+
 }  // namespace
+
+std::string motion_of(const Scene& scene, const Schedule& schedule) {
+  Json document = scene.document;
+  for (const char* key : {"duration", "observables", "files"}) document.erase(key);
+  for (const auto& [name, settings] : scene.observables) document.erase(name);
+  document["integrator"]["timestep"] = schedule.timestep;
+  return sha256(canonical_json(document));
+}
 
 void write_checkpoint(const std::filesystem::path& path, const CheckpointIdentity& identity,
                       const Spent& spent, const Simulation& simulation) {
@@ -45,6 +86,7 @@ void write_checkpoint(const std::filesystem::path& path, const CheckpointIdentit
   payload.put(identity.scene_sha256);
   payload.put(identity.seed);
   payload.put(identity.binary_sha256);
+  payload.put(identity.motion_sha256);
   payload.put(spent);
   simulation.save(payload);
   ArchiveWriter file;
@@ -55,30 +97,39 @@ void write_checkpoint(const std::filesystem::path& path, const CheckpointIdentit
 
 Spent read_checkpoint(const std::filesystem::path& path, const CheckpointIdentity& identity,
                       Simulation& simulation) {
-  try {
-    const std::string bytes = read_regular(path, largest_checkpoint(simulation.system().particles.count()));
-    ArchiveReader payload(checked_payload(bytes));
-    CheckpointIdentity found;
-    found.scene_sha256 = payload.get_string();
-    found.seed = payload.get<std::uint64_t>();
-    found.binary_sha256 = payload.get_string();
-    if (found != identity) {
-      const char* what = found.scene_sha256 != identity.scene_sha256 ? "another scene"
-                         : found.seed != identity.seed               ? "another seed"
-                                                                     : "another build of this program";
-      throw CheckpointError(std::string("belongs to ") + what);
-    }
-    const Spent spent = payload.get<Spent>();
+  Spent spent;
+  with_payload(path, simulation.system().particles.count(), [&](ArchiveReader& payload) {
+    const CheckpointIdentity found = get_identity(payload);
+    if (found.scene_sha256 != identity.scene_sha256) refuse("another scene");
+    require_same_motion(found, identity);
+    spent = payload.get<Spent>();
     simulation.load(payload);
     if (!payload.at_end()) {
       throw CheckpointError("holds more than belongs there");
     }
-    return spent;
-  } catch (const UnsuitableFile& error) {
-    throw CheckpointError(error.what());
-  } catch (const std::runtime_error& error) {  // also what may not be read
-    throw CheckpointError(path.string() + ": " + error.what());
-  }
+  });
+  return spent;
+}
+
+Progressed read_progress(const std::filesystem::path& path, const CheckpointIdentity& identity,
+                         std::size_t particles) {
+  Progressed progressed;
+  with_payload(path, particles, [&](ArchiveReader& payload) {
+    require_same_motion(get_identity(payload), identity);
+    progressed.spent = payload.get<Spent>();
+    payload.get<Matrix3>();  // the cell at the start
+    progressed.step = payload.get<std::uint64_t>();
+  });
+  return progressed;
+}
+
+void extend_checkpoint(const std::filesystem::path& path, const CheckpointIdentity& identity,
+                       Simulation& simulation) {
+  with_payload(path, simulation.system().particles.count(), [&](ArchiveReader& payload) {
+    require_same_motion(get_identity(payload), identity);
+    payload.get<Spent>();
+    simulation.load_motion(payload);
+  });
 }
 
 }  // namespace peclet::engine

@@ -21,10 +21,13 @@ std::vector<double> present_radii(const Particles& particles, const std::string&
     if (number[s] > 0) present.push_back(particles.species[s].radius);
   }
   present = distinct_radii(present);
-  for (const Species& species : particles.species) {
-    if (!std::binary_search(present.begin(), present.end(), species.radius)) {
+  for (std::size_t s = 0; s < number.size(); ++s) {
+    const double radius = particles.species[s].radius;
+    if (!std::binary_search(present.begin(), present.end(), radius)) {
       throw InputError(file, "/particles/count", std::to_string(particles.count),
-                       fmt::format("must be large enough for one sphere of radius {}", species.radius));
+                       fmt::format("must be large enough for one sphere of radius {}, whose share is that of "
+                                   "{:.2g} spheres",
+                                   radius, exact_numbers(particles)[s]));
     }
   }
   return present;

@@ -60,8 +60,9 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
   const double edge = cube_edge(radius, scene.volume_fraction);
   kinds_ = make_pair_kinds(physics, sizes);
   smallest_radius_ = sizes.front();
-  system_.particles = make_particles(radius, scene.particles.density);
+  system_.particles = make_particles(radius, species_densities(scene.particles));
   system_.box = PeriodicCell({edge, edge, edge}, physics.flow.deformation().velocity_gradient(0));
+  edges_at_start_ = system_.box.edges();
   const RangeTable ranges = range_table(kinds_, sizes.size());
   system_.list = scene.method == Method::implicit_steps
                      ? NeighbourList(ranges, skin_of_implicit_steps, skin_of_candidates)
@@ -93,15 +94,19 @@ void Simulation::start() {
   integrator_->start(system_);
 }
 
-void Simulation::start(const System& placed) {
+void Simulation::start(const System& placed, bool in_motion) {
   if (placed.particles.count() != system_.particles.count()) {
     throw std::invalid_argument("the scene has another number of particles");
   }
   system_.springs = SpringField(system_.springs.kinds(), 0);
   system_.particles = placed.particles;
   system_.box = placed.box;
+  if (placed.box.displacement_gradient() == Matrix3{}) edges_at_start_ = placed.box.edges();
   system_.step = placed.step;
   system_.clock = placed.clock;
+  if (!in_motion) {
+    set_initial_velocities(system_.particles, scene_.physics.flow.at(system_.box), scene_.physics, seed_);
+  }
   integrator_->start(system_);
 }
 
@@ -169,21 +174,34 @@ void Simulation::observe(const StepReport& report) {
 }
 
 void Simulation::save(ArchiveWriter& archive) const {
+  archive.put(edges_at_start_);
   engine::save(system_, archive);
   integrator_->save(archive);
-  production_.save(archive);
-  for (const std::unique_ptr<Observable>& observable : observables_) observable->save(archive);
   gate_.save(archive);
   archive.put(largest_overlap_);
+  production_.save(archive);
+  for (const std::unique_ptr<Observable>& observable : observables_) observable->save(archive);
+}
+
+void Simulation::load_system(ArchiveReader& archive) {
+  edges_at_start_ = archive.get<Matrix3>();
+  system_.box = PeriodicCell::with_edges(edges_at_start_, system_.box.velocity_gradient());
+  engine::load(system_, archive);
 }
 
 void Simulation::load(ArchiveReader& archive) {
-  engine::load(system_, archive);
+  load_system(archive);
   integrator_->load(system_, archive);
-  production_.load(archive);
-  for (const std::unique_ptr<Observable>& observable : observables_) observable->load(archive);
   gate_.load(archive);
   largest_overlap_ = archive.get<double>();
+  production_.load(archive);
+  for (const std::unique_ptr<Observable>& observable : observables_) observable->load(archive);
+}
+
+void Simulation::load_motion(ArchiveReader& archive) {
+  load_system(archive);
+  integrator_->load(system_, archive);
+  gate_.load_before_window(archive);
 }
 
 }  // namespace peclet::engine

@@ -23,8 +23,9 @@ class Simulation {
   void start();
 
   // Goes on from another system of the same scene: its particles, box and step. Contacts begin without
-  // springs. Throws std::invalid_argument for another number of particles.
-  void start(const System& placed);
+  // springs; spheres that are not in motion get the velocities of a fresh start. Throws std::invalid_argument
+  // for another number of particles.
+  void start(const System& placed, bool in_motion = true);
 
   // Up to `steps` more steps; returns how the realisation ended once it has. It ends too where the packing
   // has become too stiff for the step: checked before the first step and every few thousand.
@@ -42,8 +43,12 @@ class Simulation {
 
   void save(ArchiveWriter& archive) const;
   void load(ArchiveReader& archive);
+  // Of what save() has written that alone on which further steps depend. Of a realisation of the same motion,
+  // whatever its windows and observables are; nothing has been measured afterwards.
+  void load_motion(ArchiveReader& archive);
 
  private:
+  void load_system(ArchiveReader& archive);
   void ask_for_stress();
   void observe(const StepReport& report);
 
@@ -52,6 +57,7 @@ class Simulation {
   std::uint64_t seed_;
   int threads_;
   System system_;
+  Matrix3 edges_at_start_;  // of the cell, from which strain counts; a start in a file may be sheared
   std::vector<PairKind> kinds_;
   std::unique_ptr<Integrator> integrator_;
   Production production_;

@@ -37,6 +37,11 @@ class StepGate {
 
   void save(ArchiveWriter& archive) const { archive.put(errors_); }
   void load(ArchiveReader& archive) { errors_ = archive.get<StepErrors>(); }
+  // What is not of the production window alone.
+  void load_before_window(ArchiveReader& archive) {
+    errors_ = {};
+    errors_.largest_stability_share = archive.get<StepErrors>().largest_stability_share;
+  }
 
  private:
   std::uint64_t production_;  // steps

@@ -49,6 +49,12 @@ inline Key fraction(Key key, double below) {
   return key;
 }
 
+// A number above 0 and up to `most`.
+inline Key fraction_up_to(Key key, double most) {
+  key.maximum = most;
+  return key;
+}
+
 inline Key with_default(Key key, Json value) {
   key.default_value = std::move(value);
   return key;

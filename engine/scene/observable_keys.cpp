@@ -79,7 +79,7 @@ std::vector<ObservableEntry> entries() {
        {},
        must_touch},
       {"profiles",
-       "volume fraction and velocity by y",
+       "volume fraction, of each radius too, and velocity by y",
        "a 256th of the production window",
        {with_default({.pointer = "/profiles/bins",
                       .kind = KeyKind::integer,

@@ -12,6 +12,8 @@
 #include "engine/flow/waves.h"
 #include "engine/scene/law_blocks.h"
 #include "engine/scene/observable_keys.h"
+#include "engine/scene/particles_block.h"
+#include "engine/scene/start_block.h"
 
 namespace peclet::engine {
 
@@ -24,77 +26,23 @@ class Reading : private SceneDocument {
  public:
   using SceneDocument::SceneDocument;
 
-  Particles particles() const;
+  Particles particles() const { return read_particles(*this); }
+  double volume_fraction(const Particles& particles) const { return read_volume_fraction(*this, particles); }
   Physics physics() const;
   void check_lubrication(const Particles& particles, const Physics& physics) const;
   // Rate and temperature, given as they are or by Péclet number and limits.
   void set_flow(const Particles& particles, Physics& physics) const;
   Duration duration(const std::string& pointer, const Physics& physics) const;
   void set_observables(Scene& scene) const;
+  std::optional<Start> start() const {
+    return has("/start") ? std::optional<Start>(read_start(*this)) : std::nullopt;
+  }
 
  private:
-  void read_shares(Particles& particles) const;
-  void check_sizes(const Particles& particles) const;
   // Of this shear rate, with the scene's waves.
   ImposedFlow flow(double rate) const;
   void set_flow_from_peclet(double radius, Physics& physics) const;
 };
-
-// Shares are relative: they are divided by their sum.
-void Reading::read_shares(Particles& particles) const {
-  const Json& species = at("/particles/species");
-  const bool by_number = species[0].contains("number_share");
-  particles.shares = by_number ? Particles::Shares::number : Particles::Shares::volume;
-  const std::string wanted = by_number ? "number_share" : "volume_share";
-  const std::string other = by_number ? "volume_share" : "number_share";
-
-  double sum = 0;
-  for (std::size_t i = 0; i < species.size(); ++i) {
-    const std::string pointer = "/particles/species/" + std::to_string(i) + '/';
-    if (species[i].contains(other)) {
-      refuse(pointer + other,
-             "must be left out: the first species has " + wanted + ", all must have the same");
-    }
-    const bool is_alone = species.size() == 1;
-    if (!species[i].contains(wanted) && !is_alone) {
-      miss(pointer + wanted, "each species must have a " + wanted + " > 0 (or each a " + other + ")");
-    }
-    const double share = species[i].value(wanted, 1.0);
-    particles.species.push_back({species[i]["radius"].get<double>(), share});
-    sum += share;
-  }
-  for (Species& one : particles.species) one.share /= sum;
-}
-
-// Volume, mass and moment of inertia must be numbers, and one can divide by them.
-void Reading::check_sizes(const Particles& particles) const {
-  const auto is_usable = [](double value) { return std::isnormal(value) && std::isnormal(1 / value); };
-  for (std::size_t i = 0; i < particles.species.size(); ++i) {
-    const double a = particles.species[i].radius, volume = a * a * a, mass = particles.density * volume;
-    const double all = static_cast<double>(particles.count) * volume;
-    if (!is_usable(volume) || !is_usable(mass) || !is_usable(mass * a * a) || !is_usable(all)) {
-      refuse(fmt::format("/particles/species/{}/radius", i),
-             fmt::format(
-                 "must leave mass and moment of inertia that can be computed with, at the density {}; choose "
-                 "other units",
-                 particles.density));
-    }
-    if (!is_usable(particles.species[i].share)) {
-      refuse(fmt::format("/particles/species/{}", i),
-             "must have a share that is a part of the sum of all shares");
-    }
-  }
-}
-
-Particles Reading::particles() const {
-  Particles particles;
-  particles.count = at("/particles/count").get<std::size_t>();
-  particles.density = number("/particles/density");
-  read_shares(particles);
-  check_sizes(particles);
-  particles.reference_radius = number_or("/particles/reference_radius", particles.species.front().radius);
-  return particles;
-}
 
 ImposedFlow Reading::flow(double rate) const {
   if (!has("/flow/waves")) return steady_shear(rate);
@@ -243,7 +191,7 @@ Scene read_scene(const Json& document, const std::string& file) {
   fill_lubrication(scene.document);
 
   scene.particles = reading.particles();
-  scene.volume_fraction = filled["volume_fraction"].get<double>();
+  scene.volume_fraction = reading.volume_fraction(scene.particles);
   scene.physics = reading.physics();
   reading.check_lubrication(scene.particles, scene.physics);
   reading.set_flow(scene.particles, scene.physics);
@@ -266,6 +214,8 @@ Scene read_scene(const Json& document, const std::string& file) {
                  filled["guard"]["largest_displacement"].get<double>(),
                  filled["guard"]["energy_imbalance"].get<double>(),
                  filled["guard"]["half_step_difference"].get<double>()};
+  scene.start = reading.start();
+  scene.final_checkpoint = filled.value(Json::json_pointer("/files/final_checkpoint"), false);
   scene.final_configuration = filled.value(Json::json_pointer("/files/final_configuration"), false);
   return scene;
 }

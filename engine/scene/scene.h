@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "contract/json.h"
 #include "contract/key_table.h"
 #include "engine/flow/deformation.h"
+#include "engine/scene/composition.h"
 #include "engine/terms/contact.h"
 #include "engine/terms/laws.h"
 #include "engine/terms/lubrication.h"
@@ -36,20 +38,6 @@ inline bool has_known_equilibrium(const Physics& physics) { return lacking_equil
 // Of the residual of implicit steps, where the document gives none. With noise errors average out.
 inline constexpr double usual_tolerance = 2e-3, usual_tolerance_with_noise = 4e-3;
 
-struct Species {
-  double radius = 0;
-  double share = 0;  // of the volume or of the number, see Particles; the shares add up to 1
-};
-
-struct Particles {
-  enum class Shares { volume, number };
-  std::size_t count = 0;
-  double density = 0;
-  double reference_radius = 0;  // the a of Pe, St and the time scales
-  Shares shares = Shares::volume;
-  std::vector<Species> species;
-};
-
 // Ends with the first of its limits that is reached; infinity where there is none or where the scene cannot
 // reach it (strain without shear, Brownian times without temperature). One at least is finite. A limit of 0
 // in the document makes time 0 and the others infinite.
@@ -69,12 +57,21 @@ struct Guard {
 };
 
 struct Warning {
-  std::string code;  // "inertia-shear", "inertia-thermal", "overlap", "timestep", "solver"
+  std::string code;  // "inertia-shear", "inertia-thermal", "composition", "overlap", "timestep", "solver"
   std::string message;
 };
 
 // How the equations of motion are solved.
 enum class Method { explicit_steps, implicit_steps };
+
+// Where spheres begin, if not in a packing: at a frame of one file, or of one from a list for each seed.
+struct Start {
+  bool is_list = false;
+  std::string path, sha256;
+  std::int64_t frame = -1;
+
+  const char* pointer() const { return is_list ? "/start/list" : "/start/file"; }
+};
 
 struct Scene {
   Particles particles;
@@ -86,8 +83,9 @@ struct Scene {
   Duration equilibration, production;
   std::map<std::string, Json> observables;  // besides the stress: settings with defaults, intervals as times
   Guard guard;
-  bool final_configuration = false;  // is left beside the result
-  Json document;                     // as given, defaults filled
+  std::optional<Start> start;
+  bool final_configuration = false, final_checkpoint = false;  // are left beside the result
+  Json document;                                               // as given, defaults filled
 };
 
 // The time after which the first of the limits is reached.

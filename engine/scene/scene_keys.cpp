@@ -3,45 +3,13 @@
 
 #include "engine/scene/law_blocks.h"
 #include "engine/scene/observable_keys.h"
+#include "engine/scene/particles_block.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/start_block.h"
 
 namespace peclet::engine {
 
 namespace {
-
-// Each pair of sizes has constants of its own.
-constexpr std::size_t most_species = 256;
-
-Keys particle_keys() {
-  return {
-      block("/particles", "The spheres.", required),
-      {.pointer = "/particles/count",
-       .kind = KeyKind::integer,
-       .meaning = "Number of particles.",
-       .required = true,
-       .minimum = 1,
-       .maximum = 10'000'000},
-      positive("/particles/density", "mass / length^3", "Mass density of the particles.", required),
-      {.pointer = "/particles/species",
-       .kind = KeyKind::array,
-       .meaning =
-           "The sizes; all have volume_share or all have number_share. A single species needs neither.",
-       .required = true,
-       .minimum_items = 1,
-       .maximum_items = most_species},
-      block("/particles/species/*", "One size."),
-      positive("/particles/species/*/radius", "length", "Radius.", required),
-      positive(
-          "/particles/species/*/volume_share", "",
-          "Share of the particles' volume, relative to the other species (the shares need not add up to 1)."),
-      positive("/particles/species/*/number_share", "",
-               "Share of the number of particles, relative to the other species (need not add up to 1)."),
-      positive("/particles/reference_radius", "length",
-               "The a of Pe, St, Brownian times and derived groups; the first species' radius unless given."),
-      must_be_given(
-          fraction(positive("/volume_fraction", "", "Volume of the particles over that of the box."), 0.74)),
-  };
-}
 
 constexpr std::size_t most_waves = 64;
 
@@ -133,9 +101,15 @@ Keys run_keys() {
       block("/files", "Files that a realisation leaves beside its result; absent: none."),
       {.pointer = "/files/final_configuration",
        .kind = KeyKind::boolean,
-       .meaning = "final.xyz: cell, centres, radii and velocities at the end of a completed realisation, as "
-                  "extended XYZ.",
-       .required = true},
+       .meaning =
+           "final.xyz: cell, centres, radii, velocities and spins at the end of a completed realisation, "
+           "as extended XYZ.",
+       .default_value = false},
+      {.pointer = "/files/final_checkpoint",
+       .kind = KeyKind::boolean,
+       .meaning =
+           "final.checkpoint: all that a completed realisation needs to go on, with `peclet-engine run "
+           "--extend`."},
   });
   append({
       with_default(block("/guard", "Limits that end a realisation as failed, or flag its result."),
@@ -167,6 +141,7 @@ const KeyTable& scene_keys() {
     append(particle_keys());
     append(flow_keys());
     for (const LawBlock& law : law_blocks) append(law.keys());
+    append(start_keys());
     append(run_keys());
     return KeyTable("Scene of a peclet simulation", std::move(keys));
   }();

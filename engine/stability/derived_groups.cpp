@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "engine/stability/stability.h"
 
@@ -41,6 +43,65 @@ std::optional<double> flow_over_rest(const Scene& scene, double peclet) {
 // A ratio that was chosen to be the bound, in decimals, counts as having reached it.
 bool reaches(double ratio, double bound) { return ratio >= bound * (1 - 1e-9); }
 
+double brownian_time(const Physics& physics, double a) {
+  return physics.viscosity * (a * a * a) / physics.thermal_energy;
+}
+
+double peclet_number(const Physics& physics, double a) {
+  return 6 * std::numbers::pi * brownian_time(physics, a) * physics.flow.rate();
+}
+
+// The largest of f(density, radius) over all sizes; nothing without sizes.
+template <typename Function>
+std::optional<double> largest_of_sizes(const Particles& particles, const Function& f) {
+  std::optional<double> largest;
+  for (const Species& species : particles.species) {
+    const double value = f(density_of(particles, species), species.radius);
+    largest = std::max(largest.value_or(value), value);
+  }
+  return largest;
+}
+
+double largest_relative_error(const std::vector<double>& shares, const std::vector<double>& wanted) {
+  double largest = 0;
+  for (std::size_t s = 0; s < shares.size(); ++s) {
+    largest = std::max(largest, std::abs(shares[s] / wanted[s] - 1));
+  }
+  return largest;
+}
+
+MixtureGroups mixture_groups(const Scene& scene) {
+  const Particles& particles = scene.particles;
+  const Mixture& mixture = *particles.mixture;
+  const std::vector<double> shares = volume_shares(particles, species_numbers(particles));
+  MixtureGroups groups;
+  groups.volume_fraction = scene.volume_fraction;
+  const auto grains = shares.begin() + static_cast<std::ptrdiff_t>(mixture.colloid_species);
+  groups.alpha = std::accumulate(grains, shares.end(), 0.0);
+  groups.largest_share_error = largest_relative_error(shares, wanted_volume_shares(particles));
+  if (scene.physics.thermal_energy > 0) {
+    groups.peclet_mean = peclet_number(scene.physics, mixture.mean_radius());
+    groups.peclet_grains = peclet_number(scene.physics, mixture.grain_radius);
+  }
+  return groups;
+}
+
+SizeMoments size_moments(const Particles& particles) {
+  const std::vector<std::size_t> number = species_numbers(particles);
+  const auto count = static_cast<double>(particles.count);
+  SizeMoments moments;
+  for (std::size_t s = 0; s < number.size(); ++s) {
+    moments.mean_radius += static_cast<double>(number[s]) / count * particles.species[s].radius;
+  }
+  double variance = 0;
+  for (std::size_t s = 0; s < number.size(); ++s) {
+    const double from_mean = particles.species[s].radius - moments.mean_radius;
+    variance += static_cast<double>(number[s]) / count * from_mean * from_mean;
+  }
+  moments.relative_width = std::sqrt(variance) / moments.mean_radius;
+  return moments;
+}
+
 }  // namespace
 
 DerivedGroups derived_groups(const Scene& scene) {
@@ -55,8 +116,8 @@ DerivedGroups derived_groups(const Scene& scene) {
   groups.stokes = inertial_time * physics.flow.rate();
   if (physics.flow.rate() > 0) groups.shear_time = 1 / physics.flow.rate();
   if (physics.thermal_energy > 0) {
-    groups.brownian_time = physics.viscosity * a_cubed / physics.thermal_energy;
-    groups.peclet = 6 * std::numbers::pi * *groups.brownian_time * physics.flow.rate();
+    groups.brownian_time = brownian_time(physics, a);
+    groups.peclet = peclet_number(physics, a);
     groups.flow_over_rest = flow_over_rest(scene, *groups.peclet);
   }
   if (physics.contact) {
@@ -66,20 +127,91 @@ DerivedGroups derived_groups(const Scene& scene) {
           physics.contact->normal_stiffness / (physics.viscosity * a * physics.flow.rate());
     }
   }
+  groups.largest_stokes = largest_of_sizes(scene.particles, [&](double rho, double radius) {
+    return rho * radius * radius / physics.viscosity * physics.flow.rate();
+  });
+  if (physics.thermal_energy > 0) {
+    groups.largest_inertia_over_brownian = largest_of_sizes(scene.particles, [&](double rho, double radius) {
+      return rho * physics.thermal_energy / (physics.viscosity * physics.viscosity * radius);
+    });
+  }
+  if (scene.particles.mixture) groups.mixture = mixture_groups(scene);
+  if (scene.particles.distributed) groups.sizes = size_moments(scene.particles);
   return groups;
 }
 
 Json to_json(const DerivedGroups& groups) {
   const auto number = [](const std::optional<double>& group) { return group ? Json(*group) : Json(nullptr); };
-  return {{"peclet", number(groups.peclet)},
-          {"stokes", number(groups.stokes)},
-          {"relative_stiffness", number(groups.relative_stiffness)},
-          {"contact_time", number(groups.contact_time)},
-          {"inertial_time", number(groups.inertial_time)},
-          {"brownian_time", number(groups.brownian_time)},
-          {"shear_time", number(groups.shear_time)},
-          {"flow_over_rest", number(groups.flow_over_rest)}};
+  Json json = {{"peclet", number(groups.peclet)},
+               {"stokes", number(groups.stokes)},
+               {"relative_stiffness", number(groups.relative_stiffness)},
+               {"contact_time", number(groups.contact_time)},
+               {"inertial_time", number(groups.inertial_time)},
+               {"brownian_time", number(groups.brownian_time)},
+               {"shear_time", number(groups.shear_time)},
+               {"flow_over_rest", number(groups.flow_over_rest)},
+               {"largest_stokes", number(groups.largest_stokes)},
+               {"largest_inertia_over_brownian", number(groups.largest_inertia_over_brownian)}};
+  if (groups.mixture) {
+    json["volume_fraction"] = groups.mixture->volume_fraction;
+    json["alpha"] = groups.mixture->alpha;
+    json["largest_share_error"] = groups.mixture->largest_share_error;
+    json["peclet_mean"] = number(groups.mixture->peclet_mean);
+    json["peclet_grains"] = number(groups.mixture->peclet_grains);
+  }
+  if (groups.sizes) {
+    json["mean_radius"] = groups.sizes->mean_radius;
+    json["relative_width"] = groups.sizes->relative_width;
+  }
+  return json;
 }
+
+namespace {
+
+bool has(const std::vector<Warning>& warnings, const std::string& code) {
+  return std::ranges::any_of(warnings, [&](const Warning& warning) { return warning.code == code; });
+}
+
+// Where inertia is small for the radius of reference, but not for all sizes.
+void warn_of_other_sizes(const Scene& scene, const DerivedGroups& groups, std::vector<Warning>& warnings) {
+  const auto warn = [&](const char* code, const char* beside, const char* symbol,
+                        const std::optional<double>& largest, double bound) {
+    if (!largest || !reaches(*largest, bound) || has(warnings, code)) return;
+    warnings.push_back(
+        {code,
+         fmt::format("inertia is small beside {} for the radius {:.4g}, but not for all sizes: {} is up "
+                     "to {:.4g}, the bound is {}; a smaller density cures it, or densities by size "
+                     "(/particles/density_rule \"equal-inertia\")",
+                     beside, scene.particles.reference_radius, symbol, *largest, bound)});
+  };
+  warn("inertia-shear", "shear", "St", groups.largest_stokes, largest_inertia_over_shear);
+  warn("inertia-thermal", "Brownian motion", "tau_I / tau_B", groups.largest_inertia_over_brownian,
+       largest_inertia_over_brownian);
+}
+
+// Whole numbers of few grains miss their shares.
+void warn_of_composition(const Scene& scene, const DerivedGroups& groups, std::vector<Warning>& warnings) {
+  constexpr double largest_error = 0.1;
+  if (!groups.mixture || groups.mixture->largest_share_error <= largest_error) return;
+  const Particles& particles = scene.particles;
+  const std::vector<std::size_t> number = species_numbers(particles);
+  const std::vector<double> shares = volume_shares(particles, number),
+                            wanted = wanted_volume_shares(particles);
+  std::size_t worst = 0;
+  for (std::size_t s = 1; s < shares.size(); ++s) {
+    const auto error = [&](std::size_t k) { return std::abs(shares[k] / wanted[k] - 1); };
+    if (error(s) > error(worst)) worst = s;
+  }
+  warnings.push_back(
+      {"composition",
+       fmt::format("whole numbers of spheres miss the shares: {} of radius {} have {:.4f} of the "
+                   "volume, {:.4f} was asked for; alpha is {:.4f} for {:.4f}; a larger "
+                   "/particles/count cures it",
+                   number[worst], particles.species[worst].radius, shares[worst], wanted[worst],
+                   groups.mixture->alpha, particles.mixture->alpha)});
+}
+
+}  // namespace
 
 std::vector<Warning> scene_warnings(const Scene& scene) {
   const DerivedGroups groups = derived_groups(scene);
@@ -106,6 +238,8 @@ std::vector<Warning> scene_warnings(const Scene& scene) {
                        ratio, *groups.inertial_time, *groups.brownian_time, largest_inertia_over_brownian)});
     }
   }
+  warn_of_other_sizes(scene, groups, warnings);
+  warn_of_composition(scene, groups, warnings);
   // Of smooth motion in uniform shear half steps tell the error.
   const bool noise = scene.physics.thermal_energy > 0;
   const bool friction = scene.physics.contact && scene.physics.contact->friction > 0;

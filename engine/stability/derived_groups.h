@@ -9,14 +9,31 @@
 
 namespace peclet::engine {
 
+// Of a mixture with whole numbers of spheres.
+struct MixtureGroups {
+  double volume_fraction = 0;      // as asked for, which the box meets
+  double alpha = 0;                // volume of the grains over that of all spheres
+  double largest_share_error = 0;  // of a species' share of the volume, relative to the wanted one
+  std::optional<double> peclet_mean, peclet_grains;  // with the a_cg and a_g of Mixture
+};
+
+// Of all spheres by number: mean and standard deviation over mean of their radii.
+struct SizeMoments {
+  double mean_radius = 0, relative_width = 0;
+};
+
 // Dimensionless groups and time scales, a = reference_radius: tau_C = sqrt(rho a^3 / k_n), tau_I = rho a^2 /
 // eta, tau_B = eta a^3 / kT, tau_S = 1 / rate, Pe = 6 pi eta a^3 rate / kT, St = tau_I / tau_S, k_hat = k_n /
 // (eta a rate). A group without meaning in the scene (tau_B without temperature) is infinite or absent in the
-// JSON (null). flow_over_rest: see below.
+// JSON (null). flow_over_rest: see below. largest_stokes and largest_inertia_over_brownian: the largest
+// rho_i a_i^2 rate / eta and rho_i kT / (eta^2 a_i) of all sizes.
 struct DerivedGroups {
   std::optional<double> peclet, stokes, relative_stiffness;
   std::optional<double> contact_time, inertial_time, brownian_time, shear_time;
   std::optional<double> flow_over_rest;
+  std::optional<double> largest_stokes, largest_inertia_over_brownian;
+  std::optional<MixtureGroups> mixture;
+  std::optional<SizeMoments> sizes;  // where sizes come from a distribution
 };
 
 // Nearly at rest, below Pe = 0.1: the processor time of a mean in the flow over that of the same relative

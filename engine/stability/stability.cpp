@@ -16,10 +16,6 @@
 namespace peclet::engine {
 namespace {
 
-double mass_of(const Scene& scene, double radius) {
-  return 4.0 / 3.0 * std::numbers::pi * scene.particles.density * radius * radius * radius;
-}
-
 struct SpherePair {
   double first, second;  // radii
   double mass_first, mass_second;
@@ -45,10 +41,11 @@ double rotational_damping(const Physics& physics, const PairResistance& resistan
          resistance.twist_second / inertia_second;
 }
 
-PairRates rates_of_pair(const Scene& scene, double first, double second) {
+PairRates rates_of_pair(const Scene& scene, const Species& of_first, const Species& of_second) {
   const Physics& physics = scene.physics;
-  const SpherePair pair = {first, second, mass_of(scene, first), mass_of(scene, second),
-                           1 / mass_of(scene, first) + 1 / mass_of(scene, second)};
+  const double first = of_first.radius, mass_first = mass_of(scene.particles, of_first);
+  const double second = of_second.radius, mass_second = mass_of(scene.particles, of_second);
+  const SpherePair pair = {first, second, mass_first, mass_second, 1 / mass_first + 1 / mass_second};
   const double mobility = pair.mobility, sum = first + second;
   const PairKind kind = make_pair_kind(physics, first, second);
   PairResistance resistance{};
@@ -108,12 +105,12 @@ double time_of_pulling(const Physics& physics, double first, double second) {
   return shortest;
 }
 
-// X_A at the outer gap of the smallest sphere, with the partner that has most of it.
-double largest_resistance_at_the_outer_gap(const Scene& scene, double smallest) {
+// X_A at the outer gap of a sphere, with the partner that has most of it.
+double largest_resistance_at_the_outer_gap(const Scene& scene, double radius) {
   const Physics& physics = scene.physics;
   double largest = 0;
   for (const Species& partner : scene.particles.species) {
-    const PairKind kind = make_pair_kind(physics, smallest, partner.radius);
+    const PairKind kind = make_pair_kind(physics, radius, partner.radius);
     const double distance = kind.lubrication_range;
     const PairGeometry parting = {{distance, 0, 0}, {1, 0, 0}, distance, kind.sum_of_radii};
     largest = std::max(largest, pair_resistance(kind.resistance, kind.gap, parting).squeeze);
@@ -124,23 +121,22 @@ double largest_resistance_at_the_outer_gap(const Scene& scene, double smallest) 
 // What a sphere and a third one do to the distance between them in the step in which a pair of the first one
 // leaves the range of lubrication: twice the outer gap over the standard deviation of that way. The pair
 // keeps the noise F_B^2 = 2 kT X_A / dt of a resistance that is gone, which moves the sphere by
-// dt F_B / (m / dt + zeta); free spheres move by dt^2 kT / (m + zeta dt / 2) squared. Small spheres leap
-// farthest and have the least room, whatever the other sizes.
-double room_over_leap(const Scene& scene, double smallest, double resistance, double timestep) {
-  const double mass = mass_of(scene, smallest), energy = scene.physics.thermal_energy;
-  const double drag = translational_drag(scene.physics.viscosity, smallest);
+// dt F_B / (m / dt + zeta); free spheres move by dt^2 kT / (m + zeta dt / 2) squared.
+double room_over_leap(const Scene& scene, const Species& species, double resistance, double timestep) {
+  const double mass = mass_of(scene.particles, species), energy = scene.physics.thermal_energy;
+  const double drag = translational_drag(scene.physics.viscosity, species.radius);
   const double inertia = mass + timestep * drag;
   const double parting = 2 * energy * resistance * timestep / (inertia * inertia);
   const double free = energy / (mass + 0.5 * timestep * drag);
-  return 2 * outer_distance(*scene.physics.lubrication, 2 * smallest) /
+  return 2 * outer_distance(*scene.physics.lubrication, 2 * species.radius) /
          (timestep * std::sqrt(parting + 2 * free));
 }
 
 // `longest`, or the step at which so many standard deviations of a leap are that room.
-double step_of_leaps(const Scene& scene, double smallest, double deviations, double longest) {
-  const double resistance = largest_resistance_at_the_outer_gap(scene, smallest);
+double step_of_leaps(const Scene& scene, const Species& species, double deviations, double longest) {
+  const double resistance = largest_resistance_at_the_outer_gap(scene, species.radius);
   const auto fits = [&](double step) {
-    return room_over_leap(scene, smallest, resistance, step) >= deviations;
+    return room_over_leap(scene, species, resistance, step) >= deviations;
   };
   if (fits(longest)) return longest;
   double low = longest;
@@ -158,6 +154,29 @@ double step_of_leaps(const Scene& scene, double smallest, double deviations, dou
   return low;
 }
 
+// The species whose inertia may bound the step: of one density the smallest one, because small spheres leap
+// farthest and have the least room, whatever the other sizes; else any.
+std::vector<Species> leaping_species(const Particles& particles) {
+  const auto has_own = [](const Species& species) { return species.density.has_value(); };
+  if (std::ranges::any_of(particles.species, has_own)) return particles.species;
+  const auto by_radius = [](const Species& a, const Species& b) { return a.radius < b.radius; };
+  return {*std::ranges::min_element(particles.species, by_radius)};
+}
+
+// Shortened where inertia and leaps of a species ask for it.
+double step_with_noise_and_lubrication(const Scene& scene, double step, double without_inertia) {
+  constexpr double leaps = 5;
+  const Physics& physics = scene.physics;
+  double inertial = step, leaping = without_inertia;
+  for (const Species& species : leaping_species(scene.particles)) {
+    const double mass = mass_of(scene.particles, species);
+    inertial = std::min(inertial, longest_inertial_step(physics.viscosity, physics.thermal_energy,
+                                                        *physics.lubrication, species.radius, mass));
+    leaping = std::min(leaping, step_of_leaps(scene, species, leaps, without_inertia));
+  }
+  return std::max(inertial, leaping);
+}
+
 }  // namespace
 
 PairRates stiffest_pair(const Scene& scene) {
@@ -165,7 +184,7 @@ PairRates stiffest_pair(const Scene& scene) {
   double smallest_step = std::numeric_limits<double>::infinity();
   for (const Species& first : scene.particles.species) {
     for (const Species& second : scene.particles.species) {
-      const PairRates rates = rates_of_pair(scene, first.radius, second.radius);
+      const PairRates rates = rates_of_pair(scene, first, second);
       if (stable_step(rates) < smallest_step) {
         smallest_step = stable_step(rates);
         stiffest = rates;
@@ -228,18 +247,19 @@ ImplicitStep longest_implicit_step(const Scene& scene, double rate, double small
 
 double automatic_implicit_timestep(const Scene& scene) {
   const Physics& physics = scene.physics;
-  constexpr double brownian_times = 0.0017, pushing_times = 20, leaps = 5;
+  constexpr double brownian_times = 0.0017, pushing_times = 20;
   constexpr double inertial_brownian_times = 0.0045;
   double step = std::numeric_limits<double>::infinity();
-  double smallest = scene.particles.species.front().radius, largest = smallest;
+  double smallest = scene.particles.species.front().radius, largest_inertia = 0;  // rho a^2
   for (const Species& species : scene.particles.species) {
-    smallest = std::min(smallest, species.radius);
-    largest = std::max(largest, species.radius);
+    const double a = species.radius;
+    smallest = std::min(smallest, a);
+    largest_inertia = std::max(largest_inertia, density_of(scene.particles, species) * a * a);
   }
   const double rate = physics.flow.largest_rate(cell_of(scene));
   const auto [strain, contact_times] = longest_implicit_step(scene, rate, smallest);
   if (rate > 0) {
-    const double stokes = scene.particles.density * largest * largest * rate / physics.viscosity;
+    const double stokes = largest_inertia * rate / physics.viscosity;
     step = strain / ((1 + 2 * stokes) * rate);
   }
   if (const PairRates rates = stiffest_pair(scene); rates.frequency_squared > 0) {
@@ -257,11 +277,8 @@ double automatic_implicit_timestep(const Scene& scene) {
   const double brownian_time = physics.viscosity * std::pow(smallest, 3) / physics.thermal_energy;
   const double without_inertia = std::min(step, brownian_times * brownian_time);
   if (!physics.lubrication) return without_inertia;
-  const double inertial =
-      std::min({step, inertial_brownian_times * brownian_time,
-                longest_inertial_step(physics.viscosity, physics.thermal_energy, *physics.lubrication,
-                                      smallest, mass_of(scene, smallest))});
-  return std::max(inertial, step_of_leaps(scene, smallest, leaps, without_inertia));
+  return step_with_noise_and_lubrication(scene, std::min(step, inertial_brownian_times * brownian_time),
+                                         without_inertia);
 }
 
 double automatic_timestep(const Scene& scene) {

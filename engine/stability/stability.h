@@ -27,7 +27,7 @@ constexpr double packing_factor = 2.8;
 double largest_timestep(const Scene& scene);
 
 // The automatic implicit step, the smallest of these:
-// - A strain over rate (1 + 2 St), St = rho a^2 rate / eta with the largest radius, and a multiple of
+// - A strain over rate (1 + 2 St), St the largest rho a^2 rate / eta of all species, and a multiple of
 //   X_A / k, the time in which lubrication at the inner gap holds up the stiffest contact and conservative
 //   law:
 //     0.01 (above a volume fraction phi of 0.6: 0.2 (0.65 - phi), at least 0.002) and 20;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <numbers>
-#include <numeric>
 
 #include "engine/random/keyed_random.h"
 #include "engine/state/field_array.h"
@@ -167,30 +166,6 @@ PackingError::PackingError(double wanted, double reached)
           wanted, reached)),
       reached_(reached) {}
 
-std::vector<std::size_t> species_numbers(const Particles& particles) {
-  const auto weight = [&](const Species& species) {
-    const double a = species.radius;
-    return particles.shares == Particles::Shares::number ? species.share : species.share / (a * a * a);
-  };
-  const double total =
-      std::accumulate(particles.species.begin(), particles.species.end(), 0.0,
-                      [&](double sum, const Species& species) { return sum + weight(species); });
-  std::vector<std::size_t> number;
-  std::vector<std::pair<double, std::size_t>> remainder;
-  std::size_t given = 0;
-  for (std::size_t s = 0; s < particles.species.size(); ++s) {
-    const double exact = static_cast<double>(particles.count) * weight(particles.species[s]) / total;
-    number.push_back(static_cast<std::size_t>(exact));
-    given += number.back();
-    remainder.emplace_back(-(exact - std::floor(exact)), s);
-  }
-  std::sort(remainder.begin(), remainder.end());
-  for (std::size_t k = 0; given < particles.count; ++k, ++given) {
-    ++number[remainder[k % remainder.size()].second];
-  }
-  return number;
-}
-
 std::vector<double> species_radii(const Particles& particles) {
   const std::vector<std::size_t> number = species_numbers(particles);
   std::vector<double> radius;
@@ -198,6 +173,15 @@ std::vector<double> species_radii(const Particles& particles) {
     radius.insert(radius.end(), number[s], particles.species[s].radius);
   }
   return radius;
+}
+
+std::vector<double> species_densities(const Particles& particles) {
+  const std::vector<std::size_t> number = species_numbers(particles);
+  std::vector<double> density;
+  for (std::size_t s = 0; s < number.size(); ++s) {
+    density.insert(density.end(), number[s], density_of(particles, particles.species[s]));
+  }
+  return density;
 }
 
 double cube_edge(const std::vector<double>& radius, double volume_fraction) {

@@ -18,12 +18,10 @@ class PackingError : public std::runtime_error {
   double reached_;
 };
 
-// How many spheres each species has: its number share, or its volume share over a^3, of `count`, rounded by
-// largest remainders.
-std::vector<std::size_t> species_numbers(const Particles& particles);
-
 // Radii of all spheres, species by species.
 std::vector<double> species_radii(const Particles& particles);
+// Their densities, in the same order.
+std::vector<double> species_densities(const Particles& particles);
 
 // Edge of the cube in which these spheres have this volume fraction.
 double cube_edge(const std::vector<double>& radius, double volume_fraction);

@@ -7,22 +7,49 @@
 
 namespace peclet::engine {
 
-void ListBuilder::set_grids(const VectorField& position) {
-  places_ = lattice_places(position, box_);
+// Few sizes have a grid each; of many those share one that are alike in range.
+void ListBuilder::set_bands() {
+  constexpr std::size_t few = 4;
+  constexpr double alike = 1.3;
   const RangeTable& ranges = list_.ranges_;
-  std::vector<std::vector<std::uint32_t>> members(ranges.classes());
-  for (std::uint32_t i = 0; i < particles_.count(); ++i) {
-    members[particles_.size_class[i]].push_back(i);
+  const std::size_t classes = ranges.classes();
+  band_of_.clear();
+  std::size_t first = 0, bands = 0;  // of the present band
+  for (std::size_t c = 0; c < classes; ++c) {
+    const bool joins = c > 0 && classes > few && ranges.at(c, c) <= alike * ranges.at(first, first);
+    if (!joins) {
+      first = c;
+      ++bands;
+    }
+    band_of_.push_back(bands - 1);
   }
-  for (std::size_t c = 0; c < ranges.classes(); ++c) {
-    double range = 0;
-    for (std::size_t smaller = 0; smaller <= c; ++smaller) {
-      range = std::max(range, ranges.at(smaller, c));
+  reach_.assign(classes * classes, 0);
+  widest_reach_.assign(classes * bands, 0);
+  for (std::size_t own = 0; own < classes; ++own) {
+    for (std::size_t other = own; other < classes; ++other) {
+      const double reach = list_.reach(ranges.at(own, other), skin_);
+      reach_[own * classes + other] = reach;
+      double& widest = widest_reach_[own * bands + band_of_[other]];
+      widest = std::max(widest, reach);
+    }
+  }
+}
+
+void ListBuilder::set_grids(const VectorField& position) {
+  set_bands();
+  places_ = lattice_places(position, box_);
+  const std::size_t classes = band_of_.size(), bands = classes == 0 ? 0 : band_of_.back() + 1;
+  std::vector<std::vector<std::uint32_t>> members(bands);
+  for (std::uint32_t i = 0; i < particles_.count(); ++i) {
+    members[band_of_[particles_.size_class[i]]].push_back(i);
+  }
+  for (std::size_t band = 0; band < bands; ++band) {
+    double widest = 0;
+    for (std::size_t own = 0; own < classes; ++own) {
+      widest = std::max(widest, widest_reach_[own * bands + band]);
     }
     grids_.emplace_back();
-    if (!members[c].empty()) {
-      grids_.back().emplace(places_, members[c], box_, list_.reach(range, skin_));
-    }
+    if (!members[band].empty()) grids_.back().emplace(places_, members[band], box_, widest);
   }
 }
 
@@ -98,27 +125,31 @@ void ListBuilder::search(std::size_t block) {
 }
 
 void ListBuilder::search_near(std::uint32_t i, std::vector<Found>& found) {
-  const RangeTable& ranges = list_.ranges_;
-  const std::size_t own = particles_.size_class[i];
-  for (std::size_t other = own; other < ranges.classes(); ++other) {
-    if (!grids_[other]) {
+  const std::size_t own = particles_.size_class[i], classes = band_of_.size(), bands = grids_.size();
+  const double range = list_.ranges_.at(own, own);
+  for (std::size_t band = band_of_[own]; band < bands; ++band) {
+    if (!grids_[band]) {
       continue;
     }
-    const double range = ranges.at(own, other), listed = list_.reach(range, skin_);
-    grids_[other]->visit_near(places_.fractional[i], listed,
-                              [&](std::uint32_t j, LatticeShift wrap, const Vector3& separation) {
-                                const double squared = dot(separation, separation);
-                                if (!(squared < listed * listed) || (other == own && j < i)) {
-                                  return;
-                                }
-                                if (j == i) {
-                                  if (wrap != LatticeShift{} && squared < range * range) {
-                                    meets_itself_ = true;
-                                  }
-                                  return;
-                                }
-                                found.push_back(make(i, j, wrap + places_.offset[i] - places_.offset[j]));
-                              });
+    grids_[band]->visit_near(places_.fractional[i], widest_reach_[own * bands + band],
+                             [&](std::uint32_t j, LatticeShift wrap, const Vector3& separation) {
+                               const std::size_t other = particles_.size_class[j];
+                               if (other < own || (other == own && j < i)) {
+                                 return;  // found from there
+                               }
+                               const double squared = dot(separation, separation);
+                               const double reach = reach_[own * classes + other];
+                               if (!(squared < reach * reach)) {
+                                 return;
+                               }
+                               if (j == i) {
+                                 if (wrap != LatticeShift{} && squared < range * range) {
+                                   meets_itself_ = true;
+                                 }
+                                 return;
+                               }
+                               found.push_back(make(i, j, wrap + places_.offset[i] - places_.offset[j]));
+                             });
   }
 }
 
@@ -151,15 +182,19 @@ void ListBuilder::deliver_strays() {
   if (found_.size() == 1) {
     return;
   }
-  std::vector<Found> strays;
-  for (std::size_t b = 0; b < found_.size(); ++b) {
-    const auto home = [b](const Found& pair) { return pair.block == b; };
-    const auto away = std::stable_partition(found_[b].begin(), found_[b].end(), home);
-    strays.insert(strays.end(), away, found_[b].end());
-    found_[b].erase(away, found_[b].end());
-  }
-  for (const Found& pair : strays) {
-    found_[pair.block].push_back(pair);
+  std::vector<std::vector<Found>> strays(found_.size());
+  for_each_range(found_.size(), threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      const auto home = [b](const Found& pair) { return pair.block == b; };
+      const auto away = std::stable_partition(found_[b].begin(), found_[b].end(), home);
+      strays[b].assign(away, found_[b].end());
+      found_[b].erase(away, found_[b].end());
+    }
+  });
+  for (const std::vector<Found>& from_block : strays) {
+    for (const Found& pair : from_block) {
+      found_[pair.block].push_back(pair);
+    }
   }
 }
 

@@ -1,8 +1,9 @@
 // How a neighbour list is found and arranged; part of neighbour_list.cpp.
 //
-// Every size class has a grid of its own, with cells as wide as the reach of two of its spheres. A particle
-// looks into the grids of its own class and of larger ones: small spheres never pay for the reach of large
-// ones, and large ones never walk through the fine grids of small ones.
+// Every size class has a grid of its own, with cells as wide as the reach of two of its spheres; of more than
+// four classes those share a grid, a band, whose ranges are within a factor of 1.3. A particle looks into the
+// grids of its own band and of larger ones: small spheres never pay for the reach of large ones, and large
+// ones never walk through the fine grids of small ones.
 #pragma once
 
 #include <atomic>
@@ -31,6 +32,7 @@ class ListBuilder {
 
   void search(std::size_t block);
   void search_near(std::uint32_t particle, std::vector<Found>& found);
+  void set_bands();
   void set_grids(const VectorField& position);
   Found make(std::uint32_t i, std::uint32_t j, LatticeShift image) const;
   void deliver_strays();
@@ -52,7 +54,10 @@ class ListBuilder {
   int threads_;
   double skin_ = 0;
   LatticePlaces places_;
-  std::vector<std::optional<CellGrid>> grids_;  // of each class; none without members
+  std::vector<std::size_t> band_of_;  // of each class
+  std::vector<double> reach_,
+      widest_reach_;  // of a class with larger ones, and with the larger ones of a band
+  std::vector<std::optional<CellGrid>> grids_;  // of each band; none without members
   std::vector<std::vector<Found>> found_;       // of each block
   std::vector<std::vector<PairRun>> runs_;
   std::atomic<bool> meets_itself_ = false;  // exceptions must not leave a thread of the loop

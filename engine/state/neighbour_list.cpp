@@ -2,11 +2,13 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <utility>
 
 #include "engine/state/eigen_vector.h"
 #include "engine/state/list_builder.h"
+#include "engine/threads/for_each_range.h"
 
 namespace peclet::engine {
 namespace {
@@ -26,14 +28,20 @@ Matrix3 change_since(const ListMoment& then, const PeriodicCell& box) {
          inverse(identity() + then.displacement_gradient);
 }
 
-double largest_displacement(const ListMoment& then, const ParticleState& particles, const PeriodicCell& box) {
+double largest_displacement(const ListMoment& then, const ParticleState& particles, const PeriodicCell& box,
+                            int threads) {
   const Matrix3 gradient = change_since(then, box);
-  double largest = 0;
-  for (std::size_t i = 0; i < particles.count(); ++i) {
-    const Vector3 from = then.position[i];
-    const Vector3 way = particles.position[i] - from - gradient * from;
-    largest = std::max(largest, dot(way, way));
-  }
+  std::atomic<double> largest = 0;
+  for_each_range(particles.count(), threads, [&](std::size_t begin, std::size_t end) {
+    double own = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vector3 from = then.position[i];
+      const Vector3 way = particles.position[i] - from - gradient * from;
+      own = std::max(own, dot(way, way));
+    }
+    for (double seen = largest; own > seen && !largest.compare_exchange_weak(seen, own);) {
+    }
+  });
   return std::sqrt(largest);
 }
 
@@ -65,9 +73,9 @@ void NeighbourList::rebuild_from(ListMoment candidates, ListMoment listed, const
   }
 }
 
-bool NeighbourList::can_narrow(const ParticleState& particles, const PeriodicCell& box) const {
+bool NeighbourList::can_narrow(const ParticleState& particles, const PeriodicCell& box, int threads) const {
   return keeps_candidates() && !candidates_.empty() &&
-         engine::largest_displacement(found_, particles, box) <
+         engine::largest_displacement(found_, particles, box, threads) <
              allowed_displacement(found_, skin_of_candidates_, skin_, box);
 }
 
@@ -103,8 +111,9 @@ double NeighbourList::allowed_displacement(const PeriodicCell& box) const {
   return allowed_displacement(listed_, skin_, none, box);
 }
 
-double NeighbourList::largest_displacement(const ParticleState& particles, const PeriodicCell& box) const {
-  return engine::largest_displacement(listed_, particles, box);
+double NeighbourList::largest_displacement(const ParticleState& particles, const PeriodicCell& box,
+                                           int threads) const {
+  return engine::largest_displacement(listed_, particles, box, threads);
 }
 
 bool NeighbourList::holds(const ParticleState& particles, const PeriodicCell& box) const {

@@ -65,7 +65,7 @@ class NeighbourList {
   void build(const ParticleState& particles, const PeriodicCell& box, int threads = 1);
 
   // Whether the candidates still hold every pair that a build would list.
-  bool can_narrow(const ParticleState& particles, const PeriodicCell& box) const;
+  bool can_narrow(const ParticleState& particles, const PeriodicCell& box, int threads = 1) const;
   // Lists candidates at the positions as they stand, which must not have been wrapped since the build.
   void narrow(const ParticleState& particles, const PeriodicCell& box, int threads = 1);
 
@@ -81,7 +81,7 @@ class NeighbourList {
   // alone has used up the skin.
   double allowed_displacement(const PeriodicCell& box) const;
   // The largest |d_i|.
-  double largest_displacement(const ParticleState& particles, const PeriodicCell& box) const;
+  double largest_displacement(const ParticleState& particles, const PeriodicCell& box, int threads = 1) const;
 
   const std::vector<Pair>& pairs() const { return pairs_; }
   const std::vector<LatticeShift>& images() const { return images_; }  // the first is none

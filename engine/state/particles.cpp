@@ -14,11 +14,15 @@ std::vector<double> distinct_radii(const std::vector<double>& radius) {
 }
 
 ParticleState make_particles(const std::vector<double>& radius, double density) {
+  return make_particles(radius, std::vector<double>(radius.size(), density));
+}
+
+ParticleState make_particles(const std::vector<double>& radius, const std::vector<double>& density) {
   ParticleState particles;
   particles.radius = radius;
   const std::vector<double> sizes = distinct_radii(radius);
-  for (const double a : radius) {
-    const double mass = 4.0 / 3.0 * std::numbers::pi * density * a * a * a;
+  for (std::size_t i = 0; i < radius.size(); ++i) {
+    const double a = radius[i], mass = 4.0 / 3.0 * std::numbers::pi * density[i] * a * a * a;
     particles.mass.push_back(mass);
     particles.inertia.push_back(0.4 * mass * a * a);
     const auto place = std::lower_bound(sizes.begin(), sizes.end(), a);

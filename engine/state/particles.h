@@ -25,6 +25,8 @@ struct ParticleState {
 // `count` spheres at rest at the origin; the distinct radii in ascending order are the size classes.
 // mass = 4/3 pi density a^3.
 ParticleState make_particles(const std::vector<double>& radius, double density);
+// Each with a density of its own. Spheres of one radius must have the same.
+ParticleState make_particles(const std::vector<double>& radius, const std::vector<double>& density);
 
 // The distinct values of `radius` in ascending order.
 std::vector<double> distinct_radii(const std::vector<double>& radius);

@@ -7,7 +7,7 @@ namespace peclet::engine {
 void rebuild_neighbours(System& system, int threads) {
   ParticleState& particles = system.particles;
   std::vector<HeldContact> held = held_contacts(system.list, particles, system.springs, threads);
-  if (system.list.can_narrow(particles, system.box)) {
+  if (system.list.can_narrow(particles, system.box, threads)) {
     system.list.narrow(particles, system.box, threads);
     system.springs = placed_contacts(system.list, particles, held, system.springs.kinds(), threads);
     return;

@@ -9,7 +9,7 @@
 
 namespace peclet::engine {
 
-// Of spheres with this radius and mass, the smallest ones: the least of
+// Of spheres with this radius and mass (of one density the smallest ones bound the step): the least of
 // - 2 h_o / (5 sqrt(2 kT / m)), h_o the outer distance of two of them, of kim-karrila xi_o a: thermal
 //   velocities close the distance of a sphere and a third one, in five standard deviations, by no more than
 //   twice the outer gap, so that none is overlapped unseen;

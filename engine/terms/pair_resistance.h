@@ -112,6 +112,13 @@ PECLET_ALWAYS_INLINE PairResistanceOf<Real> pair_resistance(const ResistanceCons
 }
 
 template <class Real>
+PECLET_ALWAYS_INLINE PairResistanceOf<Real> scaled(const Real& weight, const PairResistanceOf<Real>& part) {
+  return {weight * part.squeeze,     weight * part.shear,       weight * part.pump_first,
+          weight * part.pump_second, weight * part.twist_first, weight * part.twist_cross,
+          weight * part.twist_second};
+}
+
+template <class Real>
 PECLET_ALWAYS_INLINE void add_scaled(PairResistanceOf<Real>& sum, const Real& weight,
                                      const PairResistanceOf<Real>& part) {
   sum.squeeze += weight * part.squeeze;

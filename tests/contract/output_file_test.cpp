@@ -52,6 +52,28 @@ TEST_F(OutputFile, ALinkIsFollowedAndStays) {
   EXPECT_TRUE(fs::is_symlink(folder() / "ahead"));
 }
 
+// What is written piece by piece replaces a file whole, or not at all.
+TEST_F(OutputFile, TakesPiecesThatNeedNotFitIntoMemory) {
+  const fs::path file = folder() / "f";
+  write_output(file, "old");
+  int left = 3;
+  write_output(file, [&] { return left-- > 0 ? std::string("piece ") : std::string(); });
+  EXPECT_EQ(read_file(file), "piece piece piece ");
+  left = 2;
+  const auto fails = [&]() -> std::string {
+    if (left-- > 0) return "new";
+    throw InputError("the third", "", "", "is wrong");
+  };
+  EXPECT_THROW(write_output(file, fails), InputError);
+  EXPECT_EQ(read_file(file), "piece piece piece ");
+  EXPECT_EQ(entries(), 1U);
+  fs::create_symlink(file, folder() / "link");
+  left = 1;
+  write_output(folder() / "link", [&] { return left-- > 0 ? std::string("x") : std::string(); });
+  EXPECT_TRUE(fs::is_symlink(folder() / "link"));
+  EXPECT_EQ(read_file(file), "x");
+}
+
 TEST_F(OutputFile, AFifoIsWrittenToAndStays) {
   const fs::path pipe = folder() / "fifo";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);

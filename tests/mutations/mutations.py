@@ -32,6 +32,8 @@ from named_mutations import NAMED
 CRASH = "ended by signal"
 STUDIES = [
     "at-rest",
+    "contacts",
+    "control-variates",
     "convergence",
     "diffusion",
     "divergence",

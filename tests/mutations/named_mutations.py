@@ -115,9 +115,23 @@ NAMED = [
     (
         "springs stretched twice in a step with noise",
         NOISY,
-        "  const PairSums ahead = ahead_.evaluate(system, loads_.force, loads_.torque);\n  restore_springs(system);",
-        "  const PairSums ahead = ahead_.evaluate(system, loads_.force, loads_.torque);",
+        "  restore_springs(system);\n  return sums;",
+        "  return sums;",
         "engine_tests:Implicit.StretchesSpringsOnceAStep",
+    ),
+    (
+        "torques of pairs across blocks on the other sphere",
+        "engine/kernels/pairs/pair_loads.h",
+        "row_of(out.crossing, 2 * c + 1) = torque_first.row[k];",
+        "row_of(out.crossing, 2 * c + 1) = torque_second.row[k];",
+        "engine_tests:PairPass.DependsOnNoOrderOfTheParticlesInMemory",
+    ),
+    (
+        "repulsion beside links left out",
+        "engine/kernels/links/link_assembly.h",
+        "load.force += conservative_force(kind_.conservative, ahead_);",
+        ";",
+        "engine_tests:*LinkLoadsOf.AreThoseOfAnEvaluation*",
     ),
     (
         "noise of pairs for steps of half the length",

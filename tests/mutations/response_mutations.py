@@ -22,7 +22,7 @@ RESPONSE = [
         "engine/kernels/momentum_flux.h",
         "flux.dissipative + sums.of(StressTerm::brownian_lubrication)",
         "flux.dissipative",
-        f"{DUMBBELL}.IsItsDragWhateverHoldsItTogether/explicit",
+        "engine_tests:MomentumFlux.OfVelocityVerletIsTheStressAndTheMotion",
     ),
     (
         "flux of momentum at the places where a noisy step begins",

@@ -2,7 +2,8 @@
 //
 // With peculiar velocities c = U - u(x), spins w = Omega - curl u / 2, all forces F and torques T of a
 // configuration, an identity at every instant and in any flow:
-//   sum (zeta c^2 + zeta_r w^2) + sum (F.c + T.w) + sum over pairs (Phi_0 + P_E + P_C) = 0,
+//   sum (zeta c.(c - f) + zeta_r w^2) + sum (F.c + T.w) + sum over pairs (Phi_0 + P_E + P_C) = 0,
+// f = -a^2 k^2 / 6 times a wave at a sphere's centre is Faxen's correction of its drag,
 // Phi_0 = m.R.m of the relative motion m = (c_j - c_i, w_i, w_j), P_E what the loads of the rates of strain
 // take from that motion, P_C the same of contacts. In a uniform flow the strain joins the motion, v = c_j -
 // c_i
@@ -25,16 +26,15 @@ namespace peclet::engine {
 namespace {
 
 constexpr double rate = 0.05, stiffness = 500, regularisation = 1e-2, outer = 0.15;
+constexpr Wave wave = {1, 0.1, 0.05};
 
 Physics strained_physics(bool waves) {
   Physics physics;
   physics.viscosity = natural_viscosity;
   physics.flow = steady_shear(rate);
   if (waves) {
-    // Without Faxen's correction the drag is that of c.
-    physics.flow =
-        ImposedFlow(std::make_shared<SteadyShear>(rate),
-                    std::make_shared<Waves>(std::vector<Wave>{{1, 0.1, 0.05}, {2, 0, 0.04}}, false));
+    physics.flow = ImposedFlow(std::make_shared<SteadyShear>(rate),
+                               std::make_shared<Waves>(std::vector<Wave>{wave}, /*faxen=*/true));
   }
   physics.contact = ContactParameters{.normal_stiffness = stiffness};
   physics.lubrication = LubricationParameters{
@@ -175,7 +175,10 @@ TEST_P(StrainedPower, IsBalancedAtEveryInstant) {
       const double a = all.radius[i];
       const SymmetricTensor strain = strain_of(simple_shear(rate)) + flow.varying_strain(x, 0);
       spheres.push_back({a, c, w, full(strain)});
-      drag += a * dot(c, c) + 4.0 / 3 * a * a * a * dot(w, w);  // 6 pi eta = 1
+      const double k = 2 * std::numbers::pi / system.box.lengths().y;
+      const double curved = GetParam() ? wave.sine * std::sin(k * x.y) + wave.cosine * std::cos(k * x.y) : 0;
+      const Vector3 faxen = {-a * a * k * k / 6 * curved, 0, 0};
+      drag += a * dot(c, c - faxen) + 4.0 / 3 * a * a * a * dot(w, w);  // 6 pi eta = 1
       taken_up += dot(force[i], c) + dot(torque[i], w);
     }
     const PairPower pairs = power_of_all(system, spheres);

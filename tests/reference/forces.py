@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """forces.py make MIXTURE SEED [--scene SCENE.json]    print a case: a random configuration and the answer expected
 forces.py check ENGINE [--seeds N] [--scene FILE]  compare the engine with the evaluator on random configurations
+forces.py packing ENGINE FINAL.xyz [--scene FILE]  the same on a packing that an engine has left, of any size
 forces.py confirm [CASE.json...]                   compare stored cases (those of forces/) with the evaluator
 
 Forces, torques, stresses and advanced springs by the evaluator beside this file (README.md). Differences are relative
@@ -15,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from evaluator.configurations import MIXTURES, SCENE, random_configuration, varied, with_only
+from evaluator.configurations import MIXTURES, SCENE, packed_configuration, random_configuration, varied, with_only
 from evaluator.evaluation import PAIR_TERMS, evaluate, largest_difference
 
 TOLERANCE = 1e-10
@@ -86,13 +87,24 @@ def check(arguments):
         for seed in range(1, arguments.seeds + 1):
             for text, scene in variants(scene_of(arguments), seed):
                 name = f"{mixture}, seed {seed}, {text}"
-                configuration = random_configuration(mixture, scene, seed)
-                done = answer_of(arguments.engine, configuration)
-                if done.returncode != 0:
-                    comparison.fail(name, f"exit code {done.returncode}: {done.stderr.strip()}")
-                    continue
-                comparison.add(name, evaluate(configuration), json.loads(done.stdout))
+                compare(comparison, name, arguments.engine, random_configuration(mixture, scene, seed))
     comparison.end()
+
+
+def packing(arguments):
+    comparison = Comparison()
+    lines = arguments.final.read_text().splitlines()
+    configuration = packed_configuration(lines, scene_of(arguments), seed=1)
+    compare(comparison, arguments.final, arguments.engine, configuration)
+    comparison.end()
+
+
+def compare(comparison, name, engine, configuration):
+    done = answer_of(engine, configuration)
+    if done.returncode != 0:
+        comparison.fail(name, f"exit code {done.returncode}: {done.stderr.strip()}")
+        return
+    comparison.add(name, evaluate(configuration), json.loads(done.stdout))
 
 
 def confirm(arguments):
@@ -117,6 +129,11 @@ def main():
     verb.add_argument("--seeds", type=int, default=3, help="of each mixture of sizes")
     verb.add_argument("--scene", type=Path, help=blocks)
     verb.set_defaults(perform=check)
+    verb = verbs.add_parser("packing")
+    verb.add_argument("engine")
+    verb.add_argument("final", type=Path)
+    verb.add_argument("--scene", type=Path, help=blocks)
+    verb.set_defaults(perform=packing)
     verb = verbs.add_parser("confirm")
     verb.add_argument("cases", nargs="*", type=Path)
     verb.set_defaults(perform=confirm)

@@ -110,6 +110,16 @@ PECLET_ALWAYS_INLINE Lanes<Set> load_lanes(const double* values, int count, cons
   return result;
 }
 
+// In single precision, all lanes.
+template <class Set>
+PECLET_ALWAYS_INLINE void store_floats(float* values, const Lanes<Set>& x) {
+#ifdef __AVX512F__
+  _mm256_storeu_ps(values, _mm512_cvtpd_ps(x.v));
+#else
+  _mm_storeu_ps(values, _mm256_cvtpd_ps(x.v));
+#endif
+}
+
 template <class Set>
 PECLET_ALWAYS_INLINE void store_lanes(double* values, int count, const Lanes<Set>& x) {
   if (count == Lanes<Set>::width) {

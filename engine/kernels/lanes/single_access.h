@@ -28,6 +28,7 @@ inline bool listed_lanes(int /*count*/, double /*number*/) { return true; }
 inline double lane(double x, int /*lane*/) { return x; }
 inline void set_lane(double& x, int /*lane*/, double value) { x = value; }
 inline double load_lanes(const double* values, int /*count*/, double /*number*/) { return *values; }
+inline void store_floats(float* values, double x) { *values = static_cast<float>(x); }
 inline void store_lanes(double* values, int /*count*/, double x) { *values = x; }
 
 }  // namespace peclet::engine

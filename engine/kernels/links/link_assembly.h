@@ -4,6 +4,7 @@
 #include "engine/kernels/lanes/single_access.h"
 #include "engine/kernels/links/link_kernels.h"
 #include "engine/kernels/pairs/pair_coupling.h"
+#include "engine/kernels/pairs/pair_loads.h"
 #include "engine/kernels/pairs/pair_terms.h"
 
 namespace peclet::engine {
@@ -61,7 +62,7 @@ class LinkedPairs {
  public:
   PECLET_ALWAYS_INLINE LinkedPairs(const PairKernelInput& in, const PairRun& run, std::uint32_t begin,
                                    int count)
-      : in_(in), kind_(in.kinds[run.kind]), begin_(begin), count_(count) {
+      : in_(in), run_(run), kind_(in.kinds[run.kind]), begin_(begin), count_(count) {
     for (int k = 0; k < width_of<Real>; ++k) {
       const Pair& pair = in.pairs[begin + static_cast<std::uint32_t>(k < count ? k : 0)];
       first_[k] = pair.first;
@@ -78,24 +79,27 @@ class LinkedPairs {
     motion_.spin_second = gather_rows(in.spin, second_, Real{});
     const Real squared = dot(r, r);
     const double range = kind_.range + kind_reach(in.parameters, kind_);
-    near_ = bits(listed_lanes(count, Real{}) & (squared <= Real{range * range}));
-    shape_ = {r, {}, square_root(squared), kind_.sum_of_radii};
-    shape_.normal = (1.0 / shape_.distance) * r;
+    const auto near = listed_lanes(count, Real{}) & (squared <= Real{range * range});
+    near_ = bits(near);
+    // Lanes that are not near compute with a distance at which every term is zero.
+    shape_ = {where(near, r), {}, select(near, square_root(squared), Real{2 * range}), kind_.sum_of_radii};
+    shape_.normal = (1.0 / shape_.distance) * shape_.separation;
     ahead_ = shape_;
     ahead_.distance += in.parameters.approach_time * dot(motion_.velocity, shape_.normal);
   }
 
   unsigned near() const { return near_; }
 
-  PECLET_ALWAYS_INLINE PairResistanceOf<Real> coupling(const Terms& terms, const LinkWeights& weights) const {
-    PairResistanceOf<Real> sum{};
+  // What a change of the motion changes of the forces of lubrication; `terms` has it.
+  PECLET_ALWAYS_INLINE PairResistanceOf<Real> resistance() const {
+    return tangent_resistance(kind_.resistance, in_.parameters.step_resistance, kind_.gap,
+                              kind_.lubrication_range, shape_, dot(motion_.velocity, shape_.normal));
+  }
+
+  PECLET_ALWAYS_INLINE PairResistanceOf<Real> coupling(const Terms& terms, const LinkWeights& weights,
+                                                       const PairResistanceOf<Real>& resistance) const {
     const PairParameters& parameters = in_.parameters;
-    if (terms.lubrication) {
-      const Real closing = dot(motion_.velocity, shape_.normal);
-      add_scaled(sum, Real{weights.timestep},
-                 tangent_resistance(kind_.resistance, parameters.step_resistance, kind_.gap,
-                                    kind_.lubrication_range, shape_, closing));
-    }
+    PairResistanceOf<Real> sum = scaled(Real{weights.timestep}, resistance);
     add_stiffness(sum, terms, parameters.contact, kind_, ahead_,
                   {.resistance = weights.timestep,
                    .normal = weights.timestep * weights.normal_time,
@@ -104,11 +108,30 @@ class LinkedPairs {
     return sum;
   }
 
+  // Adds the loads of the pairs to the rows of their particles. `resistance` is that of their lubrication.
+  PECLET_ALWAYS_INLINE void leave(const Terms& terms, const PairResistanceOf<Real>& resistance,
+                                  const PairKernelOutput& out) const {
+    PairLoadOf<Real> load = lubrication_load(resistance, shape_, motion_);
+    if (terms.conservative) {
+      load.force += conservative_force(kind_.conservative, ahead_);
+    }
+    if (terms.contact) {
+      load.force += where(ahead_.overlap() > 0.0,
+                          contact_normal_force(in_.parameters.contact.normal_stiffness, ahead_));
+    }
+    if (run_.first_is_away) {
+      leave_load<true>(load, run_, begin_, count_, first_, second_, out);
+    } else {
+      leave_load<false>(load, run_, begin_, count_, first_, second_, out);
+    }
+  }
+
   // Of a pair within its block.
   PECLET_ALWAYS_INLINE void emit(const LinkPlaces& places, LinkGroup* groups,
                                  const PairResistanceOf<Real>& coupling) const {
     // Pairs within reach whose way leads past the range are coupled by nothing.
     const unsigned coupled = near_ & (bits(coupling.squeeze > 0.0) | bits(coupling.shear > 0.0));
+    const LinkNumbers numbers(shape_.normal, coupling);
     for (int k = 0; k < count_; ++k) {
       if ((coupled >> k & 1U) == 0) {
         continue;
@@ -123,13 +146,14 @@ class LinkedPairs {
       const int place = place_of_link(number);
       group.first[place] = later;
       group.second[place] = swapped ? row_of_first : row_of_second;
-      put(group, place, coupling, k, swapped);
+      put(group, place, numbers, k, swapped);
     }
   }
 
   // Of pairs between blocks, whose places are these.
   PECLET_ALWAYS_INLINE void emit_crossing(const CrossingLink* crossing, const std::uint32_t* row,
                                           LinkGroup* groups, const PairResistanceOf<Real>& coupling) const {
+    const LinkNumbers numbers(shape_.normal, coupling);
     for (int k = 0; k < count_; ++k) {
       const CrossingLink& link = crossing[k];
       LinkGroup& group = groups[link.place / links_per_group];
@@ -137,7 +161,7 @@ class LinkedPairs {
       if (is_near(k)) {
         group.first[place] = link.first;
         group.second[place] = link.second;
-        put(group, place, coupling, k, link.first != row[first_[k]]);
+        put(group, place, numbers, k, link.first != row[first_[k]]);
       } else {
         couple_nothing(group, place, link.first, link.second);
       }
@@ -147,23 +171,40 @@ class LinkedPairs {
  private:
   bool is_near(int k) const { return (near_ >> k & 1U) != 0; }
 
+  // What links have of each pair, in single precision.
+  struct LinkNumbers {
+    PECLET_ALWAYS_INLINE LinkNumbers(const Vector3Of<Real>& n, const PairResistanceOf<Real>& coupling) {
+      store_floats(normal[0], n.x);
+      store_floats(normal[1], n.y);
+      store_floats(normal[2], n.z);
+      store_floats(squeeze, coupling.squeeze);
+      store_floats(shear, coupling.shear);
+      store_floats(pump[0], coupling.pump_first);
+      store_floats(pump[1], coupling.pump_second);
+      store_floats(twist[0], coupling.twist_first);
+      store_floats(twist[1], coupling.twist_second);
+      store_floats(twist_cross, coupling.twist_cross);
+    }
+
+    using Each = float[width_of<Real>];
+    Each normal[3], squeeze, shear, pump[2], twist[2], twist_cross;  // pump and twist: of first and second
+  };
+
   // Swapped: the first particle of the link is the second one of the pair.
-  PECLET_ALWAYS_INLINE void put(LinkGroup& group, int place, const PairResistanceOf<Real>& coupling, int k,
-                                bool swapped) const {
-    const auto put = [&](Floats& to, const Real& from) { to[place] = static_cast<float>(lane(from, k)); };
-    const auto put_both = [&](Floats& to_first, Floats& to_second, const Real& first, const Real& second) {
-      put(swapped ? to_second : to_first, first);
-      put(swapped ? to_first : to_second, second);
-    };
+  PECLET_ALWAYS_INLINE static void put(LinkGroup& group, int place, const LinkNumbers& numbers, int k,
+                                       bool swapped) {
+    const int first = swapped ? 1 : 0, second = 1 - first;
     const float sign = swapped ? -1.0F : 1.0F;
-    group.normal[0][place] = sign * static_cast<float>(lane(shape_.normal.x, k));
-    group.normal[1][place] = sign * static_cast<float>(lane(shape_.normal.y, k));
-    group.normal[2][place] = sign * static_cast<float>(lane(shape_.normal.z, k));
-    put(group.squeeze, coupling.squeeze);
-    put(group.shear, coupling.shear);
-    put_both(group.pump_first, group.pump_second, coupling.pump_first, coupling.pump_second);
-    put_both(group.twist_first, group.twist_second, coupling.twist_first, coupling.twist_second);
-    put(group.twist_cross, coupling.twist_cross);
+    for (int c = 0; c < 3; ++c) {
+      group.normal[c][place] = sign * numbers.normal[c][k];
+    }
+    group.squeeze[place] = numbers.squeeze[k];
+    group.shear[place] = numbers.shear[k];
+    group.pump_first[place] = numbers.pump[first][k];
+    group.pump_second[place] = numbers.pump[second][k];
+    group.twist_first[place] = numbers.twist[first][k];
+    group.twist_cross[place] = numbers.twist_cross[k];
+    group.twist_second[place] = numbers.twist[second][k];
   }
 
   PECLET_ALWAYS_INLINE HeldSprings<Real> held_springs(const Terms& terms) const {
@@ -191,16 +232,17 @@ class LinkedPairs {
   PairMotionOf<Real> motion_;
   std::uint32_t first_[width_of<Real>], second_[width_of<Real>], image_[width_of<Real>];
   const PairKernelInput& in_;
+  const PairRun& run_;
   const PairKind& kind_;
   std::uint32_t begin_;
   int count_;
   unsigned near_;
 };
 
-template <class Real>
-void assemble_links(const PairKernelInput& in, const PairRun* runs, std::size_t count, const Terms& terms,
-                    const LinkWeights& weights, const LinkPlaces& places, const LinkBlock& block,
-                    LinkGroup* groups) {
+template <class Real, bool with_loads>
+void assemble(const PairKernelInput& in, const PairRun* runs, std::size_t count, const Terms& terms,
+              const LinkWeights& weights, const LinkPlaces& places, const LinkBlock& block, LinkGroup* groups,
+              const PairKernelOutput* loads) {
   constexpr std::uint32_t width = width_of<Real>;
   for (std::uint32_t level = block.levels_begin; level < block.levels_end; ++level) {
     places.next[level] = 0;
@@ -211,7 +253,10 @@ void assemble_links(const PairKernelInput& in, const PairRun* runs, std::size_t 
       const LinkedPairs<Real> pairs(in, *run, begin, static_cast<int>(rest < width ? rest : width));
       const bool crosses = run->crossing != within_block;
       if (pairs.near() == 0 && !crosses) continue;
-      const PairResistanceOf<Real> coupling = pairs.coupling(terms, weights);
+      const PairResistanceOf<Real> resistance =
+          terms.lubrication ? pairs.resistance() : PairResistanceOf<Real>{};
+      if constexpr (with_loads) pairs.leave(terms, resistance, *loads);
+      const PairResistanceOf<Real> coupling = pairs.coupling(terms, weights, resistance);
       if (crosses) {
         pairs.emit_crossing(places.crossing + run->crossing + (begin - run->begin), places.row, groups,
                             coupling);
@@ -223,6 +268,14 @@ void assemble_links(const PairKernelInput& in, const PairRun* runs, std::size_t 
   for (std::uint32_t level = block.levels_begin; level < block.levels_end; ++level) {
     fill_up(places.levels[level], places.next[level], groups);
   }
+}
+
+template <class Real>
+void assemble_links(const PairKernelInput& in, const PairRun* runs, std::size_t count, const Terms& terms,
+                    const LinkWeights& weights, const LinkPlaces& places, const LinkBlock& block,
+                    LinkGroup* groups, const PairKernelOutput* loads) {
+  const auto chosen = loads != nullptr ? &assemble<Real, true> : &assemble<Real, false>;
+  chosen(in, runs, count, terms, weights, places, block, groups, loads);
 }
 
 }  // namespace peclet::engine

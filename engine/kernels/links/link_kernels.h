@@ -163,9 +163,12 @@ struct LinkKernels {
   // The links of pairs of one block of the list within their range, at the motion that `input` holds. The
   // last groups of its levels are filled up with links that couple nothing. Those of crossing pairs are
   // complete when all blocks are.
+  //
+  // Unless `loads` is null, the pairs leave theirs there as in a PairKernel, but for the sums: those of
+  // lubrication, conservative laws and undamped contacts without friction, which terms must not have beyond.
   void (*assemble)(const PairKernelInput& input, const PairRun* runs, std::size_t count, const Terms& terms,
                    const LinkWeights& weights, const LinkPlaces& places, const LinkBlock& block,
-                   LinkGroup* groups);
+                   LinkGroup* groups, const PairKernelOutput* loads);
 
   // The pivots of a system, which may be those that it points at.
   void (*factorise)(const LinkSystem& system, Pivot* pivots, Team& team);

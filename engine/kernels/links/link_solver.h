@@ -47,12 +47,13 @@ PECLET_ALWAYS_INLINE Floats over_pivot(const Pivot& pivot, const Floats& r) {
   return even + odd;
 }
 
-// K t of one row.
+// K t of one row, in the velocity.
 PECLET_ALWAYS_INLINE Floats squeezed(const Pivot& pivot, const Floats& t) {
-  const auto three = [&](int place) {
-    return FourFloats{pivot.rows[0].v[place], pivot.rows[1].v[place], pivot.rows[2].v[place], 0.0F};
-  };
-  const FourFloats diagonal = three(3), beside = three(7), v = __builtin_shufflevector(t, t, 0, 1, 2, 3);
+  const Floats fourth = __builtin_shufflevector(pivot.rows[0].v, pivot.rows[1].v, 2, 10, 3, 11, 6, 14, 7, 15);
+  const Floats k = __builtin_shufflevector(fourth, pivot.rows[2].v, 2, 3, 11, 11, 6, 7, 15, 15);
+  const FourFloats diagonal = __builtin_shufflevector(k, k, 0, 1, 2, 3),
+                   beside = __builtin_shufflevector(k, k, 4, 5, 6, 7),
+                   v = __builtin_shufflevector(t, t, 0, 1, 2, 3);
   const FourFloats sum =
       diagonal * v +
       __builtin_shufflevector(beside, beside, 0, 0, 1, 3) * __builtin_shufflevector(v, v, 1, 0, 0, 3) +

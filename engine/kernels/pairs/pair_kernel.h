@@ -7,6 +7,7 @@
 
 #include "engine/kernels/lanes/single_access.h"
 #include "engine/kernels/pairs/pair_kernels.h"
+#include "engine/kernels/pairs/pair_loads.h"
 #include "engine/kernels/pairs/pair_terms.h"
 
 namespace peclet::engine {
@@ -157,36 +158,8 @@ class PairGroup {
     }
   }
 
-  // Adds the loads to the rows of the particles, pair after pair.
   PECLET_ALWAYS_INLINE void leave(const PairLoadOf<Real>& load, const PairKernelOutput& out) const {
-    const RowsOf<Real> force = scattered(load.force), torque_first = scattered(load.torque_first),
-                       torque_second = scattered(load.torque_second);
-    for (int k = 0; k < width_of<Real>; ++k) {
-      if (k == count_) {
-        break;
-      }
-      if constexpr (mirrored) {
-        const std::size_t j = second_[k] - out.first_particle;
-        row(out.force, j) -= force.row[k];
-        row(out.torque, j) += torque_second.row[k];
-        const std::size_t c = run_.crossing + (begin_ - run_.begin) + static_cast<std::uint32_t>(k);
-        row(out.crossing, 2 * c) = force.row[k];
-        row(out.crossing, 2 * c + 1) = torque_first.row[k];
-        continue;
-      }
-      const std::size_t i = first_[k] - out.first_particle;
-      row(out.force, i) += force.row[k];
-      row(out.torque, i) += torque_first.row[k];
-      if (run_.crossing == within_block) {
-        const std::size_t j = second_[k] - out.first_particle;
-        row(out.force, j) -= force.row[k];
-        row(out.torque, j) += torque_second.row[k];
-      } else {
-        const std::size_t c = run_.crossing + (begin_ - run_.begin) + static_cast<std::uint32_t>(k);
-        row(out.crossing, 2 * c) = -force.row[k];
-        row(out.crossing, 2 * c + 1) = torque_second.row[k];
-      }
-    }
+    leave_load<mirrored>(load, run_, begin_, count_, first_, second_, out);
   }
 
   // The rows of crossing pairs are written at every evaluation: nobody clears them.
@@ -196,14 +169,9 @@ class PairGroup {
     }
     for (int k = 0; k < count_; ++k) {
       const std::size_t c = run_.crossing + (begin_ - run_.begin) + static_cast<std::uint32_t>(k);
-      row(out.crossing, 2 * c) = Row{};
-      row(out.crossing, 2 * c + 1) = Row{};
+      row_of(out.crossing, 2 * c) = Row{};
+      row_of(out.crossing, 2 * c + 1) = Row{};
     }
-  }
-
-  // NOLINTNEXTLINE(readability-non-const-parameter): who receives the row writes to it
-  PECLET_ALWAYS_INLINE static Row& row(double* rows, std::size_t number) {
-    return *reinterpret_cast<Row*>(rows + 4 * number);
   }
 
   PECLET_ALWAYS_INLINE PairNormalsOf<Real> normals() const {

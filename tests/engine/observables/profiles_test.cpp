@@ -70,6 +70,68 @@ TEST(Profiles, OfAUniformLatticeAreUniform) {
   }
 }
 
+// What a sphere around `height` has between two heights, in many thin discs; 2 for both faces of the box.
+double discs_between(double low, double high, double height, double radius) {
+  constexpr int discs = 20000;
+  const double thickness = 2 * radius / discs;
+  double volume = 0;
+  for (int k = 0; k < discs; ++k) {
+    const double z = (k + 0.5) * thickness - radius, y = height + z;
+    for (const double image : {y - edge, y, y + edge}) {
+      if (image >= low && image < high) {
+        volume += std::numbers::pi * (radius * radius - z * z) * thickness;
+      }
+    }
+  }
+  return volume;
+}
+
+TEST(Profiles, HaveTheSpheresOfEachRadiusApart) {
+  System system = loose_spheres(40);
+  Draws draws(7);
+  for (std::size_t i = 0; i < 40; ++i) system.particles.position.set(i, place_in_box(draws));
+  const Json found = profiles_of(system);
+  const Json& by_radius = found["volume_fraction_by_radius"];
+  ASSERT_EQ(by_radius.size(), 2u);
+  for (std::size_t k = 0; k < 5; ++k) {
+    const double low = 2 * static_cast<double>(k);
+    double expected[] = {0, 0};  // of radius 1, of radius 2
+    for (std::size_t i = 0; i < 40; ++i) {
+      const double a = system.particles.radius[i];
+      expected[a == 1 ? 0 : 1] += discs_between(low, low + 2, system.particles.position[i].y, a) / 200;
+    }
+    for (std::size_t s = 0; s < 2; ++s) {
+      EXPECT_NEAR(by_radius[s][k].get<double>(), expected[s], 1e-4) << s << ' ' << k;
+    }
+    EXPECT_NEAR(by_radius[0][k].get<double>() + by_radius[1][k].get<double>(),
+                found["volume_fraction"][k].get<double>(), 1e-14);
+  }
+}
+
+// The small sphere lies in the first bin in the first quarter, in the last bin in the last one.
+TEST(Profiles, OfEachRadiusHaveTheQuartersOfTheWindow) {
+  const double small = sphere(1) / 200;
+  System system = loose_spheres(2);
+  system.particles.position.set(1, {7, 5, 7});
+  const auto observable = observable_of(scene_with("profiles", {{"bins", 5}}), system, 256);
+  for (const auto& [block, height] : {std::pair(0, 1.0), std::pair(7, 1.0), std::pair(31, 9.0)}) {
+    system.particles.position.set(0, {3, height, 3});
+    observable->sample(system, static_cast<std::size_t>(block));
+  }
+  Json blocks;
+  observable->add_blocks_to(blocks);
+  const Json& quarters = blocks["profiles"]["volume_fraction_by_radius"];
+  ASSERT_EQ(quarters.size(), 4u);
+  EXPECT_NEAR(quarters[0][0][0].get<double>(), small, 1e-5 * small);
+  EXPECT_EQ(quarters[0][0][4], 0);
+  EXPECT_EQ(quarters[1], (Json{nullptr, nullptr}));  // nothing was sampled
+  EXPECT_NEAR(quarters[3][0][4].get<double>(), small, 1e-5 * small);
+  EXPECT_EQ(quarters[3][0][0], 0);
+  EXPECT_EQ(quarters[3][1], quarters[0][1]);
+  const Json mean = mean_of(*observable)["profiles"]["volume_fraction_by_radius"];
+  EXPECT_NEAR(mean[0][0].get<double>(), 2 * small / 3, 1e-14);
+}
+
 // Relative to the flow the smaller sphere moves with 3, the larger one with -1; their volumes are 1 : 8.
 TEST(Profiles, HaveTheVelocityRelativeToTheFlowByVolume) {
   constexpr double rate = 0.3;

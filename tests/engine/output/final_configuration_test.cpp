@@ -19,7 +19,7 @@ namespace {
 
 struct Sphere {
   std::uint32_t id;
-  Vector3 position, velocity;
+  Vector3 position, velocity, spin;
   double radius;
 };
 struct Text {
@@ -40,7 +40,9 @@ Text read_extended_xyz(const std::string& bytes) {
   std::getline(lines, line);
   const std::size_t count = std::stoul(line);
   std::getline(lines, line);
-  EXPECT_NE(line.find(" Properties=id:I:1:pos:R:3:radius:R:1:velo:R:3 "), std::string::npos) << line;
+  EXPECT_NE(line.find(" Properties=id:I:1:pos:R:3:radius:R:1:velo:R:3:angular_velocity:R:3 "),
+            std::string::npos)
+      << line;
   std::istringstream lattice(line.substr(line.find("Lattice=\"") + 9));
   for (double& component : text.lattice) lattice >> component;
   text.time = number_after(line, "Time=");
@@ -49,7 +51,8 @@ Text read_extended_xyz(const std::string& bytes) {
     std::istringstream row(line);
     Sphere sphere{};
     row >> sphere.id >> sphere.position.x >> sphere.position.y >> sphere.position.z >> sphere.radius >>
-        sphere.velocity.x >> sphere.velocity.y >> sphere.velocity.z;
+        sphere.velocity.x >> sphere.velocity.y >> sphere.velocity.z >> sphere.spin.x >> sphere.spin.y >>
+        sphere.spin.z;
     EXPECT_FALSE(row.fail()) << line;
     text.spheres.push_back(sphere);
   }
@@ -66,6 +69,7 @@ TEST(FinalConfiguration, IsReadBackAsItWas) {
   system.particles.position.set(1, {12.345678901234567, 0, 1e22});
   system.particles.position.set(2, {-0.7, 3, 4});
   system.particles.velocity.set(0, {1e-300, -1, 2.0 / 3});
+  system.particles.angular_velocity.set(0, {0.1, 1.0 / 9, -7});
   system.box = PeriodicCell({10, 10.5, 11}, Matrix3{});
   Matrix3 gradient{};
   gradient.column[1].x = 0.3;
@@ -89,6 +93,7 @@ TEST(FinalConfiguration, IsReadBackAsItWas) {
                 sphere.position.z == position.z);
     EXPECT_TRUE(sphere.velocity.x == velocity.x && sphere.velocity.y == velocity.y &&
                 sphere.velocity.z == velocity.z);
+    EXPECT_TRUE(sphere.spin == system.particles.angular_velocity[place[i]]);
   }
 }
 

@@ -77,6 +77,14 @@ TEST(Result, AxesAreThoseOfTheLags) {
   }
 }
 
+TEST(Result, AxesOfProfilesByRadiusAreRadiiAndHeights) {
+  const Json result = result_of({{"observables", {"profiles"}}, {"profiles", {{"bins", 4}}}});
+  const Json axes = result.at("quantities").at("profiles/volume_fraction_by_radius").at("axes");
+  EXPECT_EQ(axes[0], (Json{{"name", "radius"}, {"unit", "length"}, {"values", {1.0, 1.4}}}));
+  EXPECT_EQ(axes[1], result.at("quantities").at("profiles/volume_fraction").at("axes")[0]);
+  EXPECT_EQ(result.at("mean").at("profiles").at("volume_fraction_by_radius").size(), 2u);
+}
+
 TEST(Result, WithoutNoiseNothingHasAControlVariate) {
   const Json result = result_of({{"fluid", {{"thermal_energy", 0}}}});
   for (const auto& [name, quantity] : result.at("quantities").items()) {

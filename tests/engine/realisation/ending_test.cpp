@@ -35,9 +35,11 @@ class EndingOfAJob : public testing::Test {
     const Json& ending = result.at("ending");
     ASSERT_EQ(ending.at("state"), "0123456789ab-5.state");
     const Scene scene = read_scene(small_scene(patch), "scene.json");
-    Simulation simulation(scene, make_schedule(scene, ""), 5, 1, "");
+    const Schedule schedule = make_schedule(scene, "");
+    Simulation simulation(scene, schedule, 5, 1, "");
     read_checkpoint(folder_ / ending.at("state").get<std::string>(),
-                    {sha256(canonical_json(scene.document)), 5, provenance().at("binary_sha256")},
+                    {sha256(canonical_json(scene.document)), 5, provenance().at("binary_sha256"),
+                     motion_of(scene, schedule)},
                     simulation);
     EXPECT_EQ(simulation.system().step, ending.at("step").get<std::uint64_t>());
   }

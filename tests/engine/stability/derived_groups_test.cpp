@@ -67,7 +67,9 @@ TEST(DerivedGroups, WhatHasNoMeaningIsNull) {
                                                   {"inertial_time", 1.0},
                                                   {"brownian_time", nullptr},
                                                   {"shear_time", nullptr},
-                                                  {"flow_over_rest", nullptr}}));
+                                                  {"flow_over_rest", nullptr},
+                                                  {"largest_stokes", nullptr},
+                                                  {"largest_inertia_over_brownian", nullptr}}));
 }
 
 // Of the published system at Pe = 0.01: (600 pi)^2 phi / (300 v eta_r (eta_r - 1 - 2.5 phi)), v = 4 pi / 3

@@ -60,6 +60,31 @@ TEST(Stability, StepOfThePublishedSceneIsTheRootOfItsStiffestPair) {
   EXPECT_EQ(resolved_timestep(scene, "scene.json"), automatic_timestep(scene));
 }
 
+// Small spheres of four times the density are no longer the stiffest: two large ones are, of the mass 4 pi /
+// 3 0.1 1.4^3 and X_A = 251.55 * 6 pi eta 1.4.
+TEST(Stability, StepIsOfTheLightestPairForItsResistance) {
+  const Scene scene = scene_with(Json::parse(R"({"particles": {"species": [
+      {"radius": 1, "volume_share": 1, "density": 0.4}, {"radius": 1.4, "volume_share": 1}]}})"));
+  const double mass = 4 * pi / 3 * 0.1 * 2.744, drag = 6 * pi * 0.1 * 1.4;
+  const double damping = 2 * 251.55 * drag / mass + drag / mass, frequency_squared = 2 * 1e4 / mass;
+  EXPECT_NEAR(largest_timestep(scene) / root(2.8 * frequency_squared, 2.8 * damping), 1, 1e-4);
+}
+
+// 0.01 strain over 1 + 2 St, St = rho_i a_i^2 rate / eta: of the densest species here, not of the largest.
+TEST(Stability, ImplicitStepKnowsTheInertiaOfEachSpecies) {
+  const auto step = [](double density) {
+    Json patch = {{"volume_fraction", 0.4},
+                  {"contact", nullptr},
+                  {"flow", {{"shear_rate", 1}}},
+                  {"integrator", {{"method", "implicit"}}}};
+    patch["particles"]["species"] = {{{"radius", 1}, {"volume_share", 1}, {"density", density}},
+                                     {{"radius", 1.4}, {"volume_share", 1}}};
+    return automatic_timestep(scene_with(patch));
+  };
+  EXPECT_NEAR(step(0.1), 0.01 / (1 + 2 * 1.96), 1e-12);
+  EXPECT_NEAR(step(0.3), 0.01 / (1 + 2 * 3), 1e-12);
+}
+
 // The form mari: X_A = 6 pi eta a / (4 eps) between touching spheres.
 TEST(Stability, StepOfLubricationRelativeToTheFlowIsThatOfItsRegularisation) {
   const Scene scene =

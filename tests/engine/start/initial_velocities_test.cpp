@@ -12,8 +12,9 @@ namespace {
 
 constexpr double rate = 2, thermal_energy = 0.02, count = 3000;
 
-System started() {
+System started(const Json& patch = Json::object()) {
   Json document = small_scene({{"particles", {{"count", count}}}, {"volume_fraction", 0.1}});
+  document.merge_patch(patch);
   document.erase("repulsion");  // nothing that moves spheres before they start
   const Scene scene = read_scene(document, "scene.json");
   Simulation simulation(scene, make_schedule(scene, "scene.json"), 5, 1, "scene.json");
@@ -48,6 +49,22 @@ TEST(InitialVelocities, AreThoseOfEquilibriumAboutTheFlow) {
   EXPECT_NEAR(velocity_squared, 1, 5 * std::sqrt(2 / (3 * count)));
   EXPECT_NEAR(spin_squared, 1, 5 * std::sqrt(2 / (3 * count)));
   EXPECT_NEAR(both, 0, 5 / std::sqrt(3 * count));
+}
+
+// With tau_I the same for all sizes m = 4 pi / 3 rho a_i, a = 1: kT / m of each size.
+TEST(InitialVelocities, AreOfTheMassOfEachSize) {
+  const System system = started({{"particles", {{"density_rule", "equal-inertia"}}}});
+  const ParticleState& p = system.particles;
+  double squares[2] = {0, 0}, number[2] = {0, 0};
+  for (std::size_t i = 0; i < p.count(); ++i) {
+    const double m = 0.1 * 4 * std::numbers::pi / 3 * p.radius[i];
+    const Vector3 u = std::sqrt(m / thermal_energy) * (p.velocity[i] - Vector3{rate * p.position[i].y, 0, 0});
+    squares[p.size_class[i]] += product(u, u);
+    number[p.size_class[i]] += 1;
+  }
+  for (const int size : {0, 1}) {
+    EXPECT_NEAR(squares[size] / number[size], 1, 5 * std::sqrt(2 / (3 * number[size]))) << size;
+  }
 }
 
 }  // namespace

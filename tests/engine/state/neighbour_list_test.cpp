@@ -19,11 +19,17 @@ struct Case {
   Vector3 edges;
 };
 
-// From a box of a single cell to many, cubic and not, one size and sizes that differ sevenfold.
-const Case cases[] = {{2, {1}, {2.2, 2.3, 2.1}},     {2, {1}, {4, 4, 4}},
-                      {10, {1, 1.4}, {5, 5, 5}},     {40, {1, 1.4}, {6.1, 9.3, 7.7}},
-                      {200, {1, 1.4}, {15, 15, 15}}, {150, {1, 1.4, 5, 7}, {16, 20, 25}},
-                      {300, {1, 3}, {40, 12, 9}},    {250, {0.1, 0.3}, {2, 2, 2}}};
+// From a box of a single cell to many, cubic and not, one size, sizes that differ sevenfold, and many that
+// are alike.
+const Case cases[] = {{2, {1}, {2.2, 2.3, 2.1}},
+                      {2, {1}, {4, 4, 4}},
+                      {10, {1, 1.4}, {5, 5, 5}},
+                      {40, {1, 1.4}, {6.1, 9.3, 7.7}},
+                      {200, {1, 1.4}, {15, 15, 15}},
+                      {150, {1, 1.4, 5, 7}, {16, 20, 25}},
+                      {300, {1, 3}, {40, 12, 9}},
+                      {250, {0.1, 0.3}, {2, 2, 2}},
+                      {240, {1, 1.1, 1.3, 1.31, 1.8, 2, 2.9, 3}, {17, 15, 16}}};
 
 TEST(NeighbourList, HoldsEveryPairInEveryImageAndNoOther) {
   Draws draws(11);

@@ -108,9 +108,41 @@ def random_noise(pairs, count, generator):
     return {"timestep": 1e-4, "force": force, "torque": torque, "pairs": [*named(pairs, theta=theta, chi=chi)]}
 
 
+def state_of(lines):
+    """Cell, centres, radii and velocities of a final.xyz that an engine has left."""
+    edges = np.array(lines[1].split('Lattice="')[1].split('"')[0].split(), float).reshape(3, 3)
+    numbers = np.loadtxt(lines[2:], ndmin=2)
+    return {
+        "box": {"lengths": np.diag(edges).tolist(), "tilt": edges[1, 0]},
+        "radius": numbers[:, 4].tolist(),
+        "position": numbers[:, 1:4].tolist(),
+        "velocity": numbers[:, 5:8].tolist(),
+    }
+
+
+def packed_configuration(lines, scene, seed):
+    """Of a packing that an engine has made, with random spins, springs and noise."""
+    generator, state = np.random.default_rng(seed), state_of(lines)
+    flow, count = flow_of(scene, state), len(state["radius"])
+    height = np.array(state["position"])[:, 1]
+    state["angular_velocity"] = (flow.spin(height) + 0.3 * generator.normal(size=(count, 3))).tolist()
+    configuration = {"scene": copy.deepcopy(scene), "state": state}
+    add_springs_and_noise(configuration, pairs_of(configuration), generator)
+    return configuration
+
+
+def add_springs_and_noise(configuration, pairs, generator):
+    """Springs where the scene has friction, noise where it has a thermal energy."""
+    scene, state = configuration["scene"], configuration["state"]
+    if scene.get("contact", {}).get("friction", 0) > 0:
+        state["springs"] = random_springs(pairs, generator)
+        configuration["advance"] = ADVANCE
+    if "thermal_energy" in scene["fluid"]:
+        state["noise"] = random_noise(pairs, len(state["radius"]), generator)
+
+
 def random_configuration(mixture, scene, seed):
-    """Springs where the scene has friction, noise where it has a thermal energy. Some pair touches, and some act on
-    each other over the boundary that moves."""
+    """Some pair touches, and some act on each other over the boundary that moves."""
     generator = np.random.default_rng(seed)
     for _ in range(20):
         state = random_state(mixture, scene, generator)
@@ -120,9 +152,5 @@ def random_configuration(mixture, scene, seed):
             break
     else:
         raise ValueError(f"no packing of {mixture} has a contact and a pair over the boundary")
-    if scene.get("contact", {}).get("friction", 0) > 0:
-        state["springs"] = random_springs(pairs, generator)
-        configuration["advance"] = ADVANCE
-    if "thermal_energy" in scene["fluid"]:
-        state["noise"] = random_noise(pairs, len(state["radius"]), generator)
+    add_springs_and_noise(configuration, pairs, generator)
     return configuration

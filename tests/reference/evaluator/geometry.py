@@ -15,6 +15,17 @@ def lattice(box):
     return vectors
 
 
+def shifts_within(vectors, reach):
+    """Those of SHIFTS by which an image can be nearer than `reach`. Beside the nearest lattice vectors a particle lies
+    within half of each vector, so that one more along y or z leads half of that cell away at least; one along x half of
+    Lx, less half of the tilt."""
+    x, y, z = np.abs(SHIFTS).T
+    half = 0.5 * np.diag(vectors)
+    least = np.where(y + z > 0, np.minimum(np.where(y > 0, half[1], np.inf), np.where(z > 0, half[2], np.inf)), 0)
+    along_x = np.where((y == 0) & (x > 0), (2 * x - 1) * half[0] - 0.5 * abs(vectors[1, 0]), 0)
+    return SHIFTS[np.maximum(least, along_x) < reach]
+
+
 def along(normal, vector):
     """The part of each vector along the unit vector of its row."""
     return normal * np.sum(normal * vector, axis=-1, keepdims=True)
@@ -81,6 +92,16 @@ class Pairs:
         return Pairs(*parts)
 
 
+def near_ones(i, position, radius, vectors, shifts, reach):
+    """Of all later particles in all images, those near particle i: i, j, image and separation."""
+    apart = position[i + 1 :] - position[i]
+    images = -np.rint(apart @ np.linalg.inv(vectors))[:, None, :] + shifts
+    separation = apart[:, None, :] + images @ vectors
+    near = np.linalg.norm(separation, axis=2) < reach(radius[i], radius[i + 1 :])[:, None]
+    j, image = np.nonzero(near)[0] + i + 1, images[near].astype(int)
+    return np.full(len(j), i), j, image, separation[near]
+
+
 def pairs_within(state, shear_rate, reach):
     """All pairs, in all images, whose centres are closer than reach(a_i, a_j). Every pair of particles is tried in
     every image that could be near."""
@@ -89,15 +110,11 @@ def pairs_within(state, shear_rate, reach):
     own = np.linalg.norm(SHIFTS[np.any(SHIFTS != 0, axis=1)] @ vectors, axis=1).min()
     if own < reach(radius, radius).max():
         raise ValueError("the box is too small: a particle acts on its own image")
-    i, j = np.triu_indices(len(radius), 1)
-    apart = position[j] - position[i]
-    nearest = -np.rint(apart @ np.linalg.inv(vectors))
-    images = nearest[:, None, :] + SHIFTS
-    separation = apart[:, None, :] + images @ vectors
-    row, column = np.nonzero(np.linalg.norm(separation, axis=2) < reach(radius[i], radius[j])[:, None])
-    i, j, image = i[row], j[row], images[row, column].astype(int)
+    shifts = shifts_within(vectors, reach(radius, radius).max())
+    found = [near_ones(k, position, radius, vectors, shifts, reach) for k in range(len(radius) - 1)]
+    i, j, image, separation = (np.concatenate(parts) for parts in zip(*found))
     velocity, spin = np.array(state["velocity"], float), np.array(state["angular_velocity"], float)
     velocity_j = velocity[j]
     velocity_j[:, 0] += shear_rate * vectors[1, 1] * image[:, 1]
     bodies = radius[i], radius[j], velocity[i], velocity_j, spin[i], spin[j], position[i, 1]
-    return Pairs(i, j, image, separation[row, column], *bodies)
+    return Pairs(i, j, image, separation, *bodies)

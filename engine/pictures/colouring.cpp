@@ -1,0 +1,108 @@
+#include "engine/pictures/colouring.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "contract/input_error.h"
+
+namespace peclet::engine {
+namespace {
+
+void require(bool is_there, const std::string& file, const char* what, const char* cure) {
+  if (!is_there)
+    throw InputError(file, "", "", fmt::format("has no {}, which --colour asks for{}", what, cure));
+}
+
+Colouring by_species(const Snapshot& snapshot) {
+  Colouring all;
+  std::vector<double> radius(snapshot.species_names.size(), 0);
+  std::vector<bool> is_one_size(radius.size(), true);
+  for (std::size_t i = 0; i < snapshot.count(); ++i) {
+    const std::uint32_t s = snapshot.species[i];
+    is_one_size[s] = is_one_size[s] && (radius[s] == 0 || radius[s] == snapshot.radius[i]);
+    radius[s] = snapshot.radius[i];
+    all.of_spheres.push_back(colour_of_species(s));
+  }
+  for (std::size_t s = 0; s < radius.size(); ++s) {
+    if (radius[s] == 0) continue;
+    const std::string size =
+        is_one_size[s] ? fmt::format("a = {:.4g}", radius[s]) : snapshot.species_names[s];
+    all.names.push_back({size, colour_of_species(s)});
+  }
+  return all;
+}
+
+std::pair<std::string, std::vector<double>> speeds(const Snapshot& snapshot) {
+  const bool flows = snapshot.strain && snapshot.time && *snapshot.time > 0 && *snapshot.strain != 0;
+  const double rate = flows ? *snapshot.strain / *snapshot.time : 0;
+  std::vector<double> values;
+  for (std::size_t i = 0; i < snapshot.count(); ++i) {
+    values.push_back(norm(snapshot.velocity[i] - Vector3{rate * snapshot.position[i].y, 0, 0}));
+  }
+  return {flows ? "speed beyond the flow" : "speed", values};
+}
+
+}  // namespace
+
+const std::vector<std::string>& names_of_colourings() {
+  static const std::vector<std::string> names = {"species", "speed", "contacts", "stress"};
+  return names;
+}
+
+ColourScale scale_over(const std::string& title, std::vector<double> values) {
+  const auto percentile = [&](std::size_t share) {
+    const auto place = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * share / 100);
+    std::nth_element(values.begin(), place, values.end());
+    return *place;
+  };
+  const double low = percentile(2), high = percentile(98);
+  // All alike: a scale of no width has no places.
+  return {title, low, high > low ? high : low + std::max(1e-12, std::abs(low))};
+}
+
+std::vector<double> ticks_of(const ColourScale& scale) {
+  const double width = scale.high - scale.low, power = std::pow(10, std::floor(std::log10(width / 5)));
+  double step = 10 * power;
+  for (const double factor : {5.0, 2.0, 1.0}) {
+    if (width / (factor * power) < 7.5) step = factor * power;
+  }
+  std::vector<double> ticks;
+  for (double k = std::ceil(scale.low / step - 1e-9); k * step <= scale.high + 1e-9 * width; ++k) {
+    ticks.push_back(k == 0 ? 0 : k * step);
+  }
+  return ticks;
+}
+
+Colouring colouring_of(const Snapshot& snapshot, const std::string& name, const std::string& file) {
+  if (name == "species") return by_species(snapshot);
+  std::string title;
+  std::vector<double> values;
+  if (name == "speed") {
+    require(!snapshot.velocity.empty(), file, "velocities", "");
+    std::tie(title, values) = speeds(snapshot);
+  } else if (name == "contacts") {
+    require(!snapshot.contact_number.empty(), file, "numbers of contacts",
+            ": a trajectory of a scene with contacts has them");
+    title = "contacts";
+    values.assign(snapshot.contact_number.begin(), snapshot.contact_number.end());
+  } else if (name == "stress") {
+    require(!snapshot.stress.empty(), file, "stresses of spheres", ": a trajectory has them");
+    title = "stress xy";
+    for (std::size_t i = 0; i < snapshot.count(); ++i) {
+      const double a = snapshot.radius[i];
+      values.push_back(snapshot.stress[i].xy / (4.0 / 3.0 * std::numbers::pi * a * a * a));
+    }
+  } else {
+    throw std::logic_error("no such colouring: " + name);
+  }
+  Colouring all;
+  all.scale = {scale_over(title, values)};
+  for (const double value : values) all.of_spheres.push_back(all.scale.front().at(value));
+  return all;
+}
+
+}  // namespace peclet::engine

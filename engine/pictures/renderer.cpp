@@ -1,0 +1,224 @@
+#include "engine/pictures/renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "engine/pictures/lighting.h"
+#include "engine/pictures/occlusion.h"
+#include "engine/threads/for_each_range.h"
+
+namespace peclet::engine {
+namespace {
+
+constexpr std::size_t rays = 3;           // along each side of a pixel
+constexpr std::size_t rows_of_band = 16;  // of pixels: what is drawn of them stays in the cache
+
+constexpr float nothing = std::numeric_limits<float>::infinity();
+constexpr std::uint32_t background = 0xffffffff;
+
+// Depths of some rows of pixels, and what is seen there: balls by their number, then rods.
+class Band {
+ public:
+  Band(const Camera& camera, std::size_t width, std::size_t first_row, std::size_t rows)
+      : width_(width * rays),
+        rows_(rows * rays),
+        first_(first_row * rays),
+        pixel_(1 / (camera.scale() * rays)),
+        u0_(-camera.left() / camera.scale()),
+        v0_(camera.top() / camera.scale()),
+        depth_(width_ * rows_, nothing),
+        object_(width_ * rows_, background),
+        through_(width_ * rows_, 1) {}
+
+  double u(std::size_t x) const { return u0_ + (static_cast<double>(x) + 0.5) * pixel_; }
+  double v(std::size_t y) const { return v0_ - (static_cast<double>(first_ + y) + 0.5) * pixel_; }
+
+  // Calls visit(place, u) of each ray of a row within [low, high].
+  template <class Visit>
+  void for_each_ray(std::size_t y, double low, double high, const Visit& visit) const {
+    const std::size_t begin = bounded((low - u0_) / pixel_ - 0.5, width_),
+                      end = bounded((high - u0_) / pixel_ + 0.5, width_);
+    for (std::size_t x = begin; x < end; ++x) visit(y * width_ + x, u(x));
+  }
+  // Rows whose v is within [low, high].
+  std::pair<std::size_t, std::size_t> rows_within(double low, double high) const {
+    const double first = static_cast<double>(first_);
+    return {bounded((v0_ - high) / pixel_ - first - 0.5, rows_),
+            bounded((v0_ - low) / pixel_ - first + 0.5, rows_)};
+  }
+
+  void put(std::size_t place, float depth, std::uint32_t object) {
+    if (depth >= depth_[place]) return;
+    depth_[place] = depth;
+    object_[place] = object;
+  }
+  void veil(std::size_t place, float depth, float share) {
+    if (depth < depth_[place]) through_[place] *= 1 - share;
+  }
+
+  // Calls visit(depth, object, through, u, v) of the rays of a pixel.
+  template <class Visit>
+  void for_each_ray_of_pixel(std::size_t x, std::size_t y, const Visit& visit) const {
+    for (std::size_t row = rays * y; row < rays * (y + 1); ++row) {
+      for (std::size_t column = rays * x; column < rays * (x + 1); ++column) {
+        const std::size_t place = row * width_ + column;
+        visit(depth_[place], object_[place], through_[place], u(column), v(row));
+      }
+    }
+  }
+
+ private:
+  static std::size_t bounded(double x, std::size_t count) {
+    return static_cast<std::size_t>(std::clamp(std::ceil(x), 0.0, static_cast<double>(count)));
+  }
+
+  std::size_t width_, rows_, first_;
+  double pixel_, u0_, v0_;
+  std::vector<float> depth_;
+  std::vector<std::uint32_t> object_;
+  std::vector<float> through_;  // share of the light that the glass before it lets pass
+};
+
+// Where the ray (u, v, 1) meets the ball first; calls hit(place, depth, cosine of ray and surface).
+template <class Hit>
+void trace(Band& band, const Ball& ball, const Hit& hit) {
+  const Vector3& c = ball.centre;
+  const Reach reach = reach_of(c, ball.radius);
+  const double outside = dot(c, c) - ball.radius * ball.radius;
+  const auto [begin, end] = band.rows_within(reach.low_v, reach.high_v);
+  for (std::size_t y = begin; y < end; ++y) {
+    const double v = band.v(y), along = c.y * v + c.z, length = 1 + v * v;
+    band.for_each_ray(y, reach.low_u, reach.high_u, [&](std::size_t place, double u) {
+      const double a = length + u * u, b = along + c.x * u, square = b * b - a * outside;
+      if (square <= 0) return;
+      const double root = std::sqrt(square);
+      hit(place, static_cast<float>((b - root) / a), root / (std::sqrt(a) * ball.radius));
+    });
+  }
+}
+
+// The same of a rod. The ray (u, v, 1) t meets the cylinder about p + s q, 0 < s < 1, where its distance from
+// the axis is the radius, and else one of the ends.
+void trace(Band& band, const Rod& rod, std::uint32_t number) {
+  const Vector3 &p = rod.from, q = rod.to - rod.from;
+  const double square = rod.radius * rod.radius, qq = dot(q, q), qp = -dot(q, p), pp = dot(p, p);
+  const Reach a = reach_of(rod.from, rod.radius), b = reach_of(rod.to, rod.radius);
+  // A row crosses the strip between the ends where its axis does, and as far to both sides as it is wide.
+  const double from_u = p.x / p.z, from_v = p.y / p.z, to_u = rod.to.x / rod.to.z, to_v = rod.to.y / rod.to.z;
+  const double slope = std::abs(to_v - from_v) > 0 ? (to_u - from_u) / (to_v - from_v) : 0;
+  const double half =
+      std::max({a.high_u - a.low_u, b.high_u - b.low_u, a.high_v - a.low_v, b.high_v - b.low_v}) / 2;
+  const double side = half * std::sqrt(1 + slope * slope), low = std::min(a.low_u, b.low_u),
+               high = std::max(a.high_u, b.high_u);
+  const auto [begin, end] = band.rows_within(std::min(a.low_v, b.low_v), std::max(a.high_v, b.high_v));
+  for (std::size_t y = begin; y < end; ++y) {
+    const double v = band.v(y), middle = from_u + slope * (v - from_v);
+    const bool is_level = std::abs(to_v - from_v) < 4 * half;
+    band.for_each_ray(
+        y, is_level ? low : std::max(low, middle - side), is_level ? high : std::min(high, middle + side),
+        [&](std::size_t place, double u) {
+          const double dd = u * u + v * v + 1, qd = q.x * u + q.y * v + q.z, dp = -(p.x * u + p.y * v + p.z);
+          const double aa = qq * dd - qd * qd, bb = qq * dp - qp * qd, cc = qq * pp - qp * qp - square * qq;
+          const double root = bb * bb - aa * cc;
+          if (root < 0) return;
+          const double t = (-bb - std::sqrt(root)) / aa, s = qp + t * qd;
+          if (s > 0 && s < qq) return band.put(place, static_cast<float>(t), number);
+          const Vector3& c = s <= 0 ? rod.from : rod.to;
+          const double of_end = c.x * u + c.y * v + c.z, under = of_end * of_end - dd * (dot(c, c) - square);
+          if (under > 0) band.put(place, static_cast<float>((of_end - std::sqrt(under)) / dd), number);
+        });
+  }
+}
+
+class Rendering {
+ public:
+  Rendering(Canvas& canvas, const Stage& stage, const Camera& camera)
+      : canvas_(canvas),
+        camera_(camera),
+        stage_(camera.seen(stage)),
+        sky_(stage_.balls),
+        light_(camera, stage_) {}
+
+  void draw(std::size_t first_row, std::size_t rows) const {
+    Band band(camera_, canvas_.width, first_row, rows);
+    const auto balls = static_cast<std::uint32_t>(stage_.balls.size());
+    for (std::uint32_t i = 0; i < balls; ++i) {
+      trace(band, stage_.balls[i],
+            [&](std::size_t place, float depth, double) { band.put(place, depth, i); });
+    }
+    for (std::uint32_t k = 0; k < stage_.rods.size(); ++k) trace(band, stage_.rods[k], balls + k);
+    for (const Ball& ball : stage_.glass) {
+      trace(band, ball, [&](std::size_t place, float depth, double cosine) {
+        band.veil(place, depth, static_cast<float>(Light::veil(cosine)));
+      });
+    }
+    for (std::size_t y = 0; y < rows; ++y) {
+      for (std::size_t x = 0; x < canvas_.width; ++x) {
+        Colour& pixel = canvas_.at(x, first_row + y);
+        pixel = colour_of_pixel(band, x, y, pixel);
+      }
+    }
+  }
+
+ private:
+  // Light is computed once for what a pixel shows of one object, where its middle ray, or the first, meets
+  // it.
+  Colour colour_of_pixel(const Band& band, std::size_t x, std::size_t y, const Colour& behind) const {
+    struct Seen {
+      std::uint32_t object;
+      Colour colour;
+    };
+    std::array<Seen, rays * rays> known;
+    std::size_t count = 0;
+    Colour sum;
+    band.for_each_ray_of_pixel(
+        x, y, [&](float depth, std::uint32_t object, float through, double u, double v) {
+          const auto end = known.begin() + static_cast<std::ptrdiff_t>(count);
+          auto found =
+              std::find_if(known.begin(), end, [&](const Seen& one) { return one.object == object; });
+          if (found == end) {
+            const Vector3 place = {u * double{depth}, v * double{depth}, double{depth}};
+            *found = {object, object == background ? behind : colour_at(object, place)};
+            ++count;
+          }
+          sum = sum + mixed(light_.glass(), found->colour, through);
+        });
+    return (1.0F / (rays * rays)) * sum;
+  }
+
+  Colour colour_at(std::uint32_t object, const Vector3& place) const {
+    if (object < stage_.balls.size()) {
+      const Ball& ball = stage_.balls[object];
+      const Vector3 normal = (1 / ball.radius) * (place - ball.centre);
+      return light_.on(ball.colour, place, normal, sky_.free_sky(object, place, normal));
+    }
+    const Rod& rod = stage_.rods[object - stage_.balls.size()];
+    const Vector3 axis = rod.to - rod.from;
+    const double along = std::clamp(dot(place - rod.from, axis) / dot(axis, axis), 0.0, 1.0);
+    const Vector3 normal = (1 / rod.radius) * (place - rod.from - along * axis);
+    return light_.on(rod.colour, place, normal, 1);
+  }
+
+  Canvas& canvas_;
+  const Camera& camera_;
+  Stage stage_;  // as the camera sees it
+  Occlusion sky_;
+  Light light_;
+};
+
+}  // namespace
+
+void render(Canvas& canvas, const Stage& stage, const Camera& camera, int threads) {
+  const Rendering rendering(canvas, stage, camera);
+  const std::size_t bands = (canvas.height + rows_of_band - 1) / rows_of_band;
+  for_each_range(bands, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t band = begin; band < end; ++band) {
+      const std::size_t first = band * rows_of_band;
+      rendering.draw(first, std::min(rows_of_band, canvas.height - first));
+    }
+  });
+}
+
+}  // namespace peclet::engine

@@ -1,0 +1,27 @@
+// Spheres where a file has them: the start of a realisation that follows another one.
+#pragma once
+
+#include <string>
+
+#include "engine/scene/scene.h"
+#include "engine/state/system.h"
+
+namespace peclet::engine {
+
+struct PlacedSpheres {
+  System system;           // particles, box, step 0 and time 0; no list and no springs
+  bool in_motion = false;  // the file has velocities and spins
+};
+
+// The frame that a scene's start names for this seed. Requires a scene with a start; `file` names it in
+// messages. Sphere i of the file, in the order of its ids, has to have the radius of the scene's sphere i,
+// and the cell to be a cube, sheared along x, of the scene's edge: both to a millionth, because a GSD file
+// rounds. Places are taken as they are, and so are velocities and spins (angular velocities) where the file
+// has both. Throws InputError where a file is not the one of the hash, or does not fit.
+PlacedSpheres placed_spheres(const Scene& scene, std::uint64_t seed, const std::string& file);
+
+// For a campaign, before it runs: the same of the first seed. One file for all seeds is refused without
+// noise, where they would be one realisation.
+void check_start_of_campaign(const Scene& scene, const std::string& file);
+
+}  // namespace peclet::engine

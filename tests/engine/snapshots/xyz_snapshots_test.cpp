@@ -1,0 +1,94 @@
+#include "engine/snapshots/xyz_snapshots.h"
+
+#include <gtest/gtest.h>
+
+#include "contract/input_error.h"
+#include "engine/snapshots/snapshot_text.h"
+
+namespace peclet::engine {
+namespace {
+
+const std::string about =
+    R"(Lattice="10 0 0 2.5 20 0 0 0 40" Properties=species:S:1:pos:R:3:radius:R:1:other:R:2:id:I:1 pbc="T T T" Time=1.5)";
+const std::string spheres = "B 1 2 3 1.4 0 0 7\nA -1e1 0 0 1 0 0 2\n";
+const std::string text = "2\n" + about + "\n" + spheres;
+
+std::string refusal(const std::string& bytes) {
+  try {
+    for (const std::string_view frame : xyz_frames(bytes, "t.xyz")) read_xyz_frame(frame, "t.xyz");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(XyzSnapshot, IsSortedByIdsAndPassesOverWhatItDoesNotKnow) {
+  const Snapshot snapshot = read_xyz_frame(text, "t.xyz");
+  const Matrix3 lattice = {Vector3{10, 0, 0}, Vector3{2.5, 20, 0}, Vector3{0, 0, 40}};
+  EXPECT_TRUE(snapshot.lattice == lattice);
+  EXPECT_TRUE(snapshot.position[0] == (Vector3{-10, 0, 0}) && snapshot.position[1] == (Vector3{1, 2, 3}));
+  EXPECT_EQ(snapshot.radius, (std::vector<double>{1, 1.4}));
+  EXPECT_EQ(snapshot.species_names[snapshot.species[1]], "B");
+  EXPECT_EQ(snapshot.time, 1.5);
+  EXPECT_FALSE(snapshot.strain || snapshot.single);
+}
+
+TEST(XyzSnapshot, OfATextThatWasWrittenIsWhatWasWritten) {
+  Snapshot snapshot = read_xyz_frame(text, "t.xyz");
+  snapshot.corner = {-1, 0.1, 1.0 / 3};
+  snapshot.step = 77;
+  snapshot.strain = 2.0 / 3;
+  snapshot.velocity = {{1e-300, -1, 2.0 / 3}, {0, 0, 1}};
+  snapshot.spin = {{3, 2, 1}, {0.1, 0.2, 0.3}};
+  snapshot.image = {{1, -2, 0}, {0, 0, 7}};
+  snapshot.stress = {{1, 2, 3, 4, 5, 6}, {-1, -2, -3, -4, -5, -6.5}};
+  snapshot.contact_number = {3, 0};
+  snapshot.stress_of_cell["total"] = {1, 2, 3, 4, 5, 6};
+  const std::string written = xyz_frame(snapshot);
+  const Snapshot read = read_xyz_frame(written, "t.xyz");
+  EXPECT_TRUE(read.position == snapshot.position && read.velocity == snapshot.velocity &&
+              read.spin == snapshot.spin);
+  EXPECT_TRUE(read.lattice == snapshot.lattice && read.corner == snapshot.corner);
+  EXPECT_TRUE(read.image == snapshot.image && read.radius == snapshot.radius);
+  EXPECT_EQ(read.contact_number, snapshot.contact_number);
+  EXPECT_EQ(read.stress[1].yz, -6.5);
+  EXPECT_EQ(read.step, 77U);
+  EXPECT_EQ(read.strain, 2.0 / 3);
+  EXPECT_NE(written.find("stress_total=\"1 2 3 4 5 6\""), std::string::npos);
+}
+
+TEST(XyzSnapshot, HasAsManyFramesAsTheText) {
+  const std::string both = text + text + "\n";
+  EXPECT_EQ(xyz_frames(both, "t.xyz").size(), 2U);
+  EXPECT_EQ(xyz_frames(text.substr(0, text.size() - 1), "t.xyz").size(), 1U);
+  EXPECT_TRUE(xyz_frames("", "t.xyz").empty());
+}
+
+TEST(XyzSnapshot, ThatIsNoneIsRefused) {
+  EXPECT_EQ(refusal(text), "");
+  const auto replaced = [](const std::string& from, const std::string& to) {
+    std::string bytes = text;
+    return bytes.replace(bytes.find(from), from.size(), to);
+  };
+  for (const auto& [bytes, reason] : std::vector<std::pair<std::string, std::string>>{
+           {"3\n" + about + "\n" + spheres, "must have 4 lines after the first"},
+           {"two\n", "begins with \"two\""},
+           {"99999999999999999999\n", "begins with"},
+           {"-1\n\n", "begins with"},
+           {replaced("Lattice=\"10 0 0", "Lattice=\"10 0 1"), "first vector along x"},
+           {replaced("Lattice=\"10", "Lattice=\"-10"), "lengths > 0"},
+           {replaced("Lattice", "lattice"), "must be in the second line"},
+           {replaced("radius:R:1", "radii:R:1"), "must have pos:R:3 and radius:R:1"},
+           {replaced("other:R:2", "other:R:x"), "Properties: \"x\""},
+           {replaced("other:R:2", "other:R:9999999"), "Properties"},
+           {replaced("1.4 0 0 7", "1.4 0 0"), "sphere 1: \"\": must be a number"},
+           {replaced("1.4 0 0 7", "1.4 0 0 7 8"), "sphere 1: must have the columns"},
+           {replaced("1.4 0 0 7", "nan 0 0 7"), "must be a number"},
+           {replaced("1.4 0 0 7", "-1.4 0 0 7"), "must have a radius > 0"},
+           {replaced("0 0 7", "0 0 2"), "id 2: must be there once"}}) {
+    EXPECT_NE(refusal(bytes).find(reason), std::string::npos) << refusal(bytes) << " has not " << reason;
+  }
+}
+
+}  // namespace
+}  // namespace peclet::engine
