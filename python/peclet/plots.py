@@ -9,6 +9,8 @@ from peclet.program import PecletError
 NAMES = {
     "peclet": "Pe",
     "volume_fraction": r"$\varphi$",
+    "alpha": r"$\alpha$",
+    "base_volume_fraction": r"$\varphi_0$",
     "friction": r"$\mu$",
     "rolling_friction": r"$\mu_r$",
     "shear_rate": r"$\dot\gamma$",
@@ -52,15 +54,16 @@ def label_of(results, quantity):
     return formula_of(row["symbol"]) + unit
 
 
-def plot(results, quantity=None, x=None, by=None, axes=None, label=None, log=None):
+def plot(results, quantity=None, x=None, by=None, axes=None, label=None, log=None, where=None):
     """Draws an estimate of every point over one swept parameter, with 95 % intervals, and returns matplotlib's Axes.
 
     quantity  the campaign's target unless given
     x         the swept parameter on the axis; the one with most values unless given
-    by        another one, of which each value is a series; all others unless given
+    by        another one, of which each value is a series; all others that vary unless given
     axes      matplotlib's Axes to draw in; new ones unless given
     label     of the series, where it is a single one
     log       logarithmic axes: "", "x", "y" or "xy"; those that span a decade unless given
+    where     values of swept parameters by name: of the points that have them
 
     Open marks are points that have not converged; without a bar they have had no look yet.
     """
@@ -68,12 +71,13 @@ def plot(results, quantity=None, x=None, by=None, axes=None, label=None, log=Non
         import matplotlib.pyplot as pyplot
     except ImportError as missing:
         raise PecletError("plots need matplotlib: install python3-matplotlib") from missing
-    table = results.estimates(quantity)
+    table = results.estimates(quantity).where(**(where or {}))
     parameters = swept(table)
     if x is None and not parameters:
         raise PecletError("nothing is swept in this campaign: no axis to draw over")
     x = x or parameters[0]
-    others = [name for name in parameters if name != x] if by is None else [by]
+    varying = [name for name in parameters if len(set(table[name].tolist())) > 1]
+    others = [name for name in varying if name != x] if by is None else [by]
     axes = axes or pyplot.subplots(figsize=(4.5, 3.4), layout="constrained")[1]
     table = table.take(np.isfinite(table["mean"])).sorted_by(*others, x)
     groups = [tuple(row[name] for name in others) for row in table]

@@ -42,6 +42,8 @@ class Reader {
     app.formatter(std::make_shared<HelpFormatter>());
     add_running_verbs(verbs_);
     add_looking_verbs(verbs_);
+    add_drawing_verbs(verbs_);
+    add_estimating_verbs(verbs_);
     add_changing_verbs(verbs_);
     add_batch_verbs(verbs_);
     add_keeping_verbs(verbs_);

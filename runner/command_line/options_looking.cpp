@@ -3,6 +3,8 @@
 
 #include <memory>
 
+#include "contract/output_file.h"
+#include "runner/archive/supplement.h"
 #include "runner/command_line/print.h"
 #include "runner/command_line/verb_set.h"
 #include "runner/folder/owner_lock.h"
@@ -13,6 +15,7 @@
 #include "runner/reports/results.h"
 #include "runner/reports/status.h"
 #include "runner/verbs/files.h"
+#include "runner/verbs/serve.h"
 #include "runner/verbs/watch.h"
 
 namespace peclet::runner {
@@ -56,8 +59,9 @@ void add_watch(VerbSet& verbs) {
       verbs.add("watch", "Show the status in a terminal, kept up to date", "peclet watch flow-curve.json",
                 page(R"(
 Ends when every point is decided, with the exit code that `status --check` would have, or at Ctrl-C,
-which does nothing to the campaign. A campaign that has not been run yet is waited for. Off a terminal it
-prints the table whenever it changes.
+which does nothing to the campaign. A campaign that has not been run yet is waited for. Where the terminal
+has room, the mean so far is drawn over the swept parameter. Off a terminal the table is printed whenever
+it changes.
 )",
                      {}, {0, 1, 2, 3, 4, 6}));
   add_file_or_folder(verb, options->campaign);
@@ -102,15 +106,18 @@ void show_files(const FilesOptions& options) {
 
 void add_files(VerbSet& verbs) {
   const auto options = std::make_shared<FilesOptions>();
-  CLI::App* const verb =
-      verbs.add("files", "List the files that realisations have left beside their results",
-                "peclet files flow-curve.json peclet=10 --paths",
-                page(R"(
+  CLI::App* const verb = verbs.add("files", "List the files that realisations have left beside their results",
+                                   "peclet files flow-curve.json peclet=10 --paths",
+                                   page(R"(
 A scene may ask its engine for files beside the numbers, as final.xyz of "files": {"final_configuration":
 true}. They lie in the campaign's folder, named by point and seed; those that /keep_files throws away are
 listed, and nothing is left of them.
 )",
-                     {{"ovito $(peclet files flow-curve.json 10 --paths | head -1)", ""}}, {0, 1, 2, 6}));
+                                        {{"peclet-engine snapshot $(peclet files flow-curve.json 10 --paths "
+                                          "| head -1) --output spheres.png",
+                                          "draws what the first seed has left"},
+                                         {"ovito $(peclet files flow-curve.json 10 --paths | head -1)", ""}},
+                                        {0, 1, 2, 6}));
   add_file_or_folder(verb, options->campaign);
   verb->add_option("point", options->point, "As of explain; all unless given")->type_name("POINT");
   add_directory(verb, options->directory);
@@ -120,6 +127,13 @@ listed, and nothing is left of them.
 }
 
 void export_campaign(const ExportOptions& options) {
+  if (!options.bundle.empty()) {
+    check_supplement_name(options.bundle);
+    check_output(options.bundle);
+    OpenCampaign whole = open_campaign(options.campaign, options.directory);
+    deliver(supplement(whole.database, current_owner(whole.directory)), options.bundle, options.quiet);
+    return;
+  }
   OpenCampaign open = open_campaign(options.campaign, options.directory);
   const auto text = [&] {
     switch (options.format) {
@@ -140,7 +154,8 @@ void add_export(VerbSet& verbs) {
   CLI::App* const verb = verbs.add(
       "export", "Print the results for programs to read",
       "peclet export flow-curve.json --csv --output flow-curve.csv",
-      page(R"(
+      page(
+          R"(
 The canonical form holds what depends on campaign, seeds and engine alone, so that two runs of one
 campaign can be compared byte by byte, however many workers they had and whatever killed them.
 --output replaces a file whole, follows a link, writes to a device, a FIFO or /dev/stdout, and says on
@@ -148,10 +163,16 @@ standard error where it wrote, unless --quiet.
 
 Estimates are of the seeds of each point's last look. --csv has a column for every scalar that was
 measured, --long a row for every number, with names, units and axes as the engine gives them.
+
+--bundle makes the supplement of a paper: campaign file, JSON and both kinds of CSV in canonical form, the
+page of `report`, the figure of `plot` with its script, engines and versions, SHA-256 of each file, and a README
+that says what is what and how to make it again. All files are of one state of the campaign, and a campaign at
+rest gives the same bytes at any time.
 )",
-           {{"peclet export flow-curve.json --canonical | sha256sum", "one number for all results"},
-            {"peclet export flow-curve.json --long --output all.csv", "profiles and distributions, too"}},
-           {0, 1, 2, 6}));
+          {{"peclet export flow-curve.json --canonical | sha256sum", "one number for all results"},
+           {"peclet export flow-curve.json --long --output all.csv", "profiles and distributions, too"},
+           {"peclet export flow-curve.json --bundle flow-curve.tar.gz", "everything, for a paper's readers"}},
+          {0, 1, 2, 6}));
   add_file_or_folder(verb, options->campaign);
   add_directory(verb, options->directory);
   CLI::Option* const json = verb->add_flag_callback(
@@ -161,16 +182,22 @@ measured, --long a row for every number, with names, units and axes as the engin
       "--csv", [options] { options->format = ExportFormat::csv; },
       "One row per point, with the mean of every scalar");
   csv->excludes(json);
-  verb->add_flag_callback(
-          "--long", [options] { options->format = ExportFormat::long_csv; },
-          "CSV with one row per point, quantity and element: profiles and distributions, too")
-      ->excludes(json)
-      ->excludes(csv);
-  verb->add_flag("--canonical", options->canonical,
-                 "Only what depends on campaign, seeds and engine: equal runs give equal bytes");
-  verb->add_option("--output", options->output,
-                   "File to write, whole or not at all; standard output unless given")
-      ->type_name(value_name::file);
+  CLI::Option* const in_long = verb->add_flag_callback(
+      "--long", [options] { options->format = ExportFormat::long_csv; },
+      "CSV with one row per point, quantity and element: profiles and distributions, too");
+  in_long->excludes(json)->excludes(csv);
+  CLI::Option* const canonical =
+      verb->add_flag("--canonical", options->canonical,
+                     "Only what depends on campaign, seeds and engine: equal runs give equal bytes");
+  CLI::Option* const output =
+      verb->add_option("--output", options->output,
+                       "File to write, whole or not at all; standard output unless given")
+          ->type_name(value_name::file);
+  CLI::Option* const bundle = verb->add_option("--bundle", options->bundle,
+                                               "All of it in one archive, for a paper's supplement: a file "
+                                               "that ends in .tar.gz")
+                                  ->type_name(value_name::file);
+  for (CLI::Option* const other : {json, csv, in_long, canonical, output}) bundle->excludes(other);
   verb->add_flag("--quiet", options->quiet, "Do not say on stderr where it was written");
   verbs.choose(verb, options, export_campaign);
 }
@@ -233,6 +260,26 @@ A database at rest gives the same bytes at any time.
   verbs.choose(verb, options, write_report);
 }
 
+void add_serve(VerbSet& verbs) {
+  const auto options = std::make_shared<ServeOptions>();
+  CLI::App* const verb = verbs.add(
+      "serve", "Show the page of a campaign in a browser, kept up to date", "peclet serve flow-curve.json",
+      page(R"(
+Prints the address of the page that `peclet report` makes, live: numbers come as seeds end, and what was
+chosen on it stays. May be started before, while and after the campaign runs, and only reads. The address is
+reached from this machine alone, by everybody who has an account on it; from elsewhere through ssh. Ends at
+Ctrl-C or SIGTERM, which does nothing to the campaign, with the exit code that `status --check` would have.
+)",
+           {{"ssh -L 7325:localhost:7325 cluster", "then http://localhost:7325/ here is the page there"}},
+           {0, 1, 2, 3, 4, 6}));
+  add_file_or_folder(verb, options->campaign);
+  add_directory(verb, options->directory);
+  add_number(verb, "--port", options->port, whole_number(0, 65'535),
+             "Port to listen on; 0 is any that is free")
+      ->capture_default_str();
+  verbs.choose(verb, options, serve_campaign);
+}
+
 }  // namespace
 
 void add_looking_verbs(VerbSet& verbs) {
@@ -243,6 +290,7 @@ void add_looking_verbs(VerbSet& verbs) {
   add_export(verbs);
   add_results(verbs);
   add_report(verbs);
+  add_serve(verbs);
 }
 
 }  // namespace peclet::runner

@@ -56,6 +56,8 @@ class VerbSet {
 // One function a verb, in the file of its group. In the order in which help lists them.
 void add_running_verbs(VerbSet& verbs);
 void add_looking_verbs(VerbSet& verbs);
+void add_drawing_verbs(VerbSet& verbs);
+void add_estimating_verbs(VerbSet& verbs);
 void add_changing_verbs(VerbSet& verbs);
 void add_batch_verbs(VerbSet& verbs);
 void add_keeping_verbs(VerbSet& verbs);

@@ -1,5 +1,6 @@
 #include "runner/folder/realisation_result.h"
 
+#include <cmath>
 #include <utility>
 
 #include "contract/input_error.h"
@@ -130,6 +131,26 @@ Observed observe(const Json& result, const std::string& observable) {
   observed.first_quarter = beginning(blocks, observable, control, 1);
   observed.first_half = beginning(blocks, observable, control, 2);
   return observed;
+}
+
+std::vector<double> block_values(const Json& result, const std::string& observable) {
+  const Json& blocks = result.at("blocks");
+  const Series series = blocks.is_object() ? series_of(blocks, observable) : Series{};
+  if (series.blocks == nullptr) return {};
+  const std::optional<ControlVariate> control = control_of(result, observable);
+  const Series controlling = control ? series_of(blocks, control->quantity) : Series{};
+  const bool controlled =
+      controlling.blocks != nullptr && controlling.blocks->size() == series.blocks->size();
+  std::vector<double> values;
+  for (std::size_t block = 0; block < series.blocks->size(); ++block) {
+    std::optional<double> value = number_at((*series.blocks)[block], series.element);
+    if (value && controlled) {
+      const std::optional<double> beside = number_at((*controlling.blocks)[block], controlling.element);
+      value = beside ? std::optional(*value + *beside - control->mean) : std::nullopt;
+    }
+    values.push_back(value.value_or(std::nan("")));
+  }
+  return values;
 }
 
 std::vector<Observed> observe(const Json& result, const std::vector<std::string>& observables) {

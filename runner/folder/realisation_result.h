@@ -48,7 +48,11 @@ bool has_observable(const Json& mean, const std::string& observable);
 // the one that the result names.
 Observed observe(const Json& result, const std::string& observable);
 
-// The same of several observables.
+// value + control in each block of the window, in order of time; NaN in a block without a sample, nothing
+// where the result has no blocks of the observable. A control variate that has no blocks is left out.
+std::vector<double> block_values(const Json& result, const std::string& observable);
+
+// What observe() gives, of several observables.
 std::vector<Observed> observe(const Json& result, const std::vector<std::string>& observables);
 
 // The first of the observables that the means of a completed result do not have; "" when they have all.

@@ -1,6 +1,11 @@
 #include "runner/page/page_data.h"
 
+#include <algorithm>
+#include <limits>
+#include <utility>
+
 #include "contract/sha256.h"
+#include "runner/page/page_details.h"
 #include "runner/page/page_parts.h"
 #include "runner/reports/export.h"
 
@@ -27,11 +32,11 @@ Json quantities_json(const std::vector<Drawable>& drawables) {
   return list;
 }
 
-Json warnings_json(const CampaignStatus& status, const std::vector<FirstResult>& first) {
+Json warnings_json(const CampaignStatus& status, const KnownPoints& known) {
   Json list = Json::array();
-  for (std::size_t place = 0; place < first.size(); ++place) {
-    for (const Json& warning : first[place].warnings) {
-      list.push_back({{"point", status.points[place].point.label},
+  for (const PointSummary& point : status.points) {
+    for (const Json& warning : known.at(point.point.id).first.warnings) {
+      list.push_back({{"point", point.point.label},
                       {"code", warning.value("code", "")},
                       {"message", warning.value("message", "")}});
     }
@@ -39,26 +44,64 @@ Json warnings_json(const CampaignStatus& status, const std::vector<FirstResult>&
   return list;
 }
 
+Json details_of(Database& database, const PointSummary& point, const Target& target, int seeds) {
+  const int end = point.looks.empty() ? std::numeric_limits<int>::max() : point.looks.back().seeds;
+  return point_details(database, point.point.id, end, target, seeds);
+}
+
+// Of as many seeds of each as can be read in a second or two.
+void add_details(Database& database, const CampaignStatus& status, Json& points) {
+  constexpr int most_results = 1000, fewest_seeds = 4;
+  const int each = std::clamp(most_results / std::max(1, static_cast<int>(points.size())), fewest_seeds,
+                              most_detailed_seeds);
+  for (std::size_t place = 0; place < points.size(); ++place) {
+    points[place]["details"] =
+        details_of(database, status.points[place], status.campaign.target.target, each);
+  }
+}
+
 }  // namespace
 
-Json page_data(Database& database, std::optional<std::int64_t> owner) {
-  CampaignStatus status = read_status(database);
-  status.owner = owner;
-  const PagePoints points = page_points(database, status);
-  const std::string results = sha256(export_csv(database, true));
+Json PageReader::read(Database& database, std::optional<std::int64_t> owner, bool whole) {
+  status_ = read_status(database);
+  status_.owner = owner;
+  const CampaignStatus& status = status_;
+  PagePoints points = page_points(database, status, known_);
+  if (whole) add_details(database, status, points.points);
+  const std::string results = whole ? sha256(export_csv(database, true)) : "";
   return {{"schema_version", 1},
           {"campaign", status.campaign.name},
           {"target", target_json(status.campaign.target)},
-          {"progress", page_progress(database, status)},
+          {"progress", page_progress(status, known_)},
           {"parameters", page_parameters(status)},
           {"quantities", quantities_json(points.drawables)},
-          {"points", points.points},
+          {"points", std::move(points.points)},
+          {"work", page_work(database, status)},
           {"meanings", page_meanings(status)},
-          {"warnings", warnings_json(status, points.first)},
+          {"warnings", warnings_json(status, known_)},
           {"scene", page_scene(status)},
           {"provenance", page_provenance(database, status, results)},
           {"commands", page_commands(status, results)},
           {"document", status.campaign.document}};
+}
+
+const PointSummary* PageReader::find(const std::string& hash) const {
+  const auto found = std::find_if(status_.points.begin(), status_.points.end(),
+                                  [&](const PointSummary& point) { return point.point.hash == hash; });
+  return found == status_.points.end() ? nullptr : &*found;
+}
+
+std::optional<std::string> PageReader::key(const std::string& hash) const {
+  const PointSummary* const point = find(hash);
+  return point == nullptr ? std::nullopt : std::optional(known_.at(point->point.id).key);
+}
+
+Json PageReader::details(Database& database, const std::string& hash) const {
+  return details_of(database, *find(hash), status_.campaign.target.target, most_detailed_seeds);
+}
+
+Json page_data(Database& database, std::optional<std::int64_t> owner) {
+  return PageReader().read(database, owner, true);
 }
 
 }  // namespace peclet::runner

@@ -19,6 +19,11 @@ namespace {
 // 'sha256-...', as a Content-Security-Policy names an inline style or script by its content.
 std::string policy_hash(std::string_view content) { return "'sha256-" + sha256_base64(content) + '\''; }
 
+const std::string& whole_script() {
+  static const std::string script = fmt::format("{}", fmt::join(page_scripts, ""));
+  return script;
+}
+
 // JSON that may stand in a script element: nothing in it can end the element or begin another one.
 std::string inert(const Json& data) {
   std::string safe;
@@ -65,14 +70,21 @@ std::string filled(std::string_view text,
 
 }  // namespace
 
+std::string page_policy(bool live) {
+  return fmt::format("default-src 'none'; style-src {}; script-src {}; base-uri 'none'; form-action 'none'{}",
+                     policy_hash(page_style), policy_hash(whole_script()),
+                     live ? "; connect-src 'self'" : "");
+}
+
+std::string page_program() {
+  return sha256(fmt::format("{}{}{}", page_template, page_style, whole_script()));
+}
+
 std::string page_html(const Json& data) {
-  const std::string style = page_style, script = fmt::format("{}", fmt::join(page_scripts, ""));
-  const std::string policy = "default-src 'none'; style-src " + policy_hash(style) + "; script-src " +
-                             policy_hash(script) + "; base-uri 'none'; form-action 'none'";
   return filled(page_template, {{{"@NAME@", escaped(data.at("campaign").get<std::string>())},
-                                 {"@POLICY@", policy},
-                                 {"@STYLE@", style},
-                                 {"@SCRIPT@", script},
+                                 {"@POLICY@", page_policy(data.contains("live"))},
+                                 {"@STYLE@", page_style},
+                                 {"@SCRIPT@", whole_script()},
                                  {"@DATA@", inert(data)}}});
 }
 

@@ -21,8 +21,13 @@ struct ReportOptions {
   bool quiet = false;            // does not say where it is
 };
 
-// The page with this document in it. Its policy lets nothing run but its own script, whatever the document
-// says.
+// What the page may do, as a Content-Security-Policy: run its own script; a live one also ask its own server.
+std::string page_policy(bool live);
+// A word for what the page is made of, but for its document.
+std::string page_program();
+
+// The page with this document in it, which is live when it says so. Its policy lets nothing run but its own
+// script, whatever the document says.
 std::string page_html(const Json& data);
 
 // Throws IntegrityError when stored looks are not what the stored results say.

@@ -1,6 +1,7 @@
 // The parts of the page's document.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -8,7 +9,9 @@
 
 #include "contract/json.h"
 #include "runner/database/database.h"
+#include "runner/database/number_book.h"
 #include "runner/reports/status.h"
+#include "runner/statistics/forecast.h"
 #include "runner/statistics/quantity_estimates.h"
 
 namespace peclet::runner {
@@ -27,16 +30,37 @@ struct Drawable {
   std::string symbol, unit;
 };
 
-// The points with their estimates of every drawable, in step with `drawables`.
+// What takes time to read of a point: all that depends on its seeds one by one. While `key` is what it was,
+// so is the rest.
+struct KnownPoint {
+  std::string key;
+  Json json = Json::object();  // members of the point
+  std::vector<Drawable> drawables;
+  std::vector<Json> estimates;  // in step with these: [mean, standard error, half-width, count]
+  PointForecast forecast;       // but for what changes with the leases
+  FirstResult first;
+};
+using KnownPoints = std::map<std::int64_t, KnownPoint>;  // by PointRecord::id
+
+// Seeds that have ended, their values and the looks, in a few words.
+std::string key_of(const PointSummary& point, const TargetRecord& target);
+// Throws IntegrityError when stored looks are not what the stored results say.
+KnownPoint read_point(Database& database, NumberBook& book, const TargetRecord& target,
+                      const PointSummary& point);
+
+// The points with their estimates of every drawable, in step with `drawables`. What is not known yet, or has
+// changed, is read.
 struct PagePoints {
   std::vector<Drawable> drawables;
   Json points = Json::array();
-  std::vector<FirstResult> first;
 };
-PagePoints page_points(Database& database, const CampaignStatus& status);
+PagePoints page_points(Database& database, const CampaignStatus& status, KnownPoints& known);
 
 // Points decided, processor time spent and to go, workers.
-Json page_progress(Database& database, const CampaignStatus& status);
+Json page_progress(const CampaignStatus& status, const KnownPoints& known);
+
+// Who works on what now, and the attempts that ended last.
+Json page_work(Database& database, const CampaignStatus& status);
 
 // What the sweep sets, and what all points share of the scene, with what the schema says of each.
 Json page_parameters(const CampaignStatus& status);
@@ -45,7 +69,8 @@ Json page_scene(const CampaignStatus& status);
 // What each verdict and mark that is used means.
 Json page_meanings(const CampaignStatus& status);
 
-// Pairs of a term and what it is, and the commands that make the numbers again.
+// Pairs of a term and what it is, and the commands that make the numbers again. Without the hash of the
+// results nothing is said of it.
 Json page_provenance(Database& database, const CampaignStatus& status, const std::string& results_sha256);
 std::string page_commands(const CampaignStatus& status, const std::string& results_sha256);
 

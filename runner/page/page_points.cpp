@@ -1,139 +1,13 @@
-// The points of the page: estimates of everything that is measured, and for each point how its mean came
-// about.
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
+// The points of the page, with the numbers of each in columns that all share.
 #include <map>
 #include <utility>
 
-#include "runner/database/checked_look.h"
-#include "runner/database/number_book.h"
 #include "runner/page/page_parts.h"
-#include "runner/statistics/look_json.h"
 
 namespace peclet::runner {
 namespace {
 
-// To draw a line with.
-Json drawn(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  return std::stod(fmt::format("{:.6g}", value));
-}
-
-// Values of the leading observable in the order of the seeds, and after how many seeds each came; up to the
-// first seed that has not ended.
-struct Values {
-  std::vector<double> values;
-  std::vector<int> seeds;
-  int closed = 0;
-};
-
-Values values_of(const std::vector<std::optional<Outcome>>& outcomes, int end) {
-  Values found;
-  for (const std::optional<Outcome>& outcome : outcomes) {
-    if (!outcome || found.closed == end) break;
-    ++found.closed;
-    if (outcome->kind == Outcome::Kind::lost) continue;
-    found.values.push_back(outcome->value + outcome->control);
-    found.seeds.push_back(found.closed);
-  }
-  return found;
-}
-
-// Whether a line is drawn through the mean of so many seeds: some fifty do, at equal ratios.
-bool is_drawn(int seeds) {
-  constexpr int all_until = 16;
-  constexpr double ratio = 1.12;
-  if (seeds <= all_until) return true;
-  const auto step = [&](int n) { return std::floor(std::log(n) / std::log(ratio)); };
-  return step(seeds) != step(seeds - 1);
-}
-
-Json running_mean(const Values& found, StopRule& rule) {
-  Json seeds = Json::array(), means = Json::array(), widths = Json::array();
-  RunningEstimate estimate;
-  for (std::size_t i = 0; i < found.values.size(); ++i) {
-    estimate.add(found.values[i]);
-    if (!is_drawn(found.seeds[i]) && i + 1 < found.values.size()) continue;
-    const Estimate now = estimate.estimate();
-    seeds.push_back(found.seeds[i]);
-    means.push_back(drawn(now.mean));
-    widths.push_back(drawn(rule.half_width(now)));
-  }
-  return {{"seeds", seeds}, {"mean", means}, {"half_width", widths}};
-}
-
-// The values themselves while they are few; then how many lie in each of equal parts of their range.
-Json scatter(const Values& found) {
-  constexpr std::size_t most_values = 200;
-  if (found.values.size() <= most_values) {
-    Json values = Json::array();
-    for (const double value : found.values) values.push_back(drawn(value));
-    return {{"seeds", found.seeds}, {"values", values}};
-  }
-  const auto [low, high] = std::minmax_element(found.values.begin(), found.values.end());
-  const auto bins = static_cast<std::size_t>(std::min(40.0, std::ceil(std::sqrt(found.values.size()))));
-  const double width = (*high - *low) / static_cast<double>(bins);
-  std::vector<int> counts(width > 0 ? bins : 1);
-  for (const double value : found.values) {
-    const double place = width > 0 ? (value - *low) / width : 0;
-    ++counts[std::min(counts.size() - 1, static_cast<std::size_t>(place))];
-  }
-  return {{"low", *low}, {"high", *high}, {"counts", counts}};
-}
-
-// The half-width that is good enough for the first criterion, around the means of a look.
-Json good_enough(const Criterion& criterion, const Look& look, const Target& target) {
-  const std::vector<std::string> observables = target.observables();
-  const std::vector<Estimate> estimates = estimates_of(look, target);
-  const std::string& measure =
-      criterion.tolerance.relative_to.empty() ? criterion.observable : criterion.tolerance.relative_to;
-  const auto place = std::find(observables.begin(), observables.end(), measure) - observables.begin();
-  return number_json(criterion.tolerance.half_width(estimates.at(static_cast<std::size_t>(place)).mean));
-}
-
-Json looks_json(const std::vector<Look>& looks, const Target& target) {
-  Json list = Json::array();
-  for (const Look& look : looks) {
-    list.push_back({{"seeds", look.seeds},
-                    {"mean", number_json(look.controlled.mean)},
-                    {"half_width", number_json(look.controlled_half_width)},
-                    {"good_enough", good_enough(target.criteria().front(), look, target)},
-                    {"verdict", to_string(look.verdict)}});
-  }
-  return list;
-}
-
-Json numbers(const Estimate& estimate, double half_width) {
-  return {number_json(estimate.mean), number_json(estimate.standard_error), number_json(half_width),
-          estimate.count};
-}
-
-std::vector<Drawable> drawables_of(const Quantity& quantity) {
-  std::vector<Drawable> found;
-  for (std::size_t k = 0; k < quantity.elements(); ++k) {
-    Drawable one{quantity.name, quantity.name, "", quantity.symbol, quantity.unit};
-    std::string path, element;
-    std::size_t rest = k;
-    for (std::size_t axis = quantity.axes.size(); axis-- > 0;) {
-      const Json& values = quantity.axes[axis].values;
-      const std::size_t index = rest % values.size();
-      const Json& value = values[index];
-      path = fmt::format("/{}", index) + path;
-      const std::string word = value.is_string() ? value.get<std::string>() : value.dump();
-      element = element.empty() ? word : word + ", " + element;
-      rest /= values.size();
-    }
-    one.path += path;
-    one.element = element;
-    found.push_back(std::move(one));
-  }
-  return found;
-}
-
-// Columns by path, in the order in which they are first met.
+// Columns by path and unit, in the order in which they are first met.
 class Columns {
  public:
   std::size_t of(const Drawable& one) {
@@ -147,132 +21,55 @@ class Columns {
   std::map<std::pair<std::string, std::string>, std::size_t> places_;
 };
 
-class PointPage {
- public:
-  PointPage(Database& database, NumberBook& book, const TargetRecord& target, const PointSummary& point)
-      : database_(database),
-        book_(book),
-        target_(target),
-        point_(point),
-        look_(checked_look(database, point.point, target)) {}
-
-  Json json(Columns& columns) {
-    const Target& target = target_.target;
-    StopRule rule(target, target_.minimum, target_.maximum);
-    const int end = look_ ? look_->seeds : std::numeric_limits<int>::max();
-    const Values found = values_of(database_.outcomes(point_.point.id), end);
-    const StateCounts& counts = point_.counts;
-    Json json{{"label", point_.point.label},
-              {"hash", point_.point.hash},
-              {"settings", point_.point.settings},
-              {"standing", standing_word(point_)},
-              {"verdict", verdict_text(point_)},
-              {"marks", reservations(point_)},
-              {"decided", point_.decided},
-              {"seeds",
-               {{"looked_at", look_ ? Json(look_->seeds) : Json(nullptr)},
-                {"wanted", point_.wanted},
-                {"wanted_ended", point_.wanted_ended},
-                {"ended", counts.terminal()},
-                {"running", counts.running},
-                {"surplus", point_.surplus()}}},
-              {"losses", point_.losses},
-              {"flags", point_.flags},
-              {"cpu_seconds", counts.cpu_seconds},
-              {"looks", looks_json(point_.looks, target)},
-              {"running_mean", running_mean(found, rule)},
-              {"scatter", scatter(found)}};
-    add_estimates(columns, json);
-    return json;
+Json estimates_json(const KnownPoint& known, Columns& columns) {
+  Json estimates = Json::array();
+  for (std::size_t place = 0; place < known.drawables.size(); ++place) {
+    const std::size_t column = columns.of(known.drawables[place]);
+    while (estimates.size() <= column) estimates.push_back(nullptr);
+    estimates[column] = known.estimates[place];
   }
+  return estimates;
+}
 
- private:
-  // Of the seeds of the look; before the first one, of all that have ended.
-  void add_estimates(Columns& columns, Json& json) {
-    const double confidence = target_.target.confidence;
-    QuantityEstimates sums;
-    const int end = look_ ? look_->seeds : std::numeric_limits<int>::max();
-    book_.for_each(
-        point_.point.id, end,
-        [&](int, const NumberLayout& layout, std::span<const double> numbers) { sums.add(layout, numbers); });
-    std::map<std::size_t, Json> by_column, uncontrolled;
-    for (const QuantityEstimate& found : sums.estimates()) {
-      const std::vector<Drawable> drawables = drawables_of(found.quantity);
-      for (std::size_t k = 0; k < drawables.size(); ++k) {
-        const std::size_t column = columns.of(drawables[k]);
-        by_column[column] = numbers(found.estimates[k], student_half_width(found.estimates[k], confidence));
-        if (!found.uncontrolled.empty()) {
-          uncontrolled[column] =
-              numbers(found.uncontrolled[k], student_half_width(found.uncontrolled[k], confidence));
-        }
-      }
-    }
-    Json allowed = Json::object();
-    if (look_) add_deciding(columns, by_column, uncontrolled, allowed);
-    Json estimates = Json::array(), plain = Json::object();
-    for (std::size_t column = 0; column < columns.drawables.size(); ++column) {
-      const auto found = by_column.find(column);
-      estimates.push_back(found == by_column.end() ? Json(nullptr) : found->second);
-    }
-    for (const auto& [column, estimate] : uncontrolled) plain[columns.drawables[column].path] = estimate;
-    json["estimates"] = std::move(estimates);
-    json["uncontrolled"] = std::move(plain);
-    json["good_enough"] = std::move(allowed);
-  }
+Json point_json(const PointSummary& point, const std::optional<int>& looked_at) {
+  const StateCounts& counts = point.counts;
+  return {{"label", point.point.label},
+          {"hash", point.point.hash},
+          {"settings", point.point.settings},
+          {"standing", standing_word(point)},
+          {"verdict", verdict_text(point)},
+          {"marks", reservations(point)},
+          {"decided", point.decided},
+          {"seeds",
+           {{"looked_at", looked_at ? Json(*looked_at) : Json(nullptr)},
+            {"wanted", point.wanted},
+            {"wanted_ended", point.wanted_ended},
+            {"ended", counts.terminal()},
+            {"running", counts.running},
+            {"surplus", point.surplus()}}},
+          {"losses", point.losses},
+          {"flags", point.flags},
+          {"cpu_seconds", counts.cpu_seconds}};
+}
 
-  // What the look says of the target's observables goes before: its intervals are those that decide.
-  void add_deciding(Columns& columns, std::map<std::size_t, Json>& by_column,
-                    std::map<std::size_t, Json>& uncontrolled, Json& allowed) {
-    const Target& target = target_.target;
-    for (const ObservableLook& one : each_of(*look_, target)) {
-      const std::size_t column = column_of(columns, one.observable);
-      by_column[column] = numbers(one.estimate, one.half_width);
-      if (one.observable == target.observable) {
-        uncontrolled[column] = numbers(look_->estimate, look_->half_width);
-      }
-    }
-    for (const Criterion& criterion : target.criteria()) {
-      allowed[columns.drawables[column_of(columns, criterion.observable)].path] =
-          good_enough(criterion, *look_, target);
-    }
-  }
-
-  // An observable that is named as a quantity or an element; one that the results do not describe is one
-  // without unit.
-  static std::size_t column_of(Columns& columns, const std::string& observable) {
-    const std::string path = observable.starts_with('/') ? observable.substr(1) : observable;
-    for (std::size_t column = 0; column < columns.drawables.size(); ++column) {
-      if (columns.drawables[column].path == path) return column;
-    }
-    return columns.of({path, path, "", "", ""});
-  }
-
-  Database& database_;
-  NumberBook& book_;
-  const TargetRecord& target_;
-  const PointSummary& point_;
-  std::optional<Look> look_;
-};
-
-// The first seed with a result that has completed.
-FirstResult first_result(Database& database, const PointRecord& point) {
-  Statement first(database.connection(), "SELECT seed FROM numbers WHERE point_id = ? ORDER BY seed LIMIT 1");
-  if (!first.bind(point.id).step()) return {nullptr, Json::array()};
-  const std::optional<Json> result = database.result(point.id, static_cast<int>(first.integer(0)));
-  if (!result) return {nullptr, Json::array()};
-  return {result->value("derived", Json()), result->value("warnings", Json::array())};
+std::optional<int> seeds_looked_at(const PointSummary& point) {
+  return point.looks.empty() ? std::nullopt : std::optional(point.looks.back().seeds);
 }
 
 }  // namespace
 
-PagePoints page_points(Database& database, const CampaignStatus& status) {
+PagePoints page_points(Database& database, const CampaignStatus& status, KnownPoints& known) {
   NumberBook book(database.connection());
   Columns columns;
   PagePoints page;
   for (const PointSummary& point : status.points) {
-    Json json = PointPage(database, book, status.campaign.target, point).json(columns);
-    page.first.push_back(first_result(database, point.point));
-    json["groups"] = page.first.back().groups;
+    KnownPoint& of_point = known[point.point.id];
+    if (of_point.key != key_of(point, status.campaign.target)) {
+      of_point = read_point(database, book, status.campaign.target, point);
+    }
+    Json json = point_json(point, seeds_looked_at(point));
+    json.update(of_point.json);
+    json["estimates"] = estimates_json(of_point, columns);
     page.points.push_back(std::move(json));
   }
   // What only later points have is missing at the earlier ones.

@@ -52,7 +52,7 @@ Json page_provenance(Database& database, const CampaignStatus& status, const std
   items.add("file last taken up", campaign.updated_at);
   items.add("last seed ended", connection.text("SELECT coalesce(max(ended_at), '') FROM attempt"));
   items.add("campaign SHA-256", sha256(canonical_json(campaign.document)));
-  items.add("results SHA-256", results_sha256 + " (of the canonical table)");
+  if (!results_sha256.empty()) items.add("results SHA-256", results_sha256 + " (of the canonical table)");
   return items.json();
 }
 
@@ -62,9 +62,8 @@ std::string page_commands(const CampaignStatus& status, const std::string& resul
       "# with the engine above, and the campaign below as {0}\n"
       "peclet validate {0}\n"
       "peclet run {0}\n"
-      "peclet export {0} --csv --canonical | sha256sum\n"
-      "# {1}\n",
-      file, results_sha256);
+      "peclet export {0} --csv --canonical | sha256sum\n{1}",
+      file, results_sha256.empty() ? "" : "# " + results_sha256 + '\n');
 }
 
 }  // namespace peclet::runner

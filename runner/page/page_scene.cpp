@@ -3,6 +3,7 @@
 #include <cctype>
 #include <set>
 
+#include "runner/page/key_names.h"
 #include "runner/page/page_assets.h"
 #include "runner/page/page_parts.h"
 
@@ -35,6 +36,16 @@ std::string meaning_of(const std::string& pointer) {
   return place->value("description", "");
 }
 
+// A key with what is said of it: its meaning, and words and symbol where it has some.
+Json described(const std::string& pointer) {
+  Json key{{"pointer", pointer}, {"meaning", meaning_of(pointer)}};
+  if (const KeyName* const name = key_name(pointer)) {
+    key["words"] = name->words;
+    key["symbol"] = name->symbol;
+  }
+  return key;
+}
+
 std::set<std::string> swept_pointers(const CampaignStatus& status) {
   std::set<std::string> pointers;
   for (const PointSummary& point : status.points) {
@@ -48,7 +59,7 @@ std::set<std::string> swept_pointers(const CampaignStatus& status) {
 Json page_parameters(const CampaignStatus& status) {
   Json list = Json::array();
   for (const std::string& pointer : swept_pointers(status)) {
-    list.push_back({{"pointer", pointer}, {"meaning", meaning_of(pointer)}});
+    list.push_back(described(pointer));
   }
   return list;
 }
@@ -65,7 +76,8 @@ Json page_scene(const CampaignStatus& status) {
   const Json flat = status.points.front().point.scene.flatten();
   for (const auto& [pointer, value] : flat.items()) {
     if (is_swept(pointer)) continue;
-    list.push_back({{"pointer", pointer}, {"value", value}, {"meaning", meaning_of(pointer)}});
+    list.push_back(described(pointer));
+    list.back()["value"] = value;
   }
   return list;
 }

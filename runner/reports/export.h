@@ -22,6 +22,7 @@ struct ExportOptions {
   ExportFormat format = ExportFormat::json;
   bool canonical = false;
   std::filesystem::path output;  // "": standard output
+  std::filesystem::path bundle;  // "": no archive of everything
   bool quiet = false;            // does not say where it is
 };
 

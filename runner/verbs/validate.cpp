@@ -17,13 +17,22 @@ namespace {
 
 // Headings of the derived numbers that we know, in the order in which people look for them; an engine may
 // have others, which follow under their own names.
-const std::pair<const char*, const char*> known_numbers[] = {{"peclet", "Pe"},
+const std::pair<const char*, const char*> known_numbers[] = {{"volume_fraction", "phi"},
+                                                             {"alpha", "alpha made"},
+                                                             {"largest_share_error", "share error"},
+                                                             {"mean_radius", "mean a"},
+                                                             {"relative_width", "width"},
+                                                             {"peclet", "Pe"},
+                                                             {"peclet_mean", "Pe_cg"},
+                                                             {"peclet_grains", "Pe_g"},
                                                              {"stokes", "St"},
+                                                             {"largest_stokes", "St max"},
                                                              {"relative_stiffness", "k_hat"},
                                                              {"contact_time", "τ_C"},
                                                              {"inertial_time", "τ_I"},
                                                              {"brownian_time", "τ_B"},
                                                              {"shear_time", "τ_S"},
+                                                             {"largest_inertia_over_brownian", "τ_I/τ_B max"},
                                                              {"flow_over_rest", "flow/rest"}};
 
 struct Derived {

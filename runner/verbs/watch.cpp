@@ -15,6 +15,7 @@
 #include "runner/folder/being_set_up.h"
 #include "runner/folder/owner_lock.h"
 #include "runner/owner/open_campaign.h"
+#include "runner/reports/curve.h"
 #include "runner/reports/status.h"
 #include "runner/text/folded_text.h"
 
@@ -35,6 +36,7 @@ Size terminal_size() {
 struct Sight {
   std::string text;
   int standing = 0;
+  std::string curve{};  // where there is room for it
 };
 
 // A reader of its own each time: one that stayed open would hold back the owner's write-ahead log.
@@ -42,7 +44,8 @@ Sight look(const WatchOptions& options, std::size_t width) {
   OpenCampaign open = open_campaign(options.campaign, options.directory);
   CampaignStatus status = read_status(open.database);
   status.owner = current_owner(open.directory);
-  return {status_table(status, width) + workers_text(status, width), standing(status)};
+  return {status_table(status, width) + workers_text(status, width), standing(status),
+          curve_text(status, width)};
 }
 
 // Throws InputError for a campaign with a fault, because `run` would refuse it.
@@ -87,6 +90,13 @@ Sight sight_of(const WatchOptions& options, std::size_t width) {
   }
 }
 
+// The table goes first: a curve is drawn only where all of it is to be seen.
+std::string with_curve(const Sight& sight, const Size& size) {
+  const std::size_t needed = lines_of(sight.text).size() + 1 + lines_of(sight.curve).size();
+  const bool fits = !sight.curve.empty() && needed < static_cast<std::size_t>(size.rows);
+  return fits ? sight.text + '\n' + sight.curve : sight.text;
+}
+
 void show(const std::string& text, const Size& size) {
   // Home, then line by line with what was there before erased, then everything below: no flicker.
   std::string screen = "\x1b[H";
@@ -126,7 +136,7 @@ int watch_campaign(const WatchOptions& options) {
     const std::size_t width = terminal ? static_cast<std::size_t>(size.columns) : unlimited_width;
     const Sight sight = sight_of(options, width);
     if (terminal) {
-      show(sight.text, size);
+      show(with_curve(sight, size), size);
     } else if (sight.text != before) {
       fmt::print("{}{}", before.empty() ? "" : "\n", sight.text);
       std::fflush(stdout);

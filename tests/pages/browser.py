@@ -98,12 +98,15 @@ class Browser:
                 page.hear(answer)
 
     def open(self, path, width=1100, height=900, dark=False, touch=False):
-        return Page(self, "file://" + os.path.abspath(path), width, height, dark, touch)
+        """`path` is that of a file, or the address of a server of this machine."""
+        address = path if path.startswith("http://127.0.0.1:") else "file://" + os.path.abspath(path)
+        return Page(self, address, width, height, dark, touch)
 
 
 class Page:
     def __init__(self, browser, address, width, height, dark, touch):
         self.browser, self.complaints, self.loaded = browser, [], False
+        self.allowed = ("file:", "data:", "about:") + ((address,) if address.startswith("http:") else ())
         target = browser.call("Target.createTarget", url="about:blank")["targetId"]
         self.session = browser.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         browser.pages[self.session] = self
@@ -142,11 +145,22 @@ class Page:
         elif method == "Log.entryAdded" and said["entry"]["level"] in ("error", "warning"):
             self.complaints.append(said["entry"]["text"])
         elif method == "Network.requestWillBeSent":
-            if not said["request"]["url"].startswith(("file:", "data:", "about:")):
+            if not said["request"]["url"].startswith(self.allowed):
                 self.complaints.append("asks for " + said["request"]["url"])
         elif method == "Page.javascriptDialogOpening":
             self.complaints.append("opens a dialog: " + said["message"])
             raise Fault(self.complaints[-1])
+
+    def wait_for(self, expression, seconds=PATIENCE):
+        """The value of an expression, as soon as it is true."""
+        until = time.monotonic() + seconds
+        while True:
+            value = self.evaluate(expression)
+            if value:
+                return value
+            if time.monotonic() > until:
+                raise Fault(f"not so after {seconds} s: {expression[:200]}")
+            time.sleep(0.05)
 
     def evaluate(self, expression):
         """The value of an expression of JavaScript, awaited if it is a promise."""

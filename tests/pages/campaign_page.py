@@ -1,9 +1,11 @@
 """Campaigns whose pages are looked at, and what is on a page, for the tests and for pictures."""
 
 import csv
+import http.client
 import io
 import json
 import os
+import signal
 import subprocess
 import urllib.parse
 
@@ -30,6 +32,53 @@ def campaign(name, sweep, tolerance=0.3, minimum=8, maximum=30, scene=SCENE):
     }
 
 
+class Server:
+    """`peclet serve` of a campaign; `address` ends with a slash."""
+
+    def __init__(self, folder, name, words=()):
+        command = ["peclet", "serve", name, "--port", "0", *words]
+        self.process = subprocess.Popen(
+            command,
+            cwd=folder.path,
+            env=folder.environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.address = self.process.stdout.readline().strip()
+        if not self.address.startswith("http://127.0.0.1:"):
+            raise AssertionError(f"{' '.join(command)}: {self.address}{self.process.communicate()[1]}")
+        self.port = int(self.address.rstrip("/").rsplit(":", 1)[1])
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.end()
+
+    def end(self, signal_number=signal.SIGTERM):
+        """Its exit code."""
+        self.process.send_signal(signal_number)
+        self.process.communicate(timeout=60)
+        return self.process.returncode
+
+    def ask(self, path="", method="GET", body=None, **headers):
+        """Status, headers and text of an answer."""
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
+        connection.request(method, "/" + path, body, {name.replace("_", "-"): value for name, value in headers.items()})
+        answer = connection.getresponse()
+        text = answer.read().decode()
+        connection.close()
+        return answer.status, answer.headers, text
+
+    def seconds(self):
+        """Processor time that it has taken."""
+        with open(f"/proc/{self.process.pid}/stat", encoding="ascii") as file:
+            fields = file.read().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 class Folder:
     """A folder of campaigns, and the programs of a build."""
 
@@ -51,6 +100,10 @@ class Folder:
         with open(self.file(document["name"] + ".json"), "w", encoding="utf-8") as out:
             json.dump(document, out)
         return document["name"] + ".json"
+
+    def serve(self, name, *words):
+        """A server of the campaign's live page."""
+        return Server(self, name, words)
 
     def report(self, name):
         """The path of the campaign's page."""

@@ -13,12 +13,13 @@ from campaign_page import Folder, campaign, rows
 class Stage:
     """Set while the tests run."""
 
-    folder = browser = None
+    folder = browser = binaries = None
     leaving = contextlib.ExitStack()
 
 
 def set_up(binaries):
     place = Stage.leaving.enter_context(tempfile.TemporaryDirectory(prefix="peclet-page-"))
+    Stage.binaries = binaries
     folder = Stage.folder = Folder(binaries, place)
     sweep = {"/volume_fraction": [0.1, 0.2, 0.3], "/peclet": [1, 10, 100]}
     folder.peclet("run", folder.write(campaign("curve", sweep)), "--quiet", allowed=(0, 3))

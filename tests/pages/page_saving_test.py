@@ -57,12 +57,12 @@ class Saved(PageTest):
     def test_every_chart_can_be_saved_in_three_forms(self):
         page = self.open()
         figures = page.evaluate("document.querySelectorAll('figure').length")
-        self.assertEqual(figures, 4)
+        self.assertEqual(figures, 6)  # with the course within the window, and the workers
         links = page.evaluate(
             "[...document.querySelectorAll('figure .saves a')].map(link => [link.textContent, link.download])"
         )
         for what, ending in (("CSV", ".csv"), ("SVG", ".svg"), ("matplotlib", ".py")):
-            self.assertEqual(len([name for text, name in links if text == what and name.endswith(ending)]), 4)
+            self.assertEqual(len([name for text, name in links if text == what and name.endswith(ending)]), 6)
 
     def test_an_svg_stands_alone(self):
         page = self.open()

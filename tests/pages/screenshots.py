@@ -1,16 +1,21 @@
 #!/usr/bin/python3
-"""screenshots.py BIN FOLDER: runs a small campaign and writes pictures of its page.
+"""screenshots.py BIN FOLDER [NAME...]: runs a small campaign and takes pictures of all that it shows, or those named.
 
-wide.png, telephone.png (360 pixels), dark.png, unfolded.png (everything that is folded, and the stress by term),
-provisional.png (half way), top.png (its upper part), and paper.pdf as it is printed. Half a minute on two cores.
+Three minutes on two cores; --list says what there is. The pictures of the pages (docs/pictures) are some of them; one
+of a picture's own is a function with @picture("NAME") below.
 """
 
+import contextlib
+import functools
 import os
+import shutil
+import subprocess
 import sys
 import tempfile
 
 from browser import Browser
 from campaign_page import SCENE, Folder, campaign, choose, open_folds
+from terminal import watched
 
 FLOW_CURVE = dict(
     SCENE,
@@ -22,39 +27,295 @@ FLOW_CURVE = dict(
     duration={"equilibration": {"strain": 0.75}, "production": {"strain": 0.5}},
 )
 SWEEP = {"/volume_fraction": [0.3, 0.4, 0.45, 0.5], "/peclet": [1, 10, 100, 1000]}
+# With seeds that take long enough to be watched.
+SLOW_CURVE = dict(
+    FLOW_CURVE,
+    volume_fraction=0.45,
+    particles=dict(FLOW_CURVE["particles"], count=400),
+    duration={key: {"strain": 3} for key in FLOW_CURVE["duration"]},
+)
+SLOW_SWEEP = {"/peclet": [1, 4.6, 22, 100, 1000, 10000]}
+PAGES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs")
+PICTURES = {}
 
 
-def main(binaries, target):
+def picture(name):
+    """The function that takes the picture of that name: of a Studio, into a path."""
+
+    def entered(function):
+        PICTURES[name] = function
+        return function
+
+    return entered
+
+
+class Studio:
+    """A browser, and campaigns that are run when the first picture needs them."""
+
+    def __init__(self, binaries, place, browser):
+        self.binaries, self.place, self.browser = binaries, place, browser
+
+    def folder(self, name):
+        path = os.path.join(self.place, name)
+        os.makedirs(path, exist_ok=True)
+        folder = Folder(self.binaries, path)
+        # The programs, and Debian's python3, which has matplotlib, before any other.
+        folder.environment["PATH"] = f"{self.binaries}:/usr/bin:/bin"
+        return folder
+
+    def write(self, folder, sweep=SWEEP, scene=FLOW_CURVE, tolerance=0.05, maximum=60):
+        return folder.write(campaign("flow-curve", sweep, tolerance=tolerance, maximum=maximum, scene=scene))
+
+    @functools.cached_property
+    def finished(self):
+        """The folder of a campaign that has ended."""
+        folder = self.folder("finished")
+        folder.peclet("run", self.write(folder), "--quiet", allowed=(0, 3))
+        return folder
+
+    @functools.cached_property
+    def begun(self):
+        """That of one of which the first seeds have ended."""
+        folder = self.folder("begun")
+        folder.peclet("plan", self.write(folder), "--pilot", "4")
+        return folder
+
+    @functools.cached_property
+    def working(self):
+        """That of a longer one, which pictures of a run go on with."""
+        folder = self.folder("working")
+        file = self.write(folder, SLOW_SWEEP, SLOW_CURVE, tolerance=0.007, maximum=400)
+        folder.peclet("run", file, "--quiet", "--time-limit", "60", allowed=(75,))
+        return folder
+
+    def report(self, folder, **how):
+        return self.browser.open(folder.report("flow-curve.json"), **how)
+
+    def keep(self, page, path, whole=True):
+        if page.complaints:
+            raise SystemExit(f"{path}: {page.complaints}")
+        page.picture(path, whole)
+
+    def keep_element(self, page, path, selector, scale=2):
+        """As large as the element, in so many pixels for each of CSS."""
+        box = page.evaluate(f"(b => [b.right, b.bottom])(document.querySelector('{selector}').getBoundingClientRect())")
+        width, height = (int(side + 0.999) for side in box)
+        page.call(
+            "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=scale, mobile=False
+        )
+        self.keep(page, path, whole=False)
+
+    def keep_html(self, text, path, selector, scale=2):
+        with tempfile.NamedTemporaryFile("w", suffix=".html", dir=self.place, encoding="utf-8", delete=False) as file:
+            file.write(text)
+        self.keep_element(self.browser.open(file.name, width=2000), path, selector, scale)
+
+    def keep_terminal(self, command, path, rows, columns, seconds, folder, scale=2):
+        """The screen of a terminal after so many seconds of a program."""
+        screen = watched(command, rows, columns, seconds, cwd=folder.path, env=folder.environment)
+        self.keep_html(screen.html(), path, "pre", scale)
+
+
+@picture("provisional.png")
+def page_half_way(studio, path):
+    studio.keep(studio.report(studio.begun), path)
+
+
+@contextlib.contextmanager
+def running(studio):
+    """A run that ends when its picture is taken."""
+    folder = studio.working
+    command = ["peclet", "run", "flow-curve.json", "--quiet"]
+    with subprocess.Popen(command, cwd=folder.path, env=folder.environment, stdout=subprocess.DEVNULL) as run:
+        try:
+            yield
+        finally:
+            run.terminate()
+
+
+@picture("live.png")
+def live_page_of_a_run(studio, path, whole=True, **how):
+    with studio.working.serve("flow-curve.json") as server, running(studio):
+        live = studio.browser.open(server.address, **how)
+        live.wait_for("campaign.data && campaign.data.work.now.some(job => job.strain > 0)")
+        live.evaluate("Live.prototype.ask = async () => {}")  # stays as it is now
+        live.evaluate("scrollTo(0, 0)")
+        studio.keep(live, path, whole)
+
+
+@picture("live_top.png")
+def upper_part_of_the_live_page(studio, path):
+    live_page_of_a_run(studio, path, whole=False, width=1000, height=900)
+
+
+@picture("live_telephone.png")
+def live_page_of_360_pixels(studio, path):
+    live_page_of_a_run(studio, path, width=360, touch=True)
+
+
+@picture("live_finished.png")
+def live_page_of_what_has_ended(studio, path):
+    with studio.finished.serve("flow-curve.json") as server:
+        studio.keep(studio.browser.open(server.address), path)
+
+
+@picture("wide.png")
+def page(studio, path):
+    studio.keep(studio.report(studio.finished), path)
+
+
+@picture("report.png")
+def upper_part_of_the_page(studio, path):
+    top = studio.report(studio.finished, width=1000, height=880)
+    top.evaluate("document.querySelector('#sweep svg').scrollIntoView({block: 'center'}); scrollTo(0, 0)")
+    studio.keep(top, path, whole=False)
+
+
+@picture("telephone.png")
+def page_of_360_pixels(studio, path):
+    studio.keep(studio.report(studio.finished, width=360, touch=True), path)
+
+
+@picture("dark.png")
+def page_in_the_dark(studio, path):
+    dark = studio.report(studio.finished, dark=True)
+    choose(dark, "#quantity", "first normal difference")
+    studio.keep(dark, path)
+
+
+@picture("unfolded.png")
+def page_with_everything_open(studio, path):
+    unfolded = studio.report(studio.finished)
+    choose(unfolded, "#quantity", "stress by term, xy")
+    open_folds(unfolded)
+    studio.keep(unfolded, path)
+
+
+@picture("paper.pdf")
+def page_as_it_is_printed(studio, path):
+    studio.report(studio.finished).print(path)
+
+
+def watch(studio, path, columns, rows):
+    """Of a run that goes on meanwhile."""
+    folder = studio.working
+    command = ["peclet", "watch", "flow-curve.json", "--interval", "0.5"]
+    with running(studio):
+        studio.keep_terminal(command, path, rows, columns, 6, folder, scale=1 if columns > 100 else 2)
+
+
+@picture("watch-50.png")
+def watch_in_50_columns(studio, path):
+    watch(studio, path, 50, 40)
+
+
+@picture("watch-80.png")
+def watch_in_80_columns(studio, path):
+    watch(studio, path, 80, 40)
+
+
+@picture("watch-200.png")
+def watch_in_200_columns(studio, path):
+    watch(studio, path, 200, 40)
+
+
+def plot(studio, path, *words, folder=None):
+    (folder or studio.finished).peclet("plot", "flow-curve.json", "--output", path, "--quiet", *words)
+    os.remove(os.path.splitext(path)[0] + ".py")
+
+
+def plot_by_peclet(studio, path, *words, folder=None):
+    """The SVG of the program itself, as a browser shows it."""
+    drawn = os.path.join(studio.place, "drawn.svg")
+    plot(studio, drawn, *words, folder=folder)
+    studio.keep_element(studio.browser.open(drawn), path, "svg")
+
+
+@picture("plot.png")
+def plot_of_the_target(studio, path):
+    plot_by_peclet(studio, path)
+
+
+@picture("plot-pressure.png")
+def plot_over_the_volume_fraction(studio, path):
+    plot_by_peclet(studio, path, "--quantity", "pressure", "--over", "volume_fraction")
+
+
+@picture("plot-band.png")
+def plot_half_way_with_the_tolerance(studio, path):
+    plot_by_peclet(studio, path, "--band", folder=studio.begun)
+
+
+@picture("plot-matplotlib.png")
+def plot_by_matplotlib(studio, path):
+    plot(studio, path)
+
+
+def engine(folder, *words):
+    command = ["peclet-engine", *words]
+    subprocess.run(command, cwd=folder.path, env=folder.environment, stdout=subprocess.DEVNULL, check=True)
+
+
+@functools.cache
+def trajectory(studio):
+    """The folder with the frame of docs/pictures/spheres.json."""
+    folder = studio.folder("trajectory")
+    scene = os.path.join(PAGES, "pictures", "spheres.json")
+    engine(folder, "run", scene, "--seed", "1", "--output", "spheres.result.json")
+    return folder
+
+
+def snapshot(studio, path, *words):
+    frames = "spheres.result.trajectory.gsd"
+    engine(trajectory(studio), "snapshot", frames, *words, "--size", "1000x750", "--output", path)
+
+
+@picture("spheres.png")
+def snapshot_of_spheres(studio, path):
+    snapshot(studio, path, "--colour", "stress")
+
+
+@picture("chains.png")
+def snapshot_of_force_chains(studio, path):
+    snapshot(studio, path, "--chains")
+
+
+@functools.cache
+def figures_in_python(studio):
+    """The folder with the figures of docs/python.md."""
+    folder = studio.folder("python")
+    script = os.path.join(PAGES, "..", "tests", "python", "page_test.py")
+    program = os.path.join(studio.binaries, "peclet")
+    subprocess.run([sys.executable, script, program, folder.path], env=folder.environment, check=True)
+    return folder
+
+
+@picture("python.png")
+def figure_in_python(studio, path):
+    shutil.copy(os.path.join(figures_in_python(studio).path, "flow.png"), path)
+
+
+@picture("paper.png")
+def figure_in_ten_lines(studio, path):
+    shutil.copy(os.path.join(figures_in_python(studio).path, "paper.png"), path)
+
+
+def main(binaries, target, names):
+    unknown = [name for name in names if name not in PICTURES]
+    if unknown:
+        raise SystemExit(f"{', '.join(unknown)}: no such picture; there are {', '.join(PICTURES)}")
     os.makedirs(target, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="peclet-page-") as place, Browser() as browser:
-        folder = Folder(binaries, place)
-
-        def picture(name, page, whole=True):
-            if page.complaints:
-                raise SystemExit(f"{name}: {page.complaints}")
-            page.picture(os.path.join(target, name), whole)
-
-        file = folder.write(campaign("flow-curve", SWEEP, tolerance=0.05, maximum=60, scene=FLOW_CURVE))
-        folder.peclet("plan", file, "--pilot", "4")
-        picture("provisional.png", browser.open(folder.report(file)))
-        folder.peclet("run", file, "--quiet", allowed=(0, 3))
-        path = folder.report(file)
-        picture("wide.png", browser.open(path))
-        top = browser.open(path, width=1000, height=880)
-        top.evaluate("document.querySelector('#sweep svg').scrollIntoView({block: 'center'}); scrollTo(0, 0)")
-        picture("top.png", top, whole=False)
-        picture("telephone.png", browser.open(path, width=360, touch=True))
-        dark = browser.open(path, dark=True)
-        choose(dark, "#quantity", "first normal difference")
-        picture("dark.png", dark)
-        unfolded = browser.open(path)
-        choose(unfolded, "#quantity", "stress by term, xy")
-        open_folds(unfolded)
-        picture("unfolded.png", unfolded)
-        browser.open(path).print(os.path.join(target, "paper.pdf"))
+        studio = Studio(binaries, place, browser)
+        for name in names or PICTURES:
+            PICTURES[name](studio, os.path.join(os.path.abspath(target), name))
+            print(name, flush=True)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3:
+    if sys.argv[1:] == ["--list"]:
+        print("\n".join(f"{name:20} {function.__name__.replace('_', ' ')}" for name, function in PICTURES.items()))
+    elif len(sys.argv) < 3:
         raise SystemExit(__doc__)
-    main(os.path.abspath(sys.argv[1]), sys.argv[2])
+    else:
+        main(os.path.abspath(sys.argv[1]), sys.argv[2], sys.argv[3:])

@@ -115,6 +115,14 @@ class OfACampaign(unittest.TestCase):
         for bar, row in zip(bars, table):
             np.testing.assert_allclose(bar[:, 1], [row["mean"] - row["half_width"], row["mean"] + row["half_width"]])
 
+    def test_a_plot_may_have_some_of_the_points(self):
+        axes = self.results.plot(x="volume_fraction", where={"peclet": 10}, label="slow")
+        self.assertEqual([text.get_text() for text in axes.get_legend().get_texts()], ["slow"])
+        table = self.results.estimates().where(peclet=10).sorted_by("volume_fraction")
+        np.testing.assert_allclose(
+            axes.lines[0].get_xydata(), np.column_stack([table["volume_fraction"], table["mean"]])
+        )
+
     def test_tables_go_to_pandas(self):
         frame = self.results.estimates().to_pandas()
         self.assertEqual(list(frame["label"]), [p["label"] for p in self.export["points"]])

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""page_test.py PECLET [PICTURE]: runs the example of docs/python.md in an empty folder; PICTURE gets its figure."""
+"""page_test.py PECLET [FOLDER]: runs the examples of docs/python.md in an empty folder; FOLDER gets their figures."""
 import os
 import re
 import shutil
@@ -9,22 +9,24 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+PICTURES = ("flow.png", "paper.png")  # of each example
 
 
 def main():
     page = (ROOT / "docs" / "python.md").read_text()
-    scene, script = (re.search(rf"```{kind}\n(.*?)```", page, re.DOTALL)[1] for kind in ("json", "python"))
+    scene, scripts = (re.findall(rf"```{kind}\n(.*?)```", page, re.DOTALL) for kind in ("json", "python"))
     binaries = os.path.dirname(os.path.abspath(sys.argv[1]))
     path = f"{binaries}:{os.environ['PATH']}"
     with tempfile.TemporaryDirectory() as folder:
-        Path(folder, "scene.json").write_text(scene)
+        Path(folder, "scene.json").write_text(scene[0])
         environment = {**os.environ, "PATH": path, "PYTHONPATH": str(ROOT / "python"), "MPLBACKEND": "agg"}
-        subprocess.run([sys.executable, "-c", script], cwd=folder, env=environment, check=True)
-        picture = Path(folder, "flow.png")
-        if not picture.read_bytes().startswith(b"\x89PNG"):
-            sys.exit("flow.png is no picture")
-        if len(sys.argv) > 2:
-            shutil.copyfile(picture, sys.argv[2])
+        for script, name in zip(scripts, PICTURES, strict=True):
+            subprocess.run([sys.executable, "-c", script], cwd=folder, env=environment, check=True)
+            picture = Path(folder, name)
+            if not picture.read_bytes().startswith(b"\x89PNG"):
+                sys.exit(f"{name} is no picture")
+            if len(sys.argv) > 2:
+                shutil.copy(picture, sys.argv[2])
 
 
 main()

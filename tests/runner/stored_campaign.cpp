@@ -16,6 +16,11 @@ StoredCampaign::StoredCampaign(int points, int minimum, int maximum, const std::
   PointStore(database_).adopt(campaign_);
 }
 
+StoredCampaign::StoredCampaign(const Campaign& campaign)
+    : campaign_(campaign), database_(Database::open_owner(CampaignDirectory(folder_.path()).database())) {
+  PointStore(database_).adopt(campaign_);
+}
+
 void StoredCampaign::store(int point, const Json& result) {
   Transaction booking(database_.connection());
   const std::int64_t engine = engine_row(database_, plain_engine());
@@ -73,9 +78,9 @@ void StoredCampaign::repeat(int point, int seed, double viscosity) {
   ResultStore(database_).store(parse_result(plain_result(hash, seed, viscosity).dump()), campaign_.target);
 }
 
-void StoredCampaign::blow_up(int point, int seed) {
+void StoredCampaign::blow_up(int point, int seed, const std::string& cause) {
   Json result = plain_result(campaign_.points.at(static_cast<std::size_t>(point)).hash, seed, 0);
-  result["ending"] = {{"cause", "overlap"}, {"step", 50}, {"message", "too near"}, {"state", "/somewhere"}};
+  result["ending"] = {{"cause", cause}, {"step", 50}, {"message", "too near"}, {"state", "/somewhere"}};
   result["mean"] = result["blocks"] = nullptr;
   store(point, result);
 }

@@ -13,6 +13,7 @@ class StoredCampaign {
  public:
   // plain_campaign() with a tolerance of 5 %, and these beside it.
   StoredCampaign(int points, int minimum, int maximum, const std::vector<Criterion>& also = {});
+  explicit StoredCampaign(const Campaign& campaign);
 
   // A result of plain_result(), with an attempt of its own, and the looks that it allows.
   void complete(int point, int seed, double viscosity, const Json& warnings = Json::array());
@@ -26,7 +27,7 @@ class StoredCampaign {
   void set_target(const Target& target);
   // One more result of a seed that has ended.
   void repeat(int point, int seed, double viscosity);
-  void blow_up(int point, int seed);
+  void blow_up(int point, int seed, const std::string& cause = "overlap");
   // One attempt that crashed, after which the seed is given up.
   void crash(int point, int seed);
 

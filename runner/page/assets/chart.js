@@ -1,8 +1,9 @@
 // A figure as SVG, with what it can be saved as.
 //
 // figure: {name, x, y: {about, log, categories}, panels: [{title, marks, lines, bands, columns, levels}], legend,
-// kinds, hasBand, notes, caption, table, pick}. Marks: {series, x, y, half, kind, point, text}; lines: {series, style,
-// places: [x, y]}; bands: {series, places: [x, low, high]}; columns: {from, to, height}; levels: {value, across, text}.
+// kinds, hasBand, notes, caption, table, pick, height}. Marks: {series, x, y, half, kind, point, text}; lines: {series,
+// style, places: [x, y]}; bands: {series, places: [x, low, high]}; columns, which are boxes: {from, to, low, high, series,
+// text}; levels: {value, across}. In the legend {series, name, kind}: "column" for a box, "line", or a mark.
 class Chart {
   // `onPick(point)`: a mark of that point was chosen.
   constructor(host, onPick = null) {
@@ -16,12 +17,17 @@ class Chart {
     }).observe(host);
   }
 
+  // A figure that is the same is left as it is.
   show(figure) {
+    const key = JSON.stringify(figure);
+    if (this.shown === key && this.host.firstChild) return;
+    this.shown = key;
     this.figure = figure;
     this.draw();
   }
 
   choose(point) {
+    if (this.chosen === point) return;
     this.chosen = point;
     if (this.figure && this.figure.pick) this.draw();
   }
@@ -70,7 +76,7 @@ class Chart {
       for (const band of panel.bands || [])
         numbers.push(...band.places.flatMap(([x, low, high]) => (direction === 'x' ? [x] : [low, high])));
       for (const column of panel.columns || [])
-        numbers.push(...(direction === 'x' ? [column.from, column.to] : [0, column.height]));
+        numbers.push(...(direction === 'x' ? [column.from, column.to] : [column.low, column.high]));
       for (const level of panel.levels || []) if (level.across === (direction === 'y')) numbers.push(level.value);
     }
     const usable = numbers.filter((number) => Format.isNumber(number) && (!log || number > 0));
@@ -133,23 +139,12 @@ class Chart {
       begin: frame.bottom,
       end: frame.top,
       mostTicks: Math.max(3, Math.min(9, Math.floor((frame.bottom - frame.top) / 36))),
+      categories: figure.y.categories,
     });
     this.frame(group, frame, x, y, panel, left, height, top);
     const visible = (mark) => (!figure.y.log || mark.y > 0) && (!figure.x.log || mark.x > 0);
     for (const band of panel.bands || []) this.band(group, band, x, y);
-    for (const column of panel.columns || []) {
-      const [from, to] = [x.place(column.from), x.place(column.to)],
-        [low, high] = [y.clamped(0), y.place(column.height)];
-      group.append(
-        Svg.element('rect', {
-          class: 'column s0',
-          x: Svg.number(from),
-          y: Svg.number(high),
-          width: Svg.number(to - from),
-          height: Svg.number(low - high),
-        }),
-      );
-    }
+    for (const column of panel.columns || []) group.append(Chart.box(column, x, y));
     for (const level of panel.levels || []) this.level(group, level, frame, x, y);
     for (const line of panel.lines || []) {
       const places = line.places
@@ -171,13 +166,13 @@ class Chart {
       if (i % words === 0)
         group.append(Svg.text(tick.text, { x: n(place), y: n(frame.bottom + 18), 'text-anchor': 'middle' }));
     });
-    for (const tick of y.ticks()) {
+    const rows = y.categories ? Math.max(1, Math.ceil((y.categories.length * 15) / (frame.bottom - frame.top))) : 1;
+    y.ticks().forEach((tick, i) => {
       const place = y.place(tick.value);
-      group.append(
-        Svg.line('grid', frame.left, place, frame.right, place),
-        Svg.text(tick.text, { x: n(frame.left - 7), y: n(place + 4.5), 'text-anchor': 'end' }),
-      );
-    }
+      group.append(Svg.line('grid', frame.left, place, frame.right, place));
+      if (i % rows === 0)
+        group.append(Svg.text(tick.text, { x: n(frame.left - 7), y: n(place + 4.5), 'text-anchor': 'end' }));
+    });
     group.append(
       Svg.element('rect', {
         class: 'frame',
@@ -206,6 +201,21 @@ class Chart {
     );
     if (panel.title && panel.title.length)
       group.append(Svg.text(panel.title, { class: 'title', x: n(middle), y: n(top - 3), 'text-anchor': 'middle' }));
+  }
+
+  // One that is shorter than a pixel is still there.
+  static box(column, x, y) {
+    const [from, to] = [x.place(column.from), x.place(column.to)].sort((a, b) => a - b),
+      [high, low] = [y.clamped(column.low), y.clamped(column.high)].sort((a, b) => a - b);
+    const box = Svg.element('rect', {
+      class: `column s${column.series % Svg.colours}`,
+      x: Svg.number(from),
+      y: Svg.number(high),
+      width: Svg.number(Math.max(1, to - from)),
+      height: Svg.number(low - high),
+    });
+    if (column.text) box.append(Svg.element('title', {}, column.text));
+    return box;
   }
 
   // The symbol alone where the words are too long.
@@ -292,7 +302,7 @@ class Chart {
   // What the marks mean, in lines as long as the chart is wide.
   legend(width) {
     const { figure } = this,
-      items = (figure.legend || []).map((one) => ({ ...one, kind: 'decided' }));
+      items = (figure.legend || []).map((one) => ({ kind: 'decided', ...one }));
     const kinds = figure.kinds || [],
       say = (kind, text) => items.push({ series: 0, kind, name: [{ text, level: 0 }] });
     if (kinds.includes('undecided')) say('undecided', 'not converged');
@@ -312,9 +322,11 @@ class Chart {
       for (const item of items) {
         const y = top + 22 * item.line + 10,
           group = Svg.element('g', item.kind === 'provisional' ? { class: 'provisional' } : {});
+        const isBox = item.kind === 'band' || item.kind === 'column',
+          style = `${item.kind} s${item.series % Svg.colours}`;
         group.append(
-          item.kind === 'band'
-            ? Svg.element('rect', { class: `band s${item.series}`, x: item.x, y: y - 6, width: 16, height: 12 })
+          isBox
+            ? Svg.element('rect', { class: style, x: item.x, y: y - 6, width: 16, height: 12 })
             : Svg.mark(item.series, item.x + 8, y, item.kind),
         );
         group.append(Svg.text(item.name, { x: item.x + 22, y: y + 4.5 }));

@@ -112,15 +112,17 @@ const Format = {
 
   // "N_1^noise" as N, "1" lowered, "noise" raised: [{text, level}] with level 0, -1 or 1. What is raised may be the
   // name of a term, with underscores of its own; a few letters behind its last one are lowered: sigma^noise_xy. With an
-  // `element` all of it is the name, and the element is lowered.
+  // `element` all of it is the name, and the element is lowered. Parentheses and what follows stay: u_x(y).
   symbol(text, element = '') {
-    const [, base, below, above] = /^([^_^]*)(?:_([^^]*))?(?:\^(.*))?$/.exec(text) || [null, text, '', ''];
+    const [, whole, rest] = /^([^(]*)(.*)$/.exec(text);
+    const [, base, below, above] = /^([^_^]*)(?:_([^^]*))?(?:\^(.*))?$/.exec(whole) || [null, whole, '', ''];
     const [, name, tail] = (element ? null : /^(.*)_(\w{1,2})$/.exec(above || '')) || [null, above, ''];
     const translate = (part) => part.replace(/[A-Za-z]+/g, (word) => Format.greek[word] || word);
     const parts = [
       [base, 0],
       [[below, tail, element].filter(Boolean).join(' '), -1],
       [(name || '').replace(/_/g, ' '), 1],
+      [rest, 0],
     ];
     return parts.filter(([part]) => part).map(([part, level]) => ({ text: translate(part), level }));
   },
@@ -143,35 +145,21 @@ const Format = {
     if (!unit || unit === '1') return '';
     return unit
       .split(' * ')
-      .map((word) => ({ viscosity: 'η', shear_rate: 'γ̇' })[word] || Format.words(word))
+      .map((word) => ({ viscosity: 'η', shear_rate: 'γ̇' })[word] || word.replace(/_/g, ' '))
       .join(' ');
-  },
-
-  // What the page calls keys of a scene: words and symbol.
-  keys: {
-    '/peclet': ['Péclet number', 'Pe'],
-    '/volume_fraction': ['volume fraction', 'phi'],
-    '/flow/shear_rate': ['shear rate', 'γ̇'],
-    '/contact/friction': ['coefficient of friction', 'mu'],
-    '/contact/rolling_friction': ['coefficient of rolling friction', 'mu_r'],
-    '/contact/normal_stiffness': ['normal stiffness', 'k_n'],
-    '/particles/count': ['number of particles', 'N'],
-    '/fluid/viscosity': ['viscosity of the fluid', 'eta'],
-    '/fluid/thermal_energy': ['thermal energy', 'k_B T'],
-    '/particles/density': ['density of the particles', 'rho'],
   },
 
   groups: { peclet: ['Péclet number', 'Pe'], stokes: ['Stokes number', 'St'] },
 
-  // {words, symbol: parts, unit} of a swept parameter.
+  // {words, symbol: parts, unit} of a key of the scene; some come with words and symbol.
   parameter(parameter) {
-    const known = Format.keys[parameter.pointer],
+    const { words, symbol } = parameter,
       bracket = /\[([^\]]*)\]\s*$/.exec(parameter.meaning || '');
     const steps = parameter.pointer.split('/').filter((step) => step !== '');
     const last = /^[0-9]+$/.test(steps[steps.length - 1]) ? steps.slice(-2) : steps.slice(-1);
     return {
-      words: known ? known[0] : Format.words(last.join(' ')),
-      symbol: known ? Format.keySymbol(known[1]) : [],
+      words: words || Format.words(last.join(' ')),
+      symbol: symbol ? Format.keySymbol(symbol) : [],
       unit: bracket ? bracket[1] : '',
     };
   },

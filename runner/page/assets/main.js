@@ -1,206 +1,66 @@
-// What may be doubted: lost seeds by cause, what each mark means, what engines warn of.
-function writeDoubts(data, host) {
-  const lost = data.points.flatMap((point) =>
-    Object.entries(point.losses).map(([cause, count]) => ({ point: point.label, cause, count })),
-  );
-  const meanings = Object.entries(data.meanings);
-  if (!lost.length && !meanings.length && !data.warnings.length) return;
-  host.append(Page.heading('h2', 'What to know before using the numbers'));
-  if (meanings.length) host.append(Page.list(meanings));
-  if (lost.length) {
-    host.append(
-      Page.heading('h3', 'Lost seeds'),
-      Page.paragraph('Seeds that ended without a value. Means leave them out.', 'faint'),
-    );
-    new SortedTable(
-      host,
-      [
-        { title: 'point', text: true, wrap: true, cell: (row) => row.point, sort: (row) => row.point },
-        { title: 'cause', text: true, cell: (row) => row.cause, sort: (row) => row.cause },
-        { title: 'seeds', cell: (row) => String(row.count), sort: (row) => row.count },
-      ],
-      lost,
-      {
-        name: `${data.campaign} lost`,
-        csv: { columns: ['label', 'cause', 'seeds'], rows: lost.map((row) => [row.point, row.cause, row.count]) },
-      },
-    );
+// The page: its parts, which stay, and the campaign, which may become another one while somebody looks.
+class Campaign {
+  constructor() {
+    this.chosen = null; // hash of the point
   }
-  if (data.warnings.length) {
-    host.append(Page.heading('h3', 'Warnings of the engine'));
-    new SortedTable(
-      host,
-      [
-        { title: 'point', text: true, wrap: true, cell: (row) => row.point, sort: (row) => row.point },
-        {
-          title: 'warning',
-          text: true,
-          wrap: true,
-          cell: (row) => `${row.code}: ${row.message}`,
-          sort: (row) => row.code,
-        },
-      ],
-      data.warnings,
-    );
-  }
-}
 
-function writeCost(data, host, onPick) {
-  host.append(Page.heading('h2', 'Cost'));
-  const { progress } = data,
-    { seeds } = progress;
-  const said = [
-    `${Format.counted(seeds.ended, 'seed')} ended in ${Format.duration(progress.cpu_seconds)} of processor time`,
-  ];
-  if (seeds.lost) said.push(`${seeds.lost} of them without a value`);
-  if (seeds.surplus) said.push(`${seeds.surplus} beyond what decided their point`);
-  host.append(Page.paragraph(`${said.join(', ')}.`));
-  const details = Page.details('By point');
-  host.append(details);
-  const rows = data.points.map((point, i) => ({ point, i })),
-    each = (row) => (row.point.seeds.ended ? row.point.cpu_seconds / row.point.seeds.ended : null);
-  new SortedTable(
-    details,
-    [
-      { title: 'point', text: true, wrap: true, cell: (row) => row.point.label, sort: (row) => row.point.label },
-      { title: 'seeds', cell: (row) => String(row.point.seeds.ended), sort: (row) => row.point.seeds.ended },
-      {
-        title: 'surplus',
-        minor: true,
-        cell: (row) => String(row.point.seeds.surplus),
-        sort: (row) => row.point.seeds.surplus,
-      },
-      {
-        title: 'processor time',
-        cell: (row) => Format.duration(row.point.cpu_seconds),
-        sort: (row) => row.point.cpu_seconds,
-      },
-      { title: 'a seed', cell: (row) => Format.duration(each(row)), sort: each },
-    ],
-    rows,
-    {
-      onPick: (row) => onPick(row.i),
-      name: `${data.campaign} cost`,
-      csv: {
-        columns: ['label', 'seeds', 'surplus', 'cpu_seconds'],
-        rows: rows.map(({ point }) => [point.label, point.seeds.ended, point.seeds.surplus, point.cpu_seconds]),
-      },
-    },
-  );
-}
-
-// From the smallest to the largest of numbers, or the words.
-function range(values) {
-  const numbers = values.filter(Format.isNumber);
-  if (numbers.length !== values.length) return [...new Set(values.map((value) => Format.value(value)))].join(', ');
-  const low = Math.min(...numbers),
-    high = Math.max(...numbers);
-  return low === high ? Format.plain(low) : `${Format.rough(low)} to ${Format.rough(high)}`;
-}
-
-// φ, Pe, St and others over all points, in words and units.
-function sceneSummary(data, sweep) {
-  const items = [],
-    named = new Set();
-  for (const one of sweep.parameters) {
-    if (!one.pointer) continue;
-    items.push([Format.title(one.about), one.numeric ? range(one.cells) : one.values.join(', ')]);
-    named.add(one.pointer.slice(1));
+  part(id) {
+    return document.getElementById(id);
   }
-  for (const key of data.scene) {
-    if (!Format.keys[key.pointer]) continue;
-    items.push([Format.title(Format.parameter(key)), Format.value(key.value)]);
-    named.add(key.pointer.slice(1));
-  }
-  const groups = data.points.map((point) => point.groups).filter(Boolean);
-  for (const name of groups.length ? Object.keys(groups[0]) : []) {
-    const values = groups.map((group) => group[name]).filter(Format.isNumber);
-    if (!values.length || named.has(name)) continue;
-    const [words, symbol] = Format.groups[name] || [Format.words(name), ''];
-    items.push([Format.title({ words, symbol: symbol ? Format.symbol(symbol) : [], unit: '' }), range(values)]);
-  }
-  return items;
-}
 
-function writeOrigin(data, sweep, host) {
-  host.append(Page.heading('h2', 'Where this comes from'));
-  const scene = Page.details('The scene'),
-    shared = data.scene.map((key) => ({ ...key, about: Format.parameter(key) }));
-  scene.append(Page.list(sceneSummary(data, sweep)));
-  if (shared.length) {
-    scene.append(Page.paragraph('All points share:', 'faint'));
-    new SortedTable(
-      scene,
-      [
-        {
-          title: 'key',
-          text: true,
-          wrap: true,
-          cell: (row) => row.pointer.slice(1).split('/').map(Format.words).join(': '),
-          sort: (row) => row.pointer,
-        },
-        { title: 'value', cell: (row) => Format.value(row.value), sort: (row) => row.value },
-        { title: 'unit', text: true, cell: (row) => row.about.unit, sort: (row) => row.about.unit },
-        {
-          title: 'meaning',
-          text: true,
-          wrap: true,
-          minor: true,
-          cell: (row) => row.meaning.replace(/\s*\[[^\]]*\]$/, ''),
-          sort: (row) => row.meaning,
-        },
-      ],
-      shared,
-    );
+  show(data) {
+    const anchor = Campaign.anchor(),
+      top = anchor.getBoundingClientRect().top,
+      pick = (index) => this.pick(index);
+    document.querySelector('main').hidden = Boolean(data.waiting);
+    this.part('headline').textContent = data.waiting || headline(data);
+    this.part('question').textContent = data.waiting ? '' : question(data);
+    if (data.waiting) return;
+    this.data = data;
+    if (!this.sweep) {
+      this.sweep = new SweepView(this.part('sweep'), pick);
+      this.point = new PointView(this.part('point'), pick);
+    }
+    this.sweep.show(data);
+    const { sweep } = this.sweep;
+    Page.renew(this.part('results'), resultsShown(data), (host) => {
+      this.table = resultsTable(data, sweep, host, pick);
+    });
+    this.pick(Math.max(0, data.points.findIndex((point) => point.hash === this.chosen)));
+    Page.renew(this.part('doubts'), doubtsShown(data), (host) => writeDoubts(data, host));
+    this.writeWork(data);
+    Page.renew(this.part('cost'), costShown(data), (host) => writeCost(data, host, pick));
+    Page.renew(this.part('origin'), originShown(data), (host) => writeOrigin(data, sweep, host));
+    const now = anchor.isConnected ? anchor : document.activeElement;
+    window.scrollBy(0, now.getBoundingClientRect().top - top);
   }
-  const provenance = Page.details('Engine, machines and checksums');
-  provenance.append(Page.list(data.provenance));
-  const again = Page.details('To make it again'),
-    commands = document.createElement('pre');
-  commands.textContent = data.commands;
-  again.append(
-    commands,
-    Page.paragraph(
-      'The same engine gives the same bytes with any number of workers: the last line tells whether ' +
-        'the numbers are the same. Another build gives other bytes, and means that agree within their errors.',
-      'faint',
-    ),
-  );
-  const campaign = Page.details('The campaign, as it was last run'),
-    text = document.createElement('pre');
-  text.textContent = JSON.stringify(data.document, null, 2);
-  campaign.append(
-    text,
-    Saving.links(Saving.link('JSON', `${data.campaign}.json`, 'application/json', text.textContent)),
-  );
-  host.append(scene, provenance, again, campaign);
-}
 
-// Writes the whole page. What is live calls it again with newer data.
-function writePage(data) {
-  const place = (id) => {
-    const section = document.getElementById(id);
-    section.replaceChildren();
-    return section;
-  };
-  document.getElementById('headline').textContent = headline(data);
-  const { target } = data;
-  document.getElementById('question').textContent =
-    `${Format.words(target.text)} at ${Format.rough(100 * target.confidence)} % confidence, ` +
-    `with ${target.minimum} to ${target.maximum} independent realisations (seeds) of every point.`;
-  const onPick = (index) => {
-    point.show(index);
-    chart.chart.choose(index);
-    table.choose(table.rows[index]);
-  };
-  const chart = new SweepView(data, place('sweep'), (index) => onPick(index));
-  const table = resultsTable(data, chart.sweep, place('results'), (index) => onPick(index));
-  const point = new PointView(data, place('point'));
-  point.onChoose = onPick;
-  writeDoubts(data, place('doubts'));
-  writeCost(data, place('cost'), (index) => onPick(index));
-  writeOrigin(data, chart.sweep, place('origin'));
-  if (data.points.length) onPick(0);
+  // What somebody looks at: what has the focus, if it is to be seen, or else the part that reaches into the top of the
+  // window. It is to stay where it is, whatever above it becomes longer or shorter.
+  static anchor() {
+    const candidates = [...document.querySelectorAll('main > section')];
+    if (document.activeElement && document.activeElement !== document.body) candidates.unshift(document.activeElement);
+    const seen = candidates.find((one) => {
+      const { top, bottom } = one.getBoundingClientRect();
+      return bottom > 0 && top < window.innerHeight;
+    });
+    return seen || document.body;
+  }
+
+  pick(index) {
+    const point = this.data.points[index];
+    if (!point) return;
+    this.chosen = point.hash;
+    this.point.show(this.data, index);
+    this.sweep.chart.choose(index);
+    this.table.choose(index);
+  }
+
+  writeWork(data) {
+    if (!data.work.attempts.length) return;
+    if (!this.work) this.work = new WorkView(this.part('work'));
+    this.work.show(data);
+  }
 }
 
 // Paper has no folds.
@@ -215,6 +75,8 @@ function unfoldForPrint() {
   });
 }
 
-const pageData = JSON.parse(document.getElementById('data').textContent);
-writePage(pageData);
+const pageData = JSON.parse(document.getElementById('data').textContent),
+  campaign = new Campaign();
+campaign.show(pageData);
 unfoldForPrint();
+if (pageData.live) new Live(pageData, campaign).start();

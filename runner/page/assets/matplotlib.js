@@ -4,7 +4,10 @@ function matplotlibScript(figure) {
   const names = new Map((figure.legend || []).map((one) => [one.series, name(one.name)]));
   const data = {
     x: { title: name(Format.title(figure.x.about)), log: figure.x.log, categories: figure.x.categories || null },
-    y: { title: name(Format.title(figure.y.about)), log: figure.y.log },
+    y: { title: name(Format.title(figure.y.about)), log: figure.y.log, categories: figure.y.categories || null },
+    boxes: Object.fromEntries(
+      (figure.legend || []).filter((one) => one.kind === 'column').map((one) => [one.series, name(one.name)]),
+    ),
     panels: figure.panels.map((panel) => {
       const series = [...new Set(panel.marks.map((mark) => mark.series))].sort((a, b) => a - b);
       return {
@@ -46,9 +49,12 @@ for axis, panel in zip(axes.flat, panels):
     for band in panel["bands"]:
         x, low, high = zip(*band["places"])
         axis.fill_between(x, low, high, color=COLOURS[band["series"] % 8], alpha=0.16, linewidth=0)
+    names = dict(figure["boxes"])
     for column in panel["columns"]:
         width = column["to"] - column["from"]
-        axis.bar(column["from"], column["height"], width, align="edge", color=COLOURS[0], alpha=0.55)
+        height = column["high"] - column["low"]
+        colour, name = COLOURS[column["series"] % 8], names.pop(str(column["series"]), None)
+        axis.bar(column["from"], height, width, column["low"], align="edge", color=colour, alpha=0.55, label=name)
     for level in panel["levels"]:
         draw = axis.axhline if level["across"] else axis.axvline
         draw(level["value"], color=COLOURS[level.get("series", 0)], linestyle="--", linewidth=1)
@@ -70,7 +76,9 @@ for axis, panel in zip(axes.flat, panels):
     axis.set_title(panel["title"], fontsize="medium")
     axis.set_xlabel(figure["x"]["title"])
     axis.set_ylabel(figure["y"]["title"])
-    if any(series["name"] for series in panel["series"]):
+    if figure["y"]["categories"]:
+        axis.set_yticks(range(len(figure["y"]["categories"])), figure["y"]["categories"])
+    if figure["boxes"] or any(series["name"] for series in panel["series"]):
         axis.legend(fontsize="small")
 for axis in axes.flat[len(panels):]:
     axis.set_visible(False)

@@ -1,20 +1,12 @@
 // What is known of one point: how its mean came about, how seeds scatter, what was lost, what it cost. The figures are
 // pure; `show` writes them down.
 class PointView {
-  constructor(data, host) {
-    Object.assign(this, { data, host });
-    const path = data.target.observable.replace(/^\//, '');
-    this.column = data.quantities.findIndex((quantity) => quantity.path === path);
-    this.about =
-      this.column < 0
-        ? { words: Format.words(path), symbol: [], unit: '' }
-        : Format.quantity(data.quantities[this.column]);
-    this.select = Page.select(
-      data.points.map((point, i) => [String(i), point.label]),
-      () => this.onChoose(Number(this.select.value)),
-    );
+  // `onPick(index)`: a point was chosen here.
+  constructor(host, onPick) {
+    this.select = Page.select([], () => onPick(Number(this.select.value)));
     this.facts = document.createElement('div');
     this.charts = ['mean', 'width', 'scatter'].map(() => new Chart(document.createElement('figure')));
+    this.details = new DetailsView();
     this.losses = document.createElement('div');
     this.numbers = document.createElement('div');
     const pair = document.createElement('div');
@@ -23,8 +15,15 @@ class PointView {
     const controls = document.createElement('div');
     controls.className = 'controls';
     controls.append(Page.labelled('Point', this.select));
-    host.append(Page.heading('h2', 'One point'), controls, this.facts, pair, this.losses, this.numbers);
-    this.onChoose = () => {};
+    host.append(
+      Page.heading('h2', 'One point'),
+      controls,
+      this.facts,
+      pair,
+      this.details.host,
+      this.losses,
+      this.numbers,
+    );
   }
 
   seedsAxis(log) {
@@ -164,7 +163,9 @@ class PointView {
       panel.columns = scatter.counts.map((height, i) => ({
         from: scatter.low + i * width,
         to: scatter.low + (i + 1) * width,
-        height,
+        low: 0,
+        high: height,
+        series: 0,
       }));
       return {
         ...figure,
@@ -172,7 +173,7 @@ class PointView {
         y: { about: { words: 'seeds', symbol: [], unit: '' }, log: false },
         table: {
           columns: ['from', 'to', 'seeds'],
-          rows: panel.columns.map((column) => [column.from, column.to, column.height]),
+          rows: panel.columns.map((column) => [column.from, column.to, column.high]),
         },
         caption: 'How many seeds gave which value. Dashed: their mean.',
       };
@@ -230,8 +231,19 @@ class PointView {
     return said.join(' ');
   }
 
-  show(index) {
-    const point = this.data.points[index];
+  show(data, index) {
+    const point = data.points[index],
+      path = data.target.observable.replace(/^\//, '');
+    this.data = data;
+    this.column = data.quantities.findIndex((quantity) => quantity.path === path);
+    this.about =
+      this.column < 0
+        ? { words: Format.words(path), symbol: [], unit: '' }
+        : Format.quantity(data.quantities[this.column]);
+    Page.refill(
+      this.select,
+      data.points.map((one, i) => [String(i), one.label]),
+    );
     this.select.value = String(index);
     const groups = Object.entries(point.groups || {}).filter(([, value]) => Format.isNumber(value));
     this.facts.replaceChildren(Page.paragraph(this.sentences(point)));
@@ -239,6 +251,7 @@ class PointView {
       this.facts.append(Page.paragraph(groups.map(([name, value]) => Page.group(name, value)).join(' · '), 'faint'));
     const figures = [...this.convergence(point), this.scatter(point)];
     this.charts.forEach((chart, i) => chart.show(figures[i]));
+    this.details.show(data, point, this.about);
     this.losses.replaceChildren();
     const causes = Object.entries(point.losses);
     if (causes.length) {
@@ -250,7 +263,8 @@ class PointView {
         ),
       );
     }
-    this.showNumbers(point);
+    const shown = [point.hash, data.quantities, point.estimates, point.uncontrolled];
+    Page.renew(this.numbers, shown, () => this.showNumbers(point));
   }
 
   // Everything that was measured at the point.
@@ -266,10 +280,8 @@ class PointView {
           plain: point.uncontrolled[quantity.path],
         });
     });
-    const open = this.numbers.firstChild ? this.numbers.firstChild.open : false;
     const details = Page.details(`All that was measured at this point (${rows.length} numbers)`);
-    details.open = open;
-    this.numbers.replaceChildren(details);
+    this.numbers.append(details);
     new SortedTable(
       details,
       [

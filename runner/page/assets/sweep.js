@@ -118,7 +118,7 @@ class Sweep {
 
   // The figure of a choice over `axis`, with a panel for each combination of values of `panelBy`. Scales are those that
   // fit unless log.x or log.y is given.
-  figure(choice, axis, panelBy, log = {}) {
+  figure(choice, axis, panelBy, log = {}, stacked = false) {
     const { quantities } = this.data,
       panels = new Map(),
       series = new Map(),
@@ -158,7 +158,10 @@ class Sweep {
           allowed: point.good_enough[path],
           kind,
           point: i,
-          text: `${point.label}: ${Format.withError(y, half)} (${Format.counted(count, 'seed')}, ${point.standing})`,
+          text: `${point.label}${terms ? `, ${term(index).text}` : ''}: ${Format.withError(y, half)} (${Format.counted(
+            count,
+            'seed',
+          )}, ${point.standing})`,
         });
         kinds.add(kind);
         rows.push([
@@ -176,12 +179,17 @@ class Sweep {
     const inOrder = (a, b) =>
       a.order.map((place, i) => place - b.order[i]).find((difference) => difference !== 0) || 0;
     const list = [...panels.values()].sort(inOrder);
-    for (const panel of list) Sweep.connect(panel, series.size);
     const marks = list.flatMap((panel) => panel.marks);
     const scales = {
       x: axis.numeric && (log.x ?? isLogarithmic(axis.values)),
-      y: log.y ?? isLogarithmic(marks.flatMap(Sweep.ends)),
+      y: !stacked && (log.y ?? isLogarithmic(marks.flatMap(Sweep.ends))),
     };
+    const total = stacked ? choice.indices.findIndex((index) => quantities[index].name.endsWith('/total')) : -1;
+    if (stacked) this.addControl(list, total, series, quantities[choice.indices[total]].path);
+    for (const panel of list) {
+      if (stacked) Sweep.stack(panel, total, scales.x);
+      else Sweep.connect(panel, series.size);
+    }
     const hidden = marks.filter((mark) => (scales.y && !(mark.y > 0)) || (scales.x && !(mark.x > 0))).length;
     const notes = [];
     if (hidden)
@@ -194,7 +202,10 @@ class Sweep {
       pick: true,
       x: { about: axis.about, log: scales.x, categories: axis.numeric ? null : axis.values },
       y: { about: choice.about, log: scales.y },
-      legend: series.size > 1 ? [...series.values()] : [],
+      legend:
+        series.size > 1
+          ? [...series.values()].map((one) => (stacked && one.series !== total ? { ...one, kind: 'column' } : one))
+          : [],
       kinds: [...kinds],
       hasBand: marks.some((mark) => Format.isNumber(mark.allowed)),
       table: {
@@ -211,6 +222,64 @@ class Sweep {
         rows,
       },
     };
+  }
+
+  // The mean of a sum takes its control variate along, those of its parts do not: what lies between is a part, too.
+  addControl(panels, total, series, path) {
+    const place = Math.max(series.size, 6); // a colour that is like none of the first
+    for (const { marks } of panels) {
+      for (const mark of marks.filter((one) => one.series === total)) {
+        const plain = this.points[mark.point].uncontrolled[path];
+        if (!plain || plain[0] === mark.y) continue;
+        const text = `${this.points[mark.point].label}, control variate: ${Format.rough(mark.y - plain[0])}`;
+        marks.push({ ...mark, series: place, y: mark.y - plain[0], half: null, text });
+        series.set('control', { series: place, name: [{ text: 'control variate', level: 0 }] });
+      }
+    }
+  }
+
+  // Whether the choice is a sum and all of its parts, at every point, so that these may be stacked. What is measured may
+  // lie a little beside it by rounding.
+  isSum(choice) {
+    const { quantities } = this.data,
+      total = choice.indices.find((index) => quantities[index].name.endsWith('/total'));
+    if (total === undefined || choice.indices.length < 3) return false;
+    const mean = (point, index) => (point.estimates[index] ? point.estimates[index][0] : null);
+    return this.points.every((point) => {
+      const parts = choice.indices.filter((index) => index !== total).map((index) => mean(point, index));
+      if (!Format.isNumber(mean(point, total))) return true;
+      const [sum] = point.uncontrolled[quantities[total].path] || [mean(point, total)];
+      const size = parts.reduce((all, part) => all + Math.abs(part), 0);
+      return Math.abs(parts.reduce((all, part) => all + part, 0) - sum) <= 1e-6 * size;
+    });
+  }
+
+  // Whether no two points of a panel lie at the same place.
+  isAlone(axis, panelBy) {
+    const seen = new Set(this.points.map((_, i) => JSON.stringify([axis, ...panelBy].map((one) => one.cells[i]))));
+    return seen.size === this.points.length;
+  }
+
+  // Parts one above another, those below zero downward, and the sum as a mark with its bar.
+  static stack(panel, total, log) {
+    const parts = panel.marks.filter((mark) => mark.series !== total),
+      along = (x) => (log ? Math.log10(x) : x),
+      xs = [...new Set(panel.marks.map((mark) => mark.x))].filter((x) => !log || x > 0).map(along).sort((a, b) => a - b);
+    const gaps = xs.slice(1).map((x, i) => x - xs[i]),
+      gap = gaps.length ? Math.min(...gaps) : log ? 0.3 : 0.1 * Math.abs(xs[0]) || 1;
+    const ends = new Map();
+    panel.columns = [];
+    for (const mark of parts) {
+      if (log && !(mark.x > 0)) continue;
+      const [below, above] = ends.get(mark.x) || [0, 0],
+        places = [-1, 1].map((side) => along(mark.x) + 0.3 * side * gap).map((x) => (log ? 10 ** x : x));
+      const [low, high] = mark.y < 0 ? [below + mark.y, below] : [above, above + mark.y];
+      ends.set(mark.x, mark.y < 0 ? [low, above] : [below, high]);
+      panel.columns.push({ from: places[0], to: places[1], low, high, series: mark.series, text: mark.text });
+    }
+    panel.marks = panel.marks.filter((mark) => mark.series === total);
+    panel.levels = [{ value: 0, across: true, series: 7, style: 'zero' }];
+    [panel.lines, panel.bands] = [[], []];
   }
 
   // What of a mark has to be seen. Bars of numbers that are not decided may still be enormous.

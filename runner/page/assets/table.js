@@ -1,6 +1,9 @@
 // A table that sorts by a click on a title. columns: [{title: parts or text, text: whether words, minor: left out where
 // it is narrow, wrap, cell(row), sort(row)}].
 class SortedTable {
+  // By which column a table of that name was sorted last, so that it stays so when it is made anew.
+  static sorted = new Map();
+
   // `onPick(row)`: a row was chosen, by its first cell.
   constructor(host, columns, rows, { caption = '', onPick = null, name = 'table', csv = null } = {}) {
     Object.assign(this, { columns, rows, onPick, chosen: null, by: null, descending: false });
@@ -28,6 +31,8 @@ class SortedTable {
     wide.append(this.table);
     host.append(wide);
     if (caption) host.append(Page.paragraph(caption, 'faint'));
+    this.name = name;
+    if (SortedTable.sorted.has(name)) this.sort(...SortedTable.sorted.get(name));
     if (csv) host.append(Saving.links(Saving.link('CSV', `${name}.csv`, 'text/csv', Saving.csv(csv))));
   }
 
@@ -56,10 +61,17 @@ class SortedTable {
     return line;
   }
 
-  // Numbers before words; what does not exist comes last either way.
   sortBy(i) {
     this.descending = this.by === i && !this.descending;
     this.by = i;
+    SortedTable.sorted.set(this.name, [i, this.descending]);
+    this.sort(i, this.descending);
+  }
+
+  // Numbers before words; what does not exist comes last either way.
+  sort(i, descending) {
+    Object.assign(this, { by: i, descending });
+    if (!this.columns[i]) return;
     const { sort } = this.columns[i],
       turn = this.descending ? -1 : 1;
     const missing = (value) => value === null || value === undefined || Number.isNaN(value);
@@ -78,9 +90,9 @@ class SortedTable {
     });
   }
 
-  choose(row) {
-    this.rows.forEach((one, i) => {
-      if (one === row) this.lines[i].setAttribute('aria-selected', 'true');
+  choose(index) {
+    this.rows.forEach((_, i) => {
+      if (i === index) this.lines[i].setAttribute('aria-selected', 'true');
       else this.lines[i].removeAttribute('aria-selected');
     });
   }

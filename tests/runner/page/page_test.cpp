@@ -102,6 +102,40 @@ TEST_F(CampaignPage, KeepsItsSizeHoweverManySeedsThereAre) {
   EXPECT_EQ(point["scatter"]["low"], 10.25);
 }
 
+// Blocks of 1, 2 ... 32 plus the seed, and control variates of 0.25 in every one: means of seeds 0 to 3
+// are 2.5 + k.
+TEST_F(CampaignPage, ShowsTheCourseWithinTheWindow) {
+  for (int seed = 0; seed < 4; ++seed) {
+    campaign_.complete_with(0, seed, 10, [&](Json& result) {
+      Json& blocks = result["blocks"] = {{"relative_viscosity", Json::array()}};
+      for (int k = 0; k < 32; ++k) blocks["relative_viscosity"].push_back(1 + k + seed);
+      blocks["relative_viscosity"][7] = seed == 0 ? Json(nullptr) : Json(8 + seed);
+    });
+  }
+  const Json details = data()["points"][0]["details"];
+  EXPECT_EQ(details["seeds"], 4);
+  EXPECT_EQ(details["of"], 4);
+  ASSERT_EQ(details["blocks"]["mean"].size(), 32U);
+  EXPECT_EQ(details["blocks"]["mean"][0], 2.5);
+  EXPECT_EQ(details["blocks"]["mean"][7], 10);  // of 9, 10 and 11
+  EXPECT_EQ(details["blocks"]["mean"][31], 33.5);
+  // Student's t of 3.182 times the root of 5/3 over 4.
+  EXPECT_NEAR(details["blocks"]["half_width"][0], 3.18244630528 * std::sqrt(5.0 / 12), 1e-9);
+}
+
+TEST_F(CampaignPage, SaysWhoWorkedOnWhat) {
+  campaign_.complete(1, 3, 10);
+  campaign_.crash(0, 2);
+  const Json work = data()["work"];
+  ASSERT_EQ(work["attempts"].size(), 2U);
+  EXPECT_EQ(work["attempts"][0]["point"], 1);
+  EXPECT_EQ(work["attempts"][0]["seed"], 3);
+  EXPECT_EQ(work["attempts"][0]["outcome"], "result");
+  EXPECT_EQ(work["attempts"][1]["point"], 0);
+  EXPECT_EQ(work["attempts"][1]["outcome"], "crashed");
+  EXPECT_EQ(work["now"], Json::array());
+}
+
 TEST_F(CampaignPage, ListsLostSeedsByCauseAndWhatTheyMean) {
   for (int seed = 0; seed < 2; ++seed) campaign_.complete(0, seed, 10 + 0.001 * seed);
   campaign_.blow_up(0, 2);

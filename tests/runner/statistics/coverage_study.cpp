@@ -25,10 +25,12 @@ namespace {
 constexpr double confidence = 0.95;
 constexpr int points_at_a_time = 3;
 
+enum class Shape { normal, lognormal, gamma };
+
 // Values of mean 1, and how long a realisation runs.
 struct Population {
   std::string name;
-  bool lognormal = false;
+  Shape shape = Shape::normal;
   bool slow_when_large = false;  // run time correlated with the value, 0.8
 };
 
@@ -50,11 +52,14 @@ class Source {
   Source(const Case& about, unsigned start)
       : random_(start),
         population_(about.population),
-        spread_(spread_that_needs(about.needed, about.tolerance)) {}
+        spread_(spread_that_needs(about.needed, about.tolerance)),
+        gamma_(gamma_of(spread_)) {}
 
   Realisation draw() {
     const double z = normal_(random_);
-    const double value = population_.lognormal ? lognormal_of(z, spread_) : 1 + spread_ * z;
+    const double value = population_.shape == Shape::lognormal ? lognormal_of(z, spread_)
+                         : population_.shape == Shape::gamma   ? gamma_(random_)
+                                                               : 1 + spread_ * z;
     const double own = normal_(random_);
     // Lognormal run times whose logarithm has the standard deviation 0.5.
     return {value, std::exp(0.5 * (population_.slow_when_large ? 0.8 * z + 0.6 * own : own))};
@@ -65,6 +70,7 @@ class Source {
   std::normal_distribution<double> normal_;
   Population population_;
   double spread_;
+  std::gamma_distribution<double> gamma_;
 };
 
 struct Tally {
@@ -149,8 +155,9 @@ void simulate_naive(const Case& about, Source& source, Tally& tally) {
 
 std::vector<Case> cases() {
   std::vector<Case> all;
-  const Population normal{"normal"}, slow{"slow-when-large", false, true},
-      lognormal{"lognormal", true, false}, slow_lognormal{"slow-when-large lognormal", true, true};
+  const Population normal{"normal"}, slow{"slow-when-large", Shape::normal, true},
+      lognormal{"lognormal", Shape::lognormal},
+      slow_lognormal{"slow-when-large lognormal", Shape::lognormal, true};
   for (const int minimum : {8, 10, 20, 40}) {
     for (const double ratio : {0.1, 0.5, 1.0, 1.5, 2.0, 4.0, 10.0, 20.0}) {
       all.push_back({normal, minimum, 0.05, ratio * minimum, 1});
@@ -162,14 +169,22 @@ std::vector<Case> cases() {
   // Coefficient of variation 1.
   for (const double tolerance : {0.1, 0.15, 0.2, 0.3}) {
     for (const int minimum : {8, 20}) {
-      all.push_back({lognormal, minimum, tolerance, std::pow(1.959964 / tolerance, 2), 1});
+      all.push_back({lognormal, minimum, tolerance, values_that_need(1, tolerance), 1});
     }
   }
-  for (const int workers : {4, 64}) all.push_back({slow_lognormal, 10, 0.1, std::pow(19.59964, 2), workers});
+  for (const int workers : {4, 64})
+    all.push_back({slow_lognormal, 10, 0.1, values_that_need(1, 0.1), workers});
   const Population plain{"normal plain"};
   for (const int minimum : {5, 8, 10}) {
     for (const double ratio : {0.1, 0.5, 1.0, 1.5, 2.0, 4.0, 10.0, 20.0}) {
       all.push_back({plain, minimum, 0.05, ratio * minimum, 1, true});
+    }
+  }
+  // Means of squares, as zero_shear_viscosity: the coefficients of variation of its seeds (results/at-rest).
+  const Population squares{"gamma", Shape::gamma};
+  for (const double tolerance : {0.05, 0.1}) {
+    for (const double variation : {0.06, 0.1, 0.15, 0.2, 0.3, 0.4}) {
+      all.push_back({squares, 8, tolerance, values_that_need(variation, tolerance), 1});
     }
   }
   return all;

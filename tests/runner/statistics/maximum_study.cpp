@@ -47,8 +47,7 @@ class Source {
       : random_(start),
         population_(about.population),
         spread_(spread_that_needs(about.needed(), tolerance)),
-        // Mean 1 and standard deviation spread_: skewness 2 spread_.
-        gamma_(1 / (spread_ * spread_), spread_ * spread_) {}
+        gamma_(gamma_of(spread_)) {}
 
   Outcome draw() {
     if (population_ == Population::skewed) return {Outcome::Kind::value, gamma_(random_), 0};

@@ -1,0 +1,85 @@
+#include "runner/archive/supplement.h"
+
+#include <fmt/format.h>
+
+#include "contract/input_error.h"
+#include "contract/provenance.h"
+#include "contract/sha256.h"
+#include "runner/archive/supplement_readme.h"
+#include "runner/figure/figure_script.h"
+#include "runner/figure/svg_figure.h"
+#include "runner/page/page_html.h"
+#include "runner/reports/export.h"
+#include "runner/reports/status.h"
+
+namespace peclet::runner {
+namespace {
+
+// When a seed last ended; before the first one, when the campaign was last taken up.
+constexpr const char* last_change =
+    "SELECT coalesce((SELECT max(ended_at) FROM attempt WHERE ended_at != ''), "
+    "(SELECT updated_at FROM campaign))";
+
+Json provenance_json(Database& database, const CampaignRecord& campaign) {
+  Json engines = Json::array();
+  for (const EngineRecord& engine : database.engines()) {
+    engines.push_back({{"identity", engine.identity}, {"provenance", engine.provenance}});
+  }
+  Json hosts = Json::array();
+  Statement query(database.connection(), "SELECT DISTINCT host FROM attempt WHERE host != '' ORDER BY host");
+  while (query.step()) hosts.push_back(query.text(0));
+  const Json& own = provenance();
+  return {{"schema_version", 1},
+          {"campaign", campaign.name},
+          {"campaign_sha256", sha256(canonical_json(campaign.document))},
+          {"made_by",
+           {{"program", "peclet"},
+            {"version", version()},
+            {"git_commit", own.value("git_commit", Json())},
+            {"git_dirty", own.value("git_dirty", Json())}}},
+          {"engines", engines},
+          {"machines", hosts},
+          {"begun_at", campaign.created_at},
+          {"taken_up_at", campaign.updated_at},
+          {"last_change_at", database.connection().text(last_change)}};
+}
+
+std::string sums(const std::vector<ArchivedFile>& files) {
+  std::string text;
+  for (const ArchivedFile& file : files) text += fmt::format("{}  {}\n", sha256(file.bytes), file.name);
+  return text;
+}
+
+}  // namespace
+
+void check_supplement_name(const std::filesystem::path& output) {
+  const std::string name = output.filename().string();
+  if (name.ends_with(".tar.gz") || name.ends_with(".tgz")) return;
+  throw InputError("", "--bundle", output.string(), "must end in .tar.gz or .tgz");
+}
+
+std::vector<ArchivedFile> supplement_files(Database& database, std::optional<std::int64_t> owner) {
+  const CampaignStatus status = read_status(database);
+  const CampaignRecord& campaign = status.campaign;
+  const Figure figure = make_figure(database, {});
+  std::vector<ArchivedFile> files{{"README.md", supplement_readme(status)},
+                                  {campaign.name + ".json", campaign.document.dump(2) + '\n'},
+                                  {"results.csv", export_csv(database, true)},
+                                  {"numbers.csv", export_long_csv(database)},
+                                  {"results.json", export_json(database, true)},
+                                  {"report.html", report_html(database, owner)},
+                                  {"figure.svg", svg_figure(figure)},
+                                  {"figure.py", figure_script(figure), true},
+                                  {"provenance.json", provenance_json(database, campaign).dump(2) + '\n'}};
+  files.push_back({"SHA256SUMS", sums(files)});
+  return files;
+}
+
+std::string supplement(Database& database, std::optional<std::int64_t> owner) {
+  const std::vector<ArchivedFile> files = supplement_files(database, owner);
+  Statement seconds(database.connection(), fmt::format("SELECT strftime('%s', ({}))", last_change));
+  const bool known = seconds.step();
+  return gzip(tar(database.campaign().name, files, known ? seconds.integer(0) : 0));
+}
+
+}  // namespace peclet::runner

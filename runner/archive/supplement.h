@@ -1,0 +1,28 @@
+// `peclet export --bundle`: all that a reader of a paper needs of a campaign, in one file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/archive/tar_gz.h"
+#include "runner/database/database.h"
+
+namespace peclet::runner {
+
+// Throws InputError at --bundle unless the name ends in .tar.gz or .tgz.
+void check_supplement_name(const std::filesystem::path& output);
+
+// The files, README.md first and SHA256SUMS last: campaign file, exports as JSON, CSV and long CSV, the page,
+// the figure with its script, provenance. All are of the one snapshot that the reader has. They depend on the
+// database alone, and on who runs the campaign (`owner`), which the page says.
+// Throws InputError where nothing has been measured yet, IntegrityError.
+std::vector<ArchivedFile> supplement_files(Database& database, std::optional<std::int64_t> owner);
+
+// The same as a compressed archive with a folder of the campaign's name in it, last changed when the last
+// seed ended. The same state gives the same bytes.
+std::string supplement(Database& database, std::optional<std::int64_t> owner);
+
+}  // namespace peclet::runner

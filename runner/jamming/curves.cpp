@@ -1,0 +1,176 @@
+#include "runner/jamming/curves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string_view>
+
+#include "contract/input_error.h"
+#include "contract/nearest_name.h"
+#include "runner/figure/swept.h"
+#include "runner/page/page_parts.h"
+#include "runner/reports/status.h"
+
+namespace peclet::runner {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+bool is_jam(const std::string& cause) {
+  constexpr std::array<std::string_view, 3> jams{"overlap", "packing", "jammed"};
+  return std::find(jams.begin(), jams.end(), cause) != jams.end();
+}
+
+// What the seeds of the look, or all that have ended, say.
+void judge(JammingPoint& made, Database& database, const PointSummary& point, double softest) {
+  const int end = point.looks.empty() ? std::numeric_limits<int>::max() : point.looks.back().seeds;
+  RunningEstimate overlaps;
+  int lost = 0;
+  for (const RealisationRecord& seed : database.realisations(point.point.id)) {
+    made.cpu_seconds += seed.cpu_seconds.value_or(0);
+    if (seed.seed >= end || seed.state == SeedState::queued || seed.state == SeedState::running) continue;
+    ++made.ended;
+    if (seed.state == SeedState::done) {
+      if (seed.largest_overlap) overlaps.add(*seed.largest_overlap);
+    } else {
+      ++(is_jam(seed.cause) ? made.jammed : lost);
+    }
+  }
+  if (overlaps.estimate().count > 0) made.overlap = overlaps.estimate().mean;
+  constexpr int least_share = 10;
+  if (point.point.suspect) {
+    made.state = FlowState::suspect;
+  } else if (made.ended == 0) {
+    made.state = FlowState::open;
+  } else if (2 * made.jammed >= made.ended) {
+    made.state = FlowState::jammed;
+  } else if (2 * lost >= made.ended) {
+    made.state = FlowState::lost;
+  } else if (least_share * made.jammed > made.ended) {
+    made.state = FlowState::partly_jammed;
+  } else {
+    made.state = made.overlap && *made.overlap > softest ? FlowState::soft : FlowState::flowing;
+  }
+}
+
+// The place of the quantity among what has been measured; none where nothing has.
+std::optional<std::size_t> column_of(const std::vector<Drawable>& drawables, const std::string& quantity) {
+  if (drawables.empty()) return std::nullopt;
+  const std::string path = quantity.starts_with('/') ? quantity.substr(1) : quantity;
+  std::vector<std::string> names;
+  for (std::size_t column = 0; column < drawables.size(); ++column) {
+    if (drawables[column].path == path) return column;
+    names.push_back(drawables[column].path);
+  }
+  throw InputError("", "--quantity", quantity, "must be a number that is measured" + suggestion(path, names));
+}
+
+Estimate estimate_of(const Json& point, const std::optional<std::size_t>& column) {
+  const Json numbers = column ? point.at("estimates").at(*column) : Json();
+  if (numbers.is_null()) return {0, none, none};
+  const auto number = [&](std::size_t place) {
+    return numbers[place].is_number() ? numbers[place].get<double>() : none;
+  };
+  return {numbers[3].get<int>(), number(0), number(1)};
+}
+
+void require_fractions(const Swept& axis, const std::string& name) {
+  const bool are_fractions = axis.numeric && std::all_of(axis.numbers.begin(), axis.numbers.end(),
+                                                         [](double phi) { return phi > 0 && phi < 1; });
+  if (are_fractions && !axis.pointer.empty()) return;
+  throw InputError("", "--over", name, "must be a swept volume fraction: numbers > 0 and < 1");
+}
+
+// "friction = 0.5, peclet = 10", by which curves are told apart, and the same by pointer.
+void name_curve(JammingCurve& curve, const std::vector<const Swept*>& by, const Json& point,
+                std::size_t place) {
+  curve.settings = Json::object();
+  for (const Swept* const one : by) {
+    curve.name +=
+        fmt::format("{}{} = {}", curve.name.empty() ? "" : ", ", text_of(one->name), one->words[place]);
+    curve.settings[one->pointer] = point.at("settings").value(one->pointer, Json());
+  }
+}
+
+}  // namespace
+
+const char* to_string(FlowState state) {
+  switch (state) {
+    case FlowState::flowing:
+      return "flowing";
+    case FlowState::soft:
+      return "soft";
+    case FlowState::partly_jammed:
+      return "partly jammed";
+    case FlowState::jammed:
+      return "jammed";
+    case FlowState::lost:
+      return "lost";
+    case FlowState::suspect:
+      return "suspect";
+    case FlowState::open:
+      return "open";
+  }
+  return "";
+}
+
+bool JammingPoint::has_error() const {
+  return estimate.count >= fewest_seeds && estimate.mean > 0 && estimate.standard_error > 0;
+}
+
+LawPoint JammingPoint::law_point() const {
+  return {fraction, estimate.mean, estimate.standard_error, estimate.count};
+}
+
+std::optional<double> JammingCurve::largest_flowing() const {
+  std::optional<double> found;
+  for (const JammingPoint& point : points) {
+    if (point.state == FlowState::flowing) found = point.fraction;
+  }
+  return found;
+}
+
+const JammingPoint* JammingCurve::smallest_stuck() const {
+  const double flowing = largest_flowing().value_or(0);
+  for (const JammingPoint& point : points) {
+    const bool is_stuck = point.state == FlowState::jammed || point.state == FlowState::soft;
+    if (is_stuck && point.fraction > flowing) return &point;
+  }
+  return nullptr;
+}
+
+JammingCurves read_curves(Database& database, const CurveChoice& choice) {
+  const CampaignStatus status = read_status(database);
+  KnownPoints known;
+  const PagePoints page = page_points(database, status, known);
+  const std::vector<Swept> swept = swept_parameters(page_parameters(status), page.points);
+  const Swept& axis = chosen_axis(swept, choice.over, "--over");
+  require_fractions(axis, choice.over);
+  const std::vector<const Swept*> by = curves_by(swept, axis);
+  const std::optional<std::size_t> column = column_of(page.drawables, choice.quantity);
+  JammingCurves made{status.campaign.name, choice.quantity, axis.pointer, {}};
+  std::map<std::string, std::size_t> places;  // of curves, by their settings
+  for (std::size_t i = 0; i < page.points.size(); ++i) {
+    JammingCurve named;
+    name_curve(named, by, page.points[i], i);
+    const auto [place, is_new] = places.emplace(named.settings.dump(), made.curves.size());
+    if (is_new) made.curves.push_back(std::move(named));
+    JammingPoint point;
+    point.label = status.points[i].point.label;
+    point.fraction = axis.numbers[i];
+    point.estimate = estimate_of(page.points[i], column);
+    judge(point, database, status.points[i], choice.softest);
+    made.curves[place->second].points.push_back(std::move(point));
+  }
+  for (JammingCurve& curve : made.curves) {
+    std::stable_sort(curve.points.begin(), curve.points.end(),
+                     [](const JammingPoint& a, const JammingPoint& b) { return a.fraction < b.fraction; });
+  }
+  return made;
+}
+
+}  // namespace peclet::runner

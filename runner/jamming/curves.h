@@ -1,0 +1,70 @@
+// The points of a campaign as curves of viscosity over volume fraction, each point with what is known of
+// whether it flows.
+//
+// A point is judged by the seeds of its last look, before the first one by all that have ended:
+//   suspect  a seed gave two different results
+//   jammed   half of the seeds or more ended as jammed: the engine's causes "overlap", "packing" and "jammed"
+//   lost     half or more ended without a value for other reasons
+//   partly   more than a tenth ended as jammed: the mean is of those that happened to flow
+//   soft     the largest overlap, mean over the seeds, is above the limit: spheres that are not hard flow
+//            beyond their jamming point
+//   flowing  all others
+//   open     no seed has ended
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "contract/json.h"
+#include "runner/database/database.h"
+#include "runner/jamming/law.h"
+#include "runner/statistics/statistics.h"
+
+namespace peclet::runner {
+
+enum class FlowState { flowing, soft, partly_jammed, jammed, lost, suspect, open };
+// "partly jammed"
+const char* to_string(FlowState state);
+
+struct JammingPoint {
+  std::string label;
+  double fraction = 0;
+  Estimate estimate{};  // of the viscosity, the one that decides; NaN without
+  FlowState state = FlowState::open;
+  int ended = 0, jammed = 0;        // seeds
+  std::optional<double> overlap{};  // largest one, in radii of the smaller sphere, mean over the seeds
+  double cpu_seconds = 0;           // of all its seeds
+
+  // Of the estimate: whether it can enter a fit.
+  bool has_error() const;
+  LawPoint law_point() const;
+};
+
+struct JammingCurve {
+  std::string name;                  // "friction = 0.5"; "" of the only one
+  Json settings;                     // of what is swept besides, by pointer
+  std::vector<JammingPoint> points;  // in ascending order
+
+  std::optional<double> largest_flowing() const;
+  // The smallest fraction above it, or of all where none flows, at which it is jammed or soft.
+  const JammingPoint* smallest_stuck() const;
+};
+
+struct JammingCurves {
+  std::string campaign, quantity;
+  std::string over;  // pointer of the volume fraction
+  std::vector<JammingCurve> curves;
+};
+
+struct CurveChoice {
+  std::string over = "volume_fraction";         // as of chosen_axis()
+  std::string quantity = "relative_viscosity";  // as `export` calls it
+  double softest = 0.01;                        // overlap
+};
+
+// Throws InputError for a parameter that is not swept or is no volume fraction (0 < phi < 1), or a quantity
+// that is not measured; IntegrityError.
+JammingCurves read_curves(Database& database, const CurveChoice& choice);
+
+}  // namespace peclet::runner

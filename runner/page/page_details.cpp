@@ -1,0 +1,99 @@
+#include "runner/page/page_details.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "runner/folder/realisation_result.h"
+#include "runner/statistics/look_json.h"
+#include "runner/statistics/quantity_estimates.h"
+#include "runner/statistics/stop_rule.h"
+
+namespace peclet::runner {
+namespace {
+
+bool is_profile(const Quantity& quantity) {
+  if (quantity.axes.size() != 1 || quantity.elements() < 2) return false;
+  const Json& values = quantity.axes.front().values;
+  return std::all_of(values.begin(), values.end(), [](const Json& value) { return value.is_number(); });
+}
+
+Json profile_json(const QuantityEstimate& found, double confidence) {
+  constexpr std::size_t most_values = 400;
+  const Quantity& quantity = found.quantity;
+  const QuantityAxis& axis = quantity.axes.front();
+  const std::size_t stride = 1 + (quantity.elements() - 1) / most_values;
+  Json values = Json::array(), means = Json::array(), errors = Json::array(), widths = Json::array();
+  for (std::size_t k = 0; k < quantity.elements(); k += stride) {
+    const Estimate& estimate = found.estimates[k];
+    values.push_back(axis.values[k]);
+    means.push_back(number_json(estimate.mean));
+    errors.push_back(number_json(estimate.standard_error));
+    widths.push_back(number_json(student_half_width(estimate, confidence)));
+  }
+  return {{"name", quantity.name}, {"symbol", quantity.symbol},
+          {"unit", quantity.unit}, {"axis", {{"name", axis.name}, {"unit", axis.unit}, {"values", values}}},
+          {"mean", means},         {"standard_error", errors},
+          {"half_width", widths}};
+}
+
+// Block by block over the seeds.
+class Blocks {
+ public:
+  void add(const std::vector<double>& values) {
+    if (values.empty() || (!sums_.empty() && sums_.size() != values.size())) return;
+    sums_.resize(values.size());
+    for (std::size_t block = 0; block < values.size(); ++block) {
+      if (!std::isnan(values[block])) sums_[block].add(values[block]);
+    }
+  }
+  Json json(double confidence) const {
+    if (sums_.empty()) return nullptr;
+    Json means = Json::array(), widths = Json::array();
+    for (const RunningEstimate& sum : sums_) {
+      means.push_back(number_json(sum.estimate().mean));
+      widths.push_back(number_json(student_half_width(sum.estimate(), confidence)));
+    }
+    return {{"mean", means}, {"half_width", widths}};
+  }
+
+ private:
+  std::vector<RunningEstimate> sums_;
+};
+
+int completed_below(Connection& connection, std::int64_t point, int end) {
+  Statement query(connection, "SELECT count(*) FROM numbers WHERE point_id = ? AND seed < ?");
+  query.bind(point).bind(end).step();
+  return static_cast<int>(query.integer(0));
+}
+
+// The seed after the first `seeds` that have completed.
+int end_of_first(Connection& connection, std::int64_t point, int end, int seeds) {
+  Statement query(connection,
+                  "SELECT seed FROM numbers WHERE point_id = ? AND seed < ? ORDER BY seed LIMIT 1 OFFSET ?");
+  return query.bind(point).bind(end).bind(seeds - 1).step() ? static_cast<int>(query.integer(0)) + 1 : end;
+}
+
+}  // namespace
+
+Json point_details(Database& database, std::int64_t point, int end, const Target& target, int seeds) {
+  Connection& connection = database.connection();
+  const int completed = completed_below(connection, point, end);
+  QuantityEstimates sums;
+  Blocks blocks;
+  int read = 0;
+  database.for_each_result(point, end_of_first(connection, point, end, seeds), [&](int, const Json& result) {
+    if (!result.at("mean").is_object()) return;
+    ++read;
+    sums.add(result);
+    blocks.add(block_values(result, target.observable));
+  });
+  Json profiles = Json::array();
+  for (const QuantityEstimate& found : sums.estimates()) {
+    if (is_profile(found.quantity)) profiles.push_back(profile_json(found, target.confidence));
+  }
+  return {
+      {"seeds", read}, {"of", completed}, {"blocks", blocks.json(target.confidence)}, {"profiles", profiles}};
+}
+
+}  // namespace peclet::runner

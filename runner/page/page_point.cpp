@@ -1,0 +1,274 @@
+// What the page shows of one point: estimates of everything that is measured there, and how its mean came
+// about.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "runner/database/checked_look.h"
+#include "runner/database/number_book.h"
+#include "runner/page/page_parts.h"
+#include "runner/statistics/look_json.h"
+
+namespace peclet::runner {
+namespace {
+
+// To draw a line with.
+Json drawn(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return std::stod(fmt::format("{:.6g}", value));
+}
+
+// Values of the leading observable in the order of the seeds, and after how many seeds each came; up to the
+// first seed that has not ended.
+struct Values {
+  std::vector<double> values;
+  std::vector<int> seeds;
+  int closed = 0;
+};
+
+Values values_of(const std::vector<std::optional<Outcome>>& outcomes, int end) {
+  Values found;
+  for (const std::optional<Outcome>& outcome : outcomes) {
+    if (!outcome || found.closed == end) break;
+    ++found.closed;
+    if (outcome->kind == Outcome::Kind::lost) continue;
+    found.values.push_back(outcome->value + outcome->control);
+    found.seeds.push_back(found.closed);
+  }
+  return found;
+}
+
+// Whether a line is drawn through the mean of so many seeds: some fifty do, at equal ratios.
+bool is_drawn(int seeds) {
+  constexpr int all_until = 16;
+  constexpr double ratio = 1.12;
+  if (seeds <= all_until) return true;
+  const auto step = [&](int n) { return std::floor(std::log(n) / std::log(ratio)); };
+  return step(seeds) != step(seeds - 1);
+}
+
+Json running_mean(const Values& found, StopRule& rule) {
+  Json seeds = Json::array(), means = Json::array(), widths = Json::array();
+  RunningEstimate estimate;
+  for (std::size_t i = 0; i < found.values.size(); ++i) {
+    estimate.add(found.values[i]);
+    if (!is_drawn(found.seeds[i]) && i + 1 < found.values.size()) continue;
+    const Estimate now = estimate.estimate();
+    seeds.push_back(found.seeds[i]);
+    means.push_back(drawn(now.mean));
+    widths.push_back(drawn(rule.half_width(now)));
+  }
+  return {{"seeds", seeds}, {"mean", means}, {"half_width", widths}};
+}
+
+// The values themselves while they are few; then how many lie in each of equal parts of their range.
+Json scatter(const Values& found) {
+  constexpr std::size_t most_values = 200;
+  if (found.values.size() <= most_values) {
+    Json values = Json::array();
+    for (const double value : found.values) values.push_back(drawn(value));
+    return {{"seeds", found.seeds}, {"values", values}};
+  }
+  const auto [low, high] = std::minmax_element(found.values.begin(), found.values.end());
+  const auto bins = static_cast<std::size_t>(std::min(40.0, std::ceil(std::sqrt(found.values.size()))));
+  const double width = (*high - *low) / static_cast<double>(bins);
+  std::vector<int> counts(width > 0 ? bins : 1);
+  for (const double value : found.values) {
+    const double place = width > 0 ? (value - *low) / width : 0;
+    ++counts[std::min(counts.size() - 1, static_cast<std::size_t>(place))];
+  }
+  return {{"low", *low}, {"high", *high}, {"counts", counts}};
+}
+
+// The half-width that is good enough for the first criterion, around the means of a look.
+Json good_enough(const Criterion& criterion, const Look& look, const Target& target) {
+  const std::vector<std::string> observables = target.observables();
+  const std::vector<Estimate> estimates = estimates_of(look, target);
+  const std::string& measure =
+      criterion.tolerance.relative_to.empty() ? criterion.observable : criterion.tolerance.relative_to;
+  const auto place = std::find(observables.begin(), observables.end(), measure) - observables.begin();
+  return number_json(criterion.tolerance.half_width(estimates.at(static_cast<std::size_t>(place)).mean));
+}
+
+Json looks_json(const std::vector<Look>& looks, const Target& target) {
+  Json list = Json::array();
+  for (const Look& look : looks) {
+    list.push_back({{"seeds", look.seeds},
+                    {"mean", number_json(look.controlled.mean)},
+                    {"half_width", number_json(look.controlled_half_width)},
+                    {"good_enough", good_enough(target.criteria().front(), look, target)},
+                    {"verdict", to_string(look.verdict)}});
+  }
+  return list;
+}
+
+Json numbers(const Estimate& estimate, double half_width) {
+  return {number_json(estimate.mean), number_json(estimate.standard_error), number_json(half_width),
+          estimate.count};
+}
+
+std::vector<Drawable> drawables_of(const Quantity& quantity) {
+  std::vector<Drawable> found;
+  for (std::size_t k = 0; k < quantity.elements(); ++k) {
+    Drawable one{quantity.name, quantity.name, "", quantity.symbol, quantity.unit};
+    std::string path, element;
+    std::size_t rest = k;
+    for (std::size_t axis = quantity.axes.size(); axis-- > 0;) {
+      const Json& values = quantity.axes[axis].values;
+      const std::size_t index = rest % values.size();
+      const Json& value = values[index];
+      path = fmt::format("/{}", index) + path;
+      const std::string word = value.is_string() ? value.get<std::string>() : value.dump();
+      element = element.empty() ? word : word + ", " + element;
+      rest /= values.size();
+    }
+    one.path += path;
+    one.element = element;
+    found.push_back(std::move(one));
+  }
+  return found;
+}
+
+// The first seed with a result that has completed.
+FirstResult first_result(Database& database, const PointRecord& point) {
+  Statement first(database.connection(), "SELECT seed FROM numbers WHERE point_id = ? ORDER BY seed LIMIT 1");
+  if (!first.bind(point.id).step()) return {nullptr, Json::array()};
+  const std::optional<Json> result = database.result(point.id, static_cast<int>(first.integer(0)));
+  if (!result) return {nullptr, Json::array()};
+  return {result->value("derived", Json()), result->value("warnings", Json::array())};
+}
+
+// Of the seeds that have ended.
+Cost cost_of(Connection& connection, const PointRecord& point) {
+  Statement query(connection,
+                  "SELECT count(cpu_seconds), total(cpu_seconds), total(cpu_seconds * cpu_seconds) FROM "
+                  "realisation WHERE point_id = ?");
+  query.bind(point.id).step();
+  return {static_cast<int>(query.integer(0)), query.real(1), query.real(2)};
+}
+
+// Of the target's observables.
+std::vector<Estimate> so_far(const std::vector<std::optional<Outcome>>& outcomes, std::size_t observables) {
+  std::vector<RunningEstimate> sums(observables);
+  for (const std::optional<Outcome>& outcome : outcomes) {
+    if (!outcome) continue;
+    for (std::size_t place = 0; place < observables; ++place) {
+      const Observation of = outcome->of(place);
+      if (!std::isnan(of.value)) sums[place].add(of.value + of.control);
+    }
+  }
+  std::vector<Estimate> estimates;
+  estimates.reserve(sums.size());
+  for (const RunningEstimate& sum : sums) estimates.push_back(sum.estimate());
+  return estimates;
+}
+
+class PointPage {
+ public:
+  PointPage(Database& database, NumberBook& book, const TargetRecord& target, const PointSummary& point)
+      : database_(database),
+        book_(book),
+        target_(target),
+        point_(point),
+        look_(checked_look(database, point.point, target)) {}
+
+  KnownPoint read() {
+    const Target& target = target_.target;
+    StopRule rule(target, target_.minimum, target_.maximum);
+    const std::vector<std::optional<Outcome>> outcomes = database_.outcomes(point_.point.id);
+    const Values found = values_of(outcomes, end());
+    KnownPoint known;
+    known.key = key_of(point_, target_);
+    known.first = first_result(database_, point_.point);
+    known.forecast.cost = cost_of(database_.connection(), point_.point);
+    known.forecast.so_far = so_far(outcomes, target.observables().size());
+    known.json = {{"groups", known.first.groups},
+                  {"looks", looks_json(point_.looks, target)},
+                  {"running_mean", running_mean(found, rule)},
+                  {"scatter", scatter(found)}};
+    add_estimates(known);
+    return known;
+  }
+
+ private:
+  // Seeds of the look; before the first one, all that have ended.
+  int end() const { return look_ ? look_->seeds : std::numeric_limits<int>::max(); }
+
+  void add_estimates(KnownPoint& known) {
+    const double confidence = target_.target.confidence;
+    QuantityEstimates sums;
+    book_.for_each(
+        point_.point.id, end(),
+        [&](int, const NumberLayout& layout, std::span<const double> numbers) { sums.add(layout, numbers); });
+    Json uncontrolled = Json::object(), allowed = Json::object();
+    for (const QuantityEstimate& found : sums.estimates()) {
+      const std::vector<Drawable> drawables = drawables_of(found.quantity);
+      for (std::size_t k = 0; k < drawables.size(); ++k) {
+        known.estimates.push_back(
+            numbers(found.estimates[k], student_half_width(found.estimates[k], confidence)));
+        known.drawables.push_back(drawables[k]);
+        if (found.uncontrolled.empty()) continue;
+        uncontrolled[drawables[k].path] =
+            numbers(found.uncontrolled[k], student_half_width(found.uncontrolled[k], confidence));
+      }
+    }
+    if (look_) add_deciding(known, uncontrolled, allowed);
+    known.json["uncontrolled"] = std::move(uncontrolled);
+    known.json["good_enough"] = std::move(allowed);
+  }
+
+  // What the look says of the target's observables goes before: its intervals are those that decide.
+  void add_deciding(KnownPoint& known, Json& uncontrolled, Json& allowed) {
+    const Target& target = target_.target;
+    for (const ObservableLook& one : each_of(*look_, target)) {
+      const std::size_t place = place_of(known, one.observable);
+      known.estimates[place] = numbers(one.estimate, one.half_width);
+      if (one.observable == target.observable) {
+        uncontrolled[known.drawables[place].path] = numbers(look_->estimate, look_->half_width);
+      }
+    }
+    for (const Criterion& criterion : target.criteria()) {
+      allowed[known.drawables[place_of(known, criterion.observable)].path] =
+          good_enough(criterion, *look_, target);
+    }
+  }
+
+  // An observable that is named as a quantity or an element; one that the results do not describe is one
+  // without unit.
+  static std::size_t place_of(KnownPoint& known, const std::string& observable) {
+    const std::string path = observable.starts_with('/') ? observable.substr(1) : observable;
+    for (std::size_t place = 0; place < known.drawables.size(); ++place) {
+      if (known.drawables[place].path == path) return place;
+    }
+    known.drawables.push_back({path, path, "", "", ""});
+    known.estimates.emplace_back(nullptr);
+    return known.drawables.size() - 1;
+  }
+
+  Database& database_;
+  NumberBook& book_;
+  const TargetRecord& target_;
+  const PointSummary& point_;
+  std::optional<Look> look_;
+};
+
+}  // namespace
+
+std::string key_of(const PointSummary& point, const TargetRecord& target) {
+  const StateCounts& counts = point.counts;
+  return fmt::format("{} {} {} {} {:a} {} {:a} {:a} {} {}", target.id, counts.done, counts.failed,
+                     counts.quarantined, counts.cpu_seconds, point.so_far.count, point.so_far.mean,
+                     point.so_far.standard_error, point.looks.size(),
+                     point.looks.empty() ? 0 : point.looks.back().seeds);
+}
+
+KnownPoint read_point(Database& database, NumberBook& book, const TargetRecord& target,
+                      const PointSummary& point) {
+  return PointPage(database, book, target, point).read();
+}
+
+}  // namespace peclet::runner

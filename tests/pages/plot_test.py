@@ -1,0 +1,285 @@
+#!/usr/bin/python3
+"""plot_test.py BIN: figures of `peclet plot`, against the export, the page and matplotlib."""
+
+import json
+import math
+import os
+import re
+import runpy
+import subprocess
+import xml.etree.ElementTree
+
+from campaign_page import choose, rows, saved
+from page_case import PageTest, Stage, main
+
+SVG = "{http://www.w3.org/2000/svg}"
+QUANTITIES = ["relative_viscosity", "pressure", "first_normal_difference", "stress/total/xy"]
+NUMBERS = ("mean", "standard_error", "half_width")
+
+
+def peclet(*words, path="/usr/bin:/bin"):
+    """What the program answers, with a python3 that is Debian's."""
+    binaries = Stage.folder.environment["PATH"].partition(":")[0]
+    environment = dict(os.environ, PATH=f"{binaries}:{path}")
+    command = ["peclet", *words]
+    return subprocess.run(command, cwd=Stage.folder.path, env=environment, capture_output=True, text=True)
+
+
+def figure_of(name):
+    """The numbers that a script holds; reading it draws nothing."""
+    return runpy.run_path(Stage.folder.file(name))["FIGURE"]
+
+
+def marks_of(figure):
+    """Each mark as a dictionary, by label."""
+    marks = [dict(zip(figure["columns"], mark)) for curve in figure["curves"] for mark in curve["marks"]]
+    return {mark["label"]: mark for mark in marks}
+
+
+class Figures(PageTest):
+    def draw(self, *words, output="figure.svg"):
+        drawn = peclet("plot", "curve.json", "--output", output, *words)
+        self.assertEqual(drawn.returncode, 0, drawn.stderr)
+        return figure_of(output.rpartition(".")[0] + ".py")
+
+    def test_have_the_numbers_of_the_export(self):
+        export = json.loads(Stage.folder.peclet("export", "curve.json"))
+        long = rows(Stage.folder.peclet("export", "curve.json", "--long"))
+        for quantity in QUANTITIES:
+            figure = self.draw("--quantity", quantity)
+            marks = marks_of(figure)
+            self.assertEqual(len(marks), len(export["points"]))
+            for point in export["points"]:
+                mark = marks[point["label"]]
+                name, _, element = quantity.rpartition("/")
+                (row,) = [
+                    row
+                    for row in long
+                    if row["label"] == point["label"]
+                    and (row["quantity"], row["axis_1_value"]) == (name or quantity, element if name else "")
+                ]
+                # Of the target the look's, which sums in another order and has a wider interval.
+                expected = point["look"] if quantity == QUANTITIES[0] else {key: float(row[key]) for key in NUMBERS}
+                self.assertEqual({key: mark[key] for key in NUMBERS}, {key: expected[key] for key in NUMBERS})
+                self.assertEqual(mark["count"], int(row["count"]))
+                self.assertAlmostEqual(mark["mean"], float(row["mean"]), delta=1e-12 * abs(mark["mean"]))
+                self.assertEqual(mark["x"], point["settings"][figure["over"]])
+
+    def test_have_a_curve_for_each_value_of_what_else_is_swept(self):
+        for over, curves in (("peclet", 3), ("/volume_fraction", 3)):
+            figure = self.draw("--over", over)
+            self.assertEqual(figure["over"].rpartition("/")[2], over.rpartition("/")[2])
+            self.assertEqual(len(figure["curves"]), curves)
+            for curve in figure["curves"]:
+                x = [mark[1] for mark in curve["marks"]]
+                self.assertEqual((len(x), x), (3, sorted(x)))
+
+    def test_lie_where_the_axes_say(self):
+        for log in ("none", "xy"):
+            figure = self.draw("--log", log)
+            root = xml.etree.ElementTree.parse(Stage.folder.file("figure.svg")).getroot()
+            texts = {"".join(one.itertext()): one for one in root.iter(f"{SVG}text")}
+            scales = {}
+            for name, place in (("x", "x"), ("y", "y")):
+                shift = 0 if name == "x" else -4.5  # from the foot of a number to its middle
+                ticks = [(value, float(texts[text].get(place)) + shift) for value, text in figure[name]["ticks"]]
+                (v0, p0), (v1, p1) = ticks[0], ticks[-1]
+                curve = math.log if log == "xy" else float
+                scales[name] = lambda v, v0=v0, v1=v1, p0=p0, p1=p1, f=curve: p0 + (f(v) - f(v0)) / (f(v1) - f(v0)) * (
+                    p1 - p0
+                )
+            marks = marks_of(figure)
+            drawn = [g for g in root.iter(f"{SVG}g") if g.find(f"{SVG}title") is not None]
+            self.assertEqual(len(drawn), len(marks))
+            for group in drawn:
+                mark = marks[group.find(f"{SVG}title").text]
+                stems = [one for one in group.iter(f"{SVG}line") if one.get("x1") == one.get("x2")]
+                self.assertEqual(len(stems), 2)
+                for stem, end in zip(stems, (-1, 1)):
+                    self.assertAlmostEqual(float(stem.get("x1")), scales["x"](mark["x"]), delta=0.2)
+                    self.assertAlmostEqual(float(stem.get("y1")), scales["y"](mark["mean"]), delta=0.2)
+                    expected = scales["y"](mark["mean"] + end * mark["half_width"])
+                    self.assertAlmostEqual(float(stem.get("y2")), expected, delta=0.2)
+
+    def test_have_the_page_s_scales_ticks_and_titles(self):
+        page = self.open()
+        for quantity in QUANTITIES[:3]:
+            choose(page, "#quantity", quantity.replace("_", " "))
+            for over, words in (("peclet", "Péclet number"), ("volume_fraction", "volume fraction")):
+                choose(page, "#axis", words)
+                figure = self.draw("--quantity", quantity, "--over", over)
+                root = xml.etree.ElementTree.parse(Stage.folder.file("figure.svg")).getroot()
+                label = page.evaluate("document.querySelector('#sweep svg').getAttribute('aria-label')")
+                self.assertEqual(root.find(f"{SVG}title").text, label.partition(";")[0] + ": curve")
+                for axis in "xy":
+                    checked = page.evaluate(f"document.getElementById('log-{axis}').checked")
+                    self.assertEqual(figure[axis]["log"], checked, (quantity, over, axis))
+                    low, high = figure[axis]["limits"]
+                    made = page.evaluate(
+                        f"new Axis({{log: {json.dumps(checked)}, low: {low}, high: {high}, begin: 0, end: 1,"
+                        " margin: 0, mostTicks: 8}).ticks().map(tick => [tick.value, tick.text])"
+                    )
+                    self.assertEqual(figure[axis]["ticks"], made)
+
+    def test_of_open_points_are_provisional(self):
+        drawn = peclet("plot", "young.json", "--output", "young.svg")
+        self.assertEqual(drawn.returncode, 0, drawn.stderr)
+        marks = marks_of(figure_of("young.py"))
+        exported = {row["label"]: row for row in rows(Stage.folder.peclet("export", "young.json", "--csv"))}
+        for label, row in exported.items():
+            self.assertEqual(marks[label]["standing"], "provisional")
+            self.assertAlmostEqual(marks[label]["mean"], float(row["so_far_mean"]), places=12)
+            self.assertIsNone(marks[label]["good_enough"])
+
+
+class Scripts(PageTest):
+    def test_draw_the_figure_again_by_themselves(self):
+        for ending, magic in (("png", b"\x89PNG"), ("pdf", b"%PDF")):
+            output = Stage.folder.file(f"drawn.{ending}")
+            done = peclet("plot", "curve.json", "--band", "--output", output)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            with open(output, "rb") as file:
+                picture = file.read()
+            self.assertTrue(picture.startswith(magic))
+            script = Stage.folder.file(f"alone-{ending}.py")
+            os.rename(Stage.folder.file("drawn.py"), script)
+            again = Stage.folder.file(f"again.{ending}")
+            subprocess.run(["/usr/bin/python3", script, again], check=True, cwd="/")
+            with open(again, "rb") as file:
+                self.assertEqual(file.read(), picture)
+
+    def test_draw_every_bar_as_wide_as_it_is(self):
+        import matplotlib
+
+        matplotlib.use("Agg")
+        peclet("plot", "curve.json", "--output", "bars.svg")
+        script = runpy.run_path(Stage.folder.file("bars.py"))
+        _, axes = script["draw"]()
+        segments = [segment for bars in axes.containers for segment in bars.lines[2][0].get_segments()]
+        found = sorted((low, high) for (_, low), (_, high) in segments)
+        expected = [(float(row["mean"]), float(row["half_width"])) for row in self.exported().values()]
+        self.assertEqual(len(found), 9)
+        for (low, high), (mean, half) in zip(found, sorted((mean - half, half) for mean, half in expected)):
+            self.assertAlmostEqual(low, mean, places=9)
+            self.assertAlmostEqual(high - low, 2 * half, places=9)
+        self.assertEqual(axes.get_xscale(), "log")
+
+    def test_of_others_are_not_replaced(self):
+        with open(Stage.folder.file("mine.py"), "w", encoding="utf-8") as file:
+            file.write("print('mine')\n")
+        done = peclet("plot", "curve.json", "--output", "mine.svg")
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, r"^peclet: mine\.py: is there already, .*\n$")
+        self.assertFalse(os.path.exists(Stage.folder.file("mine.svg")))
+        # Its own may be.
+        for _ in range(2):
+            self.assertEqual(peclet("plot", "curve.json", "--output", "own.svg").returncode, 0)
+
+
+class Faults(PageTest):
+    def refusal(self, code, *words, path="/usr/bin:/bin"):
+        """What is said; nothing may be written."""
+        before = sorted(os.listdir(Stage.folder.path))
+        done = peclet("plot", *words, path=path)
+        self.assertEqual((done.returncode, done.stdout), (code, ""), done.stderr)
+        self.assertEqual(sorted(os.listdir(Stage.folder.path)), before)
+        self.assertEqual(done.stderr.count("\n"), 1)
+        return done.stderr
+
+    def test_of_words_name_what_is_allowed(self):
+        self.assertIn("must end in .svg, .png or .pdf", self.refusal(2, "curve.json", "--output", "a.jpg"))
+        self.assertIn("did you mean pressure?", self.refusal(2, "curve.json", "--quantity", "presure"))
+        self.assertIn("/peclet, /volume_fraction", self.refusal(2, "curve.json", "--over", "friction"))
+        self.assertIn("--log", self.refusal(2, "curve.json", "--log", "z"))
+        self.assertIn("no such file", self.refusal(2, "absent.json"))
+
+    def test_of_the_machine_name_the_cure(self):
+        with_python, without = Stage.folder.file("without-matplotlib"), Stage.folder.file("without-python")
+        for place in (with_python, without):
+            os.makedirs(place, exist_ok=True)
+        script = os.path.join(with_python, "python3")
+        with open(script, "w", encoding="utf-8") as file:
+            file.write('#!/bin/sh\nexec /usr/bin/python3 -S "$@"\n')
+        os.chmod(script, 0o755)
+        for path, why in ((with_python, "matplotlib is missing"), (without, "No such file")):
+            for ending in ("png", "pdf"):
+                said = self.refusal(1, "curve.json", "--output", f"absent.{ending}", path=path)
+                self.assertIn(why, said)
+                self.assertIn("install python3-matplotlib", said)
+                self.assertIn(".svg", said)
+            self.assertEqual(peclet("plot", "curve.json", path=path).returncode, 0)  # SVG needs neither
+
+
+class TheSupplement(PageTest):
+    def unpacked(self, name):
+        done = peclet("export", "curve.json", "--bundle", f"{name}.tar.gz")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        folder = Stage.folder.file(name)
+        os.makedirs(folder)
+        subprocess.run(["tar", "-xzf", f"../{name}.tar.gz"], cwd=folder, check=True)
+        return os.path.join(folder, "curve")
+
+    def test_says_one_number_in_all_its_files(self):
+        folder = self.unpacked("numbers")
+
+        def content(name):
+            with open(os.path.join(folder, name), encoding="utf-8") as file:
+                return file.read()
+
+        page = self.open(os.path.join(folder, "report.html"))
+        on_page = {row["label"]: row for row in rows(saved(page, "#results", "CSV"))}
+        in_chart = {row["label"]: row for row in rows(saved(page, "#sweep", "CSV"))}
+        in_json = {point["label"]: point for point in json.loads(content("results.json"))["points"]}
+        in_long = {row["label"]: row for row in rows(content("numbers.csv")) if row["quantity"] == QUANTITIES[0]}
+        in_status = {
+            point["label"]: point
+            for point in json.loads(Stage.folder.peclet("status", "curve.json", "--json"))["points"]
+        }
+        in_figure = marks_of(runpy.run_path(os.path.join(folder, "figure.py"))["FIGURE"])
+        table = rows(content("results.csv"))
+        self.assertEqual(len(table), 9)
+        for row in table:
+            label, mean, half = row["label"], float(row["mean"]), float(row["half_width"])
+            self.assertNotEqual(mean, float(row["uncontrolled_mean"]))
+            for other in (on_page[label], in_chart[label], in_figure[label]):
+                self.assertEqual((float(other["mean"]), float(other["half_width"])), (mean, half))
+            for look in (in_json[label]["look"], in_status[label]["look"]):
+                self.assertEqual((look["mean"], look["half_width"]), (mean, half))
+            # These sum in another order.
+            for other in (float(in_long[label]["mean"]), in_json[label]["quantities"][QUANTITIES[0]]["mean"]):
+                self.assertAlmostEqual(other, mean, delta=1e-12 * abs(mean))
+            # What people read has the same digits: "5.73 ± 0.40".
+            self.assertRegex(content("README.md"), rf"(?m)^ +{row['/volume_fraction']} +{row['/peclet']} .* {half:.2g}")
+
+    def test_is_made_again_from_its_own_campaign_file(self):
+        folder = self.unpacked("again")
+        subprocess.run(["sha256sum", "--quiet", "--strict", "--check", "SHA256SUMS"], cwd=folder, check=True)
+        work = Stage.folder.file("redone")
+        os.makedirs(work)
+        with open(os.path.join(folder, "README.md"), encoding="utf-8") as file:
+            commands = re.search(r"## Make it again\n\n```\n(.*?)```", file.read(), re.DOTALL)[1]
+        os.rename(os.path.join(folder, "curve.json"), os.path.join(work, "curve.json"))
+        for name in ("results.json", "results.csv"):
+            os.link(os.path.join(folder, name), os.path.join(work, name))
+        script = "set -o pipefail\n" + commands.replace(
+            "peclet run curve.json", "peclet run curve.json --quiet > /dev/null"
+        )
+        environment = Stage.folder.environment
+        done = subprocess.run(["bash", "-c", script], cwd=work, env=environment, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
+        for name in ("figure.svg", "figure.py"):
+            with open(os.path.join(folder, name), "rb") as one, open(os.path.join(work, name), "rb") as other:
+                self.assertEqual(one.read(), other.read(), name)
+
+    def test_is_the_same_bytes_at_any_time(self):
+        for name in ("one", "two"):
+            self.assertEqual(peclet("export", "curve.json", "--bundle", f"{name}.tgz").returncode, 0)
+        with open(Stage.folder.file("one.tgz"), "rb") as one, open(Stage.folder.file("two.tgz"), "rb") as two:
+            self.assertEqual(one.read(), two.read())
+        refused = peclet("export", "curve.json", "--csv", "--bundle", "three.tgz")
+        self.assertEqual(refused.returncode, 2)
+        self.assertFalse(os.path.exists(Stage.folder.file("three.tgz")))
+
+
+if __name__ == "__main__":
+    main()

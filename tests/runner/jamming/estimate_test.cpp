@@ -1,0 +1,159 @@
+// From the seeds of a campaign to its jamming points: which points count, and what is said of the others.
+#include "runner/jamming/estimate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "contract/input_error.h"
+#include "runner/jamming/report.h"
+#include "tests/runner/jamming/jamming_campaign.h"
+
+namespace peclet::runner {
+namespace {
+
+const std::vector<double> fractions{0.45, 0.50, 0.54, 0.57, 0.60, 0.62, 0.66};
+
+// Six points that follow the law and one that is jammed.
+void fill(JammingCampaign& campaign, const TrueLaw& law, int first = 0) {
+  for (int point = 0; point < 6; ++point)
+    campaign.complete(first + point, law.at(fractions[static_cast<std::size_t>(point)]));
+  campaign.jam(first + 6);
+}
+
+bool remarks_say(const JammingEstimate& estimate, const std::string& part) {
+  return std::any_of(estimate.remarks.begin(), estimate.remarks.end(),
+                     [&](const std::string& remark) { return says(remark, part); });
+}
+
+TEST(JammingOfACampaign, EachCurveGivesItsLawBack) {
+  JammingCampaign campaign(jamming_document(fractions, {{{"set", "/contact/friction"}, {"values", {0, 1}}}}));
+  const TrueLaw laws[] = {{0.65, 1.6, 1.4}, {0.63, 2.1, 1.2}};
+  fill(campaign, laws[0]);
+  fill(campaign, laws[1], 7);
+  const JammingCurves curves = campaign.curves();
+  EXPECT_EQ(curves.over, "/volume_fraction");
+  ASSERT_EQ(curves.curves.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const JammingEstimate found = estimate_jamming(curves.curves[k], {});
+    EXPECT_EQ(found.curve.settings, Json({{"/contact/friction", k}}));
+    EXPECT_EQ(found.flowing(), 6);
+    EXPECT_EQ(found.curve.largest_flowing(), 0.62);
+    ASSERT_NE(found.curve.smallest_stuck(), nullptr);
+    EXPECT_EQ(found.curve.smallest_stuck()->fraction, 0.66);
+    EXPECT_EQ(found.curve.smallest_stuck()->state, FlowState::jammed);
+    ASSERT_TRUE(found.law.law) << found.law.obstacle;
+    EXPECT_NEAR(found.law.law->fraction.value, laws[k].fraction, 1e-6);
+    EXPECT_NEAR(found.law.law->exponent.value, laws[k].exponent, 1e-5);
+    EXPECT_NEAR(found.law.law->prefactor.value, laws[k].prefactor, 1e-5);
+    ASSERT_TRUE(found.steepest.steepest);
+    EXPECT_TRUE(found.steepest.steepest->to_jammed);
+    EXPECT_NEAR(found.steepest.steepest->fraction.value, 0.64, 1e-12);
+    EXPECT_TRUE(found.remarks.empty()) << found.remarks.front();
+  }
+}
+
+TEST(JammingOfACampaign, TheLawIsOfFlowingPointsAboveTheBound) {
+  JammingCampaign campaign(jamming_document(fractions));
+  fill(campaign, {});
+  // 1.4 (1 - 0.45 / 0.65)^-1.6 = 9.22 is below 10, 0.50 gives 14.6.
+  EXPECT_EQ(campaign.estimate().fitted.size(), 5U);
+  EXPECT_EQ(campaign.estimate({{}, 9}).fitted.size(), 6U);
+  const JammingEstimate few = campaign.estimate({{}, 25});
+  EXPECT_FALSE(few.law.law);
+  EXPECT_EQ(few.law.obstacle, "3 of the 4 flowing points with a viscosity above 25 that it needs");
+}
+
+TEST(JammingOfACampaign, PointsThatDoNotFlowAreNoPartOfTheLaw) {
+  JammingCampaign campaign(jamming_document(fractions));
+  const TrueLaw law;
+  campaign.complete(0, law.at(0.45));
+  campaign.complete(1, law.at(0.50), 0.01, 0.0099);
+  campaign.complete(2, 1000, 0.01, 0.011);  // soft, and far from the law
+  campaign.jam(3, 8, "packing");
+  campaign.jam(4, 1);  // 1 of 8: more than a tenth, less than half
+  for (int seed = 1; seed < 8; ++seed) campaign.stored().complete(4, seed, 50);
+  for (int seed = 0; seed < 8; ++seed) campaign.stored().crash(5, seed);
+  const JammingEstimate found = campaign.estimate();
+  const FlowState states[] = {FlowState::flowing, FlowState::flowing,       FlowState::soft,
+                              FlowState::jammed,  FlowState::partly_jammed, FlowState::lost,
+                              FlowState::open};
+  for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(found.curve.points.at(i).state, states[i]) << i;
+  EXPECT_EQ(found.curve.points[4].jammed, 1);
+  EXPECT_EQ(found.fitted.size(), 1U);
+  EXPECT_EQ(found.curve.smallest_stuck()->fraction, 0.54);
+  EXPECT_TRUE(remarks_say(found, "0.54 is left out: soft: spheres overlap by 0.011 radii"));
+  EXPECT_TRUE(remarks_say(found, "0.6 is left out: 1 of 8 seeds jammed"));
+  EXPECT_TRUE(remarks_say(found, "0.62 is left out: half of its seeds or more were lost"));
+  EXPECT_TRUE(remarks_say(found, "0.66 is left out: no seed has ended yet"));
+  EXPECT_FALSE(remarks_say(found, "0.57"));  // jammed has its column
+}
+
+TEST(JammingOfACampaign, APointNeedsFourSeedsAndASpread) {
+  JammingCampaign campaign(jamming_document(fractions));
+  const TrueLaw law;
+  for (int seed = 0; seed < 3; ++seed) campaign.stored().complete(5, seed, law.at(0.62) + seed);
+  const JammingEstimate found = campaign.estimate();
+  EXPECT_EQ(found.curve.points[5].state, FlowState::flowing);
+  EXPECT_EQ(found.curve.largest_flowing(), 0.62);
+  EXPECT_TRUE(remarks_say(found, "0.62 is left out: no error yet: 3 of 4 seeds with a value"));
+}
+
+// A fraction that flows, if only by a few seeds, is below phi_m.
+TEST(JammingOfACampaign, ContradictionsAreSaid) {
+  JammingCampaign campaign(jamming_document(fractions));
+  fill(campaign, {0.70, 1.6, 1.4});
+  EXPECT_TRUE(remarks_say(campaign.estimate(), "the law diverges above 0.66, which is jammed"));
+  JammingCampaign mixed(jamming_document(fractions));
+  for (const int point : {0, 1, 2, 4, 5}) mixed.complete(point, 10 + point);
+  mixed.jam(3);
+  EXPECT_TRUE(remarks_say(mixed.estimate(), "0.57 is jammed, although 0.62 flows"));
+}
+
+TEST(JammingOfACampaign, RefusesWhatIsNoVolumeFractionOrNoQuantity) {
+  const auto refusal = [](JammingCampaign& campaign, const CurveChoice& choice) -> std::string {
+    try {
+      campaign.curves(choice);
+    } catch (const InputError& fault) {
+      return fault.what();
+    }
+    return "";
+  };
+  JammingCampaign campaign(jamming_document(fractions, {{{"set", "/contact/friction"}, {"values", {0, 1}}}}));
+  campaign.complete(0, 10);
+  EXPECT_EQ(refusal(campaign, {.over = "friction"}),
+            "--over: friction: must be a swept volume fraction: numbers > 0 and < 1");
+  EXPECT_TRUE(
+      says(refusal(campaign, {.over = "peclet"}), "--over: peclet: must be what one thing is called"));
+  EXPECT_TRUE(says(refusal(campaign, {.quantity = "presure"}), "must be a number that is measured"));
+}
+
+TEST(JammingOfACampaign, IsToldToPeopleAndPrograms) {
+  JammingCampaign campaign(jamming_document(fractions));
+  fill(campaign, {});
+  JammingReport report{
+      .campaign = campaign.curves(), .choice = {}, .estimates = {campaign.estimate()}, .proposed = {}};
+  const std::string table = jamming_table(report);
+  EXPECT_TRUE(says(table, "jam: relative_viscosity over /volume_fraction, 1 curve\n")) << table;
+  EXPECT_TRUE(says(table, "0.66 jammed")) << table;
+  EXPECT_TRUE(says(table, "tell: sweep the stiffness.")) << table;
+  const Json json = jamming_json(report);
+  EXPECT_EQ(json["schema_version"], 1);
+  const Json& curve = json["curves"].at(0);
+  EXPECT_EQ(curve["flowing"], 6);
+  EXPECT_EQ(curve["smallest_stuck"], Json({{"fraction", 0.66}, {"state", "jammed"}}));
+  EXPECT_NEAR(curve["law"]["phi_m"]["value"].get<double>(), 0.65, 1e-6);
+  EXPECT_EQ(curve["law"]["obstacle"], nullptr);
+  EXPECT_EQ(curve["law"]["degrees"], 2);
+  EXPECT_EQ(curve["points"].size(), 7U);
+  EXPECT_EQ(curve["points"][0]["fitted"], false);
+  EXPECT_EQ(curve["points"][1]["fitted"], true);
+  EXPECT_EQ(curve["points"][6]["mean"], nullptr);
+  report.by_steepest = false;
+  EXPECT_FALSE(jamming_json(report)["curves"][0].contains("steepest"));
+  EXPECT_FALSE(says(jamming_table(report), "steepest"));
+}
+
+}  // namespace
+}  // namespace peclet::runner
