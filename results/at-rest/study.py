@@ -48,7 +48,7 @@ WINDOWS = {
     0.55: (5000, 16),
 }
 MIDDLE = 0.45
-LARGER = {0.30: (1000, 8), MIDDLE: (250, 16)}  # particles and seeds
+OTHERS = {0.30: ((1000, 16),), MIDDLE: ((250, 16), (50, 24)), 0.50: ((50, 16),)}  # particles and seeds
 HALVED_SEEDS = 24
 # Prices in the flow: volume fractions, Peclet numbers, seeds, Brownian times of the window.
 PRICED, PECLETS, PRICE_SEEDS, PRICE_WINDOW = (0.30, 0.45, 0.50), (0.001, 0.003, 0.01, 0.03, 0.1), 16, 200
@@ -109,18 +109,21 @@ def curve_rows(fraction, means):
             }
 
 
-def price_row(fraction, peclet, realisations, windows, value_of, viscosity, foretold=1.0):
+def price_row(fraction, peclet, realisations, windows, value_of, viscosity, foretold=1.0, count=100):
     """`foretold`: the price over that at rest, as peclet plan guesses it."""
     values = [value_of(r["mean"]) for r in realisations]
     seconds = [seconds_of_window(r, *windows) for r in realisations]
-    row = {"fraction": fraction, "peclet": peclet, "seeds": len(values), "foretold": foretold}
+    row = {"fraction": fraction, "peclet": peclet, "count": count, "seeds": len(values), "foretold": foretold}
     return row | entries("viscosity", estimate(values)) | entries("seconds", price(values, seconds, viscosity))
 
 
-def price_rows(program, fraction, at_rest):
-    """At rest, and of means in the flow with their control variate."""
-    viscosity = estimate([r["mean"][TARGET] for r in at_rest])[0]
-    yield price_row(fraction, 0, at_rest, (EQUILIBRATION, WINDOWS[fraction][0]), lambda mean: mean[TARGET], viscosity)
+def price_at_rest(fraction, at_rest, viscosity, count=100):
+    windows = EQUILIBRATION, WINDOWS[fraction][0]
+    return price_row(fraction, 0, at_rest, windows, lambda mean: mean[TARGET], viscosity, count=count)
+
+
+def price_rows(program, fraction, viscosity):
+    """Of means in the flow with their control variate."""
     for peclet in PECLETS:
         windows = EQUILIBRATION, PRICE_WINDOW
         patch = at_peclet(peclet) | {"observables": None, "volume_fraction": fraction}
@@ -140,12 +143,16 @@ def measure(program):
         means = [r["mean"] for r in at_rest]
         rows += rows_of(fraction, 100, "automatic", means)
         curves += curve_rows(fraction, means)
+        viscosity = estimate([m[TARGET] for m in means])[0]
         if fraction in PRICED:
-            prices += price_rows(program, fraction, at_rest)
-    for fraction, (count, seeds) in LARGER.items():
-        name = "larger" if fraction == MIDDLE else f"larger-{fraction:g}"
-        means = means_of(program, name, scene_at(fraction, {"particles": {"count": count}}), seeds)
-        rows += rows_of(fraction, count, "automatic", means)
+            prices.append(price_at_rest(fraction, at_rest, viscosity))
+            prices += price_rows(program, fraction, viscosity)
+        for count, other_seeds in OTHERS.get(fraction, ()):
+            scene = scene_at(fraction, {"particles": {"count": count}})
+            others = realisations_of(program, f"rest-{fraction:g}-{count}", scene, other_seeds)
+            rows += rows_of(fraction, count, "automatic", [r["mean"] for r in others])
+            if count < 100:
+                prices.append(price_at_rest(fraction, others, viscosity, count))
     half = 0.5 * program.derived(scene_at(MIDDLE), TARGET)["timestep"]
     patch = {"integrator": {"method": "implicit", "timestep": half}}
     means = means_of(program, "halved", scene_at(MIDDLE, patch), HALVED_SEEDS)
@@ -153,8 +160,8 @@ def measure(program):
     columns = ["fraction", "count", "step", "by", "seeds", "viscosity", "viscosity_error", "rise", "rise_error"]
     write_table(HERE / "table.csv", columns, rows, 5)
     write_table(HERE / "curves.csv", ["fraction", "curve", "at", "value", "value_error"], curves, 5)
-    columns = ["fraction", "peclet", "seeds", "viscosity", "viscosity_error", "seconds", "seconds_error", "foretold"]
-    write_table(HERE / "prices.csv", columns, prices, 4)
+    numbers = ["viscosity", "viscosity_error", "seconds", "seconds_error", "foretold"]
+    write_table(HERE / "prices.csv", ["fraction", "peclet", "count", "seeds", *numbers], prices, 4)
 
 
 def select(table, **wanted):
@@ -167,24 +174,32 @@ def in_errors(a, b):
     return value / error, 1.0
 
 
+def compared(table, fraction, label, **which):
+    """The two forms of one point."""
+    row, other = (select(table, fraction=fraction, by=by, **which) for by in ("momentum", "correlation"))
+    text = f"{label}: by correlation less by momentum, in standard errors"
+    return Check(text, "two forms", *in_errors(number(other, "viscosity"), number(row, "viscosity")), -3, 3)
+
+
 def two_forms(table):
     for fraction in WINDOWS:
-        row, other = (select(table, fraction=fraction, by=by, **USUAL) for by in ("momentum", "correlation"))
+        row = select(table, fraction=fraction, by="momentum", **USUAL)
         found = number(row, "viscosity")
         yield Finding(f"φ = {fraction:g}: η_r at rest", "linear response", *found, row["seeds"] - 1)
-        text = f"φ = {fraction:g}: by correlation less by momentum, in standard errors"
-        yield Check(text, "two forms", *in_errors(number(other, "viscosity"), found), -3, 3)
+        yield compared(table, fraction, f"φ = {fraction:g}", **USUAL)
         text = f"φ = {fraction:g}: rise from half of the time on, over η_r"
         yield Check(text, "the window", *quotient(number(row, "rise"), found), -0.1, 0.1, row["seeds"] - 1)
 
 
 def size_and_step(table):
-    others = {(f, f"N = {n} less N = 100"): {"count": n, "step": "automatic"} for f, (n, _) in LARGER.items()}
+    counts = [(fraction, count) for fraction, runs in OTHERS.items() for count, _ in runs]
+    others = {(f, f"N = {n} less N = 100"): {"count": n, "step": "automatic"} for f, n in counts}
     others[MIDDLE, "half the step less the automatic one"] = {"count": 100, "step": "half of it"}
     for (fraction, text), which in others.items():
         usual, other = (select(table, fraction=fraction, by="momentum", **w) for w in (USUAL, which))
         text = f"φ = {fraction:g}: {text}, in standard errors"
         yield Check(text, "size and step", *in_errors(*(number(r, "viscosity") for r in (other, usual))), -3, 3)
+    yield compared(table, 0.3, "φ = 0.3, N = 1000", count=1000, step="automatic")
 
 
 def in_slow_shear(table):
@@ -229,8 +244,11 @@ def moduli(curves, table):
 
 def saved(prices):
     for fraction in PRICED:
-        rest = number(select(prices, fraction=fraction, peclet=0), "seconds")
+        rest = number(select(prices, fraction=fraction, peclet=0, count=100), "seconds")
         for row in prices:
+            if row["fraction"] == fraction and row["count"] < 100:
+                text = f"φ = {fraction:g}, at rest: processor time with N = {row['count']:g} over that with 100"
+                yield Finding(text, "price", *quotient(number(row, "seconds"), rest), row["seeds"] - 1)
             if row["fraction"] == fraction and row["peclet"] in (0.001, 0.01):
                 label = f"φ = {fraction:g}, Pe = {row['peclet']:g}"
                 text = f"{label}: processor time over that at rest (foretold: {row['foretold']:.2g})"
@@ -275,7 +293,7 @@ def draw_prices(figure, prices):
         "Pe", f"processor s to {100 * ERROR:g} % of η_r", log="xy", powers="x", key="top right", **ends
     )
     for fraction in PRICED:
-        rows = [(r["peclet"], *number(r, "seconds")) for r in prices if r["fraction"] == fraction]
+        rows = [(r["peclet"], *number(r, "seconds")) for r in prices if (r["fraction"], r["count"]) == (fraction, 100)]
         colour = colour_of(fraction)
         panel.points([row for row in rows if row[0]], f"in the flow, φ = {fraction:g}", colour, joined=True)
         panel.level(rows[0][1], f"at rest, φ = {fraction:g}", colour, dash=2)

@@ -76,6 +76,7 @@ def curve_of(rows, fraction):
 
 
 LOWEST = 4.6  # of the published points
+FOSS_AND_BRADY = 0.45  # of a volume fraction up to 0.49, by their abstract: J. Fluid Mech. 407, 167 (2000)
 KNOWN = 0.22  # below, errors are as large as the differences between points
 
 
@@ -116,6 +117,10 @@ def shape_rows(curve):
     x = sorted(p for p in curve.at if p >= KNOWN)
     minimum = propagated(curve.logs("pairs"), lambda values: log_minimum(x, values))
     yield curve.row(Finding, "log10 Pe of the minimum, by a parabola", minimum)
+    if curve.fraction == FOSS_AND_BRADY:
+        for a, b, what in ((KNOWN, LOWEST, "thinning below Pe = 10"), (22, LOWEST, "thickening beyond")):
+            text = f"φ = {curve.fraction:g}: η_r of pairs at Pe = {a:g} over that at {b:g}: {what} (Foss & Brady 2000)"
+            yield Statement(text, "L4.7", *curve.ratio("pairs", a, b), low=1, degrees=curve.at[a]["seeds"] - 1)
     following = propagated(
         curve.logs("pairs", "contact"),
         lambda values: float(np.corrcoef(np.log(np.maximum(np.reshape(values, (2, -1)), 1e-9)))[0, 1]),

@@ -37,13 +37,10 @@ FITTED = {"all": {0: (0.30, 0.57), 1: (0.30, 0.55)}, "one power": {0: (0.45, 0.5
 SCENE = merged(PAIRS, during({"strain": 2}, {"strain": 8}))
 SEEDS = {0: 48, 1: 8}
 
-# What might move a viscosity away from the fit: of FL at 0.50, of FR at 0.50 and denser, at the gap of 0.05.
-VARIED = {0: (0.50,), 1: (0.50, 0.53, 0.55)}
-LUBRICATIONS = {
-    "regularisation 1e-4": lambda gap: lubrication(gap, 1e-4),
-    "regularisation 1e-2": lambda gap: lubrication(gap, 1e-2),
-    "kim-karrila": kim_karrila,
-}
+# What might move a viscosity away from the fit: of FL and FR at these fractions, at the gap of 0.05.
+VARIED = {0: (0.30, 0.50), 1: (0.30, 0.50, 0.53, 0.55)}
+SCANNED = (1e-2, 3e-4, 1e-4)  # regularisations beside 1e-3; the later two at the gap of 0.2, too
+WIDE = 0.5  # beyond either published gap
 STIFF = contact(4e6, 0)
 OTHER_COUNTS = {0: 1000, 1: 250}
 VARIANT_SEEDS = 6
@@ -169,6 +166,42 @@ def rolling_rows(rows, rolled):
     yield Finding(text, "M app B", *quotient(ratios[1], ratios[0]), degrees)
 
 
+def regularisation_that_fits(scan):
+    """Of (regularisation, ratio of a viscosity to the fit, its error): log10 of that at which the ratio is 1, between
+    neighbours in proportion to its logarithm, and the error of that."""
+    scan = sorted(scan)
+    places = np.log10([value for value, _, _ in scan])
+
+    def found(ratios):
+        # Viscosities fall as the regularisation grows.
+        logs = np.log(np.maximum(ratios, 1e-9))
+        return float(np.interp(0, logs[::-1], places[::-1]))
+
+    return propagated([(ratio, error) for _, ratio, error in scan], found)
+
+
+def regularisation_rows(of_variant):
+    """What a publication that does not print its regularisation would have had; none where the scan does not reach."""
+    for friction, name in NAMES.items():
+        for fraction, gap in itertools.product(VARIED[friction], GAPS):
+            values = {1e-3: of_variant[""]} | {v: rows for v, rows in scans_of(of_variant)}
+            scan = [
+                (value, *number(row, "viscosity_over_fit"))
+                for value, rows in values.items()
+                for row in rows
+                if (row["system"], row["fraction"], row["gap"]) == (name, fraction, gap)
+            ]
+            ratios = [ratio for _, ratio, _ in scan]
+            if min(ratios) < 1 < max(ratios):
+                text = f"{name}, φ = {fraction:g}, gap {gap}: log10 of the regularisation at which η_r is the fit's"
+                yield Finding(text, "M fig 7", *regularisation_that_fits(scan), VARIANT_SEEDS - 1)
+
+
+def scans_of(of_variant):
+    prefix = "regularisation "
+    return [(float(k.removeprefix(prefix)), rows) for k, rows in of_variant.items() if k.startswith(prefix)]
+
+
 def start_rows(rows, later):
     """Of another start than the published one, a dense packing."""
     for row in later:
@@ -187,20 +220,35 @@ def judge():
         of_variant.setdefault("" if row["variant"] != row["variant"] else row["variant"], []).append(row)
     rows = of_variant[""]
     yield from fit_rows(rows, read_rows(HERE / "fits.csv"))
+    yield from regularisation_rows(of_variant)
     yield from unit_rows(read_numbers(HERE / "numbers.csv"))
     yield from rolling_rows(rows, of_variant["rolling"])
     yield from start_rows(rows, of_variant["strain of 20 before"])
 
 
+def regularised(value):
+    return lambda gap: lubrication(gap, value)
+
+
+def variants_of(friction):
+    """Name, patch, lubrication, gap and, where it is not at all of VARIED, the fractions."""
+    stiff, count = {"contact": STIFF | {"friction": friction}}, OTHER_COUNTS[friction]
+    for value in SCANNED:
+        for gap in GAPS if value < 1e-3 else GAPS[:1]:
+            yield f"regularisation {value:.0e}".replace("e-0", "e-"), {}, regularised(value), gap, None
+    yield f"gap {WIDE}", {}, lubrication, WIDE, None
+    yield "kim-karrila", {}, kim_karrila, GAPS[0], None
+    yield "ten times k_n", stiff, lubrication, GAPS[0], None
+    if friction:
+        yield "ten times k_n, regularisation 1e-4", stiff, regularised(1e-4), GAPS[0], VARIED[friction][-1:]
+    yield f"N = {count}", {"particles": {"count": count}}, lubrication, GAPS[0], None
+
+
 def measure_variants(program):
     """Rows with the name of what was varied."""
     for friction, fractions in VARIED.items():
-        cases = [(friction, f, 0.05) for f in fractions]
-        variants = [(name, {}, block) for name, block in LUBRICATIONS.items()]
-        variants.append(("ten times k_n", {"contact": STIFF | {"friction": friction}}, lubrication))
-        count = OTHER_COUNTS[friction]
-        variants.append((f"N = {count}", {"particles": {"count": count}}, lubrication))
-        for k, (name, patch, block) in enumerate(variants):
+        for k, (name, patch, block, gap, alone) in enumerate(variants_of(friction)):
+            cases = [(friction, f, gap) for f in alone or fractions]
             for row in rows_of(program, f"variant-{friction}-{k}", cases, VARIANT_SEEDS, patch, block):
                 yield {"variant": name, **row}
 

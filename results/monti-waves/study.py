@@ -13,7 +13,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
 from studies.estimates import difference, estimate, quotient, relative_difference
-from studies.figure import BLACK, BLUE, GREEN, RED, Figure
+from studies.figure import BLACK, BLUE, GREEN, ORANGE, RED, Figure
 from studies.monti import DRAG, PROGRAM_RATIO, SCENE, TABLE_RATIO, contact, electrochemistry, lubrication, spheres
 from studies.scenes import during, merged
 from studies.tables import columns_of, entries, number, read_numbers, read_rows, write_numbers, write_table
@@ -27,6 +27,7 @@ COUNT, SMALL_COUNT, SMALLEST_COUNT = 65536, 8192, 2048
 AMPLITUDE = 20  # of the wave at N = 65536
 STRAIN, LARGE_STRAIN = 6, 3  # of the window, from the start; of N = 65536
 BLOCKS, QUARTERS, PARTS = 32, 4, 6  # of the window; of its last three quarters, of which means are
+PROFILES = "fraction", "velocity", "small", "large"  # profiles_of()
 # Touching forces F_R + F_A of the small spheres and F_R/F_A, at rate = rate_0.
 FORCES = {"table": (1.0, TABLE_RATIO), "program": (DRAG, PROGRAM_RATIO)}
 # Spheres, forces, whether there is a wave, and whether the spheres feel its curvature; seeds.
@@ -34,8 +35,10 @@ RUNS = {
     (SMALL_COUNT, "table", False, True): 6,
     (SMALL_COUNT, "table", True, True): 6,
     (SMALL_COUNT, "table", True, False): 6,
-    (SMALLEST_COUNT, "program", False, True): 4,
-    (SMALLEST_COUNT, "program", True, True): 4,
+    (SMALLEST_COUNT, "table", False, True): 8,
+    (SMALLEST_COUNT, "table", True, True): 8,
+    (SMALLEST_COUNT, "program", False, True): 8,
+    (SMALLEST_COUNT, "program", True, True): 8,
 }
 LARGE_RUNS = {(COUNT, "table", False, True): 1, (COUNT, "table", True, True): 1}  # with --long
 SCENE = merged(
@@ -110,12 +113,15 @@ def slowed(heights):
 
 
 def profiles_of(result):
-    """Volume fraction, and the velocity relative to the uniform shear, over the last half of the window."""
+    """Volume fraction, the velocity relative to the uniform shear, and the volume fractions of the small and of the
+    large spheres, over the last half of the window."""
+
+    def late(part):
+        return np.array(part)[QUARTERS // 2 :].mean(axis=0)
+
     parts = result["blocks"]["profiles"]
-    volume, flux = (
-        np.array(p)[QUARTERS // 2 :].mean(axis=0) for p in (parts["volume_fraction"], parts["velocity"]["flux"])
-    )
-    return volume, flux / volume
+    volume, flux = (late(p) for p in (parts["volume_fraction"], parts["velocity"]["flux"]))
+    return np.array([volume, flux / volume, *late(parts["volume_fraction_by_radius"])])
 
 
 def wave_of(values):
@@ -129,10 +135,9 @@ def followed(result, count):
     return wave_of(profiles_of(result)[1])[0] / amplitude(count)
 
 
-def gathered(result):
+def gathered(volume):
     """Volume fraction of the half of the cell where the wave lowers the rate less that of the other half, over the
     mean."""
-    volume, _ = profiles_of(result)
     slow = slowed((np.arange(len(volume)) + 0.5) / len(volume))
     return (volume[slow].mean() - volume[~slow].mean()) / volume.mean()
 
@@ -154,7 +159,9 @@ def row_of(run, results, paths):
     row |= entries("viscosity", mean_of(results))
     if wave:
         row |= entries("followed", estimate([followed(r, count) for r in results]))
-    row |= entries("gathered", estimate([gathered(r) for r in results]))
+    of_all, of_small, of_large = (np.array([gathered(profiles_of(r)[k]) for r in results]) for k in (0, 2, 3))
+    row |= entries("gathered", estimate(of_all)) | entries("gathered_small", estimate(of_small))
+    row |= entries("gathered_large", estimate(of_large)) | entries("segregated", estimate(of_large - of_small))
     small, large = zip(*(shares_where_slow(path) for path in paths))
     row |= entries("small_slow", estimate(small)) | entries("large_slow", estimate(large))
     row["soft"] = sum(r["largest_overlap"] > 0.01 for r in results)
@@ -198,10 +205,12 @@ def judge():
         (without,) = (r for r in table if (r["count"], r["forces"], r["wave"]) == (row["count"], row["forces"], 0))
         degrees = min(r["seeds"] if r["seeds"] > 1 else PARTS for r in (row, without)) - 1
         yield from pair_rows(row, without, degrees)
+        label = f"N = {round(row['count'])}, forces of the {row['forces']}"
         if row["seeds"] > 1:
-            label = f"N = {round(row['count'])}, forces of the {row['forces']}"
             text = f"{label}: volume fraction where the wave lowers the rate less that elsewhere, over the mean"
             yield Finding(text, "M fig 10", *number(row, "gathered"), row["seeds"] - 1)
+            text = f"{label}: the same of the large spheres less that of the small ones"
+            yield Finding(text, "M fig 10", *number(row, "segregated"), row["seeds"] - 1)
     numbers = read_numbers(HERE / "numbers.csv")
     text = f"N = {SMALL_COUNT}, wave: relative change of η_r by the terms of the curvature"
     yield Finding(text, "M eq 9", *numbers["faxen"])
@@ -240,7 +249,8 @@ def strains_of(run):
 
 def write_tables(rows, series, profiles):
     names = ["count", "forces", "wave", "faxen", "seeds", "soft", *columns_of("viscosity", "followed", "gathered")]
-    names += [*columns_of("small_slow", "large_slow"), "processor_seconds"]
+    names += columns_of("gathered_small", "gathered_large", "segregated", "small_slow", "large_slow")
+    names.append("processor_seconds")
     write_table(HERE / "table.csv", names, rows.values(), 4)
     lines = [
         {"run": name_of(run), "strain": strain, "viscosity": float(viscosity)}
@@ -249,11 +259,11 @@ def write_tables(rows, series, profiles):
     ]
     write_table(HERE / "series.csv", ["run", "strain", "viscosity"], lines, 5)
     lines = []
-    for run, (volume, velocity) in profiles.items():
-        for k, (fraction, speed) in enumerate(zip(volume, velocity)):
-            height = (k + 0.5) / len(volume)
-            lines.append({"run": name_of(run), "height": height, "fraction": float(fraction), "velocity": float(speed)})
-    write_table(HERE / "profiles.csv", ["run", "height", "fraction", "velocity"], lines, 5)
+    for run, columns in profiles.items():
+        for k, values in enumerate(columns.T):
+            line = {"run": name_of(run), "height": (k + 0.5) / len(columns.T)}
+            lines.append(line | {name: float(value) for name, value in zip(PROFILES, values)})
+    write_table(HERE / "profiles.csv", ["run", "height", *PROFILES], lines, 5)
 
 
 def read_series():
@@ -263,33 +273,46 @@ def read_series():
     for r in read_rows(HERE / "series.csv"):
         series.setdefault(names[r["run"]], []).append(r["viscosity"])
     for r in read_rows(HERE / "profiles.csv"):
-        profiles.setdefault(names[r["run"]], []).append((r["fraction"], r["velocity"]))
+        profiles.setdefault(names[r["run"]], []).append([r[name] for name in PROFILES])
     return series, {run: np.array(values).T for run, values in profiles.items()}
+
+
+def colour_of(run):
+    count, forces = run[:2]
+    return ORANGE if forces == "program" else {COUNT: RED, SMALL_COUNT: BLUE, SMALLEST_COUNT: GREEN}[count]
 
 
 def draw():
     series, profiles = read_series()
-    figure = Figure(HERE / "chart.png", columns=3, size=(1300, 430))
+    figure = Figure(HERE / "chart.png", columns=2, rows=2, size=(1200, 1000))
     shown = [run for run in series if run[3]]
-    colours = {COUNT: RED, SMALL_COUNT: BLUE, SMALLEST_COUNT: GREEN}
     ends = {"x_range": (0, STRAIN), "y_range": (0, None)}
     panel = figure.panel("strain", "η_r", "φ = 0.5, μ = 1", key="bottom right", **ends)
     for run in shown:
         count, forces, wave, _ = run
         title = f"N = {count}, {forces}, {'with' if wave else 'no'} wave"
-        panel.line(zip(strains_of(run), series[run]), title, colours[count], dash=1 if wave else 2, width=2)
+        panel.line(zip(strains_of(run), series[run]), title, colour_of(run), dash=1 if wave else 2, width=2)
     panel = figure.panel("y / L", "local rate / mean rate", key="top center", x_range=(0, 1), y_range=(-1, 4))
     published = AMPLITUDE * 2 * math.pi / edge(COUNT)
     panel.curve(lambda y: 1 + published * math.cos(2 * math.pi * y), "of the fluid (published)", BLACK)
     waved = [run for run in shown if run[2]]
     for run in waved:
-        panel.line(zip(*rates_of(profiles[run][1], run[0])), f"of the spheres, N = {run[0]}", colours[run[0]], width=2)
+        panel.line(
+            zip(*rates_of(profiles[run][1], run[0])), f"of the spheres, N = {run[0]}, {run[1]}", colour_of(run), width=2
+        )
     panel = figure.panel("y / L", "volume fraction", key="bottom right", x_range=(0, 1), y_range=(0.4, 0.6))
     for run in [r for r in shown if r[0] == SMALL_COUNT and not r[2]] + waved:
         volume = profiles[run][0]
         heights = (np.arange(len(volume)) + 0.5) / len(volume)
-        title = f"N = {run[0]}, {'with' if run[2] else 'no'} wave"
-        panel.line(zip(heights, volume), title, colours[run[0]], dash=1 if run[2] else 2, width=2)
+        title = f"N = {run[0]}, {run[1]}, {'with' if run[2] else 'no'} wave"
+        panel.line(zip(heights, volume), title, colour_of(run), dash=1 if run[2] else 2, width=2)
+    panel = figure.panel("y / L", "volume fraction of a size / its mean", x_range=(0, 1), y_range=(0.6, 1.7))
+    for run in [r for r in waved if r[0] > SMALLEST_COUNT]:
+        for values, size, dash in ((profiles[run][2], "small", 2), (profiles[run][3], "large", 1)):
+            if np.isfinite(values).all():
+                title = f"{size}, N = {run[0]}, {run[1]}"
+                points = zip((np.arange(len(values)) + 0.5) / len(values), values / values.mean())
+                panel.line(points, title, colour_of(run), dash=dash, width=2)
     figure.draw()
 
 

@@ -9,6 +9,8 @@
     speed_accuracy    the panels of results/speed-accuracy, and the columns of its tables
     monti          scenes of the suspensions of Monti et al. (2021)
     green_kubo     the viscosity at rest from the correlation of the structural Brownian stress
+    controls       control variates with coefficients by regression
+    networks       contacts in trajectories
     at_rest        the viscosity at rest, of the study of it or of slow shear
     tables         csv files
     figure         pictures

@@ -70,14 +70,15 @@ class Program:
         self.processor_seconds += sum(r["cost"]["cpu_seconds"] for r in realisations)
         return export["points"]
 
-    def run_alone(self, name, scene, threads):
-        """Runs seed 0 of a scene without a campaign and returns its whole result, with blocks; NAME.final.xyz beside it
-        has what the scene leaves."""
+    def run_alone(self, name, scene, threads, seed=0):
+        """Runs a seed of a scene without a campaign and returns its whole result, with blocks; files NAME.… beside it
+        have what the scene leaves."""
         path, output = (os.path.join(self.folder, f"{name}.{kind}") for kind in ("scene.json", "json"))
         if not os.path.exists(output):
             with open(path, "w") as f:
                 json.dump(scene, f, indent=1)
-            arguments = ["--threads", str(threads), "--checkpoint", output + ".checkpoint", "--output", output]
+            options = ["--threads", str(threads), "--seed", str(seed)]
+            arguments = [*options, "--checkpoint", output + ".checkpoint", "--output", output]
             done = subprocess.run([self.engine, "run", path, "--quiet", *arguments])
             if done.returncode != 0:
                 sys.exit(f"{path}: peclet-engine run ended with {done.returncode}")

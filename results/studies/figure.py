@@ -147,9 +147,11 @@ class Figure:
             f"set output {quoted(path)}",
             f"set multiplot layout {rows}, {columns} {layout}".rstrip(),
         ]
-        self._panels = []
+        self._room, self._panels = rows * columns, []
 
     def panel(self, *labels, **settings):
+        if len(self._panels) == self._room:
+            raise ValueError(f"a figure of {self._room} panels has no room for another")
         self._panels.append(Panel(*labels, **settings))
         return self._panels[-1]
 

@@ -18,8 +18,10 @@ from pathlib import Path
 
 RESULTS = Path(__file__).resolve().parents[1]
 # Studies whose rows read tables of others, which are made before.
+# flow-curve reads at-rest, too, and that one it: `flow-curve/study.py --from-table` judges it again afterwards.
 READ = {
-    "divergence": ("zero-shear", "flow-curve"),
+    "at-rest": ("flow-curve",),
+    "divergence": ("at-rest", "flow-curve", "zero-shear"),
     "flow-curve": ("literature", "zero-shear"),
     "friction-repulsion": ("literature",),
     "steady-state": ("zero-shear",),

@@ -17,3 +17,18 @@ def diverging(fraction, jammed, exponent=1.5):
 
 
 JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW = 0.587, 0.642  # phi_J of these fits without friction, with lambda = 1.5
+
+# Li's thesis, Table 4.1: Peclet number, shear rate, thermal energy; a = 1, density and viscosity 0.1, k_n = 10^4.
+TABLE_4_1 = (
+    (0.01, 9e-5, 0.017),
+    (0.046, 4.2e-4, 0.017),
+    (0.22, 1.9e-3, 0.017),
+    (1, 9e-3, 0.017),
+    (4.6, 9e-3, 3.7e-3),
+    (22, 9e-3, 7.9e-4),
+    (100, 9e-3, 1.7e-4),
+    (460, 9e-3, 3.7e-5),
+    (2200, 9e-3, 7.9e-6),
+    (1e4, 9e-3, 1.7e-6),
+)
+DENSITY, VISCOSITY, STIFFNESS = 0.1, 0.1, 1e4

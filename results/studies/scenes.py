@@ -31,7 +31,7 @@ REFERENCE_SCENE = {
 
 # Table 4.1 of Li's thesis, with N = 250 and windows that end with a strain or, at small Peclet numbers, with Brownian
 # times. Ten of these are no equilibration: the viscosity at Pe = 0.1 and phi = 0.5 still rises after 50
-# (results/control-variates); a^2 / D_0 is 19.
+# (results/steady-state); a^2 / D_0 is 19.
 TABLE_SCENE = merged(
     REFERENCE_SCENE,
     {

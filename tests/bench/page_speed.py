@@ -1,9 +1,11 @@
 #!/usr/bin/python3
-"""page_speed.py BIN [--points 100] [--seeds 800] [--limit SECONDS]
+"""page_speed.py BIN [--points 100] [--seeds 800] [--limit SECONDS] [--update-limit SECONDS]
 
-How long `peclet report` takes for a large campaign, and how long a browser takes to open the page. The campaign is real
+How long `peclet report` takes for a large campaign, how long a browser takes to open the page, and the same of the live
+page of `peclet serve`: to open it, and from the question what has changed, when a seed of each of eight points has
+ended, until it is drawn. The campaign is real
 but for its seeds: a few are run, and copied in the database with other numbers until there are enough; `peclet run`
-then looks at them. Five repetitions: the median, and all of them. With --limit a median above it is an error.
+then looks at them. Five repetitions: the median, and all of them. With a limit a median above it is an error.
 """
 
 import argparse
@@ -23,6 +25,7 @@ import numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "pages"))
 from browser import Browser  # noqa: E402
+from campaign_page import Folder  # noqa: E402
 
 SCENE = {
     "particles": {"count": 20, "density": 0.1, "species": [{"radius": 1.0}]},
@@ -80,13 +83,13 @@ def copies(database, point, seeds, columns):
         )
 
 
-def fill(path, seeds):
+def fill(path, seeds, most_points=None):
     database = sqlite3.connect(path)
     database.row_factory = sqlite3.Row
     columns = [name for (_, name, *_) in database.execute("PRAGMA table_info(realisation)")]
     marks = ", ".join("?" for _ in columns)
     with database:
-        for (point,) in database.execute("SELECT point_id FROM point ORDER BY point_id").fetchall():
+        for (point,) in database.execute("SELECT point_id FROM point ORDER BY point_id").fetchall()[:most_points]:
             for realisation, result, numbers in copies(database, point, seeds, columns):
                 database.execute(f"INSERT OR REPLACE INTO realisation VALUES ({marks})", realisation)
                 database.execute("INSERT INTO result VALUES (?, ?, ?)", result)
@@ -106,7 +109,37 @@ def said(what, seconds):
     return middle
 
 
-def measure(binaries, points, seeds, limit, folder):
+# Asks, takes the answer, and waits until it is drawn; null while there is nothing new, or it may not be read yet.
+UPDATE = """(async () => { const live = Live.current, begun = performance.now();
+    const response = await Live.fetch('state?since=' + live.token);
+    if (response.status !== 200) return null;
+    live.take(await response.json());
+    await new Promise(done => requestAnimationFrame(() => setTimeout(done, 0)));
+    return (performance.now() - begun) / 1000; })()"""
+
+
+def live_page(folder, browser, seeds):
+    """Seconds that it takes to open the live page, and to bring it up to date."""
+    with folder.serve("large.json") as server:
+        opened = [browser.open(server.address) for _ in range(REPETITIONS)]
+        page, updates = opened[-1], []
+        for one in opened:
+            one.evaluate("Live.prototype.ask = async () => {}")  # asks when it is told to, and never by itself
+        time.sleep(2)
+        for more in range(1, REPETITIONS + 1):
+            fill(folder.file("large.peclet/campaign.db"), seeds + more, most_points=8)
+            until = time.monotonic() + 60
+            while (took := page.evaluate(UPDATE)) is None:
+                if time.monotonic() > until:
+                    raise SystemExit("the live page has no news")
+                time.sleep(0.2)
+            updates.append(took)
+        if page.complaints:
+            raise SystemExit(page.complaints)
+    return [page.seconds for page in opened], updates
+
+
+def measure(binaries, points, seeds, limit, update_limit, folder):
     environment = dict(os.environ, PATH=f"{os.path.abspath(binaries)}:{os.environ['PATH']}")
     file = os.path.join(folder, "large.json")
     few, many = campaign(points, 2), campaign(points, seeds)
@@ -128,10 +161,15 @@ def measure(binaries, points, seeds, limit, folder):
     print(f"the page has {os.path.getsize(page) / 1e6:.2f} MB")
     with Browser() as browser:
         medians.append(said("opening the page", [browser.open(page).seconds for _ in range(REPETITIONS)]))
+        live, updates = live_page(Folder(binaries, folder), browser, seeds)
+    medians.append(said("opening the live page", live))
+    update = said("an update of the live page", updates)
     csv = ["peclet", "export", "large.json", "--csv", "--output", "large.csv", "--quiet"]
     said("peclet export --csv", [timed(csv, folder, environment) for _ in range(REPETITIONS)])
     if limit and max(medians) > limit:
         raise SystemExit(f"more than {limit} s")
+    if update_limit and update > update_limit:
+        raise SystemExit(f"an update takes more than {update_limit} s")
 
 
 def main():
@@ -140,11 +178,12 @@ def main():
     parser.add_argument("--points", type=int, default=100)
     parser.add_argument("--seeds", type=int, default=800)
     parser.add_argument("--limit", type=float)
+    parser.add_argument("--update-limit", type=float)
     options = parser.parse_args()
     random.seed(1)
     folder = tempfile.mkdtemp(prefix="peclet-page-")
     try:
-        measure(options.binaries, options.points, options.seeds, options.limit, folder)
+        measure(options.binaries, options.points, options.seeds, options.limit, options.update_limit, folder)
     finally:
         shutil.rmtree(folder)
 

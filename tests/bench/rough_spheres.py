@@ -3,8 +3,8 @@
 
 What a unit of strain costs the rough suspension FR of Monti, Rathee, Shen & Rosti (2021), Table 1 (phi = 0.5, mu = 1,
 lubrication `mari` to 0.05 a), at any number of spheres and of threads: times of a run over a longer strain less those
-lubrication `mari` to 0.05 a), for any number of spheres and threads: times of a run over a longer strain less those
 of a shorter one, so that neither the packing nor the start is in them, on the wall and of the processor; and the most
+memory that the longer one has held, packing and all.
 """
 import argparse
 import json
@@ -12,6 +12,7 @@ import os
 import statistics
 import sys
 import tempfile
+import threading
 import time
 from pathlib import Path
 
@@ -35,6 +36,24 @@ HEAD = (
 )
 
 
+class Memory(threading.Thread):
+    """Looks at the most that a process has held until it ends; its usage would count what this program held when it
+    was made."""
+
+    def __init__(self, pid):
+        super().__init__()
+        self.path, self.most = Path(f"/proc/{pid}/status"), 0
+        self.start()
+
+    def run(self):
+        while True:
+            lines = [line for line in self.path.read_text().splitlines() if line.startswith("VmHWM:")]
+            if not lines:  # a process that has ended holds nothing
+                return
+            self.most = 1024 * int(lines[0].split()[1])
+            time.sleep(0.02)
+
+
 def run(engine, folder, count, threads, strain):
     """Seconds on the wall, processor seconds, steps and largest memory in bytes of one run."""
     patch = {"particles": {"count": count}, "contact": contact(4e5, 1), **during({"strain": 0}, {"strain": strain})}
@@ -43,12 +62,15 @@ def run(engine, folder, count, threads, strain):
     arguments = [engine, "run", scene, "--quiet", "--threads", str(threads), "--output", output]
     begin = time.monotonic()
     pid = os.posix_spawn(engine, arguments, os.environ)
+    memory = Memory(pid)
+    os.waitid(os.P_PID, pid, os.WEXITED | os.WNOWAIT)
+    wall = time.monotonic() - begin
+    memory.join()
     _, status, usage = os.wait4(pid, 0)
     if status:
         sys.exit(f"{engine}: ended with status {status}")
-    wall = time.monotonic() - begin
     steps = json.loads(Path(output).read_text())["steps"]
-    return wall, usage.ru_utime + usage.ru_stime, sum(steps.values()), 1024 * usage.ru_maxrss
+    return wall, usage.ru_utime + usage.ru_stime, sum(steps.values()), memory.most
 
 
 def per_strain(engine, folder, count, threads):
@@ -64,7 +86,7 @@ def spread(values, factor=1.0):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[2])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("engine")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--counts", type=int, nargs="+", default=[1000, 65536])

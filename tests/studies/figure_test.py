@@ -57,6 +57,13 @@ class Script(unittest.TestCase):
         self.assertIn("set xrange [0.1:*]", lines)
         self.assertFalse([line for line in second if "logscale" in line or "xrange" in line])
 
+    def test_panels_never_lie_on_each_other(self):
+        figure = Figure("unused.png", columns=2, rows=1)
+        figure.panel("Pe")
+        figure.panel("phi")
+        with self.assertRaises(ValueError):
+            figure.panel("mu")
+
     def test_a_misspelt_setting_is_no_setting(self):
         with self.assertRaises(TypeError):
             Panel(x_rang=(0, 1))

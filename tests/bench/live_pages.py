@@ -1,0 +1,137 @@
+#!/usr/bin/python3
+"""live_pages.py BIN [--pages 10] [--seconds 5] [--rounds 5] [--browser] [--limit RATIO]
+
+Whether open live pages slow the owner of a campaign: it takes in results of jobs that take no time (BIN/fake_engine),
+in turn with no page and with so many that ask once a second as a page does (--browser: real ones), within one run.
+Says what a result costs the owner, in processor time, how many it takes in a second, and what the server takes; the
+median and extremes of the rounds, and of the ratios within a round. With --limit a median ratio of the owner's
+processor time above it is an error.
+"""
+import argparse
+import contextlib
+import json
+import os
+import signal
+import statistics
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "pages"))
+from browser import Browser  # noqa: E402
+from campaign_page import Folder  # noqa: E402
+from owner_time import SCENE, processor_time, results  # noqa: E402
+
+
+def campaign(binaries):
+    with open(SCENE, encoding="utf-8") as scene:
+        return {
+            "name": "campaign",
+            "engine": [os.path.join(binaries, "fake_engine")],
+            "scene": json.load(scene),
+            "sweep": [{"set": "/flow/shear_rate", "values": [0.001 * (i + 1) for i in range(10)]}],
+            "target": {"observable": "relative_viscosity", "relative_tolerance": 1e-7},
+            "realisations": {"minimum": 8, "maximum": 1_000_000},
+        }
+
+
+class Asking(threading.Thread):
+    """Asks as a page does: what has changed, and once in five seconds for more of a point."""
+
+    def __init__(self, server, stop):
+        super().__init__(daemon=True)
+        self.server, self.stop, self.failure = server, stop, None
+        self.start()
+
+    def run(self):
+        try:
+            token, count, hashes = "", 0, []
+            while not self.stop.wait(1):
+                status, _, text = self.server.ask("state?since=" + token)
+                if status == 200:
+                    state = json.loads(text)
+                    token = state["live"]["token"]
+                    hashes = hashes or [point["hash"] for point in state["points"].values()]
+                count += 1
+                if count % 5 == 0:
+                    self.server.ask("point?hash=" + hashes[0])
+        except Exception as error:  # told by whoever waits for the thread
+            self.failure = error
+
+
+@contextlib.contextmanager
+def pages(server, number, browser):
+    if browser:
+        for _ in range(number):
+            browser.open(server.address)
+        yield
+        for session in list(browser.pages):
+            target = browser.pages.pop(session)
+            target.call("Page.close")
+        return
+    stop = threading.Event()
+    asking = [Asking(server, stop) for _ in range(number)]
+    yield
+    stop.set()
+    for one in asking:
+        one.join()
+        if one.failure:
+            raise one.failure
+
+
+def window(run, folder, seconds):
+    """Processor seconds of the owner a result, and results a second."""
+    before, count, begun = processor_time(run.pid), results(folder), time.monotonic()
+    time.sleep(seconds)
+    took, taken = processor_time(run.pid) - before, results(folder) - count
+    return took / max(1, taken), taken / (time.monotonic() - begun)
+
+
+def said(what, values, unit):
+    print(f"{what}: {statistics.median(values):.3g} ({min(values):.3g} .. {max(values):.3g}) {unit}", flush=True)
+
+
+def measure(options, place, browser):
+    folder = Folder(options.binaries, place)
+    folder.environment.update({f"PECLET_FAKE_{name}": value for name, value in (("STEPS", "1"), ("DEVIATION", "5"))})
+    file = folder.write(campaign(os.path.abspath(options.binaries)))
+    command = ["peclet", "run", file, "--workers", "2", "--quiet"]
+    with subprocess.Popen(command, cwd=place, env=folder.environment, stdout=subprocess.DEVNULL) as run:
+        time.sleep(3)  # until workers are busy
+        alone, open_pages, server_share = [], [], []
+        with folder.serve(file) as server:
+            for _ in range(options.rounds):
+                alone.append(window(run, place, options.seconds))
+                with pages(server, options.pages, browser):
+                    time.sleep(1)
+                    before, begun = server.seconds(), time.monotonic()
+                    open_pages.append(window(run, place, options.seconds))
+                    server_share.append((server.seconds() - before) / (time.monotonic() - begun))
+        run.send_signal(signal.SIGTERM)
+    said("a result, no page", [1000 * cost for cost, _ in alone], "ms of the owner's processor time")
+    said(f"a result, {options.pages} pages", [1000 * cost for cost, _ in open_pages], "ms")
+    ratios = [with_pages[0] / without[0] for without, with_pages in zip(alone, open_pages)]
+    said("ratio of the two in a round", ratios, "")
+    said("results a second, ratio", [b[1] / a[1] for a, b in zip(alone, open_pages)], "")
+    said("the server takes", [100 * share for share in server_share], "% of a core")
+    if options.limit and statistics.median(ratios) > options.limit:
+        raise SystemExit(f"the owner is slower by more than a factor of {options.limit}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("binaries", metavar="BIN")
+    parser.add_argument("--pages", type=int, default=10)
+    parser.add_argument("--seconds", type=float, default=5)
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--browser", action="store_true")
+    parser.add_argument("--limit", type=float)
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory(prefix="peclet-live-") as place, contextlib.ExitStack() as leaving:
+        measure(options, place, leaving.enter_context(Browser()) if options.browser else None)
+
+
+if __name__ == "__main__":
+    main()
