@@ -64,7 +64,7 @@ class Exchange {
     head_.append(bytes.data(), static_cast<std::size_t>(got));
     const std::size_t end = end_of_head(head_);
     if (end == std::string::npos && head_.size() <= longest_head) return;
-    const bool whole = end != std::string::npos && end <= longest_head;
+    const bool whole = end <= longest_head;  // npos is not
     answer(whole ? answer_to(head_.substr(0, end), handler) : refusal(431));
   }
 
