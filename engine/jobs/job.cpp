@@ -180,12 +180,13 @@ class Job {
       extend_checkpoint(job_.extended, identity_, *simulation_);
       return;
     }
-    events_.progress({"packing", 0, schedule_.total(), 0});
+    std::uint64_t made = 0;
+    events_.progress({"packing", made, 0, 0});
     if (scene_.start) {
       const PlacedSpheres placed = placed_spheres(scene_, job_.header.seed, job_.scene_name);
       simulation_->start(placed.system, placed.in_motion);
     } else {
-      simulation_->start();
+      simulation_->start([&] { events_.progress({"packing", ++made, 0, 0}); });
     }
   }
 

@@ -30,6 +30,7 @@ struct JobSpecification {
 
 struct Progress {
   const char* phase;  // "packing", "equilibration", "production"
+  // Steps made and in all; while packing those of its minimisation, whose number nobody knows: 0.
   std::uint64_t step, steps;
   double strain;
 };

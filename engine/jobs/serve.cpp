@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <exception>
 #include <optional>
+#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -188,7 +189,7 @@ class Worker {
     events.skipped = [this, id](const NoRoomError& error) { say_no_room(id, error); };
     events.wait_for_room = [this, id](const NoRoomError& error) { return wait_for_room(id, error); };
     events.progress = [this, id, progress_seconds](const Progress& progress) {
-      last_step_ = progress.step;
+      last_step_ = progress.phase == std::string_view("packing") ? 0 : progress.step;
       const Clock::time_point now = Clock::now();
       if (std::chrono::duration<double>(now - last_progress_).count() < progress_seconds) {
         return;

@@ -85,10 +85,10 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
   }
 }
 
-void Simulation::start() {
-  place_randomly(system_.particles, system_.box, seed_);
+void Simulation::start(const std::function<void()>& made_step) {
+  place_randomly(system_.particles, system_.box, seed_, made_step);
   if (required_terms(scene_.physics).conservative) {
-    relax(system_, scene_, threads_);
+    relax(system_, scene_, threads_, made_step);
   }
   set_initial_velocities(system_.particles, scene_.physics.flow.at(system_.box), scene_.physics, seed_);
   integrator_->start(system_);

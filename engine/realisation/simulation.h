@@ -1,6 +1,7 @@
 // The time loop of one realisation.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -20,7 +21,7 @@ class Simulation {
 
   // Packs the spheres, gives them the streaming flow's velocities (and thermal ones) and evaluates the first
   // forces. Throws PackingError.
-  void start();
+  void start(const std::function<void()>& made_step = [] {});
 
   // Goes on from another system of the same scene: its particles, box and step. Contacts begin without
   // springs; spheres that are not in motion get the velocities of a fresh start. Throws std::invalid_argument

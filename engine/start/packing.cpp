@@ -26,8 +26,8 @@ struct Overlaps {
 
 class Quench {
  public:
-  Quench(ParticleState& particles, const PeriodicCell& box)
-      : particles_(particles), box_(box), force_(particles.count()) {
+  Quench(ParticleState& particles, const PeriodicCell& box, const std::function<void()>& made_step)
+      : particles_(particles), box_(box), made_step_(made_step), force_(particles.count()) {
     const std::vector<double> sizes = distinct_radii(particles.radius);
     RangeTable ranges(sizes.size());
     for (std::size_t a = 0; a < sizes.size(); ++a) {
@@ -67,6 +67,7 @@ class Quench {
         downhill = 0;
       }
       move();
+      made_step_();
     }
     return closest();
   }
@@ -136,6 +137,7 @@ class Quench {
 
   ParticleState& particles_;
   const PeriodicCell& box_;
+  const std::function<void()>& made_step_;
   NeighbourList list_;
   VectorField force_;
   double step_;
@@ -143,7 +145,8 @@ class Quench {
 
 // The largest volume fraction, to 0.005, at which the spheres were brought apart starting from where they
 // stand, free of overlap at `scale` times their radii: these shrink and grow again by bisection.
-double reached_volume_fraction(ParticleState particles, const PeriodicCell& box, double scale) {
+double reached_volume_fraction(ParticleState particles, const PeriodicCell& box, double scale,
+                               const std::function<void()>& made_step) {
   const std::vector<double> radius = particles.radius;
   const double wanted = solid_volume(particles) / box.volume();
   double free = wanted * scale * scale * scale, jammed = wanted;
@@ -153,7 +156,7 @@ double reached_volume_fraction(ParticleState particles, const PeriodicCell& box,
       particles.radius[i] = shrunk * radius[i];
     }
     particles.velocity = VectorField(radius.size());
-    (Quench(particles, box).run() > 1 ? free : jammed) = middle;
+    (Quench(particles, box, made_step).run() > 1 ? free : jammed) = middle;
   }
   return free;
 }
@@ -204,15 +207,16 @@ double cube_edge(const Particles& particles, double volume_fraction) {
   return std::cbrt(volume / volume_fraction);
 }
 
-void place_randomly(ParticleState& particles, const PeriodicCell& box, std::uint64_t seed) {
+void place_randomly(ParticleState& particles, const PeriodicCell& box, std::uint64_t seed,
+                    const std::function<void()>& made_step) {
   const KeyedRandom random(seed, Purpose::packing);
   for (std::uint32_t i = 0; i < particles.count(); ++i) {
     particles.position.set(i, box.point_at(random.uniforms(0, i)));
   }
-  const double closest = Quench(particles, box).run();
+  const double closest = Quench(particles, box, made_step).run();
   if (!(closest > 1)) {
     throw PackingError(solid_volume(particles) / box.volume(),
-                       reached_volume_fraction(particles, box, closest));
+                       reached_volume_fraction(particles, box, closest, made_step));
   }
   particles.velocity = VectorField(particles.count());
 }

@@ -1,6 +1,7 @@
 // Random initial packings without overlap.
 #pragma once
 
+#include <functional>
 #include <stdexcept>
 
 #include "engine/scene/scene.h"
@@ -33,7 +34,9 @@ double cube_edge(const Particles& particles, double volume_fraction);
 // no two spheres overlap: surfaces are then apart by at least 2e-4 of a_i + a_j. Reaches a volume fraction of
 // 0.63 for 1:1.4 in equal volumes (0.64 from two seeds in five). Velocities are left at zero. Throws
 // PackingError when the overlaps cannot be removed, std::invalid_argument when a sphere overlaps its own
-// image.
-void place_randomly(ParticleState& particles, const PeriodicCell& box, std::uint64_t seed);
+// image. Calls `made_step` after every step of the minimisation.
+void place_randomly(
+    ParticleState& particles, const PeriodicCell& box, std::uint64_t seed,
+    const std::function<void()>& made_step = [] {});
 
 }  // namespace peclet::engine

@@ -8,7 +8,7 @@
 
 namespace peclet::engine {
 
-void relax(System& system, const Scene& scene, int threads) {
+void relax(System& system, const Scene& scene, int threads, const std::function<void()>& made_step) {
   constexpr int most_steps = 200;
   const double timestep = automatic_implicit_timestep(scene);
   const double far = 0.05 * *std::min_element(system.particles.radius.begin(), system.particles.radius.end());
@@ -29,6 +29,7 @@ void relax(System& system, const Scene& scene, int threads) {
     Midpoint integrator(still, trial.particles, step, scene.solver_tolerance, 0, threads);
     integrator.start(trial);
     const StepReport report = integrator.advance(trial);
+    made_step();
     if (!(report.largest_displacement <= far) || !report.sums.finite) {
       step /= 4;
       continue;

@@ -128,9 +128,10 @@ class Conversation:
         return self.folder / f"spool-{job}.json"
 
     def hear_result(self, engine, job):
-        steps = [0]
+        phases = ["packing", "equilibration", "production"]
+        steps = [(0, 0)]
         while (answer := engine.receive())["type"] == "progress":
-            steps.append(answer["step"])
+            steps.append((phases.index(answer["phase"]), answer["step"]))
         assert answer["type"] == "result" and answer["job"] == job, answer
         assert steps == sorted(steps), steps
         return self.read_result(engine, job, answer["sha256"])
