@@ -15,7 +15,7 @@ inline Outcome value(double number) { return {Outcome::Kind::value, number, 0}; 
 
 // Two values so far apart, or so near, that no reasonable interval could decide otherwise at 5 %.
 inline Outcome scattered(int seed) { return value(seed % 2 == 0 ? 1 : 19); }
-inline Outcome steady(int seed) { return value(seed % 2 == 0 ? 10 : 10.01); }
+inline Outcome steady_outcome(int seed) { return value(seed % 2 == 0 ? 10 : 10.01); }
 
 inline const Target five_percent{"relative_viscosity", 0.05, 0.95};
 

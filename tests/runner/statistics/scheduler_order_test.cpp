@@ -21,7 +21,7 @@ TEST(Scheduler, PointsComeForwardTogetherInTheOrderOfTheSweep) {
 
 TEST(Scheduler, ThePointFurthestBehindGoesFirst) {
   Outcomes known(2);
-  for (int seed = 0; seed < 3; ++seed) known[0].push_back(steady(seed));
+  for (int seed = 0; seed < 3; ++seed) known[0].push_back(steady_outcome(seed));
   Scheduler scheduler(known, five_percent, 4, 40);
   EXPECT_EQ(take(scheduler), (SeedId{1, 0}));
   EXPECT_EQ(take(scheduler), (SeedId{1, 1}));

@@ -32,9 +32,9 @@ TEST(Scheduler, UnderACeilingOnlyTheFirstSeedsGo) {
   for (const SeedId id : {SeedId{0, 0}, SeedId{1, 0}, SeedId{0, 1}, SeedId{1, 1}})
     EXPECT_EQ(take(scheduler), id);
   EXPECT_EQ(scheduler.next(), std::nullopt);
-  for (int seed = 0; seed < 2; ++seed) scheduler.end({0, seed}, steady(seed));
+  for (int seed = 0; seed < 2; ++seed) scheduler.end({0, seed}, steady_outcome(seed));
   EXPECT_FALSE(scheduler.finished());
-  for (int seed = 0; seed < 2; ++seed) scheduler.end({1, seed}, steady(seed));
+  for (int seed = 0; seed < 2; ++seed) scheduler.end({1, seed}, steady_outcome(seed));
   EXPECT_TRUE(scheduler.finished());
   EXPECT_FALSE(scheduler.decided(0));
 }
@@ -54,9 +54,9 @@ TEST(Scheduler, ACancelledPointGetsNoSeedsAndHoldsNothingUp) {
   scheduler.set_cancelled(0, true);
   EXPECT_EQ(take(scheduler).point, 1);
   EXPECT_EQ(take(scheduler).point, 1);
-  for (int seed = 0; seed < 4; ++seed) scheduler.end({1, seed}, steady(seed));
+  for (int seed = 0; seed < 4; ++seed) scheduler.end({1, seed}, steady_outcome(seed));
   EXPECT_TRUE(scheduler.finished());
-  scheduler.end({0, 0}, steady(0));  // what was out may still come in
+  scheduler.end({0, 0}, steady_outcome(0));  // what was out may still come in
   scheduler.set_cancelled(0, false);
   EXPECT_FALSE(scheduler.finished());
   EXPECT_EQ(take(scheduler), (SeedId{0, 2}));
@@ -85,10 +85,10 @@ TEST(Scheduler, LooksOnlyAtClosedCohorts) {
   Scheduler scheduler = fresh(1);
   for (int i = 0; i < 5; ++i) take(scheduler);
   for (const int seed : {4, 3, 2, 1}) {
-    EXPECT_FALSE(scheduler.end({0, seed}, steady(seed)));
+    EXPECT_FALSE(scheduler.end({0, seed}, steady_outcome(seed)));
     EXPECT_TRUE(scheduler.looks(0).empty());
   }
-  EXPECT_TRUE(scheduler.end({0, 0}, steady(0)));
+  EXPECT_TRUE(scheduler.end({0, 0}, steady_outcome(0)));
   ASSERT_EQ(scheduler.looks(0).size(), 1U);
   EXPECT_EQ(scheduler.looks(0)[0].seeds, 4);  // seed 4 is surplus
   EXPECT_TRUE(scheduler.finished());
@@ -97,7 +97,7 @@ TEST(Scheduler, LooksOnlyAtClosedCohorts) {
 TEST(Scheduler, ADecidedPointGetsNoMoreSeeds) {
   Scheduler scheduler = fresh(2);
   for (int i = 0; i < 8; ++i) take(scheduler);
-  for (int seed = 0; seed < 4; ++seed) scheduler.end({0, seed}, steady(seed));
+  for (int seed = 0; seed < 4; ++seed) scheduler.end({0, seed}, steady_outcome(seed));
   EXPECT_TRUE(scheduler.decided(0));
   EXPECT_EQ(take(scheduler).point, 1);
   EXPECT_EQ(scheduler.next(), std::nullopt);
@@ -127,7 +127,7 @@ TEST(Scheduler, StopsAtTheMaximum) {
 
 TEST(Scheduler, ATighterToleranceReopensAPointAndRunsNothingTwice) {
   Outcomes known(1);
-  for (int seed = 0; seed < 7; ++seed) known[0].push_back(steady(seed));
+  for (int seed = 0; seed < 7; ++seed) known[0].push_back(steady_outcome(seed));
   Scheduler loose(known, five_percent, 4, 40);
   EXPECT_TRUE(loose.finished());
   Scheduler tight(known, {"relative_viscosity", 1e-6, 0.95}, 4, 40);
@@ -148,10 +148,10 @@ TEST(Scheduler, ALateResultOfALostSeedIsLookedAtAgain) {
   Scheduler scheduler = fresh(1);
   for (int seed = 0; seed < 4; ++seed) {
     take(scheduler);
-    scheduler.end({0, seed}, seed == 2 ? Outcome{} : steady(seed));
+    scheduler.end({0, seed}, seed == 2 ? Outcome{} : steady_outcome(seed));
   }
   EXPECT_EQ(scheduler.looks(0).back().verdict, Verdict::converged_with_losses);
-  EXPECT_TRUE(scheduler.end({0, 2}, steady(2)));
+  EXPECT_TRUE(scheduler.end({0, 2}, steady_outcome(2)));
   EXPECT_EQ(scheduler.looks(0).back().verdict, Verdict::converged);
 }
 
