@@ -43,6 +43,7 @@ STUDIES = [
     "large-friction",
     "literature",
     "microstructure",
+    "mixtures",
     "monti-silica",
     "monti-viscosity",
     "monti-waves",

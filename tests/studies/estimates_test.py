@@ -26,8 +26,9 @@ from studies.estimates import (
     weighted_mean,
 )
 from studies.at_rest import SLOW_SHEAR, rows_at_rest
-from studies.fits import divergence, jammed_and_exponent, line_through, lines, log_minimum, multiples
+from studies.fits import divergence, jammed_and_exponent, jamming_points, line_through, lines, log_minimum, multiples
 from studies.green_kubo import fit_with_errors, fitted
+from studies.packings import gap_of, linear_mixture, rod_lengths, rods
 from studies.published import JAMMED_AT_REST, diverging, mari_fit
 from studies.tables import columns_of, markdown_head, markdown_row, number_text
 
@@ -194,6 +195,54 @@ class Jamming(unittest.TestCase):
         jammed, exponent = jammed_and_exponent(fractions, [(1 - f / 0.6) ** -1.5 for f in fractions])
         self.assertAlmostEqual(jammed, 0.6)
         self.assertAlmostEqual(exponent, 1.5)
+
+    def test_curves_of_one_exponent_have_jamming_points_of_their_own(self):
+        fractions = [0.5, 0.53, 0.56, 0.58]
+        curves = [
+            (fractions, [math.log(c) - 1.8 * math.log(1 - f / jammed) for f in fractions])
+            for c, jammed in ((0.7, 0.64), (2.0, 0.70))
+        ]
+        exponent, points = jamming_points(curves)
+        self.assertAlmostEqual(exponent, 1.8)
+        self.assertAlmostEqual(points[0], 0.64)
+        self.assertAlmostEqual(points[1], 0.70)
+
+
+class Packings(unittest.TestCase):
+    """The models, whose papers print where they start from."""
+
+    RADII = 1, 1.4, 5, 7
+
+    def shares(self, alpha):
+        return ((1 - alpha) / 2,) * 2 + (alpha / 2,) * 2
+
+    def test_a_group_alone_packs_as_given(self):
+        for alpha, dense in ((0, 0.6), (1, 0.64)):
+            self.assertAlmostEqual(linear_mixture(alpha, 0.2, 0.6, 0.64), dense)
+
+    def test_small_spheres_that_fit_into_any_hole_take_no_place(self):
+        # Ratio 0: 1 / phi = 1 / 0.64 less the volume of the small ones, and phi_m + phi_m (1 - phi_m) at its largest.
+        self.assertAlmostEqual(linear_mixture(0.9, 0, 0.64, 0.64), 0.64 / 0.9)
+        best = 0.64 / (0.64 + 0.36 * 0.64)
+        self.assertAlmostEqual(linear_mixture(best, 0, 0.64, 0.64), 0.64 + 0.36 * 0.64)
+
+    def test_rods_of_one_size_have_the_gap_in_print(self):
+        # Farr & Groot (2009): 0.7654 for 0.6435.
+        self.assertAlmostEqual(gap_of((1,), (1,), 0.6435), 0.7654, delta=2e-4)
+        self.assertAlmostEqual(rods((3,), (1,), 0.7654), 0.6435, delta=2e-4)
+
+    def test_rods_do_not_care_for_units_nor_for_equal_species(self):
+        one = rods(self.RADII, self.shares(0.5), 0.7654, 2000)
+        self.assertAlmostEqual(rods([3 * r for r in self.RADII], self.shares(0.5), 0.7654, 2000), one, delta=1e-5)
+        again = rods((*self.RADII, 7), (0.25, 0.25, 0.25, 0.125, 0.125), 0.7654, 2000)
+        self.assertAlmostEqual(again, one, delta=1e-5)
+
+    def test_chords_are_as_long_as_four_volumes_over_surface(self):
+        # Cauchy: 4 V / S = 4 R / 3 of a sphere, and of all spheres together.
+        numbers = [share / r**3 for share, r in zip(self.shares(0.5), self.RADII)]
+        mean = 4 / 3 * sum(n * r**3 for n, r in zip(numbers, self.RADII))
+        mean /= sum(n * r**2 for n, r in zip(numbers, self.RADII))
+        self.assertAlmostEqual(rod_lengths(self.RADII, self.shares(0.5), 20000).mean(), mean, delta=1e-3)
 
 
 class AtRest(unittest.TestCase):
