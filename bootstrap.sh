@@ -5,7 +5,7 @@
 #   ./bootstrap.sh package  the same, and make a .tar.gz for any Linux and a .deb of it
 #   ./bootstrap.sh test     install the packages, build, run every test
 #   ./bootstrap.sh sanitize run the tests of contract/ and runner/ with sanitizers
-#   ./bootstrap.sh tidy     look through the whole source with clang-tidy
+#   ./bootstrap.sh tidy     look through the whole source with clang-tidy; with --programs leave out the tests
 #   ./bootstrap.sh lint     the same, after the form of C++ and Python
 #   ./bootstrap.sh deps     install the packages only
 set -euo pipefail
@@ -110,7 +110,7 @@ sanitize() {
 tidy() {
   build ON --target provenance_facts  # clang-tidy reads sources, and needs those that are generated
   say "clang-tidy"
-  /usr/bin/python3 tests/house/tidy.py build/release
+  /usr/bin/python3 tests/house/tidy.py build/release "$@"
 }
 
 lint() {
@@ -125,7 +125,7 @@ case "${1:-}" in
   package) deps "${to_build[@]}" && package ;;
   test) deps "${to_build[@]}" "${to_test[@]}" && run_tests ;;
   sanitize) deps "${to_build[@]}" "${to_test[@]}" && sanitize ;;
-  tidy) deps "${to_build[@]}" "${to_test[@]}" "${to_lint[@]}" && tidy ;;
+  tidy) deps "${to_build[@]}" "${to_test[@]}" "${to_lint[@]}" && tidy "${@:2}" ;;
   lint) deps "${to_build[@]}" "${to_test[@]}" "${to_lint[@]}" && lint ;;
   deps) deps "${to_build[@]}" "${to_test[@]}" "${to_lint[@]}" ;;
   *)
