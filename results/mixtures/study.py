@@ -4,6 +4,7 @@ models of packings; and whether dense grains flow better when colloids are added
 
 study.py BIN [FOLDER] [--quick] [--from-table]
 """
+import functools
 import math
 import sys
 from pathlib import Path
@@ -44,8 +45,7 @@ SCENE = merged(
     },
 )
 # Share of the grains in the volume of all spheres, and how many spheres that takes for some thirty grains.
-COUNTS = {0: 1000, 0.4: 6000, 0.5: 4000, 0.6: 3000, 0.7: 3000, 0.75: 3000, 0.8: 3000, 0.85: 3000, 0.9: 3000}
-COUNTS[1] = 1000
+COUNTS = {0: 1000, 0.4: 6000, 0.5: 4000, **dict.fromkeys((0.6, 0.7, 0.75, 0.8, 0.85, 0.9), 3000), 1: 1000}
 ALONE = {0: 0.64, 1: 0.57}  # in print: where one group alone jams, by friction
 # How far below what models with these numbers say; with friction mixtures jam before.
 BELOW = {0: (0.10, 0.075, 0.055, 0.04, 0.025), 1: (0.19, 0.16, 0.13, 0.10, 0.075)}
@@ -56,7 +56,7 @@ SOFT = 0.02  # overlap, in radii, beyond which spheres are not hard
 BASES, ADDED = (0.55, 0.60), (1, 0.9, 0.8, 0.7, 0.6, 0.5)
 # What may not matter, at a share of grains and so far below the models: so many times as many spheres, and contacts so
 # many times as stiff.
-SIZES, STIFFER, TESTED, FAR = (0.5, 1, 2), (1, 4), 0.5, {0: 0.04, 1: 0.13}
+SIZES, STIFFER, TESTED, FAR = (0.5, 1, 2), 4, 0.5, {0: 0.04, 1: 0.13}
 
 
 def radii_and_shares(alpha):
@@ -69,6 +69,7 @@ def grains_among(alpha, count):
     return count * float(numbers[len(COLLOIDS) :].sum() / numbers.sum())
 
 
+@functools.cache
 def models(alone):
     """Over alpha: the two models in which either group alone packs to this volume fraction."""
     gap = gap_of(*radii_and_shares(0), alone, 4000)
@@ -122,15 +123,14 @@ def measure(program):
         fraction = below_models(friction, TESTED, distance)
         sizes = [(TESTED, round(factor * COUNTS[TESTED]), fraction) for factor in SIZES]
         rows += rows_of(program, "size", friction, sizes)
-        for stiffer in STIFFER:
-            rows += rows_of(program, f"stiff-{stiffer}", friction, sizes[:1], stiffer=stiffer)
+        rows += rows_of(program, f"stiff-{STIFFER}", friction, sizes[:1], stiffer=STIFFER)
     names = ["part", "friction", "alpha", "count", "grains", "fraction", "stiffness", "seeds", "lost", "transient"]
     names += ["overlap", *columns_of("viscosity", "pairs", "lubrication", "contact")]
     write_table(HERE / "table.csv", names, rows, 5)
     write_table(HERE / "jamming.csv", JAMMING, [row for friction in ALONE for row in jamming_rows(rows, friction)], 5)
 
 
-JAMMING = ["friction", "alpha", "points", *columns_of("jammed", "exponent"), "rms", "linear mixture", "rods"]
+JAMMING = ["friction", "alpha", "points", *columns_of("jammed", "exponent", "rms"), "linear mixture", "rods"]
 
 
 def curve_of(rows, friction, alpha):
@@ -147,27 +147,29 @@ def jamming_rows(rows, friction):
     numbers = [logarithm(number(r, "viscosity")) for curve in curves.values() for r in curve]
 
     def found(logarithms):
-        exponent, points = jamming_points(list(zip(fractions, np.split(np.asarray(logarithms), ends))))
-        return [exponent, *points]
+        """The exponent, and of each curve phi_m and the distance from the law."""
+        parts = list(zip(fractions, np.split(np.asarray(logarithms), ends)))
+        exponent, points = jamming_points(parts)
+        return [exponent, *points, *(distance_from_law(*part, at, exponent) for part, at in zip(parts, points))]
 
     values, errors = propagated(numbers, found)
     of = models(ALONE[friction])
-    for (alpha, curve), jammed, error in zip(curves.items(), values[1:], errors[1:]):
+    for k, (alpha, curve) in enumerate(curves.items()):
+        jammed, rms = 1 + k, 1 + len(curves) + k
         yield {
             "friction": friction,
             "alpha": alpha,
             "points": len(curve),
-            **entries("jammed", (jammed, error)),
+            **entries("jammed", (values[jammed], errors[jammed])),
             **entries("exponent", (values[0], errors[0])),
-            "rms": distance_from_law(curve, jammed, values[0]),
+            **entries("rms", (values[rms], errors[rms])),
             **{name: model(alpha) for name, model in of.items()},
         }
 
 
-def distance_from_law(curve, jammed, exponent):
+def distance_from_law(fractions, logarithms, jammed, exponent):
     """Root of the mean square of ln eta about the law, with the factor that fits best."""
-    left = [math.log(r["viscosity"]) + exponent * math.log(1 - r["fraction"] / jammed) for r in curve]
-    return float(np.std(left))
+    return float(np.std(logarithms + exponent * np.log(1 - np.asarray(fractions) / jammed)))
 
 
 def jammed_at(points, friction):
@@ -200,21 +202,15 @@ def slopes(of_alpha):
 
 
 def map_rows(points):
-    of = jammed_at(points, 0)
-    text = "μ = 0: share α of grains at which φ_m is largest"
-    yield Statement(text, "L5.3c", *optimum(of), 0.6, 0.8)
-    text = "μ = 0: how fast φ_m rises from α = 1 over how fast from 0"
-    yield Statement(text, "L5.3c", *slopes(of), 1.5)
-    row = jammed_at(points, 1)[0.4]
-    yield Statement("μ = 1, α = 0.4: rms of ln η_r about a power", "L5.4a", row["rms"], 0.0, high=0.1)
-    of = jammed_at(points, 1)
-    yield Finding("μ = 1: share α of grains at which φ_m is largest", "L5.3c", *optimum(of))
-    yield Finding("μ = 1: how fast φ_m rises from α = 1 over how fast from 0", "L5.3c", *slopes(of))
     for friction in ALONE:
         of = jammed_at(points, friction)
         name = f"μ = {friction}"
-        text = f"{name}: φ_m of colloids alone less that of grains alone"
-        yield Finding(text, "L5.4b", *difference(number(of[0], "jammed"), number(of[1], "jammed")))
+        text = f"{name}: share α of grains at which φ_m is largest"
+        yield Statement(text, "L5.3c", *optimum(of), 0.6, 0.8, essential=False)
+        text = f"{name}: how fast φ_m rises from α = 1 over how fast from 0"
+        yield Statement(text, "L5.3c", *slopes(of), 1.5)
+        ends = difference(number(of[0], "jammed"), number(of[1], "jammed"))
+        yield Statement(f"{name}: φ_m of colloids alone less that of grains alone", "L5.4b", *ends, -0.004, 0.004)
         text = f"{name}: rms distance of φ_m(α) from the nearer packing model"
         yield Finding(text, "L5.4b", *from_nearer_model(of))
         for alpha in (0.8, 0.85, 0.9):
@@ -225,14 +221,27 @@ def map_rows(points):
             yield Finding(text, "packing models", *share)
         text = f"{name}: exponent β of (1 - φ/φ_m)^-β"
         yield Finding(text, "L5.4a", *number(of[0], "exponent"))
+    row = jammed_at(points, 1)[0.4]
+    yield Statement("μ = 1, α = 0.4: rms of ln η_r about a power", "L5.4a", *number(row, "rms"), high=0.1)
 
 
-def added_rows(points):
-    """How near dense grains are to jamming when colloids are added."""
+def added_rows(rows, points):
+    """What becomes of dense grains when colloids are added."""
     of = jammed_at(points, 1)
-    for alpha in (1, 0.8, 0.6, 0.5):
-        text = f"grains at φ₀ = 0.6, μ = 1: φ_m/φ at α = {alpha:g} (above 1: flows)"
-        yield Finding(text, "L5.6", *over(number(of[alpha], "jammed"), added_fraction(alpha, 0.60)))
+    line = {r["alpha"]: r for r in rows if r["part"] == f"added-{BASES[0]:g}"}
+    for first, then in ((1, 0.9), (0.9, 0.8)):
+        ratio = quotient(*(number(line[alpha], "viscosity") for alpha in (then, first)))
+        text = f"grains at φ₀ = {BASES[0]:g}, μ = 1: η_r at α = {then:g} over that at {first:g}"
+        yield Statement(text, "L5.2", *ratio, high=1, degrees=line[then]["seeds"] - 1)
+
+    def room(alpha):
+        return over(number(of[alpha], "jammed"), added_fraction(alpha, BASES[1]))
+
+    name = f"grains at φ₀ = {BASES[1]:g}, μ = 1: φ_m/φ"
+    for alpha, low, high in ((1, 0, 1), (0.8, 1, math.inf), (0.5, 0, 1)):
+        yield Statement(f"{name} at α = {alpha:g} (above 1: flows)", "L5.6", *room(alpha), low, high)
+    text = f"{name} at α = 0.6 over that at 0.7 (further away)"
+    yield Statement(text, "L5.6", *quotient(room(0.6), room(0.7)), low=1)
 
 
 def consistency_rows(rows):
@@ -247,15 +256,16 @@ def consistency_rows(rows):
             ratio = quotient(number(other, "viscosity"), number(one, "viscosity"))
             text = f"{name}: η_r of {other['count']:.0f} spheres over that of {one['count']:.0f}"
             yield Check(text, "size", *ratio, 0.9, 1.1, SEEDS - 1)
-        (one,), (other,) = (of_part[f"stiff-{stiffer}"] for stiffer in STIFFER)
-        ratio = quotient(number(other, "viscosity"), number(one, "viscosity"))
-        yield Check(f"{name}: η_r with contacts {STIFFER[1]} times as stiff over η_r", "stiffness", *ratio, 0.95, 1.05)
+        (stiff,) = of_part[f"stiff-{STIFFER}"]
+        ratio = quotient(number(stiff, "viscosity"), number(sizes[0], "viscosity"))
+        text = f"{name}: η_r with contacts {STIFFER} times as stiff over η_r"
+        yield Check(text, "stiffness", *ratio, 0.95, 1.05, SEEDS - 1)
 
 
 def judge():
     rows, points = read_rows(HERE / "table.csv"), read_rows(HERE / "jamming.csv")
     yield from map_rows(points)
-    yield from added_rows(points)
+    yield from added_rows(rows, points)
     yield from consistency_rows(rows)
 
 

@@ -43,7 +43,7 @@ def jammed_and_exponent(fractions, values):
     return float(jammed[best]), float(exponents[best])
 
 
-def jamming_points(curves, exponents=np.arange(1, 3.0001, 0.02)):
+def jamming_points(curves, exponents=np.arange(1, 4.0001, 0.02)):
     """The exponent beta that curves of (volume fractions, logarithms of viscosities) have in common, and phi_m of each,
     of c (1 - phi / phi_m)^-beta with a c of each: least squares in the logarithm, all points with the same weight, by a
     search in steps of 0.02 and 0.0002."""

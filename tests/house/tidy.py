@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """tidy.py BUILD [PART...]      clang-tidy of all that BUILD compiles, or of the files that have PART in their path
-tidy.py BUILD --programs     of all but the tests, a third of the time
+tidy.py BUILD --programs     of all but the tests: half of the files
 
 A unity build is looked through as it is compiled: the files of a folder at once, for a third of the time of one by one.
 Two checks see files one by one only: misc-unused-using-decls and misc-unused-alias-decls (build/dev).
