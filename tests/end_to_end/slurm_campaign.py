@@ -85,6 +85,14 @@ class Campaign:
         with open(os.path.join(self.folder, "log")) as f:
             return f.read()
 
+    def printed(self):
+        """By the job whose script docs/clusters.md has."""
+        path = os.path.join(self.folder, "friction.log")
+        if not os.path.exists(path):
+            return ""
+        with open(path) as f:
+            return "--- friction.log\n" + f.read()
+
     def export(self):
         return subprocess.run(
             [self.peclet, "export", "drill.json", "--canonical"], cwd=self.folder, capture_output=True, check=True

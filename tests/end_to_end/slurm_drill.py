@@ -55,7 +55,7 @@ def try_case(drill, name, expected):
         said = getattr(drill, name)(campaign)
         lost, double, again, same = campaign.lost(), campaign.double(), campaign.again(), campaign.export() == expected
     except (AssertionError, subprocess.SubprocessError) as error:
-        print(f"{name}: {error}\n{drill.cluster.log()}", file=sys.stderr)
+        print(f"{name}: {error}\n{drill.cluster.log()}{campaign.printed()}", file=sys.stderr)
         said, lost, double, again, same = "FAILED", "?", "?", "?", False
         drill.cluster.clear()
     finally:
