@@ -12,11 +12,12 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
+from studies.compositions import COLLOIDS, GRAINS, MIXTURE_SCENE, colloids_added, grains_among, radii_and_shares
 from studies.estimates import difference, logarithm, over, propagated, quotient
 from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
 from studies.fits import jamming_points
 from studies.packings import gap_of, linear_mixture, rods
-from studies.scenes import REFERENCE_SCENE, during, merged
+from studies.scenes import during, merged
 from studies.tables import columns_of, entries, number, read_rows, write_table
 from studies.verdicts import Check, Finding, Statement
 from studies.viscosities import viscosity_row
@@ -24,26 +25,8 @@ from studies.viscosities import viscosity_row
 import numpy as np
 
 TITLE = "Colloids and grains without noise"
-COLLOIDS, GRAINS = (1.0, 1.4), (5.0, 7.0)
 RATIO = COLLOIDS[0] / GRAINS[0]
-
-
-def equal_volumes(radii):
-    return [{"radius": radius, "volume_share": 0.5} for radius in radii]
-
-
-SCENE = merged(
-    REFERENCE_SCENE,
-    {
-        "particles": {
-            "species": None,
-            "density": 0.004,  # a Stokes number of 0.09 for the largest
-            "mixture": {"colloids": equal_volumes(COLLOIDS), "grains": equal_volumes(GRAINS), "alpha": 0},
-        },
-        "contact": {"normal_stiffness": 1e5},  # grains press on colloids with the square of their radii
-        **during({"strain": 1}, {"strain": 2}),
-    },
-)
+SCENE = merged(MIXTURE_SCENE, during({"strain": 1}, {"strain": 2}))
 # Share of the grains in the volume of all spheres, and how many spheres that takes for some thirty grains.
 COUNTS = {0: 1000, 0.4: 6000, 0.5: 4000, **dict.fromkeys((0.6, 0.7, 0.75, 0.8, 0.85, 0.9), 3000), 1: 1000}
 ALONE = {0: 0.64, 1: 0.57}  # in print: where one group alone jams, by friction
@@ -57,16 +40,6 @@ BASES, ADDED = (0.55, 0.60), (1, 0.9, 0.8, 0.7, 0.6, 0.5)
 # What may not matter, at a share of grains and so far below the models: so many times as many spheres, and contacts so
 # many times as stiff.
 SIZES, STIFFER, TESTED, FAR = (0.5, 1, 2), 4, 0.5, {0: 0.04, 1: 0.13}
-
-
-def radii_and_shares(alpha):
-    return (*COLLOIDS, *GRAINS), ((1 - alpha) / 2,) * 2 + (alpha / 2,) * 2
-
-
-def grains_among(alpha, count):
-    radii, shares = radii_and_shares(alpha)
-    numbers = np.array(shares) / np.power(radii, 3)
-    return count * float(numbers[len(COLLOIDS) :].sum() / numbers.sum())
 
 
 @functools.cache
@@ -83,12 +56,6 @@ def below_models(friction, alpha, distance):
     """The volume fraction so far below the mean of what the models say."""
     of = models(ALONE[friction]).values()
     return round(sum(model(alpha) for model in of) / len(of) - distance, 4)
-
-
-def added_fraction(alpha, base):
-    """The volume fraction after colloids were added to grains of the fraction `base` until the grains' share is
-    `alpha`."""
-    return base / (base + (1 - base) * alpha)
 
 
 def rows_of(program, part, friction, cases, seeds=SEEDS, stiffer=1):
@@ -117,7 +84,7 @@ def measure(program):
         curves = [(a, n, below_models(friction, a, d)) for a, n in COUNTS.items() for d in BELOW[friction]]
         rows += rows_of(program, "curve", friction, curves)
     for base in BASES:
-        cases = [(a, COUNTS[a], round(added_fraction(a, base), 4)) for a in ADDED]
+        cases = [(a, COUNTS[a], round(colloids_added(a, base), 4)) for a in ADDED]
         rows += rows_of(program, f"added-{base:g}", 1, cases)
     for friction, distance in FAR.items():
         fraction = below_models(friction, TESTED, distance)
@@ -235,7 +202,7 @@ def added_rows(rows, points):
         yield Statement(text, "L5.2", *ratio, high=1, degrees=line[then]["seeds"] - 1)
 
     def room(alpha):
-        return over(number(of[alpha], "jammed"), added_fraction(alpha, BASES[1]))
+        return over(number(of[alpha], "jammed"), colloids_added(alpha, BASES[1]))
 
     name = f"grains at φ₀ = {BASES[1]:g}, μ = 1: φ_m/φ"
     for alpha, low, high in ((1, 0, 1), (0.8, 1, math.inf), (0.5, 0, 1)):
@@ -282,7 +249,7 @@ def draw():
             panel.curve(model, title, colour, span=(0, 1), samples=81, dash=dash)
     for base, colour in zip(BASES, (GREEN, ORANGE)):
         title = f"colloids added to φ₀ = {base:g}"
-        panel.curve(lambda a, b=base: added_fraction(a, b), title, colour, span=(0.4, 1), dash=3)
+        panel.curve(lambda a, b=base: colloids_added(a, b), title, colour, span=(0.4, 1), dash=3)
     panel = figure.panel("1 - φ/φ_m", "η_r", "the law", log="xy", key="bottom left", x_range=(0.02, 0.3))
     for friction, mark in zip(ALONE, (6, 7)):
         of = jammed_at(points, friction)

@@ -1,0 +1,50 @@
+"""Colloids of radii 1 and 1.4 among grains of radii 5 and 7, and the ways on which one is added to the other."""
+import numpy as np
+
+from studies.scenes import REFERENCE_SCENE, merged
+
+COLLOIDS, GRAINS = (1.0, 1.4), (5.0, 7.0)
+
+
+def equal_volumes(radii):
+    return [{"radius": radius, "volume_share": 0.5} for radius in radii]
+
+
+# Without noise, in the units of Table 5.1 of Li's thesis.
+MIXTURE_SCENE = merged(
+    REFERENCE_SCENE,
+    {
+        "particles": {
+            "species": None,
+            "density": 0.004,  # a Stokes number of 0.09 for the largest
+            "mixture": {"colloids": equal_volumes(COLLOIDS), "grains": equal_volumes(GRAINS), "alpha": 0},
+        },
+        "contact": {"normal_stiffness": 1e5},  # grains press on colloids with the square of their radii
+    },
+)
+
+
+def radii_and_shares(alpha):
+    return (*COLLOIDS, *GRAINS), ((1 - alpha) / 2,) * 2 + (alpha / 2,) * 2
+
+
+def grains_among(alpha, count):
+    radii, shares = radii_and_shares(alpha)
+    numbers = np.array(shares) / np.power(radii, 3)
+    return count * float(numbers[len(COLLOIDS) :].sum() / numbers.sum())
+
+
+def colloids_added(alpha, base):
+    """The volume fraction after colloids were added to grains of the fraction `base` until the grains' share is
+    `alpha`."""
+    return base / (base + (1 - base) * alpha)
+
+
+def grains_added(alpha, base):
+    """The volume fraction after grains were added to colloids of the fraction `base`."""
+    return colloids_added(1 - alpha, base)
+
+
+def mean_peclet(alpha, number):
+    """Of the mean radius (1 - alpha) a_c + alpha a_g, where the colloids have this Peclet number."""
+    return number * (1 - alpha + alpha * GRAINS[0] / COLLOIDS[0]) ** 3
