@@ -51,6 +51,7 @@ StepReport joined(const StepReport& first, const StepReport& second) {
                mean(first.flux.conservative, second.flux.conservative),
                mean(first.flux.dissipative, second.flux.dissipative)};
   both.sums.contacts = 0.5 * (first.sums.contacts + second.sums.contacts);
+  both.sums.overlaps = 0.5 * (first.sums.overlaps + second.sums.overlaps);
   both.sums.largest_overlap = std::max(first.sums.largest_overlap, second.sums.largest_overlap);
   both.largest_displacement = std::max(first.largest_displacement, second.largest_displacement);
   both.solver_iterations = first.solver_iterations + second.solver_iterations;

@@ -15,6 +15,7 @@ PairSums total_of(const std::vector<PairSums>& blocks) {
       total.stress[t] += block.stress[t];
     }
     total.contacts += block.contacts;
+    total.overlaps += block.overlaps;
     total.largest_overlap = std::max(total.largest_overlap, block.largest_overlap);
     total.finite = total.finite && block.finite;
   }

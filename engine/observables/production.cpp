@@ -12,6 +12,7 @@ void Production::add_step(std::uint64_t index, const PairSums& sums) {
     block.stress[t] += sums.stress[t];
   }
   block.contacts += sums.contacts;
+  block.overlaps += sums.overlaps;
 }
 
 void Production::add_sample(std::uint64_t index, const SymmetricTensor& structural_brownian,
@@ -31,6 +32,7 @@ BlockSums sum_of(std::span<const BlockSums> blocks) {
     all.steps += block.steps;
     all.samples += block.samples;
     all.contacts += block.contacts;
+    all.overlaps += block.overlaps;
     for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
       all.stress[t] += block.stress[t];
     }

@@ -15,10 +15,14 @@ struct BlockSums {
   std::uint64_t steps = 0;  // every step adds to the stress: thinning would destroy the Brownian part
   std::array<SymmetricTensor, count_of_stress_terms> stress{};  // sum over pairs of sym(r F)
   double contacts = 0;
+  double overlaps = 0;        // of these, over the smaller radius of the pair
   std::uint64_t samples = 0;  // the rest is sampled
   SymmetricTensor structural_brownian;
   SymmetricTensor varying_stresslet;
   KineticTemperatures temperature{};
+
+  // Of contacts; 0 without any.
+  double mean_overlap() const { return contacts > 0 ? overlaps / contacts : 0; }
 };
 
 // Of several blocks together.

@@ -152,10 +152,11 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
                  const Ending& ending, const std::string& saved_state, const Spent& spent) {
   Json result = common_part(header, scene, simulation.schedule(), simulation.system().step, spent);
   std::vector<Warning> warnings = scene_warnings(scene);
-  if (const double overlap = simulation.largest_overlap(); overlap > 0.01) {
+  if (const double overlap = sum_of(simulation.production().blocks()).mean_overlap(); overlap > 0.001) {
     warnings.push_back(
-        {"overlap", "spheres overlapped by " + Json(overlap).dump() +
-                        " of a radius, more than 0.01: the contacts are too soft for this stress"});
+        {"overlap", "contacts overlapped by " + Json(overlap).dump() +
+                        " of a radius in the mean, more than 0.001: they are too soft for this "
+                        "stress, and spheres take up less than their volume fraction"});
   }
   const std::optional<double> imbalance = energy_imbalance(scene, simulation);
   if (imbalance && std::abs(*imbalance) > scene.guard.energy_imbalance) {

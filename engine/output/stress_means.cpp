@@ -145,6 +145,7 @@ Json StressMeans::means(const BlockSums& sums) const {
           {"pressure", pressure(total)},
           {"control_variates", control_variates(brownian)},
           {"contacts_per_particle", 2 * sums.contacts / (static_cast<double>(sums.steps) * particles_)},
+          {"mean_overlap", sums.mean_overlap()},
           {"kinetic_temperature", per_sample * sums.temperature.translational},
           {"rotational_temperature", per_sample * sums.temperature.rotational}};
 }
@@ -203,6 +204,7 @@ std::vector<Quantity> stress_quantities(const Scene& scene) {
     described.scalar("control_variates/pressure", "P^noise", unit);
   }
   described.scalar("contacts_per_particle", "Z", "1");
+  described.scalar("mean_overlap", "<delta/a>", "1");
   described.scalar("kinetic_temperature", "k_B T", "energy");
   described.scalar("rotational_temperature", "k_B T_rot", "energy");
   return described.take();

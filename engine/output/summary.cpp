@@ -41,7 +41,8 @@ std::string means(const Json& result) {
                                      value("second_normal_difference"), unit));
   text += line("pressure", value("pressure") + unit);
   text += line("contacts",
-               fmt::format("{} per sphere; largest overlap {:.2g} radii", value("contacts_per_particle"),
+               fmt::format("{} per sphere; overlaps {:.2g} radii in the mean, {:.2g} at most",
+                           value("contacts_per_particle"), result.at("mean").at("mean_overlap").get<double>(),
                            result.at("largest_overlap").get<double>()));
   return text;
 }

@@ -26,7 +26,7 @@ void add_law_options(CLI::App* verb, JammingOptions& options) {
              "The law is of the points whose viscosity is above")
       ->capture_default_str();
   add_number(verb, "--softest", options.curves.softest, number_above(0),
-             "Largest overlap, in radii, up to which spheres are taken for hard")
+             "Mean overlap of contacts, in radii, up to which spheres are taken for hard")
       ->capture_default_str();
 }
 

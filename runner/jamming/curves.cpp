@@ -25,6 +25,12 @@ bool is_jam(const std::string& cause) {
   return std::find(jams.begin(), jams.end(), cause) != jams.end();
 }
 
+bool is_soft(const JammingPoint& point, double softest) {
+  constexpr double largest_over_mean = 10;
+  if (point.overlap) return *point.overlap > softest;
+  return point.largest_overlap && *point.largest_overlap > largest_over_mean * softest;
+}
+
 // What the seeds of the look, or all that have ended, say.
 void judge(JammingPoint& made, Database& database, const PointSummary& point, double softest) {
   const int end = point.looks.empty() ? std::numeric_limits<int>::max() : point.looks.back().seeds;
@@ -40,7 +46,7 @@ void judge(JammingPoint& made, Database& database, const PointSummary& point, do
       ++(is_jam(seed.cause) ? made.jammed : lost);
     }
   }
-  if (overlaps.estimate().count > 0) made.overlap = overlaps.estimate().mean;
+  if (overlaps.estimate().count > 0) made.largest_overlap = overlaps.estimate().mean;
   constexpr int least_share = 10;
   if (point.point.suspect) {
     made.state = FlowState::suspect;
@@ -53,19 +59,24 @@ void judge(JammingPoint& made, Database& database, const PointSummary& point, do
   } else if (least_share * made.jammed > made.ended) {
     made.state = FlowState::partly_jammed;
   } else {
-    made.state = made.overlap && *made.overlap > softest ? FlowState::soft : FlowState::flowing;
+    made.state = is_soft(made, softest) ? FlowState::soft : FlowState::flowing;
   }
+}
+
+std::optional<std::size_t> place_of(const std::vector<Drawable>& drawables, const std::string& path) {
+  for (std::size_t column = 0; column < drawables.size(); ++column) {
+    if (drawables[column].path == path) return column;
+  }
+  return std::nullopt;
 }
 
 // The place of the quantity among what has been measured; none where nothing has.
 std::optional<std::size_t> column_of(const std::vector<Drawable>& drawables, const std::string& quantity) {
   if (drawables.empty()) return std::nullopt;
   const std::string path = quantity.starts_with('/') ? quantity.substr(1) : quantity;
+  if (const std::optional<std::size_t> place = place_of(drawables, path)) return place;
   std::vector<std::string> names;
-  for (std::size_t column = 0; column < drawables.size(); ++column) {
-    if (drawables[column].path == path) return column;
-    names.push_back(drawables[column].path);
-  }
+  for (const Drawable& one : drawables) names.push_back(one.path);
   throw InputError("", "--quantity", quantity, "must be a number that is measured" + suggestion(path, names));
 }
 
@@ -152,6 +163,7 @@ JammingCurves read_curves(Database& database, const CurveChoice& choice) {
   require_fractions(axis, choice.over);
   const std::vector<const Swept*> by = curves_by(swept, axis);
   const std::optional<std::size_t> column = column_of(page.drawables, choice.quantity);
+  const std::optional<std::size_t> overlaps = place_of(page.drawables, "mean_overlap");
   JammingCurves made{status.campaign.name, choice.quantity, axis.pointer, {}};
   std::map<std::string, std::size_t> places;  // of curves, by their settings
   for (std::size_t i = 0; i < page.points.size(); ++i) {
@@ -163,6 +175,9 @@ JammingCurves read_curves(Database& database, const CurveChoice& choice) {
     point.label = status.points[i].point.label;
     point.fraction = axis.numbers[i];
     point.estimate = estimate_of(page.points[i], column);
+    if (const Estimate overlap = estimate_of(page.points[i], overlaps); overlap.count > 0) {
+      point.overlap = overlap.mean;
+    }
     judge(point, database, status.points[i], choice.softest);
     made.curves[place->second].points.push_back(std::move(point));
   }

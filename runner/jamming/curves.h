@@ -6,8 +6,9 @@
 //   jammed   half of the seeds or more ended as jammed: the engine's causes "overlap", "packing" and "jammed"
 //   lost     half or more ended without a value for other reasons
 //   partly   more than a tenth ended as jammed: the mean is of those that happened to flow
-//   soft     the largest overlap, mean over the seeds, is above the limit: spheres that are not hard flow
-//            beyond their jamming point
+//   soft     contacts overlap by more than the limit in the mean: spheres that are not hard flow beyond their
+//            jamming point. Where results have no mean overlap, the largest of a seed, mean over the seeds,
+//            is above ten times the limit
 //   flowing  all others
 //   open     no seed has ended
 #pragma once
@@ -32,9 +33,10 @@ struct JammingPoint {
   double fraction = 0;
   Estimate estimate{};  // of the viscosity, the one that decides; NaN without
   FlowState state = FlowState::open;
-  int ended = 0, jammed = 0;        // seeds
-  std::optional<double> overlap{};  // largest one, in radii of the smaller sphere, mean over the seeds
-  double cpu_seconds = 0;           // of all its seeds
+  int ended = 0, jammed = 0;  // seeds
+  // In radii of the smaller sphere, means over the seeds: of contacts, and the largest.
+  std::optional<double> overlap{}, largest_overlap{};
+  double cpu_seconds = 0;  // of all its seeds
 
   // Of the estimate: whether it can enter a fit.
   bool has_error() const;
@@ -60,7 +62,7 @@ struct JammingCurves {
 struct CurveChoice {
   std::string over = "volume_fraction";         // as of chosen_axis()
   std::string quantity = "relative_viscosity";  // as `export` calls it
-  double softest = 0.01;                        // overlap
+  double softest = 0.001;                       // overlap
 };
 
 // Throws InputError for a parameter that is not swept or is no volume fraction (0 < phi < 1), or a quantity

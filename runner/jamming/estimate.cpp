@@ -15,9 +15,9 @@ std::string why_left_out(const JammingPoint& point) {
                                              point.estimate.count, fewest_seeds);
     case FlowState::soft:
       return fmt::format(
-          "soft: spheres overlap by {:.2g} radii, more than hard ones would; a larger "
+          "soft: spheres overlap by {:.2g} radii{}, more than hard ones would; a larger "
           "normal_stiffness makes them harder",
-          *point.overlap);
+          point.overlap ? *point.overlap : *point.largest_overlap, point.overlap ? "" : " at most");
     case FlowState::partly_jammed:
       return fmt::format("{} of {} seeds jammed: the mean is of those that happened to flow", point.jammed,
                          point.ended);

@@ -97,7 +97,7 @@ std::string remarks_text(const JammingReport& report) {
 std::string legend(const JammingReport& report) {
   std::string text = fmt::format(
       "flowing: points that flow; stuck at: the smallest fraction beyond them that is jammed, or soft "
-      "(overlap "
+      "(mean overlap "
       "above {:g} radii); numbers ± standard error\n",
       report.softest);
   if (report.by_law) {
@@ -126,6 +126,8 @@ std::string proposal_text(const ProposedPoints& proposed) {
   text += fmt::format("each takes some {:.3g} s of processor time, over all curves\n", proposed.cpu_seconds);
   return text + "patch of the campaign file (RFC 6902):\n" + proposed.patch.dump(2) + '\n';
 }
+
+Json json_or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
 Json measured_json(const Measured& number) {
   return {{"value", number.value}, {"standard_error", number.standard_error}};
@@ -162,7 +164,8 @@ Json point_json(const JammingPoint& point, const JammingEstimate& estimate) {
           {"count", point.estimate.count},
           {"seeds", point.ended},
           {"jammed", point.jammed},
-          {"largest_overlap", point.overlap ? Json(*point.overlap) : Json(nullptr)},
+          {"overlap", json_or_null(point.overlap)},
+          {"largest_overlap", json_or_null(point.largest_overlap)},
           {"fitted", is_fitted}};
 }
 
@@ -173,7 +176,7 @@ Json curve_json(const JammingReport& report, const JammingEstimate& one) {
   for (const JammingPoint& point : one.curve.points) points.push_back(point_json(point, one));
   Json json = {{"settings", one.curve.settings},
                {"flowing", one.flowing()},
-               {"largest_flowing", flowing ? Json(*flowing) : Json(nullptr)},
+               {"largest_flowing", json_or_null(flowing)},
                {"smallest_stuck", nullptr},
                {"remarks", one.remarks},
                {"points", points}};
@@ -214,7 +217,7 @@ Json jamming_json(const JammingReport& report) {
           {"above", report.choice.above},
           {"softest", report.softest},
           {"given",
-           {{"exponent", form.exponent ? Json(*form.exponent) : Json(nullptr)},
+           {{"exponent", json_or_null(form.exponent)},
             {"prefactor", form.unit_prefactor ? Json(1) : Json(nullptr)}}},
           {"curves", curves},
           {"proposed", report.proposed ? proposed_json(*report.proposed) : Json(nullptr)}};

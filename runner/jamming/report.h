@@ -14,7 +14,7 @@ namespace peclet::runner {
 struct JammingReport {
   JammingCurves campaign;  // its curves are in the estimates
   EstimateChoice choice;
-  double softest = 0.01;
+  double softest = 0.001;
   bool by_law = true, by_steepest = true;
   std::vector<JammingEstimate> estimates;
   std::optional<ProposedPoints> proposed;  // where it was asked for

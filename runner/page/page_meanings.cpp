@@ -35,7 +35,7 @@ std::string meaning(const std::string& mark) {
       {"suspect", "a seed gave two different results; no number of this point can be trusted"},
       {"timestep", "seeds whose time step made too much energy, changes the stress or was often divided"},
       {"solver", "seeds whose implicit steps were solved too inaccurately"},
-      {"overlap", "seeds in which spheres overlapped by more than a hundredth of a radius"}};
+      {"overlap", "seeds whose contacts overlapped by more than a thousandth of a radius in the mean"}};
   const auto known = meanings.find(mark);
   return known == meanings.end() ? "the engine's own mark; its warning says more" : known->second;
 }

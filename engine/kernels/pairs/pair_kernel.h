@@ -16,7 +16,7 @@ namespace peclet::engine {
 template <class Real>
 struct LaneSumsOf {
   SymmetricTensorOf<Real> stress[count_of_stress_terms];
-  Real largest_overlap{};
+  Real overlaps{}, largest_overlap{};
   std::uint64_t contacts = 0;
   unsigned not_finite = 0;
 };
@@ -147,7 +147,9 @@ class PairGroup {
         return;
       }
       sums.contacts += static_cast<std::uint64_t>(__builtin_popcount(touching));
-      sums.largest_overlap = larger(sums.largest_overlap, (1 / kind_.smaller_radius) * loads.overlap);
+      const Real overlap = (1 / kind_.smaller_radius) * loads.overlap;
+      sums.overlaps += larger(Real{}, overlap);
+      sums.largest_overlap = larger(sums.largest_overlap, overlap);
       add(StressTerm::contact_normal, loads.contact_normal);
       if constexpr (terms.damping) {
         add(StressTerm::contact_damping, loads.contact_damping);
@@ -293,6 +295,7 @@ template <class Real, Terms terms, bool mirrored>
                        sum_of_lanes(s.xy), sum_of_lanes(s.xz), sum_of_lanes(s.yz)};
   }
   total.contacts = static_cast<double>(sums.contacts);
+  total.overlaps = sum_of_lanes(sums.overlaps);
   total.largest_overlap = largest_lane(sums.largest_overlap);
   total.finite = sums.not_finite == 0;
 }

@@ -10,7 +10,8 @@ namespace peclet::engine {
 struct PairSums {
   SymmetricTensor stress[count_of_stress_terms] = {};
   double contacts = 0;
-  double largest_overlap = 0;  // over the smaller radius of the pair
+  double overlaps = 0;         // of all contacts, over the smaller radius of the pair
+  double largest_overlap = 0;  // of them
   bool finite = true;          // no separation was NaN or infinite
 
   SymmetricTensor& of(StressTerm term) { return stress[static_cast<std::size_t>(term)]; }

@@ -98,8 +98,16 @@ TEST(Result, BlocksAverageToTheMean) {
   const Json& mean = usual_result().at("mean");
   const Json& blocks = usual_result().at("blocks");
   for (const auto& [name, value] : mean.items()) {
-    if (value.is_number()) expect_average(blocks.at(name), value, name);
+    if (value.is_number() && name != "mean_overlap") expect_average(blocks.at(name), value, name);
   }
+  // A mean over contacts.
+  double overlaps = 0, contacts = 0;
+  for (std::size_t k = 0; k < 32; ++k) {
+    const double of_block = blocks.at("contacts_per_particle")[k];
+    overlaps += of_block * blocks.at("mean_overlap")[k].get<double>();
+    contacts += of_block;
+  }
+  EXPECT_NEAR(overlaps / contacts, mean.at("mean_overlap"), 1e-4 * overlaps / contacts);
   expect_controls(usual_result());
   for (const auto& [term, series] : blocks.at("shear_stress").items()) {
     const Json& whole =
@@ -114,8 +122,8 @@ TEST(Result, BlocksHoldWhatFluctuatesAndNothingElse) {
   for (const auto& [term, series] : blocks.at("shear_stress").items()) terms.push_back(term);
   EXPECT_EQ(terms, (std::vector<std::string>{"brownian_structural", "contact_damping", "contact_normal",
                                              "friction", "lubrication", "repulsion"}));
-  // Eight numbers, shear_stress and control_variates; in quarters stress and both Brownian stresses.
-  EXPECT_EQ(blocks.size(), 13u);
+  // Nine numbers, shear_stress and control_variates; in quarters stress and both Brownian stresses.
+  EXPECT_EQ(blocks.size(), 14u);
   for (const Json& pressure : blocks.at("pressure")) {
     EXPECT_EQ(pressure.get<double>(), std::stod(fmt::format("{:.4e}", pressure.get<double>())));
   }
@@ -242,7 +250,7 @@ TEST(Result, MeansAreTakenOverEveryStepOfTheProductionWindow) {
   simulation.start();
   simulation.advance(100);
   std::map<std::string, double> sums;
-  double contacts = 0, largest_overlap = 0;
+  double contacts = 0, overlaps = 0, largest_overlap = 0;
   for (int step = 0; step < 320; ++step) {
     simulation.advance(1);
     const ParticleState& p = simulation.system().particles;
@@ -259,9 +267,10 @@ TEST(Result, MeansAreTakenOverEveryStepOfTheProductionWindow) {
          every_image(p.position, configuration.box.lengths(), configuration.box.tilt(),
                      [&](std::uint32_t i, std::uint32_t j) { return p.radius[i] + p.radius[j]; })) {
       ++contacts;
-      const double overlap = p.radius[pair.first] + p.radius[pair.second] - norm(pair.separation);
-      largest_overlap =
-          std::max(largest_overlap, overlap / std::min(p.radius[pair.first], p.radius[pair.second]));
+      const double overlap = (p.radius[pair.first] + p.radius[pair.second] - norm(pair.separation)) /
+                             std::min(p.radius[pair.first], p.radius[pair.second]);
+      overlaps += overlap;
+      largest_overlap = std::max(largest_overlap, overlap);
     }
   }
   const Json& mean = usual_result().at("mean");
@@ -273,6 +282,7 @@ TEST(Result, MeansAreTakenOverEveryStepOfTheProductionWindow) {
     EXPECT_NEAR(found[2], zz, 1e-11 * std::abs(zz)) << term;
   }
   EXPECT_NEAR(mean.at("contacts_per_particle"), 2 * contacts / 320 / 60, 1e-12);
+  EXPECT_NEAR(mean.at("mean_overlap"), overlaps / contacts, 1e-12);
   EXPECT_NEAR(usual_result().at("largest_overlap"), largest_overlap, 1e-12);
 }
 

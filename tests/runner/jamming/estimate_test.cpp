@@ -69,8 +69,8 @@ TEST(JammingOfACampaign, PointsThatDoNotFlowAreNoPartOfTheLaw) {
   JammingCampaign campaign(jamming_document(fractions));
   const TrueLaw law;
   campaign.complete(0, law.at(0.45));
-  campaign.complete(1, law.at(0.50), 0.01, 0.0099);
-  campaign.complete(2, 1000, 0.01, 0.011);  // soft, and far from the law
+  campaign.complete(1, law.at(0.50), 0.01, 0.00099);
+  campaign.complete(2, 1000, 0.01, 0.0011);  // soft, and far from the law
   campaign.jam(3, 8, "packing");
   campaign.jam(4, 1);  // 1 of 8: more than a tenth, less than half
   for (int seed = 1; seed < 8; ++seed) campaign.stored().complete(4, seed, 50);
@@ -83,11 +83,27 @@ TEST(JammingOfACampaign, PointsThatDoNotFlowAreNoPartOfTheLaw) {
   EXPECT_EQ(found.curve.points[4].jammed, 1);
   EXPECT_EQ(found.fitted.size(), 1U);
   EXPECT_EQ(found.curve.smallest_stuck()->fraction, 0.54);
-  EXPECT_TRUE(remarks_say(found, "0.54 is left out: soft: spheres overlap by 0.011 radii"));
+  EXPECT_TRUE(remarks_say(found, "0.54 is left out: soft: spheres overlap by 0.0011 radii, more"));
   EXPECT_TRUE(remarks_say(found, "0.6 is left out: 1 of 8 seeds jammed"));
   EXPECT_TRUE(remarks_say(found, "0.62 is left out: half of its seeds or more were lost"));
   EXPECT_TRUE(remarks_say(found, "0.66 is left out: no seed has ended yet"));
   EXPECT_FALSE(remarks_say(found, "0.57"));  // jammed has its column
+}
+
+TEST(JammingOfACampaign, WithoutMeanOverlapsTheLargestDecide) {
+  JammingCampaign campaign(jamming_document(fractions));
+  for (int point = 0; point < 2; ++point) {
+    for (int seed = 0; seed < 4; ++seed) {
+      campaign.stored().complete_with(point, seed, 20 + seed, [&](Json& result) {
+        result["mean"].erase("mean_overlap");
+        result["largest_overlap"] = point == 0 ? 0.0099 : 0.0101;  // ten times 0.001
+      });
+    }
+  }
+  const JammingEstimate found = campaign.estimate();
+  EXPECT_EQ(found.curve.points.at(0).state, FlowState::flowing);
+  EXPECT_EQ(found.curve.points.at(1).state, FlowState::soft);
+  EXPECT_TRUE(remarks_say(found, "soft: spheres overlap by 0.01 radii at most"));
 }
 
 TEST(JammingOfACampaign, APointNeedsFourSeedsAndASpread) {

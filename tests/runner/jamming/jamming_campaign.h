@@ -32,13 +32,16 @@ class JammingCampaign {
   explicit JammingCampaign(const Json& document)
       : campaign_(parse_campaign(document, "jam.json")), stored_(campaign_) {}
 
-  // Eight seeds whose mean is exactly this, of deviation `relative` (n - 1), and of this largest overlap.
-  void complete(int point, double viscosity, double relative = 0.01, double overlap = 0.001) {
+  // Eight seeds whose mean is exactly this, of deviation `relative` (n - 1), and of this mean overlap; their
+  // largest one is fifty times that.
+  void complete(int point, double viscosity, double relative = 0.01, double overlap = 1e-4) {
     for (int seed = 0; seed < 8; ++seed) {
       const double away = (seed % 2 == 0 ? 1 : -1) * relative * std::sqrt(7.0 / 8);
       constexpr double control = 0.25;  // of plain_result(), which an estimate adds
-      stored_.complete_with(point, seed, viscosity * (1 + away) - control,
-                            [&](Json& result) { result["largest_overlap"] = overlap; });
+      stored_.complete_with(point, seed, viscosity * (1 + away) - control, [&](Json& result) {
+        result["mean"]["mean_overlap"] = overlap;
+        result["largest_overlap"] = 50 * overlap;
+      });
     }
   }
   void jam(int point, int seeds = 8, const std::string& cause = "overlap") {

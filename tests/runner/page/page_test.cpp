@@ -151,7 +151,7 @@ TEST_F(CampaignPage, ExplainsTheMarksAndShowsWhatTheEngineWarnsOf) {
   for (int seed = 0; seed < 4; ++seed) campaign_.complete(0, seed, 10, warning);
   const Json page = data();
   EXPECT_EQ(page["points"][0]["marks"][0], "4 flagged overlap");
-  EXPECT_TRUE(says(page["meanings"]["flagged overlap"], "spheres overlapped"));
+  EXPECT_TRUE(says(page["meanings"]["flagged overlap"], "contacts overlapped"));
   EXPECT_EQ(page["warnings"][0]["message"], "0.02 > 0.01 & more");
 }
 
