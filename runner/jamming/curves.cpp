@@ -76,6 +76,7 @@ std::optional<std::size_t> column_of(const std::vector<Drawable>& drawables, con
   const std::string path = quantity.starts_with('/') ? quantity.substr(1) : quantity;
   if (const std::optional<std::size_t> place = place_of(drawables, path)) return place;
   std::vector<std::string> names;
+  names.reserve(drawables.size());
   for (const Drawable& one : drawables) names.push_back(one.path);
   throw InputError("", "--quantity", quantity, "must be a number that is measured" + suggestion(path, names));
 }
