@@ -20,6 +20,8 @@ void add_law_options(CLI::App* verb, JammingOptions& options) {
       ->check(CLI::IsMember({"law", "steepest"}));
   add_number(verb, "--exponent", options.estimate.form.exponent, number_above(0),
              "Exponent of the law; fitted unless given");
+  verb->add_flag("--common-exponent", options.estimate.common_exponent,
+                 "One exponent, fitted, for all curves");
   verb->add_flag("--unit-prefactor", options.estimate.form.unit_prefactor,
                  "A law that is 1 without particles, (1 - phi / phi_m)^-exponent");
   add_number(verb, "--above", options.estimate.above, number_from(0),

@@ -53,15 +53,8 @@ void add_contradictions(JammingEstimate& made) {
   }
 }
 
-}  // namespace
-
-int JammingEstimate::flowing() const {
-  return static_cast<int>(
-      std::count_if(curve.points.begin(), curve.points.end(),
-                    [](const JammingPoint& point) { return point.state == FlowState::flowing; }));
-}
-
-JammingEstimate estimate_jamming(const JammingCurve& curve, const EstimateChoice& choice) {
+// Its obstacle is there where too few points are.
+JammingEstimate without_law(const JammingCurve& curve, const EstimateChoice& choice) {
   JammingEstimate made{curve, {}, {}, {}, {}};
   std::vector<LawPoint> measured;
   for (const JammingPoint& point : curve.points) {
@@ -75,13 +68,46 @@ JammingEstimate estimate_jamming(const JammingCurve& curve, const EstimateChoice
   if (made.fitted.size() < fewest_points) {
     made.law.obstacle = fmt::format("{} of the {} flowing points with a viscosity above {:g} that it needs",
                                     made.fitted.size(), fewest_points, choice.above);
-  } else {
-    made.law = fit_law(made.fitted, choice.form, *curve.largest_flowing());
   }
   const JammingPoint* const stuck = curve.smallest_stuck();
   const bool is_jammed = stuck != nullptr && stuck->state == FlowState::jammed;
   made.steepest = find_steepest(measured, is_jammed ? std::optional(stuck->fraction) : std::nullopt);
+  return made;
+}
+
+}  // namespace
+
+int JammingEstimate::flowing() const {
+  return static_cast<int>(
+      std::count_if(curve.points.begin(), curve.points.end(),
+                    [](const JammingPoint& point) { return point.state == FlowState::flowing; }));
+}
+
+JammingEstimate estimate_jamming(const JammingCurve& curve, const EstimateChoice& choice) {
+  JammingEstimate made = without_law(curve, choice);
+  if (made.law.obstacle.empty()) made.law = fit_law(made.fitted, choice.form, *curve.largest_flowing());
   add_contradictions(made);
+  return made;
+}
+
+JammingEstimates estimate_all(const std::vector<JammingCurve>& curves, const EstimateChoice& choice) {
+  JammingEstimates made;
+  if (!choice.common_exponent) {
+    for (const JammingCurve& curve : curves) made.curves.push_back(estimate_jamming(curve, choice));
+    return made;
+  }
+  std::vector<LawCurve> fitted;
+  for (const JammingCurve& curve : curves) {
+    made.curves.push_back(without_law(curve, choice));
+    const JammingEstimate& one = made.curves.back();
+    if (one.law.obstacle.empty()) fitted.push_back({one.fitted, *curve.largest_flowing()});
+  }
+  made.common = fit_common_law(fitted, choice.form);
+  auto law = made.common.laws.begin();
+  for (JammingEstimate& one : made.curves) {
+    if (one.law.obstacle.empty()) one.law = *law++;
+    add_contradictions(one);
+  }
   return made;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
@@ -20,6 +21,10 @@ namespace {
 namespace fs = std::filesystem;
 
 void check_usage(const JammingOptions& options) {
+  if (options.estimate.common_exponent && options.estimate.form.exponent)
+    throw InputError("", "", "--common-exponent", "does not go together with --exponent");
+  if (options.estimate.common_exponent && options.by == "steepest")
+    throw InputError("", "", "--common-exponent", "is of the law, which --by steepest leaves out");
   if (options.propose) return;
   if (options.budget) throw InputError("", "", "--budget", "is for --propose");
   if (!options.write.empty()) throw InputError("", "", "--write", "is for --propose");
@@ -88,10 +93,12 @@ JammingAnswer find_jamming(const JammingOptions& options) {
                        .softest = options.curves.softest,
                        .by_law = options.by != "steepest",
                        .by_steepest = options.by != "law",
+                       .common = {},
                        .estimates = {},
                        .proposed = {}};
-  for (const JammingCurve& curve : report.campaign.curves)
-    report.estimates.push_back(estimate_jamming(curve, options.estimate));
+  JammingEstimates estimates = estimate_all(report.campaign.curves, options.estimate);
+  report.common = std::move(estimates.common);
+  report.estimates = std::move(estimates.curves);
   JammingAnswer answer;
   if (const std::string note = difference_from_file(options.campaign, options.directory, campaign);
       !note.empty()) {

@@ -14,7 +14,6 @@ namespace {
 constexpr double densest = 1;          // phi_m is below: spheres do not fill space
 constexpr double smallest_gap = 1e-7;  // between phi_m and the largest fraction that flows
 constexpr int gaps = 400;
-constexpr double z_95 = 1.959963984540054;
 
 class Fit {
  public:

@@ -25,8 +25,9 @@ struct LawPoint {
   double standard_error;  // > 0
   int count;              // of the seeds behind them, at least fewest_seeds
 };
-constexpr int fewest_seeds = 4;           // of a point: c is not finite for fewer
-constexpr std::size_t fewest_points = 4;  // of a fit
+constexpr double z_95 = 1.959963984540054;  // standard errors to either end of an interval of 95 %
+constexpr int fewest_seeds = 4;             // of a point: c is not finite for fewer
+constexpr std::size_t fewest_points = 4;    // of a fit
 
 struct LawForm {
   std::optional<double> exponent{};  // beta, where it is not fitted

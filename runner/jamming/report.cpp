@@ -94,6 +94,15 @@ std::string remarks_text(const JammingReport& report) {
   return text.empty() ? "" : '\n' + text;
 }
 
+std::string common_text(const CommonAnswer& answer) {
+  if (!answer.common) return "exponent: " + answer.obstacle + '\n';
+  const CommonExponent& common = *answer.common;
+  return fmt::format("exponent: common to {}, {}; chi^2/degrees {:.2f}/{}\n",
+                     counted(static_cast<std::size_t>(common.curves), "curve"),
+                     with_error(common.exponent.value, common.exponent.standard_error), common.chi_squared,
+                     common.degrees);
+}
+
 std::string legend(const JammingReport& report) {
   std::string text = fmt::format(
       "flowing: points that flow; stuck at: the smallest fraction beyond them that is jammed, or soft "
@@ -104,6 +113,7 @@ std::string legend(const JammingReport& report) {
     text += fmt::format("law: prefactor (1 - phi / phi_m)^-exponent through flowing points above {:g}\n",
                         report.choice.above);
   }
+  if (report.choice.common_exponent) text += common_text(report.common);
   const bool any_bracket =
       report.by_steepest &&
       std::any_of(report.estimates.begin(), report.estimates.end(), [](const JammingEstimate& one) {
@@ -187,6 +197,15 @@ Json curve_json(const JammingReport& report, const JammingEstimate& one) {
   return json;
 }
 
+Json common_json(const CommonAnswer& answer) {
+  if (!answer.common) return {{"exponent", nullptr}, {"obstacle", answer.obstacle}};
+  return {{"exponent", measured_json(answer.common->exponent)},
+          {"curves", answer.common->curves},
+          {"chi_squared", answer.common->chi_squared},
+          {"degrees", answer.common->degrees},
+          {"obstacle", nullptr}};
+}
+
 Json proposed_json(const ProposedPoints& proposed) {
   Json points = Json::array();
   for (const ProposedPoint& point : proposed.points)
@@ -219,6 +238,7 @@ Json jamming_json(const JammingReport& report) {
           {"given",
            {{"exponent", json_or_null(form.exponent)},
             {"prefactor", form.unit_prefactor ? Json(1) : Json(nullptr)}}},
+          {"common", report.choice.common_exponent ? common_json(report.common) : Json(nullptr)},
           {"curves", curves},
           {"proposed", report.proposed ? proposed_json(*report.proposed) : Json(nullptr)}};
 }

@@ -16,6 +16,7 @@ struct JammingReport {
   EstimateChoice choice;
   double softest = 0.001;
   bool by_law = true, by_steepest = true;
+  CommonAnswer common{};  // where the choice is one exponent for all
   std::vector<JammingEstimate> estimates;
   std::optional<ProposedPoints> proposed;  // where it was asked for
 };

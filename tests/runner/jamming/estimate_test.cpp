@@ -145,6 +145,39 @@ TEST(JammingOfACampaign, RefusesWhatIsNoVolumeFractionOrNoQuantity) {
   EXPECT_TRUE(says(refusal(campaign, {.quantity = "presure"}), "must be a number that is measured"));
 }
 
+TEST(JammingOfACampaign, OneExponentForAllCurvesIsTold) {
+  const Json swept = Json::array({{{"set", "/contact/friction"}, {"values", {0, 0.5, 1}}}});
+  JammingCampaign campaign(jamming_document(fractions, swept));
+  const std::size_t of_one = fractions.size();
+  const std::vector<double> jammed{0.70, 0.68};
+  for (std::size_t curve = 0; curve < jammed.size(); ++curve) {
+    const TrueLaw law{jammed[curve], 1.9, 1.2};
+    for (std::size_t k = 0; k < of_one; ++k)
+      campaign.complete(static_cast<int>(curve * of_one + k), law.at(fractions[k]));
+  }
+  const JammingCurves curves = campaign.curves();
+  const EstimateChoice choice{.common_exponent = true};
+  JammingEstimates found = estimate_all(curves.curves, choice);
+  ASSERT_TRUE(found.common.common) << found.common.obstacle;
+  EXPECT_NEAR(found.common.common->exponent.value, 1.9, 1e-3);
+  for (std::size_t curve = 0; curve < jammed.size(); ++curve) {
+    ASSERT_TRUE(found.curves[curve].law.law);
+    EXPECT_NEAR(found.curves[curve].law.law->fraction.value, jammed[curve], 1e-4);
+  }
+  EXPECT_EQ(found.curves[2].law.obstacle,
+            "0 of the 4 flowing points with a viscosity above 10 that it needs");
+  const JammingReport report{.campaign = curves,
+                             .choice = choice,
+                             .common = found.common,
+                             .estimates = found.curves,
+                             .proposed = {}};
+  EXPECT_TRUE(says(jamming_table(report), "exponent: common to 2 curves, 1.9000 ±")) << jamming_table(report);
+  const Json common = jamming_json(report)["common"];
+  EXPECT_NEAR(common["exponent"]["value"], 1.9, 1e-3);
+  EXPECT_EQ(common["curves"], 2);
+  EXPECT_TRUE(common["obstacle"].is_null());
+}
+
 TEST(JammingOfACampaign, IsToldToPeopleAndPrograms) {
   JammingCampaign campaign(jamming_document(fractions));
   fill(campaign, {});
