@@ -44,6 +44,7 @@ STUDIES = [
     "literature",
     "microstructure",
     "mixtures",
+    "mixtures-noise",
     "monti-silica",
     "monti-viscosity",
     "monti-waves",

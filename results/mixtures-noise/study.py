@@ -1,0 +1,485 @@
+#!/usr/bin/python3
+"""Colloids and grains with noise: flow curves while grains are added to colloids and colloids to grains, with friction
+(Li 2023, Figs 5.2, 5.3 a, b and 5.6).
+
+study.py BIN [FOLDER] [--quick] [--from-table]
+"""
+import math
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from studies.command_line import main
+from studies.compositions import MIXTURE_SCENE, colloids_added, grains_added, grains_among, mean_peclet
+from studies.estimates import estimate, logarithm, over, propagated, quotient
+from studies.figure import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
+from studies.scenes import merged
+from studies.tables import columns_of, number, read_numbers, read_rows, write_numbers, write_table
+from studies.verdicts import Check, Finding, Statement
+from studies.viscosities import viscosity_row
+
+import numpy as np
+
+TITLE = "Colloids and grains with noise"
+SCENE = merged(MIXTURE_SCENE, {"contact": {"friction": 1}, "guard": {"largest_overlap": 0.5}})
+THERMAL_ENERGY = 0.085
+NOISY = merged(SCENE, {"flow": None, "peclet": 1, "limits": {"shear_rate": 0.045, "thermal_energy": THERMAL_ENERGY}})
+STIFFNESS = SCENE["contact"]["normal_stiffness"]
+SOFTER = STIFFNESS / 4
+# Share of the grains in the volume of all spheres, and how many spheres that takes for some thirty grains, where they
+# are the more; 20 and 13 at 0.4 and 0.3.
+COUNTS = {0: 1000, 0.3: 4000, 0.4: 4000, 0.5: 4000, 0.6: 3000, 0.7: 2000, 0.8: 1500, 0.9: 1000, 1: 1000}
+COLLOIDS_ADDED, GRAINS_ADDED = (1, 0.9, 0.8, 0.7, 0.6, 0.5), (0, 0.3, 0.4, 0.5)
+SLOW_ADDED = COLLOIDS_ADDED[:4]  # at the smallest Peclet number, where a strain takes ten times as long
+BASE, DENSE = 0.55, 0.60  # before something is added
+NUMBERS = (0.1, 1, 10, 100, 1e3, 1e5)  # Peclet numbers of the colloids
+FRACTION, SHARES = 0.565, (0, 0.5, 0.7, 1)  # of one volume fraction
+SLOW_MEANS = (0.3, 1)  # where a strain of mixtures takes long
+MEANS = (3, 10, 30, 100, 1e3, 1e5)  # Peclet numbers of the mean radius there
+SEEDS = 4
+# Slopes of ln eta over ln k_n: of what is jammed, which flows only because spheres are soft, and of what flows.
+JAMMED, FLOWING = 0.5, 0.2
+
+
+def windows(alpha, peclet):
+    """Strains before and of the measurement: where diffusion outruns the flow less is needed, though not by grains."""
+    slow = math.sqrt(125 * peclet) if alpha == 1 else max(math.sqrt(peclet), 0.5 if alpha else 0)
+    before = round(min(1, slow), 2)
+    return {"/duration/equilibration/strain": before, "/duration/production/strain": 1.5 * before}
+
+
+def rows_of(program, part, cases, stiffness=STIFFNESS, count_times=1, besides=None):
+    """Rows of (share of grains, volume fraction, Peclet number of the colloids)."""
+    settings = [
+        {
+            "/particles/mixture/alpha": alpha,
+            "/particles/count": round(count_times * COUNTS[alpha]),
+            "/volume_fraction": round(fraction, 4),
+            "/contact/normal_stiffness": stiffness,
+            **({"/peclet": peclet} if math.isfinite(peclet) else {}),
+            **(besides or {}),
+            **windows(alpha, peclet),
+        }
+        for alpha, fraction, peclet in cases
+    ]
+    scene = NOISY if math.isfinite(cases[0][2]) else SCENE
+    for case, setting, point in zip(cases, settings, program.run(part, scene, settings, SEEDS)):
+        count = setting["/particles/count"]
+        yield {
+            "part": part,
+            **dict(zip(("alpha", "fraction", "peclet"), case)),
+            "mean peclet": mean_peclet(case[0], case[2]),
+            "count": count,
+            "grains": round(grains_among(case[0], count)),
+            "stiffness": stiffness,
+            **viscosity_row(point, "contacts_per_particle"),
+            "overlap": max((r["largest_overlap"] for r in point["realisations"] if r.get("mean")), default=math.nan),
+        }
+
+
+def line(base, numbers, shares=COLLOIDS_ADDED, fraction=colloids_added):
+    return [(alpha, fraction(alpha, base), peclet) for peclet in numbers for alpha in shares]
+
+
+def parts(program):
+    fast = NUMBERS[1:]
+    yield from rows_of(program, "colloids-added", line(BASE, fast))
+    yield from rows_of(program, "colloids-added-soft", line(BASE, (1,)), SOFTER)
+    for stiffness, name in ((STIFFNESS, "dense"), (SOFTER, "dense-soft")):
+        yield from rows_of(program, name, line(DENSE, (1, 100)), stiffness)
+    yield from rows_of(program, "no-noise", line(BASE, (math.inf,)))
+    # Grains alone, which are colloids in other units: as hard, with as little inertia.
+    alike = {"/particles/density": SCENE["particles"]["density"] / 25, "/limits/thermal_energy": 125 * THERMAL_ENERGY}
+    alone = [(1, BASE, peclet / 125) for peclet in (*NUMBERS, 1e4)]
+    yield from rows_of(program, "grains-alone", alone, 5 * STIFFNESS, besides=alike)
+    alone = [(1, FRACTION, peclet / 125) for peclet in (*SLOW_MEANS, *MEANS, 125)]
+    yield from rows_of(program, "fraction-grains", alone, 5 * STIFFNESS, besides=alike)
+    yield from rows_of(program, "grains-added", line(BASE, (*fast, 1e4), GRAINS_ADDED[:-1], grains_added))
+    mixed = [(alpha, FRACTION, mean / mean_peclet(alpha, 1)) for alpha in SHARES[1:-1] for mean in MEANS]
+    yield from rows_of(program, "fraction", [(0, FRACTION, mean) for mean in (*SLOW_MEANS, *MEANS)] + mixed)
+    yield from rows_of(program, "size", [(0.7, colloids_added(0.7, BASE), 1)], count_times=2)
+    yield from rows_of(program, "stiff", [(0.7, colloids_added(0.7, BASE), p) for p in (1, 1e3)], 4 * STIFFNESS)
+    for stiffness, name in ((STIFFNESS, "smooth"), (SOFTER, "smooth-soft")):
+        case = [(0.7, colloids_added(0.7, BASE), 1)]
+        yield from rows_of(program, name, case, stiffness, besides={"/contact/friction": 0})
+    slow = NUMBERS[:1]
+    yield from rows_of(program, "colloids-added-slow", line(BASE, slow, SLOW_ADDED))
+    yield from rows_of(program, "grains-added-slow", line(BASE, slow, (0, 0.4), grains_added))
+
+
+LAG = 20  # Brownian times: inertia of the grains is worth 0.2 of them, a hundredth
+# Volume fractions in print as the other group is added: its share is 0, 0.1 ... 0.5.
+PRINTED = (0.550, 0.576, 0.604, 0.636, 0.671, 0.710)
+
+
+def composition_numbers(program):
+    """How far 10 000 spheres are from the compositions in print."""
+    off_fraction, off_share = [], []
+    for added in ("grains", "colloids"):
+        for tenths, printed in enumerate(PRINTED):
+            alpha = tenths / 10 if added == "grains" else 1 - tenths / 10
+            scene = merged(SCENE, {"particles": {"count": 10000, "mixture": {"alpha": alpha}}})
+            scene = merged(scene, {"volume_fraction": None, "addition": {"added": added, "base_volume_fraction": BASE}})
+            made = program.derived(scene)["derived"]
+            off_fraction.append(abs(made["volume_fraction"] - printed))
+            off_share.append(abs(made["alpha"] - alpha))
+    yield "fraction off", (max(off_fraction), 0.0, 30)
+    yield "share off", (max(off_share), 0.0, 30)
+
+
+def diffusion_numbers(program):
+    """a^2/D of dilute spheres of radius 5 over that of radius 1."""
+    ones, fives = ([{"radius": radius, "number_share": 1}] for radius in (1, 5))
+    equal_numbers = {"colloids": ones, "grains": fives, "alpha": 125 / 126}
+    scene = merged(
+        SCENE,
+        {
+            "particles": {"count": 1000, "mixture": equal_numbers},
+            "volume_fraction": 0.002,
+            "fluid": {"thermal_energy": 0.085},
+            "flow": {"shear_rate": 0},
+            "observables": ["mean_squared_displacement"],
+            "duration": {
+                "equilibration": {"strain": None, "brownian_times": 2},
+                "production": {"strain": None, "brownian_times": 200},
+            },
+        },
+    )
+    program.run("dilute", scene, [{"/particles/count": 1000}], 4 * SEEDS, observable="self_diffusion")
+    ratios = []
+    for result in program.stored_results("dilute")[0]:
+        displacement = result["mean"]["mean_squared_displacement"]
+        place = int(np.searchsorted(displacement["time"], LAG * result["derived"]["brownian_time"]))
+        small, large = (sum(of[axis][place] for axis in "xyz") for of in displacement["species"])
+        ratios.append(25 * small / large)
+    yield "times of diffusion", (*estimate(ratios), len(ratios) - 1)
+
+
+def measure(program):
+    names = ["part", "alpha", "fraction", "peclet", "mean peclet", "count", "grains", "stiffness", "seeds", "lost"]
+    names += ["transient", "overlap", *columns_of("viscosity", "pairs", "lubrication", "contact")]
+    write_table(HERE / "table.csv", [*names, *columns_of("contacts_per_particle")], list(parts(program)), 5)
+    write_numbers(HERE / "numbers.csv", dict([*composition_numbers(program), *diffusion_numbers(program)]))
+
+
+class Table:
+    """The rows by part, share of grains and Peclet number; a viscosity that no seed has is infinite."""
+
+    def __init__(self, rows):
+        self._rows = {self.key(r["part"], r["alpha"], r["peclet"]): r for r in rows}
+
+    @staticmethod
+    def key(part, alpha, peclet):
+        return part, alpha, f"{peclet:.4g}"
+
+    def row(self, part, alpha, peclet):
+        """Of the part, or of its slow ones."""
+        keys = (self.key(part + more, alpha, peclet) for more in ("", "-slow"))
+        return next(self._rows[key] for key in keys if key in self._rows)
+
+    def viscosity(self, part, alpha, peclet):
+        row = self.row(part, alpha, peclet)
+        return number(row, "viscosity") if row["seeds"] else (math.inf, 0.0)
+
+    def curve(self, part, alpha, numbers):
+        """Logarithms of viscosities."""
+        return [logarithm(self.viscosity(part, alpha, peclet)) for peclet in numbers]
+
+    def grains_added(self, alpha, peclet):
+        part = "colloids-added" if alpha == 0.5 else "grains-added"
+        return self.viscosity(part, alpha, peclet)
+
+    def of_means(self, alpha):
+        """(Peclet number of the mean radius, ln eta with its error) at FRACTION."""
+        name = "fraction-grains" if alpha == 1 else "fraction"
+        rows = sorted(
+            (r for (part, a, _), r in self._rows.items() if part == name and a == alpha), key=lambda r: r["mean peclet"]
+        )
+        return [(r["mean peclet"], *logarithm(number(r, "viscosity"))) for r in rows]
+
+    def stiffening(self, part, alpha, peclet):
+        """d ln eta / d ln k_n; 1 where no seed ended well with softer contacts."""
+        soft, hard = self.viscosity(f"{part}-soft", alpha, peclet), self.viscosity(part, alpha, peclet)
+        if math.inf in (soft[0], hard[0]):
+            return 1.0, 0.0
+        return over(logarithm(quotient(hard, soft)), math.log(STIFFNESS / SOFTER))
+
+
+DEGREES = SEEDS - 1
+
+
+def largest(numbers):
+    return propagated(numbers, max)
+
+
+def place_of_largest(places, numbers):
+    return propagated(numbers, lambda values: float(places[int(np.argmax(values))]))
+
+
+def drops(table, peclet, part="colloids-added"):
+    """ln of eta of grains alone over that with colloids added, by share of grains."""
+    alone = logarithm(table.viscosity(part, 1, peclet))
+    shares = SLOW_ADDED if peclet == NUMBERS[0] else COLLOIDS_ADDED
+    return [
+        (alone[0] - mixed[0], math.hypot(alone[1], mixed[1]))
+        for mixed in (logarithm(table.viscosity(part, alpha, peclet)) for alpha in shares[1:])
+    ]
+
+
+def factor(numbers):
+    """exp of the largest."""
+    return propagated(numbers, lambda values: math.exp(max(values)))
+
+
+def minimum_of(curve):
+    """Decimal logarithm of the Peclet number at which a curve has its minimum: of the parabola through the lowest point
+    and its neighbours. Without an error where the lowest point is an end."""
+    places = np.log10([p for p, _, _ in curve])
+
+    def found(values):
+        k = int(np.argmin(values))
+        if k in (0, len(values) - 1):
+            return float(places[k])
+        a, b, _ = np.polyfit(places[k - 1 : k + 2], values[k - 1 : k + 2], 2)
+        return float(-b / (2 * a))
+
+    numbers = [(value, error) for _, value, error in curve]
+    lowest = int(np.argmin([value for value, _ in numbers]))
+    value, error = propagated(numbers, found)
+    return value, math.inf if lowest in (0, len(curve) - 1) else error
+
+
+def onset(numbers, logarithms):
+    """Decimal logarithm of the Peclet number at which eta has risen to exp(.2) times its minimum; of the last where it
+    does not."""
+    places = np.log10(numbers)
+    k = int(np.argmin(logarithms))
+    wanted = logarithms[k] + 0.2
+    for j in range(k, len(places) - 1):
+        if logarithms[j + 1] >= wanted:
+            share = (wanted - logarithms[j]) / (logarithms[j + 1] - logarithms[j])
+            return float(places[j] + share * (places[j + 1] - places[j]))
+    return float(places[-1])
+
+
+def rows_of_grains_added(table):
+    """Fig. 5.2 a, c: grains added to colloids."""
+    alone = table.curve("grains-added", 0, NUMBERS)
+    thinning = propagated(alone, lambda v: math.exp(v[0] - min(v)))
+    yield Statement(
+        "colloids alone, φ = 0.55: η_r at Pe_c = 0.1 over its minimum", "L5.2a", *thinning, 1, math.inf, DEGREES
+    )
+    plateau = table.curve("grains-added", 0, (1e4, 1e5))
+    slope = propagated(plateau, lambda v: (v[1] - v[0]) / math.log(10))
+    text = "colloids alone: d ln η_r/d ln Pe_c from 10⁴ to 10⁵"
+    yield Statement(text, "L5.2a", *slope, high=0.05, degrees=DEGREES)
+    for peclet in NUMBERS:
+        shares = (0, 0.4) if peclet == NUMBERS[0] else GRAINS_ADDED
+        found = [table.grains_added(alpha, peclet) for alpha in shares]
+        flows = [logarithm(v) for v in found if math.isfinite(v[0])]
+        smallest = propagated(flows, lambda v: math.exp(float(np.min(np.diff(v)))))
+        text = f"Pe_c = {peclet:g}: smallest step of η_r as grains are added, α = 0 to {shares[-1]:g}"
+        yield Statement(text, "L5.2a", *smallest, 1, math.inf, DEGREES)
+    curves = [table.curve("grains-added", alpha, NUMBERS[1:]) for alpha in GRAINS_ADDED[:-1]]
+    count = len(NUMBERS) - 1
+    together = [value for curve in curves for value in curve]
+
+    def onsets(values):
+        return [onset(NUMBERS[1:], values[k : k + count]) for k in range(0, len(values), count)]
+
+    shift = propagated(together, lambda v: onsets(v)[-1] - onsets(v)[0])
+    text = "decades by which thickening begins earlier at α = 0.4 than at 0"
+    yield Statement(text, "L5.2a", *over(shift, -1), 0.87, math.inf)
+    later = propagated(together, lambda v: float(np.max(np.diff(onsets(v)))))
+    yield Statement("largest step of the onset in decades as grains are added", "L5.2a", *later, high=0)
+    steeper = propagated(curves[1] + curves[0], lambda v: steepness(v[:count]) / steepness(v[count:]))
+    yield Statement("steepest d ln η_r/d ln Pe_c at α = 0.3 over that at 0", "L5.2a", *steeper, 1)
+    rises = [
+        propagated([logarithm(table.grains_added(a, p)) for a in (0, 0.3)], lambda v: v[1] - v[0]) for p in NUMBERS[1:]
+    ]
+    place = place_of_largest(np.log10(NUMBERS[1:]), rises)
+    text = "lg Pe_c at which η_r rises most from α = 0 to 0.3"
+    yield Statement(text, "L5.2c", *place, 0, 3)
+
+
+def steepness(logarithms):
+    return float(np.max(np.diff(logarithms) / np.diff(np.log(NUMBERS[1:]))))
+
+
+def rows_of_colloids_added(table):
+    """Figs 5.2 b, c and 5.6: colloids added to grains of 0.55."""
+    of = {peclet: drops(table, peclet) for peclet in NUMBERS}
+    of[math.inf] = drops(table, math.inf, "no-noise")
+    shares = COLLOIDS_ADDED[1:]
+    best = factor(of[1])
+    text = "grains at φ₀ = 0.55, Pe_c = 1: η_r at α = 1 over the smallest with colloids added"
+    yield Statement(text, "L5.2b", *best, 4, 12, DEGREES)
+    yield Statement("α of that smallest", "L5.2b", *place_of_largest(shares, of[1]), 0.6, 0.8)
+    decades = NUMBERS[:-1]
+    everything = [value for peclet in decades for value in of[peclet]]
+    ends = np.cumsum([len(of[peclet]) for peclet in decades])[:-1]
+
+    def strongest(values):
+        return float(np.log10(decades[int(np.argmax([max(v) for v in np.split(np.array(values), ends)]))]))
+
+    text = "lg Pe_c at which that factor is largest, of 0.1, 1, 10, 100, 1000"
+    yield Statement(text, "L5.2b", *propagated(everything, strongest), -1, 1)
+    then = quotient(*(table.viscosity("colloids-added", alpha, 1) for alpha in (0.6, 0.7)))
+    yield Statement("Pe_c = 1: η_r at α = 0.6 over that at 0.7", "L5.2b", *then, 1, math.inf, DEGREES)
+    text = "Pe_c = 1, α = 0.5: d ln η_r/d ln k_n (jams: 1)"
+    yield Statement(text, "L5.2b", *table.stiffening("colloids-added", 0.5, 1), JAMMED, math.inf, DEGREES)
+    alone = quotient(*(table.viscosity("colloids-added", 1, peclet) for peclet in (1, 1e5)))
+    yield Statement("grains alone: η_r at Pe_c = 1 over that at 10⁵", "L5.2b", *alone, 0.5, math.inf, DEGREES)
+    curve = table.curve("grains-added", 0, NUMBERS)
+    near = propagated(curve, lambda v: math.exp(v[1] - min(v)))
+    yield Statement("colloids alone: η_r at Pe_c = 1 over its minimum", "L5.2b", *near, high=1.3, degrees=DEGREES)
+    fast = factor(of[1000])
+    yield Statement("Pe_c = 1000: the factor", "L5.2b", *fast, 1.2, math.inf, DEGREES)
+    yield Statement(
+        "the factor at Pe_c = 1000 over that at 1", "L5.2c", *quotient(fast, best), high=0.5, degrees=DEGREES
+    )
+    for peclet in NUMBERS[1:-1]:
+        step = quotient(*(table.viscosity("colloids-added", alpha, peclet) for alpha in (0.9, 1)))
+        text = f"Pe_c = {peclet:g}: η_r at α = 0.9 over that of grains alone"
+        yield Statement(text, "L5.2c", *step, high=1, degrees=DEGREES)
+    none = factor(of[math.inf])
+    yield Statement("without noise: the factor", "L5.2c", *none, 1.2, math.inf, DEGREES)
+    text = "the factor without noise over that at Pe_c = 1"
+    yield Statement(text, "L5.2c", *quotient(none, best), high=1, degrees=DEGREES)
+    for first, then in ((1, 0.9), (0.9, 0.8)):
+        step = quotient(*(table.viscosity("no-noise", alpha, math.inf) for alpha in (then, first)))
+        text = f"without noise: η_r at α = {then:g} over that at {first:g}"
+        yield Statement(text, "L5.2", *step, high=1, degrees=DEGREES)
+    for peclet in (1, 100):
+        name = f"grains at φ₀ = 0.60, Pe_c = {peclet:g}: d ln η_r/d ln k_n at α"
+        for alpha, low, high in ((1, JAMMED, math.inf), (0.8, -math.inf, FLOWING), (0.5, JAMMED, math.inf)):
+            what = "jams" if low == JAMMED else "flows"
+            slope = table.stiffening("dense", alpha, peclet)
+            yield Statement(f"{name} = {alpha:g} ({what})", "L5.6", *slope, low, high, DEGREES)
+
+
+def rows_of_one_fraction(table):
+    """Fig. 5.3 a, b."""
+    minima = {alpha: minimum_of(table.of_means(alpha)) for alpha in SHARES}
+    shift = {alpha: math.log10(mean_peclet(alpha, 1)) for alpha in SHARES}
+    numbers = [minima[alpha] for alpha in SHARES]
+
+    def span(values):
+        at_colloids = [v - shift[alpha] for v, alpha in zip(values, SHARES)]
+        return max(at_colloids) - min(at_colloids)
+
+    text = "φ = 0.565: decades of Pe_c over which the minima of η_r lie, α = 0 to 1"
+    yield Statement(text, "L5.3a", *propagated(numbers, span), 2)
+    for alpha in SHARES:
+        text = f"φ = 0.565, α = {alpha:g}: lg of the Pe_cg of the minimum"
+        yield Statement(text, "L5.3b", *minima[alpha], math.log10(3), math.log10(30))
+    spread = propagated(numbers, lambda values: max(values) - min(values))
+    yield Statement("φ = 0.565: decades of Pe_cg over which these lie", "L5.3b", *spread, high=0.6)
+    ends = {alpha: {p: (v, e) for p, v, e in table.of_means(alpha)} for alpha in SHARES}
+
+    def above(alpha, mean):
+        return propagated([ends[alpha][mean], ends[0.5][mean]], lambda v: math.exp(v[0] - v[1]))
+
+    for alpha, name in ((0, "colloids"), (1, "grains")):
+        text = f"φ = 0.565, Pe_cg = 10⁵: η_r of {name} alone over that at α = 0.5"
+        yield Statement(text, "L5.3b", *above(alpha, 1e5), 3, math.inf, DEGREES)
+    more = quotient(above(0, 1e5), above(0, 3))
+    text = "φ = 0.565: η_r of colloids alone over that at α = 0.5, at Pe_cg = 10⁵ over at 3"
+    yield Statement(text, "L5.3", *more, 1, math.inf, DEGREES)
+    grains = quotient(table.viscosity("fraction-grains", 1, 1), table.viscosity("fraction", 0, 1))
+    yield Statement(
+        "φ = 0.565, Pe_c = 1: η_r of grains alone over colloids alone", "L5.3", *grains, 2, math.inf, DEGREES
+    )
+
+
+def checks(table):
+    ratios = [
+        logarithm(quotient(table.viscosity("grains-alone", 1, p / 125), table.viscosity("grains-added", 0, p)))
+        for p in (*NUMBERS, 1e4)
+    ]
+    mean = propagated(ratios, lambda values: math.exp(sum(values) / len(values)))
+    text = "φ = 0.55: η_r of grains alone at Pe_g over that of colloids alone at the same Pe_c, mean of seven"
+    yield Statement(text, "L5.2b", *mean, 0.95, 1.05)
+    base = table.viscosity("colloids-added", 0.7, 1)
+    more = quotient(table.viscosity("size", 0.7, 1), base)
+    yield Check("α = 0.7, Pe_c = 1: η_r of 4000 spheres over that of 2000", "size", *more, 0.9, 1.1, DEGREES)
+    for peclet in (1, 1e3):
+        stiff = quotient(table.viscosity("stiff", 0.7, peclet), table.viscosity("colloids-added", 0.7, peclet))
+        text = f"α = 0.7, Pe_c = {peclet:g}: η_r with contacts 4 times as stiff over η_r"
+        yield Check(text, "stiffness", *stiff, 0.95, 1.05, DEGREES)
+    name = "α = 0.7, Pe_c = 1: d ln η_r/d ln k_n"
+    softer = table.stiffening("colloids-added", 0.7, 1)
+    yield Finding(f"{name} from 2.5·10⁴ to 10⁵", "stiffness", *softer, DEGREES)
+    stiffer = over(logarithm(quotient(table.viscosity("stiff", 0.7, 1), base)), math.log(4))
+    yield Finding(f"{name} from 10⁵ to 4·10⁵", "stiffness", *stiffer, DEGREES)
+    smooth = table.stiffening("smooth", 0.7, 1)
+    yield Finding(f"{name} from 2.5·10⁴ to 10⁵, μ = 0", "stiffness", *smooth, DEGREES)
+
+
+def rows_of_compositions(numbers):
+    text = "largest distance of the volume fractions of 11 compositions from those in print"
+    yield Statement(text, "L5.2", *numbers["fraction off"][:2], high=1e-3)
+    yield Finding("the same of α, of 10 000 whole spheres", "L5.2", *numbers["share off"][:2])
+    text = "dilute: a²/D of radius 5 over that of radius 1"
+    yield Statement(text, "L 5.1", *numbers["times of diffusion"][:2], 0.97 * 125, 1.03 * 125, DEGREES)
+
+
+def judge():
+    table = Table(read_rows(HERE / "table.csv"))
+    yield from rows_of_compositions(read_numbers(HERE / "numbers.csv"))
+    yield from rows_of_grains_added(table)
+    yield from rows_of_colloids_added(table)
+    yield from rows_of_one_fraction(table)
+    yield from checks(table)
+
+
+COLOURS = {0: BLUE, 0.3: GREEN, 0.4: ORANGE, 0.5: RED, 0.6: ORANGE, 0.7: GREEN, 0.8: PURPLE, 0.9: GREY, 1: BLUE}
+
+
+def draw():
+    rows = read_rows(HERE / "table.csv")
+    figure = Figure(HERE / "chart.png", columns=2, rows=2, size=(1100, 900))
+
+    def panel(x, title, log="xy", **settings):
+        return figure.panel(x, "η_r", title, log=log, y_range=(10, 1e5), **settings)
+
+    def curve(one, part, x, title, colour, **equal):
+        """The rows of a part, with its slow ones, that have these values, over their x."""
+        here = [r for r in rows if r["part"] in (part, f"{part}-slow") and r["seeds"]]
+        here = [r for r in here if all(r[name] == value for name, value in equal.items())]
+        places = sorted((r[x], *number(r, "viscosity")) for r in here)
+        if places:
+            one.points(places, title, colour, joined=True)
+
+    powers = {"powers": "x", "x_range": (0.05, 2e5), "key": "top left"}
+    one = panel("Pe_c", "grains added to colloids of φ₀ = 0.55", **{**powers, "key": "center right"})
+    for alpha in GRAINS_ADDED:
+        part = "colloids-added" if alpha == 0.5 else "grains-added"
+        title = f"α = {alpha:g}, φ = {grains_added(alpha, BASE):.3f}"
+        curve(one, part, "peclet", title, COLOURS[alpha], alpha=alpha)
+    one = panel("Pe_c", "colloids added to grains of φ₀ = 0.55", **{**powers, "key": "bottom right"})
+    for alpha in COLLOIDS_ADDED:
+        title = f"α = {alpha:g}, φ = {colloids_added(alpha, BASE):.3f}"
+        curve(one, "colloids-added", "peclet", title, COLOURS[alpha], alpha=alpha)
+    one = panel("share of grains α", "the same over the share of grains", "y", x_range=(0.55, 1.05), key="top right")
+    for peclet, colour in ((0.1, GREY), (1, BLUE), (10, GREEN), (100, ORANGE), (1e3, RED)):
+        curve(one, "colloids-added", "alpha", f"Pe_c = {peclet:g}", colour, peclet=peclet)
+    curve(one, "no-noise", "alpha", "without noise", PURPLE)
+    one = panel("Pe of the mean radius", "one volume fraction, 0.565", **powers)
+    for alpha, colour in zip(SHARES, (BLUE, RED, GREEN, GREY)):
+        curve(
+            one, "fraction-grains" if alpha == 1 else "fraction", "mean peclet", f"α = {alpha:g}", colour, alpha=alpha
+        )
+    figure.draw()
+
+
+def quick_measure(program):
+    """Grains that friction holds flow many times better with colloids among them, at Pe_c = 1."""
+    cases = [(alpha, colloids_added(alpha, BASE), 1) for alpha in (1, 0.8)]
+    of = {r["alpha"]: r for r in rows_of(program, "quick", cases, count_times=0.5)}
+    ratio = quotient(number(of[0.8], "viscosity"), number(of[1], "viscosity"))
+    yield Statement("Pe_c = 1: η_r at α = 0.8 over that of grains alone", "L5.2c", *ratio, 0, 0.5, DEGREES)
+
+
+main(HERE, TITLE, measure, quick_measure, judge, draw)
