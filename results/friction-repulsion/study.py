@@ -12,7 +12,7 @@ sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
 from studies.estimates import difference, propagated, quotient
 from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
-from studies.fits import log_minimum
+from studies.fits import log_minimum, log_of_rise
 from studies.scenes import TABLE_SCENE, during, merged
 from studies.tables import columns_of, number, read_rows, write_table
 from studies.verdicts import Check, Finding, Statement
@@ -80,15 +80,9 @@ def curve_of(rows, *case):
 
 
 def crossing(abscissae, values, share):
-    """log10 of where a curve has risen by this share of ln(last / lowest) above its lowest point, by straight lines
-    between its points."""
-    x, logs = np.log10(np.maximum(abscissae, 1e-9)), np.log(np.maximum(values, 1e-9))
-    lowest = int(np.argmin(logs))
-    level = logs[lowest] + share * (logs[-1] - logs[lowest])
-    for k in range(lowest, len(logs) - 1):
-        if logs[k] <= level < logs[k + 1]:
-            return float(x[k] + (level - logs[k]) / (logs[k + 1] - logs[k]) * (x[k + 1] - x[k]))
-    return float(x[-1])
+    """log10 of where a curve has risen by this share of ln(last / lowest) above its lowest point."""
+    lowest, last = (max(value, 1e-9) for value in (min(values), values[-1]))
+    return log_of_rise(abscissae, values, share * math.log(last / lowest))
 
 
 def of_curve(curve, function):

@@ -14,6 +14,7 @@ from studies.command_line import main
 from studies.compositions import MIXTURE_SCENE, colloids_added, grains_added, grains_among, mean_peclet
 from studies.estimates import estimate, logarithm, over, propagated, quotient
 from studies.figure import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
+from studies.fits import log_minimum, log_of_rise
 from studies.scenes import merged
 from studies.tables import columns_of, number, read_numbers, read_rows, write_numbers, write_table
 from studies.verdicts import Check, Finding, Statement
@@ -137,7 +138,7 @@ def diffusion_numbers(program):
         {
             "particles": {"count": 1000, "mixture": equal_numbers},
             "volume_fraction": 0.002,
-            "fluid": {"thermal_energy": 0.085},
+            "fluid": {"thermal_energy": THERMAL_ENERGY},
             "flow": {"shear_rate": 0},
             "observables": ["mean_squared_displacement"],
             "duration": {
@@ -199,7 +200,7 @@ class Table:
         return [(r["mean peclet"], *logarithm(number(r, "viscosity"))) for r in rows]
 
     def stiffening(self, part, alpha, peclet):
-        """d ln eta / d ln k_n; 1 where no seed ended well with softer contacts."""
+        """d ln eta / d ln k_n; 1, which is what jams, where no seed ended well with either k_n."""
         soft, hard = self.viscosity(f"{part}-soft", alpha, peclet), self.viscosity(part, alpha, peclet)
         if math.inf in (soft[0], hard[0]):
             return 1.0, 0.0
@@ -207,10 +208,6 @@ class Table:
 
 
 DEGREES = SEEDS - 1
-
-
-def largest(numbers):
-    return propagated(numbers, max)
 
 
 def place_of_largest(places, numbers):
@@ -233,34 +230,20 @@ def factor(numbers):
 
 
 def minimum_of(curve):
-    """Decimal logarithm of the Peclet number at which a curve has its minimum: of the parabola through the lowest point
-    and its neighbours. Without an error where the lowest point is an end."""
-    places = np.log10([p for p, _, _ in curve])
-
-    def found(values):
-        k = int(np.argmin(values))
-        if k in (0, len(values) - 1):
-            return float(places[k])
-        a, b, _ = np.polyfit(places[k - 1 : k + 2], values[k - 1 : k + 2], 2)
-        return float(-b / (2 * a))
-
-    numbers = [(value, error) for _, value, error in curve]
+    """As of log_minimum(). Without an error where the lowest point is an end."""
+    places, numbers = [p for p, _, _ in curve], [(value, error) for _, value, error in curve]
     lowest = int(np.argmin([value for value, _ in numbers]))
-    value, error = propagated(numbers, found)
+    value, error = propagated(numbers, lambda values: log_minimum(places, np.exp(values)))
     return value, math.inf if lowest in (0, len(curve) - 1) else error
 
 
-def onset(numbers, logarithms):
-    """Decimal logarithm of the Peclet number at which eta has risen to exp(.2) times its minimum; of the last where it
-    does not."""
-    places = np.log10(numbers)
-    k = int(np.argmin(logarithms))
-    wanted = logarithms[k] + 0.2
-    for j in range(k, len(places) - 1):
-        if logarithms[j + 1] >= wanted:
-            share = (wanted - logarithms[j]) / (logarithms[j + 1] - logarithms[j])
-            return float(places[j] + share * (places[j + 1] - places[j]))
-    return float(places[-1])
+def smallest_step(viscosities):
+    """Of a viscosity over the one before it. What jams is infinite, and beyond it nothing may flow."""
+    jammed = next((k for k, (value, _) in enumerate(viscosities) if math.isinf(value)), len(viscosities))
+    if any(math.isfinite(value) for value, _ in viscosities[jammed:]):
+        return 0.0, 0.0
+    flowing = [logarithm(v) for v in viscosities[:jammed]]
+    return propagated(flowing, lambda values: math.exp(float(np.min(np.diff(values)))))
 
 
 def rows_of_grains_added(table):
@@ -277,16 +260,14 @@ def rows_of_grains_added(table):
     for peclet in NUMBERS:
         shares = (0, 0.4) if peclet == NUMBERS[0] else GRAINS_ADDED
         found = [table.grains_added(alpha, peclet) for alpha in shares]
-        flows = [logarithm(v) for v in found if math.isfinite(v[0])]
-        smallest = propagated(flows, lambda v: math.exp(float(np.min(np.diff(v)))))
         text = f"Pe_c = {peclet:g}: smallest step of η_r as grains are added, α = 0 to {shares[-1]:g}"
-        yield Statement(text, "L5.2a", *smallest, 1, math.inf, DEGREES)
+        yield Statement(text, "L5.2a", *smallest_step(found), 1, math.inf, DEGREES)
     curves = [table.curve("grains-added", alpha, NUMBERS[1:]) for alpha in GRAINS_ADDED[:-1]]
     count = len(NUMBERS) - 1
     together = [value for curve in curves for value in curve]
 
     def onsets(values):
-        return [onset(NUMBERS[1:], values[k : k + count]) for k in range(0, len(values), count)]
+        return [log_of_rise(NUMBERS[1:], np.exp(values[k : k + count]), 0.2) for k in range(0, len(values), count)]
 
     shift = propagated(together, lambda v: onsets(v)[-1] - onsets(v)[0])
     text = "decades by which thickening begins earlier at α = 0.4 than at 0"
@@ -421,8 +402,9 @@ def rows_of_compositions(numbers):
     text = "largest distance of the volume fractions of 11 compositions from those in print"
     yield Statement(text, "L5.2", *numbers["fraction off"][:2], high=1e-3)
     yield Finding("the same of α, of 10 000 whole spheres", "L5.2", *numbers["share off"][:2])
+    times = numbers["times of diffusion"]
     text = "dilute: a²/D of radius 5 over that of radius 1"
-    yield Statement(text, "L 5.1", *numbers["times of diffusion"][:2], 0.97 * 125, 1.03 * 125, DEGREES)
+    yield Statement(text, "L 5.1", *times[:2], 0.97 * 125, 1.03 * 125, times[2])
 
 
 def judge():

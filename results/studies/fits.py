@@ -75,6 +75,18 @@ def log_minimum(abscissae, values):
     return float((ends[0] + x[lowest]) / 2 - left * (ends[1] - ends[0]) / 2 / (right - left))
 
 
+def log_of_rise(abscissae, values, rise):
+    """log10 of where the logarithm of a curve has risen by `rise` above its lowest point, by straight lines between its
+    points; of the last point where it does not."""
+    x, logs = np.log10(np.maximum(abscissae, 1e-9)), np.log(np.maximum(values, 1e-9))
+    lowest = int(np.argmin(logs))
+    level = logs[lowest] + rise
+    for k in range(lowest, len(logs) - 1):
+        if logs[k] <= level < logs[k + 1]:
+            return float(x[k] + (level - logs[k]) / (logs[k + 1] - logs[k]) * (x[k + 1] - x[k]))
+    return float(x[-1])
+
+
 def divergence(fractions, numbers, start):
     """c, phi_J and lambda of c (1 - phi / phi_J)^-lambda through numbers with errors: least squares in the logarithm
     with weights 1 / (relative error)^2, from the three of `start`. Each has its standard error, multiplied by the root

@@ -58,7 +58,8 @@ a viscosity of 10 diverges, and where the viscosity rises most steeply. Errors a
 points leave phi_m open it is not determined, and the reason is said.
 
 A point is jammed when half of its seeds or more ended so: the engine's causes overlap, packing and jammed.
-It is soft, and no part of the law, when the largest overlap of its spheres is above 1 % of a radius.
+It is soft, and no part of the law, when its contacts overlap by more than 0.1 % of a radius in the mean; of
+results without that mean, when the largest overlap is above ten times as much.
 
 --propose says which fraction would tell most: the one that lessens the error of the law, or where there is no
 law yet the one half-way between what flows and what is jammed. Fractions go into the sweep, for all curves.

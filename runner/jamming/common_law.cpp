@@ -36,16 +36,18 @@ class CommonFit {
     return fit_law(curve.points, given, curve.flowing);
   }
 
-  std::optional<CommonExponent> common() const {
-    if (curves_.size() < 2) return std::nullopt;
+  // The exponent, or why there is none.
+  CommonAnswer common() const {
     int least = 0;
     std::vector<double> sums;
     for (int place = 0; place < exponents; ++place) {
       sums.push_back(chi_squared(exponent_at(place)));
       if (sums.back() < sums[static_cast<std::size_t>(least)]) least = place;
     }
-    if (least == 0 || least == exponents - 1 || sums[static_cast<std::size_t>(least)] == infinite) {
-      return std::nullopt;
+    const bool is_at_an_end = least == 0 || least == exponents - 1;
+    if (curves_.size() < 2 || is_at_an_end || sums[static_cast<std::size_t>(least)] == infinite) {
+      return refused(fmt::format("no exponent from {} to {} describes two curves or more together",
+                                 smallest_exponent, largest_exponent));
     }
     constexpr int bits = 30;
     const auto [best, sum] =
@@ -53,12 +55,18 @@ class CommonFit {
                                               exponent_at(least - 1), exponent_at(least + 1), bits);
     const int of_points = degrees();
     const double bound = sum + std::max(1.0, sum / of_points);
+    if (chi_squared(smallest_exponent) <= bound || chi_squared(largest_exponent) <= bound) {
+      return refused(
+          "the points do not bound the common exponent: smaller errors, or points nearer to jamming, would");
+    }
     const double error =
         0.5 * (crossing(best, largest_exponent, bound) - crossing(best, smallest_exponent, bound));
-    return CommonExponent{{best, error}, static_cast<int>(curves_.size()), sum, of_points};
+    return {CommonExponent{{best, error}, static_cast<int>(curves_.size()), sum, of_points}, "", {}};
   }
 
  private:
+  static CommonAnswer refused(const std::string& why) { return {std::nullopt, why, {}}; }
+
   // Infinite where it leaves a curve without a law.
   double chi_squared(double exponent) const {
     double sum = 0;
@@ -80,8 +88,8 @@ class CommonFit {
     return sum;
   }
 
-  // The exponent between both at which the sum passes the bound, which it does not at the first one; the far
-  // end where it does not.
+  // The exponent between both at which the sum passes the bound: below it at the first one, above at the
+  // other.
   double crossing(double inside, double outside, double bound) const {
     if (chi_squared(outside) <= bound) return outside;
     for (int halving = 0; halving < 30; ++halving) {
@@ -103,11 +111,12 @@ LawAnswer law_with(const CommonFit& fit, const LawCurve& curve, const Measured& 
   law.exponent = exponent;
   const LawAnswer above = fit.law(curve, exponent.value + exponent.standard_error);
   const LawAnswer below = fit.law(curve, exponent.value - exponent.standard_error);
+  if (!above.law && !below.law)
+    return {std::nullopt, "the error of the common exponent leaves it without a law"};
   // Half the difference over two standard errors; where one of them has no law, the other side alone.
   const auto moves = [&](double (*of)(const Law&)) {
     if (above.law && below.law) return 0.5 * (of(*above.law) - of(*below.law));
-    if (above.law) return of(*above.law) - of(law);
-    return below.law ? of(law) - of(*below.law) : 0.0;
+    return above.law ? of(*above.law) - of(law) : of(law) - of(*below.law);
   };
   const double fraction = moves([](const Law& one) { return one.fraction.value; });
   const double prefactor = moves([](const Law& one) { return one.prefactor.value; });
@@ -123,12 +132,7 @@ LawAnswer law_with(const CommonFit& fit, const LawCurve& curve, const Measured& 
 
 CommonAnswer fit_common_law(const std::vector<LawCurve>& curves, const LawForm& form) {
   const CommonFit fit(curves, form);
-  CommonAnswer answer;
-  answer.common = fit.common();
-  if (!answer.common) {
-    answer.obstacle = fmt::format("no exponent from {} to {} describes two curves or more together",
-                                  smallest_exponent, largest_exponent);
-  }
+  CommonAnswer answer = fit.common();
   for (const LawCurve& curve : curves) {
     answer.laws.push_back(answer.common ? law_with(fit, curve, answer.common->exponent)
                                         : LawAnswer{std::nullopt, answer.obstacle});

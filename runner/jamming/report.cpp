@@ -106,8 +106,7 @@ std::string common_text(const CommonAnswer& answer) {
 std::string legend(const JammingReport& report) {
   std::string text = fmt::format(
       "flowing: points that flow; stuck at: the smallest fraction beyond them that is jammed, or soft "
-      "(mean overlap "
-      "above {:g} radii); numbers ± standard error\n",
+      "(mean overlap above {:g} radii); numbers ± standard error\n",
       report.softest);
   if (report.by_law) {
     text += fmt::format("law: prefactor (1 - phi / phi_m)^-exponent through flowing points above {:g}\n",

@@ -94,6 +94,17 @@ TEST(CommonLaw, CurvesThatNoExponentDescribesTakeNoPart) {
   EXPECT_EQ(one.laws[0].obstacle, one.obstacle);
 }
 
+// With errors of half the value the steepest exponent is as good as the true one.
+TEST(CommonLaw, IsRefusedWhereThePointsDoNotBoundTheExponent) {
+  const CommonAnswer answer = fit_common_law({exact(truths[0], 0.5), exact(truths[1], 0.5)}, {});
+  EXPECT_FALSE(answer.common);
+  EXPECT_EQ(
+      answer.obstacle,
+      "the points do not bound the common exponent: smaller errors, or points nearer to jamming, would");
+  ASSERT_EQ(answer.laws.size(), 2U);
+  EXPECT_EQ(answer.laws[1].obstacle, answer.obstacle);
+}
+
 // Binomial bounds that chance leaves once in a thousand, of 4 curves in 100 campaigns, whose errors hang
 // together by the exponent: as if 100 were independent, 0.95 - 3.3 sqrt(0.95 0.05 / 100) and 0.683 - 3.3
 // sqrt(0.22 / 100).
