@@ -17,14 +17,23 @@ struct EstimateChoice {
   bool common_exponent = false;  // one for all curves; then form.exponent is absent
 };
 
+// What is said of a curve: the same words for every curve and point of which it is true.
+struct JammingRemark {
+  std::string what;
+  std::string place;  // "0.62 (1 of 8)"; "" where it is the curve
+
+  std::string text() const;
+};
+
 struct JammingEstimate {
   JammingCurve curve;
   std::vector<LawPoint> fitted;  // flowing, with an error, above the bound
   LawAnswer law;
   SteepestAnswer steepest;
-  std::vector<std::string> remarks;  // which points are left out and why; what contradicts the law
+  std::vector<JammingRemark> remarks;  // which points are left out and why; what contradicts the law
 
   int flowing() const;
+  bool has_enough_points() const;  // for a law
 };
 
 // The law of the flowing points; the steepest rise of all that have a value with an error and are neither

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "runner/statistics/look_json.h"
 #include "runner/text/folded_text.h"
@@ -81,16 +82,57 @@ TextTable table_of(const JammingReport& report) {
   return table;
 }
 
-std::string remarks_text(const JammingReport& report) {
-  std::string text;
-  for (const JammingEstimate& one : report.estimates) {
-    const std::string name = one.curve.name.empty() ? "" : one.curve.name + ": ";
-    const auto say = [&](const std::string& what) { text += folded(name + what + '\n', page_width); };
-    if (report.by_law && !one.law.law) say("phi_m by law is not determined: " + one.law.obstacle);
-    if (report.by_steepest && !one.steepest.steepest)
-      say("phi_m by steepest rise is not determined: " + one.steepest.obstacle);
-    for (const std::string& remark : one.remarks) say(remark);
+// Of one kind: the curves of which it is true, each with its places.
+struct SharedRemark {
+  std::string what;
+  std::vector<std::pair<const JammingEstimate*, std::string>> of;
+};
+
+class SharedRemarks {
+ public:
+  void add(const JammingEstimate& one, const JammingRemark& remark) {
+    auto same = std::find_if(remarks_.begin(), remarks_.end(),
+                             [&](const SharedRemark& shared) { return shared.what == remark.what; });
+    if (same == remarks_.end()) same = remarks_.insert(same, {remark.what, {}});
+    if (same->of.empty() || same->of.back().first != &one) {
+      same->of.emplace_back(&one, remark.place);
+    } else {
+      same->of.back().second += ", " + remark.place;
+    }
   }
+
+  std::string text(std::size_t curves) const {
+    std::string text;
+    for (const SharedRemark& remark : remarks_)
+      text += folded(remark.what + where(remark, curves), page_width);
+    return text;
+  }
+
+ private:
+  static std::string where(const SharedRemark& remark, std::size_t curves) {
+    const bool placed =
+        std::any_of(remark.of.begin(), remark.of.end(), [](const auto& one) { return !one.second.empty(); });
+    if (remark.of.size() == curves && !placed) return curves > 1 ? ": every curve\n" : "\n";
+    if (curves == 1) return ": " + remark.of.front().second + '\n';
+    std::string text = ":\n";
+    for (const auto& [one, place] : remark.of)
+      text += "  " + one->curve.name + (place.empty() ? "" : ": " + place) + '\n';
+    return text;
+  }
+
+  std::vector<SharedRemark> remarks_;
+};
+
+std::string remarks_text(const JammingReport& report) {
+  SharedRemarks remarks;
+  for (const JammingEstimate& one : report.estimates) {
+    if (report.by_law && !one.law.law)
+      remarks.add(one, {"phi_m by law is not determined, " + one.law.obstacle, ""});
+    if (report.by_steepest && !one.steepest.steepest)
+      remarks.add(one, {"phi_m by steepest rise is not determined, " + one.steepest.obstacle, ""});
+    for (const JammingRemark& remark : one.remarks) remarks.add(one, remark);
+  }
+  const std::string text = remarks.text(report.estimates.size());
   return text.empty() ? "" : '\n' + text;
 }
 
@@ -183,11 +225,13 @@ Json curve_json(const JammingReport& report, const JammingEstimate& one) {
   const JammingPoint* const stuck = one.curve.smallest_stuck();
   Json points = Json::array();
   for (const JammingPoint& point : one.curve.points) points.push_back(point_json(point, one));
+  Json remarks = Json::array();
+  for (const JammingRemark& remark : one.remarks) remarks.push_back(remark.text());
   Json json = {{"settings", one.curve.settings},
                {"flowing", one.flowing()},
                {"largest_flowing", json_or_null(flowing)},
                {"smallest_stuck", nullptr},
-               {"remarks", one.remarks},
+               {"remarks", remarks},
                {"points", points}};
   if (stuck != nullptr)
     json["smallest_stuck"] = {{"fraction", stuck->fraction}, {"state", to_string(stuck->state)}};

@@ -61,9 +61,8 @@ SteepestAnswer find_steepest(const std::vector<LawPoint>& points, const std::opt
     const double found = middle(points, best);
     return {made(found, points[best + 1].fraction - points[best].fraction, spread(points, found, seed)), ""};
   }
-  if (!jammed || *jammed <= last) {
-    return {std::nullopt, fmt::format("the viscosity rises most steeply up to the last point, {:.6g}", last)};
-  }
+  if (!jammed || *jammed <= last)
+    return {std::nullopt, "the viscosity rises most steeply up to the last point"};
   Steepest bracket = made(0.5 * (last + *jammed), *jammed - last, 0);
   bracket.to_jammed = true;
   return {bracket, ""};

@@ -24,7 +24,7 @@ void fill(JammingCampaign& campaign, const TrueLaw& law, int first = 0) {
 
 bool remarks_say(const JammingEstimate& estimate, const std::string& part) {
   return std::any_of(estimate.remarks.begin(), estimate.remarks.end(),
-                     [&](const std::string& remark) { return says(remark, part); });
+                     [&](const JammingRemark& remark) { return says(remark.text(), part); });
 }
 
 TEST(JammingOfACampaign, EachCurveGivesItsLawBack) {
@@ -50,7 +50,7 @@ TEST(JammingOfACampaign, EachCurveGivesItsLawBack) {
     ASSERT_TRUE(found.steepest.steepest);
     EXPECT_TRUE(found.steepest.steepest->to_jammed);
     EXPECT_NEAR(found.steepest.steepest->fraction.value, 0.64, 1e-12);
-    EXPECT_TRUE(found.remarks.empty()) << found.remarks.front();
+    EXPECT_TRUE(found.remarks.empty()) << found.remarks.front().text();
   }
 }
 
@@ -83,10 +83,10 @@ TEST(JammingOfACampaign, PointsThatDoNotFlowAreNoPartOfTheLaw) {
   EXPECT_EQ(found.curve.points[4].jammed, 1);
   EXPECT_EQ(found.fitted.size(), 1U);
   EXPECT_EQ(found.curve.smallest_stuck()->fraction, 0.54);
-  EXPECT_TRUE(remarks_say(found, "0.54 is left out: soft: spheres overlap by 0.0011 radii, more"));
-  EXPECT_TRUE(remarks_say(found, "0.6 is left out: 1 of 8 seeds jammed"));
-  EXPECT_TRUE(remarks_say(found, "0.62 is left out: half of its seeds or more were lost"));
-  EXPECT_TRUE(remarks_say(found, "0.66 is left out: no seed has ended yet"));
+  EXPECT_TRUE(remarks_say(found, "0.54 (overlap 0.0011): left out, soft, a larger"));
+  EXPECT_TRUE(remarks_say(found, "0.6 (1 of 8): left out, some seeds jammed"));
+  EXPECT_TRUE(remarks_say(found, "0.62: left out, half of the seeds or more were lost"));
+  EXPECT_TRUE(remarks_say(found, "0.66: left out, no seed has ended yet"));
   EXPECT_FALSE(remarks_say(found, "0.57"));  // jammed has its column
 }
 
@@ -103,7 +103,7 @@ TEST(JammingOfACampaign, WithoutMeanOverlapsTheLargestDecide) {
   const JammingEstimate found = campaign.estimate();
   EXPECT_EQ(found.curve.points.at(0).state, FlowState::flowing);
   EXPECT_EQ(found.curve.points.at(1).state, FlowState::soft);
-  EXPECT_TRUE(remarks_say(found, "soft: spheres overlap by 0.01 radii at most"));
+  EXPECT_TRUE(remarks_say(found, "0.5 (overlap 0.01 at most): left out, soft"));
 }
 
 TEST(JammingOfACampaign, APointNeedsFourSeedsAndASpread) {
@@ -113,18 +113,18 @@ TEST(JammingOfACampaign, APointNeedsFourSeedsAndASpread) {
   const JammingEstimate found = campaign.estimate();
   EXPECT_EQ(found.curve.points[5].state, FlowState::flowing);
   EXPECT_EQ(found.curve.largest_flowing(), 0.62);
-  EXPECT_TRUE(remarks_say(found, "0.62 is left out: no error yet: 3 of 4 seeds with a value"));
+  EXPECT_TRUE(remarks_say(found, "0.62 (3): left out, no error yet, 4 seeds with a value are needed"));
 }
 
 // A fraction that flows, if only by a few seeds, is below phi_m.
 TEST(JammingOfACampaign, ContradictionsAreSaid) {
   JammingCampaign campaign(jamming_document(fractions));
   fill(campaign, {0.70, 1.6, 1.4});
-  EXPECT_TRUE(remarks_say(campaign.estimate(), "the law diverges above 0.66, which is jammed"));
+  EXPECT_TRUE(remarks_say(campaign.estimate(), "0.66: the law diverges above a fraction that is jammed"));
   JammingCampaign mixed(jamming_document(fractions));
   for (const int point : {0, 1, 2, 4, 5}) mixed.complete(point, 10 + point);
   mixed.jam(3);
-  EXPECT_TRUE(remarks_say(mixed.estimate(), "0.57 is jammed, although 0.62 flows"));
+  EXPECT_TRUE(remarks_say(mixed.estimate(), "0.57 (below 0.62): jammed, although a larger fraction flows"));
 }
 
 TEST(JammingOfACampaign, RefusesWhatIsNoVolumeFractionOrNoQuantity) {
@@ -176,6 +176,29 @@ TEST(JammingOfACampaign, OneExponentForAllCurvesIsTold) {
   EXPECT_NEAR(common["exponent"]["value"], 1.9, 1e-3);
   EXPECT_EQ(common["curves"], 2);
   EXPECT_TRUE(common["obstacle"].is_null());
+}
+
+// A campaign of fifty curves says once what is true of all of them, and by curve what is true of some.
+TEST(JammingOfACampaign, WhatIsTrueOfManyCurvesIsToldOnce) {
+  JammingCampaign campaign(
+      jamming_document(fractions, {{{"set", "/contact/friction"}, {"values", {0, 0.5, 1}}}}));
+  const TrueLaw law;
+  for (int point = 0; point < 2; ++point) campaign.complete(point, law.at(0.45), 0.01, 0.002);
+  campaign.complete(7, law.at(0.45), 0.01, 0.003);
+  const JammingCurves curves = campaign.curves();
+  const JammingReport report{
+      .campaign = curves, .choice = {}, .estimates = estimate_all(curves.curves, {}).curves, .proposed = {}};
+  const std::string table = jamming_table(report);
+  EXPECT_TRUE(
+      says(table,
+           "phi_m by law is not determined, 0 of the 4 flowing points with a viscosity above 10 that it "
+           "needs:\nevery curve\n"))
+      << table;
+  EXPECT_TRUE(says(table,
+                   "left out, soft, a larger normal_stiffness makes spheres harder:\n"
+                   "  μ = 0: 0.45 (overlap 0.002), 0.5 (overlap 0.002)\n"
+                   "  μ = 0.5: 0.45 (overlap 0.003)\n"))
+      << table;
 }
 
 TEST(JammingOfACampaign, IsToldToPeopleAndPrograms) {
