@@ -323,6 +323,20 @@ NAMED = [
         "engine_tests:ReferenceForces.EveryTermOfEveryMixtureEqualsTheIndependentEvaluation",
     ),
     (
+        "overlaps of unlike spheres over the larger radius",
+        "engine/kernels/pairs/pair_kinds.cpp",
+        "kind.smaller_radius = std::min(first, second);",
+        "kind.smaller_radius = std::max(first, second);",
+        "engine_tests:Result.MeansAreTakenOverEveryStepOfTheProductionWindow",
+    ),
+    (
+        "gaps counted as negative overlaps",
+        "engine/kernels/pairs/pair_kernel.h",
+        "sums.overlaps += larger(Real{}, overlap);",
+        "sums.overlaps += overlap;",
+        "engine_tests:Result.MeansAreTakenOverEveryStepOfTheProductionWindow",
+    ),
+    (
         "stresslet of bubbles",
         "engine/terms/drag.h",
         "(2.5 * volume_fraction) * solvent",
