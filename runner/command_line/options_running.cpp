@@ -58,7 +58,8 @@ void add_plan(VerbSet& verbs) {
       page(R"(
 The work is counted in particle-steps, and in processor time where realisations have been run before:
 from the fewest seeds that a point may take to the most. Where none has, one of the point in the middle is
-tried for two seconds, in a temporary folder, and the table says that its times are a guess.
+tried for two seconds, in a temporary folder, or one of another point where that one jams, and the table says
+that its times are a guess.
 )",
            {}, {0, 1, 2, 5, 6, 75}));
   add_file(verb, options->run.campaign);

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <variant>
 
+#include "contract/json.h"
 #include "runner/engines/stop_signals.h"
 #include "runner/engines/worker_process.h"
 
@@ -50,7 +51,10 @@ class Trial {
       return true;
     }
     if (const auto* progressed = std::get_if<Progressed>(&event)) return hear(*progressed);
-    if (std::holds_alternative<ResultSpooled>(event)) seconds_ = since_begun();
+    if (const auto* spooled = std::get_if<ResultSpooled>(&event)) {
+      seconds_.reset();
+      if (is_complete(read_json(spooled->spool))) seconds_ = since_begun();
+    }
     return false;
   }
   bool is_late() const { return since_begun() > longest; }
@@ -58,6 +62,10 @@ class Trial {
 
  private:
   static constexpr double long_enough = 2, longest = 10;
+
+  static bool is_complete(const Json& result) {
+    return result.at("/ending/cause"_json_pointer) == "completed";
+  }
 
   bool hear(const Progressed& progressed) {
     // Packing has steps of its own.

@@ -11,8 +11,8 @@ namespace peclet::runner {
 
 // Seconds of a worker for one realisation of the scene: the engine runs seed 0 in a folder of its own that is
 // removed again, and is killed when it has said after two seconds how far it is. So it is a guess, from the
-// beginning of one realisation. Nothing when the engine does not get that far within ten seconds, or cannot
-// run the scene.
+// beginning of one realisation. Nothing when the engine does not get that far within ten seconds, when the
+// realisation ends early, as one that jams, or when the engine cannot run the scene.
 std::optional<double> try_cost(const Json& scene, const EngineCommand& command);
 
 }  // namespace peclet::runner

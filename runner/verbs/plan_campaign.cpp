@@ -8,7 +8,9 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <set>
 #include <system_error>
+#include <utility>
 
 #include "contract/input_error.h"
 #include "runner/campaign/campaign_file.h"
@@ -83,17 +85,23 @@ std::vector<double> work_of(const std::vector<SceneAnswer>& scenes) {
   return work;
 }
 
-// Of the point in the middle: the one from which the others are least far.
+// Of the point with the median of the work, from which the others are least far; of one with less or more
+// where that one jams.
 std::optional<CostGuess> guess_cost(const Campaign& campaign, const std::vector<double>& work,
                                     const EngineCommand& command) {
   std::vector<std::size_t> order(work.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
-  std::nth_element(order.begin(), middle, order.end(),
-                   [&](std::size_t a, std::size_t b) { return work[a] < work[b]; });
-  const std::optional<double> seconds = try_cost(campaign.points.at(*middle).scene, command);
-  if (!seconds) return std::nullopt;
-  return CostGuess{*middle, *seconds};
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return std::pair(work[a], a) < std::pair(work[b], b); });
+  const auto last = static_cast<double>(order.size() - 1);
+  std::set<std::size_t> tried;
+  for (const double share : {0.5, 0.25, 0.0, 0.75, 1.0}) {
+    const std::size_t place = order[static_cast<std::size_t>(std::lround(share * last))];
+    if (!tried.insert(place).second) continue;
+    if (const std::optional<double> seconds = try_cost(campaign.points.at(place).scene, command))
+      return CostGuess{place, *seconds};
+  }
+  return std::nullopt;
 }
 
 bool any_cost(const std::map<std::string, PointHistory>& known) {
