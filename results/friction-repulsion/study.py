@@ -12,7 +12,7 @@ sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
 from studies.estimates import difference, propagated, quotient
 from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
-from studies.fits import log_minimum, log_of_rise
+from studies.fits import log_of_share, thickening_decades
 from studies.scenes import TABLE_SCENE, during, merged
 from studies.tables import columns_of, number, read_rows, write_table
 from studies.verdicts import Check, Finding, Statement
@@ -79,12 +79,6 @@ def curve_of(rows, *case):
     return sorted(chosen, key=lambda r: r["peclet"])
 
 
-def crossing(abscissae, values, share):
-    """log10 of where a curve has risen by this share of ln(last / lowest) above its lowest point."""
-    lowest, last = (max(value, 1e-9) for value in (min(values), values[-1]))
-    return log_of_rise(abscissae, values, share * math.log(last / lowest))
-
-
 def of_curve(curve, function):
     """function(Peclet numbers, viscosities of pairs), and its standard error."""
     x = [r["peclet"] for r in curve]
@@ -93,17 +87,17 @@ def of_curve(curve, function):
 
 def middle(curve):
     """log10 Pe of the middle of the thickening."""
-    return of_curve(curve, lambda x, values: crossing(x, values, 0.5))
+    return of_curve(curve, lambda x, values: log_of_share(x, values, 0.5))
 
 
 def width(curve):
     """Of the thickening, in decades from a tenth to nine tenths."""
-    return of_curve(curve, lambda x, values: crossing(x, values, 0.9) - crossing(x, values, 0.1))
+    return of_curve(curve, lambda x, values: log_of_share(x, values, 0.9) - log_of_share(x, values, 0.1))
 
 
 def extent(curve):
     """Decades of Pe from the minimum to 95 % of the thickening."""
-    return of_curve(curve, lambda x, values: crossing(x, values, 0.95) - log_minimum(x, values))
+    return of_curve(curve, thickening_decades)
 
 
 def middle_stress(curve, scale):
@@ -111,7 +105,7 @@ def middle_stress(curve, scale):
     a^3."""
 
     def place(x, values):
-        return crossing(np.array(values) * x / (6 * math.pi) * scale, values, 0.5)
+        return log_of_share(np.array(values) * x / (6 * math.pi) * scale, values, 0.5)
 
     return of_curve(curve, place)
 

@@ -14,7 +14,7 @@ from studies.command_line import main
 from studies.compositions import MIXTURE_SCENE, colloids_added, grains_added, grains_among, mean_peclet
 from studies.estimates import estimate, logarithm, over, propagated, quotient
 from studies.figure import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
-from studies.fits import log_minimum, log_of_rise
+from studies.fits import log_minimum, log_of_rise, log_of_share, thickening_decades
 from studies.scenes import merged
 from studies.tables import columns_of, number, read_numbers, read_rows, write_numbers, write_table
 from studies.verdicts import Check, Finding, Statement
@@ -326,6 +326,16 @@ def rows_of_colloids_added(table):
         yield Statement(text, "L5.2c", *step, high=1, degrees=DEGREES)
     none = factor(of[math.inf])
     yield Statement("without noise: the factor", "L5.2c", *none, 1.2, math.inf, DEGREES)
+    alone = table.curve("grains-alone", 1, [peclet / 125 for peclet in NUMBERS])
+    mixed = [table.curve("colloids-added", alpha, NUMBERS) for alpha in SLOW_ADDED[1:]]
+    count = len(NUMBERS)
+
+    def wider(values):
+        decades = [thickening_decades(NUMBERS, np.exp(values[k : k + count])) for k in range(0, len(values), count)]
+        return max(decades[1:]) - decades[0]
+
+    more = propagated([*alone, *(value for curve in mixed for value in curve)], wider)
+    yield Statement("decades of thickening, the most of α = 0.9, 0.8, 0.7 less those of α = 1", "L5.2b", *more, 0)
     text = "the factor without noise over that at Pe_c = 1"
     yield Statement(text, "L5.2c", *quotient(none, best), high=1, degrees=DEGREES)
     for first, then in ((1, 0.9), (0.9, 0.8)):
@@ -365,6 +375,18 @@ def rows_of_one_fraction(table):
     for alpha, name in ((0, "colloids"), (1, "grains")):
         text = f"φ = 0.565, Pe_cg = 10⁵: η_r of {name} alone over that at α = 0.5"
         yield Statement(text, "L5.3b", *above(alpha, 1e5), 3, math.inf, DEGREES)
+    for alpha, name in ((0, "colloids"), (1, "grains")):
+        curves = [table.of_means(a) for a in (alpha, 0.5)]
+        count = len(curves[0])
+
+        def later(values):
+            one, mixed = np.exp(values[:count]), np.exp(values[count:])
+            places = [[p for p, _, _ in curve] for curve in curves]
+            return log_of_share(places[1], mixed, 0.95) - log_of_share(places[0], one, 0.95)
+
+        shift = propagated([(v, e) for curve in curves for _, v, e in curve], later)
+        text = f"φ = 0.565: lg of the Pe_cg of 95 % of the thickening, α = 0.5 less {name} alone"
+        yield Statement(text, "L5.3b", *shift, 0.5)
     more = quotient(above(0, 1e5), above(0, 3))
     text = "φ = 0.565: η_r of colloids alone over that at α = 0.5, at Pe_cg = 10⁵ over at 3"
     yield Statement(text, "L5.3", *more, 1, math.inf, DEGREES)

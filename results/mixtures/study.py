@@ -4,7 +4,6 @@ models of packings; and whether dense grains flow better when colloids are added
 
 study.py BIN [FOLDER] [--quick] [--from-table]
 """
-import functools
 import math
 import sys
 from pathlib import Path
@@ -12,11 +11,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
-from studies.compositions import COLLOIDS, GRAINS, MIXTURE_SCENE, colloids_added, grains_among, radii_and_shares
-from studies.estimates import difference, logarithm, over, propagated, quotient
+from studies.compositions import COLLOIDS, GRAINS, MIXTURE_SCENE, colloids_added, grains_among, packing_models
+from studies.estimates import difference, estimate, over, propagated, quotient
 from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
-from studies.fits import jamming_points
-from studies.packings import gap_of, linear_mixture, rods
 from studies.scenes import during, merged
 from studies.tables import columns_of, entries, number, read_rows, write_table
 from studies.verdicts import Check, Finding, Statement
@@ -25,46 +22,52 @@ from studies.viscosities import viscosity_row
 import numpy as np
 
 TITLE = "Colloids and grains without noise"
-RATIO = COLLOIDS[0] / GRAINS[0]
-SCENE = merged(MIXTURE_SCENE, during({"strain": 1}, {"strain": 2}))
+SCENE = merged(MIXTURE_SCENE, {"guard": {"largest_overlap": 0.5}, **during({"strain": 1}, {"strain": 2})})
 # Share of the grains in the volume of all spheres, and how many spheres that takes for some thirty grains.
-COUNTS = {0: 1000, 0.4: 6000, 0.5: 4000, **dict.fromkeys((0.6, 0.7, 0.75, 0.8, 0.85, 0.9), 3000), 1: 1000}
+COUNTS = {0: 1000, 0.4: 5000, 0.5: 4000, 0.6: 3000, 0.7: 2000, 0.75: 2000, 0.8: 1500, 0.85: 1500, 0.9: 1000, 1: 1000}
 ALONE = {0: 0.64, 1: 0.57}  # in print: where one group alone jams, by friction
-# How far below what models with these numbers say; with friction mixtures jam before.
-BELOW = {0: (0.10, 0.075, 0.055, 0.04, 0.025), 1: (0.19, 0.16, 0.13, 0.10, 0.075)}
-SEEDS = 3
-STEEP = 10  # from this viscosity on the law of the divergence is taken to hold
-SOFT = 0.02  # overlap, in radii, beyond which spheres are not hard
-# Colloids added to grains of these volume fractions, with friction.
-BASES, ADDED = (0.55, 0.60), (1, 0.9, 0.8, 0.7, 0.6, 0.5)
-# What may not matter, at a share of grains and so far below the models: so many times as many spheres, and contacts so
-# many times as stiff.
-SIZES, STIFFER, TESTED, FAR = (0.5, 1, 2), 4, 0.5, {0: 0.04, 1: 0.13}
+# How far below the volume fractions at which a pilot had them jam.
+BELOW = {0: (0.10, 0.075, 0.055, 0.04, 0.025), 1: (0.12, 0.09, 0.065, 0.045, 0.03)}
+PILOT = {
+    0: dict(zip(COUNTS, (0.637, 0.722, 0.745, 0.762, 0.78, 0.778, 0.76, 0.739, 0.704, 0.637))),
+    1: dict(zip(COUNTS, (0.577, 0.66, 0.675, 0.69, 0.685, 0.672, 0.655, 0.64, 0.61, 0.577))),
+}
+SEEDS = 4
+# Colloids added to grains of this volume fraction, with friction: whether they leave the jam.
+DENSE = 0.60
+# What may not matter, at a share of grains and so far below the jam: so many times as many spheres, contacts so many
+# times as stiff, and spheres so many times as light.
+SIZES, STIFFER, LIGHTER, TESTED, FAR = (0.5, 1, 2, 4), 4, 4, 0.5, {0: 0.055, 1: 0.09}
+ORDERED = (0.5, 0.75)  # shares of grains that are searched for layers, without friction
+LAYERED = 0.04  # so far below the jam
 
 
-@functools.cache
-def models(alone):
-    """Over alpha: the two models in which either group alone packs to this volume fraction."""
-    gap = gap_of(*radii_and_shares(0), alone, 4000)
-    return {
-        "linear mixture": lambda alpha: linear_mixture(alpha, RATIO, alone, alone),
-        "rods": lambda alpha: rods(*radii_and_shares(alpha), gap, 4000),
-    }
+def stiffness_of(friction, alpha):
+    """With friction curves are needed up to larger stresses, and where grains carry these, contacts of larger
+    spheres."""
+    if friction == 0:
+        return 1e5
+    return 2e5 if alpha < 0.75 else 4e5 if alpha < 0.9 else 1e6
 
 
-def below_models(friction, alpha, distance):
-    """The volume fraction so far below the mean of what the models say."""
-    of = models(ALONE[friction]).values()
-    return round(sum(model(alpha) for model in of) / len(of) - distance, 4)
+def below(friction, alpha, distance):
+    return round(PILOT[friction][alpha] - distance, 4)
 
 
-def rows_of(program, part, friction, cases, seeds=SEEDS, stiffer=1):
+def rows_of(program, part, friction, cases, seeds=SEEDS, stiffer=1, density=SCENE["particles"]["density"]):
     """Rows of (share of grains, number of spheres, volume fraction)."""
-    stiffness = stiffer * SCENE["contact"]["normal_stiffness"]
-    scene = merged(SCENE, {"contact": {"friction": friction, "normal_stiffness": stiffness}})
-    pointers = "/particles/mixture/alpha", "/particles/count", "/volume_fraction"
-    settings = [dict(zip(pointers, case)) for case in cases]
-    for (alpha, count, fraction), point in zip(cases, program.run(f"{part}-{friction}", scene, settings, seeds)):
+    scene = merged(SCENE, {"contact": {"friction": friction}, "particles": {"density": density}})
+    settings = [
+        {
+            "/particles/mixture/alpha": alpha,
+            "/particles/count": count,
+            "/volume_fraction": fraction,
+            "/contact/normal_stiffness": stiffer * stiffness_of(friction, alpha),
+        }
+        for alpha, count, fraction in cases
+    ]
+    points = program.run(f"{part}-{friction}", scene, settings, seeds)
+    for (alpha, count, fraction), setting, point in zip(cases, settings, points):
         yield {
             "part": part,
             "friction": friction,
@@ -72,75 +75,102 @@ def rows_of(program, part, friction, cases, seeds=SEEDS, stiffer=1):
             "count": count,
             "grains": round(grains_among(alpha, count)),
             "fraction": fraction,
-            "stiffness": stiffness,
-            **viscosity_row(point),
+            "stiffness": setting["/contact/normal_stiffness"],
+            **viscosity_row(point, "mean_overlap"),
             "overlap": max((r["largest_overlap"] for r in point["realisations"] if r.get("mean")), default=math.nan),
         }
 
 
+def layer_peaks(path, radii):
+    """Of a final configuration: the largest |sum of exp(i k r)|^2 / N of the spheres of these radii, along the gradient
+    and along the vorticity, among the waves that are 0.75 to 1.3 mean diameters long. Where nothing is ordered it is
+    the peak of a liquid's structure factor, the same for both; of perfect layers it is N."""
+    with open(path) as f:
+        f.readline()
+        lattice = [float(x) for x in f.readline().split('Lattice="')[1].split('"')[0].split()]
+        *place, radius = np.loadtxt(f, usecols=(1, 2, 3, 4)).T
+    chosen = np.isin(radius, radii)
+    diameter = 2 * radius[chosen].mean()
+    for height, length in ((place[1][chosen], lattice[4]), (place[2][chosen], lattice[8])):
+        waves = np.arange(math.ceil(length / (1.3 * diameter)), math.floor(length / (0.75 * diameter)) + 1)
+        sums = np.exp(2j * math.pi * np.outer(waves, height) / length).sum(axis=1)
+        yield float(np.max(np.abs(sums) ** 2) / len(height))
+
+
+def order_rows(program):
+    scene = merged(SCENE, {"contact": {"friction": 0}, "files": {"final_configuration": True}})
+    settings = [
+        {
+            "/particles/mixture/alpha": alpha,
+            "/particles/count": 2 * COUNTS[alpha],
+            "/volume_fraction": below(0, alpha, LAYERED),
+        }
+        for alpha in ORDERED
+    ]
+    folder = Path(program.folder) / "order-0.peclet"
+    for alpha, point in zip(ORDERED, program.run("order-0", scene, settings, 2 * SEEDS)):
+        paths = [folder / f["path"] for r in point["realisations"] for f in r.get("files") or []]
+        for group, radii in (("colloids", COLLOIDS), ("grains", GRAINS)):
+            gradient, vorticity = zip(*(layer_peaks(path, radii) for path in paths))
+            row = {"alpha": alpha, "group": group, "seeds": len(paths)}
+            yield row | entries("gradient", estimate(gradient)) | entries("vorticity", estimate(vorticity))
+
+
 def measure(program):
-    rows = []
+    rows, jams = [], []
     for friction in ALONE:
-        curves = [(a, n, below_models(friction, a, d)) for a, n in COUNTS.items() for d in BELOW[friction]]
+        curves = [(a, n, below(friction, a, d)) for a, n in COUNTS.items() for d in BELOW[friction]]
         rows += rows_of(program, "curve", friction, curves)
-    for base in BASES:
-        cases = [(a, COUNTS[a], round(colloids_added(a, base), 4)) for a in ADDED]
-        rows += rows_of(program, f"added-{base:g}", 1, cases)
+        jams += jamming_rows(program, friction)
     for friction, distance in FAR.items():
-        fraction = below_models(friction, TESTED, distance)
+        fraction = below(friction, TESTED, distance)
         sizes = [(TESTED, round(factor * COUNTS[TESTED]), fraction) for factor in SIZES]
         rows += rows_of(program, "size", friction, sizes)
         rows += rows_of(program, f"stiff-{STIFFER}", friction, sizes[:1], stiffer=STIFFER)
+        light = SCENE["particles"]["density"] / LIGHTER
+        rows += rows_of(program, f"light-{LIGHTER}", friction, sizes[:1], density=light)
     names = ["part", "friction", "alpha", "count", "grains", "fraction", "stiffness", "seeds", "lost", "transient"]
-    names += ["overlap", *columns_of("viscosity", "pairs", "lubrication", "contact")]
+    names += ["overlap", *columns_of("viscosity", "pairs", "lubrication", "contact", "mean_overlap")]
     write_table(HERE / "table.csv", names, rows, 5)
-    write_table(HERE / "jamming.csv", JAMMING, [row for friction in ALONE for row in jamming_rows(rows, friction)], 5)
+    write_table(HERE / "jamming.csv", JAMMING, jams, 5)
+    names = ["alpha", "group", "seeds", *columns_of("gradient", "vorticity")]
+    write_table(HERE / "order.csv", names, list(order_rows(program)), 4)
 
 
-JAMMING = ["friction", "alpha", "points", *columns_of("jammed", "exponent", "rms"), "linear mixture", "rods"]
+LAW = "jammed", "prefactor", "exponent"
+JAMMING = ["friction", "alpha", "points", *columns_of(*LAW), "rms", "chi squared", "degrees", "flowing", "stuck"]
 
 
-def curve_of(rows, friction, alpha):
-    """The points that the law of the divergence is fitted to: steep ones, of spheres that are hard."""
-    here = [r for r in rows if (r["part"], r["friction"], r["alpha"]) == ("curve", friction, alpha)]
-    return [r for r in here if r["viscosity"] >= STEEP and r["overlap"] < SOFT]
-
-
-def jamming_rows(rows, friction):
-    curves = {alpha: curve_of(rows, friction, alpha) for alpha in COUNTS}
-    curves = {alpha: curve for alpha, curve in curves.items() if len(curve) >= 3}
-    fractions = [[r["fraction"] for r in curve] for curve in curves.values()]
-    ends = np.cumsum([len(curve) for curve in curves.values()])[:-1]
-    numbers = [logarithm(number(r, "viscosity")) for curve in curves.values() for r in curve]
-
-    def found(logarithms):
-        """The exponent, and of each curve phi_m and the distance from the law."""
-        parts = list(zip(fractions, np.split(np.asarray(logarithms), ends)))
-        exponent, points = jamming_points(parts)
-        return [exponent, *points, *(distance_from_law(*part, at, exponent) for part, at in zip(parts, points))]
-
-    values, errors = propagated(numbers, found)
-    of = models(ALONE[friction])
-    for k, (alpha, curve) in enumerate(curves.items()):
-        jammed, rms = 1 + k, 1 + len(curves) + k
-        yield {
+def jamming_rows(program, friction):
+    """The law of the divergence through the points of each share of grains, with one exponent for all: what `peclet
+    jamming` says of the campaign."""
+    found = program.asked("jamming", f"curve-{friction}", "--common-exponent")
+    exponent = found["common"]["exponent"]
+    for curve in sorted(found["curves"], key=lambda c: c["settings"]["/particles/mixture/alpha"]):
+        law, stuck = curve["law"], curve["smallest_stuck"]
+        row = {
             "friction": friction,
-            "alpha": alpha,
-            "points": len(curve),
-            **entries("jammed", (values[jammed], errors[jammed])),
-            **entries("exponent", (values[0], errors[0])),
-            **entries("rms", (values[rms], errors[rms])),
-            **{name: model(alpha) for name, model in of.items()},
+            "alpha": curve["settings"]["/particles/mixture/alpha"],
+            "flowing": curve["largest_flowing"] or math.nan,
+            "stuck": stuck["fraction"] if stuck else math.nan,
         }
-
-
-def distance_from_law(fractions, logarithms, jammed, exponent):
-    """Root of the mean square of ln eta about the law, with the factor that fits best."""
-    return float(np.std(logarithms + exponent * np.log(1 - np.asarray(fractions) / jammed)))
+        row |= {"points": 0, "rms": math.nan, "chi squared": math.nan, "degrees": 0}
+        row |= {k: v for name in LAW for k, v in entries(name, (math.nan, math.inf)).items()}
+        if law["phi_m"]:
+            fitted = [p for p in curve["points"] if p["fitted"]]
+            numbers = [(law["phi_m"]["value"], law["phi_m"]["standard_error"])]
+            numbers.append((law["prefactor"]["value"], law["prefactor"]["standard_error"]))
+            numbers.append((exponent["value"], exponent["standard_error"]))
+            (jammed, _), (prefactor, _), (power, _) = numbers
+            left = [math.log(p["mean"] / prefactor) + power * math.log(1 - p["fraction"] / jammed) for p in fitted]
+            row |= {"points": len(fitted), "rms": math.sqrt(sum(x * x for x in left) / len(left))}
+            row |= {"chi squared": law["chi_squared"], "degrees": law["degrees"]}
+            row |= {k: v for name, value in zip(LAW, numbers) for k, v in entries(name, value).items()}
+        yield row
 
 
 def jammed_at(points, friction):
-    return {p["alpha"]: p for p in points if p["friction"] == friction}
+    return {p["alpha"]: p for p in points if p["friction"] == friction and p["points"]}
 
 
 def optimum(of_alpha):
@@ -150,15 +180,21 @@ def optimum(of_alpha):
     return propagated(numbers, lambda values: float(alphas[int(np.argmax(values))]))
 
 
-def from_nearer_model(of_alpha):
+def modelled(alpha, friction):
+    """What the two models say."""
+    of = packing_models(ALONE[friction])
+    return of["linear mixture"](alpha), of["rods"](alpha)
+
+
+def from_nearer_model(of_alpha, friction):
     """Root of the mean square distance of phi_m from the nearer of the two models."""
-    rows = list(of_alpha.values())
+    said = [modelled(alpha, friction) for alpha in of_alpha]
 
     def found(values):
-        left = [min(abs(v - row["linear mixture"]), abs(v - row["rods"])) for v, row in zip(values, rows)]
+        left = [min(abs(v - model) for model in pair) for v, pair in zip(values, said)]
         return math.sqrt(sum(d * d for d in left) / len(left))
 
-    return propagated([number(row, "jammed") for row in rows], found)
+    return propagated([number(row, "jammed") for row in of_alpha.values()], found)
 
 
 def slopes(of_alpha):
@@ -179,32 +215,28 @@ def map_rows(points):
         ends = difference(number(of[0], "jammed"), number(of[1], "jammed"))
         yield Statement(f"{name}: φ_m of colloids alone less that of grains alone", "L5.4b", *ends, -0.004, 0.004)
         text = f"{name}: rms distance of φ_m(α) from the nearer packing model"
-        yield Finding(text, "L5.4b", *from_nearer_model(of))
+        yield Statement(text, "L5.4b", *from_nearer_model(of, friction), high=0.015, essential=False)
         for alpha in (0.8, 0.85, 0.9):
-            row = of[alpha]
-            above = difference(number(row, "jammed"), (row["linear mixture"], 0))
-            share = over(above, row["rods"] - row["linear mixture"])
+            linear, rod = modelled(alpha, friction)
+            share = over(difference(number(of[alpha], "jammed"), (linear, 0)), rod - linear)
             text = f"{name}, α = {alpha:g}: φ_m between the models (0: linear mixture, 1: rods)"
             yield Finding(text, "packing models", *share)
-        text = f"{name}: exponent β of (1 - φ/φ_m)^-β"
-        yield Finding(text, "L5.4a", *number(of[0], "exponent"))
+        yield Finding(f"{name}: exponent β of (1 - φ/φ_m)^-β", "L5.4a", *number(of[0], "exponent"))
     row = jammed_at(points, 1)[0.4]
-    yield Statement("μ = 1, α = 0.4: rms of ln η_r about a power", "L5.4a", *number(row, "rms"), high=0.1)
+    yield Statement("μ = 1, α = 0.4: rms of ln η_r about a power", "L5.4a", row["rms"], 0, high=0.1)
+    off = min((difference(number(row, "jammed"), (model, 0)) for model in modelled(0.4, 1)), key=lambda d: abs(d[0]))
+    text = "μ = 1, α = 0.4: φ_m less that of the nearer packing model"
+    yield Statement(text, "L5.4a", *off, -0.015, 0.015, essential=False)
 
 
-def added_rows(rows, points):
-    """What becomes of dense grains when colloids are added."""
+def dense_rows(points):
+    """Whether dense grains leave the jam when colloids are added, by phi_m."""
     of = jammed_at(points, 1)
-    line = {r["alpha"]: r for r in rows if r["part"] == f"added-{BASES[0]:g}"}
-    for first, then in ((1, 0.9), (0.9, 0.8)):
-        ratio = quotient(*(number(line[alpha], "viscosity") for alpha in (then, first)))
-        text = f"grains at φ₀ = {BASES[0]:g}, μ = 1: η_r at α = {then:g} over that at {first:g}"
-        yield Statement(text, "L5.2", *ratio, high=1, degrees=line[then]["seeds"] - 1)
 
     def room(alpha):
-        return over(number(of[alpha], "jammed"), colloids_added(alpha, BASES[1]))
+        return over(number(of[alpha], "jammed"), colloids_added(alpha, DENSE))
 
-    name = f"grains at φ₀ = {BASES[1]:g}, μ = 1: φ_m/φ"
+    name = f"grains at φ₀ = {DENSE:g}, μ = 1: φ_m/φ"
     for alpha, low, high in ((1, 0, 1), (0.8, 1, math.inf), (0.5, 0, 1)):
         yield Statement(f"{name} at α = {alpha:g} (above 1: flows)", "L5.6", *room(alpha), low, high)
     text = f"{name} at α = 0.6 over that at 0.7 (further away)"
@@ -223,17 +255,31 @@ def consistency_rows(rows):
             ratio = quotient(number(other, "viscosity"), number(one, "viscosity"))
             text = f"{name}: η_r of {other['count']:.0f} spheres over that of {one['count']:.0f}"
             yield Check(text, "size", *ratio, 0.9, 1.1, SEEDS - 1)
-        (stiff,) = of_part[f"stiff-{STIFFER}"]
-        ratio = quotient(number(stiff, "viscosity"), number(sizes[0], "viscosity"))
-        text = f"{name}: η_r with contacts {STIFFER} times as stiff over η_r"
-        yield Check(text, "stiffness", *ratio, 0.95, 1.05, SEEDS - 1)
+        for part, what in (
+            ("stiff", f"contacts {STIFFER} times as stiff"),
+            ("light", f"a density {LIGHTER} times less"),
+        ):
+            (changed,) = of_part[f"{part}-{STIFFER if part == 'stiff' else LIGHTER}"]
+            ratio = quotient(number(changed, "viscosity"), number(sizes[0], "viscosity"))
+            yield Check(f"{name}: η_r with {what} over η_r", "Table 5.1", *ratio, 0.95, 1.05, SEEDS - 1)
+    curves = [r for r in rows if r["part"] == "curve" and r["seeds"]]
+    flowing = [number(r, "mean_overlap") for r in curves if r["viscosity"] < 1000]
+    yield Check("largest mean overlap where η_r < 1000", "Table 5.1", *max(flowing), high=0.01)
+
+
+def order_statements(order):
+    for row in order:
+        ratio = quotient(number(row, "gradient"), number(row, "vorticity"))
+        text = f"μ = 0, α = {row['alpha']:g}, {row['group']}: peak of S(k), gradient over vorticity"
+        yield Finding(text, "layers", *ratio, row["seeds"] - 1)
 
 
 def judge():
     rows, points = read_rows(HERE / "table.csv"), read_rows(HERE / "jamming.csv")
     yield from map_rows(points)
-    yield from added_rows(rows, points)
+    yield from dense_rows(points)
     yield from consistency_rows(rows)
+    yield from order_statements(read_rows(HERE / "order.csv"))
 
 
 def draw():
@@ -244,19 +290,21 @@ def draw():
     for friction, colour in zip(ALONE, (BLUE, RED)):
         of = jammed_at(points, friction)
         panel.points([(a, *number(r, "jammed")) for a, r in of.items()], f"μ = {friction}", colour)
-        for dash, (name, model) in zip((1, 2), models(ALONE[friction]).items()):
+        for dash, (name, model) in zip((1, 2), packing_models(ALONE[friction]).items()):
             title = name if friction == 0 else None
             panel.curve(model, title, colour, span=(0, 1), samples=81, dash=dash)
-    for base, colour in zip(BASES, (GREEN, ORANGE)):
+    for base, colour in zip((0.55, DENSE), (GREEN, ORANGE)):
         title = f"colloids added to φ₀ = {base:g}"
         panel.curve(lambda a, b=base: colloids_added(a, b), title, colour, span=(0.4, 1), dash=3)
-    panel = figure.panel("1 - φ/φ_m", "η_r", "the law", log="xy", key="bottom left", x_range=(0.02, 0.3))
+    panel = figure.panel("1 - φ/φ_m", "η_r", "the law", log="xy", key="top right", x_range=(0.02, 0.3))
     for friction, mark in zip(ALONE, (6, 7)):
         of = jammed_at(points, friction)
         for alpha, colour in ((0, BLUE), (0.5, GREEN), (0.8, ORANGE), (1, RED)):
-            curve = curve_of(rows, friction, alpha)
+            if alpha not in of:
+                continue
+            curve = [r for r in rows if (r["part"], r["friction"], r["alpha"]) == ("curve", friction, alpha)]
             jammed = of[alpha]["jammed"]
-            places = [(1 - r["fraction"] / jammed, *number(r, "viscosity")) for r in curve]
+            places = [(1 - r["fraction"] / jammed, *number(r, "viscosity")) for r in curve if r["seeds"]]
             panel.points(places, f"α = {alpha:g}, μ = {friction}", colour, mark)
     figure.draw()
 

@@ -41,10 +41,8 @@ class Program:
         self.times = 1  # as many seeds
         os.makedirs(folder, exist_ok=True)
 
-    def run(self, name, scene, settings, seeds, observable="relative_viscosity", options=()):
-        """Runs `seeds` realisations, times `times`, with each of `settings` (objects of pointers and values) and
-        returns the points of the export. `observable` only has to be a number that the results have; `options` are for
-        `peclet run`."""
+    def write(self, name, scene, settings, seeds, observable="relative_viscosity"):
+        """The path of the campaign's file, as run() has it."""
         pointers = sorted(settings[0])
         seeds *= self.times
         campaign = {
@@ -58,6 +56,13 @@ class Program:
         path = os.path.join(self.folder, name + ".json")
         with open(path, "w") as f:
             json.dump(campaign, f, indent=1)
+        return path
+
+    def run(self, name, scene, settings, seeds, observable="relative_viscosity", options=()):
+        """Runs `seeds` realisations, times `times`, with each of `settings` (objects of pointers and values) and
+        returns the points of the export. `observable` only has to be a number that the results have; `options` are for
+        `peclet run`."""
+        path = self.write(name, scene, settings, seeds, observable)
         # Points that are not within the tolerance after all seeds, or lost some, are what studies are made of: code 3.
         done = subprocess.run([self.peclet, "run", path, "--quiet", *options], stdout=subprocess.DEVNULL)
         if done.returncode not in (0, 3):
@@ -92,6 +97,12 @@ class Program:
         """Of a campaign that run() made: the whole results, with blocks, of every point in the order of its settings;
         those that have means."""
         return [results for _, results in read_results(os.path.join(self.folder, name + ".peclet"))]
+
+    def asked(self, command, name, *options):
+        """What a command of `peclet` says, as JSON, of a campaign that write() or run() made."""
+        path = os.path.join(self.folder, name + ".json")
+        done = subprocess.run([self.peclet, command, path, "--json", *options], check=True, capture_output=True)
+        return json.loads(done.stdout)
 
     def derived(self, scene, observable="relative_viscosity"):
         """What `peclet validate` says of one scene: its time step, groups and warnings. `observable` only has to be a

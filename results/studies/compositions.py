@@ -1,6 +1,9 @@
 """Colloids of radii 1 and 1.4 among grains of radii 5 and 7, and the ways on which one is added to the other."""
+import functools
+
 import numpy as np
 
+from studies.packings import gap_of, linear_mixture, rods
 from studies.scenes import REFERENCE_SCENE, merged
 
 COLLOIDS, GRAINS = (1.0, 1.4), (5.0, 7.0)
@@ -48,3 +51,13 @@ def grains_added(alpha, base):
 def mean_peclet(alpha, number):
     """Of the mean radius (1 - alpha) a_c + alpha a_g, where the colloids have this Peclet number."""
     return number * (1 - alpha + alpha * GRAINS[0] / COLLOIDS[0]) ** 3
+
+
+@functools.cache
+def packing_models(alone):
+    """Over alpha: where the mixture jams by the two models in which either group alone jams at this volume fraction."""
+    gap = gap_of(*radii_and_shares(0), alone, 4000)
+    return {
+        "linear mixture": lambda alpha: linear_mixture(alpha, COLLOIDS[0] / GRAINS[0], alone, alone),
+        "rods": lambda alpha: rods(*radii_and_shares(alpha), gap, 4000),
+    }

@@ -43,24 +43,6 @@ def jammed_and_exponent(fractions, values):
     return float(jammed[best]), float(exponents[best])
 
 
-def jamming_points(curves, exponents=np.arange(1, 4.0001, 0.02)):
-    """The exponent beta that curves of (volume fractions, logarithms of viscosities) have in common, and phi_m of each,
-    of c (1 - phi / phi_m)^-beta with a c of each: least squares in the logarithm, all points with the same weight, by a
-    search in steps of 0.02 and 0.0002."""
-    candidates, remainders = [], []
-    for fractions, logarithms in curves:
-        jammed = max(fractions) + 0.0002 * np.arange(1, 1001)
-        shapes = -np.log(1 - np.asarray(fractions) / jammed[:, None])
-        shapes -= shapes.mean(axis=1, keepdims=True)
-        values = np.asarray(logarithms) - np.mean(logarithms)
-        products, squares = shapes @ values, np.square(shapes).sum(axis=1)
-        remainders.append(values @ values - 2 * np.outer(exponents, products) + np.outer(exponents**2, squares))
-        candidates.append(jammed)
-    best = np.argmin(sum(left.min(axis=1) for left in remainders))
-    points = [jammed[np.argmin(left[best])] for jammed, left in zip(candidates, remainders)]
-    return float(exponents[best]), [float(point) for point in points]
-
-
 def log_minimum(abscissae, values):
     """log10 of where a curve of positive numbers is lowest: the vertex of the parabola through the logarithms of the
     lowest point and its neighbours; the lowest point itself where it has only one."""
@@ -85,6 +67,17 @@ def log_of_rise(abscissae, values, rise):
         if logs[k] <= level < logs[k + 1]:
             return float(x[k] + (level - logs[k]) / (logs[k + 1] - logs[k]) * (x[k + 1] - x[k]))
     return float(x[-1])
+
+
+def log_of_share(abscissae, values, share):
+    """log10 of where a curve has risen by this share of ln(last / lowest) above its lowest point."""
+    lowest, last = (max(value, 1e-9) for value in (min(values), values[-1]))
+    return log_of_rise(abscissae, values, share * math.log(last / lowest))
+
+
+def thickening_decades(abscissae, values):
+    """From the lowest point of a curve to 95 % of its rise, both in logarithms."""
+    return log_of_share(abscissae, values, 0.95) - log_minimum(abscissae, values)
 
 
 def divergence(fractions, numbers, start):

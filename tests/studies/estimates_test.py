@@ -26,7 +26,8 @@ from studies.estimates import (
     weighted_mean,
 )
 from studies.at_rest import SLOW_SHEAR, rows_at_rest
-from studies.fits import divergence, jammed_and_exponent, jamming_points, line_through, lines, log_minimum, multiples
+from studies.fits import divergence, jammed_and_exponent, line_through, lines, log_minimum, log_of_share, multiples
+from studies.fits import thickening_decades
 from studies.green_kubo import fit_with_errors, fitted
 from studies.packings import gap_of, linear_mixture, rod_lengths, rods
 from studies.published import JAMMED_AT_REST, diverging, mari_fit
@@ -153,6 +154,12 @@ class Fits(unittest.TestCase):
         self.assertEqual(log_minimum([1, 10, 100], [1, 2, 3]), 0)
         self.assertEqual(log_minimum([1, 10, 100], [3, 2, 1]), 2)
 
+    def test_thickening_is_from_the_minimum_to_most_of_the_rise(self):
+        # Vertex at 10; ln from 0 to 3, of which 2.85 is reached after 0.85 of the last decade.
+        values = np.exp([2, 0, 2, 3])
+        self.assertAlmostEqual(log_of_share([1, 10, 100, 1000], values, 0.95), 2.85)
+        self.assertAlmostEqual(thickening_decades([1, 10, 100, 1000], values), 1.85)
+
     def test_a_divergence_is_found_with_the_errors_that_redrawing_gives(self):
         fractions = np.array([0.3, 0.4, 0.45, 0.5, 0.55])
         values = diverging(fractions, 0.66, 1.6) * 1.4
@@ -195,17 +202,6 @@ class Jamming(unittest.TestCase):
         jammed, exponent = jammed_and_exponent(fractions, [(1 - f / 0.6) ** -1.5 for f in fractions])
         self.assertAlmostEqual(jammed, 0.6)
         self.assertAlmostEqual(exponent, 1.5)
-
-    def test_curves_of_one_exponent_have_jamming_points_of_their_own(self):
-        fractions = [0.5, 0.53, 0.56, 0.58]
-        curves = [
-            (fractions, [math.log(c) - 1.8 * math.log(1 - f / jammed) for f in fractions])
-            for c, jammed in ((0.7, 0.64), (2.0, 0.70))
-        ]
-        exponent, points = jamming_points(curves)
-        self.assertAlmostEqual(exponent, 1.8)
-        self.assertAlmostEqual(points[0], 0.64)
-        self.assertAlmostEqual(points[1], 0.70)
 
 
 class Packings(unittest.TestCase):
