@@ -123,9 +123,7 @@ StepReport Implicit::advance_part(System& system) {
     ++system.clock.steps;
     return report;
   }
-  if (shares() != nullptr) {
-    reported().share_stress(system, origin_.springs, false, weight_of_shares(), *shares());
-  }
+  if (watcher() != nullptr) reported().show_pairs(system, origin_.springs, false, weight(), *watcher());
   keep_change(system);
   move(system, timestep_);
   ++system.clock.steps;
@@ -146,7 +144,7 @@ StepReport Implicit::advance_halves(System& system) {
     half_->divisions_left_ = divisions_left_ - 1;
     if (watches_flux()) half_->watch_momentum_flux();
   }
-  half_->share_stress(shares(), 0.5 * weight_of_shares());
+  half_->show_pairs_to(watcher(), 0.5 * weight());
   half_->forget_change();
   half_->displacement_bound_ = displacement_bound_;
   const Clock whole = system.clock;

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "engine/kernels/momentum_flux.h"
 #include "engine/kernels/pair_pass.h"
+#include "engine/kernels/pair_watcher.h"
 #include "engine/state/system.h"
 
 namespace peclet::engine {
@@ -40,11 +40,10 @@ class Integrator {
   // From now on steps report their flux of momentum. Of a fluid at rest with noise.
   void watch_momentum_flux() { watches_flux_ = true; }
 
-  // Until this is said again, steps add to each sphere, by its id, `weight` times half of the stress, times
-  // the volume, that their report has of its pairs, that of the noise apart. Null: nobody asks for it.
-  void share_stress(std::vector<SymmetricTensor>* shares, double weight = 1) {
-    shares_ = shares;
-    weight_of_shares_ = weight;
+  // Until this is said again, steps show the pairs of their report, with this weight. Null: nobody looks.
+  void show_pairs_to(PairWatcher* watcher, double weight = 1) {
+    watcher_ = watcher;
+    weight_ = weight;
   }
 
   virtual void start(System& system) = 0;
@@ -80,13 +79,13 @@ class Integrator {
 
  protected:
   bool watches_flux() const { return watches_flux_; }
-  std::vector<SymmetricTensor>* shares() const { return shares_; }
-  double weight_of_shares() const { return weight_of_shares_; }
+  PairWatcher* watcher() const { return watcher_; }
+  double weight() const { return weight_; }
 
  private:
   bool watches_flux_ = false;
-  std::vector<SymmetricTensor>* shares_ = nullptr;
-  double weight_of_shares_ = 1;
+  PairWatcher* watcher_ = nullptr;
+  double weight_ = 1;
 };
 
 }  // namespace peclet::engine

@@ -75,7 +75,7 @@ StepReport VelocityVerlet::advance_open(System& system) {
     sums = field_.evaluate_blocks(system, force_, torque_);
   }
   open_ = true;
-  if (shares() != nullptr) field_.share_stress(system, system.springs, true, weight_of_shares(), *shares());
+  if (watcher() != nullptr) field_.show_pairs(system, system.springs, true, weight(), *watcher());
   StepReport report{sums, speed * timestep_};
   if (watches_flux()) {
     report.flux = flux_of(sums, flux_by_motion(system.particles, system.particles.velocity));

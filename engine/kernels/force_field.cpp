@@ -51,14 +51,13 @@ PairPassInput ForceField::pair_input(const System& system) const {
   };
 }
 
-void ForceField::share_stress(const System& system, SpringField springs, bool advanced, double weight,
-                              std::vector<SymmetricTensor>& shares) {
+void ForceField::show_pairs(const System& system, SpringField springs, bool advanced, double weight,
+                            PairWatcher& watcher) {
   PairPassInput input = pair_input(system);
   if (advanced) input.parameters.spring_timestep = 0;
-  pair_pass_.each_pair(input, springs, [&](const Pair& pair, const PairSums& sums) {
-    const SymmetricTensor half = (0.5 * weight) * stress_of_forces(sums);
-    shares[system.particles.id[pair.first]] += half;
-    shares[system.particles.id[pair.second]] += half;
+  watcher.begin(system, weight);
+  pair_pass_.each_pair(input, springs, [&](const Pair& pair, const PairSums& sums, const Vector3& force) {
+    watcher.take(system, pair, sums, force);
   });
 }
 

@@ -5,6 +5,7 @@
 
 #include "engine/kernels/links/link_order.h"
 #include "engine/kernels/pair_pass.h"
+#include "engine/kernels/pair_watcher.h"
 #include "engine/state/system.h"
 
 namespace peclet::engine {
@@ -49,11 +50,10 @@ class ForceField {
   // Not with springs, which an evaluation advances, and what few scenes have.
   bool leaves_loads_with_links() const;
 
-  // Adds to each sphere, by its id, `weight` times half of the stress (times the volume) of its pairs, that
-  // of the noise apart, as the last evaluation had it: at these positions and velocities. `springs` are those
+  // Shows each pair as the last evaluation had it: at these positions and velocities. `springs` are those
   // from before that evaluation, or, `advanced`, those that it has left.
-  void share_stress(const System& system, SpringField springs, bool advanced, double weight,
-                    std::vector<SymmetricTensor>& shares);
+  void show_pairs(const System& system, SpringField springs, bool advanced, double weight,
+                  PairWatcher& watcher);
 
   // What the loops over particles take: the rows of all of them, the flow, and the caller's kicks, if any.
   OneBodyInput one_body_input(System& system, VectorField& force, VectorField& torque,

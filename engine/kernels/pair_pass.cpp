@@ -144,10 +144,14 @@ void PairPass::each_pair(const PairPassInput& input, SpringField& springs, const
       for (std::uint32_t p = list.runs()[r].begin; p < list.runs()[r].end; ++p) {
         single.begin = p;
         single.end = p + 1;
+        const Pair& pair = list.pairs()[p];
+        const std::uint32_t own = single.first_is_away ? pair.second : pair.first;
+        force.set(own, {});
         PairSums sums[2];
         kernel_(kernel, &single, 1,
                 {block.begin, force.data() + offset, torque.data() + offset, crossing.data(), sums});
-        visit(list.pairs()[p], sums[single.first_is_away ? 1 : 0]);
+        const Vector3 on_own = force[own];
+        visit(pair, sums[single.first_is_away ? 1 : 0], single.first_is_away ? -1.0 * on_own : on_own);
         if (single.crossing != within_block) ++single.crossing;
       }
     }

@@ -68,9 +68,9 @@ class PairPass {
   // Room for what crosses into other blocks, which add_incoming() adds.
   double* crossing_rows(const NeighbourList& list);
 
-  // Computes each pair alone and calls `visit` with it and its part of the sums. Loads go nowhere; `springs`
-  // advance as in add_pairs(). Slow: for what is looked at seldom.
-  using VisitPair = std::function<void(const Pair& pair, const PairSums& sums)>;
+  // Computes each pair alone and calls `visit` with it, its part of the sums and the force on its first
+  // sphere. Loads go nowhere; `springs` advance as in add_pairs(). Slow: for what is looked at seldom.
+  using VisitPair = std::function<void(const Pair& pair, const PairSums& sums, const Vector3& force)>;
   void each_pair(const PairPassInput& input, SpringField& springs, const VisitPair& visit);
 
   // Sets force and torque to the sums over pairs.

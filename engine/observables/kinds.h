@@ -17,7 +17,7 @@ namespace peclet::engine {
 struct Window {
   double timestep = 0;
   std::uint64_t steps = 0;
-  double edge = 0;  // of the cubic box
+  Vector3 box{};  // its edges
 };
 
 // One observable; `settings` are its block in the scene with its defaults.

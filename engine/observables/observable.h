@@ -7,6 +7,7 @@
 #include "contract/json.h"
 #include "engine/gsd/frames.h"
 #include "engine/kernels/momentum_flux.h"
+#include "engine/kernels/pair_watcher.h"
 #include "engine/state/system.h"
 
 namespace peclet::engine {
@@ -21,10 +22,8 @@ class Observable {
   // Whether it takes the flux of momentum, and what it does with that of every step of the window.
   virtual bool takes_flux() const { return false; }
   virtual void take_flux(const MomentumFlux& /*flux*/) {}
-  // Whether it takes the stress of the steps that it samples, and what it does with it before the sample:
-  // the sums of the step, and of each sphere, by its id, its share of them (Integrator::share_stress()).
-  virtual bool takes_stress() const { return false; }
-  virtual void take_stress(const PairSums& /*sums*/, const std::vector<SymmetricTensor>& /*shares*/) {}
+  // Who looks at the pairs of each step that is sampled, before the sample. Null: nobody.
+  virtual PairWatcher* watcher() { return nullptr; }
   // Requires a complete step (integrator.h) and the system that every other sample is of. `block` counts the
   // 32 blocks of the window from 0.
   virtual void sample(const System& system, std::size_t block) = 0;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -17,15 +18,20 @@ double setting(const Scene& scene, const char* name) {
   return scene.observables.at("pair_distribution").at(name).get<double>();
 }
 
+double shortest(const Vector3& edges) { return std::min({edges.x, edges.y, edges.z}); }
+
 // Pairs within the range must not have other images in the box: it would be ambiguous which is meant.
 void check_range(const Scene& scene, const Window& window, const std::string& file) {
   const double unit = scene.particles.reference_radius, range = setting(scene, "range");
-  const double reach = scene.physics.flow.rate() > 0 ? 0.5 : std::numbers::sqrt2 / 2;
-  if (range * unit <= reach * window.edge) return;
+  // Beyond half of it the volume of a shell is that in a cube.
+  const bool whole_cube = !(scene.physics.flow.rate() > 0) && !scene.height;
+  const double reach = whole_cube ? std::numbers::sqrt2 / 2 : 0.5;
+  const double edge = shortest(window.box);
+  if (range * unit <= reach * edge) return;
   // The default is no part of a scene without the block.
-  throw InputError(file, "/pair_distribution/range", fmt::format("{}", range),
-                   fmt::format("must be at most {:.4g} in this box of {:.4g} radii",
-                               reach * window.edge / unit, window.edge / unit));
+  throw InputError(
+      file, "/pair_distribution/range", fmt::format("{}", range),
+      fmt::format("must be at most {:.4g} in this box of {:.4g} radii", reach * edge / unit, edge / unit));
 }
 
 std::size_t bins_in(double range, double bin) { return static_cast<std::size_t>(std::llround(range / bin)); }
@@ -69,7 +75,8 @@ PairDistribution::PairDistribution(const Scene& scene, const System& system, con
       range_(setting(scene, "range") * unit_),
       bin_(setting(scene, "bin") * unit_),
       slab_(setting(scene, "slab") * unit_),
-      edge_(system.box.lengths().x),
+      edge_(shortest(system.box.lengths())),
+      volume_(system.box.volume()),
       particles_(static_cast<double>(system.particles.count())),
       bins_(bins_in(range_, bin_)),
       radial_(bins_),
@@ -128,7 +135,7 @@ double PairDistribution::ideal_shell(std::size_t bin) const {
 }
 
 double PairDistribution::ideal_pairs(std::uint64_t samples) const {
-  return static_cast<double>(samples) * particles_ * (particles_ - 1) / (edge_ * edge_ * edge_);
+  return static_cast<double>(samples) * particles_ * (particles_ - 1) / volume_;
 }
 
 void PairDistribution::add_to(Json& mean) const {

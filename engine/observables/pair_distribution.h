@@ -41,7 +41,7 @@ class PairDistribution : public Observable {
 
   double unit_;                // the reference radius
   double range_, bin_, slab_;  // lengths
-  double edge_;                // of the box
+  double edge_, volume_;       // the shortest edge of the box
   double particles_;
   std::size_t bins_;
   std::uint64_t samples_ = 0;

@@ -8,12 +8,16 @@
 // `velocity` is the mean of u_x - U(y_i), with each sphere's part V_i of the bin as its weight; U is the
 // uniform part of the flow. A ratio of means: numerator sum V_i (u_x - U) and denominator sum V_i, both over
 // the bin's volume.
+// `stress`, `momentum_flux`, `drag` and `momentum_imbalance`: stress_profile.h; `velocity_variance`:
+// velocity_variance.h.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "engine/observables/blocked_mean.h"
 #include "engine/observables/kinds.h"
+#include "engine/observables/stress_profile.h"
+#include "engine/observables/velocity_variance.h"
 
 namespace peclet::engine {
 namespace {
@@ -35,7 +39,11 @@ class Profiles : public Observable {
         bins_(bins_of(scene)),
         volume_fraction_(bins_),
         flux_(bins_),
-        of_radius_(distinct_radii(system.particles.radius).size(), BlockedMean(bins_)) {}
+        of_radius_(distinct_radii(system.particles.radius).size(), BlockedMean(bins_)),
+        stress_(scene.physics, bins_),
+        variance_(window.box.y, scene.particles.reference_radius, bins_) {}
+
+  PairWatcher* watcher() override { return &stress_; }
 
   void sample(const System& system, std::size_t block) override {
     const Vector3 lengths = system.box.lengths();
@@ -44,7 +52,9 @@ class Profiles : public Observable {
     const ParticleState& particles = system.particles;
     for (std::size_t i = 0; i < particles.count(); ++i) {
       const Vector3 place = particles.position[i];
-      const double velocity = particles.velocity[i].x - (system.box.velocity_gradient() * place).x;
+      const Vector3 relative = particles.velocity[i] - system.box.velocity_gradient() * place;
+      const double velocity = relative.x;
+      variance_.add(place, relative);
       const double a = particles.radius[i];
       BlockedMean& own = of_radius_[particles.size_class[i]];
       const auto count = static_cast<std::int64_t>(bins_);
@@ -59,12 +69,15 @@ class Profiles : public Observable {
       }
     }
     for_each([&](auto& mean) { mean.weigh(block, 1); });
+    stress_.add_step(block);
   }
 
   void add_to(Json& mean) const override {
     Json by_radius = Json::array();
     for (const BlockedMean& own : of_radius_) by_radius.push_back(own.value());
-    mean["profiles"] = of(volume_fraction_.value(), flux_.value(), by_radius);
+    Json& profiles = mean["profiles"] = of(volume_fraction_.value(), flux_.value(), by_radius);
+    profiles["velocity_variance"] = variance_.value();
+    stress_.add_to(profiles);
   }
   void add_blocks_to(Json& blocks) const override {
     if (blocks_kept(bins_) == 0) return;
@@ -73,16 +86,21 @@ class Profiles : public Observable {
       const Json quarters = own.blocks();
       for (std::size_t k = 0; k < count_of_quarters; ++k) by_radius[k].push_back(quarters[k]);
     }
-    blocks["profiles"] = of(volume_fraction_.blocks(), flux_.blocks(), by_radius);
+    Json& profiles = blocks["profiles"] = of(volume_fraction_.blocks(), flux_.blocks(), by_radius);
+    stress_.add_blocks_to(profiles);
   }
 
   void save(ArchiveWriter& archive) const override {
     volume_fraction_.save(archive);
     flux_.save(archive);
     for (const BlockedMean& own : of_radius_) own.save(archive);
+    stress_.save(archive);
+    variance_.save(archive);
   }
   void load(ArchiveReader& archive) override {
     for_each([&](auto& mean) { mean.load(archive); });
+    stress_.load(archive);
+    variance_.load(archive);
   }
 
  private:
@@ -102,23 +120,58 @@ class Profiles : public Observable {
   std::size_t bins_;
   BlockedMean volume_fraction_, flux_;
   std::vector<BlockedMean> of_radius_;
+  StressProfile stress_;
+  VelocityVariance variance_;
 };
 
-std::vector<Quantity> profile_quantities(const Scene& scene, const Window& window) {
+// At bin centres, or at the boundaries below the bins.
+Axis along_y(const Window& window, std::size_t bins, double from) {
   Axis y{"y", "length", Json::array()};
+  for (std::size_t k = 0; k < bins; ++k)
+    y.values.push_back((static_cast<double>(k) + from) * window.box.y / static_cast<double>(bins));
+  return y;
+}
+
+void add_stress_quantities(const Scene& scene, const Axis& centres, const Axis& boundaries,
+                           std::vector<Quantity>& all) {
+  const Physics& physics = scene.physics;
+  const char* const unit = physics.flow.rate() > 0 ? "viscosity * shear_rate" : "stress";
+  const auto add = [&](const std::string& name, const std::string& symbol, const Json& components,
+                       const Axis& y) {
+    all.push_back({.name = "profiles/" + name,
+                   .symbol = symbol,
+                   .unit = unit,
+                   .axes = {{"component", "1", components}, y}});
+  };
+  const Json& stress = StressProfile::stress_components();
+  add("stress/pairs", "sigma(y)", stress, centres);
+  for (const StressTerm term : StressProfile::terms(physics))
+    add(std::string("stress/") + name_of(term), "sigma(y)", stress, centres);
+  if (!StressProfile::has_balance(physics)) return;
+  const Json& flux = StressProfile::flux_components();
+  add("momentum_flux", "r_y F(y)", flux, centres);
+  add("drag", "f(y) dy", flux, boundaries);
+  all.push_back({.name = "profiles/momentum_imbalance", .symbol = "|d flux + drag|", .unit = "largest flux"});
+}
+
+std::vector<Quantity> profile_quantities(const Scene& scene, const Window& window) {
   const std::size_t bins = bins_of(scene);
-  for (std::size_t k = 0; k < bins; ++k) {
-    y.values.push_back((static_cast<double>(k) + 0.5) * window.edge / static_cast<double>(bins));
-  }
+  const Axis y = along_y(window, bins, 0.5);
   const Axis radius{"radius", "length", radii_in(scene)};
-  return {
+  std::vector<Quantity> all = {
       {.name = "profiles/volume_fraction", .symbol = "phi(y)", .unit = "1", .axes = {y}},
       {.name = "profiles/volume_fraction_by_radius", .symbol = "phi_a(y)", .unit = "1", .axes = {radius, y}},
       {.name = "profiles/velocity",
        .symbol = "u_x(y) - U(y)",
        .unit = "length / time",
        .axes = {y},
-       .ratio = RatioOfMeans{"flux", "volume_fraction"}}};
+       .ratio = RatioOfMeans{"flux", "volume_fraction"}},
+      {.name = "profiles/velocity_variance",
+       .symbol = "<(u - u*)^2>",
+       .unit = "length^2 / time^2",
+       .axes = {{"component", "1", {"x", "y", "z"}}, y}}};
+  add_stress_quantities(scene, y, along_y(window, bins, 0), all);
+  return all;
 }
 
 }  // namespace

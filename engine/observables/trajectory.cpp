@@ -71,14 +71,20 @@ Trajectory::Trajectory(const Scene& scene, const System& system, const Window& w
       physics_(scene.physics),
       kinds_(make_pair_kinds(scene.physics, distinct_radii(system.particles.radius))),
       with_contacts_(scene.observables.at("trajectory").at("contacts").get<bool>()),
-      count_of_species_(static_cast<std::uint32_t>(scene.particles.species.size())) {
+      count_of_species_(static_cast<std::uint32_t>(scene.particles.species.size())),
+      shares_(system.particles.count()) {
   const std::vector<std::size_t> number = species_numbers(scene.particles);
   for (std::uint32_t s = 0; s < count_of_species_; ++s) species_.insert(species_.end(), number[s], s);
 }
 
-void Trajectory::take_stress(const PairSums& sums, const std::vector<SymmetricTensor>& shares) {
-  sums_ = sums;
-  shares_ = shares;
+void Trajectory::begin(const System& /*system*/, double weight) { weight_ = weight; }
+
+void Trajectory::take(const System& system, const Pair& pair, const PairSums& sums,
+                      const Vector3& /*force*/) {
+  for (std::size_t t = 0; t < count_of_stress_terms; ++t) sums_.stress[t] += weight_ * sums.stress[t];
+  const SymmetricTensor half = (0.5 * weight_) * stress_of_forces(sums);
+  shares_[system.particles.id[pair.first]] += half;
+  shares_[system.particles.id[pair.second]] += half;
 }
 
 void Trajectory::sample(const System& system, std::size_t /*block*/) {
@@ -90,6 +96,8 @@ void Trajectory::sample(const System& system, std::size_t /*block*/) {
   add_stress(system);
   add_contacts(system);
   frames_.end_frame();
+  sums_ = {};
+  std::ranges::fill(shares_, SymmetricTensor{});
 }
 
 void Trajectory::add_kinds_of_spheres(const System& system) {

@@ -19,12 +19,11 @@
 
 namespace peclet::engine {
 
-class Trajectory : public Observable {
+class Trajectory : public Observable, private PairWatcher {
  public:
   Trajectory(const Scene& scene, const System& system, const Window& window);
 
-  bool takes_stress() const override { return true; }
-  void take_stress(const PairSums& sums, const std::vector<SymmetricTensor>& shares) override;
+  PairWatcher* watcher() override { return this; }
   void sample(const System& system, std::size_t block) override;
   gsd::Frames* frames() override { return &frames_; }
 
@@ -36,6 +35,9 @@ class Trajectory : public Observable {
   void load(ArchiveReader& archive) override { frames_.load(archive); }
 
  private:
+  void begin(const System& system, double weight) override;
+  void take(const System& system, const Pair& pair, const PairSums& sums, const Vector3& force) override;
+
   void add_kinds_of_spheres(const System& system);
   void add_places(const System& system);
   void add_stress(const System& system);
@@ -46,6 +48,8 @@ class Trajectory : public Observable {
   bool with_contacts_;
   std::vector<std::uint32_t> species_;  // of each id
   std::uint32_t count_of_species_;
+  // Of the step that is sampled; shares are those of each id.
+  double weight_ = 0;
   PairSums sums_;
   std::vector<SymmetricTensor> shares_;
   gsd::Frames frames_;

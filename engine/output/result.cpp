@@ -217,8 +217,8 @@ Json make_unpacked_result(const ResultHeader& header, const Scene& scene, const 
 
 std::vector<Quantity> quantities_of(const Scene& scene, const Schedule& schedule) {
   std::vector<Quantity> all = stress_quantities(scene);
-  const double edge = cube_edge(scene.particles, scene.volume_fraction);
-  for (Quantity& quantity : observed_quantities(scene, {schedule.timestep, schedule.production, edge})) {
+  const Vector3 box = box_lengths(scene, cube_edge(scene.particles, scene.volume_fraction));
+  for (Quantity& quantity : observed_quantities(scene, {schedule.timestep, schedule.production, box})) {
     all.push_back(std::move(quantity));
   }
   return all;

@@ -37,17 +37,17 @@ std::vector<double> present_radii(const Particles& particles, const std::string&
 
 void check_fit(const Scene& scene, const Schedule& schedule, const std::string& file) {
   const std::vector<double> sizes = present_radii(scene.particles, file);
-  const double edge = cube_edge(scene.particles, scene.volume_fraction);
+  const Vector3 box = box_lengths(scene, cube_edge(scene.particles, scene.volume_fraction));
+  const double edge = std::min({box.x, box.y, box.z});
   const double range = range_table(make_pair_kinds(scene.physics, sizes), sizes.size()).largest();
   if (!(edge > range)) {
-    throw InputError(
-        file, "/particles/count", std::to_string(scene.particles.count),
-        fmt::format(
-            "must fill a box larger than the range of the forces, {:.4g}, at this volume fraction (its edge "
-            "would be {:.4g})",
-            range, edge));
+    throw InputError(file, "/particles/count", std::to_string(scene.particles.count),
+                     fmt::format("must fill a box larger than the range of the forces, {:.4g}, at this "
+                                 "volume fraction (its shortest "
+                                 "edge would be {:.4g})",
+                                 range, edge));
   }
-  check_observables(scene, {schedule.timestep, schedule.production, edge}, file);
+  check_observables(scene, {schedule.timestep, schedule.production, box}, file);
 }
 
 }  // namespace peclet::engine

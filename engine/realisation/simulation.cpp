@@ -57,11 +57,11 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
   check_fit(scene, schedule, file);
   const std::vector<double> radius = species_radii(scene.particles);
   const std::vector<double> sizes = distinct_radii(radius);
-  const double edge = cube_edge(radius, scene.volume_fraction);
+  const Vector3 box = box_lengths(scene, cube_edge(radius, scene.volume_fraction));
   kinds_ = make_pair_kinds(physics, sizes);
   smallest_radius_ = sizes.front();
   system_.particles = make_particles(radius, species_densities(scene.particles));
-  system_.box = PeriodicCell({edge, edge, edge}, physics.flow.deformation().velocity_gradient(0));
+  system_.box = PeriodicCell(box, physics.flow.deformation().velocity_gradient(0));
   edges_at_start_ = system_.box.edges();
   const RangeTable ranges = range_table(kinds_, sizes.size());
   system_.list = scene.method == Method::implicit_steps
@@ -79,7 +79,7 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
         ForceField(physics, system_.particles, schedule.timestep, seed, threads), system_.particles,
         schedule.timestep);
   }
-  observables_ = make_observables(scene, system_, {schedule.timestep, schedule.production, edge});
+  observables_ = make_observables(scene, system_, {schedule.timestep, schedule.production, box});
   if (std::ranges::any_of(observables_, [](const auto& observable) { return observable->takes_flux(); })) {
     integrator_->watch_momentum_flux();
   }
@@ -116,7 +116,7 @@ std::optional<Ending> Simulation::advance(std::uint64_t steps) {
     if (std::optional<Ending> ending = gate_.check(*integrator_, system_)) {
       return ending;
     }
-    ask_for_stress();
+    show_pairs();
     const StepReport report = integrator_->advance_open(system_);
     if (std::optional<Ending> ending = ending_of(report, system_, scene_.guard, smallest_radius_)) {
       integrator_->complete(system_);
@@ -134,14 +134,15 @@ std::optional<Ending> Simulation::advance(std::uint64_t steps) {
 }
 
 // Of the step to come, where it will be sampled.
-void Simulation::ask_for_stress() {
-  const std::uint64_t index = system_.step - schedule_.equilibration;
-  const bool asked = system_.step >= schedule_.equilibration &&
-                     std::ranges::any_of(observables_, [&](const auto& observable) {
-                       return observable->takes_stress() && index % observable->interval() == 0;
-                     });
-  if (asked) stress_shares_.assign(system_.particles.count(), {});
-  integrator_->share_stress(asked ? &stress_shares_ : nullptr);
+void Simulation::show_pairs() {
+  watchers_.clear();
+  if (system_.step >= schedule_.equilibration) {
+    const std::uint64_t index = system_.step - schedule_.equilibration;
+    for (const std::unique_ptr<Observable>& observable : observables_) {
+      if (index % observable->interval() == 0) watchers_.add(observable->watcher());
+    }
+  }
+  integrator_->show_pairs_to(watchers_.empty() ? nullptr : &watchers_);
 }
 
 gsd::Frames* Simulation::frames() {
@@ -168,7 +169,6 @@ void Simulation::observe(const StepReport& report) {
     observable->take_flux(report.flux);
     if (index % observable->interval() != 0) continue;
     integrator_->complete(system_);
-    if (observable->takes_stress()) observable->take_stress(report.sums, stress_shares_);
     observable->sample(system_, production_.block_at(index));
   }
 }

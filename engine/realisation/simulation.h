@@ -50,7 +50,7 @@ class Simulation {
 
  private:
   void load_system(ArchiveReader& archive);
-  void ask_for_stress();
+  void show_pairs();
   void observe(const StepReport& report);
 
   Scene scene_;
@@ -63,7 +63,7 @@ class Simulation {
   std::unique_ptr<Integrator> integrator_;
   Production production_;
   std::vector<std::unique_ptr<Observable>> observables_;  // that the scene asks for
-  std::vector<SymmetricTensor> stress_shares_;            // of each id, in the step that is sampled
+  PairWatchers watchers_;                                 // of the step to come
   StepGate gate_;
   double smallest_radius_;
   double largest_overlap_ = 0;

@@ -64,7 +64,8 @@ std::vector<ObservableEntry> entries() {
        "g(r) and g(x, y)",
        "a 256th of the production window",
        {with_default(positive("/pair_distribution/range", "reference radius",
-                              "Largest distance; at most half of the box, at rest 0.707 of it."),
+                              "Largest distance; at most half of the shortest edge of the box, in a cube at "
+                              "rest 0.707 of it."),
                      4),
         with_default(positive("/pair_distribution/bin", "reference radius",
                               "Width of a bin; a whole number of them, at most 1000, makes up the range."),
@@ -79,7 +80,8 @@ std::vector<ObservableEntry> entries() {
        {},
        must_touch},
       {"profiles",
-       "volume fraction, of each radius too, and velocity by y",
+       "by y: volume fraction, of each radius too, velocity and its variance, stress by term, and the "
+       "balance of momentum",
        "a 256th of the production window",
        {with_default({.pointer = "/profiles/bins",
                       .kind = KeyKind::integer,

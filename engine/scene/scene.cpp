@@ -182,6 +182,12 @@ double time_of(const Duration& duration, const Scene& scene) {
   return time;
 }
 
+Vector3 box_lengths(const Scene& scene, double cube_edge) {
+  if (!scene.height) return {cube_edge, cube_edge, cube_edge};
+  const double width = cube_edge * std::sqrt(cube_edge / *scene.height);
+  return {width, *scene.height, width};
+}
+
 Scene read_scene(const Json& document, const std::string& file) {
   Scene scene;
   scene.document = scene_keys().validate(document, file);
@@ -192,6 +198,7 @@ Scene read_scene(const Json& document, const std::string& file) {
 
   scene.particles = reading.particles();
   scene.volume_fraction = reading.volume_fraction(scene.particles);
+  if (filled.contains("box")) scene.height = filled["box"]["height"].get<double>();
   scene.physics = reading.physics();
   reading.check_lubrication(scene.particles, scene.physics);
   reading.set_flow(scene.particles, scene.physics);

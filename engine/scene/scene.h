@@ -76,6 +76,7 @@ struct Start {
 struct Scene {
   Particles particles;
   double volume_fraction = 0;
+  std::optional<double> height;  // of the box along y; absent: a cube
   Physics physics;
   Method method = Method::explicit_steps;
   std::optional<double> timestep;             // absent: "auto"
@@ -87,6 +88,9 @@ struct Scene {
   bool final_configuration = false, final_checkpoint = false;  // are left beside the result
   Json document;                                               // as given, defaults filled
 };
+
+// Edges of the box that is as large as a cube of this edge.
+Vector3 box_lengths(const Scene& scene, double cube_edge);
 
 // The time after which the first of the limits is reached.
 double time_of(const Duration& duration, const Scene& scene);

@@ -206,8 +206,7 @@ PeriodicCell cell_of(const Scene& scene) {
     volumes += by_volume ? species.share : species.share * volume;
   }
   const double volume = static_cast<double>(scene.particles.count) * volumes / shares;
-  const double edge = std::cbrt(volume / scene.volume_fraction);
-  return {{edge, edge, edge}, Matrix3{}};
+  return {box_lengths(scene, std::cbrt(volume / scene.volume_fraction)), Matrix3{}};
 }
 
 // In strains, and in times X_A / k of a contact, whose errors have been measured.

@@ -84,19 +84,20 @@ class Placing {
   }
 
   PeriodicCell box_of(const Snapshot& snapshot) const {
-    const double edge = cube_edge(scene_.particles, scene_.volume_fraction);
+    const Vector3 box = box_lengths(scene_, cube_edge(scene_.particles, scene_.volume_fraction));
     const auto& [a, b, c] = snapshot.lattice.column;
-    const bool fits = is_near(a.x, edge, edge) && is_near(b.y, edge, edge) && is_near(c.z, edge, edge) &&
-                      is_near(c.x, 0, edge) && is_near(c.y, 0, edge);
+    const bool fits = is_near(a.x, box.x, box.x) && is_near(b.y, box.y, box.y) &&
+                      is_near(c.z, box.z, box.z) && is_near(c.x, 0, box.x) && is_near(c.y, 0, box.y);
     if (!fits) {
-      refuse(scene_.document.contains("addition") ? "/addition" : "/volume_fraction",
-             Json(scene_.volume_fraction).dump(),
-             fmt::format(
-                 "makes a cube of {:.9g}, but the cell of the start has the edges {:.9g}, {:.9g} and {:.9g} "
-                 "and the tilts {:.9g} and {:.9g} along z: must be a cube, sheared along x",
-                 edge, a.x, b.y, c.z, c.x, c.y));
+      refuse(
+          scene_.document.contains("addition") ? "/addition" : "/volume_fraction",
+          Json(scene_.volume_fraction).dump(),
+          fmt::format(
+              "makes a box of {:.9g} by {:.9g} by {:.9g}, but the cell of the start has the edges {:.9g}, "
+              "{:.9g} and {:.9g} and the tilts {:.9g} and {:.9g} along z: must be that box, sheared along x",
+              box.x, box.y, box.z, a.x, b.y, c.z, c.x, c.y));
     }
-    return PeriodicCell({edge, edge, edge}, scene_.physics.flow.deformation().velocity_gradient(0), b.x);
+    return PeriodicCell(box, scene_.physics.flow.deformation().velocity_gradient(0), b.x);
   }
 
   std::vector<double> radii_of(const Snapshot& snapshot) const {

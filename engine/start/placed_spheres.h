@@ -15,7 +15,7 @@ struct PlacedSpheres {
 
 // The frame that a scene's start names for this seed. Requires a scene with a start; `file` names it in
 // messages. Sphere i of the file, in the order of its ids, has to have the radius of the scene's sphere i,
-// and the cell to be a cube, sheared along x, of the scene's edge: both to a millionth, because a GSD file
+// and the cell to be the scene's box, sheared along x: both to a millionth, because a GSD file
 // rounds. Places are taken as they are, and so are velocities and spins (angular velocities) where the file
 // has both. Throws InputError where a file is not the one of the hash, or does not fit.
 PlacedSpheres placed_spheres(const Scene& scene, std::uint64_t seed, const std::string& file);

@@ -142,7 +142,7 @@ TEST_F(StartedJob, ThatDoesNotFitItsFileIsRefused) {
     EXPECT_NE(refusal(scene_).find(reason), std::string::npos) << refusal(scene_) << " has not " << reason;
   };
   EXPECT_EQ(refusal(scene(start_)), "");
-  expect(scene(start_, {{"volume_fraction", 0.44}}), "/volume_fraction: 0.44: makes a cube of");
+  expect(scene(start_, {{"volume_fraction", 0.44}}), "/volume_fraction: 0.44: makes a box of");
   expect(scene(start_, {{"particles", {{"count", 59}}}}), "/particles/count: 59: must be 60");
   Json others = scene(start_);
   others["particles"]["species"][0]["number_share"] = 1;

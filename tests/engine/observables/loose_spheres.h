@@ -39,7 +39,7 @@ inline Scene scene_with(const char* observable, const Json& settings = Json::obj
 
 inline std::unique_ptr<Observable> observable_of(const Scene& scene, const System& system,
                                                  std::uint64_t steps) {
-  auto made = make_observables(scene, system, {timestep, steps, edge});
+  auto made = make_observables(scene, system, {timestep, steps, system.box.lengths()});
   EXPECT_EQ(made.size(), 1u);
   return std::move(made.front());
 }

@@ -69,6 +69,24 @@ TEST(SceneFit, ASpeciesMoreThanThereMayBeIsRefused) {
   EXPECT_EQ(fault_of(with_species(1000, species)), "");
 }
 
+TEST(SceneFit, ABoxHasItsHeightAndTheVolumeOfTheCube) {
+  const Scene cube = read_scene(small_scene(), "scene.json");
+  const Scene tall = read_scene(small_scene({{"box", {{"height", 20}}}}), "scene.json");
+  EXPECT_EQ(box_lengths(cube, 9), (Vector3{9, 9, 9}));
+  const Vector3 box = box_lengths(tall, 9);
+  EXPECT_EQ(box.y, 20);
+  EXPECT_EQ(box.x, box.z);
+  EXPECT_NEAR(box.x * box.y * box.z, 729, 1e-10);
+}
+
+TEST(SceneFit, ABoxNarrowerThanTheRangeOfTheForcesIsRefused) {
+  const auto fault = [](double height) { return fault_of(Json{{"box", {{"height", height}}}}); };
+  EXPECT_EQ(fault(40), "");
+  EXPECT_NE(fault(400).find("must fill a box larger than the range of the forces"), std::string::npos);
+  EXPECT_NE(fault(1).find("must fill a box larger than the range of the forces"), std::string::npos);
+  EXPECT_NE(fault(0).find("/box/height"), std::string::npos);
+}
+
 // The edge is a part of the trajectory: to the last bit that of a box for the list of all radii.
 TEST(SceneFit, TheBoxIsThatOfAllRadii) {
   for (const std::size_t count : {2U, 7U, 60U, 12345U}) {

@@ -1,0 +1,36 @@
+// How much the velocities of the spheres scatter, by y: in each bin the mean of (u - u*)^2 for x, y and z, u*
+// the mean over the window in slabs of at most a fifth of the reference radius, by the centres of the
+// spheres. A sphere's velocity is that relative to the uniform part of the flow.
+//
+// With n samples in a slab the sum of squares about their own mean is (n - 1) variances, so that a bin has
+//   sum over its slabs of (S2 - S1^2 / n) / sum of (n - 1),
+// which has the right mean where samples do not know of each other.
+#pragma once
+
+#include <vector>
+
+#include "contract/json.h"
+#include "engine/state/system.h"
+
+namespace peclet::engine {
+
+class VelocityVariance {
+ public:
+  VelocityVariance(double height, double reference_radius, std::size_t bins);
+
+  void add(const Vector3& place, const Vector3& velocity);
+  // A list of bins for each of x, y and z; null where a bin has no slab with two samples.
+  Json value() const;
+
+  void save(ArchiveWriter& archive) const;
+  void load(ArchiveReader& archive);
+
+ private:
+  double height_;
+  std::size_t bins_, slabs_of_bin_;
+  // Of each slab.
+  std::vector<double> samples_;
+  std::vector<Vector3> sums_, squares_;
+};
+
+}  // namespace peclet::engine

@@ -1,0 +1,148 @@
+// Stress and balance of momentum by y: of pairs that are set by hand, and of a whole realisation.
+#include "engine/observables/stress_profile.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <numbers>
+
+#include "tests/engine/observables/loose_spheres.h"
+#include "tests/engine/output/small_result.h"
+
+namespace peclet::engine {
+namespace {
+
+constexpr std::size_t bins = 5;  // 2 wide, of the volume 200
+
+Physics quiet_physics() {
+  Physics physics;
+  physics.viscosity = 1;
+  physics.contact = ContactParameters{};
+  return physics;
+}
+
+// A profile of one step of the spheres 0 and 1, which press on each other with this force and stress.
+Json of_pair(const System& system, const Vector3& force, const SymmetricTensor& stress, double weight = 1) {
+  StressProfile profile(quiet_physics(), bins);
+  PairSums sums;
+  sums.of(StressTerm::contact_normal) = stress;
+  profile.begin(system, weight);
+  profile.take(system, system.list.pairs().front(), sums, force);
+  profile.add_step(0);
+  Json found;
+  profile.add_to(found);
+  return found;
+}
+
+// With a list of the one pair that they are.
+System two_spheres_at(const Vector3& first, const Vector3& second) {
+  System system = loose_spheres(2);
+  system.particles.position.set(0, first);
+  system.particles.position.set(1, second);
+  RangeTable ranges(2);
+  for (const std::size_t one : {0U, 1U}) {
+    for (const std::size_t other : {0U, 1U}) ranges.at(one, other) = 4;
+  }
+  system.list = NeighbourList(ranges, 0.1);
+  rebuild_neighbours(system, 1);
+  return system;
+}
+
+// From y = 1 to 4: a third of the line is in the first bin, two thirds in the second.
+TEST(StressProfile, LiesOnTheLineBetweenTheCentres) {
+  const System system = two_spheres_at({3, 1, 3}, {3.5, 4, 3});
+  const Json found = of_pair(system, {2, -4, 6}, {7, -12, 1, 3, 0, 0});
+  const Json& stress = found["stress"]["contact_normal"];
+  const double expected[] = {7, -12, 1, 3};
+  for (std::size_t c = 0; c < 4; ++c) {
+    EXPECT_NEAR(stress[c][0].get<double>(), expected[c] / 200 / 3, 1e-15) << c;
+    EXPECT_NEAR(stress[c][1].get<double>(), expected[c] / 200 * 2 / 3, 1e-15) << c;
+    EXPECT_EQ(stress[c][2], 0) << c;
+  }
+  EXPECT_EQ(found["stress"]["pairs"], stress);
+  const double flux[] = {3 * 2, 3 * -4, 3 * 6};
+  for (std::size_t c = 0; c < 3; ++c)
+    EXPECT_NEAR(found["momentum_flux"][c][1].get<double>(), flux[c] / 200.0 * 2 / 3, 1e-15) << c;
+}
+
+TEST(StressProfile, GoesOnAtTheOtherSideOfTheBoxAndInEitherDirection) {
+  const System system = two_spheres_at({3, 1, 3}, {3, -2, 3});
+  const Json found = of_pair(system, {}, {0, 6, 0, 0, 0, 0});
+  EXPECT_NEAR(found["stress"]["pairs"][1][0].get<double>(), 6.0 / 200 / 3, 1e-15);
+  EXPECT_NEAR(found["stress"]["pairs"][1][4].get<double>(), 6.0 / 200 * 2 / 3, 1e-15);
+}
+
+TEST(StressProfile, OfALineAlongABinIsInThatBin) {
+  const System system = two_spheres_at({3, 4, 3}, {6, 4, 3});
+  const Json found = of_pair(system, {}, {6, 0, 0, 0, 0, 0}, 0.5);
+  EXPECT_NEAR(found["stress"]["pairs"][0][2].get<double>(), 3.0 / 200, 1e-15);
+}
+
+// A sphere of radius 1 at rest, a quarter of a bin above the boundary at 2, in a flow that is 0.3 there.
+TEST(StressProfile, HasTheDragOfTheSpheresAroundABoundary) {
+  System system = loose_spheres(1, 0.3 / 2.5);
+  system.particles.position.set(0, {3, 2.5, 3});
+  Physics physics = quiet_physics();
+  physics.flow = steady_shear(0.3 / 2.5);
+  StressProfile profile(physics, bins);
+  profile.begin(system, 1);
+  profile.add_step(0);
+  Json found;
+  profile.add_to(found);
+  const double unit = 0.3 / 2.5, drag = 6 * std::numbers::pi * 0.3 / 100 / unit;
+  EXPECT_NEAR(found["drag"][0][1].get<double>(), 0.75 * drag, 1e-14);
+  EXPECT_NEAR(found["drag"][0][2].get<double>(), 0.25 * drag, 1e-14);
+  EXPECT_EQ(found["drag"][0][0], 0);
+}
+
+const Json& quiet_result(const Json& patch = Json::object()) {
+  Json every_step = {{"fluid", {{"thermal_energy", 0}}},
+                     {"observables", {"profiles"}},
+                     {"profiles", {{"bins", 7}, {"interval", 0.002}}}};
+  every_step.merge_patch(patch);
+  static std::map<std::string, Json> made;
+  Json& result = made[every_step.dump()];
+  if (result.is_null()) result = result_of(every_step);
+  return result;
+}
+
+// Sampled at every step, its mean over the box is the stress.
+TEST(StressProfile, HasTheStressOfTheBoxAsItsMean) {
+  const Json& mean = quiet_result().at("mean");
+  for (const char* term : {"lubrication", "contact_normal", "contact_damping", "friction", "repulsion"}) {
+    const Json& rows = mean.at("profiles").at("stress").at(term);
+    for (std::size_t c = 0; c < 4; ++c) {
+      double sum = 0;
+      for (const Json& value : rows[c]) sum += value.get<double>() / 7;
+      const double expected = mean.at("stress").at(term)[c];
+      EXPECT_NEAR(sum, expected, 1e-10 * std::abs(expected)) << term << ' ' << c;
+    }
+  }
+}
+
+// Momentum that a bin takes up is what its spheres gain: m (u_end - u_begin), small beside what is exchanged
+// in a long window.
+TEST(StressProfile, BalancesTheDrag) {
+  Json patch = Json::parse(R"({"particles": {"density": 1e-3}, "box": {"height": 14},
+      "flow": {"shear_rate": 0, "waves": [{"periods": 1, "sine": 5}], "faxen": true},
+      "integrator": {"method": "implicit", "timestep": 0.002},
+      "contact": {"friction": 0, "normal_damping": 0, "rolling_stiffness": 0, "rolling_friction": 0},
+      "duration": {"production": {"time": 4}}})");
+  const Json& profiles = quiet_result(patch).at("mean").at("profiles");
+  EXPECT_LT(profiles.at("momentum_imbalance").get<double>(), 2e-3);
+  double largest = 0;
+  for (const Json& drag : profiles.at("drag")[0]) largest = std::max(largest, std::abs(drag.get<double>()));
+  double flux = 0;
+  for (const Json& one : profiles.at("momentum_flux")[0]) flux = std::max(flux, std::abs(one.get<double>()));
+  EXPECT_GT(largest, 0.1 * flux);  // what would be missing
+}
+
+TEST(StressProfile, WithNoiseHasNoBalance) {
+  const Json result = result_of({{"observables", {"profiles"}}});
+  EXPECT_FALSE(result.at("mean").at("profiles").contains("drag"));
+  EXPECT_FALSE(result.at("quantities").contains("profiles/momentum_flux"));
+  EXPECT_TRUE(result.at("quantities").contains("profiles/stress/pairs"));
+}
+
+}  // namespace
+}  // namespace peclet::engine
