@@ -1,0 +1,218 @@
+"""Suspensions driven by a flow u(y) that the spheres feel through their drag alone: flows, campaigns of them, and the
+local quantities of their bins (Li 2023, ch. 6).
+
+A bin is 2 a high, a the smaller radius. Of its stress, that of the pairs, are P = -tr sigma / 3, J = eta |rate| / P,
+mu = |sigma_xy| / P and Theta = eta du / (a P), du the root of the variance of u_x about its mean in slabs of a / 5;
+Delta_v = |u_driving - u| / (|u_driving| + 1e-5).
+"""
+import math
+
+import numpy as np
+
+from studies.scenes import REFERENCE_SCENE, merged
+
+VISCOSITY, RADIUS, BIN = 0.1, 1.0, 2.0
+MEAN_RADIUS, MEAN_VOLUME = 1.2, 4 * math.pi / 3 * (1 + 1.4**3) / 2
+WIDTH = 17.7  # of the cell, across: that of 1000 spheres at 0.5 with a height of 50
+
+SCENE = merged(
+    REFERENCE_SCENE,
+    {
+        "particles": {"species": [{"radius": 1.0, "number_share": 1}, {"radius": 1.4, "number_share": 1}]},
+        "flow": {"shear_rate": 0, "waves": [{"periods": 1, "sine": 0.1, "cosine": 0}], "faxen": False},
+        "box": {"height": 50},
+        "observables": ["stress", "profiles"],
+        "profiles": {"bins": 25},
+    },
+)
+
+
+def wave(sine, periods=1, cosine=0):
+    return {"periods": periods, "sine": sine, "cosine": cosine}
+
+
+def waves_of(velocities):
+    """The waves of a scene that go through velocities at equal distances over the height, the first one at 0: an odd
+    number n of them has (n - 1) / 2 waves, and an even one loses its shortest sine. The mean is no wave, and has to be
+    0, because a suspension that drifts as a whole is the same."""
+    values = np.asarray(velocities, float)
+    parts = np.fft.rfft(values) / len(values)
+    largest = np.max(np.abs(values))
+    if abs(parts[0].real) > 1e-9 * largest:
+        raise ValueError(f"the mean is {parts[0].real:.6g}: must be 0")
+    factor = np.full(len(parts), 2.0)
+    if len(values) % 2 == 0:
+        factor[-1] = 1
+    return [
+        wave(float(-2 * part.imag), k, float(f * part.real))
+        for k, (part, f) in enumerate(zip(parts, factor))
+        if k > 0 and abs(part) > 1e-12 * largest
+    ]
+
+
+class Driving:
+    """Waves in a cell of this height, of spheres whose radius of reference is `radius`, in equal bins."""
+
+    def __init__(self, name, waves, height, fraction, bins, viscosity=VISCOSITY, radius=RADIUS):
+        self.name, self.waves, self.height, self.fraction = name, waves, height, fraction
+        self.bins, self.viscosity, self.radius = bins, viscosity, radius
+
+    def driving(self, y):
+        return sum(
+            w.get("sine", 0) * np.sin(2 * math.pi * w["periods"] * y / self.height)
+            + w.get("cosine", 0) * np.cos(2 * math.pi * w["periods"] * y / self.height)
+            for w in self.waves
+        )
+
+    def driving_of_bins(self):
+        """Means over the bins."""
+        fine = (np.arange(20 * self.bins) + 0.5) * self.height / (20 * self.bins)
+        return self.driving(fine).reshape(self.bins, 20).mean(axis=1)
+
+    def largest_rate(self):
+        y = np.linspace(0, self.height, 2001)
+        return float(np.max(np.abs(np.gradient(self.driving(y), y))))
+
+
+def driving_of_scene(name, scene):
+    """Of the scene of a point in an export. Throws ValueError where it is another kind of flow."""
+
+    def of(pointer):
+        value = scene
+        for word in pointer.strip("/").split("/"):
+            if not isinstance(value, dict) or word not in value:
+                raise ValueError(f"{name}: {pointer}: missing; bins need it")
+            value = value[word]
+        return value
+
+    if scene.get("peclet") or of("/flow").get("shear_rate", 0) != 0:
+        raise ValueError(f"{name}: /flow/shear_rate: must be 0, with waves alone")
+    particles = of("/particles")
+    radius = particles.get("reference_radius") or of("/particles/species")[0].get("radius")
+    if radius is None:
+        raise ValueError(f"{name}: /particles/reference_radius: missing; bins need it")
+    return Driving(
+        name,
+        of("/flow/waves"),
+        of("/box/height"),
+        of("/volume_fraction"),
+        scene.get("profiles", {}).get("bins", 20),
+        of("/fluid/viscosity"),
+        radius,
+    )
+
+
+class Flow(Driving):
+    """Of the studies: also how long it takes to become steady and is measured, in strains of its largest rate."""
+
+    def __init__(self, name, waves, height, fraction, before, during, width=WIDTH):
+        super().__init__(name, waves, height, fraction, round(height / BIN))
+        self.before, self.during = before, during
+        self.count = round(fraction * width**2 * height / MEAN_VOLUME)
+
+    def settings(self):
+        rate = self.largest_rate()
+        return {
+            "/particles/count": self.count,
+            "/volume_fraction": self.fraction,
+            "/box/height": self.height,
+            "/flow/waves": self.waves,
+            "/profiles/bins": self.bins,
+            "/duration/equilibration/time": round(self.before / rate, 1),
+            "/duration/production/time": round(self.during / rate, 1),
+        }
+
+
+# Strains of the largest rate: before the window, of a height of 50, and as its square; and within it.
+BEFORE, DURING = 40, 100
+
+
+def flow(name, waves, height, fraction):
+    return Flow(name, waves, height, fraction, BEFORE * (height / 50) ** 2, DURING)
+
+
+FRACTIONS = (0.50, 0.52, 0.54, 0.56)
+FIGURE = [flow(f"figure-{height}", [wave(0.4)], height, 0.5) for height in (50, 100)]
+TRAINING = [
+    flow(f"sine-{height}-{100 * fraction:.0f}", [wave(0.1)], height, fraction)
+    for height in (50, 100)
+    for fraction in FRACTIONS
+]
+# 0.1 sin^3 is 0.075 sin less 0.025 sin of three periods.
+PUBLISHED = [
+    flow("sine-and-cosine", [wave(0.1, cosine=0.2)], 80, 0.54),
+    flow("cube-of-sine", [wave(0.075), wave(-0.025, 3)], 100, 0.54),
+]
+UNSEEN = [
+    flow("two-waves", [wave(0.1), wave(0.07, 2)], 80, 0.52),
+    flow("square", [wave(0.1), wave(0.1 / 3, 3), wave(0.1 / 5, 5)], 100, 0.53),
+]
+BEYOND = [flow("sine-50-58", [wave(0.1)], 50, 0.58), flow("sine-120-54", [wave(0.1)], 120, 0.54)]
+FLOWS = FIGURE + TRAINING + PUBLISHED + UNSEEN + BEYOND
+
+
+def heights(flow):
+    return (np.arange(flow.bins) + 0.5) * flow.height / flow.bins
+
+
+class Profile:
+    """Of one realisation or of the mean of several: what a result has by bin, in the units of the scene."""
+
+    def __init__(self, flow, fraction, velocity, stress, variance):
+        self.flow, self.fraction, self.velocity = flow, fraction, velocity
+        self.stress, self.variance = stress, variance  # rows xx, yy, zz, xy; x, y, z
+        self.driving = flow.driving_of_bins()
+        width = flow.height / flow.bins
+        self.rate = (np.roll(velocity, -1) - np.roll(velocity, 1)) / (2 * width)
+        self.pressure = -stress[:3].mean(axis=0)
+
+    def columns(self):
+        """The local quantities, by name."""
+        pressure = self.pressure
+        return {
+            "fraction": self.fraction,
+            "velocity": self.velocity,
+            "rate": self.rate,
+            "shear stress": self.stress[3],
+            "normal stress": -self.stress[1],
+            "pressure": pressure,
+            "J": self.flow.viscosity * np.abs(self.rate) / pressure,
+            "mu": np.abs(self.stress[3]) / pressure,
+            "Theta": self.flow.viscosity * np.sqrt(self.variance[0]) / (self.flow.radius * pressure),
+            "lag": np.abs(self.driving - self.velocity) / (np.abs(self.driving) + 1e-5),
+        }
+
+
+QUANTITIES = (
+    "fraction", "velocity", "rate", "shear stress", "normal stress", "pressure", "J", "mu", "Theta", "lag"
+)  # fmt: skip
+
+
+def profile_of(flow, profiles):
+    """Of mean.profiles of a result, or of one of its quarters."""
+    fraction = np.array(profiles["volume_fraction"], float)
+    velocity = np.array(profiles["velocity"]["flux"], float) / fraction
+    variance = np.array(profiles.get("velocity_variance", np.full((3, flow.bins), math.nan)), float)
+    return Profile(flow, fraction, velocity, np.array(profiles["stress"]["pairs"], float), variance)
+
+
+def mean_profile(flow, profiles):
+    """Of several realisations: means of what is a mean."""
+    parts = ("fraction", "velocity", "stress", "variance")
+    return Profile(flow, *(np.mean([getattr(p, part) for p in profiles], axis=0) for part in parts))
+
+
+def bin_rows(flow, profiles):
+    """A row for each bin: the quantities of the mean of the realisations, each with its standard error by the
+    jackknife over them."""
+    whole = mean_profile(flow, profiles).columns()
+    count = len(profiles)
+    without = [mean_profile(flow, profiles[:k] + profiles[k + 1 :]).columns() for k in range(count)]
+    driving = flow.driving_of_bins()
+    for k, y in enumerate(heights(flow)):
+        row = {"flow": flow.name, "mean": flow.fraction, "height": flow.height, "y": y, "driving": driving[k]}
+        for name in QUANTITIES:
+            left = np.array([columns[name][k] for columns in without])
+            row[name] = whole[name][k]
+            row[f"{name}_error"] = math.sqrt((count - 1) / count * float(np.sum((left - left.mean()) ** 2)))
+        yield row

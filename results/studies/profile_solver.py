@@ -1,0 +1,120 @@
+"""Profiles of a driven flow from its driving alone: balance of momentum, a law of mu and phi, and how far fluctuations
+reach.
+
+    d sigma / dy = -c phi (u_driving - u),  c = 6 pi eta <a> / <4 pi a^3 / 3>    (the drag on the spheres)
+    sigma = mu P du/dy / |du/dy|,  P uniform, of the right mean volume fraction
+    du' = G_l * (q(phi) a |du/dy|),  Theta = eta du' / (a P)                      (closure: the reach l)
+    mu and phi: functions of J = eta |du/dy| / P and Theta
+
+q(phi) is that of uniform flow, and G_l, exp(-|y| / l) / 2 l, spreads what a layer makes over those around it.
+"""
+import math
+
+import numpy as np
+
+from studies.inhomogeneous import MEAN_RADIUS, MEAN_VOLUME, RADIUS, VISCOSITY
+
+DRAG = 6 * math.pi * VISCOSITY * MEAN_RADIUS / MEAN_VOLUME
+
+
+def spread(values, height, reach):
+    """G_l * values of a periodic function on equal bins."""
+    waves = 2 * math.pi * np.fft.rfftfreq(len(values), height / len(values))
+    return np.fft.irfft(np.fft.rfft(values) / (1 + (reach * waves) ** 2), len(values))
+
+
+def velocity_of(driving, fraction, viscosity, width):
+    """u of d/dy (viscosity du/dy) = -c phi (u_driving - u), periodic: viscosities between the bins, by second
+    differences."""
+    count = len(driving)
+    between = 2 / (1 / viscosity + 1 / np.roll(viscosity, -1)) / width**2  # above bin k
+    drag = DRAG * fraction
+    system = np.zeros((count, count))
+    for k in range(count):
+        above, below = between[k], between[k - 1]
+        system[k, k] = above + below + drag[k]
+        system[k, (k + 1) % count] -= above
+        system[k, (k - 1) % count] -= below
+    return np.linalg.solve(system, drag * driving)
+
+
+def rates_of(velocity, width):
+    return (np.roll(velocity, -1) - np.roll(velocity, 1)) / (2 * width)
+
+
+class Law:
+    """ln mu and phi as polynomials of second degree in ln J and ln Theta, fitted to bins; q(phi) of uniform flow; the
+    reach that makes Theta right in the bins."""
+
+    def __init__(self, tables, uniform, heights):
+        """`tables` of flows, `heights` of them; `uniform` has fraction, J and Theta."""
+        together = {
+            name: np.concatenate([table[name] for table in tables]) for name in ("J", "Theta", "mu", "fraction")
+        }
+        moving = together["J"] > 1e-6
+        j, theta = (np.log(together[name][moving]) for name in ("J", "Theta"))
+        terms = self._terms(j, theta)
+        self._mu = np.linalg.lstsq(terms, np.log(together["mu"][moving]), rcond=None)[0]
+        self._fraction = np.linalg.lstsq(terms, together["fraction"][moving], rcond=None)[0]
+        self._limits = [(v.min(), v.max()) for v in (j, theta)]
+        self._source = np.polyfit(uniform["fraction"], np.log(uniform["Theta"] / uniform["J"]), 2)
+        self._densest = float(np.max(uniform["fraction"]))
+        self.reach = self._fitted_reach(tables, heights)
+
+    @staticmethod
+    def _terms(j, theta):
+        return np.column_stack([np.ones_like(j), j, theta, j * j, j * theta, theta * theta])
+
+    def source(self, fraction, rate):
+        return np.exp(np.polyval(self._source, np.minimum(fraction, self._densest))) * np.abs(rate)
+
+    def _fitted_reach(self, tables, heights):
+        def left(reach):
+            total = 0.0
+            for table, height in zip(tables, heights):
+                made = spread(self.source(table["fraction"], table["rate"]), height, reach)
+                theta = VISCOSITY * made / (RADIUS * table["pressure"])
+                total += float(np.sum(np.log(theta / table["Theta"]) ** 2))
+            return total
+
+        reaches = np.linspace(0.5, 12, 47)
+        return float(reaches[int(np.argmin([left(r) for r in reaches]))])
+
+    def __call__(self, j, theta):
+        """mu and phi, at the border of what was seen where it is beyond."""
+        inside = [np.clip(np.log(np.maximum(v, 1e-12)), *limits) for v, limits in zip((j, theta), self._limits)]
+        terms = self._terms(*inside)
+        # Below the smallest J that was seen mu goes on with its slope there.
+        slope = self._mu[1] + 2 * self._mu[3] * inside[0] + self._mu[4] * inside[1]
+        beyond = np.log(np.maximum(j, 1e-12)) - inside[0]
+        return np.exp(terms @ self._mu + slope * np.minimum(beyond, 0)), terms @ self._fraction
+
+
+class Solution:
+    def __init__(self, velocity, fraction, rate, pressure, mu, steps):
+        self.velocity, self.fraction, self.rate, self.pressure = velocity, fraction, rate, pressure
+        self.mu, self.steps = mu, steps
+
+
+def solve(flow, law, most=4000, tolerance=1e-6):
+    """The profile of a studies.inhomogeneous.Flow, by iteration with a damping of a tenth."""
+    driving, width = flow.driving_of_bins(), flow.height / flow.bins
+    velocity, fraction = 0.9 * driving, np.full(flow.bins, flow.fraction)
+    pressure = 20 * VISCOSITY * flow.largest_rate()
+    smallest = 1e-4 * flow.largest_rate()
+    for step in range(1, most + 1):
+        rate = rates_of(velocity, width)
+        speed = np.sqrt(rate**2 + smallest**2)
+        theta = VISCOSITY * spread(law.source(fraction, speed), flow.height, law.reach) / (RADIUS * pressure)
+        mu, wanted = law(VISCOSITY * speed / pressure, theta)
+        found = velocity_of(driving, fraction, mu * pressure / speed, width)
+        change = max(
+            float(np.max(np.abs(found - velocity)) / np.max(np.abs(driving))), float(np.max(np.abs(wanted - fraction)))
+        )
+        velocity = velocity + 0.1 * (found - velocity)
+        fraction = fraction + 0.1 * (wanted - fraction)
+        # Denser at a larger pressure.
+        pressure *= math.exp(np.clip(3 * (flow.fraction - float(wanted.mean())), -0.1, 0.1))
+        if change < tolerance and abs(float(wanted.mean()) - flow.fraction) < tolerance:
+            break
+    return Solution(velocity, fraction, rates_of(velocity, width), pressure, mu, step)

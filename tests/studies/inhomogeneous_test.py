@@ -1,0 +1,131 @@
+#!/usr/bin/python3
+"""Bins of flows that vary, maps that are learned from them, and profiles that are solved for, by examples with known
+answers."""
+import math
+import os
+import sys
+import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "results"))
+from studies.inhomogeneous import MEAN_VOLUME, VISCOSITY, Flow, bin_rows, profile_of, wave, waves_of
+from studies.learning import LawOfFraction, Published, left_out, relative_error
+from studies.profile_solver import DRAG, rates_of, spread, velocity_of
+
+import numpy as np
+
+FLOW = Flow("one", [wave(0.3)], 50, 0.5, 40, 100)
+
+
+def profiles_of(fraction, velocity, stress, variance):
+    """As a result has them."""
+    return {
+        "volume_fraction": fraction,
+        "velocity": {"flux": (fraction * velocity).tolist(), "volume_fraction": fraction},
+        "velocity_variance": np.tile(variance, (3, 1)).tolist(),
+        "stress": {"pairs": stress.tolist()},
+    }
+
+
+class Bins(unittest.TestCase):
+    def test_a_flow_has_its_driving_and_its_spheres(self):
+        self.assertEqual(FLOW.bins, 25)
+        self.assertAlmostEqual(FLOW.largest_rate(), 0.3 * 2 * math.pi / 50, places=6)
+        y = 0.5 + np.arange(25) * 2 + 0.5
+        half = math.sin(math.pi / 25) / (math.pi / 25)  # the mean of a sine over a bin
+        for k in range(25):
+            self.assertAlmostEqual(FLOW.driving_of_bins()[k], 0.3 * half * math.sin(2 * math.pi * y[k] / 50), places=4)
+        settings = FLOW.settings()
+        self.assertEqual(settings["/particles/count"], round(0.5 * 17.7**2 * 50 / MEAN_VOLUME))
+        self.assertAlmostEqual(settings["/duration/production/time"] * FLOW.largest_rate(), 100, places=2)
+
+    def test_waves_go_through_the_velocities_that_were_given(self):
+        t = 2 * math.pi * np.arange(32) / 32
+        (first, third) = waves_of(0.1 * np.sin(t) ** 3)  # (3 sin t - sin 3 t) / 4
+        for found, periods, sine in ((first, 1, 0.075), (third, 3, -0.025)):
+            self.assertEqual(found["periods"], periods)
+            self.assertAlmostEqual(found["sine"], sine)
+            self.assertAlmostEqual(found["cosine"], 0)
+        for count in (8, 9):
+            values = np.array([3, 1, 4, -1, -5, 2, -6, 2, 0][:count], float)
+            values -= values.mean()
+            y = np.arange(count) * 20 / count
+            driven = Flow("table", waves_of(values), 20, 0.5, 1, 1)
+            np.testing.assert_allclose(driven.driving(y), values, atol=1e-12)
+        with self.assertRaises(ValueError):
+            waves_of([1.0, 2.0, 3.0])
+
+    def test_local_quantities_are_those_of_their_formulas(self):
+        fraction = np.full(25, 0.5)
+        velocity = 0.2 * np.sin(2 * math.pi * (2 * np.arange(25) + 1) / 50)
+        stress = np.array([np.full(25, s) for s in (-3.0, -2.0, -1.0, 0.5)])
+        (row, *_) = bin_rows(FLOW, [profile_of(FLOW, profiles_of(fraction, velocity, stress, np.full(25, 0.04)))] * 2)
+        # Central differences of a sine over two bins of 2.
+        rate = 0.2 * math.cos(2 * math.pi / 50) * math.sin(4 * math.pi / 50) / 2
+        self.assertAlmostEqual(row["rate"], rate)
+        self.assertAlmostEqual(row["pressure"], 2)
+        self.assertAlmostEqual(row["J"], VISCOSITY * rate / 2)
+        self.assertAlmostEqual(row["mu"], 0.25)
+        self.assertAlmostEqual(row["Theta"], VISCOSITY * 0.2 / 2)
+        self.assertAlmostEqual(row["lag"], (row["driving"] - velocity[0]) / (row["driving"] + 1e-5))
+        self.assertEqual(row["mu_error"], 0)
+
+    def test_errors_are_those_of_a_mean(self):
+        """For what is linear, the jackknife is the standard error of the mean."""
+        stress = np.array([np.full(25, s) for s in (-1.0, -1.0, -1.0, 0.5)])
+        values = [0.50, 0.52, 0.51, 0.55]
+        profiles = [
+            profile_of(FLOW, profiles_of(np.full(25, v), np.zeros(25), stress, np.full(25, 0.01))) for v in values
+        ]
+        (row, *_) = bin_rows(FLOW, profiles)
+        self.assertAlmostEqual(row["fraction"], np.mean(values))
+        self.assertAlmostEqual(row["fraction_error"], np.std(values, ddof=1) / 2)
+
+
+class Maps(unittest.TestCase):
+    def test_the_error_is_a_ratio_of_norms_of_scaled_values(self):
+        # Scaled: 0.1 off 0.5 and 0.1 off 1; norms of (0.1, 0.1) and (0.5, 1).
+        self.assertAlmostEqual(relative_error([1.6, 1.9], [1.5, 2.0], 1.0, 2.0), math.sqrt(0.02 / 1.25))
+
+    def test_flows_are_left_out_whole(self):
+        found = {name: (own.tolist(), others.tolist()) for name, own, others in left_out(np.array(["a", "b", "a"]))}
+        self.assertEqual(found, {"a": ([True, False, True], [False, True, False]), "b": ([0, 1, 0], [1, 0, 1])})
+
+    def test_a_law_of_two_parameters_is_found_exactly(self):
+        fraction, j = np.array([0.5, 0.55, 0.6, 0.52]), np.array([1e-3, 2e-3, 1e-4, 5e-2])
+        table = {"fraction": fraction, "J": j, "mean": fraction, "mu": j / (3 * (0.66 - fraction) ** 2)}
+        model = LawOfFraction(("J", "fraction", "mean"), "mu").fit(table)
+        new = {"fraction": np.array([0.58]), "J": np.array([1e-2]), "mean": np.array([0.58])}
+        self.assertAlmostEqual(model.predict(new)[0], 1e-2 / (3 * 0.08**2), places=6)
+        # ln J from 1e-4 to 5e-2 was seen.
+        beyond = model.beyond({"fraction": np.array([0.55]), "J": np.array([5e-1]), "mean": np.array([0.55])})
+        self.assertAlmostEqual(beyond[0], math.log(10) / math.log(500))
+
+    def test_trees_give_back_what_they_were_shown(self):
+        table = {name: np.linspace(1, 2, 40) for name in ("J", "fraction", "mean", "mu")}
+        found = Published(("J", "fraction", "mean"), "mu").fit(table).predict(table)
+        self.assertLess(np.max(np.abs(found - table["mu"])), 0.02)
+
+
+class Solver(unittest.TestCase):
+    Y = (np.arange(50) + 0.5) * 2
+
+    def test_what_spreads_loses_its_short_waves(self):
+        wave_number = 2 * math.pi * 3 / 100
+        found = spread(1 + np.cos(wave_number * self.Y), 100, 2.5)
+        expected = 1 + np.cos(wave_number * self.Y) / (1 + (2.5 * wave_number) ** 2)
+        np.testing.assert_allclose(found, expected, atol=1e-12)
+
+    def test_a_fluid_of_one_viscosity_lags_by_its_momentum_balance(self):
+        """eta u'' = -c phi (u_driving - u), with second differences in the place of u''."""
+        wave_number, viscosity, fraction = 2 * math.pi / 100, 1.7, 0.5
+        driving = np.sin(wave_number * self.Y)
+        found = velocity_of(driving, np.full(50, fraction), np.full(50, viscosity), 2.0)
+        bend = (2 / 2.0 * math.sin(wave_number * 2.0 / 2)) ** 2
+        np.testing.assert_allclose(found, driving / (1 + viscosity * bend / (DRAG * fraction)), rtol=1e-10)
+
+    def test_rates_are_central_differences_around_the_box(self):
+        np.testing.assert_allclose(rates_of(np.array([0.0, 1.0, 4.0, 9.0]), 0.5), [-8, 4, 8, -4])
+
+
+if __name__ == "__main__":
+    unittest.main()
