@@ -125,8 +125,10 @@ def errors(arguments):
 def predict(arguments):
     try:
         model, words = open_model(arguments.model)
-    except (OSError, ValueError, KeyError) as error:
-        refuse(f"{arguments.model}: {error}" if isinstance(error, KeyError) else str(error))
+    except OSError as error:
+        refuse(f"{arguments.model}: {error.strerror}")
+    except ValueError as error:
+        refuse(str(error))
     table, flows = table_of(arguments.table, [*dict.fromkeys([*words["inputs"], "mean"])])
     found, beyond = model.predict(table), model.beyond(table)
     if np.any(beyond > 0):

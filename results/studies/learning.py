@@ -229,9 +229,15 @@ def save_model(path, method, inputs, output, table, provenance):
 def open_model(path):
     """The fitted method, and the file's own words on it. Throws ValueError with a reason."""
     with open(path) as f:
-        model = json.load(f)
+        try:
+            model = json.load(f)
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}") from error
     if not isinstance(model, dict) or model.get("format") != MODEL_FORMAT:
         raise ValueError(f"{path}: /format: must be {MODEL_FORMAT}")
+    for name in ("method", "inputs", "output", "training"):
+        if name not in model:
+            raise ValueError(f"{path}: /{name}: missing")
     inputs, output = tuple(model["inputs"]), model["output"]
     table = {name: np.array(values, float) for name, values in model["training"].items()}
     methods = all_methods(inputs, output)
