@@ -22,7 +22,8 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.inhomogeneous import QUANTITIES, bin_rows, driving_of_scene, profile_of, waves_of
+from studies.estimates import student_quantile
+from studies.inhomogeneous import QUANTITIES, bin_rows, driving_of_scene, growth, profile_of, waves_of
 from studies.learning import all_methods, columns_of_rows, left_out, open_model, relative_error, save_model, taken
 from studies.tables import columns_of, read_rows, write_table
 
@@ -37,15 +38,48 @@ def refuse(text):
     sys.exit(2)
 
 
-def exported(campaign):
-    done = subprocess.run([os.environ.get("PECLET", "peclet"), "export", campaign], capture_output=True, text=True)
+def warn(text):
+    print(f"learn.py: warning: {text}", file=sys.stderr)
+
+
+def asked(verb, campaign):
+    program = os.environ.get("PECLET", "peclet")
+    try:
+        done = subprocess.run([program, verb, campaign], capture_output=True, text=True)
+    except OSError as error:
+        refuse(f"{program}: {error.strerror}; must be in PATH, or named by the variable PECLET")
     if done.returncode != 0:
-        refuse(f"{campaign}: peclet export: {done.stderr.strip()}")
-    return json.loads(done.stdout)
+        refuse(f"{campaign}: peclet {verb}: {done.stderr.strip()}")
+    return done.stdout
+
+
+def blocks_of(campaign):
+    """Volume fractions by quarter of the window, of the seeds of each point, where there are as few bins as have
+    quarters."""
+    quarters = {}
+    for line in asked("results", campaign).splitlines():
+        stored = json.loads(line)
+        profiles = stored["result"].get("blocks", {}).get("profiles")
+        if stored["deciding"] and profiles:
+            quarters.setdefault(stored["label"], []).append(profiles["volume_fraction"])
+    return quarters
+
+
+def warn_of_growth(campaign):
+    for label, quarters in blocks_of(campaign).items():
+        if len(quarters) < 2:
+            continue
+        value, error = growth(quarters)
+        if abs(value) > max(student_quantile(len(quarters) - 1, 0.999) * error, 0.05):
+            warn(
+                f"{campaign}: {label}: the profile of the volume fraction stands out {100 * value:+.0f} ± "
+                f"{100 * error:.0f} % more in the second half of the window than in the first: it is not steady"
+            )
 
 
 def bins_of(campaign):
-    found = exported(campaign)
+    warn_of_growth(campaign)
+    found = json.loads(asked("export", campaign))
     for point in found["points"]:
         results = [r for r in point["realisations"] if r.get("mean")]
         if len(results) < 2:
@@ -132,10 +166,9 @@ def predict(arguments):
     table, flows = table_of(arguments.table, [*dict.fromkeys([*words["inputs"], "mean"])])
     found, beyond = model.predict(table), model.beyond(table)
     if np.any(beyond > 0):
-        print(
-            f"learn.py: warning: {np.count_nonzero(beyond > 0)} of {len(beyond)} rows lie beyond what the model was "
-            f"trained on, by up to {beyond.max():.2g} of its range",
-            file=sys.stderr,
+        warn(
+            f"{np.count_nonzero(beyond > 0)} of {len(beyond)} rows lie beyond what the model was trained on, by up to "
+            f"{beyond.max():.2g} of its range"
         )
     writer = csv.writer(sys.stdout)
     writer.writerow(["flow", *words["inputs"], f"{words['output']} foretold", "beyond"])

@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from studies.estimates import estimate
 from studies.scenes import REFERENCE_SCENE, merged
 
 VISCOSITY, RADIUS, BIN = 0.1, 1.0, 2.0
@@ -216,3 +217,14 @@ def bin_rows(flow, profiles):
             row[name] = whole[name][k]
             row[f"{name}_error"] = math.sqrt((count - 1) / count * float(np.sum((left - left.mean()) ** 2)))
         yield row
+
+
+def growth(quarters):
+    """Of a profile by seed, quarter of the window and bin: how much more it stands out in the second half of the window
+    than in the first, relative, and the standard error over the seeds. The change of each seed is projected on the mean
+    profile less its own mean: noise that has another shape drops out."""
+    values = np.asarray(quarters, float)
+    shape = values.mean(axis=(0, 1))
+    shape = shape - shape.mean()
+    change = (values[:, 2:].mean(axis=1) - values[:, :2].mean(axis=1)) @ shape / (shape @ shape)
+    return estimate(change.tolist())

@@ -7,7 +7,7 @@ import sys
 import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "results"))
-from studies.inhomogeneous import MEAN_VOLUME, VISCOSITY, Flow, bin_rows, profile_of, wave, waves_of
+from studies.inhomogeneous import MEAN_VOLUME, VISCOSITY, Flow, bin_rows, growth, profile_of, wave, waves_of
 from studies.learning import LawOfFraction, Published, left_out, relative_error
 from studies.profile_solver import DRAG, rates_of, spread, velocity_of
 
@@ -79,6 +79,18 @@ class Bins(unittest.TestCase):
         (row, *_) = bin_rows(FLOW, profiles)
         self.assertAlmostEqual(row["fraction"], np.mean(values))
         self.assertAlmostEqual(row["fraction_error"], np.std(values, ddof=1) / 2)
+
+    def test_a_profile_that_grows_is_told_from_noise(self):
+        shape = np.cos(np.arange(20) * 2 * math.pi / 20)
+        halves = np.array([1, 1, 1.1, 1.1])
+        seeds = [0.5 + halves[:, None] * shape * (1 + e) for e in (-0.1, 0.1)]
+        # By a tenth of the first half, which is 1 / 1.05 of the mean: (0.1 * 0.9, 0.1 * 1.1) / 1.05.
+        value, error = growth(seeds)
+        self.assertAlmostEqual(value, 0.1 / 1.05)
+        self.assertAlmostEqual(error, 0.01 / 1.05)
+        other = np.sin(np.arange(20) * 2 * math.pi / 20)  # another shape, in the last quarter alone
+        noisy = [one + np.outer([0, 0, 0, 1], e * other) for one, e in zip(seeds, (3.0, -3.0))]
+        self.assertAlmostEqual(growth(noisy)[0], 0.1 / 1.05)
 
 
 class Maps(unittest.TestCase):

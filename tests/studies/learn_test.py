@@ -48,11 +48,14 @@ class Learn(unittest.TestCase):
         )
         return done.returncode, done.stdout, done.stderr
 
-    def exporting(self, points):
-        """A peclet whose export has these points."""
-        (self.folder / "export.json").write_text(json.dumps({"campaign": "waves", "points": points}))
+    def exporting(self, points, quarters=()):
+        """A peclet whose export has these points, and whose results have these volume fractions by seed and quarter."""
+        (self.folder / "export").write_text(json.dumps({"campaign": "waves", "points": points}))
+        blocks = ({"blocks": {"profiles": {"volume_fraction": one}}} for one in quarters)
+        lines = [json.dumps({"deciding": True, "label": "one", "result": result}) for result in blocks]
+        (self.folder / "results").write_text("\n".join(lines))
         program = self.folder / "peclet"
-        program.write_text(f'#!/bin/sh\ncat "{self.folder}/export.json"\n')
+        program.write_text(f'#!/bin/sh\ncat "{self.folder}/$1"\n')
         program.chmod(program.stat().st_mode | stat.S_IXUSR)
 
     def table(self, flows=("a", "b", "c")):
@@ -76,6 +79,16 @@ class Learn(unittest.TestCase):
         self.assertAlmostEqual(float(rows[0]["pressure_error"]), 1)
         self.assertAlmostEqual(float(rows[0]["rate"]), (0.1 - -0.1) / 4)
         self.assertAlmostEqual(float(rows[0]["mu"]), 0.5 / 3, places=5)
+
+    def test_a_profile_that_still_grows_is_told(self):
+        points = [{"label": "one", "scene": SCENE, "realisations": [realisation(2), realisation(4)]}]
+        steady = [[0.4, 0.5, 0.6, 0.5]] * 2
+        grown = [[0.35, 0.5, 0.65, 0.5]] * 2
+        for later, told in ((steady, False), (grown, True)):
+            self.exporting(points, [steady + later] * 3)
+            code, _, errors = self.learn("bins", "waves.json")
+            self.assertEqual(code, 0)
+            self.assertEqual("stands out +40 ± 0 % more" in errors, told, errors)
 
     def test_campaigns_of_other_kinds_are_refused_with_the_pointer(self):
         sheared = {**SCENE, "flow": {"shear_rate": 1}}
