@@ -37,6 +37,7 @@ class Program:
         self.folder = folder
         self.commits = set()  # of the engines that the results are of
         self.processor_seconds = 0.0  # that they took
+        self._seconds = {}  # of campaigns, by name
         self.long = False  # whether points that take hours are wanted
         self.times = 1  # as many seeds
         os.makedirs(folder, exist_ok=True)
@@ -72,7 +73,10 @@ class Program:
         for engine in export["engines"].values():
             self.commits.add(engine["git_commit"][:7] + ("+" if engine["git_dirty"] else ""))
         realisations = [r for point in export["points"] for r in point["realisations"]]
-        self.processor_seconds += sum(r["cost"]["cpu_seconds"] for r in realisations)
+        seconds = sum(r["cost"]["cpu_seconds"] for r in realisations)
+        # A campaign that runs again, with more points, has the realisations of before.
+        self.processor_seconds += seconds - self._seconds.get(name, 0.0)
+        self._seconds[name] = seconds
         return export["points"]
 
     def run_alone(self, name, scene, threads, seed=0):

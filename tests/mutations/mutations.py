@@ -44,6 +44,7 @@ STUDIES = [
     "literature",
     "microstructure",
     "mixtures",
+    "mixtures-map",
     "mixtures-noise",
     "monti-silica",
     "monti-viscosity",

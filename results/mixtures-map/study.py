@@ -1,0 +1,422 @@
+#!/usr/bin/python3
+"""The jamming map of colloids and grains: the volume fraction at which mixtures of radii 1, 1.4, 5 and 7 jam, over the
+share of grains and the Peclet number of the mean radius, found by bisection (Li 2023, Figs 5.4, 5.5 and 5.6).
+
+study.py BIN [FOLDER] [--quick] [--from-table]
+"""
+import math
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from studies.command_line import main
+from studies.compositions import MIXTURE_SCENE, grains_among, mean_peclet, packing_models
+from studies.estimates import difference, over, propagated, quotient
+from studies.figure import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
+from studies.scenes import merged
+from studies.tables import columns_of, number, read_numbers, read_rows, write_numbers, write_table
+from studies.verdicts import Check, Statement
+from studies.viscosities import viscosity_row
+
+import numpy as np
+
+TITLE = "The jamming map of colloids and grains"
+SCENE = merged(MIXTURE_SCENE, {"guard": {"largest_overlap": 0.5}})
+THERMAL_ENERGY = 0.085
+NOISY = merged(SCENE, {"flow": None, "peclet": 1, "limits": {"shear_rate": 0.045, "thermal_energy": THERMAL_ENERGY}})
+STIFFNESS, DENSITY = SCENE["contact"]["normal_stiffness"], SCENE["particles"]["density"]
+# Times as stiff with friction, by the share of the grains: where these carry the stress, contacts of colloids would
+# soften long before the jam.
+STIFFER = {0.7: 2, 0.8: 4, 0.9: 10}
+# Share of the grains in the volume of all spheres, and how many spheres that takes for some thirty grains (0.4: 20).
+COUNTS = {0: 1000, 0.4: 4000, 0.6: 3000, 0.7: 2000, 0.8: 1500, 0.9: 1000, 1: 1000}
+SEEDS = 3
+# Rows of the map: without noise, without and with friction; with both by the Peclet number of the mean radius; and with
+# that of the colloids at 1.
+SMOOTH, ROUGH, FIXED = "smooth", "rough", "colloids-1"
+NOISY_ROWS = {100: (*COUNTS,), 1: (0, 1), 0.1: (0,), 10: (0, 0.4, 0.7, 1)}
+FIXED_SHARES, COMMON = (0.4, 0.7), 0.69
+# Where diffusion outruns the flow of grains too: shares and volume fractions.
+SLOW, SLOWEST, SLOW_CASES = "slow", 0.01, ((1, 0.6), (1, 0.62))
+# Where the search begins, and its steps: the volume fractions at which they jam without noise by the study mixtures.
+START = {
+    SMOOTH: {0: 0.63, 0.4: 0.71, 0.6: 0.755, 0.7: 0.77, 0.8: 0.75, 0.9: 0.69, 1: 0.63},
+    ROUGH: {0: 0.585, 0.4: 0.66, 0.6: 0.685, 0.7: 0.68, 0.8: 0.645, 0.9: 0.605, 1: 0.585},
+}
+ABOUT, SLOWER = (-0.02, 0, 0.02), (0, 0.03, 0.06)
+ALONE = {100: (0.55, 0.58, 0.6), 10: (0.55, 0.6, 0.63), 1: (0.55, 0.6, 0.63), 0.1: (0.55, 0.6, 0.63)}
+NARROW, ROUNDS = 0.0101, 6  # a bracket that is narrower is not halved again
+SOFTEST = 0.003  # mean overlap of what counts as jammed; noise alone makes 0.0009 where it is strongest
+
+
+def windows(alpha, peclet):
+    """Strains before and of the measurement, by the Peclet number of the colloids: where diffusion outruns the flow
+    less is needed, though not by grains."""
+    slow = math.sqrt(125 * peclet) if alpha == 1 else max(math.sqrt(peclet), 0.5 if alpha else 0)
+    before = round(min(1, slow), 2)
+    return {"/duration/equilibration/strain": before, "/duration/production/strain": 1.5 * before}
+
+
+def setting(alpha, fraction, row):
+    """Grains alone are colloids in other units: as hard, with as little inertia, and with the steps of their noise."""
+    alike, peclet = alpha == 1, colloids_peclet(row, alpha)
+    noise = {"/limits/thermal_energy": THERMAL_ENERGY * (125 if alike else 1), "/peclet": peclet}
+    stiffer = 5 if alike else 1 if row == SMOOTH else STIFFER.get(alpha, 1)
+    return {
+        "/particles/mixture/alpha": alpha,
+        "/particles/count": COUNTS[alpha],
+        "/particles/density": DENSITY / (25 if alike else 1),
+        "/contact/normal_stiffness": STIFFNESS * stiffer,
+        "/volume_fraction": fraction,
+        **windows(alpha, peclet),
+        **(noise if math.isfinite(peclet) else {}),
+    }
+
+
+def colloids_peclet(row, alpha):
+    if row in (SMOOTH, ROUGH):
+        return math.inf
+    if row == SLOW:
+        return SLOWEST
+    return 1 if row == FIXED else row / mean_peclet(alpha, 1)
+
+
+def first_fractions(row, alpha):
+    if row in ALONE and alpha in (0, 1):
+        return list(ALONE[row])
+    start = START[SMOOTH if row == SMOOTH else ROUGH][alpha]
+    found = [round(start + d, 4) for d in (SLOWER if row in (10, FIXED) else ABOUT)]
+    # One that both shares have: else the share would follow from the volume fraction, as along a line of addition.
+    return found + [COMMON] if row == FIXED and COMMON not in found else found
+
+
+def bracket(points):
+    """The largest volume fraction at which most seeds flow, and the smallest one beyond it at which half of them or
+    more jam, or contacts are soft; None for what there is none of."""
+    hard = (p for p in points if p["state"] in ("flowing", "partly jammed") and p["overlap"] <= SOFTEST)
+    flowing = max((p["fraction"] for p in hard), default=None)
+    tried = (p["fraction"] for p in points if p["seeds"])
+    beyond = (fraction for fraction in tried if fraction > (flowing or 0))
+    return flowing, min(beyond, default=None)
+
+
+def next_fraction(fractions, flowing, stuck):
+    """Half-way between the ends of a bracket, or beyond the fractions that were tried; None where it is narrow."""
+    if stuck is None:
+        return round(max(fractions) + 0.02, 4)
+    if flowing is None:
+        return round(min(fractions) - 0.02, 4)
+    middle = round((flowing + stuck) / 2, 4)
+    return None if stuck - flowing < NARROW or middle in fractions else middle
+
+
+def curves_of(program, name, only=None):
+    """By the share of grains; `only` is the one of a campaign that has no other."""
+    found = program.asked("jamming", name, "--by", "steepest", "--softest", str(SOFTEST))["curves"]
+    return {curve["settings"].get("/particles/mixture/alpha", only): curve for curve in found}
+
+
+class Hours:
+    """What `peclet plan` said of the first round of the rows, of which it knew nothing, and what that took."""
+
+    def __init__(self, program):
+        self._program, self.planned, self.taken = program, 0.0, 0.0
+
+    def plan(self, name, scene, settings):
+        """Of a campaign of its own, which is never run. Kept, since planning takes some seconds."""
+        kept = Path(self._program.folder) / f"{name}.planned"
+        if not kept.exists():
+            self._program.write(f"plan-{name}", scene, settings, SEEDS)
+            kept.write_text(str(self._program.asked("plan", f"plan-{name}")["cpu_hours_maximum"]))
+        self.planned += float(kept.read_text())
+
+    def add(self, points):
+        self.taken += sum(r["cost"]["cpu_seconds"] for point in points for r in point["realisations"]) / 3600
+
+
+def search(program, hours, row, shares):
+    """Rows of the table and of the map: rounds of runs, each between what flows and what does not in the one before."""
+    name = str(row)
+    scene = merged(SCENE if row in (SMOOTH, ROUGH) else NOISY, {"contact": {"friction": 0 if row == SMOOTH else 1}})
+    fractions = {alpha: first_fractions(row, alpha) for alpha in shares}
+    for turn in range(ROUNDS):
+        cases = [(alpha, fraction) for alpha in shares for fraction in fractions[alpha]]
+        settings = [setting(alpha, fraction, row) for alpha, fraction in cases]
+        if turn == 0:
+            hours.plan(name, scene, settings)
+        points = program.run(name, scene, settings, SEEDS)
+        if turn == 0:
+            hours.add(points)
+        curves = curves_of(program, name, shares[0])
+        brackets = {alpha: bracket(curve["points"]) for alpha, curve in curves.items()}
+        more = {alpha: next_fraction(fractions[alpha], *brackets[alpha]) for alpha in shares}
+        if not any(more.values()):
+            break
+        for alpha, fraction in more.items():
+            fractions[alpha] += [fraction] if fraction else []
+    rows = rows_of(row, cases, points, curves)
+    return rows, [map_entry(row, alpha, brackets[alpha]) for alpha in shares]
+
+
+def slow_rows(program):
+    settings = [setting(alpha, fraction, SLOW) for alpha, fraction in SLOW_CASES]
+    points = program.run(SLOW, merged(NOISY, {"contact": {"friction": 1}}), settings, SEEDS)
+    return rows_of(SLOW, SLOW_CASES, points, curves_of(program, SLOW, 1))
+
+
+def rows_of(row, cases, points, curves):
+    states = {(alpha, p["fraction"]): p["state"] for alpha, curve in curves.items() for p in curve["points"]}
+    return [
+        {
+            "row": row,
+            "alpha": alpha,
+            "fraction": fraction,
+            "peclet": colloids_peclet(row, alpha),
+            "count": COUNTS[alpha],
+            "grains": round(grains_among(alpha, COUNTS[alpha])),
+            "state": states[alpha, fraction],
+            **viscosity_row(point, "mean_overlap", "contacts_per_particle"),
+        }
+        for (alpha, fraction), point in zip(cases, points)
+    ]
+
+
+def map_entry(row, alpha, bracket):
+    flowing, stuck = (math.nan if x is None else x for x in bracket)
+    peclet = colloids_peclet(row, alpha)
+    return {
+        "row": row,
+        "alpha": alpha,
+        "peclet": peclet,
+        "mean peclet": mean_peclet(alpha, peclet),
+        "flowing": flowing,
+        "stuck": stuck,
+        "jammed": (flowing + stuck) / 2,
+        "jammed_error": abs(stuck - flowing) / math.sqrt(12),
+    }
+
+
+MAP = ["row", "alpha", "peclet", "mean peclet", "flowing", "stuck", *columns_of("jammed")]
+
+
+def measure(program):
+    rows, entries, hours = [], [], Hours(program)
+    everything = {SMOOTH: (*COUNTS,), ROUGH: (*COUNTS,), **NOISY_ROWS, FIXED: FIXED_SHARES}
+    for row, shares in everything.items():
+        found = search(program, hours, row, shares)
+        rows += found[0]
+        entries += found[1]
+    rows += slow_rows(program)
+    names = ["row", "alpha", "fraction", "peclet", "count", "grains", "state", "seeds", "lost", "transient"]
+    names += columns_of("viscosity", "pairs", "lubrication", "contact", "mean_overlap", "contacts_per_particle")
+    write_table(HERE / "table.csv", names, rows, 5)
+    write_table(HERE / "map.csv", MAP, entries, 6)
+    write_numbers(HERE / "numbers.csv", {"planned": (hours.planned, 0.0, 0), "taken": (hours.taken, 0.0, 0)})
+
+
+class Map:
+    """Volume fractions of jamming, by row and share of grains, and viscosities."""
+
+    def __init__(self):
+        self._entries = {(str(e["row"]), e["alpha"]): e for e in read_rows(HERE / "map.csv")}
+        self._rows = read_rows(HERE / "table.csv")
+
+    @staticmethod
+    def name(row):
+        return row if isinstance(row, str) else str(float(row))
+
+    def jammed(self, row, alpha):
+        return number(self._entries[self.name(row), alpha], "jammed")
+
+    def entry(self, row, alpha):
+        return self._entries[self.name(row), alpha]
+
+    def shares(self, row):
+        return sorted(alpha for name, alpha in self._entries if name == self.name(row))
+
+    def curve(self, row, alpha):
+        here = [r for r in self._rows if (str(r["row"]), r["alpha"]) == (self.name(row), alpha)]
+        return sorted(here, key=lambda r: r["fraction"])
+
+    def viscosity(self, row, alpha, fraction):
+        (found,) = [r for r in self.curve(row, alpha) if r["fraction"] == fraction]
+        return number(found, "viscosity")
+
+    def flowing(self, row, alpha):
+        return [r["fraction"] for r in self.curve(row, alpha) if r["state"] == "flowing"]
+
+    def largest_jump(self, row, alpha):
+        """Of the viscosity between neighbours that are no further apart than 0.01; infinite to what is jammed."""
+        curve = self.curve(row, alpha)
+        near = [(a, b) for a, b in zip(curve, curve[1:]) if b["fraction"] - a["fraction"] < 0.0101 and a["seeds"]]
+        steps = [
+            quotient(number(b, "viscosity"), number(a, "viscosity")) if b["seeds"] else (math.inf, 0.0) for a, b in near
+        ]
+        return max(steps)
+
+
+DEGREES = SEEDS - 1
+
+
+def power_of_ten(row):
+    return f"Pe_cg = {row:g}"
+
+
+def rows_of_curves(jams):
+    """Fig. 5.4 a: viscosities of one share of grains, and of colloids alone."""
+    both = max(set(jams.flowing(ROUGH, 0.4)) & set(jams.flowing(100, 0.4)))
+    ratio = quotient(jams.viscosity(100, 0.4, both), jams.viscosity(ROUGH, 0.4, both))
+    text = f"α = 0.4, φ = {both:g}, the densest that flows in both: η_r at Pe_cg = 100 over that without noise"
+    yield Statement(text, "L5.4a", *ratio, high=1 / 3, degrees=DEGREES)
+    shift = difference(jams.jammed(100, 0.4), jams.jammed(ROUGH, 0.4))
+    yield Statement("α = 0.4: φ_m at Pe_cg = 100 less that without noise", "L5.4a", *shift, -0.01, 0.01)
+    text = "α = 0.4: largest factor of η_r within Δφ = 0.01,"
+    yield Statement(f"{text} Pe_cg = 100", "L5.4a", *finite(jams.largest_jump(100, 0.4)), 5, degrees=DEGREES)
+    yield Statement(f"{text} without noise", "L5.4a", *finite(jams.largest_jump(ROUGH, 0.4)), high=5, degrees=DEGREES)
+    for alpha, rows in ((0, (100, 10, 1, 0.1)), (0.4, (100, 10))):
+        for fast, slow in zip(rows, rows[1:]):
+            rise = difference(jams.jammed(slow, alpha), jams.jammed(fast, alpha))
+            text = f"α = {alpha:g}: φ_m at Pe_cg = {slow:g} less that at {fast:g}"
+            yield Statement(text, "L5.4a", *rise, 0)
+    for fraction in (0.55, 0.6):
+        for slow, fast in ((0.1, 1), (1, 10)):
+            ratio = quotient(jams.viscosity(slow, 0, fraction), jams.viscosity(fast, 0, fraction))
+            text = f"α = 0, φ = {fraction:g}: η_r at Pe_cg = {slow:g} over that at {fast:g}"
+            yield Statement(text, "L5.4a", *ratio, 1, degrees=DEGREES)
+    lowered = difference(jams.jammed(1, 0), jams.jammed(ROUGH, 0))
+    yield Statement("α = 0: φ_m at Pe_cg = 1 less that without noise", "L 2.5", *lowered, 0.04)
+
+
+def finite(pair):
+    """A factor for a page; what is jammed is 10^6 times as viscous."""
+    return (1e6, 0.0) if math.isinf(pair[0]) else pair
+
+
+def rows_of_branches(jams):
+    """Fig. 5.4 b."""
+    for row, name in ((SMOOTH, "μ = 0, no noise"), (ROUGH, "no noise"), *((r, power_of_ten(r)) for r in (100, 10, 1))):
+        ends = difference(jams.jammed(row, 0), jams.jammed(row, 1))
+        yield Statement(f"{name}: φ_m of colloids alone less that of grains alone", "L5.4b", *ends, -0.004, 0.004)
+    for row, alone, name in ((SMOOTH, 0.64, "μ = 0, no noise"), (ROUGH, 0.57, "no noise"), (100, 0.57, "Pe_cg = 100")):
+        models = packing_models(alone).values()
+        left = [
+            min((difference(jams.jammed(row, a), (m(a), 0)) for m in models), key=lambda d: abs(d[0]))
+            for a in jams.shares(row)
+        ]
+        distance = propagated(left, lambda values: math.sqrt(float(np.mean(np.square(values)))))
+        text = f"{name}: rms distance of φ_m(α) from the nearer packing model"
+        yield Statement(text, "L5.4b", *distance, high=0.015, essential=False)
+    for row, name in ((SMOOTH, "μ = 0, no noise"), (ROUGH, "no noise"), (100, "Pe_cg = 100"), (10, "Pe_cg = 10")):
+        shares = jams.shares(row)
+        best = propagated([jams.jammed(row, a) for a in shares], lambda v, of=shares: float(of[int(np.argmax(v))]))
+        yield Statement(f"{name}: share α of grains at which φ_m is largest", "L5.3", *best, 0.6, 0.8)
+
+
+def interpolated(jams, alpha):
+    """phi_m where the Peclet number of the colloids is 1, linear in the logarithm of that of the mean radius."""
+    ends = jams.jammed(10, alpha), jams.jammed(100, alpha)
+    share = math.log10(mean_peclet(alpha, 1) / 10)
+    return propagated(ends, lambda v: v[0] + share * (v[1] - v[0]))
+
+
+def rows_of_fixed_number(jams):
+    """Fig. 5.5: Pe_c = 1."""
+    start = difference(jams.jammed(1, 0), jams.jammed(SMOOTH, 0))
+    yield Statement("Pe_c = 1, α = 0: φ_m less that without friction", "L5.5", *start, -0.01, 0.01)
+    below = {a: difference(jams.jammed(SMOOTH, a), jams.jammed(FIXED, a)) for a in FIXED_SHARES}
+    low, high = FIXED_SHARES
+    yield Statement(f"Pe_c = 1, α = {low:g}: how far φ_m is below that without friction", "L5.5", *below[low], 0)
+    further = difference(below[high], below[low])
+    yield Statement(f"Pe_c = 1: how much further below at α = {high:g} than at {low:g}", "L5.5", *further, 0)
+    for alpha in (0.9, 1):
+        end = difference(jams.jammed(100, alpha), jams.jammed(ROUGH, alpha))
+        text = f"Pe_c = 1 (Pe_cg = 100), α = {alpha:g}: φ_m less that with friction without noise"
+        yield Statement(text, "L5.5", *end, -0.01, 0.01)
+    for alpha in FIXED_SHARES:
+        off = difference(interpolated(jams, alpha), jams.jammed(FIXED, alpha))
+        text = f"Pe_c = 1, α = {alpha:g}: φ_m by interpolation of the map less that measured"
+        yield Statement(text, "L5.5", *off, -0.01, 0.01)
+
+
+def rows_of_addition(jams):
+    """Fig. 5.6: what is jammed at the beginning."""
+    for fraction in (0.6, 0.62):
+        room = over(jams.jammed(100, 0), fraction)
+        yield Statement(f"colloids alone, Pe_c = 100: φ_m/{fraction:g} (below 1: jammed)", "L5.6", *room, high=1)
+        for row in (1, 0.1):
+            room = over(jams.jammed(row, 0), fraction)
+            yield Statement(f"colloids alone, Pe_c = {row:g}: φ_m/{fraction:g} (above 1: flows)", "L5.6", *room, 1)
+    text = "grains alone, Pe_cg = 1: φ_m"
+    yield Statement(text, "L5.6", *jams.jammed(1, 1), 0.6, 0.625)
+    for fraction in (0.55, 0.6):
+        ratio = quotient(jams.viscosity(1, 0, fraction), jams.viscosity(0.1, 0, fraction))
+        text = f"colloids alone, φ = {fraction:g}: η_r at Pe_c = 1 over that at 0.1"
+        yield Statement(text, "L5.6", *ratio, high=1, degrees=DEGREES)
+
+
+def rows_of_slow_flow(jams):
+    """Fig. 5.6 a: grains alone at the smallest Peclet number of the colloids."""
+    name = f"Pe_c = {SLOWEST:g}"
+    dense = jams.viscosity(SLOW, 1, 0.6)
+    yield Statement(f"{name}: η_r of grains alone, φ = 0.6 (flows)", "L5.6", *dense, 100, degrees=DEGREES)
+    jammed = float(0.62 not in jams.flowing(SLOW, 1))
+    yield Statement(f"{name}: grains alone, φ = 0.62, 1 for jammed", "L5.6", jammed, 0, 1, 1)
+
+
+def judge():
+    jams, numbers = Map(), read_numbers(HERE / "numbers.csv")
+    yield from rows_of_curves(jams)
+    yield from rows_of_branches(jams)
+    yield from rows_of_fixed_number(jams)
+    yield from rows_of_addition(jams)
+    yield from rows_of_slow_flow(jams)
+    widest = max(abs(e["stuck"] - e["flowing"]) for e in read_rows(HERE / "map.csv"))
+    yield Check("widest bracket of a φ_m", "bisection", widest, 0, high=0.0101)
+    ratio = numbers["planned"][0] / numbers["taken"][0]
+    yield Check("hours of the first rounds: planned over taken", "`peclet plan`", ratio, 0, 0.5, 2)
+
+
+def draw():
+    jams = Map()
+    figure = Figure(HERE / "chart.png", columns=2)
+    ends = {"x_range": (-0.02, 1.02), "y_range": (0.53, 0.82)}
+    panel = figure.panel("share of grains α", "φ_m", "the map", key="top left", **ends)
+    for alone, colour in ((0.64, BLUE), (0.57, RED)):
+        for dash, model in zip((1, 2), packing_models(alone).values()):
+            panel.curve(model, None, colour, span=(0, 1), samples=81, dash=dash)
+    styles = {
+        SMOOTH: ("μ = 0, no noise", BLUE, 7),
+        0.1: ("Pe_{cg} = 0.1", PURPLE, 13),
+        1: ("Pe_{cg} = 1", BLACK, 9),
+        10: ("Pe_{cg} = 10", GREEN, 5),
+        100: ("Pe_{cg} = 100", ORANGE, 11),
+        ROUGH: ("no noise", RED, 7),
+        FIXED: ("Pe_c = 1", GREY, 4),
+    }
+    for row, (title, colour, mark) in styles.items():
+        panel.points([(a, *jams.jammed(row, a)) for a in jams.shares(row)], title, colour, mark)
+    range_ = {"x_range": (0.54, 0.74), "y_range": (10, 1e4)}
+    panel = figure.panel("φ", "η_r", "α = 0.4 (filled) and 0 (open)", log="y", key="top right", **range_)
+    for alpha, marks in ((0.4, 7), (0, 6)):
+        for row in (0.1, 1, 10, 100, ROUGH):
+            title, colour, _ = styles[row]
+            if alpha in jams.shares(row):
+                places = [(r["fraction"], *number(r, "viscosity")) for r in jams.curve(row, alpha) if r["seeds"]]
+                named = title if alpha == 0 else None
+                panel.points(places, named, colour, marks, joined=True)
+    figure.draw()
+
+
+def quick_measure(program):
+    """Colloids alone at a volume fraction at which friction jams them, with noise that keeps them apart and without."""
+    for name, scene, row, jammed in (("without noise", SCENE, ROUGH, 1), ("Pe_c = 1", NOISY, FIXED, 0)):
+        rough = merged(scene, {"contact": {"friction": 1}})
+        settings = [{**setting(0, 0.605, row), "/particles/count": 200}]
+        program.run(f"quick-{row}", rough, settings, 4)
+        (point,) = curves_of(program, f"quick-{row}", 0)[0]["points"]
+        text = f"colloids alone, φ = 0.605, {name}: 1 for jammed"
+        yield Statement(text, "L5.4b", float(point["state"] != "flowing"), 0, jammed, jammed)
+
+
+main(HERE, TITLE, measure, quick_measure, judge, draw)
