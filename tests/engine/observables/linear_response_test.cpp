@@ -79,7 +79,8 @@ SymmetricTensor with_components(const std::array<double, 5>& c) {
 Json response_of_dumbbells(const Scene& scene, std::uint64_t seed, double sign_of_dissipation) {
   constexpr std::uint64_t steps = 20'000;
   constexpr double dt = 0.02;
-  auto observable = std::move(make_observables(scene, loose_spheres(2), {dt, steps, edge}).front());
+  auto observable =
+      std::move(make_observables(scene, loose_spheres(2), {dt, steps, {edge, edge, edge}}).front());
   std::vector<Dumbbell> dumbbells;
   for (std::uint64_t c = 0; c < 5; ++c) {
     dumbbells.emplace_back(scene.method == Method::implicit_steps, dt, 5 * seed + c);
@@ -196,7 +197,8 @@ TEST(LinearResponse, CountsFiveComponentsAlike) {
   for (const SymmetricTensor& flux :
        {SymmetricTensor{.xy = 1}, SymmetricTensor{.xx = 1},
         SymmetricTensor{.xx = 1, .yy = -2, .zz = 0.5, .yz = 3}, SymmetricTensor{.xx = 4, .yy = 4, .zz = 4}}) {
-    auto observable = std::move(make_observables(scene, loose_spheres(2), {timestep, 1024, edge}).front());
+    auto observable =
+        std::move(make_observables(scene, loose_spheres(2), {timestep, 1024, {edge, edge, edge}}).front());
     for (int step = 0; step < 1024; ++step) observable->take_flux({flux, {}, {}});
     const double trace = flux.xx + flux.yy + flux.zz;
     const double square = (flux.xx * flux.xx + flux.yy * flux.yy + flux.zz * flux.zz) / 2 -

@@ -27,13 +27,15 @@ TEST(Observables, ThatASceneMayListAreThoseThatAreMeasured) {
 TEST(Observables, AreAbsentUnlessAskedFor) {
   const System system = loose_spheres(2);
   EXPECT_TRUE(
-      make_observables(read_scene(small_scene(), "scene.json"), system, {timestep, 256, edge}).empty());
+      make_observables(read_scene(small_scene(), "scene.json"), system, {timestep, 256, {edge, edge, edge}})
+          .empty());
 }
 
 TEST(Observables, NeedAWindowWithSamples) {
   const Scene scene = scene_with("mean_squared_displacement", {{"interval", 20}});
-  EXPECT_THROW(check_observables(scene, {timestep, 256, edge}, "scene.json"), InputError);  // 7 samples
-  EXPECT_NO_THROW(check_observables(scene, {timestep, 281, edge}, "scene.json"));           // 8
+  EXPECT_THROW(check_observables(scene, {timestep, 256, {edge, edge, edge}}, "scene.json"),
+               InputError);                                                                      // 7 samples
+  EXPECT_NO_THROW(check_observables(scene, {timestep, 281, {edge, edge, edge}}, "scene.json"));  // 8
 }
 
 }  // namespace

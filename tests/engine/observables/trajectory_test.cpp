@@ -276,13 +276,13 @@ TEST(Trajectory, HasAnIntervalInStrainTimeOrBrownianTimes) {
 TEST(Trajectory, IsRefusedWhereNobodyCouldKeepIt) {
   const Scene scene = read_scene(scene_with_trajectory(), "scene.json");
   const auto check = trajectory().check;
-  EXPECT_NO_THROW(check(scene, {0.002, 50'000, 8}, "scene.json"));
-  EXPECT_THROW(check(scene, {0.002, 50'001, 8}, "scene.json"), InputError);
+  EXPECT_NO_THROW(check(scene, {0.002, 50'000, {8, 8, 8}}, "scene.json"));
+  EXPECT_THROW(check(scene, {0.002, 50'001, {8, 8, 8}}, "scene.json"), InputError);
   // 10^6 spheres of 76 bytes and 6 contacts of 21 each, in 4 GiB: 21 frames.
   Scene large = scene;
   large.particles.count = 1'000'000;
-  EXPECT_NO_THROW(check(large, {0.002, 21, 8}, "scene.json"));
-  EXPECT_THROW(check(large, {0.002, 22, 8}, "scene.json"), InputError);
+  EXPECT_NO_THROW(check(large, {0.002, 21, {8, 8, 8}}, "scene.json"));
+  EXPECT_THROW(check(large, {0.002, 22, {8, 8, 8}}, "scene.json"), InputError);
   EXPECT_THROW(read_scene(scene_with_trajectory({{"contact", nullptr}}), "scene.json"), InputError);
 }
 

@@ -30,6 +30,7 @@ LawCurve exact(const CommonTruth& truth, double relative = 0.01) {
 
 std::vector<LawCurve> all_exact(double relative = 0.01) {
   std::vector<LawCurve> curves;
+  curves.reserve(truths.size());
   for (const CommonTruth& truth : truths) curves.push_back(exact(truth, relative));
   return curves;
 }
