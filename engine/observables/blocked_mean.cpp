@@ -67,4 +67,19 @@ void BlockedMean::load(ArchiveReader& archive) {
   block_weights_ = archive.get_vector<double>(block_weights_.size());
 }
 
+Json values_of(std::span<const BlockedMean> means) {
+  Json list = Json::array();
+  for (const BlockedMean& mean : means) list.push_back(mean.value());
+  return list;
+}
+
+Json blocks_of(std::span<const BlockedMean> means) {
+  Json list(count_of_quarters, Json::array());
+  for (const BlockedMean& mean : means) {
+    const Json quarters = mean.blocks();
+    for (std::size_t k = 0; k < count_of_quarters; ++k) list[k].push_back(quarters[k]);
+  }
+  return list;
+}
+
 }  // namespace peclet::engine

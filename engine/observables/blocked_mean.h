@@ -58,4 +58,15 @@ class BlockedMean {
   std::vector<double> block_weights_;
 };
 
+// Of several lists: a list of their values; and for each block a list of theirs. Requires that blocks are
+// kept.
+Json values_of(std::span<const BlockedMean> means);
+Json blocks_of(std::span<const BlockedMean> means);
+
+// The bin of a periodic box, of which there are `count`, that bin `k` of the plane is.
+inline std::size_t periodic_bin(std::int64_t k, std::size_t count) {
+  const auto bins = static_cast<std::int64_t>(count);
+  return static_cast<std::size_t>((k % bins + bins) % bins);
+}
+
 }  // namespace peclet::engine

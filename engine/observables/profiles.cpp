@@ -57,12 +57,11 @@ class Profiles : public Observable {
       variance_.add(place, relative);
       const double a = particles.radius[i];
       BlockedMean& own = of_radius_[particles.size_class[i]];
-      const auto count = static_cast<std::int64_t>(bins_);
       const auto last = static_cast<std::int64_t>(std::floor((place.y + a) / width));
       for (auto k = static_cast<std::int64_t>(std::floor((place.y - a) / width)); k <= last; ++k) {
         const double below = static_cast<double>(k) * width - place.y;
         const double share = (volume_below(below + width, a) - volume_below(below, a)) / bin_volume;
-        const auto bin = static_cast<std::size_t>((k % count + count) % count);
+        const std::size_t bin = periodic_bin(k, bins_);
         volume_fraction_.add(block, bin, share);
         flux_.add(block, bin, share * velocity);
         own.add(block, bin, share);
@@ -73,20 +72,14 @@ class Profiles : public Observable {
   }
 
   void add_to(Json& mean) const override {
-    Json by_radius = Json::array();
-    for (const BlockedMean& own : of_radius_) by_radius.push_back(own.value());
-    Json& profiles = mean["profiles"] = of(volume_fraction_.value(), flux_.value(), by_radius);
+    Json& profiles = mean["profiles"] = of(volume_fraction_.value(), flux_.value(), values_of(of_radius_));
     profiles["velocity_variance"] = variance_.value();
     stress_.add_to(profiles);
   }
   void add_blocks_to(Json& blocks) const override {
     if (blocks_kept(bins_) == 0) return;
-    Json by_radius(count_of_quarters, Json::array());  // in each quarter all radii
-    for (const BlockedMean& own : of_radius_) {
-      const Json quarters = own.blocks();
-      for (std::size_t k = 0; k < count_of_quarters; ++k) by_radius[k].push_back(quarters[k]);
-    }
-    Json& profiles = blocks["profiles"] = of(volume_fraction_.blocks(), flux_.blocks(), by_radius);
+    Json& profiles = blocks["profiles"] =
+        of(volume_fraction_.blocks(), flux_.blocks(), blocks_of(of_radius_));
     stress_.add_blocks_to(profiles);
   }
 

@@ -14,14 +14,13 @@ namespace {
 template <class Visit>
 void share_line(double y, double way, double width, std::size_t bins, Visit&& visit) {
   const double low = std::min(y, y + way) / width, high = std::max(y, y + way) / width;
-  const auto count = static_cast<std::int64_t>(bins);
   const auto first = static_cast<std::int64_t>(std::floor(low));
   const auto last = std::max(first, static_cast<std::int64_t>(std::ceil(high)) - 1);
   for (std::int64_t k = first; k <= last; ++k) {
     const auto bottom = static_cast<double>(k);
     const double part =
         first == last ? 1 : (std::min(high, bottom + 1) - std::max(low, bottom)) / (high - low);
-    visit(static_cast<std::size_t>((k % count + count) % count), part);
+    visit(periodic_bin(k, bins), part);
   }
 }
 
@@ -76,8 +75,7 @@ void StressProfile::add_drag(const System& system) {
                          (flow.velocity(x, a) - particles.velocity[i]);
     // Between the boundaries below and above.
     const double place = x.y / width_, bottom = std::floor(place);
-    const auto count = static_cast<std::int64_t>(bins_);
-    const auto below = static_cast<std::size_t>((static_cast<std::int64_t>(bottom) % count + count) % count);
+    const std::size_t below = periodic_bin(static_cast<std::int64_t>(bottom), bins_);
     step_drag_[below] += (1 - (place - bottom)) * drag;
     step_drag_[(below + 1) % bins_] += (place - bottom) * drag;
   }
@@ -129,21 +127,6 @@ void StressProfile::add_step(std::size_t block) {
   std::ranges::fill(step_drag_, Vector3{});
 }
 
-Json StressProfile::rows(const auto& means, bool blocks) const {
-  Json list = Json::array();
-  if (!blocks) {
-    for (const BlockedMean& mean : means) list.push_back(mean.value());
-    return list;
-  }
-  // In each quarter all components.
-  for (std::size_t k = 0; k < count_of_quarters; ++k) list.push_back(Json::array());
-  for (const BlockedMean& mean : means) {
-    const Json quarters = mean.blocks();
-    for (std::size_t k = 0; k < count_of_quarters; ++k) list[k].push_back(quarters[k]);
-  }
-  return list;
-}
-
 Json StressProfile::imbalance() const {
   double left = 0, largest = 0;
   for (std::size_t c = 0; c < count_of_flux_components; ++c) {
@@ -158,20 +141,20 @@ Json StressProfile::imbalance() const {
 }
 
 void StressProfile::add_to(Json& profiles) const {
-  profiles["stress"]["pairs"] = rows(stress_, false);
+  profiles["stress"]["pairs"] = values_of(stress_);
   for (std::size_t t = 0; t < terms_.size(); ++t)
-    profiles["stress"][name_of(terms_[t])] = rows(by_term_[t], false);
+    profiles["stress"][name_of(terms_[t])] = values_of(by_term_[t]);
   if (!has_balance(physics_)) return;
-  profiles["momentum_flux"] = rows(flux_, false);
-  profiles["drag"] = rows(drag_, false);
+  profiles["momentum_flux"] = values_of(flux_);
+  profiles["drag"] = values_of(drag_);
   profiles["momentum_imbalance"] = imbalance();
 }
 
 void StressProfile::add_blocks_to(Json& profiles) const {
-  profiles["stress"]["pairs"] = rows(stress_, true);
+  profiles["stress"]["pairs"] = blocks_of(stress_);
   if (!has_balance(physics_)) return;
-  profiles["momentum_flux"] = rows(flux_, true);
-  profiles["drag"] = rows(drag_, true);
+  profiles["momentum_flux"] = blocks_of(flux_);
+  profiles["drag"] = blocks_of(drag_);
 }
 
 template <class Self, class Function>

@@ -49,7 +49,6 @@ class StressProfile final : public PairWatcher {
 
   template <class Self, class Function>
   static void for_each(Self& self, Function&& function);
-  Json rows(const auto& means, bool blocks) const;
   Json imbalance() const;
   void add_drag(const System& system);
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "engine/observables/blocked_mean.h"
+
 namespace peclet::engine {
 namespace {
 
@@ -22,9 +24,8 @@ VelocityVariance::VelocityVariance(double height, double reference_radius, std::
       squares_(samples_.size()) {}
 
 void VelocityVariance::add(const Vector3& place, const Vector3& velocity) {
-  const auto count = static_cast<std::int64_t>(samples_.size());
-  const auto k = static_cast<std::int64_t>(std::floor(place.y / height_ * static_cast<double>(count)));
-  const auto slab = static_cast<std::size_t>((k % count + count) % count);
+  const double k = std::floor(place.y / height_ * static_cast<double>(samples_.size()));
+  const std::size_t slab = periodic_bin(static_cast<std::int64_t>(k), samples_.size());
   ++samples_[slab];
   sums_[slab] += velocity;
   squares_[slab] += {velocity.x * velocity.x, velocity.y * velocity.y, velocity.z * velocity.z};

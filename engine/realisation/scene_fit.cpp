@@ -43,8 +43,7 @@ void check_fit(const Scene& scene, const Schedule& schedule, const std::string& 
   if (!(edge > range)) {
     throw InputError(file, "/particles/count", std::to_string(scene.particles.count),
                      fmt::format("must fill a box larger than the range of the forces, {:.4g}, at this "
-                                 "volume fraction (its shortest "
-                                 "edge would be {:.4g})",
+                                 "volume fraction (its shortest edge would be {:.4g})",
                                  range, edge));
   }
   check_observables(scene, {schedule.timestep, schedule.production, box}, file);

@@ -155,16 +155,16 @@ Keys volume_fraction_keys() {
                             "Volume of the particles over that of the box; below 0.74 without a mixture."),
                    densest_of_two_groups)),
       addition,
+      must_be_given(choice("/addition/added", "Which group is added.", {"colloids", "grains"})),
+      fraction(positive("/addition/base_volume_fraction", "",
+                        "Volume fraction before, of the other group alone.", required),
+               densest_of_one_size),
       block("/box", "The periodic box; absent: a cube."),
       positive(
           "/box/height", "length",
           "Edge along y, the direction of the velocity gradient. The other two are equal; the volume follows "
           "from spheres and volume fraction.",
           required),
-      must_be_given(choice("/addition/added", "Which group is added.", {"colloids", "grains"})),
-      fraction(positive("/addition/base_volume_fraction", "",
-                        "Volume fraction before, of the other group alone.", required),
-               densest_of_one_size),
   };
 }
 

@@ -101,7 +101,12 @@ def table_of(path, names):
     missing = [name for name in names if not rows or name not in rows[0]]
     if missing:
         refuse(f"{path}: no column {missing[0]}; must be a table of `learn.py bins`")
+    words = [r[name] for r in rows for name in names if isinstance(r[name], str)]
+    if words:
+        refuse(f"{path}: {words[0]}: must be a number")
     whole = [r for r in rows if all(np.isfinite(r[name]) for name in names)]
+    if len(whole) < len(rows):
+        warn(f"{path}: {len(rows) - len(whole)} of {len(rows)} rows are left out: they lack a number")
     return columns_of_rows(whole, names), np.array([r["flow"] for r in whole])
 
 
@@ -136,9 +141,9 @@ def train(arguments):
     table, flows = table_of(arguments.table, [*dict.fromkeys([*inputs, output, "mean"])])
     with open(arguments.table, "rb") as f:
         digest = hashlib.sha256(f.read()).hexdigest()
+    methods[arguments.method].fit(table)  # before anything is written
     provenance = {"table": os.path.abspath(arguments.table), "sha256": digest, "flows": sorted(set(flows))}
     save_model(arguments.model, arguments.method, inputs, output, table, provenance)
-    open_model(arguments.model)
 
 
 def errors(arguments):

@@ -11,7 +11,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
-from studies.compositions import MIXTURE_SCENE, grains_among, mean_peclet, packing_models
+from studies.compositions import MIXTURE_SCENE, grains_among, mean_peclet, packing_models, windows
 from studies.estimates import difference, over, propagated, quotient
 from studies.figure import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
 from studies.scenes import merged
@@ -48,14 +48,6 @@ ABOUT, SLOWER = (-0.02, 0, 0.02), (0, 0.03, 0.06)
 ALONE = {100: (0.55, 0.58, 0.6), 10: (0.55, 0.6, 0.63), 1: (0.55, 0.6, 0.63), 0.1: (0.55, 0.6, 0.63)}
 NARROW, ROUNDS = 0.0101, 6  # a bracket that is narrower is not halved again
 SOFTEST = 0.003  # mean overlap of what counts as jammed; noise alone makes 0.0009 where it is strongest
-
-
-def windows(alpha, peclet):
-    """Strains before and of the measurement, by the Peclet number of the colloids: where diffusion outruns the flow
-    less is needed, though not by grains."""
-    slow = math.sqrt(125 * peclet) if alpha == 1 else max(math.sqrt(peclet), 0.5 if alpha else 0)
-    before = round(min(1, slow), 2)
-    return {"/duration/equilibration/strain": before, "/duration/production/strain": 1.5 * before}
 
 
 def setting(alpha, fraction, row):
@@ -259,7 +251,7 @@ class Map:
 DEGREES = SEEDS - 1
 
 
-def power_of_ten(row):
+def name_of_row(row):
     return f"Pe_cg = {row:g}"
 
 
@@ -295,7 +287,7 @@ def finite(pair):
 
 def rows_of_branches(jams):
     """Fig. 5.4 b."""
-    for row, name in ((SMOOTH, "μ = 0, no noise"), (ROUGH, "no noise"), *((r, power_of_ten(r)) for r in (100, 10, 1))):
+    for row, name in ((SMOOTH, "μ = 0, no noise"), (ROUGH, "no noise"), *((r, name_of_row(r)) for r in (100, 10, 1))):
         ends = difference(jams.jammed(row, 0), jams.jammed(row, 1))
         yield Statement(f"{name}: φ_m of colloids alone less that of grains alone", "L5.4b", *ends, -0.004, 0.004)
     for row, alone, name in ((SMOOTH, 0.64, "μ = 0, no noise"), (ROUGH, 0.57, "no noise"), (100, 0.57, "Pe_cg = 100")):

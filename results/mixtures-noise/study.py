@@ -11,7 +11,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
-from studies.compositions import MIXTURE_SCENE, colloids_added, grains_added, grains_among, mean_peclet
+from studies.compositions import MIXTURE_SCENE, colloids_added, grains_added, grains_among, mean_peclet, windows
 from studies.estimates import estimate, logarithm, over, propagated, quotient
 from studies.figure import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
 from studies.fits import log_minimum, log_of_rise, log_of_share, thickening_decades
@@ -41,13 +41,6 @@ MEANS = (3, 10, 30, 100, 1e3, 1e5)  # Peclet numbers of the mean radius there
 SEEDS = 4
 # Slopes of ln eta over ln k_n: of what is jammed, which flows only because spheres are soft, and of what flows.
 JAMMED, FLOWING = 0.5, 0.2
-
-
-def windows(alpha, peclet):
-    """Strains before and of the measurement: where diffusion outruns the flow less is needed, though not by grains."""
-    slow = math.sqrt(125 * peclet) if alpha == 1 else max(math.sqrt(peclet), 0.5 if alpha else 0)
-    before = round(min(1, slow), 2)
-    return {"/duration/equilibration/strain": before, "/duration/production/strain": 1.5 * before}
 
 
 def rows_of(program, part, cases, stiffness=STIFFNESS, count_times=1, besides=None):

@@ -1,5 +1,6 @@
 """Colloids of radii 1 and 1.4 among grains of radii 5 and 7, and the ways on which one is added to the other."""
 import functools
+import math
 
 import numpy as np
 
@@ -51,6 +52,14 @@ def grains_added(alpha, base):
 def mean_peclet(alpha, number):
     """Of the mean radius (1 - alpha) a_c + alpha a_g, where the colloids have this Peclet number."""
     return number * (1 - alpha + alpha * GRAINS[0] / COLLOIDS[0]) ** 3
+
+
+def windows(alpha, peclet):
+    """Strains before and of the measurement, by the Peclet number of the colloids: where diffusion outruns the flow
+    less is needed, though not by grains."""
+    slow = math.sqrt(125 * peclet) if alpha == 1 else max(math.sqrt(peclet), 0.5 if alpha else 0)
+    before = round(min(1, slow), 2)
+    return {"/duration/equilibration/strain": before, "/duration/production/strain": 1.5 * before}
 
 
 @functools.cache

@@ -190,11 +190,11 @@ QUANTITIES = (
 
 
 def profile_of(flow, profiles):
-    """Of mean.profiles of a result, or of one of its quarters."""
+    """Of mean.profiles of a result."""
     fraction = np.array(profiles["volume_fraction"], float)
     velocity = np.array(profiles["velocity"]["flux"], float) / fraction
-    variance = np.array(profiles.get("velocity_variance", np.full((3, flow.bins), math.nan)), float)
-    return Profile(flow, fraction, velocity, np.array(profiles["stress"]["pairs"], float), variance)
+    stress, variance = (np.array(rows, float) for rows in (profiles["stress"]["pairs"], profiles["velocity_variance"]))
+    return Profile(flow, fraction, velocity, stress, variance)
 
 
 def mean_profile(flow, profiles):

@@ -43,11 +43,10 @@ def matrix(table, names):
     return np.column_stack([in_logarithms(name, table[name]) for name in names])
 
 
-def relative_error(found, true, lowest, highest, weights=None):
+def relative_error(found, true, lowest, highest):
     """Of min-max scaled values (Li's Eqs 6.4 and 6.6): |y' - y^'| / |y'| as Euclidean norms."""
     scaled = [(np.asarray(values) - lowest) / (highest - lowest) for values in (found, true)]
-    weights = np.ones(len(true)) if weights is None else weights
-    return math.sqrt(float(np.sum(weights * (scaled[0] - scaled[1]) ** 2) / np.sum(weights * scaled[1] ** 2)))
+    return math.sqrt(float(np.sum((scaled[0] - scaled[1]) ** 2) / np.sum(scaled[1] ** 2)))
 
 
 def not_zero(spans):
@@ -131,8 +130,8 @@ class LawOfFraction(Method):
 
 
 class LawOfFluctuations(Method):
-    """ln of the output as a polynomial of second degree in ln J, whose coefficients Eqs 6.8 and 6.9 give in pieces,
-    and linear in the logarithm of the second input and in the mean fraction."""
+    """The output, or its logarithm, as a polynomial of second degree in ln J and the second input, and linear in the
+    mean fraction: seven parameters, in the place of the pieces of Eqs 6.8 and 6.9."""
 
     def _terms(self, table):
         j = in_logarithms("J", table["J"])

@@ -97,7 +97,8 @@ class Solution:
 
 
 def solve(flow, law, most=4000, tolerance=1e-6):
-    """The profile of a studies.inhomogeneous.Flow, by iteration with a damping of a tenth."""
+    """The profile of a studies.inhomogeneous.Flow, by iteration with a damping of a tenth. Raises ArithmeticError where
+    that comes to no end."""
     driving, width = flow.driving_of_bins(), flow.height / flow.bins
     velocity, fraction = 0.9 * driving, np.full(flow.bins, flow.fraction)
     pressure = 20 * VISCOSITY * flow.largest_rate()
@@ -116,5 +117,5 @@ def solve(flow, law, most=4000, tolerance=1e-6):
         # Denser at a larger pressure.
         pressure *= math.exp(np.clip(3 * (flow.fraction - float(wanted.mean())), -0.1, 0.1))
         if change < tolerance and abs(float(wanted.mean()) - flow.fraction) < tolerance:
-            break
-    return Solution(velocity, fraction, rates_of(velocity, width), pressure, mu, step)
+            return Solution(velocity, fraction, rates_of(velocity, width), pressure, mu, step)
+    raise ArithmeticError(f"{flow.name}: no solution after {most} iterations: the last one changed it by {change:.2g}")

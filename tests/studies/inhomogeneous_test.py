@@ -9,7 +9,7 @@ import unittest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "results"))
 from studies.inhomogeneous import MEAN_VOLUME, VISCOSITY, Flow, bin_rows, growth, profile_of, wave, waves_of
 from studies.learning import LawOfFraction, Published, left_out, relative_error
-from studies.profile_solver import DRAG, rates_of, spread, velocity_of
+from studies.profile_solver import DRAG, Law, rates_of, solve, spread, velocity_of
 
 import numpy as np
 
@@ -137,6 +137,47 @@ class Solver(unittest.TestCase):
 
     def test_rates_are_central_differences_around_the_box(self):
         np.testing.assert_allclose(rates_of(np.array([0.0, 1.0, 4.0, 9.0]), 0.5), [-8, 4, 8, -4])
+
+    class OfOneViscosity:
+        """mu = 3 J, and the mean volume fraction everywhere."""
+
+        reach = 1.0
+
+        def source(self, fraction, rate):
+            return np.abs(rate)
+
+        def __call__(self, j, theta):
+            return 3 * j, np.full(len(j), FLOW.fraction)
+
+    def test_a_law_of_one_viscosity_gives_its_fluid(self):
+        """sigma = mu P = 3 eta du/dy, whatever the pressure."""
+        found = solve(FLOW, self.OfOneViscosity())
+        bend = (2 / 2.0 * math.sin(2 * math.pi / 50 * 2.0 / 2)) ** 2
+        lag = 1 + 3 * VISCOSITY * bend / (DRAG * FLOW.fraction)
+        np.testing.assert_allclose(found.velocity, FLOW.driving_of_bins() / lag, atol=1e-6)
+        np.testing.assert_allclose(found.fraction, FLOW.fraction)
+
+    def test_what_comes_to_no_end_is_said(self):
+        with self.assertRaises(ArithmeticError):
+            solve(FLOW, self.OfOneViscosity(), most=3)
+
+    def test_a_law_is_found_with_its_reach(self):
+        """Bins whose Theta is spread by 3, and whose mu and phi are those of a law of second degree."""
+        y = (np.arange(50) + 0.5) * 2
+        uniform = {"fraction": np.array([0.4, 0.5, 0.6]), "J": np.full(3, 1e-2)}
+        uniform["Theta"] = uniform["J"] * np.exp(1 + 2 * uniform["fraction"])
+        tables = []
+        for amplitude in (0.1, 0.3):
+            rate = amplitude * np.cos(2 * math.pi * y / 100 + 0.03)  # nowhere zero
+            table = {"fraction": 0.5 - 0.05 * np.cos(4 * math.pi * y / 100), "rate": rate, "pressure": np.full(50, 2.0)}
+            made = spread(np.exp(1 + 2 * table["fraction"]) * np.abs(rate), 100, 3.0)
+            table["J"], table["Theta"] = VISCOSITY * np.abs(rate) / 2, VISCOSITY * made / 2
+            table["mu"] = np.exp(0.3 + 0.5 * np.log(table["J"]) - 0.2 * np.log(table["Theta"]))
+            tables.append(table)
+        law = Law(tables, uniform, [100, 100])
+        self.assertAlmostEqual(law.reach, 3.0)
+        mu, _ = law(tables[0]["J"], tables[0]["Theta"])
+        np.testing.assert_allclose(mu, tables[0]["mu"], rtol=1e-8)
 
 
 if __name__ == "__main__":

@@ -135,12 +135,21 @@ class Learn(unittest.TestCase):
         self.assertEqual(code, 2)
         self.assertIn("bins of 1 flow", words)
 
+    def test_rows_that_lack_a_number_are_told(self):
+        table = self.table()
+        table.write_text(table.read_text() + "c,0.5,,0.5,1\n")
+        code, _, errors = self.learn("train", "bins.csv", "--inputs", "J", "--output", "mu", "--model", "m")
+        self.assertEqual(code, 0)
+        self.assertIn("1 of 37 rows are left out", errors)
+
     def test_what_is_not_there_is_refused(self):
         self.table()
+        (self.folder / "words.csv").write_text("flow,mean,J,mu\na,0.5,often,1\n")
         for words, said in (
             (("train", "bins.csv", "--inputs", "J", "--output", "nu", "--model", "m"), "nu: must be one of"),
             (("train", "bins.csv", "--inputs", "J", "Theta", "--output", "mu", "--model", "m"), "no column Theta"),
             (("train", "no.csv", "--inputs", "J", "--output", "mu", "--model", "m"), "no.csv: No such file"),
+            (("train", "words.csv", "--inputs", "J", "--output", "mu", "--model", "m"), "often: must be a number"),
             (("predict", "bins.csv", "bins.csv"), "bins.csv: Expecting value"),
             (("predict", "no.json", "bins.csv"), "no.json: No such file"),
         ):
