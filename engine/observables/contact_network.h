@@ -8,8 +8,8 @@
 
 #include <vector>
 
+#include "engine/averages/blocked_mean.h"
 #include "engine/kernels/pairs/pair_kinds.h"
-#include "engine/observables/blocked_mean.h"
 #include "engine/observables/kinds.h"
 #include "engine/terms/contact.h"
 

@@ -13,7 +13,7 @@ namespace peclet::engine {
 namespace {
 
 // Up to nearly half of the window.
-std::size_t levels_of(std::uint64_t steps) {
+std::size_t levels_to_half_of(std::uint64_t steps) {
   std::size_t levels = 1;
   while ((std::uint64_t{32} << levels) <= steps) ++levels;
   return levels;
@@ -32,7 +32,7 @@ double lag_time(std::uint64_t lag, double timestep) { return timestep * static_c
 
 // Of a step and the partner of the one before, a lag of 0 is one step.
 std::vector<std::uint64_t> correlation_lags(std::uint64_t steps) {
-  std::vector<std::uint64_t> lags = MultipleTau::lags(levels_of(steps), steps - 2);
+  std::vector<std::uint64_t> lags = MultipleTau::lags(levels_to_half_of(steps), steps - 2);
   for (std::uint64_t& lag : lags) ++lag;
   return lags;
 }
@@ -57,8 +57,9 @@ std::vector<double> times_of(const std::vector<std::uint64_t>& lags, double time
 }
 
 std::vector<Quantity> response_quantities(const Scene&, const Window& window) {
-  const Axis time = axis_of(
-      "time", "time", times_of(SquaredSums::lengths(levels_of(window.steps), window.steps), window.timestep));
+  const Axis time =
+      axis_of("time", "time",
+              times_of(SquaredSums::lengths(levels_to_half_of(window.steps), window.steps), window.timestep));
   const Axis lag = axis_of("lag", "time", times_of(correlation_lags(window.steps), window.timestep));
   const Axis frequency = axis_of("frequency", "1 / time", frequencies(window));
   return {{.name = "zero_shear_viscosity", .symbol = "eta_r(0)", .unit = "1"},
@@ -81,8 +82,8 @@ LinearResponse::LinearResponse(const Scene& scene, const System& system, const W
       factor_(1 / (system.box.volume() * scene.physics.viscosity * scene.physics.thermal_energy)),
       background_(1 + stresslet(scene.volume_fraction, {.xy = 1}).xy),
       velocities_are_found_(scene.method == Method::implicit_steps),
-      sums_(components, SquaredSums(levels_of(window.steps))),
-      correlators_(components, MultipleTau(levels_of(window.steps))) {}
+      sums_(components, SquaredSums(levels_to_half_of(window.steps))),
+      correlators_(components, MultipleTau(levels_to_half_of(window.steps))) {}
 
 LinearResponse::Components LinearResponse::components_of(const SymmetricTensor& s) {
   return {s.xy, s.xz, s.yz, (s.xx - s.yy) / 2, (s.xx + s.yy - 2 * s.zz) / (2 * std::numbers::sqrt3)};

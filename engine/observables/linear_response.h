@@ -31,9 +31,9 @@
 #include <complex>
 #include <vector>
 
+#include "engine/averages/multiple_tau.h"
+#include "engine/averages/squared_sums.h"
 #include "engine/observables/kinds.h"
-#include "engine/observables/multiple_tau.h"
-#include "engine/observables/squared_sums.h"
 
 namespace peclet::engine {
 

@@ -17,7 +17,7 @@
 #include <array>
 #include <vector>
 
-#include "engine/observables/blocked_mean.h"
+#include "engine/averages/blocked_mean.h"
 #include "engine/observables/kinds.h"
 
 namespace peclet::engine {

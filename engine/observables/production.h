@@ -4,8 +4,8 @@
 #include <array>
 #include <span>
 
+#include "engine/averages/blocked_mean.h"
 #include "engine/kernels/pair_pass.h"
-#include "engine/observables/blocked_mean.h"
 #include "engine/observables/structure.h"
 #include "engine/state/archive.h"
 

@@ -14,7 +14,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/observables/blocked_mean.h"
+#include "engine/averages/blocked_mean.h"
 #include "engine/observables/kinds.h"
 #include "engine/observables/stress_profile.h"
 #include "engine/observables/velocity_variance.h"

@@ -7,8 +7,8 @@ namespace {
 
 constexpr std::array<double, 6> weights = {1.0 / 5, 1.0 / 5, 1.0 / 5, 1.0 / 30, 1.0 / 30, 1.0 / 30};
 
-// The longest lag of level l is 15 2^l samples: as many levels as a quarter of the window has room for.
-std::size_t levels_of(std::uint64_t samples) {
+// The longest lag of level l is 15 2^l samples: as many levels as that part of the window has room for.
+std::size_t levels_to_a_quarter_of(std::uint64_t samples) {
   std::size_t levels = 1;
   while ((std::uint64_t{60} << levels) <= samples) ++levels;
   return levels;
@@ -19,7 +19,7 @@ std::vector<Quantity> correlation_quantities(const Scene& scene, const Window& w
   const std::uint64_t samples = samples_in(window.steps, interval);
   const double between = window.timestep * static_cast<double>(interval);
   Axis time{"time", "time", Json::array()};
-  for (const std::uint64_t lag : MultipleTau::lags(levels_of(samples), samples)) {
+  for (const std::uint64_t lag : MultipleTau::lags(levels_to_a_quarter_of(samples), samples)) {
     time.values.push_back(between * static_cast<double>(lag));
   }
   return {{.name = "stress_correlation/modulus", .symbol = "G(t)", .unit = "stress", .axes = {time}},
@@ -36,7 +36,8 @@ StressCorrelation::StressCorrelation(const Scene& scene, const System& system, c
       viscosity_(scene.physics.viscosity),
       volume_(system.box.volume()),
       kinds_(make_pair_kinds(scene.physics, distinct_radii(system.particles.radius))),
-      correlators_(weights.size(), MultipleTau(levels_of(samples_in(window.steps, interval())))) {}
+      correlators_(weights.size(),
+                   MultipleTau(levels_to_a_quarter_of(samples_in(window.steps, interval())))) {}
 
 void StressCorrelation::sample(const System& system, std::size_t) {
   const SymmetricTensor s = structural_brownian_stress(system, kinds_, thermal_energy_);

@@ -14,8 +14,8 @@
 
 #include <array>
 
+#include "engine/averages/multiple_tau.h"
 #include "engine/observables/kinds.h"
-#include "engine/observables/multiple_tau.h"
 #include "engine/observables/structure.h"
 
 namespace peclet::engine {

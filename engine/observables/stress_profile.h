@@ -14,8 +14,8 @@
 #include <array>
 #include <vector>
 
+#include "engine/averages/blocked_mean.h"
 #include "engine/kernels/pair_watcher.h"
-#include "engine/observables/blocked_mean.h"
 #include "engine/scene/scene.h"
 
 namespace peclet::engine {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "engine/observables/blocked_mean.h"
+#include "engine/averages/blocked_mean.h"
 
 namespace peclet::engine {
 namespace {

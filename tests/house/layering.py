@@ -51,6 +51,7 @@ ENGINE = [
         for room in (
             "threads",
             "state",
+            "averages",
             "gsd",
             "snapshots",
             "pictures",

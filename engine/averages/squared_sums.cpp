@@ -1,4 +1,4 @@
-#include "engine/observables/squared_sums.h"
+#include "engine/averages/squared_sums.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "engine/observables/multiple_tau.h"
+#include "engine/averages/multiple_tau.h"
 
 #include <algorithm>
 

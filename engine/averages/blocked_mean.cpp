@@ -1,4 +1,4 @@
-#include "engine/observables/blocked_mean.h"
+#include "engine/averages/blocked_mean.h"
 
 #include <fmt/format.h>
 
