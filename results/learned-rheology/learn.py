@@ -2,7 +2,8 @@
 """Maps between local quantities, learned from campaigns of your own.
 
 learn.py waves velocities.txt                     flow.waves through velocities at equal heights, one a line
-learn.py bins CAMPAIGN.json ... > bins.csv        a row for each bin of every point, with errors over its seeds
+learn.py bins CAMPAIGN.json ... > bins.csv        a row for each bin of every point, with errors over its seeds;
+                                                  --symmetric: for each bin that the driving's symmetries leave
 learn.py train bins.csv --inputs J Theta mean --output mu --model mu.json
 learn.py errors bins.csv --inputs J Theta mean --output mu        by method, with each flow left out
 learn.py predict mu.json bins.csv > foretold.csv
@@ -23,7 +24,15 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.estimates import student_quantile
-from studies.inhomogeneous import QUANTITIES, bin_rows, driving_of_scene, growth, profile_of, waves_of
+from studies.inhomogeneous import (
+    QUANTITIES,
+    bin_rows,
+    driving_of_scene,
+    growth,
+    profile_of,
+    symmetric_bin_rows,
+    waves_of,
+)
 from studies.learning import all_methods, columns_of_rows, left_out, open_model, relative_error, save_model, taken
 from studies.tables import columns_of, read_rows, write_table
 
@@ -77,7 +86,7 @@ def warn_of_growth(campaign):
             )
 
 
-def bins_of(campaign):
+def bins_of(campaign, rows_of):
     warn_of_growth(campaign)
     found = json.loads(asked("export", campaign))
     for point in found["points"]:
@@ -90,7 +99,7 @@ def bins_of(campaign):
             flow = driving_of_scene(f"{found['campaign']} {point['label']}".strip(), point["scene"])
         except ValueError as error:
             refuse(f"{campaign}: {error}")
-        yield from bin_rows(flow, [profile_of(flow, r["mean"]["profiles"]) for r in results])
+        yield from rows_of(flow, [profile_of(flow, r["mean"]["profiles"]) for r in results])
 
 
 def table_of(path, names):
@@ -111,7 +120,8 @@ def table_of(path, names):
 
 
 def bins(arguments):
-    write_table("/dev/stdout", BINS, [row for campaign in arguments.campaigns for row in bins_of(campaign)], 6)
+    rows_of = symmetric_bin_rows if arguments.symmetric else bin_rows
+    write_table("/dev/stdout", BINS, [row for campaign in arguments.campaigns for row in bins_of(campaign, rows_of)], 6)
 
 
 def waves(arguments):
@@ -191,6 +201,7 @@ def main():
     verb.add_argument("velocities")
     verb = verbs.add_parser("bins")
     verb.add_argument("campaigns", nargs="+")
+    verb.add_argument("--symmetric", action="store_true")
     for name in ("train", "errors"):
         verb = verbs.add_parser(name)
         verb.add_argument("table")

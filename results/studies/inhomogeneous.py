@@ -3,7 +3,7 @@ local quantities of their bins (Li 2023, ch. 6).
 
 A bin is 2 a high, a the smaller radius. Of its stress, that of the pairs, are P = -tr sigma / 3, J = eta |rate| / P,
 mu = |sigma_xy| / P and Theta = eta du / (a P), du the root of the variance of u_x about its mean in slabs of a / 5;
-Delta_v = |u_driving - u| / (|u_driving| + 1e-5).
+Delta_v = |u_driving - u| / (|u_driving| + 1e-5). The share of the largest spheres is that of their volume.
 """
 import math
 
@@ -104,11 +104,12 @@ def driving_of_scene(name, scene):
 
 
 class Flow(Driving):
-    """Of the studies: also how long it takes to become steady and is measured, in strains of its largest rate."""
+    """Of the studies: also how long it takes to become steady and is measured, in strains of its largest rate, and what
+    else it has, as settings."""
 
-    def __init__(self, name, waves, height, fraction, before, during, width=WIDTH):
+    def __init__(self, name, waves, height, fraction, before, during, width=WIDTH, more=None):
         super().__init__(name, waves, height, fraction, round(height / BIN))
-        self.before, self.during = before, during
+        self.before, self.during, self.more = before, during, more or {}
         self.count = round(fraction * width**2 * height / MEAN_VOLUME)
 
     def settings(self):
@@ -121,6 +122,7 @@ class Flow(Driving):
             "/profiles/bins": self.bins,
             "/duration/equilibration/time": round(self.before / rate, 1),
             "/duration/production/time": round(self.during / rate, 1),
+            **self.more,
         }
 
 
@@ -128,8 +130,8 @@ class Flow(Driving):
 BEFORE, DURING = 40, 100
 
 
-def flow(name, waves, height, fraction):
-    return Flow(name, waves, height, fraction, BEFORE * (height / 50) ** 2, DURING)
+def flow(name, waves, height, fraction, **more):
+    return Flow(name, waves, height, fraction, BEFORE * (height / 50) ** 2, DURING, **more)
 
 
 FRACTIONS = (0.50, 0.52, 0.54, 0.56)
@@ -148,8 +150,16 @@ UNSEEN = [
     flow("two-waves", [wave(0.1), wave(0.07, 2)], 80, 0.52),
     flow("square", [wave(0.1), wave(0.1 / 3, 3), wave(0.1 / 5, 5)], 100, 0.53),
 ]
-BEYOND = [flow("sine-50-58", [wave(0.1)], 50, 0.58), flow("sine-120-54", [wave(0.1)], 120, 0.54)]
-FLOWS = FIGURE + TRAINING + PUBLISHED + UNSEEN + BEYOND
+BEYOND = [
+    flow(f"sine-{height}-{100 * fraction:.0f}", [wave(0.1)], height, fraction)
+    for height, fraction in ((50, 0.57), (50, 0.58), (120, 0.54), (150, 0.54))
+]
+# Beside sine-50-52. The Peclet number of the largest rate is 10.
+OTHER = [
+    flow("friction", [wave(0.1)], 50, 0.52, more={"/contact/friction": 0.5}),
+    flow("noise", [wave(0.1)], 50, 0.52, more={"/fluid/thermal_energy": 0.00237}),
+]
+FLOWS = FIGURE + TRAINING + PUBLISHED + UNSEEN + BEYOND + OTHER
 
 
 def heights(flow):
@@ -159,9 +169,12 @@ def heights(flow):
 class Profile:
     """Of one realisation or of the mean of several: what a result has by bin, in the units of the scene."""
 
-    def __init__(self, flow, fraction, velocity, stress, variance):
+    PARTS = "fraction", "velocity", "stress", "variance", "largest"
+
+    def __init__(self, flow, fraction, velocity, stress, variance, largest):
         self.flow, self.fraction, self.velocity = flow, fraction, velocity
         self.stress, self.variance = stress, variance  # rows xx, yy, zz, xy; x, y, z
+        self.largest = largest  # volume fraction of the spheres of the largest radius
         self.driving = flow.driving_of_bins()
         width = flow.height / flow.bins
         self.rate = (np.roll(velocity, -1) - np.roll(velocity, 1)) / (2 * width)
@@ -181,11 +194,13 @@ class Profile:
             "mu": np.abs(self.stress[3]) / pressure,
             "Theta": self.flow.viscosity * np.sqrt(self.variance[0]) / (self.flow.radius * pressure),
             "lag": np.abs(self.driving - self.velocity) / (np.abs(self.driving) + 1e-5),
+            "largest share": self.largest / self.fraction,
         }
 
 
 QUANTITIES = (
-    "fraction", "velocity", "rate", "shear stress", "normal stress", "pressure", "J", "mu", "Theta", "lag"
+    "fraction", "velocity", "rate", "shear stress", "normal stress", "pressure", "J", "mu", "Theta", "lag",
+    "largest share"
 )  # fmt: skip
 
 
@@ -194,13 +209,52 @@ def profile_of(flow, profiles):
     fraction = np.array(profiles["volume_fraction"], float)
     velocity = np.array(profiles["velocity"]["flux"], float) / fraction
     stress, variance = (np.array(rows, float) for rows in (profiles["stress"]["pairs"], profiles["velocity_variance"]))
-    return Profile(flow, fraction, velocity, stress, variance)
+    return Profile(flow, fraction, velocity, stress, variance, np.array(profiles["volume_fraction_by_radius"][-1]))
 
 
 def mean_profile(flow, profiles):
     """Of several realisations: means of what is a mean."""
-    parts = ("fraction", "velocity", "stress", "variance")
-    return Profile(flow, *(np.mean([getattr(p, part) for p in profiles], axis=0) for part in parts))
+    return Profile(flow, *(np.mean([getattr(p, part) for p in profiles], axis=0) for part in Profile.PARTS))
+
+
+def symmetries(driving):
+    """Of a driving by bin, the maps of the bins onto each other that leave it as it is but for its sign: a list of
+    (bins, sign of velocities, sign of the shear stress), the identity first. A velocity that is turned round turns the
+    shear stress round, and so does looking from the other side."""
+    bins, tolerance = np.arange(len(driving)), 1e-9 * np.max(np.abs(driving))
+    found = []
+    for side in (1, -1):
+        for shift in range(len(driving)):
+            image = (side * bins + (shift if side > 0 else shift - 1)) % len(driving)
+            for sign in (1, -1):
+                if np.max(np.abs(driving[image] - sign * driving)) <= tolerance:
+                    found.append((image, sign, sign * side))
+    return found
+
+
+def symmetric(profile):
+    """The mean of a profile over the symmetries of its driving."""
+    images = symmetries(profile.driving)
+
+    def mean(values, signs):
+        return np.mean([sign * values[..., image] for (image, *_), sign in zip(images, signs)], axis=0)
+
+    even, velocity, shear = np.ones(len(images)), [s for _, s, _ in images], [s for *_, s in images]
+    stress = np.vstack([mean(profile.stress[:3], even), mean(profile.stress[3], shear)])
+    fraction, variance, largest = (mean(v, even) for v in (profile.fraction, profile.variance, profile.largest))
+    return Profile(profile.flow, fraction, mean(profile.velocity, velocity), stress, variance, largest)
+
+
+def distinct_bins(driving):
+    """The first bin of each set whose bins are images of each other."""
+    images = symmetries(driving)
+    return [k for k in range(len(driving)) if k == min(int(image[k]) for image, *_ in images)]
+
+
+def symmetric_bin_rows(flow, profiles):
+    """bin_rows() of profiles that are averaged over the symmetries of the driving: of each distinct bin a row."""
+    rows = list(bin_rows(flow, [symmetric(p) for p in profiles]))
+    return [rows[k] for k in distinct_bins(flow.driving_of_bins())]
 
 
 def bin_rows(flow, profiles):

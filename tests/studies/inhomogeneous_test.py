@@ -7,7 +7,20 @@ import sys
 import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "results"))
-from studies.inhomogeneous import MEAN_VOLUME, VISCOSITY, Flow, bin_rows, growth, profile_of, wave, waves_of
+from studies.inhomogeneous import (
+    MEAN_VOLUME,
+    VISCOSITY,
+    Flow,
+    bin_rows,
+    distinct_bins,
+    growth,
+    profile_of,
+    symmetric,
+    symmetric_bin_rows,
+    symmetries,
+    wave,
+    waves_of,
+)
 from studies.learning import LawOfFraction, Published, left_out, relative_error
 from studies.profile_solver import DRAG, Law, rates_of, solve, spread, velocity_of
 
@@ -22,6 +35,7 @@ def profiles_of(fraction, velocity, stress, variance):
         "volume_fraction": fraction,
         "velocity": {"flux": (fraction * velocity).tolist(), "volume_fraction": fraction},
         "velocity_variance": np.tile(variance, (3, 1)).tolist(),
+        "volume_fraction_by_radius": [(0.4 * fraction).tolist(), (0.6 * fraction).tolist()],
         "stress": {"pairs": stress.tolist()},
     }
 
@@ -68,6 +82,45 @@ class Bins(unittest.TestCase):
         self.assertAlmostEqual(row["Theta"], VISCOSITY * 0.2 / 2)
         self.assertAlmostEqual(row["lag"], (row["driving"] - velocity[0]) / (row["driving"] + 1e-5))
         self.assertEqual(row["mu_error"], 0)
+        self.assertAlmostEqual(row["largest share"], 0.6)
+
+    def test_symmetries_are_those_of_the_driving(self):
+        # A sine: half a turn about its zeros, sides changed about its crests, sign changed by half its length.
+        self.assertEqual(len(symmetries(FLOW.driving_of_bins())), 2)  # crests of 25 bins lie on no middle or edge
+        sine = Flow("sine", [wave(0.1)], 16, 0.5, 1, 1).driving_of_bins()  # 8 bins
+        found = {(tuple(image.tolist()), sign, shear) for image, sign, shear in symmetries(sine)}
+        self.assertEqual(
+            found,
+            {
+                ((0, 1, 2, 3, 4, 5, 6, 7), 1, 1),
+                ((4, 5, 6, 7, 0, 1, 2, 3), -1, -1),
+                ((7, 6, 5, 4, 3, 2, 1, 0), -1, 1),
+                ((3, 2, 1, 0, 7, 6, 5, 4), 1, -1),
+            },
+        )
+        self.assertEqual(distinct_bins(sine), [0, 1])
+        both = Flow("two", [wave(0.1), wave(0.07, 2)], 16, 0.5, 1, 1).driving_of_bins()
+        self.assertEqual([(sign, shear) for _, sign, shear in symmetries(both)], [(1, 1), (-1, 1)])
+        none = Flow("none", [wave(0.1), wave(0.07, 2, 0.03)], 16, 0.5, 1, 1).driving_of_bins()
+        self.assertEqual(len(symmetries(none)), 1)
+
+    def test_a_mean_over_symmetries_keeps_what_obeys_them_and_halves_what_does_not(self):
+        sine = Flow("sine", [wave(0.1)], 16, 0.5, 1, 1)
+        y = 2 * math.pi * (np.arange(8) + 0.5) / 8
+        stress = np.array([-2 + 0.1 * np.cos(2 * y), -1.5 + 0 * y, -1 - 0.2 * np.cos(2 * y), 0.3 * np.cos(y)])
+        obeys = profiles_of(0.5 + 0.1 * np.cos(4 * y), 0.08 * np.sin(y), stress, 0.04 + 0.01 * np.cos(2 * y))
+        for found, given in zip(
+            symmetric(profile_of(sine, obeys)).columns().items(), profile_of(sine, obeys).columns().items()
+        ):
+            np.testing.assert_allclose(found[1], given[1], rtol=1e-12, atol=1e-15, err_msg=found[0])
+        bump = np.array([0.04, 0, 0, 0, 0, 0, 0, 0])
+        other = profiles_of(0.5 + bump, 0.08 * np.sin(y) + bump, stress + bump, np.full(8, 0.04))
+        mean = symmetric(profile_of(sine, other))
+        np.testing.assert_allclose(mean.fraction, [0.51, 0.5, 0.5, 0.51] * 2)
+        images = np.array([0.01, 0, 0, 0.01, -0.01, 0, 0, -0.01])
+        np.testing.assert_allclose(mean.velocity, 0.08 * np.sin(y) + images, atol=1e-15)
+        np.testing.assert_allclose(mean.stress[3], 0.3 * np.cos(y) + [0.01, 0, 0, -0.01, -0.01, 0, 0, 0.01], atol=1e-15)
+        self.assertEqual([row["y"] for row in symmetric_bin_rows(sine, [mean, mean])], [1, 3])
 
     def test_errors_are_those_of_a_mean(self):
         """For what is linear, the jackknife is the standard error of the mean."""

@@ -27,6 +27,7 @@ SCENE = {
 def realisation(pressure):
     profiles = {
         "volume_fraction": [0.5] * 4,
+        "volume_fraction_by_radius": [[0.2] * 4, [0.3] * 4],
         "velocity": {"flux": [0.05, 0.05, -0.05, -0.05], "volume_fraction": [0.5] * 4},
         "velocity_variance": [[0.01] * 4] * 3,
         "stress": {"pairs": [[-pressure] * 4] * 3 + [[0.5, -0.5, -0.5, 0.5]]},
@@ -79,6 +80,12 @@ class Learn(unittest.TestCase):
         self.assertAlmostEqual(float(rows[0]["pressure_error"]), 1)
         self.assertAlmostEqual(float(rows[0]["rate"]), (0.1 - -0.1) / 4)
         self.assertAlmostEqual(float(rows[0]["mu"]), 0.5 / 3, places=5)
+        self.assertAlmostEqual(float(rows[0]["largest share"]), 0.6)
+        # A sine of four bins: every bin is an image of the first.
+        code, text, _ = self.learn("bins", "--symmetric", "waves.json")
+        self.assertEqual(code, 0)
+        (one,) = csv.DictReader(text.splitlines())
+        self.assertAlmostEqual(float(one["shear stress"]), 0.5)
 
     def test_a_profile_that_still_grows_is_told(self):
         points = [{"label": "one", "scene": SCENE, "realisations": [realisation(2), realisation(4)]}]
