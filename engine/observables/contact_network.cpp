@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/observables/touching_pairs.h"
-
 namespace peclet::engine {
 namespace {
 
@@ -25,6 +23,9 @@ std::vector<Quantity> network_quantities(const Scene& scene, const Window&) {
                  .axes = {mobilisation}});
   all.push_back({.name = "mobilised_friction", .symbol = "<|F_t| / (mu F_n)>", .unit = "1"});
   all.push_back({.name = "sliding_contacts", .symbol = "P(|F_t| > 0.99 mu F_n)", .unit = "1"});
+  if (scene.physics.contact->critical_load > 0) {
+    all.push_back({.name = "frictional_contacts", .symbol = "P(F_n > F_CL)", .unit = "1"});
+  }
   return all;
 }
 
@@ -42,7 +43,7 @@ void ContactNetwork::sample(const System& system, std::size_t block) {
   for_each_touching_pair(system, kinds_, contact_, [&](const TouchingPair& contact) {
     ++touching[contact.pair.first];
     ++touching[contact.pair.second];
-    if (contact_.friction > 0) add_contact(block, contact.mobilised);
+    if (contact_.friction > 0) add_contact(block, contact);
   });
   for (const std::size_t contacts : touching) {
     by_contacts_.add(block, std::min<std::size_t>(contacts, counts_of_contacts - 1), 1);
@@ -50,7 +51,11 @@ void ContactNetwork::sample(const System& system, std::size_t block) {
   by_contacts_.weigh(block, static_cast<double>(system.particles.count()));
 }
 
-void ContactNetwork::add_contact(std::size_t block, double mobilised) {
+void ContactNetwork::add_contact(std::size_t block, const TouchingPair& contact) {
+  frictional_contacts_.add(block, 0, contact.rough ? 1 : 0);
+  frictional_contacts_.weigh(block, 1);
+  if (!contact.rough) return;
+  const double mobilised = contact.mobilised;
   const auto part = static_cast<std::size_t>(parts_of_mobilisation * std::min(mobilised, 1.0));
   by_mobilisation_.add(block, std::min<std::size_t>(part, parts_of_mobilisation - 1), 1);
   by_mobilisation_.weigh(block, 1);
@@ -66,6 +71,7 @@ void ContactNetwork::add_to(Json& mean) const {
   mean["contact_network"]["mobilisation"] = by_mobilisation_.value();
   mean["mobilised_friction"] = mobilised_friction_.value();
   mean["sliding_contacts"] = sliding_contacts_.value();
+  if (contact_.critical_load > 0) mean["frictional_contacts"] = frictional_contacts_.value();
 }
 
 void ContactNetwork::add_blocks_to(Json& blocks) const {
@@ -74,17 +80,19 @@ void ContactNetwork::add_blocks_to(Json& blocks) const {
   blocks["contact_network"]["mobilisation"] = by_mobilisation_.blocks();
   blocks["mobilised_friction"] = mobilised_friction_.blocks();
   blocks["sliding_contacts"] = sliding_contacts_.blocks();
+  if (contact_.critical_load > 0) blocks["frictional_contacts"] = frictional_contacts_.blocks();
 }
 
 void ContactNetwork::save(ArchiveWriter& archive) const {
   for (const BlockedMean* mean :
-       {&by_contacts_, &by_mobilisation_, &mobilised_friction_, &sliding_contacts_}) {
+       {&by_contacts_, &by_mobilisation_, &mobilised_friction_, &sliding_contacts_, &frictional_contacts_}) {
     mean->save(archive);
   }
 }
 
 void ContactNetwork::load(ArchiveReader& archive) {
-  for (BlockedMean* mean : {&by_contacts_, &by_mobilisation_, &mobilised_friction_, &sliding_contacts_}) {
+  for (BlockedMean* mean :
+       {&by_contacts_, &by_mobilisation_, &mobilised_friction_, &sliding_contacts_, &frictional_contacts_}) {
     mean->load(archive);
   }
 }

@@ -2,8 +2,9 @@
 //
 // `contacts` is the share of the particles with 0, 1, ... 11 and with 12 or more contacts. With friction,
 // mobilised_friction is the mean of |F_t| / (mu F_n) over contacts, F_t = k_t s of the sliding spring, F_n =
-// k_n delta; `mobilisation` is its distribution, the share of contacts in each twentieth from 0 to 1; and
-// sliding_contacts is the share of those above 0.99. Null where there was no contact at all.
+// frictional_load(), k_n delta as a rule; `mobilisation` is its distribution, the share of contacts in each
+// twentieth from 0 to 1; and sliding_contacts is the share of those above 0.99. With a critical load these
+// are of the contacts above it, and frictional_contacts is their share. Null where there was no such contact.
 #pragma once
 
 #include <vector>
@@ -11,6 +12,7 @@
 #include "engine/averages/blocked_mean.h"
 #include "engine/kernels/pairs/pair_kinds.h"
 #include "engine/observables/kinds.h"
+#include "engine/observables/touching_pairs.h"
 #include "engine/terms/contact.h"
 
 namespace peclet::engine {
@@ -27,12 +29,12 @@ class ContactNetwork : public Observable {
   void load(ArchiveReader& archive) override;
 
  private:
-  void add_contact(std::size_t block, double mobilised);
+  void add_contact(std::size_t block, const TouchingPair& contact);
 
   ContactParameters contact_;
   std::vector<PairKind> kinds_;
   BlockedMean by_contacts_, by_mobilisation_;
-  BlockedMean mobilised_friction_, sliding_contacts_;
+  BlockedMean mobilised_friction_, sliding_contacts_, frictional_contacts_;
 };
 
 }  // namespace peclet::engine

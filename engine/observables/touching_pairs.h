@@ -16,7 +16,8 @@ struct TouchingPair {
   const Pair& pair;
   double distance, overlap;  // of centres; delta = a_i + a_j - distance > 0
   double tangential_force;   // |F_t| = k_t |s|
-  double mobilised;          // |F_t| / (mu k_n delta), 0 without friction
+  bool rough;                // whether it has friction: k_n delta above the critical load
+  double mobilised;          // |F_t| / (mu frictional_load()), 0 without friction
 };
 
 // In the order of the list.
@@ -30,10 +31,10 @@ void for_each_touching_pair(const System& system, const std::vector<PairKind>& k
     const double distance = norm(separation(system.particles, pair, frames[pair.image]));
     const double overlap = kinds[pair.kind].sum_of_radii - distance;
     if (!(overlap > 0)) continue;
-    const bool rough = contact.friction > 0;
+    const double load = frictional_load(contact, overlap);
+    const bool rough = contact.friction > 0 && load > 0;
     const double force = rough ? contact.tangential_stiffness * norm(system.springs[p].tangential) : 0;
-    const double mobilised = rough ? force / (contact.friction * contact.normal_stiffness * overlap) : 0;
-    visit(TouchingPair{pair, distance, overlap, force, mobilised});
+    visit({pair, distance, overlap, force, rough, rough ? force / (contact.friction * load) : 0});
   }
 }
 

@@ -187,7 +187,7 @@ void Trajectory::add_contacts(const System& system) {
     ++number[i];
     ++number[j];
     const PairKind& kind = kinds_[touching.pair.kind];
-    const State state = !(contact.friction > 0)             ? State::frictionless
+    const State state = !touching.rough                     ? State::frictionless
                         : touching.mobilised > sliding_from ? State::sliding
                                                             : State::sticking;
     bonds.push_back({{std::min(i, j), std::max(i, j)},

@@ -13,6 +13,11 @@ inline Keys contact_keys() {
       positive("/contact/normal_stiffness", "force / length", "Normal stiffness k_n.", required),
       with_default(not_negative("/contact/normal_damping", "force time / length", "Normal damping."), 0),
       not_negative("/contact/friction", "", "Coefficient of sliding friction; absent (or 0): frictionless."),
+      not_negative("/contact/critical_load", "force",
+                   "Normal force F_CL below which a contact has no friction, which goes by what exceeds it; "
+                   "with friction only; absent (or 0): none."),
+      positive("/contact/largest_load", "force",
+               "Load of friction beyond which it grows no more, with friction only; absent: none."),
       positive("/contact/tangential_stiffness", "force / length",
                "Tangential stiffness, with friction only; 2/7 of the normal one unless given."),
       not_negative(
@@ -30,9 +35,14 @@ inline ContactParameters read_contact(const SceneDocument& scene) {
   contact.normal_stiffness = scene.number("/contact/normal_stiffness");
   contact.normal_damping = scene.number("/contact/normal_damping");
   contact.friction = scene.number_or("/contact/friction", 0);
-  if (scene.has("/contact/tangential_stiffness") && !scene.has("/contact/friction")) {
-    scene.refuse("/contact/tangential_stiffness", "must be left out without /contact/friction");
+  for (const char* key :
+       {"/contact/tangential_stiffness", "/contact/critical_load", "/contact/largest_load"}) {
+    if (scene.has(key) && !scene.has("/contact/friction")) {
+      scene.refuse(key, "must be left out without /contact/friction");
+    }
   }
+  contact.critical_load = scene.number_or("/contact/critical_load", contact.critical_load);
+  contact.largest_load = scene.number_or("/contact/largest_load", contact.largest_load);
   // 2/7: a homogeneous sphere's normal and tangential contact then oscillate with the same period.
   contact.tangential_stiffness =
       scene.number_or("/contact/tangential_stiffness", 2.0 / 7.0 * contact.normal_stiffness);

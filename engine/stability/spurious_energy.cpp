@@ -55,7 +55,7 @@ double energy_of_pair(const Physics& physics, const PairKind& kind, const PairGe
                timestep * dot(motion.velocity, shape.normal) * now.slope;
   if (shape.overlap() > 0 && physics.contact) {
     const ContactParameters& contact = *physics.contact;
-    const double pressing = contact_push(contact.normal_stiffness, shape.overlap());
+    const double pressing = frictional_load(contact, shape.overlap());
     const ContactLevers lever = contact_levers(kind.radius_first, kind.radius_second, shape);
     sum += energy_of_stretch(contact.tangential_stiffness, springs.tangential,
                              timestep * slip_velocity(lever, shape, motion), contact.friction * pressing);

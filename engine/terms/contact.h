@@ -2,6 +2,8 @@
 // there is a tangential spring too (friction.h), with rolling stiffness a rolling one (rolling.h).
 #pragma once
 
+#include <limits>
+
 #include "engine/terms/pair.h"
 
 namespace peclet::engine {
@@ -11,7 +13,9 @@ struct ContactParameters {
   double normal_stiffness = 0;
   double normal_damping = 0;
   double friction = 0;
-  double tangential_stiffness = 0;  // 2/7 of the normal one unless given
+  double critical_load = 0;  // F_CL: below this normal force there is no friction
+  double largest_load = std::numeric_limits<double>::infinity();  // above it friction grows no more
+  double tangential_stiffness = 0;                                // 2/7 of the normal one unless given
   double rolling_stiffness = 0;
   double rolling_friction = 0;  // that of sliding unless given
 };
@@ -20,6 +24,16 @@ struct ContactParameters {
 template <class Real>
 PECLET_ALWAYS_INLINE Real contact_push(double normal_stiffness, const Real& overlap) {
   return normal_stiffness * overlap;
+}
+
+// The part of the normal force that friction goes by: min(max(k_n delta - F_CL, 0), F_max). With F_CL alone
+// contacts have no friction until something that repels is overcome: the critical load model, Seto, Mari,
+// Morris & Denn, Phys. Rev. Lett. 111, 218301 (2013), eq. 3 with the excess over F_CL as the load.
+template <class Real>
+PECLET_ALWAYS_INLINE Real frictional_load(const ContactParameters& contact, const Real& overlap) {
+  const Real excess = contact_push(contact.normal_stiffness, overlap) - Real{contact.critical_load};
+  const Real load = larger(excess, Real{0.0}), largest{contact.largest_load};
+  return select(load > largest, largest, load);
 }
 
 // F_i = -k_n delta n for delta > 0, of the energy k_n delta^2 / 2.

@@ -45,10 +45,10 @@ PECLET_ALWAYS_INLINE PairLoadOf<Real> friction_load(double tangential_stiffness,
   return {force, lever.first * moment, lever.second * moment};
 }
 
-// Coulomb's law: |F_i| <= mu k_n delta, as a length of the spring.
+// Coulomb's law: |F_i| <= mu frictional_load(), as a length of the spring.
 template <class Real>
 PECLET_ALWAYS_INLINE Real longest_spring(const ContactParameters& contact, const Real& overlap) {
-  return (contact.friction / contact.tangential_stiffness) * contact_push(contact.normal_stiffness, overlap);
+  return (contact.friction / contact.tangential_stiffness) * frictional_load(contact, overlap);
 }
 
 // Springs of a contact, as they couple velocities and spins: for slips T.(U_j - U_i) - (l_i Omega_i + l_j

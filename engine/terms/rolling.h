@@ -23,11 +23,10 @@ PECLET_ALWAYS_INLINE PairLoadOf<Real> rolling_load(double rolling_stiffness, con
   return {{}, couple, -couple};
 }
 
-// |k_r s_r| <= mu_r k_n delta, as a length of the spring.
+// |k_r s_r| <= mu_r frictional_load(), as a length of the spring.
 template <class Real>
 PECLET_ALWAYS_INLINE Real longest_rolling_spring(const ContactParameters& contact, const Real& overlap) {
-  return (contact.rolling_friction / contact.rolling_stiffness) *
-         contact_push(contact.normal_stiffness, overlap);
+  return (contact.rolling_friction / contact.rolling_stiffness) * frictional_load(contact, overlap);
 }
 
 // The largest stiffness of a contact's springs, as if centres alone moved. A tangential spring acts on

@@ -255,8 +255,8 @@ NAMED = [
     (
         "friction mobilised without its coefficient",
         "engine/observables/touching_pairs.h",
-        "(contact.friction * contact.normal_stiffness * overlap)",
-        "(contact.normal_stiffness * overlap)",
+        "force / (contact.friction * load)",
+        "force / load",
         "engine_tests:ContactNetwork.CountsContactsAndTheirMobilisation",
     ),
     (

@@ -35,6 +35,29 @@ TEST(ContactNetwork, CountsContactsAndTheirMobilisation) {
   EXPECT_EQ(mobilisation[19], 0.5);
 }
 
+// F_n = 1000 and 2000 beside a critical load of 1200: of the second contact k_t s = 250 of 0.5 * 800.
+TEST(ContactNetwork, LeavesContactsBelowTheCriticalLoadWithoutFriction) {
+  Scene scene = scene_with("contact_network");
+  scene.physics.contact->critical_load = 1200;
+  System system = loose_spheres(3);
+  system.particles.position.set(0, {1, 1, 1});
+  system.particles.position.set(1, {3.9, 1, 1});
+  system.particles.position.set(2, {6.7, 1, 1});
+  system.list = NeighbourList(range_table(make_pair_kinds(scene.physics, {1, 2}), 2), 0.1);
+  system.list.build(system.particles, system.box);
+  system.springs = SpringField(SpringKinds::tangential, system.list.pairs().size());
+  for (std::size_t p = 0; p < system.list.pairs().size(); ++p) system.springs.set(p, {{0, 0.0875, 0}, {}});
+  const auto observable = observable_of(scene, system, 256);
+  observable->sample(system, 0);
+  const Json mean = mean_of(*observable);
+  EXPECT_EQ(mean["frictional_contacts"], 0.5);
+  EXPECT_NEAR(mean["mobilised_friction"].get<double>(), 0.625, 1e-12);
+  EXPECT_EQ(mean["sliding_contacts"], 0);
+  Json blocks;
+  observable->add_blocks_to(blocks);
+  EXPECT_EQ(blocks["frictional_contacts"][0], 0.5);
+}
+
 // Contacts whose springs are half as long as they may be in the first quarter of the window, and all in the
 // others: their mean, and each block's.
 TEST(ContactNetwork, HasBlocks) {

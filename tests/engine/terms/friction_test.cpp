@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "engine/kernels/pair_pass.h"
@@ -147,6 +148,34 @@ TEST_F(ContactOfTwo, SlidesAtTheCoulombForce) {
   }
   const TermLoadsOf<double> loads = after_step(-0.01, {{1, 0, 0}, {}, {}});
   EXPECT_NEAR(norm(loads.friction.force), 0.5 * norm(loads.contact_normal), 1e-12);
+}
+
+// F_n = 100 and 20, F_CL = 30: friction goes by 70 and by nothing.
+TEST_F(ContactOfTwo, HasNoFrictionBelowTheCriticalLoad) {
+  physics_.contact->critical_load = 30;
+  TermLoadsOf<double> loads;
+  for (int step = 0; step < 1000; ++step) {
+    loads = after_step(-0.01, {{1, 0, 0}, {3, 0, 0}, {-3, 0, 0}});
+  }
+  EXPECT_NEAR(norm(loads.friction.force), 0.5 * 70, 1e-12);
+  EXPECT_NEAR(norm(loads.rolling.torque_first), 0.2 * 70, 1e-12);
+  loads = after_step(-0.002, {{1, 0, 0}, {3, 0, 0}, {-3, 0, 0}});
+  EXPECT_EQ(norm(loads.friction.force), 0);
+  EXPECT_EQ(norm(loads.rolling.torque_first), 0);
+  EXPECT_EQ(norm(springs_.tangential), 0);
+  EXPECT_NEAR(norm(loads.contact_normal), 20, 1e-12);
+}
+
+TEST_F(ContactOfTwo, HasNoMoreFrictionThanOfTheLargestLoad) {
+  physics_.contact->critical_load = 30;
+  for (const double largest : {40.0, 80.0}) {
+    physics_.contact->largest_load = largest;
+    TermLoadsOf<double> loads;
+    for (int step = 0; step < 1000; ++step) {
+      loads = after_step(-0.01, {{1, 0, 0}, {}, {}});
+    }
+    EXPECT_NEAR(norm(loads.friction.force), 0.5 * std::min(largest, 70.0), 1e-12);
+  }
 }
 
 TEST_F(ContactOfTwo, RollsAtTheLargestCouple) {
