@@ -4,6 +4,8 @@
 #pragma once
 
 #include <memory>
+#include <numbers>
+#include <optional>
 
 #include "engine/flow/background_flow.h"
 #include "engine/state/system.h"
@@ -23,6 +25,10 @@ class Deformation {
   }
 
   virtual double largest_rate() const = 0;
+  // Strain over time in the long run, summed over both directions.
+  virtual double mean_rate() const { return largest_rate(); }
+  // After which all comes back; nothing where the flow is steady.
+  virtual std::optional<double> period() const { return std::nullopt; }
   // When the strain, summed over both directions, has come to this; infinity if it never does.
   virtual double time_of(double strain) const = 0;
 
@@ -50,6 +56,26 @@ class SteadyShear final : public Deformation {
   double rate_;
 };
 
+// Simple shear to and fro, gamma = g sin(w t): at rate g w through the cube, which it finds at time 0.
+class OscillatoryShear final : public Deformation {
+ public:
+  // Both above 0; the frequency w in radians per time.
+  OscillatoryShear(double amplitude, double frequency) : amplitude_(amplitude), frequency_(frequency) {}
+
+  double amplitude() const { return amplitude_; }
+  double frequency() const { return frequency_; }
+
+  Matrix3 velocity_gradient(double time) const override;
+  Matrix3 displacement_gradient(double time) const override;
+  double largest_rate() const override { return amplitude_ * frequency_; }
+  double mean_rate() const override { return 4 * amplitude_ / *period(); }
+  std::optional<double> period() const override { return 2 * std::numbers::pi / frequency_; }
+  double time_of(double strain) const override;
+
+ private:
+  double amplitude_, frequency_;
+};
+
 // What a scene says of its flow; copies share it. A fluid at rest unless something else is said.
 class ImposedFlow {
  public:
@@ -59,8 +85,11 @@ class ImposedFlow {
       : deformation_(std::move(deformation)), variation_(std::move(variation)) {}
 
   const Deformation& deformation() const { return *deformation_; }
-  // The shear rate of the cell, which sets times and stresses; 0 where it keeps its shape.
+  // The largest shear rate of the cell, which sets times; 0 where it keeps its shape.
   double rate() const { return deformation_->largest_rate(); }
+  // That of a steady flow, which sets the unit of stresses; 0 where it comes and goes.
+  double steady_rate() const { return period() ? 0 : rate(); }
+  std::optional<double> period() const { return deformation_->period(); }
   bool varies() const { return variation_ != nullptr; }
   // At least that of the strongest gradient anywhere in this cell.
   double largest_rate(const PeriodicCell& cell) const {

@@ -25,10 +25,12 @@ SymmetricTensor flux_by_places(double time, const VectorField& force, Velocity&&
 
 }  // namespace
 
-SymmetricTensor flux_by_motion(const ParticleState& particles, const VectorField& mean_velocity) {
+SymmetricTensor flux_by_motion(const System& system, const VectorField& mean_velocity) {
+  const ParticleState& particles = system.particles;
   SymmetricTensor flux;
   for (std::size_t i = 0; i < particles.count(); ++i) {
-    flux += -particles.mass[i] * symmetric_dyad(particles.velocity[i], mean_velocity[i]);
+    const Vector3 flow = system.box.velocity_gradient() * particles.position[i];
+    flux += -particles.mass[i] * symmetric_dyad(particles.velocity[i] - flow, mean_velocity[i] - flow);
   }
   return flux;
 }

@@ -1,4 +1,5 @@
-// The flux of momentum of a step (kernels/momentum_flux.h), of a fluid at rest.
+// The flux of momentum of a step (kernels/momentum_flux.h), of a fluid at rest or nearly so: what a step's
+// strain makes of its own stress is left out.
 //
 // With noise an implicit step has acted upon its pairs twice: with the random forces, and what else belongs
 // to the beginning, at x_n; and with F(x', V') - A (V - V') at x', where the velocities V' have been
@@ -10,8 +11,8 @@
 
 namespace peclet::engine {
 
-// -sum m sym(V V'), V the present velocities.
-SymmetricTensor flux_by_motion(const ParticleState& particles, const VectorField& mean_velocity);
+// -sum m sym(V V'), V the present velocities, both relative to the uniform flow of the cell.
+SymmetricTensor flux_by_motion(const System& system, const VectorField& mean_velocity);
 
 class ActedFlux {
  public:

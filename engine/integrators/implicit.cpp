@@ -136,6 +136,12 @@ bool Implicit::is_to_be_divided(const StepReport& report) const {
          (report.solver_residual > unsolved && divisions_left_ > deepest_division - divisions_of_unsolved);
 }
 
+VectorField Implicit::mean_velocity(const System& system) const {
+  VectorField mean = origin_.velocity;
+  array(mean) = 0.5 * (array(mean) + array(system.particles.velocity));
+  return mean;
+}
+
 // From the origin.
 StepReport Implicit::advance_halves(System& system) {
   return_to_origin(system);

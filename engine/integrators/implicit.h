@@ -41,6 +41,8 @@ class Implicit : public Integrator {
   // Finds the velocities; nothing where the list of pairs does not hold half a step ahead.
   virtual std::optional<StepReport> find_velocities(System& system) = 0;
   // Whose sums the step has reported.
+  // (V_n + V) / 2.
+  VectorField mean_velocity(const System& system) const;
   virtual ForceField& reported() { return field_; }
   // Before the particles move with the velocities that have been found.
   virtual void keep_change(const System& /*system*/) {}

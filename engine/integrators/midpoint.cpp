@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/integrators/acted_flux.h"
 #include "engine/state/field_array.h"
 #include "engine/threads/for_each_range.h"
 
@@ -64,6 +65,7 @@ std::optional<StepReport> Midpoint::find_velocities(System& system) {
     report.sums.finite = report.sums.finite && std::isfinite(residual.squared) && std::isfinite(motion);
     const int most = residual.squared > far * far * target ? iterations.most : iterations.usual;
     if (!(residual.squared > target) || iteration >= most) {
+      if (watches_flux()) report.flux = flux_of(report.sums, flux_by_motion(system, mean_velocity(system)));
       return report;
     }
     restore_springs(system);

@@ -102,9 +102,7 @@ PairSums NoisyMidpoint::assemble(System& system, ForceField& field, Loads& loads
 
 // `acted`: by pairs.
 MomentumFlux NoisyMidpoint::flux(const System& system, const PairSums& sums, SymmetricTensor acted) {
-  VectorField mean_velocity = origin_.velocity;
-  array(mean_velocity) = 0.5 * (array(mean_velocity) + array(system.particles.velocity));
-  const SymmetricTensor motion = flux_by_motion(system.particles, mean_velocity);
+  const SymmetricTensor motion = flux_by_motion(system, mean_velocity(system));
   MomentumFlux flux = flux_of(sums, motion);
   flux.acted = acted + motion;
   return flux;

@@ -78,7 +78,7 @@ StepReport VelocityVerlet::advance_open(System& system) {
   if (watcher() != nullptr) field_.show_pairs(system, system.springs, true, weight(), *watcher());
   StepReport report{sums, speed * timestep_};
   if (watches_flux()) {
-    report.flux = flux_of(sums, flux_by_motion(system.particles, system.particles.velocity));
+    report.flux = flux_of(sums, flux_by_motion(system, system.particles.velocity));
   }
   return report;
 }

@@ -15,7 +15,7 @@
 namespace peclet::engine {
 
 struct MomentumFlux {
-  SymmetricTensor acted;         // J
+  SymmetricTensor acted;         // J; friction belongs to it alone, too
   SymmetricTensor conservative;  // contact, repulsion, attraction and the motion: even in the velocities
   SymmetricTensor dissipative;   // lubrication: odd
 };
@@ -28,7 +28,8 @@ inline MomentumFlux flux_of(const PairSums& sums, const SymmetricTensor& motion)
   for (const StressTerm term : {StressTerm::contact_normal, StressTerm::repulsion, StressTerm::attraction}) {
     flux.conservative += sums.of(term);
   }
-  flux.acted = flux.conservative + flux.dissipative + sums.of(StressTerm::brownian_lubrication);
+  flux.acted = flux.conservative + flux.dissipative + sums.of(StressTerm::brownian_lubrication) +
+               sums.of(StressTerm::friction);
   return flux;
 }
 

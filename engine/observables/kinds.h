@@ -39,12 +39,13 @@ ObservableKind pair_distribution();
 ObservableKind contact_network();
 ObservableKind profiles();
 ObservableKind linear_response();
+ObservableKind oscillation();
 ObservableKind trajectory();
 
-inline std::array<ObservableKind, 7> observable_kinds() {
+inline std::array<ObservableKind, 8> observable_kinds() {
   return {
       mean_squared_displacement(), stress_correlation(), pair_distribution(), contact_network(), profiles(),
-      linear_response(),           trajectory()};
+      linear_response(),           oscillation(),        trajectory()};
 }
 
 // Of an observable that is sampled at every step, or that costs a walk over all pairs and changes slowly.

@@ -26,7 +26,7 @@ std::optional<double> energy_imbalance(const Scene& scene, const Simulation& sim
   const StepErrors& errors = simulation.step_errors();
   double work_per_step = 0;
   for (const SymmetricTensor& stress : window.stress) {
-    work_per_step += simulation.schedule().timestep * scene.physics.flow.rate() * stress.xy /
+    work_per_step += simulation.schedule().timestep * scene.physics.flow.steady_rate() * stress.xy /
                      static_cast<double>(window.steps);
   }
   // Where the flow varies it works on spheres one by one too.
@@ -87,7 +87,8 @@ Json warnings_json(const std::vector<Warning>& warnings) {
 
 Json common_part(const ResultHeader& header, const Scene& scene, const Schedule& schedule,
                  std::uint64_t steps, const Spent& spent) {
-  const double dt = schedule.timestep, rate = scene.physics.flow.rate();
+  const double dt = schedule.timestep;
+  const ImposedFlow& flow = scene.physics.flow;
   const std::uint64_t before = std::min(steps, schedule.equilibration), after = steps - before;
   const auto of_phases = [&](double factor) {
     return Json{{"equilibration", factor * static_cast<double>(before)},
@@ -100,9 +101,9 @@ Json common_part(const ResultHeader& header, const Scene& scene, const Schedule&
           {"timestep", dt},
           {"steps", {{"equilibration", before}, {"production", after}}},
           {"time", of_phases(dt)},
-          {"strain", of_phases(dt * rate)},
+          {"strain", of_phases(dt * flow.deformation().mean_rate())},
           {"derived", to_json(derived_groups(scene))},
-          {"units", rate > 0 ? "viscosity * shear_rate" : "scene"},
+          {"units", flow.steady_rate() > 0 ? "viscosity * shear_rate" : "scene"},
           {"mean", nullptr},
           {"blocks", nullptr},
           {"quantities", nullptr},
@@ -132,7 +133,7 @@ void add_measurements(const Scene& scene, const Simulation& simulation, Json& re
   Json &mean = result["mean"], &blocks = result["blocks"];
   mean = stress.means(sum_of(simulation.production().blocks()));
   blocks = stress.blocks(simulation.production());
-  const char* const usual = scene.physics.flow.rate() > 0 ? "/relative_viscosity" : "/pressure";
+  const char* const usual = scene.physics.flow.steady_rate() > 0 ? "/relative_viscosity" : "/pressure";
   for (const std::unique_ptr<Observable>& observable : simulation.observables()) {
     observable->add_to(mean);
     observable->add_blocks_to(blocks);

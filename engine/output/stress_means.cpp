@@ -68,7 +68,7 @@ Json transposed(const std::vector<Json>& rows) {
 class Described {
  public:
   explicit Described(const Scene& scene)
-      : unit_(scene.physics.flow.rate() > 0 ? "viscosity * shear_rate" : "stress") {}
+      : unit_(scene.physics.flow.steady_rate() > 0 ? "viscosity * shear_rate" : "stress") {}
 
   void scalar(const char* name, const char* symbol, const char* unit) {
     all_.push_back({.name = name, .symbol = symbol, .unit = unit});
@@ -103,7 +103,7 @@ StressMeans::StressMeans(const Scene& scene, const System& system)
       volume_(system.box.volume()),
       volume_fraction_(solid_volume(system.particles) / volume_),
       particles_(static_cast<double>(system.particles.count())),
-      unit_(physics_.flow.rate() > 0 ? physics_.viscosity * physics_.flow.rate() : 1) {}
+      unit_(physics_.flow.steady_rate() > 0 ? physics_.viscosity * physics_.flow.steady_rate() : 1) {}
 
 Json StressMeans::means(const BlockSums& sums) const {
   Json stress = Json::object();
@@ -113,7 +113,7 @@ Json StressMeans::means(const BlockSums& sums) const {
     total += value;
   };
   const SymmetricTensor varying = (1 / (static_cast<double>(sums.samples) * unit_)) * sums.varying_stresslet;
-  if (physics_.flow.rate() > 0) {
+  if (physics_.flow.steady_rate() > 0) {
     const SymmetricTensor solvent = solvent_stress(1, simple_shear(1));  // in units of itself
     part("solvent", solvent);
     part("stresslet", stresslet(volume_fraction_, solvent) + varying);
@@ -133,7 +133,7 @@ Json StressMeans::means(const BlockSums& sums) const {
     }
   }
   stress["total"] = to_json(total);
-  const bool sheared = physics_.flow.rate() > 0;
+  const bool sheared = physics_.flow.steady_rate() > 0;
   const double per_sample = 1 / static_cast<double>(sums.samples);
   return {{"stress", stress},
           {"brownian_pairwise", to_json(brownian)},
@@ -175,7 +175,7 @@ Json StressMeans::blocks(const Production& production) const {
 
 std::vector<Quantity> stress_quantities(const Scene& scene) {
   const Terms terms = required_terms(scene.physics);
-  const bool sheared = scene.physics.flow.rate() > 0, noise = terms.noise;
+  const bool sheared = scene.physics.flow.steady_rate() > 0, noise = terms.noise;
   Described described(scene);
   const char* const unit = described.unit();
   if (sheared) {

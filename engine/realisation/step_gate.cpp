@@ -16,8 +16,8 @@ constexpr std::uint64_t comparisons = 8;
 
 StepGate::StepGate(const Physics& physics, const Schedule& schedule)
     : production_(
-          schedule.production),  // The stress of waves cancels over the cell: no measure of its error.
-      is_smooth_(physics.thermal_energy == 0 && physics.flow.rate() > 0 && !physics.flow.varies()) {}
+          schedule.production),  // The stress of waves cancels over the cell, that of cycles over time.
+      is_smooth_(physics.thermal_energy == 0 && physics.flow.steady_rate() > 0 && !physics.flow.varies()) {}
 
 std::optional<Ending> StepGate::check(Integrator& integrator, System& system) {
   if (system.step % integrator.intervals().stability != 0) {

@@ -33,6 +33,18 @@ std::optional<ObservableFault> must_have_equilibrium(const Scene& scene, const J
   return ObservableFault{"/observables", "must not list linear_response with " + reason};
 }
 
+std::optional<ObservableFault> must_oscillate(const Scene& scene, const Json&) {
+  if (!scene.physics.flow.period()) {
+    return ObservableFault{"/observables", "must not list oscillation without /flow/oscillation"};
+  }
+  if (scene.physics.lubrication && scene.physics.lubrication->form == LubricationParameters::Form::mari) {
+    return ObservableFault{"/observables",
+                           "must not list oscillation with /lubrication/form mari: its stress is not that of "
+                           "the forces alone"};
+  }
+  return std::nullopt;
+}
+
 std::optional<ObservableFault> must_have_whole_bins(const Scene&, const Json& settings) {
   const double bins = settings.at("range").get<double>() / settings.at("bin").get<double>();
   if (std::abs(bins - std::round(bins)) <= 1e-9 * bins && bins >= 1 && bins <= most_bins) return std::nullopt;
@@ -97,6 +109,11 @@ std::vector<ObservableEntry> entries() {
        "",
        {},
        must_have_equilibrium},
+      {"oscillation",
+       "G' and G'' of an oscillating shear, and the third harmonic of the stress",
+       "",
+       {},
+       must_oscillate},
       {"trajectory",
        "trajectory.gsd beside the result, with places, motion and stress of each sphere in every frame",
        "a 256th of the production window",

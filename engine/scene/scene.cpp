@@ -33,6 +33,7 @@ class Reading : private SceneDocument {
   // Rate and temperature, given as they are or by Péclet number and limits.
   void set_flow(const Particles& particles, Physics& physics) const;
   Duration duration(const std::string& pointer, const Physics& physics) const;
+  void check_cycles() const;
   void set_observables(Scene& scene) const;
   std::optional<Start> start() const {
     return has("/start") ? std::optional<Start>(read_start(*this)) : std::nullopt;
@@ -41,6 +42,7 @@ class Reading : private SceneDocument {
  private:
   // Of this shear rate, with the scene's waves.
   ImposedFlow flow(double rate) const;
+  ImposedFlow oscillation() const;
   void set_flow_from_peclet(double radius, Physics& physics) const;
 };
 
@@ -57,11 +59,19 @@ ImposedFlow Reading::flow(double rate) const {
                      std::make_shared<Waves>(std::move(waves), at("/flow/faxen").get<bool>()));
 }
 
+ImposedFlow Reading::oscillation() const {
+  for (const char* pointer : {"/flow/shear_rate", "/flow/waves", "/peclet"}) {
+    if (has(pointer)) refuse(pointer, "must be left out together with /flow/oscillation");
+  }
+  return ImposedFlow(std::make_shared<OscillatoryShear>(number("/flow/oscillation/amplitude"),
+                                                        number("/flow/oscillation/frequency")));
+}
+
 Physics Reading::physics() const {
   Physics physics;
   physics.viscosity = number("/fluid/viscosity");
   physics.thermal_energy = number_or("/fluid/thermal_energy", 0);
-  physics.flow = flow(number_or("/flow/shear_rate", 0));
+  physics.flow = has("/flow/oscillation") ? oscillation() : flow(number_or("/flow/shear_rate", 0));
   for (const LawBlock& law : law_blocks) {
     if (has("/" + std::string(law.name))) law.read(*this, physics);
   }
@@ -100,8 +110,9 @@ void Reading::set_flow_from_peclet(double radius, Physics& physics) const {
 void Reading::set_flow(const Particles& particles, Physics& physics) const {
   if (!has("/peclet")) {
     if (has("/limits")) refuse("/limits", "must be left out without /peclet");
-    if (!has("/flow/shear_rate")) {
-      miss("/flow/shear_rate", "must be a number >= 0, or /peclet with /limits must be given");
+    if (!has("/flow/shear_rate") && !physics.flow.period()) {
+      miss("/flow/shear_rate",
+           "must be a number >= 0, or /flow/oscillation or /peclet with /limits must be given");
     }
     return;
   }
@@ -115,7 +126,11 @@ void Reading::set_flow(const Particles& particles, Physics& physics) const {
 
 Duration Reading::duration(const std::string& pointer, const Physics& physics) const {
   const Json& limits = at(pointer);
-  if (limits.empty()) refuse(pointer, "must have at least one of strain, brownian_times, time");
+  if (limits.empty()) refuse(pointer, "must have at least one of strain, brownian_times, time, cycles");
+  const std::optional<double> period = physics.flow.period();
+  if (limits.contains("cycles") && !period) {
+    refuse(pointer + "/cycles", "must be left out without /flow/oscillation");
+  }
   Duration duration;
   for (const auto& [name, limit] : limits.items()) {
     if (limit == 0) return {unlimited, unlimited, 0};  // over before it starts, whatever the flow
@@ -123,6 +138,9 @@ Duration Reading::duration(const std::string& pointer, const Physics& physics) c
   if (physics.flow.rate() > 0) duration.strain = limits.value("strain", unlimited);
   if (physics.thermal_energy > 0) duration.brownian_times = limits.value("brownian_times", unlimited);
   duration.time = limits.value("time", unlimited);
+  if (limits.contains("cycles")) {
+    duration.time = std::min(duration.time, limits.at("cycles").get<double>() * *period);
+  }
   if (duration.strain == unlimited && duration.brownian_times == unlimited && duration.time == unlimited) {
     refuse(pointer,
            "would never end: strain needs a shear rate > 0, brownian_times a thermal energy > 0; give one of "
@@ -130,6 +148,20 @@ Duration Reading::duration(const std::string& pointer, const Physics& physics) c
            "that is reached, or time");
   }
   return duration;
+}
+
+// So that moduli are those of whole cycles.
+void Reading::check_cycles() const {
+  if (!has("/flow/oscillation")) return;
+  for (const char* pointer : {"/duration/equilibration", "/duration/production"}) {
+    const Json& limits = at(pointer);
+    const auto is_whole = [](const Json& number) {
+      return number.get<double>() == std::floor(number.get<double>());
+    };
+    if (limits.size() != 1 || !limits.contains("cycles") || !is_whole(limits.at("cycles"))) {
+      refuse(pointer, "must have a whole number of cycles and nothing else with /flow/oscillation");
+    }
+  }
 }
 
 // A block of settings alone would be measured by nobody.
@@ -214,6 +246,7 @@ Scene read_scene(const Json& document, const std::string& file) {
   }
   const Json& timestep = filled["integrator"]["timestep"];
   if (timestep.is_number()) scene.timestep = timestep.get<double>();
+  reading.check_cycles();
   scene.equilibration = reading.duration("/duration/equilibration", scene.physics);
   scene.production = reading.duration("/duration/production", scene.physics);
   reading.set_observables(scene);

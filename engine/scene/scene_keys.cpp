@@ -20,8 +20,14 @@ Keys flow_keys() {
       not_negative("/fluid/thermal_energy", "energy",
                    "k_B T; absent (or 0): no Brownian motion. Not together with peclet."),
       block("/flow",
-            "The streaming flow (rate y, 0, 0), and waves in it. A scene has flow.shear_rate or peclet."),
+            "The streaming flow (rate y, 0, 0), and waves in it. A scene has flow.shear_rate, "
+            "flow.oscillation or peclet."),
       not_negative("/flow/shear_rate", "1 / time", "Shear rate; 0: no mean shear. Not together with peclet."),
+      block("/flow/oscillation",
+            "Shear to and fro in the place of shear_rate: strain = amplitude sin(frequency t)."),
+      positive("/flow/oscillation/amplitude", "", "Largest strain.", required),
+      positive("/flow/oscillation/frequency", "1 / time", "Angular frequency, in radians per time.",
+               required),
       {.pointer = "/flow/waves",
        .kind = KeyKind::array,
        .meaning =
@@ -70,8 +76,10 @@ Keys run_keys() {
              {"explicit", "implicit"}),
       {.pointer = "/integrator/timestep",
        .kind = KeyKind::number_or_auto,
-       .meaning = "Time step; auto: half of the largest stable explicit one, or the implicit one whose error "
-                  "has been measured, and not more than a 32nd of the production window.",
+       .meaning =
+           "Time step; auto: half of the largest stable explicit one, or the implicit one whose error "
+           "has been measured, and not more than a 32nd of the production window. An oscillation has a "
+           "whole number of steps, 128 at least: the step is shortened to that.",
        .unit = "time",
        .default_value = "auto",
        .minimum = 0,

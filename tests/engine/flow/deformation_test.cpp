@@ -30,6 +30,42 @@ TEST(SteadyShear, AtRestReachesNoStrain) {
   EXPECT_EQ(ImposedFlow().deformation().time_of(1e-3), std::numeric_limits<double>::infinity());
 }
 
+TEST(OscillatoryShear, GoesToAndFro) {
+  const OscillatoryShear shear(0.2, 3);
+  EXPECT_DOUBLE_EQ(shear.largest_rate(), 0.6);
+  EXPECT_DOUBLE_EQ(*shear.period(), 2 * std::numbers::pi / 3);
+  for (const double time : {0.0, 0.1, 0.7, 2.0}) {
+    EXPECT_DOUBLE_EQ(shear.displacement_gradient(time).column[1].x, 0.2 * std::sin(3 * time));
+    const double h = 1e-6;
+    const double slope = (shear.displacement_gradient(time + h).column[1].x -
+                          shear.displacement_gradient(time - h).column[1].x) /
+                         (2 * h);
+    EXPECT_NEAR(shear.velocity_gradient(time).column[1].x, slope, 1e-9);
+    EXPECT_EQ(shear.velocity_gradient(time), simple_shear(shear.velocity_gradient(time).column[1].x));
+  }
+}
+
+// A quarter, a half and a whole cycle have 1, 2 and 4 amplitudes; within them sin(w t) = 1/2 at a twelfth.
+TEST(OscillatoryShear, CountsItsStrainInBothDirections) {
+  const OscillatoryShear shear(0.2, 3);
+  const double period = *shear.period();
+  EXPECT_NEAR(shear.time_of(0.1), period / 12, 1e-12);
+  EXPECT_NEAR(shear.time_of(0.2), period / 4, 1e-12);
+  EXPECT_NEAR(shear.time_of(0.3), period * 5 / 12, 1e-12);
+  EXPECT_NEAR(shear.time_of(0.4), period / 2, 1e-12);
+  EXPECT_NEAR(shear.time_of(0.8), period, 1e-12);
+  EXPECT_NEAR(shear.time_of(8.1), 10 * period + period / 12, 1e-11);
+  EXPECT_NEAR(shear.mean_rate() * period, 0.8, 1e-12);
+}
+
+TEST(ImposedFlow, HasASteadyRateUnlessItComesAndGoes) {
+  EXPECT_EQ(steady_shear(0.5).steady_rate(), 0.5);
+  EXPECT_EQ(steady_shear(0.5).period(), std::nullopt);
+  const ImposedFlow flow(std::make_shared<OscillatoryShear>(0.2, 3));
+  EXPECT_EQ(flow.steady_rate(), 0);
+  EXPECT_DOUBLE_EQ(flow.rate(), 0.6);
+}
+
 TEST(Clock, CountsStepsOfOneSizeAndKeepsTheTimeOfOthers) {
   Clock clock;
   clock.count_in(0.1);

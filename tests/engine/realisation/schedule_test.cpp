@@ -1,6 +1,8 @@
 // Steps of the phases, counted by hand.
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "engine/realisation/simulation.h"
 #include "tests/engine/small_scene.h"
 
@@ -32,6 +34,27 @@ TEST(Schedule, TheFirstLimitThatIsReachedEndsAPhase) {
       schedule_of({{"strain", 0.4}, {"brownian_times", 0.05}}, {{"strain", 40}, {"brownian_times", 0.5}});
   EXPECT_EQ(schedule.equilibration, 100u);
   EXPECT_EQ(schedule.production, 3430u);
+}
+
+// A cycle of 2 has 1000 steps of 0.002 and no fewer of a longer one; at most a 128th of it.
+TEST(Schedule, CyclesHaveWholeNumbersOfSteps) {
+  const auto schedule_of_cycles = [](double frequency, double timestep) {
+    Json document = small_scene();
+    document["flow"] = {{"oscillation", {{"amplitude", 0.01}, {"frequency", frequency}}}};
+    document["integrator"]["timestep"] = timestep;
+    document["duration"] = {{"equilibration", {{"cycles", 2}}}, {"production", {{"cycles", 3}}}};
+    return make_schedule(read_scene(document, "scene.json"), "scene.json");
+  };
+  const Schedule given = schedule_of_cycles(std::numbers::pi, 0.002);
+  EXPECT_EQ(given.equilibration, 2000u);
+  EXPECT_EQ(given.production, 3000u);
+  EXPECT_DOUBLE_EQ(given.timestep, 0.002);
+  const Schedule shortened = schedule_of_cycles(std::numbers::pi, 0.0021);  // 952.4 of them
+  EXPECT_EQ(shortened.production, 3u * 953u);
+  EXPECT_DOUBLE_EQ(shortened.timestep, 2.0 / 953);
+  const Schedule fast = schedule_of_cycles(100 * std::numbers::pi, 0.002);  // a cycle of 0.02
+  EXPECT_EQ(fast.production, 3u * 128u);
+  EXPECT_DOUBLE_EQ(fast.timestep, 0.02 / 128);
 }
 
 }  // namespace

@@ -1,0 +1,96 @@
+#include "engine/observables/oscillation.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/terms/drag.h"
+
+namespace peclet::engine {
+namespace {
+
+constexpr std::array<const char*, 5> names = {"storage_modulus", "loss_modulus", "dynamic_viscosity",
+                                              "third_storage_modulus", "third_loss_modulus"};
+constexpr std::array<const char*, 5> symbols = {"G'", "G''", "eta' / eta", "G'_3", "G''_3"};
+
+std::vector<Quantity> oscillation_quantities(const Scene&, const Window&) {
+  std::vector<Quantity> all;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const bool is_relative = std::string(names[k]) == "dynamic_viscosity";
+    all.push_back({.name = names[k], .symbol = symbols[k], .unit = is_relative ? "1" : "stress"});
+  }
+  return all;
+}
+
+const OscillatoryShear& shear_of(const Scene& scene) {
+  return dynamic_cast<const OscillatoryShear&>(scene.physics.flow.deformation());
+}
+
+}  // namespace
+
+Oscillation::Oscillation(const Scene& scene, const System& system, const Window& window)
+    : Observable(interval_of(scene, oscillation(), window)),
+      volume_(system.box.volume()),
+      amplitude_(shear_of(scene).amplitude()),
+      frequency_(shear_of(scene).frequency()),
+      solvent_(scene.physics.viscosity * frequency_),
+      background_(solvent_ * (1 + stresslet(scene.volume_fraction, {.xy = 1}).xy)),
+      steps_of_cycle_(static_cast<std::uint64_t>(std::llround(*shear_of(scene).period() / window.timestep))),
+      cycles_(window.steps / steps_of_cycle_),
+      ahead_(scene.method == Method::implicit_steps ? 0.5 : 1.0) {}
+
+void Oscillation::take_flux(const MomentumFlux& flux) {
+  const double in_cycle = static_cast<double>(taken_ % steps_of_cycle_) + ahead_;
+  const double phase = 2 * std::numbers::pi * in_cycle / static_cast<double>(steps_of_cycle_);
+  const double part = 2 * flux.acted.xy / (volume_ * amplitude_ * static_cast<double>(steps_of_cycle_));
+  cycle_[0].storage += part * std::sin(phase);
+  cycle_[0].loss += part * std::cos(phase);
+  cycle_[1].storage += part * std::sin(3 * phase);
+  cycle_[1].loss += part * std::cos(3 * phase);
+  ++taken_;
+  if (taken_ % steps_of_cycle_ == 0) end_cycle();
+}
+
+std::size_t Oscillation::block_of_cycle() const {
+  return static_cast<std::size_t>((taken_ / steps_of_cycle_ - 1) * count_of_blocks / cycles_);
+}
+
+void Oscillation::end_cycle() {
+  const double loss = background_ + cycle_[0].loss;
+  const std::array<double, 5> values = {cycle_[0].storage, loss, loss / solvent_, cycle_[1].storage,
+                                        cycle_[1].loss};
+  for (std::size_t k = 0; k < means_.size(); ++k) {
+    means_[k].add(block_of_cycle(), 0, values[k]);
+    means_[k].weigh(block_of_cycle(), 1);
+  }
+  cycle_ = {};
+}
+
+void Oscillation::add_to(Json& mean) const {
+  for (std::size_t k = 0; k < means_.size(); ++k) mean[names[k]] = means_[k].value();
+}
+
+void Oscillation::add_blocks_to(Json& blocks) const {
+  for (std::size_t k = 0; k < means_.size(); ++k) blocks[names[k]] = means_[k].blocks();
+}
+
+void Oscillation::save(ArchiveWriter& archive) const {
+  archive.put(taken_);
+  archive.put(cycle_);
+  for (const BlockedMean& mean : means_) mean.save(archive);
+}
+
+void Oscillation::load(ArchiveReader& archive) {
+  taken_ = archive.get<std::uint64_t>();
+  cycle_ = archive.get<std::array<Modulus, 2>>();
+  for (BlockedMean& mean : means_) mean.load(archive);
+}
+
+ObservableKind oscillation() {
+  return {"oscillation", every_step, [](const Scene&, const Window&, const std::string&) {},
+          oscillation_quantities,
+          [](const Scene& scene, const System& system, const Window& window) -> std::unique_ptr<Observable> {
+            return std::make_unique<Oscillation>(scene, system, window);
+          }};
+}
+
+}  // namespace peclet::engine

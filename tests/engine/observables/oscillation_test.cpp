@@ -1,0 +1,113 @@
+// Moduli of stresses that are known, and of suspensions whose viscosity is.
+#include "engine/observables/oscillation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/output/stress_means.h"
+#include "engine/realisation/simulation.h"
+#include "tests/engine/observables/loose_spheres.h"
+
+namespace peclet::engine {
+namespace {
+
+constexpr double amplitude = 0.2, frequency = 3;
+
+Scene oscillating(const char* method, std::uint64_t cycles) {
+  Json document = small_scene();
+  document["flow"] = {{"oscillation", {{"amplitude", amplitude}, {"frequency", frequency}}}};
+  document["integrator"] = {{"method", method}};
+  document["duration"] = {{"equilibration", {{"cycles", 0}}}, {"production", {{"cycles", cycles}}}};
+  document["observables"] = {"oscillation"};
+  return read_scene(document, "scene.json");
+}
+
+class Moduli : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(EitherMethod, Moduli, testing::Values("explicit", "implicit"),
+                         [](const auto& method) { return std::string(method.param); });
+
+// sigma = g [(1 + cycle) sin + 5 cos + 2 sin 3 + 3 cos 3] in each of four cycles: at the middle of implicit
+// steps, at the end of explicit ones. The flux is that times the volume.
+TEST_P(Moduli, AreThoseOfAStressThatIsASumOfHarmonics) {
+  constexpr std::uint64_t steps = 200, cycles = 4;
+  const Scene scene = oscillating(GetParam(), cycles);
+  const System system = loose_spheres(4);
+  const double timestep = 2 * std::numbers::pi / frequency / steps, volume = edge * edge * edge;
+  auto made = make_observables(scene, system, {timestep, steps * cycles, system.box.lengths()});
+  ASSERT_EQ(made.size(), 1u);
+  const double ahead = scene.method == Method::implicit_steps ? 0.5 : 1;
+  for (std::uint64_t k = 0; k < steps * cycles; ++k) {
+    const double phase = frequency * timestep * (static_cast<double>(k) + ahead);
+    MomentumFlux flux;
+    flux.acted.xy = volume * amplitude *
+                    ((1 + static_cast<double>(k / steps)) * std::sin(phase) + 5 * std::cos(phase) +
+                     2 * std::sin(3 * phase) + 3 * std::cos(3 * phase));
+    made.front()->take_flux(flux);
+  }
+  const Json mean = mean_of(*made.front());
+  // eta = 0.1 and phi = 0.45.
+  const double background = 0.1 * frequency * (1 + 2.5 * 0.45);
+  EXPECT_NEAR(mean["storage_modulus"].get<double>(), (1 + 2 + 3 + 4) / 4.0, 1e-12);
+  EXPECT_NEAR(mean["loss_modulus"].get<double>(), 5 + background, 1e-12);
+  EXPECT_NEAR(mean["dynamic_viscosity"].get<double>(), (5 + background) / (0.1 * frequency), 1e-11);
+  EXPECT_NEAR(mean["third_storage_modulus"].get<double>(), 2, 1e-12);
+  EXPECT_NEAR(mean["third_loss_modulus"].get<double>(), 3, 1e-12);
+  Json blocks;
+  made.front()->add_blocks_to(blocks);
+  ASSERT_EQ(blocks["storage_modulus"].size(), 32u);  // of four cycles every eighth has one
+  for (std::size_t block = 0; block < 32; ++block) {
+    const Json& value = blocks["storage_modulus"][block];
+    if (block % 8 != 0) {
+      EXPECT_TRUE(value.is_null());
+    } else {
+      EXPECT_NEAR(value.get<double>(), 1 + static_cast<double>(block / 8), 1e-4);
+    }
+  }
+}
+
+// Without time to move, viscous spheres answer with the viscosity that they have in steady shear from the
+// same packing; what is in phase with the strain is their inertia alone, and there is no third harmonic.
+TEST(Moduli, OfASmallOscillationAreTheViscosityOfThePacking) {
+  const auto document = [](const Json& flow, const Json& equilibration, const Json& production,
+                           const Json& observables) {
+    return Json{{"particles",
+                 {{"count", 60}, {"density", 0.001}, {"species", {{{"radius", 1}, {"volume_share", 1}}}}}},
+                {"volume_fraction", 0.4},
+                {"fluid", {{"viscosity", 0.1}}},
+                {"lubrication", {{"form", "kim-karrila"}, {"inner_gap", 1e-3}, {"outer_gap", 0.05}}},
+                {"integrator", {{"method", "implicit"}, {"tolerance", 1e-6}}},
+                {"flow", flow},
+                {"duration", {{"equilibration", equilibration}, {"production", production}}},
+                {"observables", observables}};
+  };
+  const auto run = [](const Json& json) {
+    const Scene scene = read_scene(json, "scene.json");
+    auto simulation =
+        std::make_unique<Simulation>(scene, make_schedule(scene, "scene.json"), 5, 1, "scene.json");
+    simulation->start();
+    EXPECT_TRUE(simulation->advance(1000000).has_value());
+    return std::pair(scene, std::move(simulation));
+  };
+  const auto [steady, sheared] =
+      run(document({{"shear_rate", 1e-6}}, {{"strain", 0}}, {{"strain", 1e-6}}, {"stress"}));
+  const double viscosity = StressMeans(steady, sheared->system())
+                               .means(sum_of(sheared->production().blocks()))
+                               .at("relative_viscosity")
+                               .get<double>();
+  const auto [scene, oscillated] = run(document({{"oscillation", {{"amplitude", 1e-6}, {"frequency", 1}}}},
+                                                {{"cycles", 0}}, {{"cycles", 2}}, {"stress", "oscillation"}));
+  const Json means =
+      StressMeans(scene, oscillated->system()).means(sum_of(oscillated->production().blocks()));
+  EXPECT_TRUE(means.at("relative_viscosity").is_null());  // of a stress that comes and goes
+  const Json mean = mean_of(*oscillated->observables().front());
+  EXPECT_GT(viscosity, 2.2);  // pairs are felt: 1 + 2.5 phi is 2
+  EXPECT_NEAR(mean["dynamic_viscosity"].get<double>(), viscosity, 1e-3 * (viscosity - 2));
+  // w rho a^2 / eta = 0.01.
+  EXPECT_LT(std::abs(mean["storage_modulus"].get<double>()), 0.01 * mean["loss_modulus"].get<double>());
+  EXPECT_LT(std::abs(mean["third_loss_modulus"].get<double>()), 1e-3 * mean["loss_modulus"].get<double>());
+}
+
+}  // namespace
+}  // namespace peclet::engine
