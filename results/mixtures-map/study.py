@@ -14,6 +14,7 @@ from studies.command_line import main
 from studies.compositions import MIXTURE_SCENE, grains_among, mean_peclet, packing_models, windows
 from studies.estimates import difference, over, propagated, quotient
 from studies.figure import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
+from studies.hours import Hours
 from studies.scenes import merged
 from studies.tables import columns_of, number, read_numbers, read_rows, write_numbers, write_table
 from studies.verdicts import Check, Statement
@@ -109,24 +110,6 @@ def curves_of(program, name, only=None):
     return {curve["settings"].get("/particles/mixture/alpha", only): curve for curve in found}
 
 
-class Hours:
-    """What `peclet plan` said of the first round of the rows, of which it knew nothing, and what that took."""
-
-    def __init__(self, program):
-        self._program, self.planned, self.taken = program, 0.0, 0.0
-
-    def plan(self, name, scene, settings):
-        """Of a campaign of its own, which is never run. Kept, since planning takes some seconds."""
-        kept = Path(self._program.folder) / f"{name}.planned"
-        if not kept.exists():
-            self._program.write(f"plan-{name}", scene, settings, SEEDS)
-            kept.write_text(str(self._program.asked("plan", f"plan-{name}")["cpu_hours_maximum"]))
-        self.planned += float(kept.read_text())
-
-    def add(self, points):
-        self.taken += sum(r["cost"]["cpu_seconds"] for point in points for r in point["realisations"]) / 3600
-
-
 def search(program, hours, row, shares):
     """Rows of the table and of the map: rounds of runs, each between what flows and what does not in the one before."""
     name = str(row)
@@ -193,7 +176,7 @@ MAP = ["row", "alpha", "peclet", "mean peclet", "flowing", "stuck", *columns_of(
 
 
 def measure(program):
-    rows, entries, hours = [], [], Hours(program)
+    rows, entries, hours = [], [], Hours(program, SEEDS)
     everything = {SMOOTH: (*COUNTS,), ROUGH: (*COUNTS,), **NOISY_ROWS, FIXED: FIXED_SHARES}
     for row, shares in everything.items():
         found = search(program, hours, row, shares)
@@ -204,7 +187,7 @@ def measure(program):
     names += columns_of("viscosity", "pairs", "lubrication", "contact", "mean_overlap", "contacts_per_particle")
     write_table(HERE / "table.csv", names, rows, 5)
     write_table(HERE / "map.csv", MAP, entries, 6)
-    write_numbers(HERE / "numbers.csv", {"planned": (hours.planned, 0.0, 0), "taken": (hours.taken, 0.0, 0)})
+    write_numbers(HERE / "numbers.csv", hours.numbers())
 
 
 class Map:

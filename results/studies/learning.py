@@ -159,7 +159,7 @@ class OfStressAlone(Method):
 
 def gaussian_process(count):
     kernel = ConstantKernel(1.0) * RBF(np.ones(count), (0.05, 50)) + WhiteKernel(1e-2, (1e-6, 1))
-    return GaussianProcessRegressor(kernel, n_restarts_optimizer=1, random_state=SEED)
+    return GaussianProcessRegressor(kernel, random_state=SEED)
 
 
 def boosted(**settings):

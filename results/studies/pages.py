@@ -1,4 +1,4 @@
-"""The tables of rows on the page of a study, between two marks that it has."""
+"""The tables of rows, and other parts that a program writes, on the page of a study, between two marks that it has."""
 from studies.tables import markdown_head, markdown_row
 from studies.verdicts import HEADS
 
@@ -15,11 +15,16 @@ def tables_of(rows):
     return "\n\n".join(parts)
 
 
+def with_part(page, begin, end, text):
+    """The page with this text between two marks."""
+    before, rest = page.split(begin + "\n")
+    _, after = rest.split(end)
+    return f"{before}{begin}\n{text}\n{end}{after}"
+
+
 def with_rows(page, rows):
     """The page with these rows between its marks."""
-    before, rest = page.split(BEGIN + "\n")
-    _, after = rest.split(END)
-    return f"{before}{BEGIN}\n{tables_of(rows)}\n{END}{after}"
+    return with_part(page, BEGIN, END, tables_of(rows))
 
 
 def rewrite(path, rows):
@@ -29,3 +34,11 @@ def rewrite(path, rows):
     if BEGIN in page:
         with open(path, "w") as f:
             f.write(with_rows(page, rows))
+
+
+def rewrite_part(path, name, text):
+    """Another part, which has this name in its marks."""
+    with open(path) as f:
+        page = f.read()
+    with open(path, "w") as f:
+        f.write(with_part(page, f"<!-- {name}, written by study.py -->", f"<!-- end of {name} -->", text))

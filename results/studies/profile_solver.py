@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from studies.inhomogeneous import MEAN_RADIUS, MEAN_VOLUME, RADIUS, VISCOSITY
+from studies.inhomogeneous import LARGER_RADIUS, MEAN_RADIUS, MEAN_VOLUME, RADIUS, VISCOSITY
 
 DRAG = 6 * math.pi * VISCOSITY * MEAN_RADIUS / MEAN_VOLUME
 
@@ -42,14 +42,34 @@ def rates_of(velocity, width):
     return (np.roll(velocity, -1) - np.roll(velocity, 1)) / (2 * width)
 
 
+def drag_by_share(largest_share):
+    """6 pi eta a n per volume fraction, of bins where the larger spheres have this share of the spheres' volume."""
+    of = [6 * math.pi * VISCOSITY * radius / (4 * math.pi / 3 * radius**3) for radius in (RADIUS, LARGER_RADIUS)]
+    return of[0] + (of[1] - of[0]) * largest_share
+
+
+def stress_of_drag(table, width):
+    """sigma_xy in the bins of a flow from its velocities and volume fractions alone: the integral of the drag by
+    trapezia, 0 where the rate changes its sign."""
+    density = drag_by_share(table["largest share"]) * table["fraction"] * (table["driving"] - table["velocity"])
+    steps = -width * 0.5 * (density + np.roll(density, -1))  # from the middle of a bin to that of the next one
+    steps -= steps.mean()
+    stress = np.concatenate([[0], np.cumsum(steps)[:-1]])
+    rate, above = table["rate"], np.roll(table["rate"], -1)
+    turns = np.nonzero(np.sign(rate) != np.sign(above))[0]
+    part = rate[turns] / (rate[turns] - above[turns])
+    return stress - float(np.mean(stress[turns] + part * steps[turns]))
+
+
 class Law:
-    """ln mu and phi as polynomials of second degree in ln J and ln Theta, fitted to bins; q(phi) of uniform flow; the
-    reach that makes Theta right in the bins."""
+    """ln mu and phi as polynomials of second degree in ln J and ln Theta, fitted to bins and to uniform flow; q(phi) of
+    uniform flow; the reach that makes Theta right in the bins."""
 
     def __init__(self, tables, uniform, heights):
-        """`tables` of flows, `heights` of them; `uniform` has fraction, J and Theta."""
+        """`tables` of flows, `heights` of them, and the same of uniform flow."""
         together = {
-            name: np.concatenate([table[name] for table in tables]) for name in ("J", "Theta", "mu", "fraction")
+            name: np.concatenate([table[name] for table in (*tables, uniform)])
+            for name in ("J", "Theta", "mu", "fraction")
         }
         moving = together["J"] > 1e-6
         j, theta = (np.log(together[name][moving]) for name in ("J", "Theta"))

@@ -30,31 +30,12 @@ from coarse_mutations import COARSE
 from named_mutations import NAMED
 
 CRASH = "ended by signal"
-STUDIES = [
-    "at-rest",
-    "contacts",
-    "control-variates",
-    "convergence",
-    "diffusion",
-    "divergence",
-    "flow-curve",
-    "friction-repulsion",
-    "inertia",
-    "large-friction",
-    "literature",
-    "microstructure",
-    "mixtures",
-    "mixtures-map",
-    "mixtures-noise",
-    "monti-silica",
-    "monti-viscosity",
-    "monti-waves",
-    "pair-potential",
-    "zero-shear",
-    "speed-accuracy",
-    "stability",
-    "steady-state",
-]
+STUDIES = """
+    at-rest contacts control-variates convergence diffusion divergence flow-curve friction-repulsion inertia
+    inhomogeneous-flow large-friction learned-rheology literature microstructure mixtures mixtures-map
+    mixtures-noise monti-silica monti-viscosity monti-waves pair-potential zero-shear speed-accuracy stability
+    steady-state
+""".split()
 
 
 def replaced(mutation, root):

@@ -22,7 +22,7 @@ from studies.inhomogeneous import (
     waves_of,
 )
 from studies.learning import LawOfFraction, Published, left_out, relative_error
-from studies.profile_solver import DRAG, Law, rates_of, solve, spread, velocity_of
+from studies.profile_solver import DRAG, Law, drag_by_share, rates_of, solve, spread, stress_of_drag, velocity_of
 
 import numpy as np
 
@@ -99,6 +99,10 @@ class Bins(unittest.TestCase):
             },
         )
         self.assertEqual(distinct_bins(sine), [0, 1])
+        # sin(2 pi y / 16 + 3 pi / 8) has crests in the middle of bins 0 and 4, where its mirror leaves no rate.
+        crests = Flow("crests", [wave(math.cos(3 * math.pi / 8), 1, math.sin(3 * math.pi / 8))], 16, 0.5, 1, 1)
+        self.assertEqual(len(symmetries(crests.driving_of_bins())), 4)
+        self.assertEqual(distinct_bins(crests.driving_of_bins()), [1, 2])
         both = Flow("two", [wave(0.1), wave(0.07, 2)], 16, 0.5, 1, 1).driving_of_bins()
         self.assertEqual([(sign, shear) for _, sign, shear in symmetries(both)], [(1, 1), (-1, 1)])
         none = Flow("none", [wave(0.1), wave(0.07, 2, 0.03)], 16, 0.5, 1, 1).driving_of_bins()
@@ -191,6 +195,23 @@ class Solver(unittest.TestCase):
     def test_rates_are_central_differences_around_the_box(self):
         np.testing.assert_allclose(rates_of(np.array([0.0, 1.0, 4.0, 9.0]), 0.5), [-8, 4, 8, -4])
 
+    def test_drag_follows_from_the_spheres_of_a_bin(self):
+        self.assertAlmostEqual(drag_by_share(1.4**3 / (1 + 1.4**3)), DRAG)  # equal numbers
+        self.assertAlmostEqual(drag_by_share(0.0), 4.5 * VISCOSITY)  # 6 pi eta / (4 pi / 3)
+
+    def test_the_shear_stress_is_the_integral_of_the_drag(self):
+        """d sigma / dy = -c phi a sin ky; by trapezia, c phi a w cos ky / (2 tan(k w / 2)), 0 with the rate."""
+        wave_number = 2 * math.pi / 100
+        table = {
+            "largest share": np.full(50, 0.6),
+            "fraction": np.full(50, 0.5),
+            "driving": 0.3 * np.sin(wave_number * self.Y),
+            "velocity": 0.2 * np.sin(wave_number * self.Y),
+            "rate": np.cos(wave_number * self.Y),
+        }
+        expected = drag_by_share(0.6) * 0.5 * 0.1 * 2 * np.cos(wave_number * self.Y) / (2 * math.tan(wave_number))
+        np.testing.assert_allclose(stress_of_drag(table, 2.0), expected, atol=1e-12)
+
     class OfOneViscosity:
         """mu = 3 J, and the mean volume fraction everywhere."""
 
@@ -219,6 +240,7 @@ class Solver(unittest.TestCase):
         y = (np.arange(50) + 0.5) * 2
         uniform = {"fraction": np.array([0.4, 0.5, 0.6]), "J": np.full(3, 1e-2)}
         uniform["Theta"] = uniform["J"] * np.exp(1 + 2 * uniform["fraction"])
+        uniform["mu"] = np.exp(0.3 + 0.5 * np.log(uniform["J"]) - 0.2 * np.log(uniform["Theta"]))
         tables = []
         for amplitude in (0.1, 0.3):
             rate = amplitude * np.cos(2 * math.pi * y / 100 + 0.03)  # nowhere zero

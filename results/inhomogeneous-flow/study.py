@@ -1,0 +1,405 @@
+#!/usr/bin/python3
+"""Suspensions driven by waves of the flow: profiles with errors, the balance of momentum, and what a uniform flow at
+the same local stress would do (Li 2023, ch. 6, Fig. 6.1 and Eqs 6.7 to 6.9).
+
+study.py BIN [FOLDER] [--quick] [--from-table]
+"""
+import math
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from studies.command_line import main
+from studies.estimates import difference, estimate, jackknife, propagated, quotient
+from studies.figure import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
+from studies.fits import divergence
+from studies.hours import Hours
+from studies.inhomogeneous import FIGURE, FLOWS, OTHER, PUBLISHED, QUANTITIES, SCENE, TRAINING, UNSEEN
+from studies.inhomogeneous import Flow, bin_rows, growth, profile_of, symmetric_bin_rows, symmetries, wave
+from studies.scenes import during, merged
+from studies.tables import columns_of, entries, number, read_numbers, read_rows, write_numbers, write_table
+from studies.verdicts import Check, Finding, Statement
+
+import numpy as np
+from scipy.optimize import least_squares
+
+TITLE = "Flows that vary along their gradient"
+SEEDS = 4
+UNIFORM = (0.40, 0.44, 0.47, 0.50, 0.52, 0.54, 0.56, 0.58, 0.60, 0.61)
+UNIFORM_RATE = 0.01
+UNIFORM_QUANTITIES = "J", "mu", "Theta", "normal"
+
+
+def uniform_quantities(mean):
+    """Stresses of a result with a rate are in units of viscosity times rate, variances in those of the scene; normal is
+    -sigma_yy / P."""
+    stress = np.array(mean["profiles"]["stress"]["pairs"], float).mean(axis=1)
+    pressure = -stress[:3].mean()
+    scatter = math.sqrt(np.mean(mean["profiles"]["velocity_variance"][0])) / UNIFORM_RATE
+    return {
+        "J": 1 / pressure,
+        "mu": abs(stress[3]) / pressure,
+        "Theta": scatter / pressure,
+        "normal": -stress[1] / pressure,
+    }
+
+
+def uniform_rows(program, hours):
+    """Steady shear without waves: one J for each volume fraction."""
+    scene = merged(SCENE, {"box": None, "profiles": {"bins": 5}, "flow": None})
+    scene = merged(scene, {"flow": {"shear_rate": UNIFORM_RATE}, "particles": {"count": 1000}})
+    scene = merged(scene, during({"strain": 4}, {"strain": 12}))
+    settings = [{"/volume_fraction": fraction} for fraction in UNIFORM]
+    hours.plan("uniform", scene, settings)
+    hours.add(program.run("uniform", scene, settings, SEEDS))
+    for fraction, results in zip(UNIFORM, program.stored_results("uniform")):
+        row = {"fraction": fraction, "seeds": len(results)}
+        columns = [uniform_quantities(r["mean"]) for r in results]
+        for name in UNIFORM_QUANTITIES:
+            row |= entries(name, estimate([c[name] for c in columns]))
+        yield row
+
+
+def share_that_separates(profile):
+    """The share of the larger spheres in the fifth of the bins with the largest rates less that in the fifth with the
+    smallest."""
+    order = np.argsort(np.abs(profile.rate))
+    some = max(1, len(order) // 5)
+    share = profile.largest / profile.fraction
+    return float(share[order[-some:]].mean() - share[order[:some]].mean())
+
+
+def mirrored(profiles):
+    """Median over bins and quantities of |bin less its image| over its standard error, over the seeds."""
+    found = []
+    for image, velocity, shear in symmetries(profiles[0].driving)[1:]:
+        others = image != np.arange(len(image))
+        for name, sign in (("fraction", 1), ("velocity", velocity), ("shear stress", shear)):
+            columns = np.array([p.columns()[name] for p in profiles])
+            by_seed = (columns - sign * columns[:, image])[:, others]
+            error = by_seed.std(axis=0, ddof=1) / math.sqrt(len(profiles))
+            found.append(np.abs(by_seed.mean(axis=0)) / error)
+    return float(np.median(np.concatenate(found))) if found else math.nan
+
+
+MOST_BINS_WITH_QUARTERS = 64  # of a result
+
+
+def flow_row(flow, results, profiles):
+    """What a flow has as a whole."""
+    row = {"flow": flow.name, "mean": flow.fraction, "height": flow.height, "count": flow.count, "seeds": len(results)}
+    parts = {
+        "lag": [np.sqrt(np.mean((p.driving - p.velocity) ** 2)) / np.max(np.abs(p.driving)) for p in profiles],
+        "unevenness": [np.std(p.stress[1]) / np.mean(-p.stress[1]) for p in profiles],
+        "densest": [np.max(p.fraction) for p in profiles],
+        "contrast": [np.std(p.fraction) for p in profiles],
+        "separation": [share_that_separates(p) for p in profiles],
+        # With noise there is none: the momentum that it carries is not followed.
+        "imbalance": [r["mean"]["profiles"].get("momentum_imbalance", math.nan) for r in results],
+    }
+    for name, values in parts.items():
+        row |= entries(name, estimate([float(v) for v in values]))
+    row["mirrored"] = mirrored(profiles)
+    quarters = {"change": [], "separation change": []}
+    for blocks in (r["blocks"]["profiles"] for r in results):
+        fraction = np.array(blocks.get("volume_fraction", math.nan))
+        quarters["change"].append(fraction)
+        quarters["separation change"].append(np.array(blocks["volume_fraction_by_radius"])[:, -1] / fraction)
+    for name, of_seeds in quarters.items():
+        row |= entries(name, growth(of_seeds) if flow.bins <= MOST_BINS_WITH_QUARTERS else (math.nan, math.nan))
+    return row
+
+
+FLOW_COLUMNS = ["flow", "mean", "height", "count", "seeds", "mirrored"]
+FLOW_NUMBERS = (
+    "lag", "unevenness", "change", "densest", "contrast", "separation", "separation change", "imbalance"
+)  # fmt: skip
+BIN_COLUMNS = ["flow", "mean", "height", "y", "driving", *columns_of(*QUANTITIES)]
+
+
+def measure(program):
+    scene = merged(SCENE, during({"strain": None, "time": 1}, {"strain": None, "time": 1}))
+    bins, distinct, flows, hours = [], [], [], Hours(program, SEEDS)
+    uniform = list(uniform_rows(program, hours))
+    for one in FLOWS:
+        # Each by itself: profiles of one campaign have the same bins.
+        hours.plan(one.name, scene, [one.settings()], "pressure")
+        hours.add(program.run(one.name, scene, [one.settings()], SEEDS, observable="pressure"))
+        (results,) = program.stored_results(one.name)
+        profiles = [profile_of(one, r["mean"]["profiles"]) for r in results]
+        bins += bin_rows(one, profiles)
+        distinct += symmetric_bin_rows(one, profiles)
+        flows.append(flow_row(one, results, profiles))
+    write_table(HERE / "bins.csv", BIN_COLUMNS, bins, 6)
+    write_table(HERE / "distinct_bins.csv", BIN_COLUMNS, distinct, 6)
+    write_table(HERE / "flows.csv", [*FLOW_COLUMNS, *columns_of(*FLOW_NUMBERS)], flows, 5)
+    write_table(HERE / "uniform.csv", ["fraction", "seeds", *columns_of(*UNIFORM_QUANTITIES)], uniform, 6)
+    write_numbers(HERE / "numbers.csv", hours.numbers())
+
+
+def column(rows, name):
+    return np.array([row[name] for row in rows], float)
+
+
+class Tables:
+    def __init__(self):
+        self.flows = {r["flow"]: r for r in read_rows(HERE / "flows.csv")}
+        self.uniform = read_rows(HERE / "uniform.csv")
+        self.numbers = read_numbers(HERE / "numbers.csv")
+        self._bins = read_rows(HERE / "bins.csv")
+        self._distinct = read_rows(HERE / "distinct_bins.csv")
+
+    def bins(self, *flows):
+        names = {flow.name for flow in flows}
+        return [r for r in self._bins if r["flow"] in names]
+
+    def distinct_bins(self, *flows):
+        names = {flow.name for flow in flows}
+        return [r for r in self._distinct if r["flow"] in names]
+
+    def largest(self, flows, name):
+        """Of some flows, the number of the one that has the largest."""
+        return max((number(self.flows[f.name], name) for f in flows), key=lambda n: abs(n[0]))
+
+    def mean(self, flows, name):
+        """Over flows, with the standard error of their scatter."""
+        return estimate([self.flows[f.name][name] for f in flows])
+
+
+def law_of_fraction(rows):
+    """sqrt(J / mu) = sqrt(alpha) (phi_J - phi), Eq. 6.7: alpha, phi_J and the rms of ln(J / mu) that is left."""
+    fraction, root = column(rows, "fraction"), np.sqrt(column(rows, "J") / column(rows, "mu"))
+
+    def left(parameters):
+        form = np.maximum(parameters[1] - fraction, 1e-4)
+        return 2 * np.log(parameters[0] * form / root)
+
+    found = least_squares(left, (math.sqrt(4.0), 0.66))
+    return found.x[0] ** 2, float(found.x[1]), float(np.sqrt(np.mean(left(found.x) ** 2)))
+
+
+def by_flow(flows, tables, function):
+    """A function of the bins of some flows, and its error by leaving out a flow at a time."""
+    return jackknife(lambda chosen: function(tables.bins(*(flows[k] for k in chosen))), len(flows))
+
+
+# Of Eq. 6.8, with the exponents in print. Its range below 10^-3, with 1.22, is that of bins across which the rate
+# changes its sign.
+RANGES = ("above 10⁻²", (1e-2, 1), 2), ("10⁻³ to 10⁻²", (1e-3, 1e-2), 1.73)
+
+
+def power_law(rows, low, high):
+    """ln of Theta^1.44 mu^2.5 as a line in ln J, Eq. 6.8, where J is in this range: exponent, logarithm at J = 1."""
+    rows = [r for r in sheared(rows) if low <= r["J"] < high]
+    combined = 1.44 * np.log(column(rows, "Theta")) + 2.5 * np.log(column(rows, "mu"))
+    return np.polyfit(np.log(column(rows, "J")), combined, 1)
+
+
+def step(rows, above, below):
+    """Of the laws of two ranges, the upper one over the lower one where they meet."""
+    meet = math.log(above[0])
+    return float(np.exp(np.polyval(power_law(rows, *above), meet) - np.polyval(power_law(rows, *below), meet)))
+
+
+def collapse(rows):
+    """Scatter of ln of J / (Theta^0.8 mu^1.2), Eq. 6.9, about a cubic in phi."""
+    rows = sheared(rows)
+    value = np.log(column(rows, "J")) - 0.8 * np.log(column(rows, "Theta")) - 1.2 * np.log(column(rows, "mu"))
+    fraction = column(rows, "fraction")
+    return float(np.std(value - np.polyval(np.polyfit(fraction, value, 3), fraction)))
+
+
+def sheared(rows):
+    """Bins where the flow has a direction: rates above a twentieth of the largest of their flow."""
+    largest = {}
+    for row in rows:
+        largest[row["flow"]] = max(largest.get(row["flow"], 0), abs(row["rate"]))
+    return [r for r in rows if abs(r["rate"]) > 0.05 * largest[r["flow"]]]
+
+
+def steady_rows(tables):
+    for flow in FIGURE:
+        text = f"k = 0.4, L_y = {flow.height:g}: rms of u∞ − u over k"
+        yield Finding(text, "L6.1b", *number(tables.flows[flow.name], "lag"), SEEDS - 1)
+    known = TRAINING + PUBLISHED
+    text = "how much more φ(y) stands out in the second half of the window, relative: mean of ten flows"
+    yield Statement(text, "L 6.1", *tables.mean(known, "change"), -0.1, 0.1, len(known) - 1)
+    text = "the same, of the flow where it is most"
+    yield Statement(text, "L 6.1", *tables.largest(known, "change"), -0.1, 0.1, SEEDS - 1, essential=False)
+    noiseless = [flow for flow in FLOWS if flow not in NOISY]
+    text = "largest of all flows: dσ_xy and drag of a bin together, over the largest σ"
+    yield Check(text, "momentum", *tables.largest(noiseless, "imbalance"), high=0.02, degrees=SEEDS - 1)
+    text = "largest of all flows: scatter of σ_yy over y, relative"
+    yield Check(text, "momentum", *tables.largest(noiseless, "unevenness"), high=0.02, degrees=SEEDS - 1)
+    text = "bins less their mirror images, in standard errors, median (0.76 expected)"
+    yield Check(text, "error bars", *tables.mean(TRAINING, "mirrored"), 0.5, 1.1, len(TRAINING) - 1)
+    bins = len(tables.bins(*TRAINING))
+    yield Statement("bins of the training flows", "L 6.1", bins, 0, 300, 300)
+
+
+NOISY = OTHER[1:]
+
+
+def noise(rows, name):
+    """Relative, median over bins."""
+    return float(np.median(column(rows, f"{name}_error") / np.abs(column(rows, name))))
+
+
+def noise_rows(tables):
+    rows, distinct = tables.bins(*TRAINING), tables.distinct_bins(*TRAINING)
+    symbols = {"mu": "μ", "fraction": "φ_loc", "Theta": "Θ", "lag": "Δ_v", "J": "J"}
+    for name, symbol in symbols.items():
+        text = f"noise of {symbol} in a bin, relative, median of {len(rows)}"
+        yield Finding(text, f"{SEEDS} seeds", noise(rows, name), 0)
+    less = estimate([noise(distinct, name) / noise(rows, name) for name in symbols])
+    text = f"the same of {len(distinct)} bins averaged over symmetries, over that: mean of the five"
+    yield Finding(text, f"{SEEDS} seeds", *less, len(symbols) - 1)
+
+
+def law_rows(tables):
+    uniform = law_of_fraction(tables.uniform)
+    yield Finding("Eq. 6.7, uniform flow: φ_J", "L eq 6.7", uniform[1], 0)
+    yield Finding("Eq. 6.7, uniform flow: rms of ln(J/μ)", "L eq 6.7", uniform[2], 0)
+    where = by_flow(TRAINING, tables, lambda rows: law_of_fraction(sheared(rows))[1])
+    text = "Eq. 6.7: φ_J of the training flows less that of uniform flow"
+    yield Statement(
+        text, "L eq 6.7", where[0] - uniform[1], where[1], -0.005, 0.005, len(TRAINING) - 1, essential=False
+    )
+    left = by_flow(TRAINING, tables, lambda rows: law_of_fraction(rows)[2])
+    yield Finding("Eq. 6.7, training flows: rms of ln(J/μ)", "L eq 6.7", *left, len(TRAINING) - 1)
+    everything = TRAINING + PUBLISHED
+    degrees = len(everything) - 1
+    for name, range_, printed in RANGES:
+        found = by_flow(everything, tables, lambda rows, range_=range_: float(power_law(rows, *range_)[0]))
+        text = f"Eq. 6.8: exponent of J, J {name} (printed: {printed:g})"
+        yield Statement(text, "L eq 6.8", *found, printed - 0.1, printed + 0.1, degrees, essential=False)
+    (_, high, _), (_, middle, _) = RANGES
+    text = "Eq. 6.8: the law above J = 10⁻² over that below, there"
+    found = by_flow(everything, tables, lambda rows: step(rows, high, middle))
+    yield Statement(text, "L eq 6.8", *found, 0.8, 1.2, degrees, essential=False)
+    few = sum(r["J"] < middle[0] for r in sheared(tables.bins(*everything)))
+    yield Finding("Eq. 6.8: bins with J below 10⁻³ whose shear has a direction", "L eq 6.8", few, 0)
+    text = "Eq. 6.9: scatter of J/(Θ^0.8 μ^1.2) at given φ, relative"
+    scatter = by_flow(everything, tables, collapse)
+    yield Statement(text, "L eq 6.9", *scatter, high=0.2, degrees=degrees, essential=False)
+
+
+def intro_rows(tables):
+    jammed = uniform_jam(tables)
+    densest = number(tables.flows["sine-100-56"], "densest")
+    text = "φ = 0.56, L_y = 100: largest φ_loc less φ_J of uniform flow"
+    yield Statement(text, "L 6", *difference(densest, jammed), 0, degrees=SEEDS - 1, essential=False)
+    yield Finding("φ_J of uniform flow, of c (1 − φ/φ_J)^−λ", "uniform flow", *jammed)
+    text = "distance of μ from μ(J) of uniform flow, in errors, median of the tenth with the smallest rates"
+    yield Statement(text, "L 6", *residuals(tables, -1), 3, degrees=len(TRAINING) - 1)
+    text = "distance of μ from μ(J) of uniform flow, in errors, median of the tenth with the largest rates"
+    yield Finding(text, "L 6", *residuals(tables, 1), len(TRAINING) - 1)
+
+
+def uniform_jam(tables):
+    """Of the pair stress over viscosity and rate, mu / J."""
+    fractions = column(tables.uniform, "fraction")
+    values = [propagated([number(r, "mu"), number(r, "J")], lambda v: v[0] / v[1]) for r in tables.uniform]
+    return divergence(fractions, values, (1, 0.65, 1.6))[1]
+
+
+def residuals(tables, side):
+    """Median of |mu - mu(J)| over its error in the tenth of each flow with the largest or, for a side of -1, the
+    smallest rates, and its error by flow. J beyond uniform flow is that of the densest one."""
+    order = sorted(tables.uniform, key=lambda r: r["J"])
+    known = np.log(column(order, "J")), np.log(column(order, "mu"))
+
+    def of(chosen):
+        flows = [TRAINING[k] for k in chosen]
+        rows = [
+            r for f in flows for r in sorted(tables.bins(f), key=lambda r: -side * abs(r["rate"]))[: f.bins // 10 + 1]
+        ]
+        expected = np.exp(np.interp(np.log(column(rows, "J")), *known))
+        return float(np.median(np.abs(column(rows, "mu") - expected) / column(rows, "mu_error")))
+
+    return jackknife(of, len(TRAINING))
+
+
+def separation_rows(tables):
+    text = "share of the larger spheres where the rate is large less that where it is small, mean of the training flows"
+    yield Finding(text, "segregation", *tables.mean(TRAINING, "separation"), len(TRAINING) - 1)
+    text = "how much more that stands out in the second half of the window, relative"
+    yield Finding(text, "segregation", *tables.mean(TRAINING, "separation change"), len(TRAINING) - 1)
+
+
+def other_rows(tables):
+    plain = number(tables.flows["sine-50-52"], "contrast")
+    for flow, words in zip(OTHER, ("friction of 0.5", "noise, Pe = 10 where the rate is largest")):
+        text = f"φ = 0.52, L_y = 50, {words}: rms contrast of φ(y) over that without"
+        yield Finding(text, "other physics", *quotient(number(tables.flows[flow.name], "contrast"), plain), SEEDS - 1)
+
+
+def hours_rows(tables):
+    ratio = tables.numbers["planned"][0] / tables.numbers["taken"][0]
+    yield Check("hours planned before over those taken", "`peclet plan`", ratio, 0, 0.5, 2)
+
+
+def judge():
+    tables = Tables()
+    for some in (steady_rows, noise_rows, law_rows, intro_rows, separation_rows, other_rows, hours_rows):
+        yield from some(tables)
+
+
+def draw():
+    tables = Tables()
+    flows = {flow.name: flow for flow in FLOWS}
+
+    def by_height(name, quantity):
+        rows = tables.bins(flows[name])
+        return [(r["y"] / r["height"], *number(r, quantity)) for r in rows]
+
+    figure = Figure(HERE / "chart.png", columns=2, rows=3, size=(1100, 1300))
+    one = figure.panel("y/L_y", "u, u∞", "velocity, k = 0.4, φ = 0.50, L_y = 50", key="top right")
+    height = FIGURE[0].height
+    one.curve(lambda x: FIGURE[0].driving(x * height), "u∞", GREY, span=(0, 1), samples=101)
+    one.points(by_height("figure-50", "velocity"), "u", BLUE)
+    one = figure.panel("y/L_y", "φ", "volume fraction, k = 0.1", y_range=(0.38, 0.76), key="top right")
+    colours = {"sine-50-50": BLUE, "sine-50-56": RED, "sine-100-56": ORANGE, "square": GREEN}
+    for name, colour in colours.items():
+        one.points(by_height(name, "fraction"), name, colour)
+    one = figure.panel("y/L_y", "share", "share of the larger spheres", y_range=(0.4, 1.15), key="top right")
+    for name, colour in colours.items():
+        one.points(by_height(name, "largest share"), name, colour)
+    one = figure.panel("y/L_y", "over the mean −σ_{yy}", "stress, φ = 0.56, L_y = 50", key="bottom left")
+    scale = float(np.mean(column(tables.bins(flows["sine-50-56"]), "normal stress")))
+    parts = ("normal stress", "−σ_{yy}", BLUE), ("pressure", "P", PURPLE), ("shear stress", "σ_{xy}", RED)
+    for name, title, colour in parts:
+        one.points([(y, v / scale, e / scale) for y, v, e in by_height("sine-50-56", name)], title, colour)
+    kinds = (TRAINING, "training", BLUE), (PUBLISHED, "tests", ORANGE), (UNSEEN, "others", GREEN)
+    one = figure.panel(
+        "J", "μ", "friction coefficient", log="xy", powers="x", key="top left", x_range=(1e-5, 1), y_range=(1e-3, 10)
+    )
+    one.points([(r["J"], *number(r, "mu")) for r in tables.uniform], "uniform flow", BLACK, 7)
+    for some, name, colour in kinds:
+        one.points([(r["J"], *number(r, "mu")) for r in tables.bins(*some)], name, colour, 6)
+    one = figure.panel(
+        "J", "Θ^{1.44} μ^{2.5}", "Eq. 6.8: where the shear has a direction", log="xy", powers="xy", key="top left"
+    )
+    for some, name, colour in kinds:
+        rows = sheared(tables.bins(*some))
+        one.points([(r["J"], r["Theta"] ** 1.44 * r["mu"] ** 2.5) for r in rows], name, colour, 6)
+    law = power_law(tables.bins(*TRAINING, *PUBLISHED), *RANGES[0][1])
+    one.curve(lambda j: math.exp(np.polyval(law, math.log(j))), f"J^{{{law[0]:.2f}}}", BLACK, span=(1e-3, 0.5))
+    figure.draw()
+
+
+def quick_measure(program):
+    """A small box: spheres leave the layers of fast shear, and momentum is balanced."""
+    small = Flow("quick", [wave(0.1)], 24, 0.5, 25, 40, width=12)
+    scene = merged(SCENE, during({"strain": None, "time": 1}, {"strain": None, "time": 1}))
+    program.run(small.name, scene, [small.settings()], 4, observable="pressure")
+    (results,) = program.stored_results(small.name)
+    profiles = [profile_of(small, r["mean"]["profiles"]) for r in results]
+    slow = estimate([float((p.fraction[[2, 3, 8, 9]] - p.fraction[[0, 5, 6, 11]]).mean()) for p in profiles])
+    yield Statement("φ where the flow turns less φ where it is fastest", "L6.1", *slow, 0.03, 0.3, 3)
+    imbalance = estimate([r["mean"]["profiles"]["momentum_imbalance"] for r in results])
+    yield Check("dσ_xy and drag of a bin together, over the largest σ", "momentum", *imbalance, high=0.03, degrees=3)
+
+
+main(HERE, TITLE, measure, quick_measure, judge, draw)
