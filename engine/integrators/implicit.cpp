@@ -6,6 +6,7 @@
 
 #include "engine/integrators/midpoint.h"
 #include "engine/integrators/noisy_midpoint.h"
+#include "engine/state/field_array.h"
 #include "engine/threads/for_each_range.h"
 
 namespace peclet::engine {
