@@ -36,14 +36,20 @@ std::string means(const Json& result) {
     text += line("viscosity", fmt::format("{} relative to the solvent; {} of pairs alone",
                                           value("relative_viscosity"), value("relative_viscosity_pair")));
   }
+  const Json& mean = result.at("mean");
+  if (mean.contains("loss_modulus")) {
+    const auto number = [&](const char* name) { return mean.at(name).get<double>(); };
+    text += line("moduli",
+                 fmt::format("G' {:.4g}, G'' {:.4g}, in units of the scene; G''/(eta w) {:.4g}",
+                             number("storage_modulus"), number("loss_modulus"), number("dynamic_viscosity")));
+  }
   const char* const unit = sheared ? " viscosity * shear rate" : ", in units of the scene";
   text += line("N1, N2", fmt::format("{}, {}{}", value("first_normal_difference"),
                                      value("second_normal_difference"), unit));
   text += line("pressure", value("pressure") + unit);
-  text += line("contacts",
-               fmt::format("{} per sphere; overlaps {:.2g} radii in the mean, {:.2g} at most",
-                           value("contacts_per_particle"), result.at("mean").at("mean_overlap").get<double>(),
-                           result.at("largest_overlap").get<double>()));
+  text += line("contacts", fmt::format("{} per sphere; overlaps {:.2g} radii in the mean, {:.2g} at most",
+                                       value("contacts_per_particle"), mean.at("mean_overlap").get<double>(),
+                                       result.at("largest_overlap").get<double>()));
   return text;
 }
 

@@ -27,8 +27,8 @@ PECLET_ALWAYS_INLINE Real contact_push(double normal_stiffness, const Real& over
 }
 
 // The part of the normal force that friction goes by: min(max(k_n delta - F_CL, 0), F_max). With F_CL alone
-// contacts have no friction until something that repels is overcome: the critical load model, Seto, Mari,
-// Morris & Denn, Phys. Rev. Lett. 111, 218301 (2013), eq. 3 with the excess over F_CL as the load.
+// contacts have no friction until something that repels is overcome: the critical load model of Seto, Mari,
+// Morris & Denn, Phys. Rev. Lett. 111, 218301 (2013).
 template <class Real>
 PECLET_ALWAYS_INLINE Real frictional_load(const ContactParameters& contact, const Real& overlap) {
   const Real excess = contact_push(contact.normal_stiffness, overlap) - Real{contact.critical_load};
