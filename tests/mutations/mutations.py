@@ -33,7 +33,7 @@ CRASH = "ended by signal"
 STUDIES = """
     at-rest contacts control-variates convergence diffusion divergence flow-curve friction-repulsion inertia
     inhomogeneous-flow large-friction learned-rheology literature microstructure mixtures mixtures-map
-    mixtures-noise monti-silica monti-viscosity monti-waves pair-potential zero-shear speed-accuracy stability
+    mixtures-noise monti-silica monti-viscosity monti-waves oscillation pair-potential zero-shear speed-accuracy stability
     steady-state
 """.split()
 
