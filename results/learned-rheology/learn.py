@@ -119,6 +119,13 @@ def table_of(path, names):
     return columns_of_rows(whole, names), np.array([r["flow"] for r in whole])
 
 
+def errors_of(path, name, count):
+    """Standard errors of a column, where the table has them for all of its rows."""
+    found = [row.get(f"{name}_error") for row in read_rows(path)]
+    known = len(found) == count and all(isinstance(e, float) and np.isfinite(e) for e in found)
+    return np.array(found) if known else None
+
+
 def bins(arguments):
     rows_of = symmetric_bin_rows if arguments.symmetric else bin_rows
     write_table("/dev/stdout", BINS, [row for campaign in arguments.campaigns for row in bins_of(campaign, rows_of)], 6)
@@ -162,8 +169,12 @@ def errors(arguments):
     table, flows = table_of(arguments.table, [*dict.fromkeys([*inputs, output, "mean"])])
     if len(set(flows)) < 2:
         refuse(f"{arguments.table}: bins of {len(set(flows))} flow; must have those of two or more")
+    noise = errors_of(arguments.table, output, len(flows))
     scale = float(table[output].min()), float(table[output].max())
     print(f"{'method':28} error of {output}, min-max scaled, each flow left out")
+    if noise is not None:
+        floor = relative_error(table[output] + noise, table[output], *scale)
+        print(f"{'noise of the bins':28} {floor:.4g}")
     for name, model in all_methods(inputs, output).items():
         found = np.empty(len(flows))
         for _, own, others in left_out(flows):

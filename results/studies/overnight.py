@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Makes every study in turn, cheap ones first, and goes on where it was after an interruption.
 
-overnight.py BIN FOLDER
+overnight.py BIN FOLDER [STUDY ...]        only these, and those that they read
 
 The campaigns of a study are in FOLDER/NAME; FOLDER/NAME/made says that it ended well, so that the next call leaves it.
 Points that take hours are among them. Ends with 0 when all ended well, with 1 when one did not, with 130 when it was
@@ -24,6 +24,8 @@ READ = {
     "divergence": ("at-rest", "flow-curve", "zero-shear"),
     "flow-curve": ("literature", "zero-shear"),
     "friction-repulsion": ("literature",),
+    "learned-rheology": ("inhomogeneous-flow",),
+    "oscillation": ("at-rest",),
     "steady-state": ("zero-shear",),
 }
 
@@ -48,6 +50,10 @@ def studies_of(results):
         return max([own, *(longest(read) for read in READ.get(name, ()) if read in hours)])
 
     return sorted(hours.items(), key=lambda study: (longest(study[0]), depth(study[0])))
+
+
+def with_those_they_read(names):
+    return {*names, *(read for name in names for read in with_those_they_read(READ.get(name, ())))}
 
 
 def said_hours(studies):
@@ -84,8 +90,9 @@ def make(results, binaries, folder, name):
     return code
 
 
-def make_all(results, binaries, folder):
-    studies = studies_of(results)
+def make_all(results, binaries, folder, names=()):
+    wanted = with_those_they_read(names)
+    studies = [study for study in studies_of(results) if not names or study[0] in wanted]
     left = remaining(studies, folder)
     print(f"{len(left)} of {len(studies)} studies are to be made: {said_hours(left)}", flush=True)
     failed = []
@@ -112,14 +119,19 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("binaries", help="folder of peclet and peclet-engine", type=Path)
     parser.add_argument("folder", help="of the campaigns; a second call goes on with it", type=Path)
+    known = sorted(name for name, _ in studies_of(RESULTS))
+    parser.add_argument("studies", help="these alone, and those that they read", nargs="*", metavar="STUDY")
     arguments = parser.parse_args()
+    for name in arguments.studies:
+        if name not in known:
+            parser.error(f"{name}: must be one of: {', '.join(known)}")
     if not os.access(RESULTS, os.W_OK):
         parser.error(
             f"{RESULTS}: whole studies write their tables there, and may not; copy the folder, and name the copy: "
             "peclet study --results COPY"
         )
     signal.signal(signal.SIGTERM, interrupted)
-    sys.exit(make_all(RESULTS, arguments.binaries.absolute(), arguments.folder.absolute()))
+    sys.exit(make_all(RESULTS, arguments.binaries.absolute(), arguments.folder.absolute(), arguments.studies))
 
 
 if __name__ == "__main__":

@@ -60,14 +60,14 @@ class Learn(unittest.TestCase):
         program.chmod(program.stat().st_mode | stat.S_IXUSR)
 
     def table(self, flows=("a", "b", "c")):
-        """Bins with mu = 100 J."""
+        """Bins with mu = 100 J, known to a tenth."""
         path = self.folder / "bins.csv"
         with open(path, "w", newline="") as f:
             writer = csv.writer(f)
-            writer.writerow(["flow", "mean", "J", "fraction", "mu"])
+            writer.writerow(["flow", "mean", "J", "fraction", "mu", "mu_error"])
             for flow in flows:
                 for j in np.geomspace(1e-3, 1e-2, 12):
-                    writer.writerow([flow, 0.5, j, 0.5 + j, 100 * j])
+                    writer.writerow([flow, 0.5, j, 0.5 + j, 100 * j, 10 * j])
         return path
 
     def test_bins_of_an_export_have_errors_over_the_seeds(self):
@@ -136,6 +136,9 @@ class Learn(unittest.TestCase):
         self.assertEqual(code, 0)
         errors = {line[:28].strip(): float(line[28:]) for line in text.splitlines()[1:]}
         self.assertLess(errors["J alone"], 1e-6)
+        mu = np.geomspace(0.1, 1, 12)
+        floor = 0.1 * np.linalg.norm(mu) / np.linalg.norm(mu - 0.1)  # both scaled by 0.9
+        self.assertAlmostEqual(errors["noise of the bins"], floor, places=4)
         self.assertLess(errors["gaussian process"], 0.05)
         self.table(["a"])
         code, _, words = self.learn("errors", "bins.csv", "--inputs", "J", "mean", "--output", "mu")
@@ -144,7 +147,7 @@ class Learn(unittest.TestCase):
 
     def test_rows_that_lack_a_number_are_told(self):
         table = self.table()
-        table.write_text(table.read_text() + "c,0.5,,0.5,1\n")
+        table.write_text(table.read_text() + "c,0.5,,0.5,1,1\n")
         code, _, errors = self.learn("train", "bins.csv", "--inputs", "J", "--output", "mu", "--model", "m")
         self.assertEqual(code, 0)
         self.assertIn("1 of 37 rows are left out", errors)

@@ -45,8 +45,8 @@ class Results:
     def command(self):
         return [sys.executable, str(self.root / "studies" / "overnight.py"), "/bin", str(self.campaigns)]
 
-    def make(self):
-        return subprocess.run(self.command(), capture_output=True, text=True)
+    def make(self, *names):
+        return subprocess.run([*self.command(), *names], capture_output=True, text=True)
 
     def ran(self):
         return (self.root / "ran").read_text().split()
@@ -65,6 +65,16 @@ class Overnight(unittest.TestCase):
         self.assertIn(
             "3 of 3 studies are to be made: 1.8 h of processor time and an unknown one for unknown", done.stdout
         )
+
+    def test_makes_those_alone_that_are_named_after_those_that_they_read(self):
+        results = Results(self.folder.name, **{"learned-rheology": 0.1, "inhomogeneous-flow": 2, "other": 1})
+        done = results.make("learned-rheology")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(results.ran(), ["inhomogeneous-flow", "learned-rheology"])
+        self.assertIn("2 of 2 studies are to be made: 2.1 h", done.stdout)
+        done = results.make("nothing")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("nothing: must be one of: inhomogeneous-flow, learned-rheology, other", done.stderr)
 
     def test_makes_none_again_that_was_made(self):
         results = Results(self.folder.name, a=1, b=2)
