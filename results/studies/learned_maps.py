@@ -1,5 +1,5 @@
-"""Numbers of maps that are learned from the bins of the study inhomogeneous-flow: errors of every map and method, and what
-Li's section 6.2 says of them in words."""
+"""Numbers of maps that are learned from the bins of the study inhomogeneous-flow: errors of every map and method, and
+what Li's section 6.2 says of them in words."""
 import math
 import time
 from pathlib import Path
