@@ -32,7 +32,7 @@ double mean_sphere_volume(const Particles& particles) {
 std::optional<double> flow_over_rest(const Scene& scene, double peclet) {
   const Physics& physics = scene.physics;
   const double fraction = scene.volume_fraction, jammed = 0.587;
-  const bool refused = physics.flow.varies() || !has_known_equilibrium(physics);
+  const bool refused = physics.flow.varies() || physics.flow.period() || !has_known_equilibrium(physics);
   if (refused || !(peclet > 0) || peclet >= nearly_at_rest || fraction >= jammed) return std::nullopt;
   const double viscosity = std::pow(1 - fraction / jammed, -1.5), of_pairs = viscosity - 1 - 2.5 * fraction;
   if (!(of_pairs > 0)) return std::nullopt;

@@ -3,6 +3,7 @@
 What is broken; file, text in it that occurs once, what takes its place; program and test.
 """
 
+from oscillation_mutations import OSCILLATION
 from response_mutations import RESPONSE
 from strained_mutations import STRAINED
 
@@ -345,4 +346,4 @@ NAMED = [
     ),
 ]
 
-NAMED += RESPONSE + STRAINED
+NAMED += RESPONSE + STRAINED + OSCILLATION

@@ -89,6 +89,10 @@ TEST(DerivedGroups, NearRestTheFlowIsComparedWithRest) {
   EXPECT_NEAR(compared(0.001, 0.5).value() / compared(0.01, 0.5).value(), 100, 1e-6);
   EXPECT_FALSE(compared(0.1001, 0.5));
   EXPECT_FALSE(compared(0.01, 0.6));
+  Scene oscillating = scene;
+  oscillating.volume_fraction = 0.5;
+  oscillating.physics.flow = ImposedFlow(std::make_shared<OscillatoryShear>(0.001, 1));
+  EXPECT_FALSE(derived_groups(oscillating).flow_over_rest);
   scene.physics.contact->friction = 0.1;
   EXPECT_FALSE(compared(0.01, 0.5));
 }
