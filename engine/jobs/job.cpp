@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <ctime>
 
 #include "contract/durable_file.h"
@@ -209,11 +210,25 @@ class Job {
                       progressed.step + count_of_blocks, progressed.step));
     }
     if (progressed.step > schedule_.equilibration) {
+      refuse_part_of_cycle(progressed.step);
       schedule_.equilibration = progressed.step;
       schedule_.production = total - progressed.step;
       identity_.scene_sha256 += fmt::format(" from step {}", progressed.step);
     }
     meter_.start_after(progressed.spent);
+  }
+
+  // Moduli are those of whole cycles.
+  void refuse_part_of_cycle(std::uint64_t step) const {
+    const std::optional<double> period = scene_.physics.flow.period();
+    if (!period) return;
+    const auto of_cycle = static_cast<std::uint64_t>(std::llround(*period / schedule_.timestep));
+    if (step % of_cycle == 0) return;
+    throw InputError(
+        "--extend", "", "",
+        fmt::format("{}: stands within a cycle, after {} of its {} steps; must be a checkpoint of "
+                    "whole cycles, such as final.checkpoint",
+                    job_.extended.string(), step % of_cycle, of_cycle));
   }
 
   bool resume() {

@@ -37,7 +37,7 @@ std::string means(const Json& result) {
                                           value("relative_viscosity"), value("relative_viscosity_pair")));
   }
   const Json& mean = result.at("mean");
-  if (mean.contains("loss_modulus")) {
+  if (mean.value("loss_modulus", Json()).is_number()) {
     const auto number = [&](const char* name) { return mean.at(name).get<double>(); };
     text += line("moduli",
                  fmt::format("G' {:.4g}, G'' {:.4g}, in units of the scene; G''/(eta w) {:.4g}",

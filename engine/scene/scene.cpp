@@ -131,6 +131,10 @@ Duration Reading::duration(const std::string& pointer, const Physics& physics) c
   if (limits.contains("cycles") && !period) {
     refuse(pointer + "/cycles", "must be left out without /flow/oscillation");
   }
+  if (limits.contains("strain") && period) {
+    refuse(pointer + "/strain",
+           "must be left out with /flow/oscillation, whose strain comes and goes; cycles are even");
+  }
   Duration duration;
   for (const auto& [name, limit] : limits.items()) {
     if (limit == 0) return {unlimited, unlimited, 0};  // over before it starts, whatever the flow

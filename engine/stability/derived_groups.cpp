@@ -189,6 +189,23 @@ void warn_of_other_sizes(const Scene& scene, const DerivedGroups& groups, std::v
        largest_inertia_over_brownian);
 }
 
+// Spheres follow a flow that comes and goes within their inertial time, however small its amplitude.
+void warn_of_oscillation(const Scene& scene, std::vector<Warning>& warnings) {
+  const std::optional<double> period = scene.physics.flow.period();
+  if (!period || has(warnings, "inertia-shear")) return;
+  const double frequency = 2 * std::numbers::pi / *period;
+  const std::optional<double> largest = largest_of_sizes(scene.particles, [&](double rho, double radius) {
+    return rho * radius * radius / scene.physics.viscosity * frequency;
+  });
+  if (!largest || !reaches(*largest, largest_inertia_over_shear)) return;
+  warnings.push_back(
+      {"inertia-shear",
+       fmt::format(
+           "inertia is not small beside the oscillation: rho a^2 w / eta is up to {:.4g}, the bound is "
+           "{}; moduli depend on the particles' mass, a smaller density or frequency cures it",
+           *largest, largest_inertia_over_shear)});
+}
+
 // Whole numbers of few grains miss their shares.
 void warn_of_composition(const Scene& scene, const DerivedGroups& groups, std::vector<Warning>& warnings) {
   constexpr double largest_error = 0.1;
@@ -238,6 +255,7 @@ std::vector<Warning> scene_warnings(const Scene& scene) {
                        ratio, *groups.inertial_time, *groups.brownian_time, largest_inertia_over_brownian)});
     }
   }
+  warn_of_oscillation(scene, warnings);
   warn_of_other_sizes(scene, groups, warnings);
   warn_of_composition(scene, groups, warnings);
   // Of smooth motion in uniform shear half steps tell the error.

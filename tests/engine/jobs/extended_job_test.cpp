@@ -109,6 +109,35 @@ TEST_P(ExtendedJob, CanBeCutAndExtendedAgain) {
   EXPECT_EQ(without_cost(run_job(longest, {}).value()).dump(), without_cost(whole).dump());
 }
 
+// A cycle of 140 steps; the first job is cut within one.
+TEST(ExtendedOscillation, GoesOnFromWholeCyclesAlone) {
+  const TemporaryFolder folder;
+  JobSpecification job;
+  job.header = {"point", 4};
+  job.scene = small_scene(
+      {{"flow", {{"shear_rate", nullptr}, {"oscillation", {{"amplitude", 0.04}, {"frequency", 50}}}}},
+       {"integrator", {{"timestep", 0.0009}}},
+       {"observables", {"oscillation"}},
+       {"duration",
+        {{"equilibration", {{"time", nullptr}, {"cycles", 0}}},
+         {"production", {{"time", nullptr}, {"cycles", 40}}}}}});
+  job.scene_name = "scene.json";
+  job.checkpoint = folder / "checkpoint";
+  JobEvents events;
+  events.drain_requested = [] { return true; };
+  ASSERT_FALSE(run_job(job, events).has_value());
+  JobSpecification longer = job;
+  longer.checkpoint.clear();
+  longer.extended = job.checkpoint;
+  longer.scene["duration"]["production"]["cycles"] = 60;
+  try {
+    run_job(longer, {});
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("stands within a cycle"), std::string::npos) << error.what();
+  }
+}
+
 TEST_P(ExtendedJob, OfAnotherMotionIsRefused) {
   const std::filesystem::path path = checkpoint();
   const auto refusal = [&](const JobSpecification& asked) {

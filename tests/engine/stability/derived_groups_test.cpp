@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "engine/scene/scene.h"
+#include "tests/engine/small_scene.h"
 
 namespace peclet::engine {
 namespace {
@@ -95,6 +96,25 @@ TEST(DerivedGroups, NearRestTheFlowIsComparedWithRest) {
   EXPECT_FALSE(derived_groups(oscillating).flow_over_rest);
   scene.physics.contact->friction = 0.1;
   EXPECT_FALSE(compared(0.01, 0.5));
+}
+
+// rho a^2 w / eta = 0.3, whatever the amplitude.
+TEST(SceneWarnings, InertiaBesideAnOscillationGoesByItsFrequency) {
+  const auto codes = [](double density) {
+    Json document = small_scene();
+    document["particles"]["density"] = density;
+    document["particles"]["species"] = Json::array({{{"radius", 1}}});
+    document["fluid"]["thermal_energy"] = 0;
+    document["flow"] = {{"oscillation", {{"amplitude", 1e-3}, {"frequency", 3}}}};
+    document["integrator"] = {{"method", "implicit"}};
+    document["duration"] = {{"equilibration", {{"cycles", 1}}}, {"production", {{"cycles", 1}}}};
+    std::vector<std::string> found;
+    for (const Warning& warning : scene_warnings(read_scene(document, "scene.json")))
+      found.push_back(warning.code);
+    return found;
+  };
+  EXPECT_EQ(codes(0.01), std::vector<std::string>{"inertia-shear"});
+  EXPECT_EQ(codes(0.003), std::vector<std::string>{});
 }
 
 TEST(SceneWarnings, InertiaIsReportedFromTheBoundOn) {
