@@ -27,6 +27,7 @@ Matrix3 OscillatoryShear::displacement_gradient(double time) const {
 
 // Quarters of a cycle have a strain of g each, away from the cube and back to it in turn.
 double OscillatoryShear::time_of(double strain) const {
+  if (std::isinf(strain)) return strain;
   const double quarters = std::floor(strain / amplitude_), rest = strain / amplitude_ - quarters;
   const bool away = std::fmod(quarters, 2) == 0;
   const double phase = away ? std::asin(rest) : std::acos(1 - rest);

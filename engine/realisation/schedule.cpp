@@ -12,8 +12,8 @@
 namespace peclet::engine {
 namespace {
 
-// Of an oscillating flow, whose cycles have whole numbers of steps. Moduli are sums over mid-steps: their
-// errors are of second order, (w dt)^2 / 24 = 1e-4 of each other here.
+// Of an oscillating flow, whose cycles have whole numbers of steps. Of implicit steps moduli are sums over
+// mid-steps: their errors are of second order, (w dt)^2 / 24 = 1e-4 of each other here.
 constexpr double least_steps_of_cycle = 128;
 
 // Thousands of years of computing; step counters hold far more.

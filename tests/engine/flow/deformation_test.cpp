@@ -56,6 +56,8 @@ TEST(OscillatoryShear, CountsItsStrainInBothDirections) {
   EXPECT_NEAR(shear.time_of(0.8), period, 1e-12);
   EXPECT_NEAR(shear.time_of(8.1), 10 * period + period / 12, 1e-11);
   EXPECT_NEAR(shear.mean_rate() * period, 0.8, 1e-12);
+  const double never = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(shear.time_of(never), never);
 }
 
 TEST(ImposedFlow, HasASteadyRateUnlessItComesAndGoes) {
