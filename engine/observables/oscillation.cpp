@@ -8,16 +8,19 @@
 namespace peclet::engine {
 namespace {
 
-constexpr std::array<const char*, 5> names = {"storage_modulus", "loss_modulus", "dynamic_viscosity",
-                                              "third_storage_modulus", "third_loss_modulus"};
-constexpr std::array<const char*, 5> symbols = {"G'", "G''", "eta' / eta", "G'_3", "G''_3"};
+struct Named {
+  const char *name, *symbol, *unit;
+};
+constexpr std::array<Named, 5> quantities = {{{"storage_modulus", "G'", "stress"},
+                                              {"loss_modulus", "G''", "stress"},
+                                              {"dynamic_viscosity", "eta' / eta", "1"},
+                                              {"third_storage_modulus", "G'_3", "stress"},
+                                              {"third_loss_modulus", "G''_3", "stress"}}};
 
 std::vector<Quantity> oscillation_quantities(const Scene&, const Window&) {
   std::vector<Quantity> all;
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    const bool is_relative = std::string(names[k]) == "dynamic_viscosity";
-    all.push_back({.name = names[k], .symbol = symbols[k], .unit = is_relative ? "1" : "stress"});
-  }
+  for (const auto& [name, symbol, unit] : quantities)
+    all.push_back({.name = name, .symbol = symbol, .unit = unit});
   return all;
 }
 
@@ -66,11 +69,11 @@ void Oscillation::end_cycle() {
 }
 
 void Oscillation::add_to(Json& mean) const {
-  for (std::size_t k = 0; k < means_.size(); ++k) mean[names[k]] = means_[k].value();
+  for (std::size_t k = 0; k < means_.size(); ++k) mean[quantities[k].name] = means_[k].value();
 }
 
 void Oscillation::add_blocks_to(Json& blocks) const {
-  for (std::size_t k = 0; k < means_.size(); ++k) blocks[names[k]] = means_[k].blocks();
+  for (std::size_t k = 0; k < means_.size(); ++k) blocks[quantities[k].name] = means_[k].blocks();
 }
 
 void Oscillation::save(ArchiveWriter& archive) const {
