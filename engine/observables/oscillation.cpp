@@ -19,6 +19,7 @@ constexpr std::array<Named, 5> quantities = {{{"storage_modulus", "G'", "stress"
 
 std::vector<Quantity> oscillation_quantities(const Scene&, const Window&) {
   std::vector<Quantity> all;
+  all.reserve(quantities.size());
   for (const auto& [name, symbol, unit] : quantities)
     all.push_back({.name = name, .symbol = symbol, .unit = unit});
   return all;
