@@ -103,7 +103,7 @@ int run(const RunOptions& options) {
     write_output(options.output, result_text(result));
   }
   const Json& ending = result.at("ending");
-  const bool completed = ending.at("cause") == "completed";
+  const bool completed = ending.at("cause") == "completed" || ending.at("cause") == "jammed";
   if (!completed) {
     fmt::print(stderr, "{}: broke off at step {} ({}): {}\n", options.scene,
                ending.at("step").get<std::uint64_t>(), ending.at("cause").get<std::string>(),

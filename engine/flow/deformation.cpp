@@ -2,8 +2,17 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace peclet::engine {
+namespace {
+
+// a:b
+double contracted(const SymmetricTensor& a, const SymmetricTensor& b) {
+  return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + 2 * (a.xy * b.xy + a.xz * b.xz + a.yz * b.yz);
+}
+
+}  // namespace
 
 Matrix3 SteadyShear::velocity_gradient(double /*time*/) const { return simple_shear(rate_); }
 
@@ -13,25 +22,25 @@ Matrix3 SteadyShear::displacement_gradient(const Clock& clock) const {
   return simple_shear(rate_ * clock.origin + rate_ * clock.timestep * static_cast<double>(clock.steps));
 }
 
-double SteadyShear::time_of(double strain) const {
+double SteadyShear::time_of(double strain, double /*from*/) const {
   return rate_ == 0 ? std::numeric_limits<double>::infinity() : strain / largest_rate();
 }
 
-Matrix3 OscillatoryShear::velocity_gradient(double time) const {
-  return simple_shear(amplitude_ * frequency_ * std::cos(frequency_ * time));
+void ImposedFlow::measure_from(double time) {
+  steady_gradient_ = deformation_->steady_gradient(time);
+  const SymmetricTensor strain = strain_of(steady_gradient_);
+  steady_rate_ = std::sqrt(2 * contracted(strain, strain));
+  const auto over = [&](double component) { return component / steady_rate_; };
+  direction_ = {over(strain.xx), over(strain.yy), over(strain.zz),
+                over(strain.xy), over(strain.xz), over(strain.yz)};
+  if (steady_rate_ == 0) direction_ = {.xy = 0.5};
 }
 
-Matrix3 OscillatoryShear::displacement_gradient(double time) const {
-  return simple_shear(amplitude_ * std::sin(frequency_ * time));
-}
+double ImposedFlow::shear_part(const SymmetricTensor& stress) const { return contracted(stress, direction_); }
 
-// Quarters of a cycle have a strain of g each, away from the cube and back to it in turn.
-double OscillatoryShear::time_of(double strain) const {
-  if (std::isinf(strain)) return strain;
-  const double quarters = std::floor(strain / amplitude_), rest = strain / amplitude_ - quarters;
-  const bool away = std::fmod(quarters, 2) == 0;
-  const double phase = away ? std::asin(rest) : std::acos(1 - rest);
-  return (0.5 * std::numbers::pi * quarters + phase) / frequency_;
+std::optional<double> ImposedFlow::period() const {
+  const std::optional<Swing> swing = deformation_->swing();
+  return swing ? std::optional(2 * std::numbers::pi / swing->frequency) : std::nullopt;
 }
 
 }  // namespace peclet::engine

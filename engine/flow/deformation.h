@@ -4,13 +4,18 @@
 #pragma once
 
 #include <memory>
-#include <numbers>
 #include <optional>
 
 #include "engine/flow/background_flow.h"
 #include "engine/state/system.h"
 
 namespace peclet::engine {
+
+// A strain g sin(w t), and where its stress is.
+struct Swing {
+  double amplitude = 0, frequency = 0;  // g, and w in radians per time
+  double SymmetricTensor::*component = &SymmetricTensor::xy;
+};
 
 class Deformation {
  public:
@@ -27,18 +32,27 @@ class Deformation {
   virtual double largest_rate() const = 0;
   // Strain over time in the long run, summed over both directions.
   virtual double mean_rate() const { return largest_rate(); }
-  // After which all comes back; nothing where the flow is steady.
-  virtual std::optional<double> period() const { return std::nullopt; }
-  // When the strain, summed over both directions, has come to this; infinity if it never does.
-  virtual double time_of(double strain) const = 0;
-
-  // Brings the cell to where it is at this time.
-  void drive(PeriodicCell& cell, double time) const {
-    cell.deform(displacement_gradient(time), velocity_gradient(time));
+  // Whether L jumps in this interval, of which the end is not part.
+  virtual bool jumps_between(double /*from*/, double /*to*/) const { return false; }
+  // What of L is constant from this time on, but for what comes and goes; 0 where nothing is.
+  virtual Matrix3 steady_gradient(double from) const = 0;
+  // The shear stress that sets its rate, if it is one.
+  virtual std::optional<double> stress() const { return std::nullopt; }
+  // What comes and goes.
+  virtual std::optional<Swing> swing() const { return std::nullopt; }
+  // The time after `from` at which the strain since then, summed over both directions, has come to this;
+  // infinity if it never does.
+  virtual double time_of(double strain, double from) const = 0;
+  // The strain of these steps out of a run, summed over both directions.
+  virtual double strain_between(double timestep, std::uint64_t from, std::uint64_t to) const {
+    return timestep * mean_rate() * static_cast<double>(to - from);
   }
-  void drive(PeriodicCell& cell, const Clock& clock) const {
-    cell.deform(displacement_gradient(clock), velocity_gradient(clock.time()));
+  // The lattice vectors of a box with these edges when it starts.
+  virtual Matrix3 edges_at_start(const Vector3& box) const {
+    return {Vector3{box.x, 0, 0}, Vector3{0, box.y, 0}, Vector3{0, 0, box.z}};
   }
+  // For a realisation of its own; null where nothing of it changes.
+  virtual std::shared_ptr<Deformation> own_copy() const { return nullptr; }
 };
 
 // Simple shear (rate y, 0, 0), constant in time.
@@ -50,30 +64,11 @@ class SteadyShear final : public Deformation {
   Matrix3 displacement_gradient(double time) const override;
   Matrix3 displacement_gradient(const Clock& clock) const override;
   double largest_rate() const override { return rate_ < 0 ? -rate_ : rate_; }
-  double time_of(double strain) const override;
+  Matrix3 steady_gradient(double /*from*/) const override { return simple_shear(rate_); }
+  double time_of(double strain, double from) const override;
 
  private:
   double rate_;
-};
-
-// Simple shear to and fro, gamma = g sin(w t): at rate g w through the cube, which it finds at time 0.
-class OscillatoryShear final : public Deformation {
- public:
-  // Both above 0; the frequency w in radians per time.
-  OscillatoryShear(double amplitude, double frequency) : amplitude_(amplitude), frequency_(frequency) {}
-
-  double amplitude() const { return amplitude_; }
-  double frequency() const { return frequency_; }
-
-  Matrix3 velocity_gradient(double time) const override;
-  Matrix3 displacement_gradient(double time) const override;
-  double largest_rate() const override { return amplitude_ * frequency_; }
-  double mean_rate() const override { return 4 * amplitude_ / *period(); }
-  std::optional<double> period() const override { return 2 * std::numbers::pi / frequency_; }
-  double time_of(double strain) const override;
-
- private:
-  double amplitude_, frequency_;
 };
 
 // What a scene says of its flow; copies share it. A fluid at rest unless something else is said.
@@ -82,14 +77,25 @@ class ImposedFlow {
   ImposedFlow() : ImposedFlow(std::make_shared<SteadyShear>(0)) {}
   explicit ImposedFlow(std::shared_ptr<const Deformation> deformation,
                        std::shared_ptr<const FlowVariation> variation = nullptr)
-      : deformation_(std::move(deformation)), variation_(std::move(variation)) {}
+      : deformation_(std::move(deformation)), variation_(std::move(variation)) {
+    measure_from(0);
+  }
 
   const Deformation& deformation() const { return *deformation_; }
   // The largest shear rate of the cell, which sets times; 0 where it keeps its shape.
   double rate() const { return deformation_->largest_rate(); }
-  // That of a steady flow, which sets the unit of stresses; 0 where it comes and goes.
-  double steady_rate() const { return period() ? 0 : rate(); }
-  std::optional<double> period() const { return deformation_->period(); }
+  // That of the flow that is constant in the window of all means, sqrt(2 E:E), which sets the unit of
+  // stresses; 0 where none is.
+  double steady_rate() const { return steady_rate_; }
+  const Matrix3& steady_gradient() const { return steady_gradient_; }
+  // The window begins at this time.
+  void measure_from(double time);
+  // Its rate of strain, E / sqrt(2 E:E).
+  const SymmetricTensor& direction() const { return direction_; }
+  // The part of a stress that does the work of the steady flow, over its rate: sigma:E / sqrt(2 E:E), which
+  // is sigma_xy in simple shear; that also where no flow is steady.
+  double shear_part(const SymmetricTensor& stress) const;
+  std::optional<double> period() const;
   bool varies() const { return variation_ != nullptr; }
   // At least that of the strongest gradient anywhere in this cell.
   double largest_rate(const PeriodicCell& cell) const {
@@ -101,6 +107,9 @@ class ImposedFlow {
  private:
   std::shared_ptr<const Deformation> deformation_;
   std::shared_ptr<const FlowVariation> variation_;  // of the flow within the cell, if it varies
+  Matrix3 steady_gradient_;
+  double steady_rate_ = 0;
+  SymmetricTensor direction_;
 };
 
 inline ImposedFlow steady_shear(double rate) { return ImposedFlow(std::make_shared<SteadyShear>(rate)); }

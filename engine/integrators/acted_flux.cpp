@@ -59,7 +59,10 @@ void ActedFlux::predict(const System& system, const PairSums& ahead, const Loads
 SymmetricTensor ActedFlux::end(const System& system, VelocitySolver& solver, double timestep) {
   const VectorField& velocity = system.particles.velocity;
   stress_ += solver.add_corrected_forces(system, force_ahead_);
-  stress_ += flux_by_places(0.5 * timestep, force_at_beginning_, [&](std::size_t i) { return velocity[i]; });
+  const auto peculiar = [&](std::size_t i) {
+    return velocity[i] - system.box.velocity_gradient() * system.particles.position[i];
+  };
+  stress_ += flux_by_places(0.5 * timestep, force_at_beginning_, peculiar);
   stress_ += flux_by_places(0.5 * timestep, force_ahead_,
                             [&](std::size_t i) { return velocity[i] - predicted_velocity_[i]; });
   return stress_;

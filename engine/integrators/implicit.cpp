@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/integrators/follow_flow.h"
 #include "engine/integrators/midpoint.h"
 #include "engine/integrators/noisy_midpoint.h"
 #include "engine/state/field_array.h"
@@ -102,9 +103,17 @@ StepReport Implicit::advance_open(System& system) {
 
 // All of a step but the step counter, which belongs to whole ones.
 StepReport Implicit::advance_part(System& system) {
+  if (meets_a_jump(system)) {
+    return advance_halves(system);
+  }
+  const Deformation& deformation = physics_.flow.deformation();
+  const double half = 0.5 * timestep_;
+  follow_flow(system, deformation.velocity_gradient(system.clock.time() + half), half, field_.threads());
   remember(system);
+  const bool list_is_new = displacement_bound_ == 0 &&
+                           system.list.listed().displacement_gradient == system.box.displacement_gradient();
   std::optional<StepReport> found = find_velocities(system);
-  if (!found && displacement_bound_ > 0) {
+  if (!found && !list_is_new) {
     // Once more from the origin, with a new list.
     return_to_origin(system);
     rebuild_neighbours(system, field_.threads());
@@ -116,6 +125,8 @@ StepReport Implicit::advance_part(System& system) {
   report.broke_off = !found;
   report.largest_displacement = displacement(system);
   if (divisions_left_ > 0 && is_to_be_divided(report)) {
+    return_to_origin(system);
+    follow_flow(system, deformation.velocity_gradient(system.clock.time()), -half, field_.threads());
     return advance_halves(system);
   }
   if (!found) {
@@ -128,8 +139,18 @@ StepReport Implicit::advance_part(System& system) {
   keep_change(system);
   move(system, timestep_);
   ++system.clock.steps;
+  follow_flow(system, deformation.velocity_gradient(system.clock.time()), half, field_.threads());
   follow_list(system, report.largest_displacement);
   return report;
+}
+
+// Down to that part of a step: after it the parts double.
+bool Implicit::meets_a_jump(const System& system) const {
+  constexpr int divisions = 5;
+  constexpr double rounding = 1e-3;  // of a part, by which the jump may seem to lie beside it
+  const double from = system.clock.time() - rounding * timestep_;
+  return divisions_left_ > deepest_division - divisions &&
+         physics_.flow.deformation().jumps_between(from, from + timestep_);
 }
 
 bool Implicit::is_to_be_divided(const StepReport& report) const {
@@ -145,7 +166,6 @@ VectorField Implicit::mean_velocity(const System& system) const {
 
 // From the origin.
 StepReport Implicit::advance_halves(System& system) {
-  return_to_origin(system);
   if (!half_) {
     half_ = with_timestep(0.5 * timestep_, system.particles);
     half_->divisions_left_ = divisions_left_ - 1;
@@ -231,7 +251,7 @@ void Implicit::move(System& system, double time) {
       particles.position.row(i) = origin_.position.row(i) + time * particles.velocity.row(i);
     }
   });
-  physics_.flow.deformation().drive(system.box, system.clock.time() + time);
+  system.box.deform(physics_.flow.deformation().displacement_gradient(system.clock.time() + time));
 }
 
 // The largest one of a step at the present velocities, relative to the uniform flow; NaN if one is not
@@ -263,7 +283,7 @@ Integrator::HalfSteps Implicit::compare_half_steps(const System& system, int ste
     for (int step = 1; step <= every * steps; ++step) {
       const PairSums sums = integrator->advance_open(copy).sums;
       for (const SymmetricTensor& s : sums.stress) {
-        sum += s.xy / every;
+        sum += physics_.flow.shear_part(s) / every;
       }
     }
     return sum;

@@ -4,7 +4,8 @@
 // which must hold half a step ahead. How V is found is in midpoint.h and, with noise, in noisy_midpoint.h.
 //
 // A step in which spheres would leap, or whose velocities are not found, is made again as two of half the
-// size, and these likewise, once divide_steps() has allowed it. What divides a step lies in it alone: a run
+// size, and these likewise, once divide_steps() has allowed it; so is a step in which the rate of the flow
+// jumps, after which springs let go at once. What divides a step lies in it alone: a run
 // that is resumed between steps divides the same ones. Halves share the noise of their step (normal_block.h).
 #pragma once
 
@@ -63,6 +64,7 @@ class Implicit : public Integrator {
   StepReport advance_part(System& system);
   StepReport advance_halves(System& system);
   bool is_to_be_divided(const StepReport& report) const;
+  bool meets_a_jump(const System& system) const;
   void follow_list(System& system, double way);
   std::unique_ptr<Implicit> with_timestep(double timestep, const ParticleState& particles) const;
   void remember(const System& system);

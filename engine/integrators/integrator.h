@@ -65,9 +65,9 @@ class Integrator {
   // energy less the work of the flow. Means nothing with noise; nothing of a method that does not count it.
   virtual std::optional<double> spurious_energy(const System& system) const = 0;
 
-  // The stress sigma_xy of pairs, times the volume, summed over the next `steps` steps of a copy of the
-  // (complete) system; and over the same time with steps of half the size, of which two count as one. Means
-  // nothing with noise, which another step draws anew.
+  // The shear stress (ImposedFlow::shear_part) of pairs, times the volume, summed over the next `steps` steps
+  // of a copy of the (complete) system; and over the same time with steps of half the size, of which two
+  // count as one. Means nothing with noise, which another step draws anew.
   struct HalfSteps {
     double whole = 0, halved = 0;
   };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/integrators/acted_flux.h"
 #include "engine/state/field_array.h"
@@ -21,6 +22,9 @@ struct Iterations {
 };
 constexpr Iterations with_springs = {3, 8, 0.3, 0.2}, without_springs = {6, 6, 0.2, 0.05};
 constexpr double far = 7;
+
+// Squares that the solver's numbers cannot hold: spheres that follow the flow leave rounding errors alone.
+constexpr double no_motion = std::numeric_limits<float>::min();
 
 // Springs that push after half of their advance are of second order. A little more than half damps those that
 // stick and are stiff: with z = dt k / R a step multiplies them by (1 - (1 - s) z) / (1 + s z), which tends
@@ -60,7 +64,7 @@ std::optional<StepReport> Midpoint::find_velocities(System& system) {
     // A packing that starts with the streaming flow's velocities has no motion yet but what it is about to
     // do.
     const double motion = residual.squared_motion + (iteration == 0 ? residual.squared : 0);
-    const double target = solver_.tolerance() * solver_.tolerance() * motion;
+    const double target = std::max(solver_.tolerance() * solver_.tolerance() * motion, no_motion);
     report.solver_residual = motion > 0 ? std::sqrt(residual.squared / motion) : 0;
     report.sums.finite = report.sums.finite && std::isfinite(residual.squared) && std::isfinite(motion);
     const int most = residual.squared > far * far * target ? iterations.most : iterations.usual;

@@ -103,7 +103,7 @@ class Job {
       frames_file_->take(*simulation_->frames());
       frames_file_->finish(*simulation_->frames(), path);
     };
-    if (scene_.final_configuration && ending->cause == Ending::Cause::completed) {
+    if (scene_.final_configuration && is_measured(ending->cause)) {
       if (!leave("final.xyz", leave_final, result)) return std::nullopt;
     }
     const auto leave_checkpoint = [&](const fs::path& path) {
@@ -221,7 +221,7 @@ class Job {
   // Moduli are those of whole cycles.
   void refuse_part_of_cycle(std::uint64_t step) const {
     const std::optional<double> period = scene_.physics.flow.period();
-    if (!period) return;
+    if (!period || !scene_.observables.contains("oscillation")) return;
     const auto of_cycle = static_cast<std::uint64_t>(std::llround(*period / schedule_.timestep));
     if (step % of_cycle == 0) return;
     throw InputError(
@@ -308,7 +308,7 @@ class Job {
   // A realisation that broke off leaves its last state where people can look at it: `name` in the folder of
   // failures. False: there was no room.
   bool save_state(const Ending& ending, std::string& name) {
-    if (ending.cause == Ending::Cause::completed || job_.failures.empty()) return true;
+    if (is_measured(ending.cause) || job_.failures.empty()) return true;
     name = job_.header.point.substr(0, 12) + "-" + std::to_string(job_.header.seed) + ".state";
     return save(job_.failures / name);
   }

@@ -1,8 +1,7 @@
-// The list of the observables that a scene may ask for (their keys: engine/scene/observable_keys.cpp).
-// Another one is a line here and a file with its class.
+// What an observable of a scene is made of (its keys: engine/scene/observable_keys.cpp). All of them are
+// listed in catalogue/catalogue.h.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -34,19 +33,10 @@ struct ObservableKind {
 };
 
 ObservableKind mean_squared_displacement();
-ObservableKind stress_correlation();
 ObservableKind pair_distribution();
 ObservableKind contact_network();
 ObservableKind profiles();
-ObservableKind linear_response();
-ObservableKind oscillation();
 ObservableKind trajectory();
-
-inline std::array<ObservableKind, 8> observable_kinds() {
-  return {
-      mean_squared_displacement(), stress_correlation(), pair_distribution(), contact_network(), profiles(),
-      linear_response(),           oscillation(),        trajectory()};
-}
 
 // Of an observable that is sampled at every step, or that costs a walk over all pairs and changes slowly.
 std::uint64_t every_step(const Window& window);

@@ -5,12 +5,13 @@
 
 namespace peclet::engine {
 
-void Production::add_step(std::uint64_t index, const PairSums& sums) {
+void Production::add_step(std::uint64_t index, const PairSums& sums, double shear_rate) {
   BlockSums& block = block_of(index);
   ++block.steps;
   for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
     block.stress[t] += sums.stress[t];
   }
+  block.shear_rate += shear_rate;
   block.contacts += sums.contacts;
   block.overlaps += sums.overlaps;
 }
@@ -31,6 +32,7 @@ BlockSums sum_of(std::span<const BlockSums> blocks) {
   for (const BlockSums& block : blocks) {
     all.steps += block.steps;
     all.samples += block.samples;
+    all.shear_rate += block.shear_rate;
     all.contacts += block.contacts;
     all.overlaps += block.overlaps;
     for (std::size_t t = 0; t < count_of_stress_terms; ++t) {

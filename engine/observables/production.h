@@ -14,6 +14,7 @@ namespace peclet::engine {
 struct BlockSums {
   std::uint64_t steps = 0;  // every step adds to the stress: thinning would destroy the Brownian part
   std::array<SymmetricTensor, count_of_stress_terms> stress{};  // sum over pairs of sym(r F)
+  double shear_rate = 0;                                        // of the cell, x along y
   double contacts = 0;
   double overlaps = 0;        // of these, over the smaller radius of the pair
   std::uint64_t samples = 0;  // the rest is sampled
@@ -34,7 +35,7 @@ class Production {
   explicit Production(std::uint64_t steps) : steps_(steps) {}
 
   // `index` counts the steps of the window from 0.
-  void add_step(std::uint64_t index, const PairSums& sums);
+  void add_step(std::uint64_t index, const PairSums& sums, double shear_rate);
   void add_sample(std::uint64_t index, const SymmetricTensor& structural_brownian,
                   const SymmetricTensor& varying_stresslet, const KineticTemperatures& temperature);
 

@@ -9,8 +9,8 @@
 
 #include "contract/provenance.h"
 #include "contract/sha256.h"
+#include "engine/catalogue/catalogue.h"
 #include "engine/kernels/instruction_set.h"
-#include "engine/observables/catalogue.h"
 #include "engine/output/stress_means.h"
 #include "engine/stability/derived_groups.h"
 #include "engine/stability/stability.h"
@@ -25,12 +25,13 @@ std::optional<double> energy_imbalance(const Scene& scene, const Simulation& sim
   const BlockSums window = sum_of(simulation.production().blocks());
   const StepErrors& errors = simulation.step_errors();
   double work_per_step = 0;
+  const ImposedFlow& flow = scene.physics.flow;
   for (const SymmetricTensor& stress : window.stress) {
-    work_per_step += simulation.schedule().timestep * scene.physics.flow.steady_rate() * stress.xy /
+    work_per_step += simulation.schedule().timestep * flow.steady_rate() * flow.shear_part(stress) /
                      static_cast<double>(window.steps);
   }
-  // Where the flow varies it works on spheres one by one too.
-  if (scene.physics.flow.varies() || scene.physics.thermal_energy > 0 || errors.samples == 0 ||
+  // Where the flow varies it works on spheres one by one too, and what comes and goes works besides.
+  if (flow.varies() || flow.period() || scene.physics.thermal_energy > 0 || errors.samples == 0 ||
       !(work_per_step > 0)) {
     return std::nullopt;
   }
@@ -86,7 +87,7 @@ Json warnings_json(const std::vector<Warning>& warnings) {
 }
 
 Json common_part(const ResultHeader& header, const Scene& scene, const Schedule& schedule,
-                 std::uint64_t steps, const Spent& spent) {
+                 std::uint64_t steps, const Simulation::Strains& strains, const Spent& spent) {
   const double dt = schedule.timestep;
   const ImposedFlow& flow = scene.physics.flow;
   const std::uint64_t before = std::min(steps, schedule.equilibration), after = steps - before;
@@ -101,7 +102,7 @@ Json common_part(const ResultHeader& header, const Scene& scene, const Schedule&
           {"timestep", dt},
           {"steps", {{"equilibration", before}, {"production", after}}},
           {"time", of_phases(dt)},
-          {"strain", of_phases(dt * flow.deformation().mean_rate())},
+          {"strain", {{"equilibration", strains.equilibration}, {"production", strains.production}}},
           {"derived", to_json(derived_groups(scene))},
           {"units", flow.steady_rate() > 0 ? "viscosity * shear_rate" : "scene"},
           {"mean", nullptr},
@@ -127,6 +128,13 @@ Json inefficiencies(const Json& blocks, const std::vector<Quantity>& quantities)
   return all;
 }
 
+// What ended before its window has parts of which nothing is known.
+void leave_no_nans(Json& value) {
+  if (value.is_number_float() && !std::isfinite(value.get<double>())) value = nullptr;
+  if (!value.is_structured()) return;
+  for (Json& part : value) leave_no_nans(part);
+}
+
 void add_measurements(const Scene& scene, const Simulation& simulation, Json& result) {
   const StressMeans stress(scene, simulation.system());
   const std::vector<Quantity> quantities = quantities_of(scene, simulation.schedule());
@@ -138,10 +146,12 @@ void add_measurements(const Scene& scene, const Simulation& simulation, Json& re
     observable->add_to(mean);
     observable->add_blocks_to(blocks);
   }
+  leave_no_nans(mean);
+  leave_no_nans(blocks);
   result["inefficiencies"] = inefficiencies(blocks, quantities);
   std::vector<double> series;
   for (const BlockSums& block : simulation.production().blocks()) {
-    series.push_back(stress.means(block).at(Json::json_pointer(usual)).get<double>());
+    if (block.samples > 0) series.push_back(stress.means(block).at(Json::json_pointer(usual)).get<double>());
   }
   result["statistical_inefficiency"] = statistical_inefficiency(series);
   for (const Quantity& quantity : quantities) result["quantities"][quantity.name] = to_json(quantity);
@@ -151,7 +161,8 @@ void add_measurements(const Scene& scene, const Simulation& simulation, Json& re
 
 Json make_result(const ResultHeader& header, const Scene& scene, const Simulation& simulation,
                  const Ending& ending, const std::string& saved_state, const Spent& spent) {
-  Json result = common_part(header, scene, simulation.schedule(), simulation.system().step, spent);
+  Json result = common_part(header, scene, simulation.schedule(), simulation.system().step,
+                            simulation.strains(), spent);
   std::vector<Warning> warnings = scene_warnings(scene);
   if (const double overlap = sum_of(simulation.production().blocks()).mean_overlap(); overlap > 0.001) {
     warnings.push_back(
@@ -189,6 +200,10 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
                        share, 1 << solver["deepest_division"].get<int>(), largest_share_divided)});
     }
   }
+  if (ending.cause == Ending::Cause::jammed) {
+    warnings.push_back(
+        {"jammed", ending.message + "; for the rest of its window it counts as standing still"});
+  }
   result["warnings"] = warnings_json(warnings);
   result["gate"] = {{"largest_stability_share", simulation.step_errors().largest_stability_share},
                     {"energy_imbalance", or_null(imbalance)},
@@ -199,7 +214,7 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
   ArchiveWriter state;
   save(simulation.system(), state);
   result["final_state_sha256"] = sha256(state.bytes());
-  if (ending.cause == Ending::Cause::completed) {
+  if (is_measured(ending.cause)) {
     add_measurements(scene, simulation, result);
   }
   return result;
@@ -207,7 +222,7 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
 
 Json make_unpacked_result(const ResultHeader& header, const Scene& scene, const Schedule& schedule,
                           const std::string& message, const Spent& spent) {
-  Json result = common_part(header, scene, schedule, 0, spent);
+  Json result = common_part(header, scene, schedule, 0, {}, spent);
   result["warnings"] = warnings_json(scene_warnings(scene));
   result["gate"] = nullptr;
   result["ending"] = ending_json({Ending::Cause::packing, 0, message}, "");

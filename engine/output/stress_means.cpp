@@ -114,11 +114,16 @@ Json StressMeans::means(const BlockSums& sums) const {
   };
   const SymmetricTensor varying = (1 / (static_cast<double>(sums.samples) * unit_)) * sums.varying_stresslet;
   if (physics_.flow.steady_rate() > 0) {
-    const SymmetricTensor solvent = solvent_stress(1, simple_shear(1));  // in units of itself
+    const SymmetricTensor solvent = 2.0 * physics_.flow.direction();  // in units of itself
     part("solvent", solvent);
     part("stresslet", stresslet(volume_fraction_, solvent) + varying);
   } else if (physics_.flow.varies()) {
     part("stresslet", varying);
+  } else if (physics_.flow.deformation().stress()) {
+    const double rate = sums.shear_rate / static_cast<double>(sums.steps);
+    const SymmetricTensor solvent = solvent_stress(physics_.viscosity, simple_shear(rate));
+    part("solvent", solvent);
+    part("stresslet", stresslet(volume_fraction_, solvent));
   }
   const double per_step = 1 / (static_cast<double>(sums.steps) * volume_ * unit_);
   SymmetricTensor pairs, brownian;
@@ -138,8 +143,8 @@ Json StressMeans::means(const BlockSums& sums) const {
   return {{"stress", stress},
           {"brownian_pairwise", to_json(brownian)},
           {"brownian_structural", to_json((per_sample / unit_) * sums.structural_brownian)},
-          {"relative_viscosity", sheared ? Json(total.xy) : Json()},
-          {"relative_viscosity_pair", sheared ? Json(pairs.xy) : Json()},
+          {"relative_viscosity", sheared ? Json(physics_.flow.shear_part(total)) : Json()},
+          {"relative_viscosity_pair", sheared ? Json(physics_.flow.shear_part(pairs)) : Json()},
           {"first_normal_difference", first_normal_difference(total)},
           {"second_normal_difference", second_normal_difference(total)},
           {"pressure", pressure(total)},
@@ -152,7 +157,7 @@ Json StressMeans::means(const BlockSums& sums) const {
 
 Json StressMeans::control_variates(const SymmetricTensor& brownian) const {
   const auto value = [&](double number) { return terms_.noise ? Json(number) : Json(); };
-  return {{"brownian_pairwise", value(brownian.xy)},
+  return {{"brownian_pairwise", value(physics_.flow.shear_part(brownian))},
           {"first_normal_difference", value(first_normal_difference(brownian))},
           {"second_normal_difference", value(second_normal_difference(brownian))},
           {"pressure", value(pressure(brownian))}};
@@ -184,7 +189,9 @@ std::vector<Quantity> stress_quantities(const Scene& scene) {
                    noise);
     described.stress("stress/solvent", "sigma^S");
   }
-  if (sheared || scene.physics.flow.varies()) described.stress("stress/stresslet", "sigma^E");
+  const bool at_stress = scene.physics.flow.deformation().stress().has_value();
+  if (at_stress) described.stress("stress/solvent", "sigma^S");
+  if (sheared || at_stress || scene.physics.flow.varies()) described.stress("stress/stresslet", "sigma^E");
   described.part("first_normal_difference", "N_1", unit, "control_variates/first_normal_difference", noise);
   described.part("second_normal_difference", "N_2", unit, "control_variates/second_normal_difference", noise);
   described.part("pressure", "P", unit, "control_variates/pressure", noise);

@@ -12,7 +12,13 @@
 
 namespace peclet::engine {
 
-enum class Purpose : std::uint64_t { packing = 1, initial_velocity = 2, one_body_noise = 3, pair_noise = 4 };
+enum class Purpose : std::uint64_t {
+  packing = 1,
+  initial_velocity = 2,
+  one_body_noise = 3,
+  pair_noise = 4,
+  strain_noise = 5
+};
 
 // Two independent vectors of standard normal components.
 struct NormalPair {

@@ -11,6 +11,8 @@ const char* name_of(Ending::Cause cause) {
   switch (cause) {
     case Ending::Cause::completed:
       return "completed";
+    case Ending::Cause::jammed:
+      return "jammed";
     case Ending::Cause::overlap:
       return "overlap";
     case Ending::Cause::displacement:

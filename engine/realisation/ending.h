@@ -11,13 +11,18 @@
 namespace peclet::engine {
 
 struct Ending {
-  enum class Cause { completed, overlap, displacement, non_finite, packing, timestep };
+  enum class Cause { completed, jammed, overlap, displacement, non_finite, packing, timestep };
   Cause cause = Cause::completed;
   std::uint64_t step = 0;
   std::string message;
 };
 
-// "completed", "overlap", "displacement", "non-finite", "packing", "timestep"
+// Whether it has results: what jams under a stress has, too.
+inline bool is_measured(Ending::Cause cause) {
+  return cause == Ending::Cause::completed || cause == Ending::Cause::jammed;
+}
+
+// "completed", "jammed", "overlap", "displacement", "non-finite", "packing", "timestep"
 const char* name_of(Ending::Cause cause);
 
 // What the guard, or arithmetic, has against the step that was just made. Displacements and overlaps are in

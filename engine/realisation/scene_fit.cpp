@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "contract/input_error.h"
+#include "engine/catalogue/catalogue.h"
 #include "engine/kernels/pairs/pair_kinds.h"
-#include "engine/observables/catalogue.h"
 #include "engine/start/packing.h"
 
 namespace peclet::engine {

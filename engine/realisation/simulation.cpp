@@ -1,13 +1,15 @@
 #include "engine/realisation/simulation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "engine/catalogue/catalogue.h"
 #include "engine/integrators/implicit.h"
 #include "engine/integrators/velocity_verlet.h"
 #include "engine/kernels/pairs/terms.h"
-#include "engine/observables/catalogue.h"
 #include "engine/random/keyed_random.h"
 #include "engine/realisation/scene_fit.h"
 #include "engine/start/packing.h"
@@ -53,7 +55,9 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
       threads_(threads),
       production_(schedule.production),
       gate_(scene.physics, schedule) {
-  const Physics& physics = scene.physics;
+  const std::shared_ptr<Deformation> own = scene.physics.flow.deformation().own_copy();
+  if (own) scene_.physics.flow = ImposedFlow(own);
+  const Physics& physics = scene_.physics;
   check_fit(scene, schedule, file);
   const std::vector<double> radius = species_radii(scene.particles);
   const std::vector<double> sizes = distinct_radii(radius);
@@ -61,7 +65,8 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
   kinds_ = make_pair_kinds(physics, sizes);
   smallest_radius_ = sizes.front();
   system_.particles = make_particles(radius, species_densities(scene.particles));
-  system_.box = PeriodicCell(box, physics.flow.deformation().velocity_gradient(0));
+  const Deformation& deformation = physics.flow.deformation();
+  system_.box = PeriodicCell::with_edges(deformation.edges_at_start(box), deformation.velocity_gradient(0));
   edges_at_start_ = system_.box.edges();
   const RangeTable ranges = range_table(kinds_, sizes.size());
   system_.list = scene.method == Method::implicit_steps
@@ -80,7 +85,11 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
         schedule.timestep);
   }
   observables_ = make_observables(scene, system_, {schedule.timestep, schedule.production, box});
-  if (std::ranges::any_of(observables_, [](const auto& observable) { return observable->takes_flux(); })) {
+  if (const auto shear = std::dynamic_pointer_cast<ControlledShear>(own)) {
+    control_ = std::make_unique<StressControl>(scene_, shear, schedule.timestep, seed);
+  }
+  const auto takes_flux = [](const auto& observable) { return observable->takes_flux(); };
+  if (std::ranges::any_of(observables_, takes_flux) || (control_ && control_->needs_flux())) {
     integrator_->watch_momentum_flux();
   }
 }
@@ -91,7 +100,12 @@ void Simulation::start(const std::function<void()>& made_step) {
     relax(system_, scene_, threads_, made_step);
   }
   set_initial_velocities(system_.particles, scene_.physics.flow.at(system_.box), scene_.physics, seed_);
+  begin();
+}
+
+void Simulation::begin() {
   integrator_->start(system_);
+  if (control_) control_->start(system_);
 }
 
 void Simulation::start(const System& placed, bool in_motion) {
@@ -107,17 +121,16 @@ void Simulation::start(const System& placed, bool in_motion) {
   if (!in_motion) {
     set_initial_velocities(system_.particles, scene_.physics.flow.at(system_.box), scene_.physics, seed_);
   }
-  integrator_->start(system_);
+  begin();
 }
 
 std::optional<Ending> Simulation::advance(std::uint64_t steps) {
-  const std::uint64_t last = std::min(system_.step + steps, schedule_.total());
-  while (system_.step < last) {
+  const std::uint64_t last = system_.step + steps;
+  while (system_.step < std::min(last, schedule_.total())) {
     if (std::optional<Ending> ending = gate_.check(*integrator_, system_)) {
       return ending;
     }
-    show_pairs();
-    const StepReport report = integrator_->advance_open(system_);
+    const StepReport report = advance_step();
     if (std::optional<Ending> ending = ending_of(report, system_, scene_.guard, smallest_radius_)) {
       integrator_->complete(system_);
       return ending;
@@ -125,6 +138,7 @@ std::optional<Ending> Simulation::advance(std::uint64_t steps) {
     if (system_.step > schedule_.equilibration) {
       observe(report);
     }
+    if (std::optional<Ending> ending = look_for_jam()) return ending;
   }
   integrator_->complete(system_);
   if (system_.step == schedule_.total()) {
@@ -133,8 +147,15 @@ std::optional<Ending> Simulation::advance(std::uint64_t steps) {
   return std::nullopt;
 }
 
-// Of the step to come, where it will be sampled.
-void Simulation::show_pairs() {
+StepReport Simulation::advance_step() {
+  PairWatcher* const watchers = watchers_of_step();
+  if (control_) return control_->advance(*integrator_, system_, watchers);
+  integrator_->show_pairs_to(watchers);
+  return integrator_->advance_open(system_);
+}
+
+// Who samples the step to come; null: nobody.
+PairWatcher* Simulation::watchers_of_step() {
   watchers_.clear();
   if (system_.step >= schedule_.equilibration) {
     const std::uint64_t index = system_.step - schedule_.equilibration;
@@ -142,7 +163,34 @@ void Simulation::show_pairs() {
       if (index % observable->interval() == 0) watchers_.add(observable->watcher());
     }
   }
-  integrator_->show_pairs_to(watchers_.empty() ? nullptr : &watchers_);
+  return watchers_.empty() ? nullptr : &watchers_;
+}
+
+// What jams before the window is measured in it from then on, until it is seen to stand still there too.
+std::optional<Ending> Simulation::look_for_jam() {
+  if (!control_) return std::nullopt;
+  const bool has_jammed = control_->has_jammed(system_);
+  if (system_.step < schedule_.equilibration && has_jammed) schedule_.equilibration = system_.step;
+  if (system_.step == schedule_.equilibration) {
+    strain_at_window_ = system_.box.strain();
+    control_->wait_from(system_);
+    return std::nullopt;
+  }
+  if (!has_jammed || system_.step == schedule_.total()) return std::nullopt;
+  return Ending{Ending::Cause::jammed, system_.step,
+                fmt::format("the suspension stands still under its stress: jammed at a strain of {:.4g}",
+                            system_.box.strain())};
+}
+
+Simulation::Strains Simulation::strains() const {
+  const std::uint64_t begin = std::min(system_.step, schedule_.equilibration);
+  if (control_) {
+    const double before = system_.step > begin ? strain_at_window_ : system_.box.strain();
+    return {before, system_.box.strain() - before};
+  }
+  const Deformation& deformation = scene_.physics.flow.deformation();
+  return {deformation.strain_between(schedule_.timestep, 0, begin),
+          deformation.strain_between(schedule_.timestep, begin, system_.step)};
 }
 
 gsd::Frames* Simulation::frames() {
@@ -154,7 +202,7 @@ gsd::Frames* Simulation::frames() {
 
 void Simulation::observe(const StepReport& report) {
   const std::uint64_t index = system_.step - schedule_.equilibration - 1;
-  production_.add_step(index, report.sums);
+  production_.add_step(index, report.sums, system_.box.velocity_gradient().column[1].x);
   largest_overlap_ = std::max(largest_overlap_, report.sums.largest_overlap);
   gate_.observe(index, report, *integrator_, system_);
   // A short window is sampled more often so that each block has its samples.
@@ -177,7 +225,12 @@ void Simulation::save(ArchiveWriter& archive) const {
   archive.put(edges_at_start_);
   engine::save(system_, archive);
   integrator_->save(archive);
+  if (control_) control_->save(archive);
   gate_.save(archive);
+  if (control_) {
+    archive.put(schedule_.equilibration);
+    archive.put(strain_at_window_);
+  }
   archive.put(largest_overlap_);
   production_.save(archive);
   for (const std::unique_ptr<Observable>& observable : observables_) observable->save(archive);
@@ -192,7 +245,12 @@ void Simulation::load_system(ArchiveReader& archive) {
 void Simulation::load(ArchiveReader& archive) {
   load_system(archive);
   integrator_->load(system_, archive);
+  if (control_) control_->load(system_, archive);
   gate_.load(archive);
+  if (control_) {
+    schedule_.equilibration = archive.get<std::uint64_t>();
+    strain_at_window_ = archive.get<double>();
+  }
   largest_overlap_ = archive.get<double>();
   production_.load(archive);
   for (const std::unique_ptr<Observable>& observable : observables_) observable->load(archive);
@@ -201,6 +259,7 @@ void Simulation::load(ArchiveReader& archive) {
 void Simulation::load_motion(ArchiveReader& archive) {
   load_system(archive);
   integrator_->load(system_, archive);
+  if (control_) control_->load(system_, archive);
   gate_.load_before_window(archive);
 }
 

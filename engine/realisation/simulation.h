@@ -9,6 +9,7 @@
 #include "engine/observables/observable.h"
 #include "engine/observables/production.h"
 #include "engine/realisation/step_gate.h"
+#include "engine/realisation/stress_control.h"
 
 namespace peclet::engine {
 
@@ -33,11 +34,21 @@ class Simulation {
   std::optional<Ending> advance(std::uint64_t steps);
 
   const System& system() const { return system_; }
+  // Where it jams before the window begins, the window begins there.
   const Schedule& schedule() const { return schedule_; }
   const Production& production() const { return production_; }
   const std::vector<std::unique_ptr<Observable>>& observables() const { return observables_; }
   const StepErrors& step_errors() const { return gate_.errors(); }
   double largest_overlap() const { return largest_overlap_; }  // over the smaller radius, in production
+
+  // Of the steps before the window and in it, summed over both directions; at a given stress net.
+  struct Strains {
+    double equilibration = 0, production = 0;
+  };
+  Strains strains() const;
+
+  // Null unless the flow is at a given stress.
+  const StressControl* stress_control() const { return control_.get(); }
 
   // What an observable writes beside the result; null: nothing.
   gsd::Frames* frames();
@@ -49,8 +60,11 @@ class Simulation {
   void load_motion(ArchiveReader& archive);
 
  private:
+  void begin();
   void load_system(ArchiveReader& archive);
-  void show_pairs();
+  PairWatcher* watchers_of_step();
+  StepReport advance_step();
+  std::optional<Ending> look_for_jam();
   void observe(const StepReport& report);
 
   Scene scene_;
@@ -61,6 +75,8 @@ class Simulation {
   Matrix3 edges_at_start_;  // of the cell, from which strain counts; a start in a file may be sheared
   std::vector<PairKind> kinds_;
   std::unique_ptr<Integrator> integrator_;
+  std::unique_ptr<StressControl> control_;
+  double strain_at_window_ = 0;  // at a given stress
   Production production_;
   std::vector<std::unique_ptr<Observable>> observables_;  // that the scene asks for
   PairWatchers watchers_;                                 // of the step to come

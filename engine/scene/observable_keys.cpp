@@ -33,18 +33,6 @@ std::optional<ObservableFault> must_have_equilibrium(const Scene& scene, const J
   return ObservableFault{"/observables", "must not list linear_response with " + reason};
 }
 
-std::optional<ObservableFault> must_oscillate(const Scene& scene, const Json&) {
-  if (!scene.physics.flow.period()) {
-    return ObservableFault{"/observables", "must not list oscillation without /flow/oscillation"};
-  }
-  if (scene.physics.lubrication && scene.physics.lubrication->form == LubricationParameters::Form::mari) {
-    return ObservableFault{"/observables",
-                           "must not list oscillation with /lubrication/form mari: its stress is not that of "
-                           "the forces alone"};
-  }
-  return std::nullopt;
-}
-
 std::optional<ObservableFault> must_have_whole_bins(const Scene&, const Json& settings) {
   const double bins = settings.at("range").get<double>() / settings.at("bin").get<double>();
   if (std::abs(bins - std::round(bins)) <= 1e-9 * bins && bins >= 1 && bins <= most_bins) return std::nullopt;
@@ -110,10 +98,22 @@ std::vector<ObservableEntry> entries() {
        {},
        must_have_equilibrium},
       {"oscillation",
-       "G' and G'' of an oscillating shear, and the third harmonic of the stress",
+       "G' and G'' of an oscillating shear, and the third harmonic of the stress; with cross_shear of the "
+       "stress "
+       "across",
        "",
        {},
-       must_oscillate},
+       none},
+      {"transient",
+       "shear stress, normal stress differences and pressure over the strain, or time, of the window",
+       "",
+       {with_default({.pointer = "/transient/bins",
+                      .kind = KeyKind::integer,
+                      .meaning = "Equal parts of the production window.",
+                      .minimum = 1,
+                      .maximum = most_bins},
+                     50)},
+       none},
       {"trajectory",
        "trajectory.gsd beside the result, with places, motion and stress of each sphere in every frame",
        "a 256th of the production window",

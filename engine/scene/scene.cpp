@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "contract/input_error.h"
-#include "engine/flow/waves.h"
+#include "engine/flow/planar_extension.h"
+#include "engine/scene/flow_block.h"
 #include "engine/scene/law_blocks.h"
 #include "engine/scene/observable_keys.h"
 #include "engine/scene/particles_block.h"
@@ -22,7 +22,7 @@ namespace {
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 // The checks of one document.
-class Reading : private SceneDocument {
+class Reading : public SceneDocument {
  public:
   using SceneDocument::SceneDocument;
 
@@ -30,48 +30,21 @@ class Reading : private SceneDocument {
   double volume_fraction(const Particles& particles) const { return read_volume_fraction(*this, particles); }
   Physics physics() const;
   void check_lubrication(const Particles& particles, const Physics& physics) const;
-  // Rate and temperature, given as they are or by Péclet number and limits.
-  void set_flow(const Particles& particles, Physics& physics) const;
   Duration duration(const std::string& pointer, const Physics& physics) const;
   void check_cycles() const;
+  // That the production window, which begins then, ends, and in time.
+  void check_window(const Scene& scene, double begin) const;
   void set_observables(Scene& scene) const;
   std::optional<Start> start() const {
     return has("/start") ? std::optional<Start>(read_start(*this)) : std::nullopt;
   }
-
- private:
-  // Of this shear rate, with the scene's waves.
-  ImposedFlow flow(double rate) const;
-  ImposedFlow oscillation() const;
-  void set_flow_from_peclet(double radius, Physics& physics) const;
 };
-
-ImposedFlow Reading::flow(double rate) const {
-  if (!has("/flow/waves")) return steady_shear(rate);
-  if (!has("/flow/faxen")) miss("/flow/faxen", "must be true or false where there are /flow/waves");
-  std::vector<Wave> waves;
-  for (const Json& wave : at("/flow/waves")) {
-    const double sine = wave.at("sine").get<double>(), cosine = wave.at("cosine").get<double>();
-    if (sine != 0 || cosine != 0) waves.push_back({wave.at("periods").get<int>(), sine, cosine});
-  }
-  if (waves.empty()) return steady_shear(rate);
-  return ImposedFlow(std::make_shared<SteadyShear>(rate),
-                     std::make_shared<Waves>(std::move(waves), at("/flow/faxen").get<bool>()));
-}
-
-ImposedFlow Reading::oscillation() const {
-  for (const char* pointer : {"/flow/shear_rate", "/flow/waves", "/peclet"}) {
-    if (has(pointer)) refuse(pointer, "must be left out together with /flow/oscillation");
-  }
-  return ImposedFlow(std::make_shared<OscillatoryShear>(number("/flow/oscillation/amplitude"),
-                                                        number("/flow/oscillation/frequency")));
-}
 
 Physics Reading::physics() const {
   Physics physics;
   physics.viscosity = number("/fluid/viscosity");
   physics.thermal_energy = number_or("/fluid/thermal_energy", 0);
-  physics.flow = has("/flow/oscillation") ? oscillation() : flow(number_or("/flow/shear_rate", 0));
+  physics.flow = read_flow(*this);
   for (const LawBlock& law : law_blocks) {
     if (has("/" + std::string(law.name))) law.read(*this, physics);
   }
@@ -87,54 +60,11 @@ void Reading::check_lubrication(const Particles& particles, const Physics& physi
   }
 }
 
-// Of all pairs with rate / kT = Pe / (6 pi eta a^3) within the limits, the one with the larger values.
-void Reading::set_flow_from_peclet(double radius, Physics& physics) const {
-  const double peclet = number("/peclet");
-  const double scale = 6 * std::numbers::pi * physics.viscosity * radius * radius * radius;
-  const double largest_rate = number("/limits/shear_rate");
-  const double largest_energy = number("/limits/thermal_energy");
-  const double rate_at_largest_energy = peclet * largest_energy / scale;
-  if (rate_at_largest_energy <= largest_rate) {
-    physics.flow = flow(rate_at_largest_energy);
-    physics.thermal_energy = largest_energy;
-  } else {
-    physics.flow = flow(largest_rate);
-    physics.thermal_energy = scale * largest_rate / peclet;
-  }
-  const auto is_usable = [](double value) { return std::isnormal(value) && value > 0; };
-  if (!is_usable(physics.flow.rate()) || !is_usable(physics.thermal_energy)) {
-    refuse("/peclet", "leaves no shear rate and thermal energy above 0 within /limits");
-  }
-}
-
-void Reading::set_flow(const Particles& particles, Physics& physics) const {
-  if (!has("/peclet")) {
-    if (has("/limits")) refuse("/limits", "must be left out without /peclet");
-    if (!has("/flow/shear_rate") && !physics.flow.period()) {
-      miss("/flow/shear_rate",
-           "must be a number >= 0, or /flow/oscillation or /peclet with /limits must be given");
-    }
-    return;
-  }
-  for (const char* pointer : {"/flow/shear_rate", "/fluid/thermal_energy"}) {
-    if (has(pointer)) refuse(pointer, "must be left out together with /peclet, which sets it");
-  }
-  if (!has("/limits"))
-    miss("/limits", "must be an object with shear_rate and thermal_energy, because /peclet is given");
-  set_flow_from_peclet(particles.reference_radius, physics);
-}
-
 Duration Reading::duration(const std::string& pointer, const Physics& physics) const {
   const Json& limits = at(pointer);
-  if (limits.empty()) refuse(pointer, "must have at least one of strain, brownian_times, time, cycles");
-  const std::optional<double> period = physics.flow.period();
-  if (limits.contains("cycles") && !period) {
-    refuse(pointer + "/cycles", "must be left out without /flow/oscillation");
-  }
-  if (limits.contains("strain") && period) {
-    refuse(pointer + "/strain",
-           "must be left out with /flow/oscillation, whose strain comes and goes; cycles are even");
-  }
+  if (limits.empty())
+    refuse(pointer, "must have at least one of strain, brownian_times, time, cycles, stress_times");
+  check_duration_of_flow(*this, pointer);
   Duration duration;
   for (const auto& [name, limit] : limits.items()) {
     if (limit == 0) return {unlimited, unlimited, 0};  // over before it starts, whatever the flow
@@ -143,7 +73,11 @@ Duration Reading::duration(const std::string& pointer, const Physics& physics) c
   if (physics.thermal_energy > 0) duration.brownian_times = limits.value("brownian_times", unlimited);
   duration.time = limits.value("time", unlimited);
   if (limits.contains("cycles")) {
-    duration.time = std::min(duration.time, limits.at("cycles").get<double>() * *period);
+    duration.time = std::min(duration.time, limits.at("cycles").get<double>() * *physics.flow.period());
+  }
+  if (limits.contains("stress_times")) {
+    const double unit = physics.viscosity / number("/flow/stress");
+    duration.time = std::min(duration.time, limits.at("stress_times").get<double>() * unit);
   }
   if (duration.strain == unlimited && duration.brownian_times == unlimited && duration.time == unlimited) {
     refuse(pointer,
@@ -156,15 +90,34 @@ Duration Reading::duration(const std::string& pointer, const Physics& physics) c
 
 // So that moduli are those of whole cycles.
 void Reading::check_cycles() const {
-  if (!has("/flow/oscillation")) return;
+  const Json& list = at("/observables");
+  const bool across =
+      has("/flow/cross_shear") && std::find(list.begin(), list.end(), "oscillation") != list.end();
+  if (!has("/flow/oscillation") && !across) return;
   for (const char* pointer : {"/duration/equilibration", "/duration/production"}) {
     const Json& limits = at(pointer);
     const auto is_whole = [](const Json& number) {
       return number.get<double>() == std::floor(number.get<double>());
     };
     if (limits.size() != 1 || !limits.contains("cycles") || !is_whole(limits.at("cycles"))) {
-      refuse(pointer, "must have a whole number of cycles and nothing else with /flow/oscillation");
+      refuse(pointer, fmt::format("must have a whole number of cycles and nothing else with {}",
+                                  across ? "the observable oscillation" : "/flow/oscillation"));
     }
+  }
+}
+
+void Reading::check_window(const Scene& scene, double begin) const {
+  const double end = begin + time_of(scene.production, scene, begin);
+  if (std::isinf(end)) {
+    refuse("/duration", "would never end: the last of /flow/segments does not make this strain");
+  }
+  if (!has("/flow/extension_rate")) return;
+  const double strain = end * number("/flow/extension_rate");
+  if (strain > PlanarExtension::largest_strain * (1 + 1e-9)) {
+    refuse(
+        "/duration",
+        fmt::format("must have a Hencky strain of at most {} in all with /flow/extension_rate; it has {:.4g}",
+                    PlanarExtension::largest_strain, strain));
   }
 }
 
@@ -184,6 +137,9 @@ void Reading::set_observables(Scene& scene) const {
     if (entry.has_settings()) {
       settings = has_settings ? at(pointer) : scene_keys().validate(settings, file(), pointer);
     }
+    if (const std::optional<std::string> fault = fault_of_observable(*this, entry.name)) {
+      refuse("/observables", *fault);
+    }
     if (const std::optional<ObservableFault> fault = entry.fault(scene, settings)) {
       refuse(fault->pointer, fault->allowed);
     }
@@ -191,6 +147,8 @@ void Reading::set_observables(Scene& scene) const {
       settings["interval"] = time_of(duration(pointer + "/interval", scene.physics), scene);
     }
   }
+  // What a flow at a given stress always measures.
+  if (has("/flow/stress")) scene.observables["flow_at_stress"] = Json::object();
 }
 
 // The method, and the default of the guard that follows from it. Without lubrication explicit steps are bound
@@ -208,9 +166,9 @@ void fill_method_and_guard(Json& document) {
 
 }  // namespace
 
-double time_of(const Duration& duration, const Scene& scene) {
+double time_of(const Duration& duration, const Scene& scene, double from) {
   const Physics& physics = scene.physics;
-  double time = std::min(duration.time, physics.flow.deformation().time_of(duration.strain));
+  double time = std::min(duration.time, physics.flow.deformation().time_of(duration.strain, from));
   if (physics.thermal_energy > 0) {
     const double a = scene.particles.reference_radius;
     time = std::min(time, duration.brownian_times * physics.viscosity * a * a * a / physics.thermal_energy);
@@ -237,7 +195,7 @@ Scene read_scene(const Json& document, const std::string& file) {
   if (filled.contains("box")) scene.height = filled["box"]["height"].get<double>();
   scene.physics = reading.physics();
   reading.check_lubrication(scene.particles, scene.physics);
-  reading.set_flow(scene.particles, scene.physics);
+  set_flow(reading, scene.particles, scene.volume_fraction, scene.physics);
 
   const Json& integrator = filled["integrator"];
   if (integrator["method"] == "implicit") scene.method = Method::implicit_steps;
@@ -253,6 +211,9 @@ Scene read_scene(const Json& document, const std::string& file) {
   reading.check_cycles();
   scene.equilibration = reading.duration("/duration/equilibration", scene.physics);
   scene.production = reading.duration("/duration/production", scene.physics);
+  const double begin = time_of(scene.equilibration, scene);
+  scene.physics.flow.measure_from(begin);
+  reading.check_window(scene, begin);
   reading.set_observables(scene);
   scene.guard = {filled["guard"]["largest_overlap"].get<double>(),
                  filled["guard"]["largest_displacement"].get<double>(),
@@ -288,7 +249,11 @@ Physics read_physics(const Json& document, const std::string& file, const std::s
   fill_lubrication(filled);
   if (!filled.contains("fluid")) throw InputError(file, pointer + "/fluid", "missing", "must be an object");
   try {
-    return Reading(filled, "").physics();
+    const Reading reading(filled, "");
+    if (reading.has("/flow/stress")) {
+      reading.refuse("/flow/stress", "must be left out: spheres that stand still have a shear rate at most");
+    }
+    return reading.physics();
   } catch (const InputError& error) {
     throw error.within(file, pointer);
   }

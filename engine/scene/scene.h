@@ -92,8 +92,8 @@ struct Scene {
 // Edges of the box that is as large as a cube of this edge.
 Vector3 box_lengths(const Scene& scene, double cube_edge);
 
-// The time after which the first of the limits is reached.
-double time_of(const Duration& duration, const Scene& scene);
+// The time, from then on, after which the first of the limits is reached.
+double time_of(const Duration& duration, const Scene& scene, double from = 0);
 
 const KeyTable& scene_keys();
 

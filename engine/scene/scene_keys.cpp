@@ -1,6 +1,7 @@
 // Every key of a scene: the one list behind validation, schema/scene.schema.json and the manual's page.
 #include <utility>
 
+#include "engine/scene/flow_block.h"
 #include "engine/scene/law_blocks.h"
 #include "engine/scene/observable_keys.h"
 #include "engine/scene/particles_block.h"
@@ -10,62 +11,6 @@
 namespace peclet::engine {
 
 namespace {
-
-constexpr std::size_t most_waves = 64;
-
-Keys flow_keys() {
-  return {
-      block("/fluid", "The solvent.", required),
-      positive("/fluid/viscosity", "mass / (length time)", "Viscosity eta of the solvent.", required),
-      not_negative("/fluid/thermal_energy", "energy",
-                   "k_B T; absent (or 0): no Brownian motion. Not together with peclet."),
-      block("/flow",
-            "The streaming flow (rate y, 0, 0), and waves in it. A scene has flow.shear_rate, "
-            "flow.oscillation or peclet."),
-      not_negative("/flow/shear_rate", "1 / time", "Shear rate; 0: no mean shear. Not together with peclet."),
-      block("/flow/oscillation",
-            "Shear to and fro in the place of shear_rate: strain = amplitude sin(frequency t)."),
-      positive("/flow/oscillation/amplitude", "", "Largest strain.", required),
-      positive("/flow/oscillation/frequency", "1 / time", "Angular frequency, in radians per time.",
-               required),
-      {.pointer = "/flow/waves",
-       .kind = KeyKind::array,
-       .meaning =
-           "Waves along y that the flow has besides: u_x = sum of sine sin(k y) + cosine cos(k y) with k "
-           "= 2 pi periods / L.",
-       .minimum_items = 1,
-       .maximum_items = most_waves},
-      block("/flow/waves/*", "One wave."),
-      {.pointer = "/flow/waves/*/periods",
-       .kind = KeyKind::integer,
-       .meaning = "Periods of the wave along the edge of the box.",
-       .required = true,
-       .minimum = 1,
-       .maximum = 1000},
-      {.pointer = "/flow/waves/*/sine",
-       .kind = KeyKind::number,
-       .meaning = "Amplitude of the sine.",
-       .unit = "length / time",
-       .default_value = 0},
-      {.pointer = "/flow/waves/*/cosine",
-       .kind = KeyKind::number,
-       .meaning = "Amplitude of the cosine.",
-       .unit = "length / time",
-       .default_value = 0},
-      {.pointer = "/flow/faxen",
-       .kind = KeyKind::boolean,
-       .meaning =
-           "Whether spheres feel the curvature of the waves: their velocity with the factor 1 - a^2 k^2 / "
-           "6, the strain of their stresslet with 1 - a^2 k^2 / 10. Must be given with waves; without them "
-           "nothing is curved."},
-      positive("/peclet", "",
-               "Pe = 6 pi eta a^3 rate / k_B T, in place of shear_rate and thermal_energy; needs limits."),
-      block("/limits",
-            "Of the scene with a given peclet: the largest rate and temperature that Pe allows are used."),
-      positive("/limits/shear_rate", "1 / time", "Shear rate that is not exceeded.", required),
-      positive("/limits/thermal_energy", "energy", "k_B T that is not exceeded.", required),
-  };
-}
 
 Keys run_keys() {
   Keys keys = {

@@ -9,6 +9,7 @@
 #include "contract/json.h"
 #include "runner/engines/stop_signals.h"
 #include "runner/engines/worker_process.h"
+#include "runner/folder/result_shape.h"
 
 namespace peclet::runner {
 namespace {
@@ -64,7 +65,7 @@ class Trial {
   static constexpr double long_enough = 2, longest = 10;
 
   static bool is_complete(const Json& result) {
-    return result.at("/ending/cause"_json_pointer) == "completed";
+    return has_results(result.at("/ending/cause"_json_pointer).get<std::string>());
   }
 
   bool hear(const Progressed& progressed) {

@@ -19,7 +19,7 @@ struct RealisationResult {
   std::string cause;           // of the ending: "completed", "overlap", ...
   std::string engine;          // engine_identity()
   std::string content_sha256;  // of what repetitions must share
-  bool completed() const { return cause == "completed"; }
+  bool completed() const { return has_results(cause); }
 };
 
 // Throws ResultError naming what is wrong.

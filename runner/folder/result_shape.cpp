@@ -266,7 +266,7 @@ void check_quantities(const Place& quantities, const Json& document) {
 void check_ending(const Place& document) {
   const Place ending = document.at("ending");
   must_be_object(ending);
-  const bool completed = word_at(ending.at("cause"), lower_case) == "completed";
+  const bool completed = has_results(word_at(ending.at("cause"), lower_case));
   must_be_step(ending.at("step"));
   ending.with("message", must_be_text);
   ending.with("state", must_be_text_or_null);

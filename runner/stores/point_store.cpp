@@ -110,7 +110,7 @@ void PointStore::observe_again(const Campaign& campaign) {
           "must be a number that the results have: " + plain(names_of_targets(document), longest_list));
     }
     change.bind(to_string(observed.value ? SeedState::done : SeedState::failed))
-        .bind(observed.value ? "completed" : no_value)
+        .bind(observed.value ? document.at("/ending/cause"_json_pointer).get<std::string>() : no_value)
         .bind(observed.value)
         .bind(observed.control)
         .bind(observed.first_quarter)

@@ -79,7 +79,7 @@ NAMED = [
     ),
     (
         "Green and Kubo by rectangles",
-        "engine/observables/stress_correlation.cpp",
+        "engine/responses/stress_correlation.cpp",
         "0.5 * (now - before) * (g + modulus_before)",
         "(now - before) * g",
         "engine_tests:StressCorrelation.IsIntegratedByTrapezia",

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
-#include "engine/integrators/implicit.h"
-#include "engine/integrators/velocity_verlet.h"
+#include "engine/flow/oscillatory_shear.h"
+#include "engine/flow/planar_extension.h"
+#include "engine/flow/segments.h"
 
 namespace peclet::engine {
 namespace {
@@ -15,25 +17,26 @@ TEST(SteadyShear, StrainsByItsRateTimesTheTime) {
   EXPECT_EQ(shear.velocity_gradient(3), simple_shear(0.7));
   EXPECT_EQ(shear.displacement_gradient(3), simple_shear(0.7 * 3));
   EXPECT_EQ(shear.largest_rate(), 0.7);
-  EXPECT_DOUBLE_EQ(shear.time_of(1.4), 2);
+  EXPECT_DOUBLE_EQ(shear.time_of(1.4, 0), 2);
 }
 
 TEST(SteadyShear, OtherWayRoundReachesAStrainAsSoon) {
   const SteadyShear shear(-0.5);
   EXPECT_EQ(shear.largest_rate(), 0.5);
-  EXPECT_DOUBLE_EQ(shear.time_of(1), 2);
+  EXPECT_DOUBLE_EQ(shear.time_of(1, 0), 2);
   EXPECT_EQ(shear.displacement_gradient(3), simple_shear(-1.5));
 }
 
 TEST(SteadyShear, AtRestReachesNoStrain) {
   EXPECT_EQ(ImposedFlow().rate(), 0);
-  EXPECT_EQ(ImposedFlow().deformation().time_of(1e-3), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(ImposedFlow().deformation().time_of(1e-3, 0), std::numeric_limits<double>::infinity());
 }
 
 TEST(OscillatoryShear, GoesToAndFro) {
   const OscillatoryShear shear(0.2, 3);
   EXPECT_DOUBLE_EQ(shear.largest_rate(), 0.6);
-  EXPECT_DOUBLE_EQ(*shear.period(), 2 * std::numbers::pi / 3);
+  EXPECT_DOUBLE_EQ(*ImposedFlow(std::make_shared<OscillatoryShear>(shear)).period(),
+                   2 * std::numbers::pi / 3);
   for (const double time : {0.0, 0.1, 0.7, 2.0}) {
     EXPECT_DOUBLE_EQ(shear.displacement_gradient(time).column[1].x, 0.2 * std::sin(3 * time));
     const double h = 1e-6;
@@ -48,16 +51,16 @@ TEST(OscillatoryShear, GoesToAndFro) {
 // A quarter, a half and a whole cycle have 1, 2 and 4 amplitudes; within them sin(w t) = 1/2 at a twelfth.
 TEST(OscillatoryShear, CountsItsStrainInBothDirections) {
   const OscillatoryShear shear(0.2, 3);
-  const double period = *shear.period();
-  EXPECT_NEAR(shear.time_of(0.1), period / 12, 1e-12);
-  EXPECT_NEAR(shear.time_of(0.2), period / 4, 1e-12);
-  EXPECT_NEAR(shear.time_of(0.3), period * 5 / 12, 1e-12);
-  EXPECT_NEAR(shear.time_of(0.4), period / 2, 1e-12);
-  EXPECT_NEAR(shear.time_of(0.8), period, 1e-12);
-  EXPECT_NEAR(shear.time_of(8.1), 10 * period + period / 12, 1e-11);
+  const double period = 2 * std::numbers::pi / 3;
+  EXPECT_NEAR(shear.time_of(0.1, 0), period / 12, 1e-12);
+  EXPECT_NEAR(shear.time_of(0.2, 0), period / 4, 1e-12);
+  EXPECT_NEAR(shear.time_of(0.3, 0), period * 5 / 12, 1e-12);
+  EXPECT_NEAR(shear.time_of(0.4, 0), period / 2, 1e-12);
+  EXPECT_NEAR(shear.time_of(0.8, 0), period, 1e-12);
+  EXPECT_NEAR(shear.time_of(8.1, 0), 10 * period + period / 12, 1e-11);
   EXPECT_NEAR(shear.mean_rate() * period, 0.8, 1e-12);
   const double never = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(shear.time_of(never), never);
+  EXPECT_EQ(shear.time_of(never, 0), never);
 }
 
 TEST(ImposedFlow, HasASteadyRateUnlessItComesAndGoes) {
@@ -81,111 +84,104 @@ TEST(Clock, CountsStepsOfOneSizeAndKeepsTheTimeOfOthers) {
   EXPECT_EQ(clock.time(), 1e6 * 0.1 + 0.25);
 }
 
-// gamma = g sin(w t): a flow that only a test has, to see that nothing else needs to know of it.
-class Oscillation final : public Deformation {
- public:
-  Matrix3 velocity_gradient(double time) const override {
-    return simple_shear(amplitude * frequency * std::cos(frequency * time));
-  }
-  Matrix3 displacement_gradient(double time) const override {
-    return simple_shear(amplitude * std::sin(frequency * time));
-  }
-  double largest_rate() const override { return amplitude * frequency; }
-  double time_of(double strain) const override { return strain / (4 * amplitude) * period; }
+TEST(ImposedFlow, HasTheRateOfItsSteadyPart) {
+  const ImposedFlow across(std::make_shared<CrossShear>(0.5, 0.2, 3));
+  EXPECT_EQ(across.steady_rate(), 0.5);
+  EXPECT_DOUBLE_EQ(*across.period(), 2 * std::numbers::pi / 3);
+  // E = rate diag(1, -1, 0), sqrt(2 E:E) = 2 rate; sigma:E / sqrt(2 E:E) = (sigma_xx - sigma_yy) / 2.
+  const ImposedFlow extension(std::make_shared<PlanarExtension>(0.5));
+  EXPECT_DOUBLE_EQ(extension.steady_rate(), 1);
+  EXPECT_DOUBLE_EQ(extension.shear_part({.xx = 3, .yy = -2, .zz = 7, .xy = 5}), 2.5);
+  const ImposedFlow shear = steady_shear(0.3);
+  EXPECT_EQ(shear.shear_part({.xx = 3, .yy = -2, .zz = 7, .xy = 5}), 5);
+  EXPECT_EQ(ImposedFlow().shear_part({.xy = 5}), 5);
+}
 
-  static constexpr double amplitude = 0.3, frequency = 2, period = 2 * 3.14159265358979323846 / frequency;
+// Both shears are along y, so that their displacements add up.
+TEST(CrossShear, SwingsAcrossASteadyShear) {
+  const CrossShear shear(0.5, 0.2, 3);
+  const double time = 0.7, h = 1e-6;
+  const Matrix3 made = shear.displacement_gradient(time);
+  EXPECT_EQ(made.column[1], (Vector3{0.5 * time, 0, 0.2 * std::sin(3 * time)}));
+  const Matrix3 slope =
+      (1 / (2 * h)) * (shear.displacement_gradient(time + h) - shear.displacement_gradient(time - h));
+  EXPECT_NEAR(norm(shear.velocity_gradient(time) - slope), 0, 1e-8);
+  EXPECT_DOUBLE_EQ(shear.largest_rate(), std::hypot(0.5, 0.6));
+  EXPECT_EQ(shear.time_of(2, 0), 4);
+}
+
+// Its lattice meets itself again after ln((3 + sqrt 5) / 2): exp(L t) H0 = H0 M with whole numbers M.
+TEST(PlanarExtension, BringsItsLatticeBack) {
+  const double rate = 0.5, period = std::log((3 + std::sqrt(5.0)) / 2) / rate;
+  const PlanarExtension extension(rate);
+  const Matrix3 start = extension.edges_at_start({2, 2, 3});
+  const Matrix3 end = start + extension.displacement_gradient(period) * start;
+  const Matrix3 whole = inverse(start) * end;
+  for (const Vector3& column : whole.column) {
+    for (const double number : {column.x, column.y, column.z}) EXPECT_NEAR(number, std::round(number), 1e-12);
+  }
+  EXPECT_NEAR(whole.column[0].x + whole.column[1].y, 3, 1e-12);
+  EXPECT_NEAR(determinant(whole), 1, 1e-12);
+}
+
+// A cell that follows it by changes of its basis keeps its volume and stays wide, for the widest strain too.
+TEST(PlanarExtension, KeepsItsCellWide) {
+  const PlanarExtension extension(1);
+  PeriodicCell cell = PeriodicCell::with_edges(extension.edges_at_start({1, 1, 1}), {});
+  for (double strain = 0; strain <= PlanarExtension::largest_strain; strain += 0.01) {
+    cell.deform(extension.displacement_gradient(strain), extension.velocity_gradient(strain));
+    cell.change_basis(cell.due_change());
+    const Vector3 widths = cell.frame().widths();
+    ASSERT_GT(std::min({widths.x, widths.y, widths.z}), 0.66) << strain;
+    ASSERT_NEAR(cell.volume(), 1, 1e-6) << strain;
+  }
+}
+
+// At 2 for a strain of 1, down to -1 in a time of 3, at rest for 1, then at -0.5.
+class Programme : public testing::Test {
+ protected:
+  Segments segments{{{2, 2, time_of_segment(2, 2, 1)}, {2, -1, 3}, {0, 0, 1}}, -0.5};
 };
 
-// Planar extension, u = rate (x, -y, 0).
-class Extension final : public Deformation {
- public:
-  Matrix3 velocity_gradient(double /*time*/) const override {
-    return {Vector3{rate, 0, 0}, Vector3{0, -rate, 0}, Vector3{}};
+TEST_F(Programme, HasRatesAndStrainsOfItsSegments) {
+  const double rates[][2] = {{0, 2},    {0.49, 2}, {1.5, 1},    {2.5, 0},
+                             {3, -0.5}, {4, 0},    {4.5, -0.5}, {9, -0.5}};
+  for (const auto& [time, rate] : rates) {
+    EXPECT_NEAR(segments.velocity_gradient(time).column[1].x, rate, 1e-12) << time;
   }
-  Matrix3 displacement_gradient(double time) const override {
-    const double e = std::exp(rate * time);
-    return {Vector3{e - 1, 0, 0}, Vector3{0, 1 / e - 1, 0}, Vector3{}};
+  const double strains[][2] = {{0.25, 0.5}, {0.5, 1},   {1.5, 2.5}, {2.5, 3},
+                               {3.5, 2.5},  {4.5, 2.5}, {6.5, 1.5}};
+  for (const auto& [time, strain] : strains) {
+    EXPECT_NEAR(segments.displacement_gradient(time).column[1].x, strain, 1e-12) << time;
   }
-  double largest_rate() const override { return rate; }
-  double time_of(double strain) const override { return strain / rate; }
-
-  static constexpr double rate = 0.5;
-};
-
-// One light sphere that the fluid carries along: both methods take it where the flow leads, in the cell that
-// the flow deforms.
-System carried(const std::shared_ptr<const Deformation>& deformation, bool implicit, int steps, double step) {
-  Physics physics;
-  physics.viscosity = 1;
-  physics.flow = ImposedFlow(deformation);
-  System system;
-  system.particles = make_particles({1, 1}, 1e-6);
-  system.box = PeriodicCell({40, 40, 40}, deformation->velocity_gradient(0));
-  physics.contact = ContactParameters{.normal_stiffness = 1};  // so that there is a range to look in
-  system.list = NeighbourList(range_table(make_pair_kinds(physics, {1}), 1), 0.1);
-  for (const std::size_t i : {0U, 1U}) {
-    const Vector3 place = i == 0 ? Vector3{3, 5, 7} : Vector3{12, 15, 18};
-    system.particles.position.set(i, place);
-    system.particles.velocity.set(i, system.box.velocity_gradient() * place);
-    system.particles.angular_velocity.set(i, spin_of(system.box.velocity_gradient()));
-  }
-  std::unique_ptr<Integrator> integrator;
-  if (implicit) {
-    integrator = implicit_steps(physics, system.particles, step, 1e-6, 1, 1);
-  } else {
-    integrator = std::make_unique<VelocityVerlet>(ForceField(physics, system.particles, step, 1, 1),
-                                                  system.particles, step);
-  }
-  integrator->start(system);
-  for (int n = 0; n < steps; ++n) integrator->advance(system);
-  return system;
+  EXPECT_EQ(segments.largest_rate(), 2);
 }
 
-Vector3 unwrapped(const System& system, std::size_t i) {
-  return system.particles.position[i] + system.box.displacement(system.particles.image[i]);
+TEST_F(Programme, CountsStrainInBothDirectionsFromAnyTime) {
+  EXPECT_NEAR(segments.time_of(0.5, 0), 0.25, 1e-12);
+  EXPECT_NEAR(segments.time_of(2.5, 0), 1.5, 1e-12);
+  EXPECT_NEAR(segments.time_of(1.5, 0.5), 1, 1e-12);
+  EXPECT_NEAR(segments.time_of(3.5, 0), 3.5, 1e-12);
+  EXPECT_NEAR(segments.time_of(4, 0), 5.5, 1e-12);  // the rest has passed
+  EXPECT_NEAR(segments.time_of(1, 4), 2.5, 1e-12);
+  EXPECT_NEAR(segments.strain_between(0.5, 0, 13), 4.5, 1e-12);
+  EXPECT_NEAR(segments.strain_between(0.5, 5, 13), 1.5, 1e-12);
+  EXPECT_TRUE(std::isinf(Segments({{1, 1, 1}}, 0).time_of(1.5, 0)));
 }
 
-TEST(Deformation, OfAnyKindIsFollowedByBothMethods) {
-  struct Case {
-    std::shared_ptr<const Deformation> deformation;
-    bool implicit;
-    int steps;
-    double step;
-  };
-  // Explicit steps must resolve m / zeta = 2/9 1e-6.
-  const Case cases[] = {{std::make_shared<Oscillation>(), true, 400, 0.005},
-                        {std::make_shared<Extension>(), true, 400, 0.005},
-                        {std::make_shared<Oscillation>(), false, 2000, 2e-7},
-                        {std::make_shared<Extension>(), false, 2000, 2e-7}};
-  for (const Case& each : cases) {
-    const System system = carried(each.deformation, each.implicit, each.steps, each.step);
-    const double time = each.steps * each.step;
-    EXPECT_NEAR(system.clock.time(), time, 1e-12 * time);
-    const Matrix3 made = each.deformation->displacement_gradient(time);
-    EXPECT_NEAR(norm(system.box.displacement_gradient() - made), 0, 1e-12);
-    EXPECT_NEAR(norm(system.box.velocity_gradient() - each.deformation->velocity_gradient(time)), 0, 1e-12);
-    // By far less than the way, up to 8, that it has gone: the methods are of second order.
-    const double tolerance = each.implicit ? 2e-3 : 1e-6;
-    for (std::size_t i = 0; i < 2; ++i) {
-      const Vector3 start = i == 0 ? Vector3{3, 5, 7} : Vector3{12, 15, 18};
-      const Vector3 way = unwrapped(system, i) - (start + made * start);
-      EXPECT_LT(norm(way), tolerance) << i;
-    }
-  }
+TEST_F(Programme, IsSteadyFromItsLastSegmentOnAndJumpsBetweenOthers) {
+  EXPECT_EQ(segments.steady_gradient(4.4), Matrix3{});
+  EXPECT_EQ(segments.steady_gradient(4.5), simple_shear(-0.5));
+  EXPECT_FALSE(segments.jumps_between(0, 3.5));  // the ramp begins where it is
+  EXPECT_TRUE(segments.jumps_between(3.5, 3.6));
+  EXPECT_FALSE(segments.jumps_between(3.4, 3.5));
+  EXPECT_TRUE(segments.jumps_between(4.4, 4.6));
 }
 
-// The state knows how far the cell has come: what goes on from it goes on as if nothing had been.
-TEST(Deformation, IsPartOfTheSavedState) {
-  const System system = carried(std::make_shared<Oscillation>(), true, 10, 0.005);
-  ArchiveWriter writer;
-  save(system, writer);
-  System again = carried(std::make_shared<Oscillation>(), true, 0, 0.005);
-  ArchiveReader reader(writer.bytes());
-  load(again, reader);
-  EXPECT_TRUE(reader.at_end());
-  EXPECT_EQ(again.clock.time(), system.clock.time());
-  EXPECT_EQ(again.box.edges(), system.box.edges());
-  EXPECT_EQ(again.box.velocity_gradient(), system.box.velocity_gradient());
+TEST(TimeOfSegment, TurnsWhereItsRateDoes) {
+  // From 2 to -1 in a time of 3: 2 forth and 0.5 back.
+  EXPECT_DOUBLE_EQ(time_of_segment(2, -1, 2.5), 3);
+  EXPECT_DOUBLE_EQ(time_of_segment(0, 1, 2), 4);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 //   eta - background = L^2 z / (4 V) = (integral of the flux' correlation) / (2 V kT).
 // At the frequency w: with c = k + i w g, F over the affine displacement is c (i w z - w^2 mu)/(c + i w z -
 // w^2 mu).
-#include "engine/observables/linear_response.h"
+#include "engine/responses/linear_response.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/observables/catalogue.h"
+#include "engine/catalogue/catalogue.h"
 #include "engine/scene/scene.h"
 #include "tests/engine/draws.h"
 #include "tests/engine/small_scene.h"

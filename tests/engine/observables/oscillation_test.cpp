@@ -1,5 +1,5 @@
 // Moduli of stresses that are known, and of suspensions whose viscosity is.
-#include "engine/observables/oscillation.h"
+#include "engine/responses/oscillation.h"
 
 #include <gtest/gtest.h>
 

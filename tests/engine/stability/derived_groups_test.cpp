@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/flow/oscillatory_shear.h"
 #include "engine/scene/scene.h"
 #include "tests/engine/small_scene.h"
 

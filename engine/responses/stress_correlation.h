@@ -15,8 +15,8 @@
 #include <array>
 
 #include "engine/averages/multiple_tau.h"
-#include "engine/observables/kinds.h"
 #include "engine/observables/structure.h"
+#include "engine/responses/responses.h"
 
 namespace peclet::engine {
 

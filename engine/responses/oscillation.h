@@ -1,4 +1,5 @@
-// The stress of an oscillating shear gamma = g sin(w t), in phase with the strain and with the rate.
+// The stress of an oscillating shear gamma = g sin(w t), in phase with the strain and with the rate; of a
+// shear that oscillates across a steady one the stress across, sigma_yz.
 //
 //   sigma_xy = g sum over n odd of [G'_n sin(n w t) + G''_n cos(n w t)]
 //   G'_n = (2 / g T) integral of sigma_xy sin(n w t), G''_n with cos, over whole cycles of length T
@@ -13,7 +14,7 @@
 #include <vector>
 
 #include "engine/averages/blocked_mean.h"
-#include "engine/observables/kinds.h"
+#include "engine/responses/responses.h"
 
 namespace peclet::engine {
 
@@ -37,8 +38,10 @@ class Oscillation : public Observable {
   std::size_t block_of_cycle() const;
   void end_cycle();
 
-  double volume_, amplitude_, frequency_, solvent_;  // g, w, eta w
-  double background_;                                // of G''
+  double volume_;
+  Swing swing_;
+  double solvent_;     // eta w
+  double background_;  // of G''
   std::uint64_t steps_of_cycle_, cycles_;
   double ahead_;  // of the beginning of a step, in steps: the moment that its flux belongs to
   std::uint64_t taken_ = 0;

@@ -1,4 +1,4 @@
-#include "engine/observables/linear_response.h"
+#include "engine/responses/linear_response.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "engine/observables/catalogue.h"
+#include "engine/observables/kinds.h"
 
 #include <fmt/format.h>
 
@@ -12,14 +12,6 @@ namespace {
 
 // What changes slowly is sampled this often.
 constexpr std::uint64_t samples_of_structure = 256;
-
-// Calls `visit` with each kind of observable that the scene asks for.
-template <class Visit>
-void for_each_kind(const Scene& scene, const Visit& visit) {
-  for (const ObservableKind& kind : observable_kinds()) {
-    if (scene.observables.contains(kind.name)) visit(kind);
-  }
-}
 
 }  // namespace
 
@@ -48,25 +40,6 @@ void need_samples(const Scene& scene, const ObservableKind& kind, const Window& 
   throw InputError(file, fmt::format("/{}/interval", kind.name), fmt::format("{} samples", samples),
                    fmt::format("must leave at least {} samples in the production window of {} steps", least,
                                window.steps));
-}
-
-void check_observables(const Scene& scene, const Window& window, const std::string& file) {
-  for_each_kind(scene, [&](const ObservableKind& kind) { kind.check(scene, window, file); });
-}
-
-std::vector<Quantity> observed_quantities(const Scene& scene, const Window& window) {
-  std::vector<Quantity> quantities;
-  for_each_kind(scene, [&](const ObservableKind& kind) {
-    for (Quantity& quantity : kind.quantities(scene, window)) quantities.push_back(std::move(quantity));
-  });
-  return quantities;
-}
-
-std::vector<std::unique_ptr<Observable>> make_observables(const Scene& scene, const System& system,
-                                                          const Window& window) {
-  std::vector<std::unique_ptr<Observable>> made;
-  for_each_kind(scene, [&](const ObservableKind& kind) { made.push_back(kind.make(scene, system, window)); });
-  return made;
 }
 
 }  // namespace peclet::engine

@@ -1,4 +1,4 @@
-#include "engine/observables/oscillation.h"
+#include "engine/responses/oscillation.h"
 
 #include <cmath>
 #include <numbers>
@@ -25,27 +25,24 @@ std::vector<Quantity> oscillation_quantities(const Scene&, const Window&) {
   return all;
 }
 
-const OscillatoryShear& shear_of(const Scene& scene) {
-  return dynamic_cast<const OscillatoryShear&>(scene.physics.flow.deformation());
-}
-
 }  // namespace
 
 Oscillation::Oscillation(const Scene& scene, const System& system, const Window& window)
     : Observable(interval_of(scene, oscillation(), window)),
       volume_(system.box.volume()),
-      amplitude_(shear_of(scene).amplitude()),
-      frequency_(shear_of(scene).frequency()),
-      solvent_(scene.physics.viscosity * frequency_),
+      swing_(*scene.physics.flow.deformation().swing()),
+      solvent_(scene.physics.viscosity * swing_.frequency),
       background_(solvent_ * (1 + stresslet(scene.volume_fraction, {.xy = 1}).xy)),
-      steps_of_cycle_(static_cast<std::uint64_t>(std::llround(*shear_of(scene).period() / window.timestep))),
+      steps_of_cycle_(
+          static_cast<std::uint64_t>(std::llround(*scene.physics.flow.period() / window.timestep))),
       cycles_(window.steps / steps_of_cycle_),
       ahead_(scene.method == Method::implicit_steps ? 0.5 : 1.0) {}
 
 void Oscillation::take_flux(const MomentumFlux& flux) {
   const double in_cycle = static_cast<double>(taken_ % steps_of_cycle_) + ahead_;
   const double phase = 2 * std::numbers::pi * in_cycle / static_cast<double>(steps_of_cycle_);
-  const double part = 2 * flux.acted.xy / (volume_ * amplitude_ * static_cast<double>(steps_of_cycle_));
+  const double part =
+      2 * flux.acted.*swing_.component / (volume_ * swing_.amplitude * static_cast<double>(steps_of_cycle_));
   cycle_[0].storage += part * std::sin(phase);
   cycle_[0].loss += part * std::cos(phase);
   cycle_[1].storage += part * std::sin(3 * phase);

@@ -1,12 +1,28 @@
-// The observables that a scene asks for.
+// All observables, and those that a scene asks for. Another one is a line here, a file with its class and an
+// entry in engine/scene/observable_keys.cpp.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
 #include "engine/observables/kinds.h"
+#include "engine/responses/responses.h"
 
 namespace peclet::engine {
+
+inline std::array<ObservableKind, 10> observable_kinds() {
+  return {mean_squared_displacement(),
+          stress_correlation(),
+          pair_distribution(),
+          contact_network(),
+          profiles(),
+          linear_response(),
+          oscillation(),
+          transient(),
+          flow_at_stress(),
+          trajectory()};
+}
 
 // Throws InputError where box or window are too small for an observable that the scene asks for.
 void check_observables(const Scene& scene, const Window& window, const std::string& file);

@@ -33,7 +33,7 @@
 
 #include "engine/averages/multiple_tau.h"
 #include "engine/averages/squared_sums.h"
-#include "engine/observables/kinds.h"
+#include "engine/responses/responses.h"
 
 namespace peclet::engine {
 

@@ -1,4 +1,4 @@
-#include "engine/observables/stress_correlation.h"
+#include "engine/responses/stress_correlation.h"
 
 #include <array>
 

@@ -1,0 +1,162 @@
+#include "engine/realisation/stress_control.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/random/keyed_random.h"
+#include "engine/terms/drag.h"
+
+namespace peclet::engine {
+namespace {
+
+// Of the stress: a step that misses it by more is made again, so many times at most.
+constexpr double tolerance = 0.01;
+constexpr int most_attempts = 6;
+
+// The time in which the rate follows a stress, in steps.
+constexpr double steps_of_response = 20;
+
+// A realisation that does not strain so far has jammed.
+constexpr double least_strain = 0.01;
+constexpr double usual_jammed_viscosity = 1e4;
+
+double jammed_viscosity(const Scene& scene) {
+  return scene.document.value(Json::json_pointer("/flow/jammed_viscosity"), usual_jammed_viscosity);
+}
+
+// What a step starts from, to make it again.
+class Origin {
+ public:
+  Origin(const Integrator& integrator, const System& system) : system_(system) { integrator.save(archive_); }
+
+  void restore(Integrator& integrator, System& system) const {
+    system = system_;
+    ArchiveReader reader(archive_.bytes());
+    integrator.load(system, reader);
+  }
+
+ private:
+  System system_;
+  ArchiveWriter archive_;
+};
+
+}  // namespace
+
+StressControl::StressControl(const Scene& scene, std::shared_ptr<ControlledShear> shear, double timestep,
+                             std::uint64_t seed)
+    : shear_(std::move(shear)),
+      timestep_(timestep),
+      stress_(*shear_->stress()),
+      thermal_energy_(scene.physics.thermal_energy),
+      patience_(least_strain * jammed_viscosity(scene) * scene.physics.viscosity / stress_),
+      solvent_(scene.physics.viscosity * (1 + stresslet(scene.volume_fraction, {.xy = 1}).xy)),
+      seed_(seed),
+      rate_(shear_->present_rate()),
+      slope_(stress_ / shear_->largest_rate()) {}
+
+StepReport StressControl::advance(Integrator& integrator, System& system, PairWatcher* watcher) {
+  const StepReport report = thermal_energy_ > 0 ? advance_with_inertia(integrator, system, watcher)
+                                                : advance_to_stress(integrator, system, watcher);
+  shear_->go_on(system.clock.time(), system.box.strain(), rate_);
+  return report;
+}
+
+StepReport StressControl::step(Integrator& integrator, System& system, double rate) {
+  shear_->go_on(system.clock.time(), system.box.strain(), rate);
+  return integrator.advance(system);
+}
+
+// As results have it; with noise as it acts.
+double StressControl::stress_of_pairs(const StepReport& report, const System& system) const {
+  double sum = 0;
+  if (thermal_energy_ > 0) {
+    sum = report.flux.acted.xy;
+  } else {
+    for (const SymmetricTensor& term : report.sums.stress) sum += term.xy;
+  }
+  return sum / system.box.volume();
+}
+
+StepReport StressControl::advance_to_stress(Integrator& integrator, System& system, PairWatcher* watcher) {
+  const Origin origin(integrator, system);
+  const double fastest = stress_ / solvent_, largest_miss = tolerance * stress_;
+  const double aim = stress_ + std::clamp(deficit_, -largest_miss, largest_miss);
+  integrator.show_pairs_to(nullptr);
+  double rate = rate_, stress = 0;
+  StepReport report;
+  for (int attempt = 1;; ++attempt) {
+    const double last_rate = rate, last_stress = stress;
+    if (attempt > 1) {
+      rate = std::clamp(rate + (aim - stress) / slope_, -fastest, fastest);
+      origin.restore(integrator, system);
+    }
+    report = step(integrator, system, rate);
+    if (report.broke_off || !report.sums.finite) break;
+    stress = stress_of_pairs(report, system) + solvent_ * rate;
+    if (attempt > 1 && rate != last_rate) {
+      slope_ = std::max((stress - last_stress) / (rate - last_rate), solvent_);
+    }
+    if (std::abs(aim - stress) <= largest_miss || attempt == most_attempts) break;
+  }
+  if (watcher != nullptr) {
+    origin.restore(integrator, system);
+    integrator.show_pairs_to(watcher);
+    report = step(integrator, system, rate);
+  }
+  rate_ = rate;
+  deficit_ += stress_ - stress;
+  return report;
+}
+
+// The slope of the pairs' stress, by a step at two rates with the same noise.
+void StressControl::find_inertia(Integrator& integrator, const System& system) {
+  const Origin origin(integrator, system);
+  System trial = system;
+  integrator.show_pairs_to(nullptr);
+  const double change = shear_->largest_rate();
+  const double at_rate = stress_of_pairs(step(integrator, trial, rate_), trial);
+  origin.restore(integrator, trial);
+  const double above = stress_of_pairs(step(integrator, trial, rate_ + change), trial);
+  origin.restore(integrator, trial);
+  slope_ = std::max((above - at_rate) / change, 0.0);
+  inertia_ = steps_of_response * timestep_ * (slope_ + solvent_);
+}
+
+// Friction of the pairs is felt half at the old and half at the new rate, as that of the solvent is: of the
+// pairs' stress at the new rate the slope says as much.
+StepReport StressControl::advance_with_inertia(Integrator& integrator, System& system, PairWatcher* watcher) {
+  if (inertia_ == 0) find_inertia(integrator, system);
+  const double volume = system.box.volume();
+  const NormalPair normals = KeyedRandom(seed_, Purpose::strain_noise).normals(system.step, 0);
+  const double noise = std::sqrt(2 * thermal_energy_ * solvent_ / (volume * timestep_)) * normals.first.x;
+  integrator.show_pairs_to(watcher);
+  const StepReport report = step(integrator, system, rate_);
+  const double missing = stress_ - stress_of_pairs(report, system) - solvent_ * rate_ + noise;
+  rate_ += timestep_ * missing / (inertia_ + 0.5 * timestep_ * (slope_ + solvent_));
+  return report;
+}
+
+bool StressControl::has_jammed(const System& system) {
+  if (system.box.strain() - strain_waited_from_ >= least_strain) wait_from(system);
+  return system.clock.time() - time_waited_from_ >= patience_;
+}
+
+void StressControl::wait_from(const System& system) {
+  strain_waited_from_ = system.box.strain();
+  time_waited_from_ = system.clock.time();
+}
+
+void StressControl::save(ArchiveWriter& archive) const {
+  for (const double number : {rate_, slope_, deficit_, inertia_, strain_waited_from_, time_waited_from_}) {
+    archive.put(number);
+  }
+}
+
+void StressControl::load(const System& system, ArchiveReader& archive) {
+  for (double* number : {&rate_, &slope_, &deficit_, &inertia_, &strain_waited_from_, &time_waited_from_}) {
+    *number = archive.get<double>();
+  }
+  shear_->go_on(system.clock.time(), system.box.strain(), rate_);
+}
+
+}  // namespace peclet::engine

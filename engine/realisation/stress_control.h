@@ -1,0 +1,71 @@
+// Steps at a given shear stress: the strain gamma is a coordinate of its own, and its rate, constant in each
+// step, is what the stress makes of it. sigma is the stress sigma_xy of all terms, solvent included.
+//
+// Without noise the strain has no inertia: the rate of a step is the one at which sigma is the given stress.
+// A step at a guessed rate tells sigma; while it is off, the step is made again at the rate that the slope
+// d sigma / d rate leads to. What is left is made up for by the steps that follow.
+//
+// With noise M d2gamma/dt2 = V (stress - sigma), and solvent and stresslets, of the viscosity eta (1 + 2.5
+// phi), bring a noise of variance 2 kT eta (1 + 2.5 phi) / (V dt) with them, as pairs bring theirs. So at
+// stress 0 the rate has the variance kT / M, and gamma diffuses with kT / (V eta eta_r): the theorem of
+// fluctuation and dissipation for the strain of a periodic cell. M is small enough for the rate to follow
+// within some twenty steps, and so large that a step changes little of it.
+//
+// What a rate gains its spheres gain (integrators/follow_flow.h): no force depends on where the origin is.
+#pragma once
+
+#include <memory>
+
+#include "engine/flow/controlled_shear.h"
+#include "engine/integrators/integrator.h"
+#include "engine/scene/scene.h"
+
+namespace peclet::engine {
+
+class StressControl {
+ public:
+  // `shear` is that of the integrator's physics.
+  StressControl(const Scene& scene, std::shared_ptr<ControlledShear> shear, double timestep,
+                std::uint64_t seed);
+
+  // The fluxes of momentum of its steps must be watched where there is noise.
+  bool needs_flux() const { return thermal_energy_ > 0; }
+
+  void start(const System& system) { wait_from(system); }
+  // One step, complete. `watcher` sees its pairs; it may be null.
+  StepReport advance(Integrator& integrator, System& system, PairWatcher* watcher);
+
+  // Whether the system has not strained by 0.01 in the time in which the viscosity that counts as jammed
+  // would have let it.
+  bool has_jammed(const System& system);
+  // From now on.
+  void wait_from(const System& system);
+
+  // M / V; 0 before the first step, and without noise.
+  double inertia() const { return inertia_; }
+
+  void save(ArchiveWriter& archive) const;
+  void load(const System& system, ArchiveReader& archive);
+
+ private:
+  StepReport advance_to_stress(Integrator& integrator, System& system, PairWatcher* watcher);
+  StepReport advance_with_inertia(Integrator& integrator, System& system, PairWatcher* watcher);
+  void find_inertia(Integrator& integrator, const System& system);
+  // One step at this rate.
+  StepReport step(Integrator& integrator, System& system, double rate);
+  // The stress of a step at that rate, without solvent and stresslets.
+  double stress_of_pairs(const StepReport& report, const System& system) const;
+
+  std::shared_ptr<ControlledShear> shear_;
+  double timestep_, stress_, thermal_energy_, patience_;
+  double solvent_;  // eta (1 + 2.5 phi)
+  std::uint64_t seed_;
+
+  double rate_;         // of the next step, as far as it is known
+  double slope_;        // d sigma / d rate
+  double deficit_ = 0;  // of the stress, summed over steps
+  double inertia_ = 0;
+  double strain_waited_from_ = 0, time_waited_from_ = 0;
+};
+
+}  // namespace peclet::engine

@@ -1,0 +1,120 @@
+// Spheres that the fluid carries along: both methods take them where the flow leads, in the cell that the
+// flow deforms, whatever their mass.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/flow/controlled_shear.h"
+#include "engine/flow/oscillatory_shear.h"
+#include "engine/flow/planar_extension.h"
+#include "engine/flow/segments.h"
+#include "engine/integrators/implicit.h"
+#include "engine/integrators/velocity_verlet.h"
+
+namespace peclet::engine {
+namespace {
+
+using Flow = std::shared_ptr<const Deformation>;
+
+Flow oscillation() { return std::make_shared<OscillatoryShear>(0.3, 2); }
+Flow extension() { return std::make_shared<PlanarExtension>(0.5); }
+
+System carried(const Flow& deformation, bool implicit, int steps, double step, double density = 1e-6) {
+  Physics physics;
+  physics.viscosity = 1;
+  physics.flow = ImposedFlow(deformation);
+  System system;
+  system.particles = make_particles({1, 1}, density);
+  system.box = PeriodicCell({40, 40, 40}, deformation->velocity_gradient(0));
+  physics.contact = ContactParameters{.normal_stiffness = 1};  // so that there is a range to look in
+  system.list = NeighbourList(range_table(make_pair_kinds(physics, {1}), 1), 0.1);
+  for (const std::size_t i : {0U, 1U}) {
+    const Vector3 place = i == 0 ? Vector3{3, 5, 7} : Vector3{12, 15, 18};
+    system.particles.position.set(i, place);
+    system.particles.velocity.set(i, system.box.velocity_gradient() * place);
+    system.particles.angular_velocity.set(i, spin_of(system.box.velocity_gradient()));
+  }
+  std::unique_ptr<Integrator> integrator;
+  if (implicit) {
+    integrator = implicit_steps(physics, system.particles, step, 1e-6, 1, 1);
+  } else {
+    integrator = std::make_unique<VelocityVerlet>(ForceField(physics, system.particles, step, 1, 1),
+                                                  system.particles, step);
+  }
+  integrator->start(system);
+  for (int n = 0; n < steps; ++n) integrator->advance(system);
+  return system;
+}
+
+Vector3 unwrapped(const System& system, std::size_t i) {
+  return system.particles.position[i] + system.box.displacement(system.particles.image[i]);
+}
+
+TEST(Deformation, OfAnyKindIsFollowedByBothMethods) {
+  struct Case {
+    Flow deformation;
+    bool implicit;
+    int steps;
+    double step;
+  };
+  // Explicit steps must resolve m / zeta = 2/9 1e-6.
+  const Case cases[] = {{oscillation(), true, 400, 0.005},
+                        {extension(), true, 400, 0.005},
+                        {oscillation(), false, 2000, 2e-7},
+                        {extension(), false, 2000, 2e-7}};
+  for (const Case& each : cases) {
+    const System system = carried(each.deformation, each.implicit, each.steps, each.step);
+    const double time = each.steps * each.step;
+    EXPECT_NEAR(system.clock.time(), time, 1e-12 * time);
+    const Matrix3 made = each.deformation->displacement_gradient(time);
+    EXPECT_NEAR(norm(system.box.displacement_gradient() - made), 0, 1e-12);
+    EXPECT_NEAR(norm(system.box.velocity_gradient() - each.deformation->velocity_gradient(time)), 0, 1e-12);
+    // By far less than the way, up to 8, that it has gone: the methods are of second order.
+    const double tolerance = each.implicit ? 2e-3 : 1e-6;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Vector3 start = i == 0 ? Vector3{3, 5, 7} : Vector3{12, 15, 18};
+      const Vector3 way = unwrapped(system, i) - (start + made * start);
+      EXPECT_LT(norm(way), tolerance) << i;
+    }
+  }
+}
+
+// m / zeta = 2/9 of a density of 1: by drag alone they would lag behind by that time and miss their way by
+// some 0.1, more the farther they are from the origin. Explicit steps follow to the first order.
+TEST(Deformation, IsFollowedByHeavySpheresWhereverTheyAre) {
+  const Flow flows[] = {oscillation(), extension(), std::make_shared<CrossShear>(0.4, 0.3, 2),
+                        std::make_shared<Segments>(std::vector<Segment>{{1, 1, 0.7}, {-1, 0.5, 0.6}}, 0.0)};
+  for (const bool implicit : {true, false}) {
+    for (const Flow& flow : flows) {
+      const double time = 2, step = implicit ? 0.005 : 0.0002;
+      const System system =
+          carried(flow, implicit, static_cast<int>(std::lround(time / step)), step, /*density=*/1);
+      const Matrix3 made = flow->displacement_gradient(time);
+      for (std::size_t i = 0; i < 2; ++i) {
+        const Vector3 start = i == 0 ? Vector3{3, 5, 7} : Vector3{12, 15, 18};
+        EXPECT_LT(norm(unwrapped(system, i) - (start + made * start)), implicit ? 2e-3 : 1e-2) << implicit;
+        const Vector3 peculiar =
+            system.particles.velocity[i] - system.box.velocity_gradient() * system.particles.position[i];
+        EXPECT_LT(norm(peculiar), 1e-3) << implicit;
+        EXPECT_LT(norm(system.particles.angular_velocity[i] - spin_of(system.box.velocity_gradient())), 1e-6);
+      }
+    }
+  }
+}
+
+// The state knows how far the cell has come: what goes on from it goes on as if nothing had been.
+TEST(Deformation, IsPartOfTheSavedState) {
+  const System system = carried(oscillation(), true, 10, 0.005);
+  ArchiveWriter writer;
+  save(system, writer);
+  System again = carried(oscillation(), true, 0, 0.005);
+  ArchiveReader reader(writer.bytes());
+  load(again, reader);
+  EXPECT_TRUE(reader.at_end());
+  EXPECT_EQ(again.clock.time(), system.clock.time());
+  EXPECT_EQ(again.box.edges(), system.box.edges());
+  EXPECT_EQ(again.box.velocity_gradient(), system.box.velocity_gradient());
+}
+
+}  // namespace
+}  // namespace peclet::engine

@@ -1,0 +1,154 @@
+// Flow at a given stress: the stress that is held, the rate that it leads to, and what noise makes of it.
+#include "engine/realisation/stress_control.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/realisation/simulation.h"
+#include "tests/engine/small_scene.h"
+
+namespace peclet::engine {
+namespace {
+
+Json at_stress(double stress, const Json& patch) {
+  Json document = small_scene({{"flow", {{"shear_rate", nullptr}, {"stress", stress}}},
+                               {"integrator", {{"method", "implicit"}, {"timestep", "auto"}}},
+                               {"particles", {{"density", 1e-3}}}});
+  document.merge_patch(patch);
+  return document;
+}
+
+std::unique_ptr<Simulation> started(const Json& document, int threads = 1) {
+  const Scene scene = read_scene(document, "scene.json");
+  auto simulation =
+      std::make_unique<Simulation>(scene, make_schedule(scene, "scene.json"), 3, threads, "scene.json");
+  simulation->start();
+  return simulation;
+}
+
+// Stress of all terms, relative to the one that is held.
+double held(const Simulation& simulation, double stress, double solvent) {
+  const BlockSums sums = sum_of(simulation.production().blocks());
+  double pairs = 0;
+  for (const SymmetricTensor& term : sums.stress) pairs += term.xy;
+  const auto steps = static_cast<double>(sums.steps);
+  return (pairs / simulation.system().box.volume() + solvent * sums.shear_rate) / steps / stress;
+}
+
+const Json for_grains = {{"fluid", {{"thermal_energy", 0}}},
+                         {"duration",
+                          {{"equilibration", {{"time", nullptr}, {"stress_times", 10}}},
+                           {"production", {{"time", nullptr}, {"stress_times", 40}}}}}};
+
+class StressControlled : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(EitherMethod, StressControlled, testing::Values("explicit", "implicit"),
+                         [](const auto& method) { return std::string(method.param); });
+
+// What a step misses the next ones make up for: over many steps nothing is missing. eta = 0.1, phi = 0.45.
+TEST_P(StressControlled, HoldsItsStress) {
+  constexpr double stress = 4;
+  Json document = at_stress(stress, for_grains);
+  document["integrator"]["method"] = GetParam();
+  if (GetParam() == std::string("explicit")) document["duration"]["production"]["stress_times"] = 8;
+  const auto simulation = started(document);
+  const std::optional<Ending> ending = simulation->advance(simulation->schedule().total());
+  ASSERT_EQ(ending->cause, Ending::Cause::completed) << ending->message;
+  EXPECT_NEAR(held(*simulation, stress, 0.1 * (1 + 2.5 * 0.45)), 1, 1e-3);
+  EXPECT_GT(simulation->strains().production, 0.1);
+}
+
+// Spheres that touch nobody: stress / [eta (1 + 2.5 phi)] is the rate from the first step on.
+TEST_P(StressControlled, OfFewSpheresFlowsAsTheSolventAndTheirStresslets) {
+  constexpr double stress = 2, fraction = 0.02;
+  Json document = at_stress(stress, for_grains);
+  document["integrator"]["method"] = GetParam();
+  document["volume_fraction"] = fraction;
+  document["particles"]["count"] = 4;
+  const auto simulation = started(document);
+  simulation->advance(40);
+  const double rate = simulation->system().box.velocity_gradient().column[1].x;
+  EXPECT_NEAR(rate, stress / (0.1 * (1 + 2.5 * fraction)), 0.011 * rate);
+}
+
+// A packing close to jammed, with friction: more stress than it can flow under at the viscosity that counts.
+TEST(StressControl, EndsWhatStandsStill) {
+  Json document = at_stress(4, for_grains);
+  document["flow"]["jammed_viscosity"] = 3;  // less than any suspension has
+  const auto simulation = started(document);
+  const std::optional<Ending> ending = simulation->advance(simulation->schedule().total());
+  EXPECT_EQ(ending->cause, Ending::Cause::jammed);
+  EXPECT_LT(simulation->system().step, simulation->schedule().total());
+  // The window begins where it has jammed, and has a wait of its own.
+  EXPECT_GT(simulation->schedule().equilibration, 0u);
+  EXPECT_GT(simulation->system().step, simulation->schedule().equilibration);
+  EXPECT_NEAR(simulation->schedule().timestep * static_cast<double>(simulation->schedule().equilibration),
+              0.01 * 3 * 0.1 / 4, simulation->schedule().timestep);
+}
+
+const Json for_colloids = {{"particles", {{"count", 20}}},
+                           {"volume_fraction", 0.3},
+                           {"contact",
+                            {{"friction", nullptr},
+                             {"rolling_stiffness", nullptr},
+                             {"rolling_friction", nullptr},
+                             {"normal_damping", nullptr},
+                             {"normal_stiffness", 1e4}}},
+                           {"duration",
+                            {{"equilibration", {{"time", nullptr}, {"brownian_times", 0.2}}},
+                             {"production", {{"time", nullptr}, {"brownian_times", 100}}}}}};
+
+// <rate^2> M / kT = 1: of 40 000 steps, of which the rate forgets in 20, with an error of some sqrt(2 * 40 /
+// 40 000).
+TEST(StressControl, GivesTheStrainItsShareOfTheTemperature) {
+  const auto simulation = started(at_stress(1e-9, for_colloids));
+  simulation->advance(400);
+  const double volume = simulation->system().box.volume(), energy = 0.02;
+  double sum = 0;
+  constexpr int steps = 40000;
+  for (int n = 0; n < steps; ++n) {
+    ASSERT_EQ(simulation->advance(1), std::nullopt);
+    const double rate = simulation->system().box.velocity_gradient().column[1].x;
+    sum += rate * rate;
+  }
+  const double temperature = sum / steps * simulation->stress_control()->inertia() * volume / energy;
+  EXPECT_NEAR(temperature, 1, 3 * std::sqrt(2 * 40.0 / steps));
+}
+
+class ResumedAtStress : public testing::TestWithParam<bool> {
+ protected:
+  static Json document() {
+    Json document = GetParam() ? at_stress(4, for_colloids) : at_stress(4, for_grains);
+    document["duration"] = {{"equilibration", {{"stress_times", 2}}}, {"production", {{"stress_times", 6}}}};
+    document["observables"] = {"contact_network", "pair_distribution"};
+    document["pair_distribution"] = {{"range", 2.5}};
+    return document;
+  }
+  static std::string bytes_of(const Simulation& simulation) {
+    ArchiveWriter archive;
+    simulation.save(archive);
+    return archive.bytes();
+  }
+};
+INSTANTIATE_TEST_SUITE_P(WithAndWithoutNoise, ResumedAtStress, testing::Bool());
+
+TEST_P(ResumedAtStress, EndsAsTheUncutOneWhereverItWasCut) {
+  const auto uncut = started(document());
+  const std::uint64_t total = uncut->schedule().total();
+  ASSERT_EQ(uncut->advance(total)->cause, Ending::Cause::completed);
+  for (const std::uint64_t cut : {std::uint64_t{0}, std::uint64_t{1}, total / 5, total / 4 + 1, total - 1}) {
+    const auto before = started(document());
+    before->advance(cut);
+    ArchiveWriter archive;
+    before->save(archive);
+    const auto after = started(document(), /*threads=*/2);
+    ArchiveReader reader(archive.bytes());
+    after->load(reader);
+    EXPECT_TRUE(reader.at_end());
+    after->advance(total);
+    EXPECT_TRUE(bytes_of(*after) == bytes_of(*uncut)) << "cut at " << cut;
+  }
+}
+
+}  // namespace
+}  // namespace peclet::engine

@@ -1,0 +1,87 @@
+// What scenes say of their flow, and what they must not.
+#include "engine/scene/flow_block.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/realisation/schedule.h"
+#include "tests/engine/small_scene.h"
+
+namespace peclet::engine {
+namespace {
+
+Json flowing(const Json& flow, const Json& equilibration, const Json& production) {
+  Json document = small_scene();
+  document["flow"] = flow;
+  document["duration"] = {{"equilibration", equilibration}, {"production", production}};
+  return document;
+}
+
+TEST(FlowBlock, ReadsAReversal) {
+  const Scene scene =
+      read_scene(flowing(Json::parse(R"({"segments": [{"shear_rate": 2, "strain": 3}, {"shear_rate": -2}]})"),
+                         {{"strain", 3}}, {{"strain", 5}}),
+                 "scene.json");
+  EXPECT_EQ(scene.physics.flow.deformation().velocity_gradient(1), simple_shear(2));
+  EXPECT_EQ(scene.physics.flow.deformation().velocity_gradient(2), simple_shear(-2));
+  EXPECT_EQ(scene.physics.flow.steady_rate(), 2);  // of the window
+  EXPECT_EQ(scene.physics.flow.shear_part({.xy = -3}), 3);
+  const Schedule schedule = make_schedule(scene, "scene.json");
+  EXPECT_EQ(schedule.equilibration, 750u);  // of 0.002
+  EXPECT_EQ(schedule.production, 1250u);
+}
+
+// A window that begins before the last segment does has no unit of its own.
+TEST(FlowBlock, HasNoSteadyRateAcrossSegments) {
+  const Scene scene =
+      read_scene(flowing(Json::parse(R"({"segments": [{"shear_rate": 2, "strain": 3}, {"shear_rate": -2}]})"),
+                         {{"strain", 2}}, {{"strain", 5}}),
+                 "scene.json");
+  EXPECT_EQ(scene.physics.flow.steady_rate(), 0);
+}
+
+TEST(FlowBlock, ReadsRampsAndStops) {
+  const Scene scene =
+      read_scene(flowing(Json::parse(R"({"segments": [{"shear_rate": 0, "final_rate": 2, "time": 1},
+                                           {"shear_rate": 2, "strain": 4}, {"shear_rate": 0}]})"),
+                         {{"strain", 5}}, {{"time", 1}}),
+                 "scene.json");
+  const Deformation& flow = scene.physics.flow.deformation();
+  EXPECT_EQ(flow.velocity_gradient(0.5), simple_shear(1));
+  EXPECT_EQ(flow.velocity_gradient(2.5), simple_shear(2));
+  EXPECT_EQ(flow.velocity_gradient(3.5), simple_shear(0));
+  EXPECT_DOUBLE_EQ(time_of(scene.equilibration, scene), 3);
+}
+
+TEST(FlowBlock, ReadsShearAcross) {
+  const Scene scene = read_scene(
+      flowing(Json::parse(R"({"shear_rate": 2, "cross_shear": {"amplitude": 0.1, "frequency": 20}})"),
+              {{"cycles", 2}}, {{"strain", 5}}),
+      "scene.json");
+  EXPECT_EQ(scene.physics.flow.steady_rate(), 2);
+  EXPECT_DOUBLE_EQ(time_of(scene.equilibration, scene), 2 * 2 * M_PI / 20);
+  EXPECT_EQ(scene.physics.flow.deformation().swing()->component, &SymmetricTensor::yz);
+}
+
+TEST(FlowBlock, CountsExtensionInHenckyStrains) {
+  const Scene scene =
+      read_scene(flowing({{"extension_rate", 0.5}}, {{"strain", 1}}, {{"strain", 2}}), "scene.json");
+  EXPECT_EQ(scene.physics.flow.steady_rate(), 1);
+  EXPECT_DOUBLE_EQ(time_of(scene.production, scene), 4);
+}
+
+// Stress 3 and viscosity 0.1: its unit of time is 1/30.
+TEST(FlowBlock, CountsTimesOfAStress) {
+  const Scene scene =
+      read_scene(flowing({{"stress", 3}}, {{"stress_times", 30}}, {{"stress_times", 60}}), "scene.json");
+  EXPECT_DOUBLE_EQ(time_of(scene.equilibration, scene), 1);
+  EXPECT_DOUBLE_EQ(time_of(scene.production, scene), 2);
+  EXPECT_EQ(scene.physics.flow.steady_rate(), 0);
+  EXPECT_EQ(*scene.physics.flow.deformation().stress(), 3);
+  // (1 - 0.45 / 0.65)^1.6 of stress / viscosity.
+  EXPECT_NEAR(scene.physics.flow.rate(), 30 * std::pow(0.2 / 0.65, 1.6), 1e-12);
+}
+
+}  // namespace
+}  // namespace peclet::engine
