@@ -37,6 +37,15 @@ std::string means(const Json& result) {
                                           value("relative_viscosity"), value("relative_viscosity_pair")));
   }
   const Json& mean = result.at("mean");
+  if (mean.contains("shear_rate")) {
+    const Json& viscosity = mean.at("apparent_viscosity");
+    const double stress = viscosity.at("stress").get<double>();
+    const double viscous = viscosity.at("viscous_stress").get<double>();
+    const std::string relative =
+        viscous > 0 ? fmt::format("; viscosity {:.4g} relative to the solvent", stress / viscous) : "";
+    text +=
+        line("shear rate", fmt::format("{} at a stress of {:.4g}{}", value("shear_rate"), stress, relative));
+  }
   if (mean.value("loss_modulus", Json()).is_number()) {
     const auto number = [&](const char* name) { return mean.at(name).get<double>(); };
     text += line("moduli",

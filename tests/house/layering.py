@@ -68,6 +68,8 @@ ENGINE = [
             "integrators",
             "start",
             "observables",
+            "responses",
+            "catalogue",
             "realisation",
             "output",
             "jobs",

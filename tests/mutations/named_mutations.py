@@ -3,6 +3,7 @@
 What is broken; file, text in it that occurs once, what takes its place; program and test.
 """
 
+from flow_mutations import FLOW
 from oscillation_mutations import OSCILLATION
 from response_mutations import RESPONSE
 from strained_mutations import STRAINED
@@ -346,4 +347,4 @@ NAMED = [
     ),
 ]
 
-NAMED += RESPONSE + STRAINED + OSCILLATION
+NAMED += RESPONSE + STRAINED + OSCILLATION + FLOW

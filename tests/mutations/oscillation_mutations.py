@@ -17,9 +17,9 @@ OSCILLATION = [
     ),
     (
         "rate of an oscillation in phase with its strain",
-        "engine/flow/deformation.cpp",
-        "amplitude_ * frequency_ * std::cos(frequency_ * time)",
-        "amplitude_ * frequency_ * std::sin(frequency_ * time)",
+        "engine/flow/oscillatory_shear.cpp",
+        "return simple_shear(amplitude_ * frequency_ * std::cos(frequency_ * time));",
+        "return simple_shear(amplitude_ * frequency_ * std::sin(frequency_ * time));",
         "engine_tests:OscillatoryShear.GoesToAndFro",
     ),
 ]

@@ -1,0 +1,193 @@
+#!/usr/bin/python3
+"""Shear that is reversed, stopped or shaken across, and planar extension beside shear.
+
+study.py BIN [FOLDER] [--quick] [--from-table]
+"""
+import math
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from studies.command_line import main
+from studies.estimates import estimate, over, quotient
+from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
+from studies.scenes import REFERENCE_SCENE, during, merged
+from studies.tables import columns_of, entries, number, read_rows, write_table
+from studies.verdicts import Check, Finding, Statement
+
+TITLE = "Reversal, extension and shear across"
+SCENE = merged(
+    REFERENCE_SCENE,
+    {"particles": {"count": 200, "density": 1e-3}, "fluid": {"viscosity": 1}, "flow": None, "duration": None},
+)
+FRICTION = {"contact": {"normal_stiffness": 2e5, "friction": 0.5}}
+REVERSED, REVERSAL_SEEDS, BEFORE, AFTER, BINS = 0.50, 48, 4, 5, 100
+EXTENSION = {0.02: 8, 0.30: 12, 0.40: 12, 0.50: 16}  # volume fraction and seeds
+RATE = 1.0  # sqrt(2 E:E) of both flows
+SHAKEN, SHAKEN_SEEDS = 0.54, 8
+SHAKES = (
+    (0.01, 30),
+    (0.01, 100),
+    (0.01, 300),
+    (0.03, 30),
+    (0.03, 100),
+    (0.1, 30),
+)  # amplitude, frequency over the rate
+
+
+def point_of(program, name, patch, seeds, settings, observable="relative_viscosity"):
+    (point,) = program.run(name, merged(SCENE, patch), [settings], seeds, observable)
+    return [r["mean"] for r in point["realisations"] if r.get("mean")]
+
+
+def reversal_rows(program):
+    """Of a flow that goes on, and of one that is reversed, with friction and without."""
+    turned = [{"shear_rate": RATE, "strain": BEFORE}, {"shear_rate": -RATE}]
+    for name, contact in (("friction", FRICTION), ("none", {"contact": {"normal_stiffness": 2e5}})):
+        for flow, segments in (("reversed", turned), ("steady", [{"shear_rate": RATE}])):
+            patch = merged(contact, {"volume_fraction": REVERSED, **during({"strain": BEFORE}, {"strain": AFTER})})
+            patch |= {"observables": ["stress", "transient"], "transient": {"bins": BINS}}
+            means = point_of(program, f"{flow}-{name}", patch, REVERSAL_SEEDS, {"/flow/segments": segments})
+            for k in range(BINS):
+                row = {"contacts": name, "flow": flow, "strain": (k + 0.5) / BINS * AFTER, "seeds": len(means)}
+                for quantity, path in (("viscosity", "shear_stress"), ("normal", "first_normal_difference")):
+                    row |= entries(quantity, estimate([m["transient"][path][k] for m in means]))
+                yield row
+
+
+def extension_rows(program):
+    for fraction, seeds in EXTENSION.items():
+        window = during({"strain": 1}, {"strain": 6})
+        patch = {"volume_fraction": fraction, "contact": {"normal_stiffness": 2e5}, **window}
+        shear = point_of(program, f"shear-{fraction:g}", patch, seeds, {"/flow/shear_rate": RATE})
+        # Hencky strains, so that the invariants of both strains are the same.
+        patch |= during({"strain": 0.5}, {"strain": 3})
+        extension = point_of(program, f"extension-{fraction:g}", patch, seeds, {"/flow/extension_rate": RATE / 2})
+        row = {"fraction": fraction, "seeds": min(len(shear), len(extension))}
+        for name, means in (("shear", shear), ("extension", extension)):
+            row |= entries(name, estimate([m["relative_viscosity"] for m in means]))
+        yield row | entries("second", estimate([m["second_normal_difference"] for m in extension]))
+
+
+def shaken_rows(program):
+    """The dissipation is that of both shears, over that of the steady one alone without shaking."""
+    patch = merged(FRICTION, {"contact": {"normal_stiffness": 1e6}, "volume_fraction": SHAKEN})
+    patch |= during({"strain": 2}, {"strain": 8})
+    still = point_of(program, "still", patch, SHAKEN_SEEDS, {"/flow/shear_rate": RATE})
+    alone = {"amplitude": 0, "frequency": 0, "seeds": len(still)}
+    viscosity = estimate([m["relative_viscosity"] for m in still])
+    yield alone | entries("viscosity", viscosity) | entries("dissipation", viscosity)
+    for amplitude, frequency in SHAKES:
+        cycles = math.ceil(8 * frequency / (2 * math.pi))
+        patch |= during({"cycles": math.ceil(cycles / 4)}, {"cycles": cycles})
+        patch |= {"observables": ["stress", "oscillation"]}
+        cross = {"amplitude": amplitude, "frequency": frequency * RATE}
+        settings = {"/flow/shear_rate": RATE, "/flow/cross_shear": cross}
+        means = point_of(program, f"shaken-{amplitude:g}-{frequency:g}", patch, SHAKEN_SEEDS, settings)
+        row = {"amplitude": amplitude, "frequency": frequency, "seeds": len(means)}
+        row |= entries("viscosity", estimate([m["relative_viscosity"] for m in means]))
+        # <sigma_yz rate across> = g^2 w G'' / 2.
+        across = [amplitude**2 * frequency * RATE * m["loss_modulus"] / 2 for m in means]
+        total = [m["relative_viscosity"] + a / RATE**2 for m, a in zip(means, across)]
+        yield row | entries("dissipation", estimate(total))
+
+
+def measure(program):
+    write_table(
+        HERE / "extension.csv",
+        ["fraction", "seeds", *columns_of("shear", "extension", "second")],
+        list(extension_rows(program)),
+        5,
+    )
+    write_table(
+        HERE / "shaken.csv",
+        ["amplitude", "frequency", "seeds", *columns_of("viscosity", "dissipation")],
+        list(shaken_rows(program)),
+        5,
+    )
+    columns = ["contacts", "flow", "strain", "seeds", *columns_of("viscosity", "normal")]
+    write_table(HERE / "reversal.csv", columns, list(reversal_rows(program)), 5)
+
+
+def curve(contacts, flow, name="viscosity"):
+    rows = [r for r in read_rows(HERE / "reversal.csv") if (r["contacts"], r["flow"]) == (contacts, flow)]
+    return [(r["strain"], *number(r, name)) for r in rows]
+
+
+def mean_of(points):
+    """Of parts that are not independent: their mean, with the mean of their errors."""
+    return tuple(sum(p[k] for p in points) / len(points) for k in (1, 2))
+
+
+def judge():
+    for row in read_rows(HERE / "extension.csv"):
+        ratio = quotient(number(row, "extension"), number(row, "shear"))
+        fraction, degrees = row["fraction"], row["seeds"] - 1
+        if fraction < 0.1:
+            text = f"φ = {fraction:g}: η_E of planar extension over 1 + 2.5 φ"
+            yield Check(
+                text, "Newtonian limit", *over(number(row, "extension"), 1 + 2.5 * fraction), 0.99, 1.02, degrees
+            )
+        text = f"φ = {fraction:g}: η_E of planar extension over that of shear at the same invariants"
+        yield Finding(text, "extension", *ratio, degrees)
+    for contacts, name in (("friction", "friction 0.5"), ("none", "no friction")):
+        turned, steady = curve(contacts, "reversed"), curve(contacts, "steady")
+        level = mean_of(steady)
+        degrees = REVERSAL_SEEDS - 1
+        last = mean_of(turned[-BINS // 5 :])
+        text = f"{name}: viscosity a strain of {0.9 * AFTER:g} after the reversal over that of steady shear"
+        yield Check(text, "steady shear", *quotient(last, level), 0.92, 1.08, degrees)
+        lowest = min(turned, key=lambda point: point[1])
+        yield Finding(
+            f"{name}: lowest viscosity after the reversal over that of steady shear",
+            "reversal",
+            *quotient(lowest[1:], level),
+            degrees,
+        )
+        yield Finding(f"{name}: strain at which it is lowest", "reversal", lowest[0], 0.5 * AFTER / BINS, degrees)
+        again = next((p[0] for p in turned if p[0] > lowest[0] and p[1] > 0.9 * level[0]), math.nan)
+        yield Finding(f"{name}: strain at which nine tenths of it are back", "reversal", again, AFTER / BINS, degrees)
+    still, *shaken = read_rows(HERE / "shaken.csv")
+    best = min(shaken, key=lambda row: row["viscosity"])
+    ratio = quotient(number(best, "viscosity"), number(still, "viscosity"))
+    text = f"shaken across by {best['amplitude']:g} at {best['frequency']:g} γ̇: viscosity over that without"
+    yield Statement(text, "Lin et al. 2016: it falls", *ratio, 0, 0.8, best["seeds"] - 1)
+    for row in shaken:
+        text = f"amplitude {row['amplitude']:g}, frequency {row['frequency']:g} γ̇: "
+        for name, what in (("viscosity", "viscosity"), ("dissipation", "dissipation of both")):
+            ratio = quotient(number(row, name), number(still, "viscosity"))
+            yield Finding(f"{text}{what} over that of shear alone", "shaking", *ratio, row["seeds"] - 1)
+
+
+def draw():
+    figure = Figure(HERE / "chart.png", columns=3, size=(1500, 480))
+    one = figure.panel("strain after the reversal", "η_r", f"φ = {REVERSED:.2f}", key="bottom right", y_range=(0, None))
+    for contacts, name, colour in (("friction", "friction 0.5", RED), ("none", "no friction", BLUE)):
+        one.points(curve(contacts, "reversed"), name, colour, 7, 0.6, joined=True)
+        one.level(mean_of(curve(contacts, "steady"))[0], None, colour, span=(0, AFTER))
+    two = figure.panel("φ", "η_r", "planar extension and shear", log="y", key="top left")
+    rows = read_rows(HERE / "extension.csv")
+    for name, colour, mark in (("shear", BLUE, 7), ("extension", RED, 6)):
+        two.points([(r["fraction"], *number(r, name)) for r in rows], name, colour, mark, 1.2)
+    still, *shaken = read_rows(HERE / "shaken.csv")
+    three = figure.panel(
+        "frequency / γ̇", "over that of shear alone", f"shaken across, φ = {SHAKEN:.2f}", log="x", key="bottom left"
+    )
+    for amplitude, colour in ((0.01, BLUE), (0.03, GREEN), (0.1, ORANGE)):
+        mine = [r for r in shaken if r["amplitude"] == amplitude]
+        points = [(r["frequency"], *quotient(number(r, "viscosity"), number(still, "viscosity"))) for r in mine]
+        three.points(points, f"viscosity, amplitude {amplitude:g}", colour, joined=True)
+    figure.draw()
+
+
+def quick_measure(program):
+    """Extension of a dilute suspension has the viscosity of shear; both are of one invariant."""
+    patch = {"volume_fraction": 0.05, "particles": {"count": 50}, **during({"strain": 0.1}, {"strain": 1})}
+    for name, settings in (("shear", {"/flow/shear_rate": 1}), ("extension", {"/flow/extension_rate": 0.5})):
+        means = point_of(program, name, patch, 4, settings)
+        value = estimate([m["relative_viscosity"] for m in means])
+        yield Check(f"φ = 0.05: η of {name}", "1 + 2.5 φ and pairs", *value, 1.124, 1.2, 3)
+
+
+main(HERE, TITLE, measure, quick_measure, judge, draw)

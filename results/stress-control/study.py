@@ -1,0 +1,228 @@
+#!/usr/bin/python3
+"""Flow at a given stress: beside flow at a given rate, with and without noise; what noise makes of the strain; and
+discontinuous shear thickening, which a given rate jumps over.
+
+study.py BIN [FOLDER] [--quick] [--from-table]
+"""
+import math
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from studies.at_rest import exact_rows
+from studies.command_line import main
+from studies.estimates import estimate, quotient
+from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
+from studies.scenes import REFERENCE_SCENE, during, merged
+from studies.tables import columns_of, entries, number, read_numbers, read_rows, write_numbers, write_table
+from studies.verdicts import Check, Finding, Statement
+
+TITLE = "Flow at a given stress"
+# Lengths in radii, the solvent's viscosity 1. Of grains the critical load is the unit of force, of colloids kT the unit
+# of energy.
+COMMON = {"particles": {"count": 200, "density": 1e-3}, "fluid": {"viscosity": 1}, "flow": None, "duration": None}
+GRAINS = merged(
+    merged(REFERENCE_SCENE, COMMON),
+    {"contact": {"normal_stiffness": 5e4, "friction": 1, "critical_load": 1}, "volume_fraction": 0.5},
+)
+COLLOIDS = merged(
+    merged(REFERENCE_SCENE, COMMON),
+    {"contact": {"normal_stiffness": 5e4}, "fluid": {"thermal_energy": 1}, "volume_fraction": 0.45},
+)
+SEEDS = {"grains": 10, "colloids": 10}
+# Rates, and what viscosity to expect, which says how long a stress must act for a strain of ten.
+RATES = {
+    "grains": {0.002: 25, 0.005: 35, 0.01: 50, 0.03: 60, 0.1: 65},
+    "colloids": {0.15: 9, 0.5: 8.5, 1.5: 8, 5: 8, 15: 9},
+}
+STRAIN = 10
+THICKENING = {0.50: (1000, 3), 0.54: (3000, 4), 0.56: (6000, 6)}  # stress times of the window, seeds
+STRESSES = (0.02, 0.06, 0.2, 0.6, 2)
+# Discontinuous from here on in simulations of spheres of two sizes with a critical load and friction 1.
+PUBLISHED_ONSET = 0.56
+RATES_OF_THICKENING = (0.0003, 0.0005, 0.0008, 0.0012, 0.002, 0.004)
+DIFFUSING, DIFFUSION_SEEDS, DIFFUSION_WINDOW = 0.30, 24, 400
+THERMAL_ENERGY, VISCOSITY = 0.017, 0.1  # of the study at-rest, whose scene this is
+
+
+def rate_row(program, kind, scene, rate, seeds):
+    settings = {"/flow/shear_rate": rate}
+    (point,) = program.run(
+        f"{kind}-rate-{rate:g}", merged(scene, during({"strain": 3}, {"strain": STRAIN})), [settings], seeds
+    )
+    viscosity = estimate([r["mean"]["relative_viscosity"] for r in point["realisations"] if r.get("mean")])
+    return {"kind": kind, "fraction": scene["volume_fraction"], "control": "rate", "at": rate, "seeds": seeds} | (
+        entries("viscosity", viscosity) | {"flowing": 1.0}
+    )
+
+
+def stress_row(program, kind, scene, stress, times, seeds):
+    """The viscosity is that of all; a realisation that has jammed counts with its rate, 0 from then on."""
+    name = f"{kind}-stress-{scene['volume_fraction']:g}-{stress:g}"
+    scene = merged(scene, during({"stress_times": 0.3 * times}, {"stress_times": times}))
+    (point,) = program.run(name, scene, [{"/flow/stress": stress}], seeds, "shear_rate")
+    means = [r["mean"] for r in point["realisations"] if r.get("mean")]
+    rate = estimate([m["shear_rate"] for m in means])
+    row = {"kind": kind, "fraction": scene["volume_fraction"], "control": "stress", "at": stress, "seeds": len(means)}
+    row |= entries("viscosity", quotient((stress, 0), rate) if rate[0] > 0 else (math.inf, math.inf))
+    return row | {"flowing": sum(m["flowing"] for m in means) / len(means)}
+
+
+def measure(program):
+    rows = []
+    for kind, scene in (("grains", GRAINS), ("colloids", COLLOIDS)):
+        for rate, expected in RATES[kind].items():
+            rows.append(rate_row(program, kind, scene, rate, SEEDS[kind]))
+            stress = float(f"{rows[-1]['viscosity'] * rate:.4g}")
+            rows.append(stress_row(program, kind, scene, stress, STRAIN * expected, SEEDS[kind]))
+    measure_diffusion(program)
+    for fraction, (times, seeds) in THICKENING.items():
+        scene = merged(GRAINS, {"volume_fraction": fraction})
+        for stress in STRESSES:
+            rows.append(stress_row(program, "thickening", scene, stress, times, seeds))
+    densest = merged(GRAINS, {"volume_fraction": max(THICKENING)})
+    for rate in RATES_OF_THICKENING:
+        rows.append(rate_row(program, "thickening", densest, rate, 6))
+    columns = ["kind", "fraction", "control", "at", "seeds", *columns_of("viscosity"), "flowing"]
+    write_table(HERE / "table.csv", columns, rows, 5)
+
+
+def measure_diffusion(program):
+    """By the strains of blocks: D = <strain^2> / (2 t), next to no stress."""
+    scene = merged(
+        merged(REFERENCE_SCENE, {"duration": None}),
+        {
+            "particles": {"count": 100},
+            "volume_fraction": DIFFUSING,
+            "flow": None,
+            "fluid": {"thermal_energy": THERMAL_ENERGY},
+            **during({"brownian_times": 50}, {"brownian_times": DIFFUSION_WINDOW}),
+        },
+    )
+    program.run("diffusion", scene, [{"/flow/stress": 1e-9}], DIFFUSION_SEEDS, "shear_rate")
+    (results,) = program.stored_results("diffusion")
+    squares = []
+    for result in results:
+        time = result["time"]["production"] / 32
+        squares.append(sum((rate * time) ** 2 for rate in result["blocks"]["shear_rate"]) / 32 / (2 * time))
+    radii = [1.0, 1.4]
+    cubes = [r**3 for r in radii]
+    # Half of the volume to each size, of 100 spheres.
+    shares = [1 / c for c in cubes]
+    volume = 100 * sum(shares[k] / sum(shares) * cubes[k] for k in range(2)) * 4 / 3 * math.pi / DIFFUSING
+    diffusion = estimate([s * volume * VISCOSITY / THERMAL_ENERGY for s in squares])
+    write_numbers(HERE / "diffusion.csv", {"diffusion": (*diffusion, len(squares) - 1)})
+
+
+def read():
+    return read_rows(HERE / "table.csv")
+
+
+def pairs_of(rows, kind):
+    """At the same stress: by rate, and by stress."""
+    mine = [r for r in rows if r["kind"] == kind]
+    return list(zip(mine[::2], mine[1::2]))
+
+
+def slopes(rows, fraction):
+    """d ln viscosity / d ln stress between neighbours of the curve at given stresses, with errors."""
+    curve = [r for r in rows if (r["kind"], r["fraction"], r["control"]) == ("thickening", fraction, "stress")]
+    for low, high in zip(curve, curve[1:]):
+        width = math.log(high["at"] / low["at"])
+        value = math.log(high["viscosity"] / low["viscosity"]) / width
+        error = math.hypot(*(r["viscosity_error"] / r["viscosity"] for r in (low, high))) / width
+        yield math.sqrt(low["at"] * high["at"]), value, error
+
+
+def steepest(rows, fraction):
+    return max(slopes(rows, fraction), key=lambda slope: slope[1])
+
+
+def judge():
+    rows = read()
+    for kind, unit in (("grains", "F_CL/ηa²"), ("colloids", "kT/ηa³")):
+        for by_rate, by_stress in pairs_of(rows, kind):
+            ratio = quotient(number(by_stress, "viscosity"), number(by_rate, "viscosity"))
+            text = f"{kind}, rate {by_rate['at']:g} {unit}: viscosity at the stress over that at the rate"
+            yield Check(text, "both controls", *ratio, 0.92, 1.08, by_rate["seeds"] - 1)
+    value, error, degrees = read_numbers(HERE / "diffusion.csv")["diffusion"]
+    exact = exact_rows()[DIFFUSING]
+    product = value * exact["viscosity"], math.hypot(error * exact["viscosity"], value * exact["viscosity_error"])
+    text = f"φ = {DIFFUSING:g}: D V η η_r / kT of the strain, η_r by linear response"
+    yield Check(text, "fluctuation and dissipation", *product, 0.85, 1.15, degrees)
+    steep = {fraction: steepest(rows, fraction) for fraction in THICKENING}
+    below, above = [f for f in THICKENING if steep[f][1] < 1], [f for f in THICKENING if steep[f][1] >= 1]
+    onset = onset_of(steep)
+    if onset:
+        text = "discontinuous from this φ on, where d ln η / d ln σ is 1 at its steepest"
+        source = "Mari et al. 2014: about 0.56"
+        yield Statement(text, source, *onset, PUBLISHED_ONSET - 0.015, PUBLISHED_ONSET + 0.015, 10)
+    for fraction in (*below, *above):
+        stress, value, error = steep[fraction]
+        text = f"φ = {fraction:.2f}: largest d ln η / d ln σ, at σ = {stress:.2g} F_CL/a²"
+        yield Finding(text, "steepness", value, error)
+    for fraction in THICKENING:
+        curve = [r for r in rows if (r["kind"], r["fraction"], r["control"]) == ("thickening", fraction, "stress")]
+        share = sum(r["flowing"] * r["seeds"] for r in curve) / sum(r["seeds"] for r in curve)
+        seeds = sum(r["seeds"] for r in curve)
+        yield Finding(
+            f"φ = {fraction:.2f}: share of seeds that flow", "jamming", share, math.sqrt(share * (1 - share) / seeds)
+        )
+
+
+def onset_of(steep):
+    """The volume fraction at which the steepest slope is 1, by a line through the two around it."""
+    fractions = sorted(steep)
+    for low, high in zip(fractions, fractions[1:]):
+        (_, a, of_a), (_, b, of_b) = steep[low], steep[high]
+        if a < 1 <= b:
+            part, width = (1 - a) / (b - a), high - low
+            error = width * math.hypot((1 - part) * of_a, part * of_b) / (b - a)
+            return low + part * width, error
+    return None
+
+
+def draw():
+    rows = read()
+    figure = Figure(HERE / "chart.png", columns=3, size=(1500, 480))
+    one = figure.panel("σ a²/F_CL", "η_r", "φ = 0.50, 0.54, 0.56; friction 1", log="xy", key="top left")
+    for fraction, colour in zip(THICKENING, (BLUE, GREEN, ORANGE)):
+        curve = [r for r in rows if (r["kind"], r["fraction"], r["control"]) == ("thickening", fraction, "stress")]
+        points = [(r["at"], *number(r, "viscosity")) for r in curve]
+        one.points(points, f"at a stress, {fraction:.2f}", colour, joined=True)
+    by_rate = [(r["at"] * r["viscosity"], *number(r, "viscosity")) for r, _ in pairs_of(rows, "grains")]
+    one.points(by_rate, "at a rate, 0.50", RED, 6)
+    densest = max(THICKENING)
+    two = figure.panel("γ̇ ηa²/F_CL", "σ a²/F_CL", f"φ = {densest:.2f}", log="xy", key="top left", powers="xy")
+    of_densest = [r for r in rows if (r["kind"], r["fraction"]) == ("thickening", densest)]
+    points = [(r["at"] / r["viscosity"], r["at"], 0) for r in of_densest if r["control"] == "stress"]
+    two.points(points, "at a stress", ORANGE, joined=True)
+    points = [
+        (r["at"], r["at"] * r["viscosity"], r["at"] * r["viscosity_error"])
+        for r in of_densest
+        if r["control"] == "rate"
+    ]
+    two.points(points, "at a rate", BLUE, 6)
+    three = figure.panel("Pe", "η_r", "colloids, φ = 0.45, no friction", log="x", key="top right")
+    for place, (title, colour, mark) in enumerate((("at a rate", BLUE, 7), ("at its stress", RED, 6))):
+        points = [
+            (6 * math.pi * pair[0]["at"], *number(pair[place], "viscosity")) for pair in pairs_of(rows, "colloids")
+        ]
+        three.points(points, title, colour, mark)
+    figure.draw()
+
+
+def quick_measure(program):
+    """Spheres that meet nobody flow as the solvent with their stresslets, and a stress is what is asked."""
+    scene = merged(GRAINS, {"particles": {"count": 50}, "volume_fraction": 0.3})
+    scene = merged(scene, during({"stress_times": 1}, {"stress_times": 10}))
+    (point,) = program.run("quick", scene, [{"/flow/stress": 2}], 4, "shear_rate")
+    means = [r["mean"] for r in point["realisations"]]
+    held = estimate([m["stress"]["total"][3] / 2 for m in means])
+    yield Check("σ over the stress that is asked", "stress control", *held, 0.999, 1.001, 3)
+    viscosity = quotient((2, 0), estimate([m["shear_rate"] for m in means]))
+    yield Check("φ = 0.3: η_r at a stress", "that of shear", *viscosity, 2.2, 4.5, 3)
+
+
+main(HERE, TITLE, measure, quick_measure, judge, draw)

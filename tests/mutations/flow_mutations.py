@@ -1,0 +1,39 @@
+"""Fine mistakes in flows that change, stretch or are driven by a stress; see named_mutations.py."""
+
+FLOW = [
+    (
+        "heavy spheres taken along by an accelerating flow without its own acceleration",
+        "engine/integrators/follow_flow.cpp",
+        "const Matrix3 gain = change + time * (gradient * gradient);",
+        "const Matrix3 gain = change + 0 * time * (gradient * gradient);",
+        "engine_tests:Deformation.IsFollowedByHeavySpheresWhereverTheyAre",
+    ),
+    (
+        "normal differences of extension over shear at equal rates",
+        "engine/flow/deformation.cpp",
+        "steady_rate_ = std::sqrt(2 * contracted(strain, strain));",
+        "steady_rate_ = std::sqrt(contracted(strain, strain));",
+        "engine_tests:ImposedFlow.HasTheRateOfItsSteadyPart",
+    ),
+    (
+        "noise of the solvent upon the strain of half its variance",
+        "engine/realisation/stress_control.cpp",
+        "std::sqrt(2 * thermal_energy_ * solvent_ / (volume * timestep_))",
+        "std::sqrt(thermal_energy_ * solvent_ / (volume * timestep_))",
+        "engine_tests:StressControl.GivesTheStrainItsShareOfTheTemperature",
+    ),
+    (
+        "a stress whose deficit nobody makes up for",
+        "engine/realisation/stress_control.cpp",
+        "deficit_ += stress_ - stress;",
+        "deficit_ += 0 * (stress_ - stress);",
+        "engine_tests:EitherMethod/StressControlled.HoldsItsStress/implicit",
+    ),
+    (
+        "stress of a reversed flow with the sign of the cell",
+        "engine/responses/transient.cpp",
+        "part.sums[0] += flow_.shear_part(stress);",
+        "part.sums[0] += stress.xy;",
+        "engine_tests:Transient.IsThatOfTheReversedFlow",
+    ),
+]
