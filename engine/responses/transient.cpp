@@ -40,6 +40,7 @@ std::vector<Quantity> transient_quantities(const Scene& scene, const Window& win
   Axis axis{is_steady ? "strain" : "time", is_steady ? "1" : "time", Json::array()};
   for (double k = 0; k < bins; ++k) axis.values.push_back((k + 0.5) / bins * (is_steady ? strain : length));
   std::vector<Quantity> all;
+  all.reserve(stresses.size());
   for (const auto& [name, symbol] : stresses) {
     all.push_back({.name = std::string("transient/") + name,
                    .symbol = symbol,

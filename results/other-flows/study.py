@@ -13,8 +13,8 @@ from studies.command_line import main
 from studies.estimates import estimate, over, quotient
 from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
 from studies.scenes import REFERENCE_SCENE, during, merged
-from studies.tables import columns_of, entries, number, read_rows, write_table
-from studies.verdicts import Check, Finding, Statement
+from studies.tables import columns_of, entries, number, read_numbers, read_rows, write_numbers, write_table
+from studies.verdicts import Check, Finding
 
 TITLE = "Reversal, extension and shear across"
 SCENE = merged(
@@ -41,14 +41,18 @@ def point_of(program, name, patch, seeds, settings, observable="relative_viscosi
     return [r["mean"] for r in point["realisations"] if r.get("mean")]
 
 
-def reversal_rows(program):
-    """Of a flow that goes on, and of one that is reversed, with friction and without."""
+def reversal_rows(program, levels):
+    """Of a flow that goes on, and of one that is reversed, with friction and without. `levels` takes their means over
+    the window and over its last fifth, with errors of the seeds."""
     turned = [{"shear_rate": RATE, "strain": BEFORE}, {"shear_rate": -RATE}]
     for name, contact in (("friction", FRICTION), ("none", {"contact": {"normal_stiffness": 2e5}})):
         for flow, segments in (("reversed", turned), ("steady", [{"shear_rate": RATE}])):
             patch = merged(contact, {"volume_fraction": REVERSED, **during({"strain": BEFORE}, {"strain": AFTER})})
             patch |= {"observables": ["stress", "transient"], "transient": {"bins": BINS}}
             means = point_of(program, f"{flow}-{name}", patch, REVERSAL_SEEDS, {"/flow/segments": segments})
+            for part, begin in (("whole", 0), ("end", BINS - BINS // 5)):
+                values = [sum(m["transient"]["shear_stress"][begin:]) / (BINS - begin) for m in means]
+                levels[f"{flow}-{name}-{part}"] = (*estimate(values), len(values) - 1)
             for k in range(BINS):
                 row = {"contacts": name, "flow": flow, "strain": (k + 0.5) / BINS * AFTER, "seeds": len(means)}
                 for quantity, path in (("viscosity", "shear_stress"), ("normal", "first_normal_difference")):
@@ -107,17 +111,14 @@ def measure(program):
         5,
     )
     columns = ["contacts", "flow", "strain", "seeds", *columns_of("viscosity", "normal")]
-    write_table(HERE / "reversal.csv", columns, list(reversal_rows(program)), 5)
+    levels = {}
+    write_table(HERE / "reversal.csv", columns, list(reversal_rows(program, levels)), 5)
+    write_numbers(HERE / "levels.csv", levels)
 
 
 def curve(contacts, flow, name="viscosity"):
     rows = [r for r in read_rows(HERE / "reversal.csv") if (r["contacts"], r["flow"]) == (contacts, flow)]
     return [(r["strain"], *number(r, name)) for r in rows]
-
-
-def mean_of(points):
-    """Of parts that are not independent: their mean, with the mean of their errors."""
-    return tuple(sum(p[k] for p in points) / len(points) for k in (1, 2))
 
 
 def judge():
@@ -132,10 +133,8 @@ def judge():
         text = f"φ = {fraction:g}: η_E of planar extension over that of shear at the same invariants"
         yield Finding(text, "extension", *ratio, degrees)
     for contacts, name in (("friction", "friction 0.5"), ("none", "no friction")):
-        turned, steady = curve(contacts, "reversed"), curve(contacts, "steady")
-        level = mean_of(steady)
-        degrees = REVERSAL_SEEDS - 1
-        last = mean_of(turned[-BINS // 5 :])
+        turned, levels, degrees = curve(contacts, "reversed"), read_numbers(HERE / "levels.csv"), REVERSAL_SEEDS - 1
+        level, last = levels[f"steady-{contacts}-whole"][:2], levels[f"reversed-{contacts}-end"][:2]
         text = f"{name}: viscosity a strain of {0.9 * AFTER:g} after the reversal over that of steady shear"
         yield Check(text, "steady shear", *quotient(last, level), 0.92, 1.08, degrees)
         lowest = min(turned, key=lambda point: point[1])
@@ -152,7 +151,7 @@ def judge():
     best = min(shaken, key=lambda row: row["viscosity"])
     ratio = quotient(number(best, "viscosity"), number(still, "viscosity"))
     text = f"shaken across by {best['amplitude']:g} at {best['frequency']:g} γ̇: viscosity over that without"
-    yield Statement(text, "Lin et al. 2016: it falls", *ratio, 0, 0.8, best["seeds"] - 1)
+    yield Check(text, "Lin et al. 2016: it falls", *ratio, 0, 0.8, best["seeds"] - 1)
     for row in shaken:
         text = f"amplitude {row['amplitude']:g}, frequency {row['frequency']:g} γ̇: "
         for name, what in (("viscosity", "viscosity"), ("dissipation", "dissipation of both")):
@@ -162,22 +161,25 @@ def judge():
 
 def draw():
     figure = Figure(HERE / "chart.png", columns=3, size=(1500, 480))
-    one = figure.panel("strain after the reversal", "η_r", f"φ = {REVERSED:.2f}", key="bottom right", y_range=(0, None))
+    place = {"key": "bottom right", "y_range": (0, None)}
+    one = figure.panel("strain after the reversal", "η_r", f"φ = {REVERSED:.2f}", **place)
     for contacts, name, colour in (("friction", "friction 0.5", RED), ("none", "no friction", BLUE)):
         one.points(curve(contacts, "reversed"), name, colour, 7, 0.6, joined=True)
-        one.level(mean_of(curve(contacts, "steady"))[0], None, colour, span=(0, AFTER))
+        one.level(read_numbers(HERE / "levels.csv")[f"steady-{contacts}-whole"][0], None, colour, span=(0, AFTER))
     two = figure.panel("φ", "η_r", "planar extension and shear", log="y", key="top left")
     rows = read_rows(HERE / "extension.csv")
     for name, colour, mark in (("shear", BLUE, 7), ("extension", RED, 6)):
         two.points([(r["fraction"], *number(r, name)) for r in rows], name, colour, mark, 1.2)
     still, *shaken = read_rows(HERE / "shaken.csv")
-    three = figure.panel(
-        "frequency / γ̇", "over that of shear alone", f"shaken across, φ = {SHAKEN:.2f}", log="x", key="bottom left"
-    )
+    place = {"log": "x", "key": "top right", "x_range": (0.2, 5), "y_range": (0, 1.4)}
+    title = f"shaken across, φ = {SHAKEN:.2f}"
+    three = figure.panel("largest rate across / γ̇", "viscosity over that of shear alone", title, **place)
     for amplitude, colour in ((0.01, BLUE), (0.03, GREEN), (0.1, ORANGE)):
         mine = [r for r in shaken if r["amplitude"] == amplitude]
-        points = [(r["frequency"], *quotient(number(r, "viscosity"), number(still, "viscosity"))) for r in mine]
-        three.points(points, f"viscosity, amplitude {amplitude:g}", colour, joined=True)
+        points = [
+            (amplitude * r["frequency"], *quotient(number(r, "viscosity"), number(still, "viscosity"))) for r in mine
+        ]
+        three.points(points, f"amplitude {amplitude:g}", colour, joined=True)
     figure.draw()
 
 

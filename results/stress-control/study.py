@@ -16,7 +16,7 @@ from studies.estimates import estimate, quotient
 from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
 from studies.scenes import REFERENCE_SCENE, during, merged
 from studies.tables import columns_of, entries, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Finding, Statement
+from studies.verdicts import Check, Finding
 
 TITLE = "Flow at a given stress"
 # Lengths in radii, the solvent's viscosity 1. Of grains the critical load is the unit of force, of colloids kT the unit
@@ -157,7 +157,7 @@ def judge():
     if onset:
         text = "discontinuous from this φ on, where d ln η / d ln σ is 1 at its steepest"
         source = "Mari et al. 2014: about 0.56"
-        yield Statement(text, source, *onset, PUBLISHED_ONSET - 0.015, PUBLISHED_ONSET + 0.015, 10)
+        yield Check(text, source, *onset, PUBLISHED_ONSET - 0.015, PUBLISHED_ONSET + 0.015, 10)
     for fraction in (*below, *above):
         stress, value, error = steep[fraction]
         text = f"φ = {fraction:.2f}: largest d ln η / d ln σ, at σ = {stress:.2g} F_CL/a²"
