@@ -53,8 +53,8 @@ NAMED = [
     (
         "target of Newton's iterations ten times too loose",
         "engine/integrators/midpoint.cpp",
-        "const double target = solver_.tolerance() * solver_.tolerance() * motion;",
-        "const double target = 100 * solver_.tolerance() * solver_.tolerance() * motion;",
+        "std::max(solver_.tolerance() * solver_.tolerance() * motion, no_motion);",
+        "std::max(100 * solver_.tolerance() * solver_.tolerance() * motion, no_motion);",
         "engine_tests:Implicit.LeavesNoLargerResidualThanItsTolerance",
     ),
     (
@@ -102,8 +102,8 @@ NAMED = [
     (
         "strain of implicit steps one step late",
         IMPLICIT,
-        "drive(system.box, system.clock.time() + time)",
-        "drive(system.box, system.clock.time())",
+        "displacement_gradient(system.clock.time() + time)",
+        "displacement_gradient(system.clock.time())",
         "engine_tests:Implicit.StrainAfterNStepsIsNTimesRateAndStep",
     ),
     (
