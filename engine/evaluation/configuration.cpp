@@ -80,8 +80,11 @@ class Reader {
     for (std::size_t k = 0; k < state.value("springs", Json::array()).size(); ++k) {
       const std::string at = fmt::format("/state/springs/{}", k);
       const PairName name = pair_name(at, radius.size());
-      configuration.springs.push_back(
-          {name.first, name.second, name.image, {vector(at + "/tangential"), vector(at + "/rolling")}});
+      const double slides = this->at(at).at("slides").get<bool>() ? 1 : 0;
+      configuration.springs.push_back({name.first,
+                                       name.second,
+                                       name.image,
+                                       {vector(at + "/tangential"), vector(at + "/rolling"), slides}});
     }
     if (state.contains("noise")) {
       configuration.noise = noise(radius.size());
@@ -218,6 +221,10 @@ const KeyTable& configuration_keys() {
     append(vector_keys("/state/angular_velocity", "angular velocities", "1 / time", true));
     append(pair_keys("/state/springs", "contact springs",
                      {{"tangential", "sliding spring"}, {"rolling", "rolling spring"}}));
+    keys.push_back({.pointer = "/state/springs/*/slides",
+                    .kind = KeyKind::boolean,
+                    .meaning = "whether the contact slides, with kinetic friction",
+                    .default_value = false});
     keys.push_back({.pointer = "/state/noise", .kind = KeyKind::object, .meaning = "random vectors to use"});
     keys.push_back({.pointer = "/state/noise/timestep",
                     .kind = KeyKind::number,

@@ -87,7 +87,9 @@ Physics without_others(Physics physics, StressTerm kept) {
 std::vector<TermRecipe> recipes_of(const Physics& physics) {
   std::vector<TermRecipe> recipes;
   const Terms terms = required_terms(physics), touching = {.contact = true};
-  const Terms sliding = {.contact = true, .friction = true};
+  const Terms sliding = {.contact = true, .friction = true, .kinetic = terms.kinetic};
+  Terms turning = sliding;
+  turning.rolling = true;
   const auto add = [&](bool present, const char* name, const Terms& with, const Terms& without) {
     if (present) {
       recipes.push_back({name, with, without, physics});
@@ -104,7 +106,7 @@ std::vector<TermRecipe> recipes_of(const Physics& physics) {
     recipes.back().physics.contact->normal_stiffness = 0;
   }
   add(terms.friction, "friction", sliding, touching);
-  add(terms.rolling, "rolling", {.contact = true, .friction = true, .rolling = true}, sliding);
+  add(terms.rolling, "rolling", turning, sliding);
   for_each_conservative_law(
       [&](StressTerm part, const auto& law) {
         if (law)
@@ -228,6 +230,7 @@ class Evaluation {
                           {"image", {image.x, image.y, image.z}},
                           {"tangential", to_json(springs[p].tangential)},
                           {"rolling", to_json(springs[p].rolling)}});
+      if (springs.remembers_sliding()) advanced.back()["slides"] = springs[p].slides != 0;
     }
     return advanced;
   }

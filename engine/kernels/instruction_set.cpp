@@ -66,7 +66,7 @@ InstructionSet chosen_instruction_set() {
 }
 
 PairKernel pair_kernel(InstructionSet set, const Terms& terms) {
-  const unsigned code = code_of(terms);
+  const unsigned code = code_of(compiled_terms(terms));
   const PairKernelTable* table = &baseline_pair_kernels;
 #ifdef __x86_64__
   if (set != InstructionSet::baseline) {

@@ -40,7 +40,8 @@ SpringKinds spring_kinds(const Terms& terms) {
   if (!terms.friction) {
     return SpringKinds::none;
   }
-  return terms.rolling ? SpringKinds::tangential_and_rolling : SpringKinds::tangential;
+  const SpringKinds kinds = terms.rolling ? SpringKinds::tangential_and_rolling : SpringKinds::tangential;
+  return terms.kinetic ? that_slide(kinds) : kinds;
 }
 
 PairKernelInput PairPass::kernel_input(const PairPassInput& input, SpringField& springs) {
@@ -66,12 +67,14 @@ PairKernelInput PairPass::kernel_input(const PairPassInput& input, SpringField& 
   kernel.image_velocity = image_velocity_.data();
   kernel.kinds = input.kinds.data();
   kernel.parameters = input.parameters;
+  if (!damps_) kernel.parameters.contact.normal_damping = 0;
   const Matrix3& gradient = input.box.velocity_gradient();
   kernel.parameters.flow = {input.varying != nullptr, spin_of(gradient), strain_of(gradient)};
   if (input.varying != nullptr) kernel.varying = input.varying->rows();
-  for (std::size_t c = 0; c < springs.components(); ++c) {
+  for (std::size_t c = 0; c < components_of_springs(springs.kinds()); ++c) {
     kernel.springs[c] = springs.component(c);
   }
+  if (remember_sliding(springs.kinds())) kernel.slides = springs.component(springs.components() - 1);
   kernel.noise = input.noise;
   kernel.fill_normals = fill_normals_;
   kernel.id = input.particles.id.data();
@@ -83,7 +86,7 @@ PairKernelInput PairPass::kernel_input(const PairPassInput& input, SpringField& 
 PairSums PairPass::add_pairs(const PairPassInput& input, SpringField& springs, VectorField& force,
                              VectorField& torque, const SetRows& set_rows) {
   const NeighbourList& list = input.list;
-  const bool has_springs = springs.kinds() >= spring_kinds_ && springs.size() == list.pairs().size();
+  const bool has_springs = include(springs.kinds(), spring_kinds_) && springs.size() == list.pairs().size();
   if (spring_kinds_ != SpringKinds::none && !has_springs) {
     throw std::invalid_argument("the springs are not those of the list of pairs");
   }

@@ -43,7 +43,10 @@ class PairPass {
   PairPass(const Terms& terms, InstructionSet set)
       : PairPass(terms, pair_kernel(set, terms), engine::fill_normals(set)) {}
   PairPass(const Terms& terms, PairKernel kernel, FillNormals fill_normals)
-      : kernel_(kernel), fill_normals_(fill_normals), spring_kinds_(spring_kinds(terms)) {}
+      : kernel_(kernel),
+        fill_normals_(fill_normals),
+        spring_kinds_(spring_kinds(terms)),
+        damps_(terms.damping) {}
 
   // Sets the rows of force and torque of a block to what does not come from pairs. On one thread, what is
   // done here to a block's particles is done before any of their pairs is computed.
@@ -81,6 +84,7 @@ class PairPass {
   PairKernel kernel_;
   FillNormals fill_normals_;
   SpringKinds spring_kinds_;
+  bool damps_;  // the kernel may do so where the terms do not: compiled_terms()
   // Storage that is kept from step to step.
   VectorField image_displacement_, image_velocity_;
   std::vector<std::uint64_t> image_keys_;

@@ -13,6 +13,10 @@ inline Keys contact_keys() {
       positive("/contact/normal_stiffness", "force / length", "Normal stiffness k_n.", required),
       with_default(not_negative("/contact/normal_damping", "force time / length", "Normal damping."), 0),
       not_negative("/contact/friction", "", "Coefficient of sliding friction; absent (or 0): frictionless."),
+      not_negative(
+          "/contact/kinetic_friction", "",
+          "Coefficient of kinetic friction, while a contact slides; at most that of friction, and with "
+          "it only; absent: the same."),
       not_negative("/contact/critical_load", "force",
                    "Normal force F_CL below which a contact has no friction, which goes by what exceeds it; "
                    "with friction only; absent (or 0): none."),
@@ -35,11 +39,16 @@ inline ContactParameters read_contact(const SceneDocument& scene) {
   contact.normal_stiffness = scene.number("/contact/normal_stiffness");
   contact.normal_damping = scene.number("/contact/normal_damping");
   contact.friction = scene.number_or("/contact/friction", 0);
-  for (const char* key :
-       {"/contact/tangential_stiffness", "/contact/critical_load", "/contact/largest_load"}) {
+  for (const char* key : {"/contact/tangential_stiffness", "/contact/kinetic_friction",
+                          "/contact/critical_load", "/contact/largest_load"}) {
     if (scene.has(key) && !scene.has("/contact/friction")) {
       scene.refuse(key, "must be left out without /contact/friction");
     }
+  }
+  contact.kinetic_friction = scene.number_or("/contact/kinetic_friction", contact.kinetic_friction);
+  if (scene.has("/contact/kinetic_friction") && contact.kinetic_friction > contact.friction) {
+    scene.refuse("/contact/kinetic_friction", "must be a number >= 0 and <= /contact/friction, which is " +
+                                                  shortened(scene.at("/contact/friction")));
   }
   contact.critical_load = scene.number_or("/contact/critical_load", contact.critical_load);
   contact.largest_load = scene.number_or("/contact/largest_load", contact.largest_load);

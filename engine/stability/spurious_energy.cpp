@@ -57,8 +57,10 @@ double energy_of_pair(const Physics& physics, const PairKind& kind, const PairGe
     const ContactParameters& contact = *physics.contact;
     const double pressing = frictional_load(contact, shape.overlap());
     const ContactLevers lever = contact_levers(kind.radius_first, kind.radius_second, shape);
-    sum += energy_of_stretch(contact.tangential_stiffness, springs.tangential,
-                             timestep * slip_velocity(lever, shape, motion), contact.friction * pressing);
+    if (springs.slides == 0) {
+      sum += energy_of_stretch(contact.tangential_stiffness, springs.tangential,
+                               timestep * slip_velocity(lever, shape, motion), contact.friction * pressing);
+    }
     sum += energy_of_stretch(contact.rolling_stiffness, springs.rolling,
                              timestep * rolling_velocity(kind.reduced_diameter, shape, motion),
                              contact.rolling_friction * pressing);

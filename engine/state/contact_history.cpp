@@ -41,7 +41,7 @@ std::vector<HeldContact> held_contacts(const NeighbourList& list, const Particle
     std::vector<HeldContact> part;
     for (std::size_t p = begin; p < end; ++p) {
       const ContactSprings of_pair = springs[p];
-      if (is_zero(of_pair.tangential) && is_zero(of_pair.rolling)) {
+      if (is_zero(of_pair.tangential) && is_zero(of_pair.rolling) && of_pair.slides == 0) {
         continue;
       }
       part.push_back(contact_of(list, particles, list.pairs()[p]));

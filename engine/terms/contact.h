@@ -12,13 +12,19 @@ namespace peclet::engine {
 struct ContactParameters {
   double normal_stiffness = 0;
   double normal_damping = 0;
-  double friction = 0;
+  double friction = 0;                                                // of contacts that stick
+  double kinetic_friction = std::numeric_limits<double>::infinity();  // of those that slide, where it is less
   double critical_load = 0;  // F_CL: below this normal force there is no friction
   double largest_load = std::numeric_limits<double>::infinity();  // above it friction grows no more
   double tangential_stiffness = 0;                                // 2/7 of the normal one unless given
   double rolling_stiffness = 0;
   double rolling_friction = 0;  // that of sliding unless given
 };
+
+// Whether friction is less while contacts slide: they must remember whether they do.
+inline bool remembers_sliding(const ContactParameters& contact) {
+  return contact.kinetic_friction < contact.friction;
+}
 
 // k_n delta, delta = a_i + a_j - r, the size of the force in overlap.
 template <class Real>

@@ -51,6 +51,26 @@ PECLET_ALWAYS_INLINE Real longest_spring(const ContactParameters& contact, const
   return (contact.friction / contact.tangential_stiffness) * frictional_load(contact, overlap);
 }
 
+// Static and kinetic friction: beyond mu_s frictional_load() a contact slides, and its spring is cut to mu_k
+// frictional_load(); it sticks again when its spring is not longer than that before it is cut. Luding,
+// Granular Matter 10, 235 (2008), sect. 3.2. `slides`: 1 if it did in the step before, or 0.
+template <class Real>
+PECLET_ALWAYS_INLINE SpringLimitsOf<Real> sliding_limits(const ContactParameters& contact,
+                                                         const Real& overlap, const Real& slides) {
+  const Real load = frictional_load(contact, overlap);
+  const Real kinetic = (contact.kinetic_friction / contact.tangential_stiffness) * load;
+  return {select(slides > 0.5, kinetic, longest_spring(contact, overlap)), kinetic};
+}
+
+// Whether a contact slides after a step in which its spring had this length before it was cut. One without
+// load has no friction and remembers nothing.
+template <class Real>
+PECLET_ALWAYS_INLINE Real slides_after(const ContactParameters& contact, const Real& overlap,
+                                       const Real& length, const SpringLimitsOf<Real>& limits) {
+  const auto slides = (length > limits.longest) & (frictional_load(contact, overlap) > 0.0);
+  return select(slides, Real{1.0}, Real{0.0});
+}
+
 // Springs of a contact, as they couple velocities and spins: for slips T.(U_j - U_i) - (l_i Omega_i + l_j
 // Omega_j) x n and couples a^2 T.(Omega_i - Omega_j).
 template <class Real>

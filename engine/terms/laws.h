@@ -20,12 +20,13 @@ struct Terms {
   bool friction = false;      // needs contact
   bool rolling = false;       // needs friction
   bool conservative = false;  // any of the conservative laws; which ones is known of every kind of pairs
+  bool kinetic = false;       // friction that is less while contacts slide; needs friction
 
   friend constexpr bool operator==(const Terms&, const Terms&) = default;
 
   constexpr bool valid() const {
     return (lubrication || !(noise || strained)) && (contact || !(damping || friction)) &&
-           (friction || !rolling);
+           (friction || !(rolling || kinetic));
   }
 };
 
@@ -37,7 +38,7 @@ struct NamedTerm {
 constexpr NamedTerm every_term[] = {
     {"lubrication", &Terms::lubrication},   {"noise", &Terms::noise},       {"contact", &Terms::contact},
     {"damping", &Terms::damping},           {"friction", &Terms::friction}, {"rolling", &Terms::rolling},
-    {"conservative", &Terms::conservative}, {"strained", &Terms::strained},
+    {"conservative", &Terms::conservative}, {"strained", &Terms::strained}, {"kinetic", &Terms::kinetic},
 };
 constexpr std::size_t count_of_terms = sizeof(every_term) / sizeof(every_term[0]);
 

@@ -5,33 +5,47 @@
 
 namespace peclet::engine {
 
+// How long a spring may be, and how long the one is that is left of a longer one.
+template <class Real>
+struct SpringLimitsOf {
+  Real longest, left;
+};
+
 // The spring after a step in which its ends moved by `stretch` relative to each other:
 //   1. turned into the present tangent plane, keeping its length (Luding 2008, eq. 18);
 //   2. s <- s + stretch;
-//   3. shortened to `longest` if it exceeds that: the stored spring itself is cut, so that it never winds up
-//      (Monti et al. 2021 eq. 5).
-// `stretch` must be tangential. A spring along n vanishes.
+//   3. cut if it exceeds its limit: the stored spring itself, so that it never winds up (Monti et al. 2021
+//      eq. 5).
+// `stretch` must be tangential. A spring along n vanishes. `length` is that before the cut.
 template <class Real>
 PECLET_ALWAYS_INLINE Vector3Of<Real> advanced_spring(const Vector3Of<Real>& spring,
                                                      const Vector3Of<Real>& normal,
-                                                     const Vector3Of<Real>& stretch, const Real& longest) {
+                                                     const Vector3Of<Real>& stretch,
+                                                     const SpringLimitsOf<Real>& limits, Real& length) {
   Vector3Of<Real> turned = across(spring, normal);
   const Real before = norm(spring), after = norm(turned);
   // The division by zero of a vanishing spring is not selected.
   turned = select(after > 1e-14 * before, before / after, Real{0.0}) * turned;
   turned += stretch;
-  const Real length = norm(turned);
-  return select(length > longest, longest / length, Real{1.0}) * turned;
+  length = norm(turned);
+  return select(length > limits.longest, limits.left / length, Real{1.0}) * turned;
+}
+template <class Real>
+PECLET_ALWAYS_INLINE Vector3Of<Real> advanced_spring(const Vector3Of<Real>& spring,
+                                                     const Vector3Of<Real>& normal,
+                                                     const Vector3Of<Real>& stretch, const Real& longest) {
+  Real length;
+  return advanced_spring(spring, normal, stretch, {longest, longest}, length);
 }
 
-// The part of a spring's stretch that is left when it has been cut to `longest`: the secant stiffness of a
-// spring that slides is that part of its stiffness.
+// The part of a spring's stretch that is left when it has been cut: the secant stiffness of a spring that
+// slides is that part of its stiffness.
 template <class Real>
 PECLET_ALWAYS_INLINE Real held_share(const Vector3Of<Real>& spring, const Vector3Of<Real>& normal,
-                                     const Vector3Of<Real>& stretch, const Real& longest) {
+                                     const Vector3Of<Real>& stretch, const SpringLimitsOf<Real>& limits) {
   const Real unlimited{1e300};
   const Real length = norm(advanced_spring(spring, normal, stretch, unlimited));
-  return select(length > longest, longest / length, Real{1.0});
+  return select(length > limits.longest, limits.left / length, Real{1.0});
 }
 
 // Whether a spring is shorter than Coulomb's limit, the largest force that it can have.

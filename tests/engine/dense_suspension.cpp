@@ -10,6 +10,7 @@ namespace peclet::engine {
 namespace {
 
 constexpr double shear_rate = 0.7;
+constexpr double unused = ContactParameters{}.kinetic_friction;
 
 void scatter(System& system, Draws& draws) {
   ParticleState& particles = system.particles;
@@ -41,6 +42,9 @@ void stretch_springs(System& system, const Physics& physics, Draws& draws) {
       if (physics.contact->rolling_stiffness > 0) {
         springs.rolling = across(draws.vector(5 * overlap), normal);
       }
+      if (remembers_sliding(*physics.contact)) {
+        springs.slides = draws.whole(0, 1);
+      }
       system.springs.set(p, springs);
     }
   }
@@ -57,6 +61,7 @@ Physics physics_with(const Terms& terms) {
     physics.contact = ContactParameters{.normal_stiffness = 1e4,
                                         .normal_damping = terms.damping ? 1.3 : 0,
                                         .friction = terms.friction ? 0.5 : 0,
+                                        .kinetic_friction = terms.kinetic ? 0.3 : unused,
                                         .tangential_stiffness = 2.0 / 7.0 * 1e4,
                                         .rolling_stiffness = terms.rolling ? 700.0 : 0,
                                         .rolling_friction = 0.2};

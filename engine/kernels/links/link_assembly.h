@@ -217,13 +217,19 @@ class LinkedPairs {
     const Real overlap = larger(ahead_.overlap(), Real{0.0});
     const Real elapsed{parameters.spring_timestep * parameters.felt_share};
     const ContactLeversOf<Real> lever = contact_levers(kind_.radius_first, kind_.radius_second, ahead_);
+    const Real longest = longest_spring(parameters.contact, overlap);
+    SpringLimitsOf<Real> limits = {longest, longest};
+    if (terms.kinetic) {
+      limits = sliding_limits(parameters.contact, overlap, load_lanes(in_.slides + begin_, count_, Real{}));
+    }
     HeldSprings<Real> held{};
-    held.tangential = held_share(spring(0), shape_.normal, elapsed * slip_velocity(lever, shape_, motion_),
-                                 longest_spring(parameters.contact, overlap));
+    held.tangential =
+        held_share(spring(0), shape_.normal, elapsed * slip_velocity(lever, shape_, motion_), limits);
     if (terms.rolling) {
+      const Real longest_turn = longest_rolling_spring(parameters.contact, overlap);
       held.rolling = held_share(spring(3), shape_.normal,
                                 elapsed * rolling_velocity(kind_.reduced_diameter, shape_, motion_),
-                                longest_rolling_spring(parameters.contact, overlap));
+                                {longest_turn, longest_turn});
     }
     return held;
   }

@@ -223,6 +223,9 @@ class PairGroup {
     if constexpr (terms.rolling) {
       springs.rolling = {load(3), load(4), load(5)};
     }
+    if constexpr (terms.kinetic) {
+      springs.slides = load_lanes(in_.slides + begin_, count_, Real{});
+    }
     return springs;
   }
   PECLET_ALWAYS_INLINE void store_springs(const PairSpringsOf<Real>& springs) const {
@@ -236,6 +239,9 @@ class PairGroup {
       store(3, springs.rolling.x);
       store(4, springs.rolling.y);
       store(5, springs.rolling.z);
+    }
+    if constexpr (terms.kinetic) {
+      store_lanes(in_.slides + begin_, count_, springs.slides);
     }
   }
   PECLET_ALWAYS_INLINE void forget_springs() const {

@@ -11,8 +11,9 @@ namespace peclet::engine {
 
 template <class Real, unsigned code>
 constexpr PairKernel kernel_of_code() {
-  if constexpr (decoded_terms(code).valid()) {
-    return &run_pair_kernel<Real, decoded_terms(code)>;
+  constexpr Terms terms = decoded_terms(code);
+  if constexpr (terms.valid() && compiled_terms(terms) == terms) {
+    return &run_pair_kernel<Real, terms>;
   } else {
     return nullptr;
   }

@@ -26,6 +26,7 @@ struct PairKernelInput {
   const PairKind* kinds;
   PairParameters parameters;
   double* springs[6];  // components, see SpringField; advanced in place
+  double* slides;      // of each pair, with kinetic friction
 
   NoiseKey noise;
   FillNormals fill_normals;
@@ -47,7 +48,7 @@ struct PairKernelOutput {
 using PairKernel = void (*)(const PairKernelInput& input, const PairRun* runs, std::size_t count,
                             const PairKernelOutput& output);
 
-// Indexed by the code of the terms (recipes.h); null where they are not valid.
+// Indexed by the code of the terms (recipes.h); null where they are not compiled.
 struct PairKernelTable {
   PairKernel kernel[count_of_codes];
 };

@@ -35,6 +35,7 @@ inline double kind_reach(const PairParameters& parameters, const PairKind& kind)
 template <class Real>
 struct PairSpringsOf {
   Vector3Of<Real> tangential, rolling;
+  Real slides{};  // 1 or 0
 };
 
 template <class Real>
@@ -67,6 +68,26 @@ PECLET_ALWAYS_INLINE Vector3Of<Real> advance_spring(const PairParameters& parame
   return where(touching, advanced_spring(before, normal, part, longest));
 }
 
+// The same for the spring of friction that is less while contacts slide.
+template <class Real, class Mask>
+PECLET_ALWAYS_INLINE Vector3Of<Real> advance_sliding_spring(const PairParameters& parameters,
+                                                            const Mask& touching, const Real& overlap,
+                                                            const Vector3Of<Real>& normal,
+                                                            const Vector3Of<Real>& stretch,
+                                                            PairSpringsOf<Real>& springs) {
+  const ContactParameters& contact = parameters.contact;
+  const Vector3Of<Real> before = springs.tangential;
+  const SpringLimitsOf<Real> limits = sliding_limits(contact, overlap, springs.slides);
+  Real length;
+  springs.tangential = where(touching, advanced_spring(before, normal, stretch, limits, length));
+  springs.slides = select(touching, slides_after(contact, overlap, length, limits), Real{0.0});
+  if (parameters.felt_share == 1) {
+    return springs.tangential;
+  }
+  const Vector3Of<Real> part = Real{parameters.felt_share} * stretch;
+  return where(touching, advanced_spring(before, normal, part, limits, length));
+}
+
 template <Terms terms, class Real>
 PECLET_ALWAYS_INLINE void add_contact_terms(const PairParameters& parameters, const PairKind& kind,
                                             const PairGeometryOf<Real>& pair,
@@ -81,9 +102,13 @@ PECLET_ALWAYS_INLINE void add_contact_terms(const PairParameters& parameters, co
   if constexpr (terms.friction) {
     const ContactLeversOf<Real> lever = contact_levers(kind.radius_first, kind.radius_second, pair);
     const Vector3Of<Real> slip = Real{parameters.spring_timestep} * slip_velocity(lever, pair, motion);
-    const Real longest = longest_spring(contact, pair.overlap());
-    const Vector3Of<Real> felt =
-        advance_spring(parameters, touching, pair.normal, slip, longest, springs.tangential);
+    Vector3Of<Real> felt;
+    if constexpr (terms.kinetic) {
+      felt = advance_sliding_spring(parameters, touching, pair.overlap(), pair.normal, slip, springs);
+    } else {
+      const Real longest = longest_spring(contact, pair.overlap());
+      felt = advance_spring(parameters, touching, pair.normal, slip, longest, springs.tangential);
+    }
     loads.friction = friction_load(contact.tangential_stiffness, felt, lever, pair);
     if constexpr (terms.rolling) {
       const Vector3Of<Real> turn =

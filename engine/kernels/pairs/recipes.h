@@ -1,7 +1,7 @@
 // Every combination of terms that is compiled, in one place.
 //
 // Two independent choices (conservative laws; lubrication of either form without or with noise or none) times
-// the ways in which spheres can touch make 70 recipes.
+// the ways in which spheres can touch make 70 recipes, and 20 more with kinetic friction.
 #pragma once
 
 #include "engine/terms/laws.h"
@@ -23,6 +23,12 @@ constexpr unsigned code_of(const Terms& terms) {
     code |= terms.*every_term[bit].chosen ? 1U << bit : 0U;
   }
   return code;
+}
+
+// What is compiled for these terms: with kinetic friction there always is damping, which may be zero.
+constexpr Terms compiled_terms(Terms terms) {
+  terms.damping = terms.damping || terms.kinetic;
+  return terms;
 }
 
 constexpr unsigned count_of_codes = 1U << count_of_terms;

@@ -18,6 +18,7 @@ Terms required_terms(const Physics& physics) {
     terms.contact = true;
     terms.damping = physics.contact->normal_damping > 0;
     terms.friction = physics.contact->friction > 0;
+    terms.kinetic = terms.friction && remembers_sliding(*physics.contact);
     terms.rolling = terms.friction && physics.contact->rolling_stiffness > 0;
   }
   return terms;

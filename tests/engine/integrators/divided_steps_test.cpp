@@ -10,6 +10,7 @@
 #include "engine/integrators/midpoint.h"
 #include "engine/realisation/ending.h"
 #include "tests/engine/dense_suspension.h"
+#include "tests/engine/pair_evaluation.h"
 
 namespace peclet::engine {
 namespace {
@@ -134,8 +135,7 @@ std::vector<std::uint64_t> bits_of(const VectorField& field) {
 
 // Of two halves: the same places and velocities as two steps of half the size, and the mean of their
 // stresses.
-TEST(DividedSteps, AreStepsOfHalfTheSize) {
-  const Physics physics = physics_with({.lubrication = true, .contact = true, .friction = true});
+void expect_steps_of_half_the_size(const Physics& physics) {
   constexpr double step = 2e-3;
   const System start = dense_suspension(physics, 203, 7);
   System whole = start, divided = start, halved = start;
@@ -154,6 +154,7 @@ TEST(DividedSteps, AreStepsOfHalfTheSize) {
   EXPECT_TRUE(bits_of(divided.particles.position) == bits_of(halved.particles.position));
   EXPECT_TRUE(bits_of(divided.particles.velocity) == bits_of(halved.particles.velocity));
   EXPECT_TRUE(bits_of(divided.particles.angular_velocity) == bits_of(halved.particles.angular_velocity));
+  EXPECT_EQ(components(divided.springs), components(halved.springs));
   EXPECT_NEAR(divided.box.strain(), step * physics.flow.rate(), 1e-15);
   for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
     const SymmetricTensor &mean = report.sums.stress[t], &a = first.sums.stress[t],
@@ -166,6 +167,13 @@ TEST(DividedSteps, AreStepsOfHalfTheSize) {
   EXPECT_EQ(report.largest_displacement, std::max(first.largest_displacement, second.largest_displacement));
   EXPECT_EQ(report.solver_iterations, first.solver_iterations + second.solver_iterations);
   EXPECT_GT(first.sums.contacts, 0);
+}
+
+TEST(DividedSteps, AreStepsOfHalfTheSize) {
+  for (const bool kinetic : {false, true}) {
+    expect_steps_of_half_the_size(
+        physics_with({.lubrication = true, .contact = true, .friction = true, .kinetic = kinetic}));
+  }
 }
 
 // A sphere without inertia moves by the integral of the noise, sqrt(2 kT dt / zeta) z, however its steps are

@@ -84,6 +84,36 @@ TEST_P(LinkKernelsOf, HaveTheSqueezingResistanceOfTheEndOfTheStep) {
   }
 }
 
+// A pair along x whose spring is longer than kinetic friction leaves and shorter than static friction allows:
+// where it slides, the stiffness is the part that leaves it at kinetic friction.
+TEST_P(LinkKernelsOf, HaveTheSecantStiffnessOfContactsThatSlide) {
+  Physics physics = physics_with({.contact = true, .friction = true, .kinetic = true});
+  const ContactParameters& contact = *physics.contact;
+  physics.flow = steady_shear(0);
+  System system;
+  system.particles = make_particles({1, 1}, 0.1);
+  system.box = PeriodicCell({20, 20, 20}, Matrix3{});
+  system.list = NeighbourList(range_table(make_pair_kinds(physics, {1.0}), 1), 0.1);
+  system.particles.position.set(0, {5, 5, 5});
+  system.particles.position.set(1, {6.99, 5, 5});
+  rebuild_neighbours(system);
+  const double per_load = contact.normal_stiffness * 0.01 / contact.tangential_stiffness;
+  const double length = 0.4 * per_load;  // between 0.3 and 0.5
+  for (const double slides : {0.0, 1.0}) {
+    system.springs = SpringField(SpringKinds::tangential_that_slide, 1);
+    system.springs.set(0, {{0, length, 0}, {}, slides});
+    LinkWeights of_links = weights;
+    of_links.normal_time = 0;
+    const Links links(physics, system, GetParam(), of_links);
+    std::vector<MotionRow> across(2);
+    const std::uint32_t second = links.system().particles.id[0] == 1 ? 0 : 1;
+    across[second].v[1] = 1;
+    const double found = static_cast<double>(links.times(across)[second].v[1]) - system.particles.mass[0];
+    const double share = slides == 1 ? 0.3 * per_load / length : 1;
+    EXPECT_NEAR(found / (step * step * contact.tangential_stiffness), share, 1e-5) << slides;
+  }
+}
+
 // Motions that leave all distances as they are cost nothing but what inertia and drag say.
 TEST_P(LinkKernelsOf, RigidTranslationFeelsNoLink) {
   const Physics physics = physics_with({.lubrication = true, .contact = true, .friction = true});

@@ -60,7 +60,8 @@ OneByOne one_by_one(const System& system, const Physics& physics) {
     configuration.springs.push_back({spring["i"],
                                      spring["j"],
                                      {spring["image"][0], spring["image"][1], spring["image"][2]},
-                                     {vector_from(spring["tangential"]), vector_from(spring["rolling"])}});
+                                     {vector_from(spring["tangential"]), vector_from(spring["rolling"]),
+                                      spring.value("slides", false) ? 1.0 : 0.0}});
   }
   sort_contacts(configuration.springs);
   return {evaluate_configuration(configuration), configuration.springs};
@@ -68,7 +69,7 @@ OneByOne one_by_one(const System& system, const Physics& physics) {
 
 TEST(PairPass, EqualsTheSumOfItsTermsForEveryRecipe) {
   const std::vector<Terms> recipes = every_recipe();
-  ASSERT_EQ(recipes.size(), 70u);
+  ASSERT_EQ(recipes.size(), 110u);
   for (const Terms& terms : recipes) {
     const Physics physics = physics_with(terms);
     ASSERT_EQ(required_terms(physics), terms) << text(terms);
@@ -93,8 +94,9 @@ TEST(PairPass, EqualsTheSumOfItsTermsForEveryRecipe) {
 }
 
 TEST(PairPass, AdvancesTheSpringsOfEveryContactAndNoOther) {
-  for (const bool rolling : {false, true}) {
-    const Physics physics = physics_with({.contact = true, .friction = true, .rolling = rolling});
+  for (const bool more : {false, true}) {
+    const Physics physics =
+        physics_with({.contact = true, .friction = true, .rolling = more, .kinetic = more});
     System system = dense_suspension(physics, 200, 4);
     const OneByOne expected = one_by_one(system, physics);
     VectorField force(200), torque(200);
@@ -108,6 +110,7 @@ TEST(PairPass, AdvancesTheSpringsOfEveryContactAndNoOther) {
       EXPECT_EQ(found[k].image, expected.springs[k].image);
       EXPECT_EQ(norm(found[k].springs.tangential - expected.springs[k].springs.tangential), 0);
       EXPECT_EQ(norm(found[k].springs.rolling - expected.springs[k].springs.rolling), 0);
+      EXPECT_EQ(found[k].springs.slides, expected.springs[k].springs.slides);
     }
   }
 }

@@ -21,7 +21,8 @@ TEST(PairPass, HasTheSameBitsOnAnyNumberOfThreads) {
                                         .damping = true,
                                         .friction = true,
                                         .rolling = true,
-                                        .conservative = true});
+                                        .conservative = true,
+                                        .kinetic = true});
   System system = dense_suspension(physics, 8500, 8);
   rebuild_neighbours(system);
   EXPECT_EQ(system.list.blocks().size(), 4u);
@@ -79,7 +80,8 @@ TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
                            .damping = true,
                            .friction = true,
                            .rolling = true,
-                           .conservative = true};
+                           .conservative = true,
+                           .kinetic = true};
   const Physics physics = physics_with(terms);
   System system = dense_suspension(physics, 150, 10);
   system.step = 3;
@@ -100,7 +102,7 @@ TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
     const std::uint32_t i = seen.first, j = seen.second;
     const PairKind& kind = kinds[2U * all.size_class[i] + all.size_class[j]];
     const ContactSprings before = held[{i, j, seen.image}];
-    PairSpringsOf<double> springs = {before.tangential, before.rolling};
+    PairSpringsOf<double> springs = {before.tangential, before.rolling, before.slides};
     Vector3 velocity = all.velocity[j] - all.velocity[i];
     velocity += system.box.velocity(seen.image);
     const PairMotion motion = {velocity, all.angular_velocity[i], all.angular_velocity[j]};
@@ -111,7 +113,7 @@ TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
           return PairNormalsOf<double>{normals.first, normals.second};
         },
         [](StressTerm /*part*/, const Vector3& /*force*/) {});
-    held[{i, j, seen.image}] = {springs.tangential, springs.rolling};
+    held[{i, j, seen.image}] = {springs.tangential, springs.rolling, springs.slides};
     PairLoad sum = t.lubrication;
     sum += t.noise;
     sum += t.friction;

@@ -70,6 +70,7 @@ TEST(Scene, DefaultsThatFollowFromOtherKeys) {
   EXPECT_DOUBLE_EQ(scene.physics.contact->tangential_stiffness, 2e3);
   EXPECT_EQ(scene.physics.contact->rolling_friction, 0.4);
   EXPECT_EQ(scene.physics.contact->normal_damping, 0);
+  EXPECT_FALSE(remembers_sliding(*scene.physics.contact));
   EXPECT_EQ(scene.physics.contact->critical_load, 0);
   EXPECT_EQ(scene.physics.contact->largest_load, std::numeric_limits<double>::infinity());
 }
@@ -79,7 +80,8 @@ TEST(Scene, GivenValuesAreKept) {
     "particles": {"reference_radius": 1.5},
     "fluid": {"thermal_energy": 0.017},
     "contact": {"normal_stiffness": 1e4, "normal_damping": 0.04, "friction": 0.5, "tangential_stiffness": 2857,
-                "rolling_stiffness": 3, "rolling_friction": 0.3, "critical_load": 0.6, "largest_load": 50},
+                "rolling_stiffness": 3, "rolling_friction": 0.3, "critical_load": 0.6, "largest_load": 50,
+                "kinetic_friction": 0.4},
     "lubrication": {"form": "kim-karrila", "inner_gap": 1e-4, "outer_gap": 0.2},
     "repulsion": {"form": "exponential", "strength": 1.7, "relative_length": 0.02, "cutoff_lengths": 10},
     "integrator": {"timestep": 1e-4},
@@ -93,6 +95,7 @@ TEST(Scene, GivenValuesAreKept) {
   EXPECT_EQ(scene.physics.contact->normal_damping, 0.04);
   EXPECT_EQ(scene.physics.contact->tangential_stiffness, 2857);
   EXPECT_EQ(scene.physics.contact->rolling_friction, 0.3);
+  EXPECT_EQ(scene.physics.contact->kinetic_friction, 0.4);
   EXPECT_EQ(scene.physics.contact->critical_load, 0.6);
   EXPECT_EQ(scene.physics.contact->largest_load, 50);
   EXPECT_EQ(scene.physics.lubrication->inner_gap, 1e-4);

@@ -17,7 +17,8 @@ const Physics physics = physics_with({.lubrication = true,
                                       .damping = true,
                                       .friction = true,
                                       .rolling = true,
-                                      .conservative = true});
+                                      .conservative = true,
+                                      .kinetic = true});
 
 // With a timestep of 0 the springs act as they are.
 std::vector<double> loads_of(System system) {
@@ -150,6 +151,36 @@ TEST(ContactHistory, SpringsOfZeroAreNotHeld) {
   System system = dense_suspension(physics, 60, 4);
   system.springs = SpringField(system.springs.kinds(), system.list.pairs().size());
   EXPECT_TRUE(held_contacts(system.list, system.particles, system.springs).empty());
+}
+
+// A contact slides without a spring where nothing holds it.
+TEST(ContactHistory, ContactsThatSlideAreHeldWithoutASpring) {
+  System system = dense_suspension(physics, 60, 4);
+  system.springs = SpringField(system.springs.kinds(), system.list.pairs().size());
+  system.springs.set(5, {{}, {}, 1});
+  const std::vector<HeldContact> held = held_contacts(system.list, system.particles, system.springs);
+  ASSERT_EQ(held.size(), 1u);
+  EXPECT_EQ(held[0].springs.slides, 1);
+  rebuild_neighbours(system);
+  EXPECT_EQ(springs_by_particles(system).at({held[0].first, held[0].second}).slides, 1);
+}
+
+TEST(ContactHistory, HasRoomForWhatIsRemembered) {
+  const std::pair<SpringKinds, std::size_t> rooms[] = {{SpringKinds::none, 0},
+                                                       {SpringKinds::tangential, 3},
+                                                       {SpringKinds::tangential_and_rolling, 6},
+                                                       {SpringKinds::tangential_that_slide, 4},
+                                                       {SpringKinds::tangential_and_rolling_that_slide, 7}};
+  for (const auto& [kinds, components] : rooms) {
+    SpringField field(kinds, 2);
+    EXPECT_EQ(field.components(), components);
+    field.set(1, {{1, 2, 3}, {4, 5, 6}, 1});
+    EXPECT_EQ(field[1].tangential.z, components >= 3 ? 3 : 0);
+    EXPECT_EQ(field[1].rolling.z, components >= 6 ? 6 : 0);
+    EXPECT_EQ(field[1].slides, components % 3);
+    EXPECT_EQ(norm(field[0].tangential), 0);
+    EXPECT_EQ(field[0].slides, 0);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,144 @@
+// Friction that is less while a contact slides: when it breaks away, holds again and forgets.
+#include <gtest/gtest.h>
+
+#include "engine/kernels/pair_pass.h"
+#include "tests/engine/two_spheres.h"
+
+namespace peclet::engine {
+namespace {
+
+// One pair whose surfaces slip along x.
+class KineticFrictionOfTwo : public testing::Test {
+ protected:
+  static constexpr double stiffness = 2857, still = 0.5, kinetic = 0.3;
+  static constexpr double load = 100;       // k_n delta
+  static constexpr double advance = 2.857;  // of the force in a step at unit slip
+  static constexpr Terms terms = {.contact = true, .friction = true, .rolling = true, .kinetic = true};
+
+  // The force along x on the first sphere after a step.
+  double after_step(double slip, double gap = -0.01) {
+    const auto no_noise = [] { return PairNormalsOf<double>{}; };
+    const auto no_law = [](StressTerm /*part*/, const Vector3& /*force*/) {};
+    parameters_.contact = contact_;
+    parameters_.spring_timestep = 1e-3;
+    return pair_terms<terms>(parameters_, kind_, pair_at(1, 1, gap, {0, 0, 1}), {{slip, 0, 0}, {}, {}},
+                             springs_, no_noise, no_law)
+        .friction.force.x;
+  }
+  double after_steps(int steps, double slip, double gap = -0.01) {
+    double force = 0;
+    for (int step = 0; step < steps; ++step) force = after_step(slip, gap);
+    return force;
+  }
+  bool slides() const { return springs_.slides == 1; }
+
+  ContactParameters contact_ = {.normal_stiffness = 1e4,
+                                .friction = still,
+                                .kinetic_friction = kinetic,
+                                .tangential_stiffness = stiffness,
+                                .rolling_stiffness = 700,
+                                .rolling_friction = 0.2};
+  PairParameters parameters_;
+  PairKind kind_ = [this] {
+    Physics physics;
+    physics.viscosity = 0.1;
+    physics.contact = contact_;
+    return make_pair_kinds(physics, {1.0}).front();
+  }();
+  PairSpringsOf<double> springs_;
+};
+
+TEST_F(KineticFrictionOfTwo, BreaksAwayAtTheStaticForceAndSlidesAtTheKineticOne) {
+  for (int step = 1; step <= 17; ++step) {  // 17 * 2.857 < 50
+    EXPECT_NEAR(after_step(1), step * advance, 1e-12);
+    EXPECT_FALSE(slides());
+  }
+  for (int step = 18; step <= 40; ++step) {
+    EXPECT_NEAR(after_step(1), kinetic * load, 1e-12);
+    EXPECT_TRUE(slides());
+  }
+}
+
+TEST_F(KineticFrictionOfTwo, SticksAgainWhereItReverses) {
+  after_steps(30, 1);
+  ASSERT_TRUE(slides());
+  EXPECT_NEAR(after_step(-1), kinetic * load - advance, 1e-12);
+  EXPECT_FALSE(slides());
+  // Up to the static force of the other direction: (30 + 50) / 2.857 = 28.001.
+  EXPECT_NEAR(after_steps(27, -1), kinetic * load - 28 * advance, 1e-11);
+  EXPECT_FALSE(slides());
+  EXPECT_NEAR(after_step(-1), -kinetic * load, 1e-12);
+  EXPECT_TRUE(slides());
+}
+
+// Slips that fall, or a load that rises, so far that the kinetic friction holds them.
+TEST_F(KineticFrictionOfTwo, SticksAgainWhereLessHoldsIt) {
+  after_steps(30, 1);
+  EXPECT_NEAR(after_step(0.01), kinetic * load, 1e-12);
+  EXPECT_TRUE(slides());
+  EXPECT_NEAR(after_step(0.01, -0.009), 0.9 * kinetic * load, 1e-12);
+  EXPECT_TRUE(slides());
+  EXPECT_NEAR(after_step(0.01, -0.01), 0.9 * kinetic * load + 0.01 * advance, 1e-12);
+  EXPECT_FALSE(slides());
+  EXPECT_NEAR(after_steps(8, 1), 0.9 * kinetic * load + 8.01 * advance, 1e-12);  // above the kinetic force
+  EXPECT_FALSE(slides());
+}
+
+// F_CL = 30: friction goes by 70, and by nothing at F_n = 20, where a contact forgets that it slid.
+TEST_F(KineticFrictionOfTwo, OfBothKindsGoesByWhatExceedsTheCriticalLoad) {
+  contact_.critical_load = 30;
+  EXPECT_NEAR(after_steps(12, 1), 12 * advance, 1e-12);  // below 35
+  EXPECT_NEAR(after_step(1), kinetic * 70, 1e-12);
+  EXPECT_TRUE(slides());
+  EXPECT_EQ(after_step(1, -0.002), 0);
+  EXPECT_FALSE(slides());
+  EXPECT_NEAR(after_steps(12, 1), 12 * advance, 1e-12);
+  EXPECT_NEAR(after_step(1), kinetic * 70, 1e-12);
+  contact_.largest_load = 40;
+  EXPECT_NEAR(after_step(1), kinetic * 40, 1e-12);
+}
+
+TEST_F(KineticFrictionOfTwo, MayBeNone) {
+  contact_.kinetic_friction = 0;
+  EXPECT_NEAR(after_steps(17, 1), 17 * advance, 1e-12);
+  for (const double slip : {1.0, 1e-6, -1.0, 1e-12}) {
+    EXPECT_EQ(after_step(slip), 0);
+    EXPECT_TRUE(slides());
+  }
+}
+
+TEST_F(KineticFrictionOfTwo, ForgetsThatItSlidWhereItOpens) {
+  after_steps(30, 1);
+  after_step(1, 0);
+  EXPECT_FALSE(slides());
+  EXPECT_NEAR(after_steps(17, 1), 17 * advance, 1e-12);
+}
+
+// What pushes on the way is cut by what the contact did before the step.
+TEST_F(KineticFrictionOfTwo, PushesOnTheWayByWhatTheStepBegan) {
+  parameters_.felt_share = 0.6;
+  EXPECT_NEAR(after_steps(17, 1), 16.6 * advance, 1e-12);
+  EXPECT_NEAR(after_step(0.6), 17.36 * advance, 1e-12);  // 17.6 advances would be more than 50
+  EXPECT_TRUE(slides());
+  EXPECT_NEAR(stiffness * springs_.tangential.x, kinetic * load, 1e-12);
+  EXPECT_NEAR(after_step(1), kinetic * load, 1e-12);
+  // The other way again, which holds at once, on the way as at its end.
+  EXPECT_NEAR(after_step(-1), kinetic * load - 0.6 * advance, 1e-12);
+  EXPECT_FALSE(slides());
+}
+
+// Of a spring that breaks away, and of one that is held by what it may have while it sticks.
+TEST_F(KineticFrictionOfTwo, LeavesItsShareOfTheStiffness) {
+  const double overlap = 0.01, longest = still * load / stiffness, left = kinetic * load / stiffness;
+  const auto share = [&](double length, double slides) {
+    return held_share(Vector3{0.5 * length, 0, 0}, {0, 0, 1}, {0.5 * length, 0, 0},
+                      sliding_limits(contact_, overlap, slides));
+  };
+  EXPECT_EQ(share(0.99 * longest, 0), 1);
+  EXPECT_NEAR(share(1.01 * longest, 0), left / (1.01 * longest), 1e-14);
+  EXPECT_NEAR(share(0.99 * longest, 1), left / (0.99 * longest), 1e-14);
+  EXPECT_EQ(share(0.99 * left, 1), 1);
+}
+
+}  // namespace
+}  // namespace peclet::engine
