@@ -22,7 +22,10 @@ std::vector<Quantity> network_quantities(const Scene& scene, const Window&) {
                  .unit = "1",
                  .axes = {mobilisation}});
   all.push_back({.name = "mobilised_friction", .symbol = "<|F_t| / (mu F_n)>", .unit = "1"});
-  all.push_back({.name = "sliding_contacts", .symbol = "P(|F_t| > 0.99 mu F_n)", .unit = "1"});
+  const bool remembered = remembers_sliding(*scene.physics.contact);
+  all.push_back({.name = "sliding_contacts",
+                 .symbol = remembered ? "P(slides)" : "P(|F_t| > 0.99 mu F_n)",
+                 .unit = "1"});
   if (scene.physics.contact->critical_load > 0) {
     all.push_back({.name = "frictional_contacts", .symbol = "P(F_n > F_CL)", .unit = "1"});
   }
@@ -61,7 +64,7 @@ void ContactNetwork::add_contact(std::size_t block, const TouchingPair& contact)
   by_mobilisation_.weigh(block, 1);
   mobilised_friction_.add(block, 0, mobilised);
   mobilised_friction_.weigh(block, 1);
-  sliding_contacts_.add(block, 0, mobilised > sliding_from ? 1 : 0);
+  sliding_contacts_.add(block, 0, contact.slides ? 1 : 0);
   sliding_contacts_.weigh(block, 1);
 }
 

@@ -18,6 +18,7 @@ struct TouchingPair {
   double tangential_force;   // |F_t| = k_t |s|
   bool rough;                // whether it has friction: k_n delta above the critical load
   double mobilised;          // |F_t| / (mu frictional_load()), 0 without friction
+  bool slides;               // as it remembers, or else by `mobilised`
 };
 
 // In the order of the list.
@@ -34,7 +35,10 @@ void for_each_touching_pair(const System& system, const std::vector<PairKind>& k
     const double load = frictional_load(contact, overlap);
     const bool rough = contact.friction > 0 && load > 0;
     const double force = rough ? contact.tangential_stiffness * norm(system.springs[p].tangential) : 0;
-    visit({pair, distance, overlap, force, rough, rough ? force / (contact.friction * load) : 0});
+    const double mobilised = rough ? force / (contact.friction * load) : 0;
+    const bool slides = system.springs.remembers_sliding() ? rough && system.springs[p].slides != 0
+                                                           : mobilised > sliding_from;
+    visit({pair, distance, overlap, force, rough, mobilised, slides});
   }
 }
 

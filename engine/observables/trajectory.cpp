@@ -187,9 +187,9 @@ void Trajectory::add_contacts(const System& system) {
     ++number[i];
     ++number[j];
     const PairKind& kind = kinds_[touching.pair.kind];
-    const State state = !touching.rough                     ? State::frictionless
-                        : touching.mobilised > sliding_from ? State::sliding
-                                                            : State::sticking;
+    const State state = !touching.rough   ? State::frictionless
+                        : touching.slides ? State::sliding
+                                          : State::sticking;
     bonds.push_back({{std::min(i, j), std::max(i, j)},
                      static_cast<float>(-2 * touching.overlap / kind.sum_of_radii),
                      static_cast<float>(contact_push(contact.normal_stiffness, touching.overlap)),

@@ -58,6 +58,26 @@ TEST(ContactNetwork, LeavesContactsBelowTheCriticalLoadWithoutFriction) {
   EXPECT_EQ(blocks["frictional_contacts"][0], 0.5);
 }
 
+// Of two contacts with the same spring the one slides that remembers it.
+TEST(ContactNetwork, CountsContactsThatRememberThatTheySlide) {
+  Scene scene = scene_with("contact_network");
+  scene.physics.contact->kinetic_friction = 0.3;
+  System system = loose_spheres(3);
+  system.particles.position.set(0, {1, 1, 1});
+  system.particles.position.set(1, {3.9, 1, 1});
+  system.particles.position.set(2, {6.8, 1, 1});
+  system.list = NeighbourList(range_table(make_pair_kinds(scene.physics, {1, 2}), 2), 0.1);
+  system.list.build(system.particles, system.box);
+  ASSERT_EQ(system.list.pairs().size(), 2u);
+  system.springs = SpringField(SpringKinds::tangential_that_slide, 2);
+  system.springs.set(0, {{0, 0.105, 0}, {}, 1});
+  system.springs.set(1, {{0, 0.105, 0}, {}, 0});
+  const auto observable = observable_of(scene, system, 256);
+  observable->sample(system, 0);
+  const Json mean = mean_of(*observable);
+  EXPECT_EQ(mean["sliding_contacts"], 0.5);
+}
+
 // Contacts whose springs are half as long as they may be in the first quarter of the window, and all in the
 // others: their mean, and each block's.
 TEST(ContactNetwork, HasBlocks) {
