@@ -12,6 +12,7 @@ NAMES = {
     "alpha": r"$\alpha$",
     "base_volume_fraction": r"$\varphi_0$",
     "friction": r"$\mu$",
+    "kinetic_friction": r"$\mu_k$",
     "rolling_friction": r"$\mu_r$",
     "shear_rate": r"$\dot\gamma$",
     "normal_stiffness": r"$k_n$",

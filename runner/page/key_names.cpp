@@ -10,6 +10,7 @@ const KeyName* key_name(const std::string& pointer) {
       {"/volume_fraction", {"volume fraction", "phi"}},
       {"/flow/shear_rate", {"shear rate", "γ̇"}},
       {"/contact/friction", {"coefficient of friction", "mu"}},
+      {"/contact/kinetic_friction", {"coefficient of kinetic friction", "mu_k"}},
       {"/contact/rolling_friction", {"coefficient of rolling friction", "mu_r"}},
       {"/contact/normal_stiffness", {"normal stiffness", "k_n"}},
       {"/particles/mixture/alpha", {"share of grains in the solid volume", "alpha"}},
