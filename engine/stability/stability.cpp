@@ -236,7 +236,8 @@ ImplicitStep longest_implicit_step(const Scene& scene, double rate, double small
   const bool conservative = required_terms(physics).conservative, noise = physics.thermal_energy > 0;
   if (physics.contact && physics.contact->friction > 0) {
     // Where springs at the middle of the step are not enough, or are not taken there.
-    const bool demanding = noise || physics.contact->friction > 1 || physics.contact->rolling_stiffness > 0;
+    const bool demanding = noise || physics.contact->friction > 1 || physics.contact->rolling_stiffness > 0 ||
+                           remembers_sliding(*physics.contact);
     return {demanding ? 0.0025 : 0.005, demanding || conservative ? 2.0 : 4.0};
   }
   if (conservative) return {0.005, 5};

@@ -35,7 +35,7 @@ double largest_timestep(const Scene& scene);
 //     the Peclet number of the smallest radius, xi the inner gap;
 //     with conservative laws 0.005 and 5;
 //     with friction 0.005 and 4, with conservative laws too 2;
-//     with friction above 1, friction and rolling, or friction and noise 0.0025 and 2.
+//     with friction above 1 or kinetic friction, friction and rolling, or friction and noise 0.0025 and 2.
 //   Pairs that the flow presses together pass through the gaps of lubrication in many steps; inertia is of
 //   first order only.
 // - 0.0045 eta a^3 / kT, a the smallest radius, without lubrication 0.0017. Noise moves a pair through these

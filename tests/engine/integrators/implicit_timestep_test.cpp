@@ -34,6 +34,9 @@ TEST(ImplicitTimestep, IsTheLeastOfStrainBrownianAndContactTimes) {
   EXPECT_NEAR(automatic_timestep(scene_with(quiet)), 0.0025 / 2 / (1 + 2 * stokes), 1e-12);  // rolls
   quiet["contact"].update({{"rolling_stiffness", nullptr}, {"rolling_friction", nullptr}});
   EXPECT_NEAR(automatic_timestep(scene_with(quiet)), 0.005 / 2 / (1 + 2 * stokes), 1e-12);
+  quiet["contact"]["kinetic_friction"] = 0.4;
+  EXPECT_NEAR(automatic_timestep(scene_with(quiet)), 0.0025 / 2 / (1 + 2 * stokes), 1e-12);
+  quiet["contact"].erase("kinetic_friction");
   quiet["contact"]["friction"] = 1.1;
   EXPECT_NEAR(automatic_timestep(scene_with(quiet)), 0.0025 / 2 / (1 + 2 * stokes), 1e-12);
   Json smooth = soft;
