@@ -47,6 +47,7 @@ CONTACTS = {
     "": {},
     "contact": {"normal_stiffness": 1e3},
     "friction": ROUGH,
+    "kinetic friction": ROUGH | {"kinetic_friction": 0.3},
     "rolling": ROUGH | {"rolling_stiffness": 500, "rolling_friction": 0.2},
 }
 CONTACTS |= {f"{name} damping": keys | {"normal_damping": 1} for name, keys in CONTACTS.items() if keys}
