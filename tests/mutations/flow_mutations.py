@@ -1,4 +1,4 @@
-"""Fine mistakes in flows that change, stretch or are driven by a stress; see named_mutations.py."""
+"""Fine mistakes in flows and their stress; see named_mutations.py."""
 
 FLOW = [
     (
@@ -35,5 +35,12 @@ FLOW = [
         "part.sums[0] += flow_.shear_part(stress);",
         "part.sums[0] += stress.xy;",
         "engine_tests:Transient.IsThatOfTheReversedFlow",
+    ),
+    (
+        "stresslet of bubbles",
+        "engine/terms/drag.h",
+        "(2.5 * volume_fraction) * solvent",
+        "(1.0 * volume_fraction) * solvent",
+        "engine_tests:ReferenceForces.EveryTermOfEveryMixtureEqualsTheIndependentEvaluation",
     ),
 ]

@@ -4,6 +4,7 @@ What is broken; file, text in it that occurs once, what takes its place; program
 """
 
 from flow_mutations import FLOW
+from kinetic_mutations import KINETIC
 from oscillation_mutations import OSCILLATION
 from response_mutations import RESPONSE
 from strained_mutations import STRAINED
@@ -338,13 +339,6 @@ NAMED = [
         "sums.overlaps += overlap;",
         "engine_tests:Result.MeansAreTakenOverEveryStepOfTheProductionWindow",
     ),
-    (
-        "stresslet of bubbles",
-        "engine/terms/drag.h",
-        "(2.5 * volume_fraction) * solvent",
-        "(1.0 * volume_fraction) * solvent",
-        "engine_tests:ReferenceForces.EveryTermOfEveryMixtureEqualsTheIndependentEvaluation",
-    ),
 ]
 
-NAMED += RESPONSE + STRAINED + OSCILLATION + FLOW
+NAMED += FLOW + KINETIC + OSCILLATION + RESPONSE + STRAINED
