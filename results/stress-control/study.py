@@ -28,21 +28,21 @@ GRAINS = merged(
 )
 COLLOIDS = merged(
     merged(REFERENCE_SCENE, COMMON),
-    {"contact": {"normal_stiffness": 5e4}, "fluid": {"thermal_energy": 1}, "volume_fraction": 0.45},
+    {"contact": {"normal_stiffness": 5e5}, "fluid": {"thermal_energy": 1}, "volume_fraction": 0.45},
 )
 SEEDS = {"grains": 10, "colloids": 10}
 # Rates, and what viscosity to expect, which says how long a stress must act for a strain of ten.
 RATES = {
     "grains": {0.002: 25, 0.005: 35, 0.01: 50, 0.03: 60, 0.1: 65},
-    "colloids": {0.15: 9, 0.5: 8.5, 1.5: 8, 5: 8, 15: 9},
+    "colloids": {0.3: 9, 1: 8.5, 3: 8, 10: 8, 30: 9},
 }
 STRAIN = 10
-THICKENING = {0.50: (1000, 3), 0.54: (3000, 4), 0.56: (6000, 6)}  # stress times of the window, seeds
+THICKENING = {0.50: (1000, 3), 0.54: (3000, 4), 0.56: (6000, 4)}  # stress times of the window, seeds
 STRESSES = (0.02, 0.06, 0.2, 0.6, 2)
 # Discontinuous from here on in simulations of spheres of two sizes with a critical load and friction 1.
 PUBLISHED_ONSET = 0.56
 RATES_OF_THICKENING = (0.0003, 0.0005, 0.0008, 0.0012, 0.002, 0.004)
-DIFFUSING, DIFFUSION_SEEDS, DIFFUSION_WINDOW = 0.30, 24, 400
+DIFFUSING, DIFFUSION_SEEDS, DIFFUSION_WINDOW = 0.30, 24, 200
 THERMAL_ENERGY, VISCOSITY = 0.017, 0.1  # of the study at-rest, whose scene this is
 
 

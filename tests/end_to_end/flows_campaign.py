@@ -2,8 +2,8 @@
 """flows_campaign.py PROGRAMS  flows that change, stretch or are driven by a stress, killed and resumed
 
 A campaign has a point of each flow. Its runs are ended again and again, by SIGTERM, which leaves checkpoints, and by
-SIGKILL of everything; at the end it must have the results of one that nobody disturbed, all but their cost. A point whose
-stress lets it stand still must say what share flows, and aim at the rate of all.
+SIGKILL of everything; at the end it must have the results of one that nobody disturbed, all but their cost. A point
+whose stress lets it stand still must say what share flows, and aim at the rate of all.
 """
 import json
 import os

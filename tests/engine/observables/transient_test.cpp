@@ -72,8 +72,8 @@ TEST(Transient, OfExtensionIsTheExtensionalViscosity) {
   const Scene scene = flowing({{"extension_rate", 0.5}}, {{"time", 1}});
   const Json transient = measured(scene, 1);
   for (int k = 0; k < 4; ++k) {
-    EXPECT_NEAR(transient["shear_stress"][k].get<double>(), background + (2.0 - 5.0) * (1 << k) / 2 / viscosity,
-                1e-12);
+    EXPECT_NEAR(transient["shear_stress"][k].get<double>(),
+                background + (2.0 - 5.0) * (1 << k) / 2 / viscosity, 1e-12);
   }
 }
 
