@@ -45,7 +45,8 @@ class StressControlled : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(EitherMethod, StressControlled, testing::Values("explicit", "implicit"),
                          [](const auto& method) { return std::string(method.param); });
 
-// What a step misses the next ones make up for: over many steps nothing is missing. eta = 0.1, phi = 0.45.
+// What a step misses, up to 1 % here and twice that where the last one did, the next ones make up for: over a
+// window there is no more missing than at its ends. eta = 0.1, phi = 0.45.
 TEST_P(StressControlled, HoldsItsStress) {
   constexpr double stress = 4;
   Json document = at_stress(stress, for_grains);
@@ -54,7 +55,8 @@ TEST_P(StressControlled, HoldsItsStress) {
   const auto simulation = started(document);
   const std::optional<Ending> ending = simulation->advance(simulation->schedule().total());
   ASSERT_EQ(ending->cause, Ending::Cause::completed) << ending->message;
-  EXPECT_NEAR(held(*simulation, stress, 0.1 * (1 + 2.5 * 0.45)), 1, 1e-3);
+  const auto steps = static_cast<double>(simulation->schedule().production);
+  EXPECT_NEAR(held(*simulation, stress, 0.1 * (1 + 2.5 * 0.45)), 1, 0.04 / steps);
   EXPECT_GT(simulation->strains().production, 0.1);
 }
 
