@@ -123,8 +123,11 @@ DerivedGroups derived_groups(const Scene& scene) {
   if (physics.flow.rate() > 0) groups.shear_time = 1 / physics.flow.rate();
   if (physics.thermal_energy > 0) {
     groups.brownian_time = brownian_time(physics, a);
-    groups.peclet = peclet_number(physics, a);
-    groups.flow_over_rest = flow_over_rest(scene, *groups.peclet);
+    // At a given stress the rate is what comes out.
+    if (!physics.flow.deformation().stress()) {
+      groups.peclet = peclet_number(physics, a);
+      groups.flow_over_rest = flow_over_rest(scene, *groups.peclet);
+    }
   }
   if (physics.contact) {
     groups.contact_time = std::sqrt(density * a_cubed / physics.contact->normal_stiffness);
