@@ -37,8 +37,8 @@ RATES = {
     "colloids": {0.3: 9, 1: 8.5, 3: 8, 10: 8, 30: 9},
 }
 STRAIN = 10
-THICKENING = {0.50: (1000, 3), 0.54: (3000, 4), 0.56: (6000, 4)}  # stress times of the window, seeds
-STRESSES = (0.02, 0.06, 0.2, 0.6, 2)
+THICKENING = {0.50: (700, 3), 0.54: (2000, 3), 0.56: (4000, 3)}  # stress times of the window, seeds
+STRESSES = (0.1, 0.2, 0.4, 0.8, 2)
 # Discontinuous from here on in simulations of spheres of two sizes with a critical load and friction 1.
 PUBLISHED_ONSET = 0.56
 RATES_OF_THICKENING = (0.0003, 0.0005, 0.0008, 0.0012, 0.002, 0.004)
@@ -51,10 +51,10 @@ def rate_row(program, kind, scene, rate, seeds):
     (point,) = program.run(
         f"{kind}-rate-{rate:g}", merged(scene, during({"strain": 3}, {"strain": STRAIN})), [settings], seeds
     )
-    viscosity = estimate([r["mean"]["relative_viscosity"] for r in point["realisations"] if r.get("mean")])
-    return {"kind": kind, "fraction": scene["volume_fraction"], "control": "rate", "at": rate, "seeds": seeds} | (
-        entries("viscosity", viscosity) | {"flowing": 1.0}
-    )
+    means = [r["mean"] for r in point["realisations"] if r.get("mean")]
+    viscosity = estimate([m["relative_viscosity"] for m in means])
+    row = {"kind": kind, "fraction": scene["volume_fraction"], "control": "rate", "at": rate, "seeds": len(means)}
+    return row | entries("viscosity", viscosity) | {"flowing": 1.0}
 
 
 def stress_row(program, kind, scene, stress, times, seeds):
@@ -83,7 +83,7 @@ def measure(program):
             rows.append(stress_row(program, "thickening", scene, stress, times, seeds))
     densest = merged(GRAINS, {"volume_fraction": max(THICKENING)})
     for rate in RATES_OF_THICKENING:
-        rows.append(rate_row(program, "thickening", densest, rate, 6))
+        rows.append(rate_row(program, "thickening", densest, rate, 4))
     columns = ["kind", "fraction", "control", "at", "seeds", *columns_of("viscosity"), "flowing"]
     write_table(HERE / "table.csv", columns, rows, 5)
 
@@ -169,6 +169,17 @@ def judge():
         yield Finding(
             f"φ = {fraction:.2f}: share of seeds that flow", "jamming", share, math.sqrt(share * (1 - share) / seeds)
         )
+    for row in of_densest(rows):
+        if row["seeds"] > 1:
+            text = f"φ = {max(THICKENING):.2f}, at a {row['control']} of {row['at']:g}: viscosity"
+            yield Finding(text, "jump", *number(row, "viscosity"), row["seeds"] - 1)
+
+
+def of_densest(rows):
+    densest = max(THICKENING)
+    for row in rows:
+        if (row["kind"], row["fraction"]) == ("thickening", densest):
+            yield row
 
 
 def onset_of(steep):
@@ -186,7 +197,7 @@ def onset_of(steep):
 def draw():
     rows = read()
     figure = Figure(HERE / "chart.png", columns=3, size=(1500, 480))
-    one = figure.panel("σ a²/F_CL", "η_r", "φ = 0.50, 0.54, 0.56; friction 1", log="xy", key="top left")
+    one = figure.panel("σ a²/F_{CL}", "η_r", "φ = 0.50, 0.54, 0.56; friction 1", log="xy", key="top left")
     for fraction, colour in zip(THICKENING, (BLUE, GREEN, ORANGE)):
         curve = [r for r in rows if (r["kind"], r["fraction"], r["control"]) == ("thickening", fraction, "stress")]
         points = [(r["at"], *number(r, "viscosity")) for r in curve]
@@ -194,13 +205,13 @@ def draw():
     by_rate = [(r["at"] * r["viscosity"], *number(r, "viscosity")) for r, _ in pairs_of(rows, "grains")]
     one.points(by_rate, "at a rate, 0.50", RED, 6)
     densest = max(THICKENING)
-    two = figure.panel("γ̇ ηa²/F_CL", "σ a²/F_CL", f"φ = {densest:.2f}", log="xy", key="top left", powers="xy")
-    of_densest = [r for r in rows if (r["kind"], r["fraction"]) == ("thickening", densest)]
-    points = [(r["at"] / r["viscosity"], r["at"], 0) for r in of_densest if r["control"] == "stress"]
+    two = figure.panel("γ̇ ηa²/F_{CL}", "σ a²/F_{CL}", f"φ = {densest:.2f}", log="xy", key="top left", powers="xy")
+    at_densest = list(of_densest(rows))
+    points = [(r["at"] / r["viscosity"], r["at"], 0) for r in at_densest if r["control"] == "stress"]
     two.points(points, "at a stress", ORANGE, joined=True)
     points = [
         (r["at"], r["at"] * r["viscosity"], r["at"] * r["viscosity_error"])
-        for r in of_densest
+        for r in at_densest
         if r["control"] == "rate"
     ]
     two.points(points, "at a rate", BLUE, 6)
