@@ -37,7 +37,8 @@ RATES = {
     "colloids": {0.3: 9, 1: 8.5, 3: 8, 10: 8, 30: 9},
 }
 STRAIN = 10
-THICKENING = {0.50: (700, 3), 0.54: (2000, 3), 0.56: (4000, 3)}  # stress times of the window, seeds
+THICKENING = {0.50: (700, 3), 0.54: (2000, 3), 0.56: (4000, 3), 0.57: (4000, 3)}  # stress times of the window, seeds
+JUMPING = 0.56  # where rates are given as well
 STRESSES = (0.1, 0.2, 0.4, 0.8, 2)
 # Discontinuous from here on in simulations of spheres of two sizes with a critical load and friction 1.
 PUBLISHED_ONSET = 0.56
@@ -81,7 +82,7 @@ def measure(program):
         scene = merged(GRAINS, {"volume_fraction": fraction})
         for stress in STRESSES:
             rows.append(stress_row(program, "thickening", scene, stress, times, seeds))
-    densest = merged(GRAINS, {"volume_fraction": max(THICKENING)})
+    densest = merged(GRAINS, {"volume_fraction": JUMPING})
     for rate in RATES_OF_THICKENING:
         rows.append(rate_row(program, "thickening", densest, rate, 4))
     columns = ["kind", "fraction", "control", "at", "seeds", *columns_of("viscosity"), "flowing"]
@@ -171,12 +172,12 @@ def judge():
         )
     for row in of_densest(rows):
         if row["seeds"] > 1:
-            text = f"φ = {max(THICKENING):.2f}, at a {row['control']} of {row['at']:g}: viscosity"
+            text = f"φ = {JUMPING:.2f}, at a {row['control']} of {row['at']:g}: viscosity"
             yield Finding(text, "jump", *number(row, "viscosity"), row["seeds"] - 1)
 
 
 def of_densest(rows):
-    densest = max(THICKENING)
+    densest = JUMPING
     for row in rows:
         if (row["kind"], row["fraction"]) == ("thickening", densest):
             yield row
@@ -197,14 +198,14 @@ def onset_of(steep):
 def draw():
     rows = read()
     figure = Figure(HERE / "chart.png", columns=3, size=(1500, 480))
-    one = figure.panel("σ a²/F_{CL}", "η_r", "φ = 0.50, 0.54, 0.56; friction 1", log="xy", key="top left")
-    for fraction, colour in zip(THICKENING, (BLUE, GREEN, ORANGE)):
+    one = figure.panel("σ a²/F_{CL}", "η_r", "φ = 0.50 to 0.57; friction 1", log="xy", key="top left")
+    for fraction, colour in zip(THICKENING, (BLUE, GREEN, ORANGE, RED)):
         curve = [r for r in rows if (r["kind"], r["fraction"], r["control"]) == ("thickening", fraction, "stress")]
         points = [(r["at"], *number(r, "viscosity")) for r in curve]
         one.points(points, f"at a stress, {fraction:.2f}", colour, joined=True)
     by_rate = [(r["at"] * r["viscosity"], *number(r, "viscosity")) for r, _ in pairs_of(rows, "grains")]
-    one.points(by_rate, "at a rate, 0.50", RED, 6)
-    densest = max(THICKENING)
+    one.points(by_rate, "at a rate, 0.50", BLUE, 6)
+    densest = JUMPING
     two = figure.panel("γ̇ ηa²/F_{CL}", "σ a²/F_{CL}", f"φ = {densest:.2f}", log="xy", key="top left", powers="xy")
     at_densest = list(of_densest(rows))
     points = [(r["at"] / r["viscosity"], r["at"], 0) for r in at_densest if r["control"] == "stress"]
