@@ -18,8 +18,8 @@ struct ResultHeader {
 };
 
 // Means over the production window, in all and in its blocks. Stresses are divided by viscosity * shear_rate,
-// or are in the scene's units where the rate is zero. Without a completed window "mean" and "blocks" are
-// null: never a number.
+// or are in the scene's units where the rate is zero. Unless the window is completed, or the flow has jammed
+// in it, "mean" and "blocks" are null: never a number.
 Json make_result(const ResultHeader& header, const Scene& scene, const Simulation& simulation,
                  const Ending& ending, const std::string& saved_state, const Spent& spent);
 

@@ -24,8 +24,12 @@ double standard_error(const std::vector<double>& series) {
 
 std::string with_error(const Json& result, const char* name) {
   const double mean = result.at("mean").at(name).get<double>();
-  const double error = standard_error(result.at("blocks").at(name).get<std::vector<double>>());
-  return fmt::format("{:.4g} ± {:.2g}", mean, error);
+  std::vector<double> series;  // what has jammed has blocks of which nothing is known
+  for (const Json& block : result.at("blocks").at(name)) {
+    if (block.is_number()) series.push_back(block.get<double>());
+  }
+  if (series.size() < 2) return fmt::format("{:.4g}", mean);
+  return fmt::format("{:.4g} ± {:.2g}", mean, standard_error(series));
 }
 
 std::string means(const Json& result) {

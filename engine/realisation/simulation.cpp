@@ -259,7 +259,10 @@ void Simulation::load(ArchiveReader& archive) {
 void Simulation::load_motion(ArchiveReader& archive) {
   load_system(archive);
   integrator_->load(system_, archive);
-  if (control_) control_->load(system_, archive);
+  if (control_) {
+    control_->load(system_, archive);
+    if (system_.step >= schedule_.equilibration) strain_at_window_ = system_.box.strain();
+  }
   gate_.load_before_window(archive);
 }
 

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "engine/output/result.h"
+#include "engine/output/summary.h"
 #include "engine/realisation/simulation.h"
 #include "tests/engine/small_scene.h"
 
@@ -73,7 +75,7 @@ TEST_P(StressControlled, OfFewSpheresFlowsAsTheSolventAndTheirStresslets) {
   EXPECT_NEAR(rate, stress / (0.1 * (1 + 2.5 * fraction)), 0.011 * rate);
 }
 
-// A packing close to jammed, with friction: more stress than it can flow under at the viscosity that counts.
+// Counted as jammed at a viscosity that every suspension has.
 TEST(StressControl, EndsWhatStandsStill) {
   Json document = at_stress(4, for_grains);
   document["flow"]["jammed_viscosity"] = 3;  // less than any suspension has
@@ -86,6 +88,39 @@ TEST(StressControl, EndsWhatStandsStill) {
   EXPECT_GT(simulation->system().step, simulation->schedule().equilibration);
   EXPECT_NEAR(simulation->schedule().timestep * static_cast<double>(simulation->schedule().equilibration),
               0.01 * 3 * 0.1 / 4, simulation->schedule().timestep);
+  // It has a result, in which the rest of the window has no rate, and which can be summed up.
+  const Scene scene = read_scene(document, "scene.json");
+  const Json result = make_result({"point", 3}, scene, *simulation, *ending, "", {});
+  const Json& mean = result.at("mean");
+  EXPECT_EQ(mean.at("flowing"), 0);
+  const double window =
+      simulation->schedule().timestep * static_cast<double>(simulation->schedule().production);
+  EXPECT_NEAR(mean.at("shear_rate").get<double>(), simulation->strains().production / window,
+              1e-9 * mean.at("shear_rate").get<double>());
+  EXPECT_TRUE(result.at("blocks").at("pressure").front().is_number());
+  EXPECT_TRUE(result.at("blocks").at("pressure").back().is_null());
+  EXPECT_EQ(result.at("blocks").at("shear_rate").back(), 0);
+  EXPECT_NE(summary(result, "here").find("jammed at a strain of"), std::string::npos);
+}
+
+// A window that begins where a checkpoint is has the strain since then.
+TEST(StressControl, CountsTheStrainOfALongerRunFromItsOwnWindowOn) {
+  const Json document = at_stress(4, for_grains);
+  const Scene scene = read_scene(document, "scene.json");
+  const Schedule whole = make_schedule(scene, "scene.json");
+  const auto first = started(document);
+  first->advance(whole.equilibration + 100);
+  ArchiveWriter archive;
+  first->save(archive);
+  const Schedule rest = {whole.timestep, whole.equilibration + 100, whole.production - 100};
+  Simulation second(scene, rest, 3, 1, "scene.json");
+  ArchiveReader reader(archive.bytes());
+  second.load_motion(reader);
+  const double before = second.system().box.strain();
+  EXPECT_GT(before, 0);
+  second.advance(50);
+  EXPECT_EQ(second.strains().equilibration, before);
+  EXPECT_EQ(second.strains().production, second.system().box.strain() - before);
 }
 
 const Json for_colloids = {{"particles", {{"count", 20}}},
