@@ -9,6 +9,7 @@
 #include <exception>
 #include <limits>
 
+#include "contract/endings.h"
 #include "contract/exit_codes.h"
 #include "contract/frames.h"
 #include "contract/input_error.h"
@@ -103,7 +104,7 @@ int run(const RunOptions& options) {
     write_output(options.output, result_text(result));
   }
   const Json& ending = result.at("ending");
-  const bool completed = ending.at("cause") == "completed" || ending.at("cause") == "jammed";
+  const bool completed = has_results(ending.at("cause").get<std::string>());
   if (!completed) {
     fmt::print(stderr, "{}: broke off at step {} ({}): {}\n", options.scene,
                ending.at("step").get<std::uint64_t>(), ending.at("cause").get<std::string>(),

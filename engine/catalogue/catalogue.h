@@ -11,17 +11,10 @@
 
 namespace peclet::engine {
 
-inline std::array<ObservableKind, 10> observable_kinds() {
-  return {mean_squared_displacement(),
-          stress_correlation(),
-          pair_distribution(),
-          contact_network(),
-          profiles(),
-          linear_response(),
-          oscillation(),
-          transient(),
-          flow_at_stress(),
-          trajectory()};
+inline std::array<ObservableKind, 9> observable_kinds() {
+  return {
+      mean_squared_displacement(), stress_correlation(), pair_distribution(), contact_network(), profiles(),
+      linear_response(),           oscillation(),        transient(),         trajectory()};
 }
 
 // Throws InputError where box or window are too small for an observable that the scene asks for.

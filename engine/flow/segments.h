@@ -25,7 +25,6 @@ class Segments final : public Deformation {
   Matrix3 velocity_gradient(double time) const override;
   Matrix3 displacement_gradient(double time) const override;
   double largest_rate() const override;
-  double mean_rate() const override { return largest_rate(); }
   bool jumps_between(double from, double to) const override;
   Matrix3 steady_gradient(double from) const override;
   double time_of(double strain, double from) const override;

@@ -5,6 +5,14 @@
 
 namespace peclet::engine {
 
+Production::Production(std::uint64_t steps) : steps_(steps) {
+  // The first step of a block.
+  const auto begin = [&](std::size_t block) {
+    return (block * steps + count_of_blocks - 1) / count_of_blocks;
+  };
+  for (std::size_t k = 0; k < count_of_blocks; ++k) blocks_[k].planned = begin(k + 1) - begin(k);
+}
+
 void Production::add_step(std::uint64_t index, const PairSums& sums, double shear_rate) {
   BlockSums& block = block_of(index);
   ++block.steps;
@@ -30,6 +38,7 @@ void Production::add_sample(std::uint64_t index, const SymmetricTensor& structur
 BlockSums sum_of(std::span<const BlockSums> blocks) {
   BlockSums all;
   for (const BlockSums& block : blocks) {
+    all.planned += block.planned;
     all.steps += block.steps;
     all.samples += block.samples;
     all.shear_rate += block.shear_rate;

@@ -12,7 +12,8 @@
 namespace peclet::engine {
 
 struct BlockSums {
-  std::uint64_t steps = 0;  // every step adds to the stress: thinning would destroy the Brownian part
+  std::uint64_t planned = 0;  // steps that it has once it is complete
+  std::uint64_t steps = 0;    // every step adds to the stress: thinning would destroy the Brownian part
   std::array<SymmetricTensor, count_of_stress_terms> stress{};  // sum over pairs of sym(r F)
   double shear_rate = 0;                                        // of the cell, x along y
   double contacts = 0;
@@ -32,7 +33,7 @@ BlockSums sum_of(std::span<const BlockSums> blocks);
 class Production {
  public:
   // Of a window of `steps` steps, at least one for each block.
-  explicit Production(std::uint64_t steps) : steps_(steps) {}
+  explicit Production(std::uint64_t steps);
 
   // `index` counts the steps of the window from 0.
   void add_step(std::uint64_t index, const PairSums& sums, double shear_rate);

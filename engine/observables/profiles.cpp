@@ -128,7 +128,7 @@ Axis along_y(const Window& window, std::size_t bins, double from) {
 void add_stress_quantities(const Scene& scene, const Axis& centres, const Axis& boundaries,
                            std::vector<Quantity>& all) {
   const Physics& physics = scene.physics;
-  const char* const unit = physics.flow.steady_rate() > 0 ? "viscosity * shear_rate" : "stress";
+  const char* const unit = name_of_stress_unit(physics);
   const auto add = [&](const std::string& name, const std::string& symbol, const Json& components,
                        const Axis& y) {
     all.push_back({.name = "profiles/" + name,

@@ -29,7 +29,7 @@ void share_line(double y, double way, double width, std::size_t bins, Visit&& vi
 StressProfile::StressProfile(const Physics& physics, std::size_t bins)
     : physics_(physics),
       terms_(terms(physics)),
-      unit_(physics.flow.steady_rate() > 0 ? physics.viscosity * physics.flow.steady_rate() : 1),
+      unit_(unit_of_stress(physics)),
       bins_(bins),
       step_stress_(terms_.size() * bins),
       step_flux_(bins),

@@ -67,8 +67,7 @@ Json transposed(const std::vector<Json>& rows) {
 // Descriptions of the stress and its parts.
 class Described {
  public:
-  explicit Described(const Scene& scene)
-      : unit_(scene.physics.flow.steady_rate() > 0 ? "viscosity * shear_rate" : "stress") {}
+  explicit Described(const Scene& scene) : unit_(name_of_stress_unit(scene.physics)) {}
 
   void scalar(const char* name, const char* symbol, const char* unit) {
     all_.push_back({.name = name, .symbol = symbol, .unit = unit});
@@ -78,6 +77,10 @@ class Described {
                     .symbol = symbol,
                     .unit = unit_,
                     .axes = {{"component", "1", {"xx", "yy", "zz", "xy", "xz", "yz"}}}});
+  }
+  // A given stress over the mean of another one.
+  void viscosity(const char* name, const char* symbol) {
+    all_.push_back({.name = name, .symbol = symbol, .unit = "1", .ratio = {{"stress", "viscous_stress"}}});
   }
   // The last one varies with a quantity of mean zero.
   void with_control(const char* control) { all_.back().control = ControlVariate{control, 0}; }
@@ -103,7 +106,7 @@ StressMeans::StressMeans(const Scene& scene, const System& system)
       volume_(system.box.volume()),
       volume_fraction_(solid_volume(system.particles) / volume_),
       particles_(static_cast<double>(system.particles.count())),
-      unit_(physics_.flow.steady_rate() > 0 ? physics_.viscosity * physics_.flow.steady_rate() : 1) {}
+      unit_(unit_of_stress(physics_)) {}
 
 Json StressMeans::means(const BlockSums& sums) const {
   Json stress = Json::object();
@@ -140,19 +143,33 @@ Json StressMeans::means(const BlockSums& sums) const {
   stress["total"] = to_json(total);
   const bool sheared = physics_.flow.steady_rate() > 0;
   const double per_sample = 1 / static_cast<double>(sums.samples);
-  return {{"stress", stress},
-          {"brownian_pairwise", to_json(brownian)},
-          {"brownian_structural", to_json((per_sample / unit_) * sums.structural_brownian)},
-          {"relative_viscosity", sheared ? Json(physics_.flow.shear_part(total)) : Json()},
-          {"relative_viscosity_pair", sheared ? Json(physics_.flow.shear_part(pairs)) : Json()},
-          {"first_normal_difference", first_normal_difference(total)},
-          {"second_normal_difference", second_normal_difference(total)},
-          {"pressure", pressure(total)},
-          {"control_variates", control_variates(brownian)},
-          {"contacts_per_particle", 2 * sums.contacts / (static_cast<double>(sums.steps) * particles_)},
-          {"mean_overlap", sums.mean_overlap()},
-          {"kinetic_temperature", per_sample * sums.temperature.translational},
-          {"rotational_temperature", per_sample * sums.temperature.rotational}};
+  Json means = {{"stress", stress},
+                {"brownian_pairwise", to_json(brownian)},
+                {"brownian_structural", to_json((per_sample / unit_) * sums.structural_brownian)},
+                {"relative_viscosity", sheared ? Json(physics_.flow.shear_part(total)) : Json()},
+                {"relative_viscosity_pair", sheared ? Json(physics_.flow.shear_part(pairs)) : Json()},
+                {"first_normal_difference", first_normal_difference(total)},
+                {"second_normal_difference", second_normal_difference(total)},
+                {"pressure", pressure(total)},
+                {"control_variates", control_variates(brownian)},
+                {"contacts_per_particle", 2 * sums.contacts / (static_cast<double>(sums.steps) * particles_)},
+                {"mean_overlap", sums.mean_overlap()},
+                {"kinetic_temperature", per_sample * sums.temperature.translational},
+                {"rotational_temperature", per_sample * sums.temperature.rotational}};
+  if (const std::optional<double> given = physics_.flow.deformation().stress()) add_flow(sums, *given, means);
+  return means;
+}
+
+// What has jammed stands still for the rest of its window: shear_rate is the strain over the time of all of
+// it, and over the seeds the mean of `flowing` is the share that flows to the end. Viscosities are stress
+// over mean rate, never a mean of stress over rate.
+void StressMeans::add_flow(const BlockSums& sums, double stress, Json& means) const {
+  const double rate = sums.shear_rate / static_cast<double>(sums.planned);
+  const double flows = sums.steps == sums.planned ? 1 : 0, viscous = physics_.viscosity * rate;
+  means["shear_rate"] = rate;
+  means["flowing"] = flows;
+  means["apparent_viscosity"] = {{"stress", stress}, {"viscous_stress", viscous}};
+  means["viscosity_of_those_flowing"] = {{"stress", flows * stress}, {"viscous_stress", flows * viscous}};
 }
 
 Json StressMeans::control_variates(const SymmetricTensor& brownian) const {
@@ -190,7 +207,13 @@ std::vector<Quantity> stress_quantities(const Scene& scene) {
     described.stress("stress/solvent", "sigma^S");
   }
   const bool at_stress = scene.physics.flow.deformation().stress().has_value();
-  if (at_stress) described.stress("stress/solvent", "sigma^S");
+  if (at_stress) {
+    described.scalar("shear_rate", "<rate>", "1 / time");
+    described.scalar("flowing", "P(flows)", "1");
+    described.viscosity("apparent_viscosity", "eta_r");
+    described.viscosity("viscosity_of_those_flowing", "eta_r^flowing");
+    described.stress("stress/solvent", "sigma^S");
+  }
   if (sheared || at_stress || scene.physics.flow.varies()) described.stress("stress/stresslet", "sigma^E");
   described.part("first_normal_difference", "N_1", unit, "control_variates/first_normal_difference", noise);
   described.part("second_normal_difference", "N_2", unit, "control_variates/second_normal_difference", noise);

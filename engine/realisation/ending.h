@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "contract/endings.h"
 #include "engine/integrators/integrator.h"
 #include "engine/scene/scene.h"
 
@@ -17,13 +18,10 @@ struct Ending {
   std::string message;
 };
 
-// Whether it has results: what jams under a stress has, too.
-inline bool is_measured(Ending::Cause cause) {
-  return cause == Ending::Cause::completed || cause == Ending::Cause::jammed;
-}
-
 // "completed", "jammed", "overlap", "displacement", "non-finite", "packing", "timestep"
 const char* name_of(Ending::Cause cause);
+
+inline bool is_measured(Ending::Cause cause) { return has_results(name_of(cause)); }
 
 // What the guard, or arithmetic, has against the step that was just made. Displacements and overlaps are in
 // units of the smallest radius of all, and of the smaller one of the pair.

@@ -9,6 +9,5 @@ ObservableKind stress_correlation();
 ObservableKind linear_response();
 ObservableKind oscillation();
 ObservableKind transient();
-ObservableKind flow_at_stress();
 
 }  // namespace peclet::engine

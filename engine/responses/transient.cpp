@@ -20,10 +20,6 @@ std::uint64_t bins_of(const Scene& scene) {
   return scene.observables.at("transient").at("bins").get<std::uint64_t>();
 }
 
-double unit_of(const Physics& physics) {
-  return physics.flow.steady_rate() > 0 ? physics.viscosity * physics.flow.steady_rate() : 1;
-}
-
 void check_bins(const Scene& scene, const Window& window, const std::string& file) {
   if (bins_of(scene) <= window.steps) return;
   throw InputError(file, "/transient/bins", std::to_string(bins_of(scene)),
@@ -44,7 +40,7 @@ std::vector<Quantity> transient_quantities(const Scene& scene, const Window& win
   for (const auto& [name, symbol] : stresses) {
     all.push_back({.name = std::string("transient/") + name,
                    .symbol = symbol,
-                   .unit = is_steady ? "viscosity * shear_rate" : "stress",
+                   .unit = name_of_stress_unit(scene.physics),
                    .axes = {axis}});
   }
   return all;
@@ -58,7 +54,7 @@ Transient::Transient(const Scene& scene, const System& system, const Window& win
       viscosity_(scene.physics.viscosity),
       volume_fraction_(scene.volume_fraction),
       volume_(system.box.volume()),
-      unit_(unit_of(scene.physics)),
+      unit_(unit_of_stress(scene.physics)),
       behind_(scene.method == Method::implicit_steps ? 0.5 * window.timestep : 0),
       steps_(window.steps),
       parts_(bins_of(scene)) {}

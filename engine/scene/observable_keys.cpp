@@ -157,13 +157,11 @@ std::vector<Key> observable_keys() {
     blocks.push_back(block('/' + entry.name, "How the observable of that name is measured."));
     const std::string interval = fmt::format("/{}/interval", entry.name);
     const std::string unless_given = fmt::format("in whole steps; {} unless given.", entry.usual_interval);
-    if (entry.usual_interval.empty()) {
-      // All steps count.
-    } else if (entry.interval_is_a_duration) {
+    if (entry.interval_is_a_duration) {
       const Keys limits =
           duration_keys(interval, "From one to the next, " + unless_given, positive, /*is_required=*/false);
       blocks.insert(blocks.end(), limits.begin(), limits.end());
-    } else {
+    } else if (!entry.usual_interval.empty()) {
       blocks.push_back(positive(interval, "time", "Time between samples, " + unless_given));
     }
     blocks.insert(blocks.end(), entry.settings.begin(), entry.settings.end());

@@ -147,8 +147,6 @@ void Reading::set_observables(Scene& scene) const {
       settings["interval"] = time_of(duration(pointer + "/interval", scene.physics), scene);
     }
   }
-  // What a flow at a given stress always measures.
-  if (has("/flow/stress")) scene.observables["flow_at_stress"] = Json::object();
 }
 
 // The method, and the default of the guard that follows from it. Without lubrication explicit steps are bound

@@ -31,6 +31,14 @@ struct Physics : EachConservativeLaw<std::optional> {
   std::optional<LubricationParameters> lubrication;
 };
 
+// Stresses are in units of viscosity times rate where one rate is steady, else in the scene's.
+inline double unit_of_stress(const Physics& physics) {
+  return physics.flow.steady_rate() > 0 ? physics.viscosity * physics.flow.steady_rate() : 1;
+}
+inline const char* name_of_stress_unit(const Physics& physics) {
+  return physics.flow.steady_rate() > 0 ? "viscosity * shear_rate" : "stress";
+}
+
 // Why there is no equilibrium whose probabilities are known to be exp(-H / kT); empty where there is one.
 std::string lacking_equilibrium(const Physics& physics);
 inline bool has_known_equilibrium(const Physics& physics) { return lacking_equilibrium(physics).empty(); }

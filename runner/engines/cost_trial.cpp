@@ -6,10 +6,10 @@
 #include <system_error>
 #include <variant>
 
+#include "contract/endings.h"
 #include "contract/json.h"
 #include "runner/engines/stop_signals.h"
 #include "runner/engines/worker_process.h"
-#include "runner/folder/result_shape.h"
 
 namespace peclet::runner {
 namespace {

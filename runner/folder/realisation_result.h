@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "contract/endings.h"
 #include "contract/json.h"
 #include "runner/folder/result_shape.h"
 

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "contract/endings.h"
 #include "runner/campaign/campaign.h"
 #include "runner/folder/result_files.h"
 #include "runner/statistics/quantities.h"

@@ -23,10 +23,6 @@ class ResultError : public std::runtime_error {
 // No number of a result is larger: so no sum, square or cube of a campaign's values overflows.
 constexpr double largest_number = 1e100;
 
-// Whether a realisation with this ending has means: to the end, or until it jammed under a stress, after
-// which it counts as standing still.
-inline bool has_results(const std::string& cause) { return cause == "completed" || cause == "jammed"; }
-
 // Throws ResultError naming the first value that is not as it must be, and what is allowed. Realisations
 // with results have means, others none. Members that engines did not always write may be absent. Returns
 // engine_identity().

@@ -7,6 +7,18 @@
 namespace peclet::engine {
 namespace {
 
+// Spheres 0 - 1 - 2 of radii 1, 2 and 1, the first two with an overlap of 0.1, the last one with its centre
+// at x.
+System chain(const Scene& scene, double x) {
+  System system = loose_spheres(3);
+  system.particles.position.set(0, {1, 1, 1});
+  system.particles.position.set(1, {3.9, 1, 1});
+  system.particles.position.set(2, {x, 1, 1});
+  system.list = NeighbourList(range_table(make_pair_kinds(scene.physics, {1, 2}), 2), 0.1);
+  system.list.build(system.particles, system.box);
+  return system;
+}
+
 // A chain 0 - 1 - 2 with overlaps of 0.1 and 0.2 and particle 3 alone; mu = 0.5, k_n = 1e4, k_t = 2/7 k_n: a
 // spring is as long as it may be at mu F_n / k_t = 1.75 overlaps.
 TEST(ContactNetwork, CountsContactsAndTheirMobilisation) {
@@ -39,12 +51,7 @@ TEST(ContactNetwork, CountsContactsAndTheirMobilisation) {
 TEST(ContactNetwork, LeavesContactsBelowTheCriticalLoadWithoutFriction) {
   Scene scene = scene_with("contact_network");
   scene.physics.contact->critical_load = 1200;
-  System system = loose_spheres(3);
-  system.particles.position.set(0, {1, 1, 1});
-  system.particles.position.set(1, {3.9, 1, 1});
-  system.particles.position.set(2, {6.7, 1, 1});
-  system.list = NeighbourList(range_table(make_pair_kinds(scene.physics, {1, 2}), 2), 0.1);
-  system.list.build(system.particles, system.box);
+  System system = chain(scene, 6.7);
   system.springs = SpringField(SpringKinds::tangential, system.list.pairs().size());
   for (std::size_t p = 0; p < system.list.pairs().size(); ++p) system.springs.set(p, {{0, 0.0875, 0}, {}});
   const auto observable = observable_of(scene, system, 256);
@@ -62,12 +69,7 @@ TEST(ContactNetwork, LeavesContactsBelowTheCriticalLoadWithoutFriction) {
 TEST(ContactNetwork, CountsContactsThatRememberThatTheySlide) {
   Scene scene = scene_with("contact_network");
   scene.physics.contact->kinetic_friction = 0.3;
-  System system = loose_spheres(3);
-  system.particles.position.set(0, {1, 1, 1});
-  system.particles.position.set(1, {3.9, 1, 1});
-  system.particles.position.set(2, {6.8, 1, 1});
-  system.list = NeighbourList(range_table(make_pair_kinds(scene.physics, {1, 2}), 2), 0.1);
-  system.list.build(system.particles, system.box);
+  System system = chain(scene, 6.8);
   ASSERT_EQ(system.list.pairs().size(), 2u);
   system.springs = SpringField(SpringKinds::tangential_that_slide, 2);
   system.springs.set(0, {{0, 0.105, 0}, {}, 1});

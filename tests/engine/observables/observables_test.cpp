@@ -13,12 +13,10 @@
 namespace peclet::engine {
 namespace {
 
-// The scene's keys and what is done for them are lists of their own, joined by name; one is not listed, what
-// a flow at a given stress always measures.
+// The scene's keys and what is done for them are lists of their own, joined by name.
 TEST(Observables, ThatASceneMayListAreThoseThatAreMeasured) {
   std::vector<std::string> listed, measured;
   for (const ObservableEntry& entry : observable_entries()) listed.push_back(entry.name);
-  listed.emplace_back("flow_at_stress");
   for (const ObservableKind& kind : observable_kinds()) measured.emplace_back(kind.name);
   std::ranges::sort(listed);
   std::ranges::sort(measured);

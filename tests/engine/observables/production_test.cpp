@@ -25,6 +25,7 @@ TEST(Production, EveryStepGoesIntoExactlyOneOfEvenBlocks) {
     for (const BlockSums& block : production.blocks()) {
       EXPECT_GE(block.steps, steps / 32);
       EXPECT_LE(block.steps, steps / 32 + 1);
+      EXPECT_EQ(block.steps, block.planned);
       all += block.steps;
       contacts += block.contacts;
     }
