@@ -43,16 +43,16 @@ class Layering(unittest.TestCase):
         self.assertIn("runner/attic/a.cpp: its folder has no place", text)
 
     def test_a_long_file(self):
-        code, text = self.said({"runner/text/a.cpp": "\n" * 351})
+        code, text = self.said({"runner/text/a.cpp": "\n" * 601})
         self.assertEqual(code, 1)
-        self.assertIn("runner/text/a.cpp: 351 lines", text)
+        self.assertIn("runner/text/a.cpp: 601 lines", text)
 
     def test_a_long_file_of_tests(self):
         for path in ("tests/runner/text/a.cpp", "tests/end_to_end/a.py"):
-            self.assertEqual(self.said({path: "\n" * 350}), (0, ""))
-            code, text = self.said({path: "\n" * 351})
+            self.assertEqual(self.said({path: "\n" * 600}), (0, ""))
+            code, text = self.said({path: "\n" * 601})
             self.assertEqual(code, 1)
-            self.assertIn(f"{path}: 351 lines", text)
+            self.assertIn(f"{path}: 601 lines", text)
 
     def test_a_layer_without_files(self):
         code, text = self.said({}, {path: text for path, text in EVERY_LAYER.items() if "random" not in path})
@@ -64,9 +64,9 @@ class Layering(unittest.TestCase):
         self.assertIn("runner/verbs: is a layer of runner without a file", text)
 
     def test_a_crowded_folder(self):
-        code, text = self.said({f"runner/text/a{i}.h": "" for i in range(30)})
+        code, text = self.said({f"runner/text/a{i}.h": "" for i in range(40)})
         self.assertEqual(code, 1)
-        self.assertIn("runner/text: 31 files", text)
+        self.assertIn("runner/text: 41 files", text)
 
 
 if __name__ == "__main__":
