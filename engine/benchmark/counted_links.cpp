@@ -122,8 +122,8 @@ namespace peclet::counting_engine {
 namespace {
 
 // Whatever a processor's table has; assembly, of double-precision numbers, apart.
-constinit const LinkKernels counting_kernels = {nullptr,         &factorise,  &multiply, &set_residual,
-                                                &squared_motion, &add_motion, &begin,    &solve};
+constinit const LinkKernels counting_kernels = {
+    nullptr, nullptr, &factorise, &multiply, &set_residual, &squared_motion, &add_motion, &begin, &solve};
 
 class Counting {
  public:

@@ -49,9 +49,7 @@ StepReport joined(const StepReport& first, const StepReport& second) {
     both.sums.stress[t] = 0.5 * (first.sums.stress[t] + second.sums.stress[t]);
   }
   const auto mean = [](const SymmetricTensor& a, const SymmetricTensor& b) { return 0.5 * (a + b); };
-  both.flux = {mean(first.flux.acted, second.flux.acted),
-               mean(first.flux.conservative, second.flux.conservative),
-               mean(first.flux.dissipative, second.flux.dissipative)};
+  both.motion = mean(first.motion, second.motion);
   both.sums.contacts = 0.5 * (first.sums.contacts + second.sums.contacts);
   both.sums.overlaps = 0.5 * (first.sums.overlaps + second.sums.overlaps);
   both.sums.largest_overlap = std::max(first.sums.largest_overlap, second.sums.largest_overlap);
@@ -135,7 +133,7 @@ StepReport Implicit::advance_part(System& system) {
     ++system.clock.steps;
     return report;
   }
-  if (watcher() != nullptr) reported().show_pairs(system, origin_.springs, false, weight(), *watcher());
+  if (watcher() != nullptr) show_step(system);
   keep_change(system);
   move(system, timestep_);
   ++system.clock.steps;
@@ -158,10 +156,8 @@ bool Implicit::is_to_be_divided(const StepReport& report) const {
          (report.solver_residual > unsolved && divisions_left_ > deepest_division - divisions_of_unsolved);
 }
 
-VectorField Implicit::mean_velocity(const System& system) const {
-  VectorField mean = origin_.velocity;
-  array(mean) = 0.5 * (array(mean) + array(system.particles.velocity));
-  return mean;
+void Implicit::show_step(const System& system) {
+  field_.show_pairs(system, origin_.springs, false, weight(), *watcher());
 }
 
 // From the origin.
@@ -169,7 +165,7 @@ StepReport Implicit::advance_halves(System& system) {
   if (!half_) {
     half_ = with_timestep(0.5 * timestep_, system.particles);
     half_->divisions_left_ = divisions_left_ - 1;
-    if (watches_flux()) half_->watch_momentum_flux();
+    if (watches_motion()) half_->watch_motion();
   }
   half_->show_pairs_to(watcher(), 0.5 * weight());
   half_->forget_change();

@@ -41,10 +41,8 @@ class Implicit : public Integrator {
 
   // Finds the velocities; nothing where the list of pairs does not hold half a step ahead.
   virtual std::optional<StepReport> find_velocities(System& system) = 0;
-  // Whose sums the step has reported.
-  // (V_n + V) / 2.
-  VectorField mean_velocity(const System& system) const;
-  virtual ForceField& reported() { return field_; }
+  // Shows the watcher the pairs of the step, in its middle.
+  virtual void show_step(const System& system);
   // Before the particles move with the velocities that have been found.
   virtual void keep_change(const System& /*system*/) {}
   // What was kept says nothing of the next step.

@@ -3,7 +3,6 @@
 
 #include <optional>
 
-#include "engine/kernels/momentum_flux.h"
 #include "engine/kernels/pair_pass.h"
 #include "engine/kernels/pair_watcher.h"
 #include "engine/state/system.h"
@@ -12,14 +11,16 @@ namespace peclet::engine {
 
 // What a step says about itself.
 struct StepReport {
-  PairSums sums;  // at the configuration whose forces move the particles
+  PairSums sums;  // of the forces that acted, those of the noise included (kernels/momentum_flux.h)
+  // The stress of the motion, times the volume: -sum m sym(V V') relative to the flow. With noise it belongs
+  // to the stress; without noise it is computed where it is asked for.
+  SymmetricTensor motion;
   double largest_displacement =
       0;  // of a particle relative to the streaming flow, in this step; NaN if one is not finite
   int solver_iterations = 0;   // of a method that solves for the velocities
   double solver_residual = 0;  // what its equations are left with, relative to the motion
   int division = 0;        // of a method that divides steps: the smallest part was 2^-division of the step
   bool broke_off = false;  // the step was not made: not even its smallest part has velocities
-  MomentumFlux flux{};     // of a fluid at rest, where it is asked for
 };
 
 // Owns the forces between steps; the system belongs to the caller. After start() or load(), each advance()
@@ -37,8 +38,8 @@ class Integrator {
   };
   virtual Intervals intervals() const = 0;
 
-  // From now on steps report their flux of momentum. Of a fluid at rest with noise.
-  void watch_momentum_flux() { watches_flux_ = true; }
+  // From now on steps report the stress of the motion.
+  void watch_motion() { watches_motion_ = true; }
 
   // Until this is said again, steps show the pairs of their report, with this weight. Null: nobody looks.
   void show_pairs_to(PairWatcher* watcher, double weight = 1) {
@@ -78,12 +79,12 @@ class Integrator {
   virtual void load(const System& system, ArchiveReader& archive) = 0;
 
  protected:
-  bool watches_flux() const { return watches_flux_; }
+  bool watches_motion() const { return watches_motion_; }
   PairWatcher* watcher() const { return watcher_; }
   double weight() const { return weight_; }
 
  private:
-  bool watches_flux_ = false;
+  bool watches_motion_ = false;
   PairWatcher* watcher_ = nullptr;
   double weight_ = 1;
 };

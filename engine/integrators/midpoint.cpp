@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/integrators/acted_flux.h"
+#include "engine/integrators/acted_stress.h"
 #include "engine/state/field_array.h"
 #include "engine/threads/for_each_range.h"
 
@@ -69,7 +69,7 @@ std::optional<StepReport> Midpoint::find_velocities(System& system) {
     report.sums.finite = report.sums.finite && std::isfinite(residual.squared) && std::isfinite(motion);
     const int most = residual.squared > far * far * target ? iterations.most : iterations.usual;
     if (!(residual.squared > target) || iteration >= most) {
-      if (watches_flux()) report.flux = flux_of(report.sums, flux_by_motion(system, mean_velocity(system)));
+      if (watches_motion()) report.motion = stress_of_motion(system);
       return report;
     }
     restore_springs(system);
@@ -83,6 +83,16 @@ std::optional<StepReport> Midpoint::find_velocities(System& system) {
       return report;
     }
   }
+}
+
+// -sum m sym(V V'), V' = (V_n + V) / 2.
+SymmetricTensor Midpoint::stress_of_motion(const System& system) const {
+  const ParticleState& particles = system.particles;
+  return sum_over_particles(system, field_.threads(), [&](std::size_t i) {
+    const Vector3 mean = 0.5 * (origin_.velocity[i] + particles.velocity[i]);
+    return -particles.mass[i] * symmetric_dyad(relative_to_flow(system, i, particles.velocity[i]),
+                                               relative_to_flow(system, i, mean));
+  });
 }
 
 void Midpoint::keep_change(const System& system) {

@@ -24,6 +24,7 @@ class Midpoint final : public Implicit {
 
  private:
   std::optional<StepReport> find_velocities(System& system) override;
+  SymmetricTensor stress_of_motion(const System& system) const;
   void keep_change(const System& system) override;
   void forget_change() override;
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/state/field_array.h"
 #include "engine/terms/drag.h"
 #include "engine/terms/inertial_step.h"
 #include "engine/threads/for_each_range.h"
@@ -13,6 +12,13 @@ namespace {
 // The predicted velocities need not be better than half of their way changes the resistance: their tolerance
 // is that many times the one of the velocities.
 constexpr double of_prediction = 5;
+
+// Noise, and the resistance beside it, are of lubrication alone.
+Physics lubrication_alone(Physics physics) {
+  physics.contact.reset();
+  for_each_conservative_law([](StressTerm /*part*/, auto& law) { law.reset(); }, physics);
+  return physics;
+}
 
 bool carried_by_inertia(const Physics& physics, const ParticleState& particles, double timestep) {
   if (!physics.lubrication || particles.count() == 0) return false;
@@ -36,63 +42,63 @@ NoisyMidpoint::NoisyMidpoint(const Physics& physics, const ParticleState& partic
                              double tolerance, std::uint64_t seed, int threads, InstructionSet set,
                              bool inertial)
     : Implicit(physics, particles, timestep, tolerance, seed, threads, set, inertial ? 0.5 : 1),
-      with_noise_(physics, particles, timestep, seed, threads, set, 0.5 * timestep),
+      with_noise_(lubrication_alone(physics), particles, timestep, seed, threads, set, 0,
+                  inertial ? StepResistance::Part::jump : StepResistance::Part::none),
       at_beginning_(field_.physics(), particles, timestep, seed, threads, set, 0.5 * timestep,
                     inertial ? StepResistance::Part::at_beginning : StepResistance::Part::whole),
       ahead_(field_.physics(), particles, timestep, seed, threads, set, 0,
              inertial ? StepResistance::Part::ahead : StepResistance::Part::whole),
-      on_the_way_(field_.physics(), particles, timestep, seed, threads, set, 0,
-                  StepResistance::Part::on_the_way),
       noise_(particles.count(), threads),
       inertial_(inertial) {}
 
 std::optional<StepReport> NoisyMidpoint::find_velocities(System& system) {
   StepReport report;
-  const PairSums counted = assemble(system, at_beginning_, noise_);
-  const PairSums drawn = with_noise_.evaluate(system, loads_.force, loads_.torque);
-  restore_springs(system);
+  assemble(system, at_beginning_, loads_);
+  const bool of_each_pair = watcher() != nullptr;
+  stress_.begin(with_noise_.evaluate_pairs(system, noise_.force, noise_.torque), noise_.force);
+  if (of_each_pair) stress_.begin_pairs(system, with_noise_);
   for_each_range(system.particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      noise_.force.row(i) = loads_.force.row(i) - noise_.force.row(i);
-      noise_.torque.row(i) = loads_.torque.row(i) - noise_.torque.row(i);
-    }
+    with_noise_.add_drag_noise(system, begin, end, noise_.force, noise_.torque);
   });
-  if (watches_flux()) {
-    acted_flux_.begin(system, drawn, counted, noise_, with_noise_);
-  }
-  const bool predicted = solve(system, nullptr, of_prediction, report);
+  const bool predicted = solve(system, of_prediction, report);
 
   if (!move_half_a_step(system)) {
     return std::nullopt;
   }
-  const PairSums ahead = assemble(system, ahead_, loads_);
-  if (watches_flux()) {
-    acted_flux_.predict(system, ahead, loads_, field_.physics());
-  }
+  stress_.predict(system, assemble(system, ahead_, loads_), loads_, field_.physics());
+  if (of_each_pair) stress_.predict_pairs(system, ahead_);
   if (inertial_) {
     leave_half_of_the_drag(system);
   }
-  const bool solved = solve(system, &noise_, 1, report);
-  const SymmetricTensor acted =
-      watches_flux() ? acted_flux_.end(system, solver_, timestep_) : SymmetricTensor{};
+  const bool solved = solve(system, 1, report);
+  report.sums = stress_.end(system, ahead_, solver_.weights(), timestep_);
+  if (of_each_pair) stress_.end_pairs(system, ahead_, solver_.weights(), timestep_);
 
   if (!move_half_a_step(system)) {
     return std::nullopt;
   }
-  report.sums = on_the_way_.evaluate(system, loads_.force, loads_.torque);
-  report.sums.finite = report.sums.finite && predicted && solved;
-  report.sums.of(StressTerm::brownian_lubrication) = drawn.of(StressTerm::brownian_lubrication);
-  if (watches_flux()) {
-    report.flux = flux(system, report.sums, acted);
+  if (system.springs.kinds() != SpringKinds::none) {
+    field_.evaluate(system, loads_.force, loads_.torque);  // advances the springs
   }
+  report.motion =
+      sum_over_particles(system, field_.threads(), [&](std::size_t i) { return motion(system, i); });
+  report.sums.finite = report.sums.finite && predicted && solved;
   return report;
 }
 
-// The sums are those that the flux of momentum takes.
+void NoisyMidpoint::show_step(const System& system) {
+  watcher()->begin(system, weight());
+  stress_.show_pairs(system, *watcher());
+  for (std::size_t i = 0; i < system.particles.count(); ++i) {
+    watcher()->take_motion(system, i, motion(system, i));
+  }
+}
+
+// Returns the sums of the loads.
 PairSums NoisyMidpoint::assemble(System& system, ForceField& field, Loads& loads) {
-  if (field.leaves_loads_with_links() && !watches_flux()) {
+  if (field.leaves_loads_with_links()) {
     solver_.assemble(system, field, &loads);
-    return {};
+    return field.linked_sums();
   }
   solver_.assemble(system, field);
   const PairSums sums = field.evaluate(system, loads.force, loads.torque);
@@ -100,12 +106,18 @@ PairSums NoisyMidpoint::assemble(System& system, ForceField& field, Loads& loads
   return sums;
 }
 
-// `acted`: by pairs.
-MomentumFlux NoisyMidpoint::flux(const System& system, const PairSums& sums, SymmetricTensor acted) {
-  const SymmetricTensor motion = flux_by_motion(system, mean_velocity(system));
-  MomentumFlux flux = flux_of(sums, motion);
-  flux.acted = acted + motion;
-  return flux;
+// What a particle carries: m V (V_n + V) / 2, and what its drag and the noise of its drag do in a step. These
+// act on single particles and have no stress, but where they act counts: the noise at x_n, the drag on V and,
+// if it acts on both, the drag on V_n each in the middle of the way that they resist. So neither has a mean
+// at any place, and a free particle carries kT whatever the step.
+SymmetricTensor NoisyMidpoint::motion(const System& system, std::size_t i) const {
+  const ParticleState& particles = system.particles;
+  const Vector3 after = relative_to_flow(system, i, particles.velocity[i]),
+                before = relative_to_flow(system, i, origin_.velocity[i]), mean = 0.5 * (before + after);
+  const Vector3 noise = noise_.force[i] - stress_.force_at_beginning(i);
+  const double dragged = inertial_ ? translational_drag(field_.physics().viscosity, particles.radius[i]) : 0;
+  return -particles.mass[i] * symmetric_dyad(after, mean) + -0.5 * timestep_ * symmetric_dyad(after, noise) +
+         0.5 * timestep_ * dragged * symmetric_dyad(before, mean);
 }
 
 // The drag on V becomes that on (V_n + V) / 2.
@@ -123,8 +135,8 @@ void NoisyMidpoint::leave_half_of_the_drag(const System& system) {
   });
 }
 
-bool NoisyMidpoint::solve(System& system, const Loads* noise, double factor, StepReport& report) {
-  const VelocitySolver::Residual residual = solver_.set_residual(system, origin_, loads_, noise);
+bool NoisyMidpoint::solve(System& system, double factor, StepReport& report) {
+  const VelocitySolver::Residual residual = solver_.set_residual(system, origin_, loads_, &noise_);
   const double tolerance = factor * solver_.tolerance(), squared_tolerance = tolerance * tolerance;
   return solver_.correct(system, squared_tolerance * (residual.squared_motion + residual.squared), report);
 }

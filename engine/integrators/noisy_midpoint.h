@@ -14,10 +14,10 @@
 // which a thermal flight is as long as the range or velocities have forgotten all (terms/inertial_step.h),
 // are those above.
 //
-// The stress is that of V at x_n + dt/2 V, R averaged over the way; of the noise, at x_n.
+// The stress is that of the forces that act (acted_stress.h).
 #pragma once
 
-#include "engine/integrators/acted_flux.h"
+#include "engine/integrators/acted_stress.h"
 #include "engine/integrators/implicit.h"
 
 namespace peclet::engine {
@@ -32,19 +32,20 @@ class NoisyMidpoint final : public Implicit {
                 std::uint64_t seed, int threads, InstructionSet set, bool inertial);
 
   std::optional<StepReport> find_velocities(System& system) override;
-  ForceField& reported() override { return on_the_way_; }
-  // The matrix of a system of equations, and the loads that it is the derivative of.
+  void show_step(const System& system) override;
+  // The matrix of a system of equations, and the loads that it is the derivative of; returns their sums.
   PairSums assemble(System& system, ForceField& field, Loads& loads);
   void leave_half_of_the_drag(const System& system);
-  MomentumFlux flux(const System& system, const PairSums& sums, SymmetricTensor acted);
+  SymmetricTensor motion(const System& system, std::size_t particle) const;
   // Down to `factor` times the tolerance.
-  [[nodiscard]] bool solve(System& system, const Loads* noise, double factor, StepReport& report);
+  [[nodiscard]] bool solve(System& system, double factor, StepReport& report);
 
-  ForceField with_noise_, at_beginning_;  // contact and repulsion half a step ahead
-  ForceField ahead_, on_the_way_;
+  ForceField with_noise_;    // the noise, and R_o / 2
+  ForceField at_beginning_;  // contact and repulsion half a step ahead
+  ForceField ahead_;
   Loads noise_;
   bool inertial_;
-  ActedFlux acted_flux_;
+  ActedStress stress_;
 };
 
 }  // namespace peclet::engine

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "engine/terms/drag.h"
-#include "engine/terms/lubrication.h"
 #include "engine/threads/run_team.h"
 
 namespace peclet::engine {
@@ -12,48 +11,6 @@ namespace {
 
 // Far more than any packing has needed.
 constexpr int most_iterations = 1000;
-
-// Calls body(group, place in it) for every link that couples something.
-template <class Body>
-void for_each_link(const LinkSystem& system, Body&& body) {
-  const auto visit = [&](std::uint32_t begin, std::uint32_t groups) {
-    for (const LinkGroup* group = system.groups + begin; group < system.groups + begin + groups; ++group) {
-      for (int k = 0; k < links_per_group; ++k) {
-        if (group->squeeze[k] > 0 || group->shear[k] > 0) body(*group, k);
-      }
-    }
-  };
-  for (std::size_t b = 0; b < system.count_of_blocks; ++b) {
-    for (std::uint32_t l = system.blocks[b].levels_begin; l < system.blocks[b].levels_end; ++l) {
-      const LinkLevel& level = system.levels[l];
-      visit(level.groups_begin, level.count_of_groups);
-      visit(level.crossing_begin, (level.count_of_crossing + links_per_group - 1) / links_per_group);
-    }
-  }
-}
-
-// Of all images of a separation the one along `normal`: in a small box a pair has several within its range.
-Vector3 image_along(const Vector3& separation, const Vector3& normal, const PeriodicCell& box) {
-  const Vector3 place = box.frame().fractional(separation);
-  const auto whole = [](double x) { return static_cast<std::int32_t>(std::round(x)); };
-  const LatticeShift nearest = {-whole(place.x), -whole(place.y), -whole(place.z)};
-  const auto squared_sine = [&](const Vector3& image) {
-    const Vector3 aside = image - norm(image) * normal;
-    return dot(aside, aside) / dot(image, image);
-  };
-  Vector3 best = separation + box.displacement(nearest);
-  double least = squared_sine(best);
-  constexpr double of_rounding = 1e-8;
-  for (std::int32_t n = 0; n < 27 && least > of_rounding; ++n) {
-    const LatticeShift other = nearest + LatticeShift{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
-    const Vector3 image = separation + box.displacement(other);
-    if (const double sine = squared_sine(image); sine < least) {
-      least = sine;
-      best = image;
-    }
-  }
-  return best;
-}
 
 }  // namespace
 
@@ -101,8 +58,7 @@ void VelocitySolver::assemble(System& system, ForceField& field, Loads* loads) {
   const std::optional<LoadRows> rows =
       loads != nullptr ? std::optional(LoadRows{loads->force, loads->torque}) : std::nullopt;
   const ForceField::AssembleLinks assemble_block =
-      field.assemble_links(system, {.timestep = timestep_, .normal_time = 0.5 * timestep_}, order_, groups_,
-                           rows ? &*rows : nullptr);
+      field.assemble_links(system, weights(), order_, groups_, rows ? &*rows : nullptr);
   const LinkSystem matrix = links(system);
   run_team(threads_, [&](Team& team) {
     const Team::Part mine = team.part_of(matrix.count_of_blocks);
@@ -172,34 +128,6 @@ bool VelocitySolver::correct(System& system, double target, StepReport& report) 
   report.solver_iterations += solved.iterations;
   report.solver_residual = target > 0 ? tolerance_ * std::sqrt(solved.squared_residual / target) : 0;
   return std::isfinite(solved.squared_residual);
-}
-
-SymmetricTensor VelocitySolver::add_corrected_forces(const System& system, VectorField& force) {
-  const LinkSystem matrix = links(system);
-  std::vector<std::size_t> particle(matrix.particles);  // of each row
-  for (std::size_t i = 0; i < matrix.particles; ++i) particle[matrix.row[i]] = i;
-  SymmetricTensor sum;
-  for_each_link(matrix, [&](const LinkGroup& group, int k) {
-    const std::uint32_t first = group.first[k], second = group.second[k];
-    const auto part = [&](const MotionRow& row, int c) {
-      return Vector3{row.v[c], row.v[c + 1], row.v[c + 2]};
-    };
-    const MotionRow &i = solution_[first], &j = solution_[second];
-    PairGeometry pair{};  // of which the load depends on the normal alone
-    pair.normal = {group.normal[0][k], group.normal[1][k], group.normal[2][k]};
-    const PairResistance coupling = {group.squeeze[k],     group.shear[k],       group.pump_first[k],
-                                     group.pump_second[k], group.twist_first[k], group.twist_cross[k],
-                                     group.twist_second[k]};
-    const Vector3 load =
-        (1 / timestep_) *
-        lubrication_load(coupling, pair, {part(j, 0) - part(i, 0), part(i, 4), part(j, 4)}).force;
-    force.add(particle[first], load);
-    force.add(particle[second], -load);
-    const Vector3 between =
-        system.particles.position[particle[second]] - system.particles.position[particle[first]];
-    sum += symmetric_dyad(image_along(between, pair.normal, system.box), load);
-  });
-  return sum;
 }
 
 LinkSystem VelocitySolver::links(const System& system) {

@@ -37,6 +37,9 @@ class VelocitySolver {
   // `loads` is null, it is set to the field's loads there, which the field must be able to leave.
   void assemble(System& system, ForceField& field, Loads* loads = nullptr);
 
+  // By what the matrix counts resistances and stiffnesses.
+  LinkWeights weights() const { return {.timestep = timestep_, .normal_time = 0.5 * timestep_}; }
+
   struct Residual {
     double squared;         // r.C^-1 r with the preconditioner C, nearly r.A^-1 r
     double squared_motion;  // v.A v of what a step changes
@@ -48,10 +51,6 @@ class VelocitySolver {
   // Adds to the velocities what takes the residual away, down to the squared residual `target`, and to the
   // report what it took. Returns whether the result is finite.
   [[nodiscard]] bool correct(System& system, double target, StepReport& report);
-
-  // Adds to the rows of `force` the forces of the links at the last correction, and returns their sum of
-  // sym(r F_i) with the places that the system has.
-  SymmetricTensor add_corrected_forces(const System& system, VectorField& force);
 
   // What has been assembled.
   LinkSystem links(const System& system);

@@ -6,10 +6,11 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "engine/integrators/acted_flux.h"
+#include "engine/integrators/acted_stress.h"
 #include "engine/integrators/follow_flow.h"
 #include "engine/stability/spectral_bound.h"
 #include "engine/stability/spurious_energy.h"
+#include "engine/terms/drag.h"
 #include "engine/threads/for_each_range.h"
 
 namespace peclet::engine {
@@ -73,21 +74,39 @@ StepReport VelocityVerlet::advance_open(System& system) {
   } else {
     speed = move(system);
   }
+  StepReport report;
+  report.largest_displacement = speed * timestep_;
   // Displacements beyond the range of the list: no neighbours are looked for, and the caller reports the
   // cause.
   if (!(speed * timestep_ < system.list.ranges().largest())) {
-    return {{}, speed * timestep_};
+    return report;
   }
   if (keep_list(system, speed) || !in_one_walk) {
     sums = field_.evaluate_blocks(system, force_, torque_);
   }
   open_ = true;
-  if (watcher() != nullptr) field_.show_pairs(system, system.springs, true, weight(), *watcher());
-  StepReport report{sums, speed * timestep_};
-  if (watches_flux()) {
-    report.flux = flux_of(sums, flux_by_motion(system, system.particles.velocity));
+  report.sums = sums;
+  const bool has_noise = field_.physics().thermal_energy > 0;
+  if (watcher() != nullptr) {
+    field_.show_pairs(system, system.springs, true, weight(), *watcher());
+    for (std::size_t i = 0; has_noise && i < system.particles.count(); ++i) {
+      watcher()->take_motion(system, i, motion(system, i));
+    }
+  }
+  if (watches_motion() || has_noise) {
+    report.motion =
+        sum_over_particles(system, field_.threads(), [&](std::size_t i) { return motion(system, i); });
   }
   return report;
+}
+
+// What a particle carries, with the velocity of the half step: m v v less half a step of its drag, which acts
+// where the way that it resists ends; in the middle of the way it has no mean. So a free particle carries kT.
+SymmetricTensor VelocityVerlet::motion(const System& system, std::size_t i) const {
+  const ParticleState& particles = system.particles;
+  const Vector3 v = relative_to_flow(system, i, particles.velocity[i]);
+  const double drag = translational_drag(field_.physics().viscosity, particles.radius[i]);
+  return (0.5 * timestep_ * drag - particles.mass[i]) * symmetric_dyad(v, v);
 }
 
 // A mode z of z^2 - (2 - l - k) z + (1 - l) = 0, with l and k the means of dt M^-1 R and dt^2 M^-1 K over its

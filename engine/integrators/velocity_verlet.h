@@ -30,6 +30,7 @@ class VelocityVerlet final : public Integrator {
   void load(const System& system, ArchiveReader& archive) override;
 
  private:
+  SymmetricTensor motion(const System& system, std::size_t particle) const;
   void add_due(const System& system, const ParticleBlock& block);
   double move(System& system);
   std::pair<double, PairSums> move_and_evaluate(System& system);

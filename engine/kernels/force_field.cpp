@@ -6,7 +6,6 @@
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {
-
 ForceField::ForceField(const Physics& physics, const ParticleState& particles, double timestep,
                        std::uint64_t seed, int threads, InstructionSet set, double approach_time,
                        StepResistance::Part part)
@@ -73,16 +72,19 @@ ForceField::AssembleLinks ForceField::assemble_links(System& system, const LinkW
   const std::size_t room = order.inner_groups() + order.crossing_groups();
   groups.resize(std::max(groups.size(), room));
   std::optional<OneBodyInput> one_body;
-  if (loads != nullptr) one_body = one_body_input(system, loads->force, loads->torque);
+  if (loads != nullptr) {
+    one_body = one_body_input(system, loads->force, loads->torque);
+    linked_sums_.resize(order.blocks().size());
+  }
   return [this, &list = system.list, &order, weights, places = order.places(), groups = groups.data(),
-          one_body, crossing = pair_pass_.crossing_rows(system.list),
+          one_body, sums = linked_sums_.data(), crossing = pair_pass_.crossing_rows(system.list),
           input = pair_pass_.kernel_input(pair_input(system), system.springs)](std::size_t number) {
     const ParticleBlock& block = list.blocks()[number];
     std::optional<PairKernelOutput> output;
     if (one_body) {
       one_body_.set_drag(*one_body, block.begin, block.end);
       const std::size_t offset = 4 * std::size_t{block.begin};
-      output = {block.begin, one_body->force + offset, one_body->torque + offset, crossing, nullptr};
+      output = {block.begin, one_body->force + offset, one_body->torque + offset, crossing, sums + number};
     }
     link_.assemble(input, list.runs().data() + block.runs_begin, block.runs_end - block.runs_begin, terms_,
                    weights, places, order.blocks()[number], groups, output ? &*output : nullptr);
@@ -112,29 +114,87 @@ PairSums ForceField::evaluate_blocks(System& system, VectorField& force, VectorF
 
 PairSums ForceField::evaluate_blocks(System& system, VectorField& force, VectorField& torque,
                                      const SetDrag& set_drag) {
-  const bool feels_varying = feels_varying_flow(physics_);
+  return add_pairs(system, force, torque, [&](const ParticleBlock& block) {
+    set_drag(block);
+    if (physics_.flow.varies()) {
+      add_varying_drag(system, block.begin, block.end, force, torque);
+    }
+    if (physics_.thermal_energy > 0) {
+      add_drag_noise(system, block.begin, block.end, force, torque);
+    }
+  });
+}
+
+PairSums ForceField::evaluate_pairs(System& system, VectorField& force, VectorField& torque) {
+  const PairSums sums =
+      add_pairs(system, force, torque, [&](const ParticleBlock& block) { clear_rows(block, force, torque); });
+  add_incoming(system, force, torque);
+  return sums;
+}
+
+// Adds the loads of pairs to rows that `set_rows` has set. Pairs ask for the flow at particles of other
+// blocks: it is set for all of them first, but on one thread, where blocks may move in turn.
+PairSums ForceField::add_pairs(System& system, VectorField& force, VectorField& torque,
+                               const SetDrag& set_rows) {
+  const bool feels_varying = feels_varying_flow(physics_), in_turn = threads_ <= 1;
   if (feels_varying && varying_.size() != system.particles.count()) {
     varying_ = FlowAtCentres(system.particles.count(), threads_);
   }
-  // Pairs ask for particles of other blocks: all of them, but on one thread, where blocks may move in turn.
-  const bool in_turn = threads_ <= 1;
   if (feels_varying && !in_turn) {
     for_each_range(system.particles.count(), threads_,
                    [&](std::size_t begin, std::size_t end) { set_varying_flow(system, begin, end); });
   }
   return pair_pass_.add_pairs(pair_input(system), system.springs, force, torque,
                               [&](const ParticleBlock& block) {
-                                set_drag(block);
+                                set_rows(block);
                                 if (feels_varying && in_turn) {
                                   set_varying_flow(system, block.begin, block.end);
                                 }
-                                if (physics_.flow.varies()) {
-                                  add_varying_drag(system, block.begin, block.end, force, torque);
-                                }
-                                if (physics_.thermal_energy > 0) {
-                                  add_drag_noise(system, block.begin, block.end, force, torque);
-                                }
                               });
+}
+
+PairKernelInput ForceField::input_of_change(System& system, const Motion& before) {
+  PairKernelInput kernel = pair_pass_.kernel_input(pair_input(system), system.springs);
+  kernel.velocity = before.velocity.data();
+  kernel.spin = before.spin.data();
+  return kernel;
+}
+
+void ForceField::each_pair(const System& system, SpringField springs, const PairPass::VisitPair& visit) {
+  pair_pass_.each_pair(pair_input(system), springs, visit);
+}
+
+void ForceField::each_change(System& system, const LinkWeights& weights, const Motion& before,
+                             const Motion& change, const PairPass::VisitPair& visit) {
+  const PairKernelInput kernel = input_of_change(system, before);
+  PairPass::each_pair(
+      system.list,
+      [&](const PairRun& pair, const PairKernelOutput& out) {
+        link_.leave_change(kernel, &pair, 1, terms_, weights, {change.velocity.data(), change.spin.data()},
+                           out);
+      },
+      visit);
+}
+
+PairSums ForceField::evaluate_change(System& system, const LinkWeights& weights, const Motion& before,
+                                     const Motion& change, VectorField& force, VectorField& torque) {
+  const std::vector<ParticleBlock>& blocks = system.list.blocks();
+  const PairKernelInput kernel = input_of_change(system, before);
+  double* const crossing = pair_pass_.crossing_rows(system.list);
+  linked_sums_.resize(blocks.size());
+  for_each_range(blocks.size(), threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      const ParticleBlock& block = blocks[b];
+      const std::size_t offset = 4 * std::size_t{block.begin};
+      clear_rows(block, force, torque);
+      link_.leave_change(
+          kernel, system.list.runs().data() + block.runs_begin, block.runs_end - block.runs_begin, terms_,
+          weights, {change.velocity.data(), change.spin.data()},
+          {block.begin, force.data() + offset, torque.data() + offset, crossing, &linked_sums_[b]});
+    }
+  });
+  add_incoming(system, force, torque);
+  return total_of(linked_sums_);
 }
 
 void ForceField::set_varying_flow(const System& system, std::size_t begin, std::size_t end) {

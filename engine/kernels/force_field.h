@@ -22,6 +22,10 @@ class ForceField {
   // system.step; contact springs advance by one step of the present motion.
   PairSums evaluate(System& system, VectorField& force, VectorField& torque);
 
+  // Overwrites force and torque with what pairs do in system.step, without the drag of single spheres and its
+  // noise. Springs do not advance: of terms without friction.
+  PairSums evaluate_pairs(System& system, VectorField& force, VectorField& torque);
+
   // The same in two parts, the second one block by block: pairs that cross from one block of particles into
   // another act on the particle in the earlier one only after add_incoming().
   PairSums evaluate_blocks(System& system, VectorField& force, VectorField& torque);
@@ -40,7 +44,7 @@ class ForceField {
   // The links of all pairs within their range: what is returned puts those of a block in their places. It
   // holds while the system stands and until the next evaluation. `groups` is made as long as it has to be and
   // keeps its storage. Unless `loads` is null, blocks leave there what evaluate_blocks() would, but for
-  // rounding; the field must be able to.
+  // rounding, and their sums for linked_sums(); the field must be able to.
   struct LoadRows {
     VectorField &force, &torque;
   };
@@ -49,6 +53,21 @@ class ForceField {
                                std::vector<LinkGroup>& groups, const LoadRows* loads = nullptr);
   // Not with springs, which an evaluation advances, and what few scenes have.
   bool leaves_loads_with_links() const;
+  // The sums of all blocks that have left their loads with their links.
+  PairSums linked_sums() const { return total_of(linked_sums_); }
+
+  // Overwrites force and torque with what a change of the motion adds to the loads of pairs, from the motion
+  // `before` on and as links of these weights have it; returns the stress of that.
+  struct Motion {
+    VectorField velocity, spin;
+  };
+  PairSums evaluate_change(System& system, const LinkWeights& weights, const Motion& before,
+                           const Motion& change, VectorField& force, VectorField& torque);
+
+  // Visits each pair as the last evaluation had it, or with what evaluate_change() adds to it. Slow.
+  void each_pair(const System& system, SpringField springs, const PairPass::VisitPair& visit);
+  void each_change(System& system, const LinkWeights& weights, const Motion& before, const Motion& change,
+                   const PairPass::VisitPair& visit);
 
   // Shows each pair as the last evaluation had it: at these positions and velocities. `springs` are those
   // from before that evaluation, or, `advanced`, those that it has left.
@@ -87,7 +106,9 @@ class ForceField {
 
  private:
   PairPassInput pair_input(const System& system) const;
+  PairKernelInput input_of_change(System& system, const Motion& before);
   void set_varying_flow(const System& system, std::size_t begin, std::size_t end);
+  PairSums add_pairs(System& system, VectorField& force, VectorField& torque, const SetDrag& set_rows);
 
   Physics physics_;
   Terms terms_;
@@ -98,6 +119,7 @@ class ForceField {
   FillNormals fill_normals_;
   OneBodyKernels one_body_;
   LinkKernels link_;
+  std::vector<PairSums> linked_sums_;              // of each block
   FlowAtCentres varying_;                          // of the last evaluation, where pairs feel it
   std::vector<OneBodyFactors> drag_, drag_noise_;  // coefficients of each size class, amplitudes of the noise
   int threads_;

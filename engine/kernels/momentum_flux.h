@@ -1,4 +1,4 @@
-// What carries momentum through the cell in one step, times the volume: the stress of linear response.
+// What carries momentum through the cell in one step, times the volume: the stress that acts.
 //
 // A step moves particles from x_n to x_n+1 = x_n + dt V at velocities that change from V_n to V. Pairs that
 // exchange the momentum dt F at x change sum m x V by dt sum x F, whatever F is made of, so that
@@ -8,28 +8,32 @@
 // found, with its noise.
 #pragma once
 
-#include <initializer_list>
-
 #include "engine/kernels/pairs/pair_sums.h"
 
 namespace peclet::engine {
 
 struct MomentumFlux {
-  SymmetricTensor acted;         // J; friction belongs to it alone, too
+  SymmetricTensor by_pairs;      // sum over pairs of sym(r F_i), all terms
+  SymmetricTensor by_motion;     // -sum m sym(V V'), relative to the flow
   SymmetricTensor conservative;  // contact, repulsion, attraction and the motion: even in the velocities
-  SymmetricTensor dissipative;   // lubrication: odd
+  SymmetricTensor dissipative;   // lubrication and damping: odd
+
+  SymmetricTensor acted() const { return by_pairs + by_motion; }  // J
 };
 
-// Of the stress by term that a step reports, with the flux by motion. The noise belongs to `acted` alone.
+// The stress that results report, times the volume: with noise that of the motion is a part of it, by which
+// the pressure at rest is the one of thermodynamics; without noise it is left out.
+inline SymmetricTensor stress_of(const MomentumFlux& flux, bool has_noise) {
+  return has_noise ? flux.acted() : flux.by_pairs;
+}
+
 inline MomentumFlux flux_of(const PairSums& sums, const SymmetricTensor& motion) {
   MomentumFlux flux;
+  flux.by_pairs = total_stress(sums);
+  flux.by_motion = motion;
   flux.dissipative = sums.of(StressTerm::lubrication) + sums.of(StressTerm::contact_damping);
-  flux.conservative = motion;
-  for (const StressTerm term : {StressTerm::contact_normal, StressTerm::repulsion, StressTerm::attraction}) {
-    flux.conservative += sums.of(term);
-  }
-  flux.acted = flux.conservative + flux.dissipative + sums.of(StressTerm::brownian_lubrication) +
-               sums.of(StressTerm::friction);
+  flux.conservative = motion + sums.of(StressTerm::contact_normal) + sums.of(StressTerm::repulsion) +
+                      sums.of(StressTerm::attraction);
   return flux;
 }
 

@@ -6,8 +6,6 @@
 #include "engine/threads/for_each_range.h"
 
 namespace peclet::engine {
-namespace {
-
 PairSums total_of(const std::vector<PairSums>& blocks) {
   PairSums total;
   for (const PairSums& block : blocks) {
@@ -22,7 +20,11 @@ PairSums total_of(const std::vector<PairSums>& blocks) {
   return total;
 }
 
-}  // namespace
+void clear_rows(const ParticleBlock& block, VectorField& force, VectorField& torque) {
+  const std::size_t begin = 4 * std::size_t{block.begin}, count = 4 * std::size_t{block.end - block.begin};
+  std::fill_n(force.data() + begin, count, 0.0);
+  std::fill_n(torque.data() + begin, count, 0.0);
+}
 
 PairParameters pair_parameters(const Physics& physics, double timestep) {
   PairParameters parameters;
@@ -136,10 +138,16 @@ void PairPass::add_incoming(const NeighbourList& list, int threads, VectorField&
 }
 
 void PairPass::each_pair(const PairPassInput& input, SpringField& springs, const VisitPair& visit) {
-  const NeighbourList& list = input.list;
   const PairKernelInput kernel = kernel_input(input, springs);
+  each_pair(
+      input.list, [&](const PairRun& pair, const PairKernelOutput& out) { kernel_(kernel, &pair, 1, out); },
+      visit);
+}
+
+void PairPass::each_pair(const NeighbourList& list, const ComputePair& compute, const VisitPair& visit) {
   // Rows of crossing pairs, which the step may still need, stay as they are.
-  VectorField force(input.particles.count()), torque(input.particles.count()), crossing(2 * list.crossings());
+  const std::size_t count = list.blocks().empty() ? 0 : list.blocks().back().end;
+  VectorField force(count), torque(count), crossing(2 * list.crossings());
   for (const ParticleBlock& block : list.blocks()) {
     const std::size_t offset = 4 * std::size_t{block.begin};
     for (std::uint32_t r = block.runs_begin; r < block.runs_end; ++r) {
@@ -150,11 +158,11 @@ void PairPass::each_pair(const PairPassInput& input, SpringField& springs, const
         const Pair& pair = list.pairs()[p];
         const std::uint32_t own = single.first_is_away ? pair.second : pair.first;
         force.set(own, {});
-        PairSums sums[2];
-        kernel_(kernel, &single, 1,
-                {block.begin, force.data() + offset, torque.data() + offset, crossing.data(), sums});
+        std::vector<PairSums> sums(2);
+        compute(single,
+                {block.begin, force.data() + offset, torque.data() + offset, crossing.data(), sums.data()});
         const Vector3 on_own = force[own];
-        visit(pair, sums[single.first_is_away ? 1 : 0], single.first_is_away ? -1.0 * on_own : on_own);
+        visit(pair, total_of(sums), single.first_is_away ? -1.0 * on_own : on_own);
         if (single.crossing != within_block) ++single.crossing;
       }
     }
@@ -163,12 +171,8 @@ void PairPass::each_pair(const PairPassInput& input, SpringField& springs, const
 
 PairSums PairPass::evaluate(const PairPassInput& input, SpringField& springs, VectorField& force,
                             VectorField& torque) {
-  const auto clear = [&](const ParticleBlock& block) {
-    const std::size_t begin = 4 * std::size_t{block.begin}, count = 4 * std::size_t{block.end - block.begin};
-    std::fill_n(force.data() + begin, count, 0.0);
-    std::fill_n(torque.data() + begin, count, 0.0);
-  };
-  const PairSums sums = add_pairs(input, springs, force, torque, clear);
+  const PairSums sums = add_pairs(input, springs, force, torque,
+                                  [&](const ParticleBlock& block) { clear_rows(block, force, torque); });
   add_incoming(input.list, input.threads, force, torque);
   return sums;
 }

@@ -25,6 +25,12 @@ bool feels_varying_flow(const Physics& physics);
 // The springs that these terms stretch.
 SpringKinds spring_kinds(const Terms& terms);
 
+// The sums of blocks, added up in their order.
+PairSums total_of(const std::vector<PairSums>& blocks);
+
+// Sets the rows of a block to zero.
+void clear_rows(const ParticleBlock& block, VectorField& force, VectorField& torque);
+
 struct PairPassInput {
   const ParticleState& particles;
   const NeighbourList& list;
@@ -75,6 +81,9 @@ class PairPass {
   // sphere. Loads go nowhere; `springs` advance as in add_pairs(). Slow: for what is looked at seldom.
   using VisitPair = std::function<void(const Pair& pair, const PairSums& sums, const Vector3& force)>;
   void each_pair(const PairPassInput& input, SpringField& springs, const VisitPair& visit);
+  // Likewise what `compute` leaves of one pair, a run of length 1, in rows and sums that are zero.
+  using ComputePair = std::function<void(const PairRun& pair, const PairKernelOutput& out)>;
+  static void each_pair(const NeighbourList& list, const ComputePair& compute, const VisitPair& visit);
 
   // Sets force and torque to the sums over pairs.
   PairSums evaluate(const PairPassInput& input, SpringField& springs, VectorField& force,

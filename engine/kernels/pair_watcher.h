@@ -18,6 +18,8 @@ class PairWatcher {
   // One of its pairs: its part of the stress, times the volume, and the force on its first sphere, noise
   // included. Of the system of begin().
   virtual void take(const System& system, const Pair& pair, const PairSums& sums, const Vector3& force) = 0;
+  // With noise, the part of a particle in the stress of the motion, times the volume.
+  virtual void take_motion(const System& system, std::size_t particle, const SymmetricTensor& stress) = 0;
 };
 
 // Several of them, as one.
@@ -35,6 +37,9 @@ class PairWatchers final : public PairWatcher {
   }
   void take(const System& system, const Pair& pair, const PairSums& sums, const Vector3& force) override {
     for (PairWatcher* const watcher : all_) watcher->take(system, pair, sums, force);
+  }
+  void take_motion(const System& system, std::size_t particle, const SymmetricTensor& stress) override {
+    for (PairWatcher* const watcher : all_) watcher->take_motion(system, particle, stress);
   }
 
  private:

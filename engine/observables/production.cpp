@@ -13,12 +13,14 @@ Production::Production(std::uint64_t steps) : steps_(steps) {
   for (std::size_t k = 0; k < count_of_blocks; ++k) blocks_[k].planned = begin(k + 1) - begin(k);
 }
 
-void Production::add_step(std::uint64_t index, const PairSums& sums, double shear_rate) {
+void Production::add_step(std::uint64_t index, const PairSums& sums, const SymmetricTensor& motion,
+                          double shear_rate) {
   BlockSums& block = block_of(index);
   ++block.steps;
   for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
     block.stress[t] += sums.stress[t];
   }
+  block.motion += motion;
   block.shear_rate += shear_rate;
   block.contacts += sums.contacts;
   block.overlaps += sums.overlaps;
@@ -47,6 +49,7 @@ BlockSums sum_of(std::span<const BlockSums> blocks) {
     for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
       all.stress[t] += block.stress[t];
     }
+    all.motion += block.motion;
     all.structural_brownian += block.structural_brownian;
     all.varying_stresslet += block.varying_stresslet;
     all.temperature.translational += block.temperature.translational;

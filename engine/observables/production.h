@@ -15,6 +15,7 @@ struct BlockSums {
   std::uint64_t planned = 0;  // steps that it has once it is complete
   std::uint64_t steps = 0;    // every step adds to the stress: thinning would destroy the Brownian part
   std::array<SymmetricTensor, count_of_stress_terms> stress{};  // sum over pairs of sym(r F)
+  SymmetricTensor motion;                                       // -sum m sym(v v), relative to the flow
   double shear_rate = 0;                                        // of the cell, x along y
   double contacts = 0;
   double overlaps = 0;        // of these, over the smaller radius of the pair
@@ -36,7 +37,7 @@ class Production {
   explicit Production(std::uint64_t steps);
 
   // `index` counts the steps of the window from 0.
-  void add_step(std::uint64_t index, const PairSums& sums, double shear_rate);
+  void add_step(std::uint64_t index, const PairSums& sums, const SymmetricTensor& motion, double shear_rate);
   void add_sample(std::uint64_t index, const SymmetricTensor& structural_brownian,
                   const SymmetricTensor& varying_stresslet, const KineticTemperatures& temperature);
 

@@ -12,9 +12,6 @@ Json to_json(const Quantity& quantity) {
     json["numerator"] = quantity.ratio->numerator;
     json["denominator"] = quantity.ratio->denominator;
   }
-  if (quantity.control) {
-    json["control"] = {{"quantity", quantity.control->quantity}, {"mean", quantity.control->mean}};
-  }
   return json;
 }
 

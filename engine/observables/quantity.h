@@ -14,13 +14,6 @@ struct Axis {
   Json values;             // numbers or words, one for each entry of the list
 };
 
-// Another quantity whose mean is known, of the same shape: `controlled = value + control - mean` has the same
-// mean as the value.
-struct ControlVariate {
-  std::string quantity;
-  double mean = 0;
-};
-
 // A ratio of means: the quantity's object in the result has two members of these names, each a mean (or a
 // sum over the window) that is averaged over the seeds before it is divided. One of the two may be a single
 // number where the other one has axes.
@@ -33,7 +26,6 @@ struct Quantity {
   std::string symbol, unit;  // "1": a pure number
   std::vector<Axis> axes{};  // none: a scalar; otherwise lists within lists, the first axis outermost
   std::optional<RatioOfMeans> ratio{};  // absent: its values are means
-  std::optional<ControlVariate> control{};
 };
 
 Json to_json(const Quantity& quantity);

@@ -52,7 +52,7 @@ std::vector<StressTerm> StressProfile::terms(const Physics& physics) {
   std::vector<StressTerm> present;
   for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
     const auto term = static_cast<StressTerm>(t);
-    if (term != StressTerm::brownian_lubrication && has_stress_term(physics, term)) present.push_back(term);
+    if (has_stress_term(physics, term)) present.push_back(term);
   }
   return present;
 }

@@ -27,13 +27,16 @@ class StressProfile final : public PairWatcher {
   // Components of the stress, and of the flux of momentum along y.
   static const Json& stress_components();
   static const Json& flux_components();
-  // Terms that have stress of their own, in the order of the list; that of the noise is none.
+  // Terms that pairs have stress of, in the order of the list.
   static std::vector<StressTerm> terms(const Physics& physics);
   // Without noise, whose forces have no drag.
   static bool has_balance(const Physics& physics) { return !(physics.thermal_energy > 0); }
 
   void begin(const System& system, double weight) override;
   void take(const System& system, const Pair& pair, const PairSums& sums, const Vector3& force) override;
+  // Of pairs alone.
+  void take_motion(const System& /*system*/, std::size_t /*particle*/,
+                   const SymmetricTensor& /*stress*/) override {}
   // Ends the step whose pairs were taken.
   void add_step(std::size_t block);
 

@@ -82,9 +82,14 @@ void Trajectory::begin(const System& /*system*/, double weight) { weight_ = weig
 void Trajectory::take(const System& system, const Pair& pair, const PairSums& sums,
                       const Vector3& /*force*/) {
   for (std::size_t t = 0; t < count_of_stress_terms; ++t) sums_.stress[t] += weight_ * sums.stress[t];
-  const SymmetricTensor half = (0.5 * weight_) * stress_of_forces(sums);
+  const SymmetricTensor half = (0.5 * weight_) * total_stress(sums);
   shares_[system.particles.id[pair.first]] += half;
   shares_[system.particles.id[pair.second]] += half;
+}
+
+void Trajectory::take_motion(const System& system, std::size_t particle, const SymmetricTensor& stress) {
+  motion_ += weight_ * stress;
+  shares_[system.particles.id[particle]] += weight_ * stress;
 }
 
 void Trajectory::sample(const System& system, std::size_t /*block*/) {
@@ -97,6 +102,7 @@ void Trajectory::sample(const System& system, std::size_t /*block*/) {
   add_contacts(system);
   frames_.end_frame();
   sums_ = {};
+  motion_ = {};
   std::ranges::fill(shares_, SymmetricTensor{});
 }
 
@@ -161,14 +167,16 @@ void Trajectory::add_stress(const System& system) {
   }
   const SymmetricTensor stresslet = (1 / volume) * alone;
   frames_.add("log/particles/stress", of_spheres, 6);
-  frames_.add("log/stress/total", components(solvent + stresslet + (1 / volume) * stress_of_forces(sums_)));
+  frames_.add("log/stress/total",
+              components(solvent + stresslet + (1 / volume) * (total_stress(sums_) + motion_)));
   frames_.add("log/stress/solvent", components(solvent));
   frames_.add("log/stress/stresslet", components(stresslet));
   for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
     const auto term = static_cast<StressTerm>(t);
-    if (term == StressTerm::brownian_lubrication || !has_stress_term(physics_, term)) continue;
+    if (!has_stress_term(physics_, term)) continue;
     frames_.add(std::string("log/stress/") + name_of(term), components((1 / volume) * sums_.of(term)));
   }
+  if (physics_.thermal_energy > 0) frames_.add("log/stress/motion", components((1 / volume) * motion_));
 }
 
 void Trajectory::add_contacts(const System& system) {

@@ -7,7 +7,7 @@
 //
 // Positions, motion and contacts are those at the end of a step, stress is that of the step: what the means
 // of the result add up. log/particles/stress is V sigma_i, xx yy zz xy xz yz, tension positive: half of sym(r
-// F_i) of each pair of the sphere, without noise, and its stresslet as if it were alone, so that
+// F_i) of each pair of the sphere, its stresslet as if it were alone and, with noise, -m sym(v v), so that
 //   log/stress/total = solvent + (1/V) sum_i V sigma_i.
 #pragma once
 
@@ -37,6 +37,7 @@ class Trajectory : public Observable, private PairWatcher {
  private:
   void begin(const System& system, double weight) override;
   void take(const System& system, const Pair& pair, const PairSums& sums, const Vector3& force) override;
+  void take_motion(const System& system, std::size_t particle, const SymmetricTensor& stress) override;
 
   void add_kinds_of_spheres(const System& system);
   void add_places(const System& system);
@@ -51,6 +52,7 @@ class Trajectory : public Observable, private PairWatcher {
   // Of the step that is sampled; shares are those of each id.
   double weight_ = 0;
   PairSums sums_;
+  SymmetricTensor motion_;
   std::vector<SymmetricTensor> shares_;
   gsd::Frames frames_;
 };

@@ -15,6 +15,9 @@ double first_normal_difference(const SymmetricTensor& t) { return t.xx - t.yy; }
 double second_normal_difference(const SymmetricTensor& t) { return t.yy - t.zz; }
 double pressure(const SymmetricTensor& t) { return -(t.xx + t.yy + t.zz) / 3; }
 
+// The part of the stress that the motion of the particles carries, -sum m sym(v v) / V.
+constexpr const char* stress_of_motion_name = "motion";
+
 // Terms of the stress that are the same in every configuration.
 bool is_constant(const std::string& term, bool flow_varies) {
   return term == "solvent" || (term == "stresslet" && !flow_varies);
@@ -25,9 +28,6 @@ Json of_block(const Json& means, bool flow_varies) {
   Json kept;
   for (const auto& [name, value] : means.items()) {
     if (!value.is_structured()) kept[name] = rounded(value);
-  }
-  for (const auto& [name, value] : means.at("control_variates").items()) {
-    kept["control_variates"][name] = rounded(value);
   }
   for (const auto& [term, stress] : means.at("stress").items()) {
     if (!is_constant(term, flow_varies) && term != "total")
@@ -43,7 +43,7 @@ Json of_quarter(const Json& means, bool flow_varies) {
   for (const auto& [term, stress] : means.at("stress").items()) {
     if (!is_constant(term, flow_varies)) kept["stress"][term] = rounded(stress);
   }
-  for (const char* name : {"brownian_pairwise", "brownian_structural"}) kept[name] = rounded(means.at(name));
+  kept["brownian_structural"] = rounded(means.at("brownian_structural"));
   return kept;
 }
 
@@ -82,13 +82,6 @@ class Described {
   void viscosity(const char* name, const char* symbol) {
     all_.push_back({.name = name, .symbol = symbol, .unit = "1", .ratio = {{"stress", "viscous_stress"}}});
   }
-  // The last one varies with a quantity of mean zero.
-  void with_control(const char* control) { all_.back().control = ControlVariate{control, 0}; }
-  // A part of the stress in one number, with its control variate; it is written before it where there is one.
-  void part(const char* name, const char* symbol, const char* unit, const char* control, bool noise) {
-    scalar(name, symbol, unit);
-    if (noise) with_control(control);
-  }
 
   const char* unit() const { return unit_; }
   std::vector<Quantity> take() { return std::move(all_); }
@@ -102,7 +95,6 @@ class Described {
 
 StressMeans::StressMeans(const Scene& scene, const System& system)
     : physics_(scene.physics),
-      terms_(required_terms(scene.physics)),
       volume_(system.box.volume()),
       volume_fraction_(solid_volume(system.particles) / volume_),
       particles_(static_cast<double>(system.particles.count())),
@@ -129,29 +121,28 @@ Json StressMeans::means(const BlockSums& sums) const {
     part("stresslet", stresslet(volume_fraction_, solvent));
   }
   const double per_step = 1 / (static_cast<double>(sums.steps) * volume_ * unit_);
-  SymmetricTensor pairs, brownian;
+  SymmetricTensor pairs;
   for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
     const auto term = static_cast<StressTerm>(t);
+    if (!has_stress_term(physics_, term)) continue;
     const SymmetricTensor mean = per_step * sums.stress[t];
-    if (term == StressTerm::brownian_lubrication) {
-      brownian = mean;  // of mean zero: never part of the total
-    } else if (has_stress_term(physics_, term)) {
-      part(name_of(term), mean);
-      pairs += mean;
-    }
+    part(name_of(term), mean);
+    pairs += mean;
+  }
+  if (physics_.thermal_energy > 0) {
+    part(stress_of_motion_name, per_step * sums.motion);
+    pairs += per_step * sums.motion;
   }
   stress["total"] = to_json(total);
   const bool sheared = physics_.flow.steady_rate() > 0;
   const double per_sample = 1 / static_cast<double>(sums.samples);
   Json means = {{"stress", stress},
-                {"brownian_pairwise", to_json(brownian)},
                 {"brownian_structural", to_json((per_sample / unit_) * sums.structural_brownian)},
                 {"relative_viscosity", sheared ? Json(physics_.flow.shear_part(total)) : Json()},
                 {"relative_viscosity_pair", sheared ? Json(physics_.flow.shear_part(pairs)) : Json()},
                 {"first_normal_difference", first_normal_difference(total)},
                 {"second_normal_difference", second_normal_difference(total)},
                 {"pressure", pressure(total)},
-                {"control_variates", control_variates(brownian)},
                 {"contacts_per_particle", 2 * sums.contacts / (static_cast<double>(sums.steps) * particles_)},
                 {"mean_overlap", sums.mean_overlap()},
                 {"kinetic_temperature", per_sample * sums.temperature.translational},
@@ -172,14 +163,6 @@ void StressMeans::add_flow(const BlockSums& sums, double stress, Json& means) co
   means["viscosity_of_those_flowing"] = {{"stress", flows * stress}, {"viscous_stress", flows * viscous}};
 }
 
-Json StressMeans::control_variates(const SymmetricTensor& brownian) const {
-  const auto value = [&](double number) { return terms_.noise ? Json(number) : Json(); };
-  return {{"brownian_pairwise", value(physics_.flow.shear_part(brownian))},
-          {"first_normal_difference", value(first_normal_difference(brownian))},
-          {"second_normal_difference", value(second_normal_difference(brownian))},
-          {"pressure", value(pressure(brownian))}};
-}
-
 Json StressMeans::blocks(const Production& production) const {
   const std::span<const BlockSums> all = production.blocks();
   const bool varies = physics_.flow.varies();
@@ -196,14 +179,12 @@ Json StressMeans::blocks(const Production& production) const {
 }
 
 std::vector<Quantity> stress_quantities(const Scene& scene) {
-  const Terms terms = required_terms(scene.physics);
-  const bool sheared = scene.physics.flow.steady_rate() > 0, noise = terms.noise;
+  const bool sheared = scene.physics.flow.steady_rate() > 0;
   Described described(scene);
   const char* const unit = described.unit();
   if (sheared) {
-    described.part("relative_viscosity", "eta_r", "1", "control_variates/brownian_pairwise", noise);
-    described.part("relative_viscosity_pair", "eta_r^pairs", "1", "control_variates/brownian_pairwise",
-                   noise);
+    described.scalar("relative_viscosity", "eta_r", "1");
+    described.scalar("relative_viscosity_pair", "eta_r^pairs", "1");
     described.stress("stress/solvent", "sigma^S");
   }
   const bool at_stress = scene.physics.flow.deformation().stress().has_value();
@@ -215,24 +196,19 @@ std::vector<Quantity> stress_quantities(const Scene& scene) {
     described.stress("stress/solvent", "sigma^S");
   }
   if (sheared || at_stress || scene.physics.flow.varies()) described.stress("stress/stresslet", "sigma^E");
-  described.part("first_normal_difference", "N_1", unit, "control_variates/first_normal_difference", noise);
-  described.part("second_normal_difference", "N_2", unit, "control_variates/second_normal_difference", noise);
-  described.part("pressure", "P", unit, "control_variates/pressure", noise);
+  described.scalar("first_normal_difference", "N_1", unit);
+  described.scalar("second_normal_difference", "N_2", unit);
+  described.scalar("pressure", "P", unit);
   for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
     const auto term = static_cast<StressTerm>(t);
-    if (term == StressTerm::brownian_lubrication || !has_stress_term(scene.physics, term)) continue;
+    if (!has_stress_term(scene.physics, term)) continue;
     described.stress(std::string("stress/") + name_of(term), std::string("sigma^") + name_of(term));
   }
-  described.stress("stress/total", "sigma");
-  if (noise) described.with_control("brownian_pairwise");
-  described.stress("brownian_pairwise", "sigma^noise");
-  described.stress("brownian_structural", "sigma^B");
-  if (noise) {
-    described.scalar("control_variates/brownian_pairwise", "sigma^noise_xy", unit);
-    described.scalar("control_variates/first_normal_difference", "N_1^noise", unit);
-    described.scalar("control_variates/second_normal_difference", "N_2^noise", unit);
-    described.scalar("control_variates/pressure", "P^noise", unit);
+  if (scene.physics.thermal_energy > 0) {
+    described.stress(std::string("stress/") + stress_of_motion_name, "sigma^motion");
   }
+  described.stress("stress/total", "sigma");
+  described.stress("brownian_structural", "sigma^B");
   described.scalar("contacts_per_particle", "Z", "1");
   described.scalar("mean_overlap", "<delta/a>", "1");
   described.scalar("kinetic_temperature", "k_B T", "energy");

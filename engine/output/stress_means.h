@@ -24,14 +24,10 @@ class StressMeans {
   Json blocks(const Production& production) const;
 
  private:
-  // Of mean zero: the part that the stress of the pairwise noise would have in each observable. That of the
-  // relative viscosities is named after the stress.
-  Json control_variates(const SymmetricTensor& brownian) const;
   // Of a flow at a given stress.
   void add_flow(const BlockSums& sums, double stress, Json& means) const;
 
   const Physics& physics_;
-  Terms terms_;
   double volume_, volume_fraction_, particles_, unit_;
 };
 

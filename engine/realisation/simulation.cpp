@@ -89,9 +89,7 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
     control_ = std::make_unique<StressControl>(scene_, shear, schedule.timestep, seed);
   }
   const auto takes_flux = [](const auto& observable) { return observable->takes_flux(); };
-  if (std::ranges::any_of(observables_, takes_flux) || (control_ && control_->needs_flux())) {
-    integrator_->watch_momentum_flux();
-  }
+  if (std::ranges::any_of(observables_, takes_flux)) integrator_->watch_motion();
 }
 
 void Simulation::start(const std::function<void()>& made_step) {
@@ -202,7 +200,7 @@ gsd::Frames* Simulation::frames() {
 
 void Simulation::observe(const StepReport& report) {
   const std::uint64_t index = system_.step - schedule_.equilibration - 1;
-  production_.add_step(index, report.sums, system_.box.velocity_gradient().column[1].x);
+  production_.add_step(index, report.sums, report.motion, system_.box.velocity_gradient().column[1].x);
   largest_overlap_ = std::max(largest_overlap_, report.sums.largest_overlap);
   gate_.observe(index, report, *integrator_, system_);
   // A short window is sampled more often so that each block has its samples.
@@ -213,8 +211,9 @@ void Simulation::observe(const StepReport& report) {
                            varying_stresslet(system_.particles, system_.box, scene_.physics),
                            kinetic_temperatures(system_, scene_.physics.flow));
   }
+  const MomentumFlux flux = flux_of(report.sums, report.motion);
   for (const std::unique_ptr<Observable>& observable : observables_) {
-    observable->take_flux(report.flux);
+    observable->take_flux(flux);
     if (index % observable->interval() != 0) continue;
     integrator_->complete(system_);
     observable->sample(system_, production_.block_at(index));

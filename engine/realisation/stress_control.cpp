@@ -70,7 +70,7 @@ StepReport StressControl::step(Integrator& integrator, System& system, double ra
 double StressControl::stress_of_pairs(const StepReport& report, const System& system) const {
   double sum = 0;
   if (thermal_energy_ > 0) {
-    sum = report.flux.acted.xy;
+    sum = (total_stress(report.sums) + report.motion).xy;
   } else {
     for (const SymmetricTensor& term : report.sums.stress) sum += term.xy;
   }

@@ -28,9 +28,6 @@ class StressControl {
   StressControl(const Scene& scene, std::shared_ptr<ControlledShear> shear, double timestep,
                 std::uint64_t seed);
 
-  // The fluxes of momentum of its steps must be watched where there is noise.
-  bool needs_flux() const { return thermal_energy_ > 0; }
-
   void start(const System& system) { wait_from(system); }
   // One step, complete. `watcher` sees its pairs; it may be null.
   StepReport advance(Integrator& integrator, System& system, PairWatcher* watcher);

@@ -90,7 +90,7 @@ LinearResponse::Components LinearResponse::components_of(const SymmetricTensor& 
 }
 
 void LinearResponse::take_flux(const MomentumFlux& flux) {
-  const Components acted = components_of(flux.acted);
+  const Components acted = components_of(flux.acted());
   const Parts now = {components_of(flux.conservative), components_of(flux.dissipative)};
   // The partner of the last step needs the one before it or this one.
   const Parts& other = velocities_are_found_ ? before_ : now;

@@ -41,8 +41,8 @@ Oscillation::Oscillation(const Scene& scene, const System& system, const Window&
 void Oscillation::take_flux(const MomentumFlux& flux) {
   const double in_cycle = static_cast<double>(taken_ % steps_of_cycle_) + ahead_;
   const double phase = 2 * std::numbers::pi * in_cycle / static_cast<double>(steps_of_cycle_);
-  const double part =
-      2 * flux.acted.*swing_.component / (volume_ * swing_.amplitude * static_cast<double>(steps_of_cycle_));
+  const double part = 2 * flux.acted().*swing_.component /
+                      (volume_ * swing_.amplitude * static_cast<double>(steps_of_cycle_));
   cycle_[0].storage += part * std::sin(phase);
   cycle_[0].loss += part * std::cos(phase);
   cycle_[1].storage += part * std::sin(3 * phase);

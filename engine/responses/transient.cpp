@@ -51,6 +51,7 @@ std::vector<Quantity> transient_quantities(const Scene& scene, const Window& win
 Transient::Transient(const Scene& scene, const System& system, const Window& window)
     : Observable(1),
       flow_(scene.physics.flow),
+      has_noise_(scene.physics.thermal_energy > 0),
       viscosity_(scene.physics.viscosity),
       volume_fraction_(scene.volume_fraction),
       volume_(system.box.volume()),

@@ -18,7 +18,7 @@ class Transient : public Observable {
   Transient(const Scene& scene, const System& system, const Window& window);
 
   bool takes_flux() const override { return true; }
-  void take_flux(const MomentumFlux& flux) override { flux_ = flux.acted; }
+  void take_flux(const MomentumFlux& flux) override { flux_ = stress_of(flux, has_noise_); }
   void sample(const System& system, std::size_t block) override;
   void add_to(Json& mean) const override;
   void add_blocks_to(Json& /*blocks*/) const override {}
@@ -32,6 +32,7 @@ class Transient : public Observable {
   };
 
   ImposedFlow flow_;
+  bool has_noise_;
   double viscosity_, volume_fraction_, volume_, unit_;
   double behind_;  // of the end of a step, in time: the moment that its flux belongs to
   std::uint64_t steps_, taken_ = 0;

@@ -38,20 +38,6 @@ PECLET_ALWAYS_INLINE Vector3Of<Real> conservative_force(const Law& law, const Pa
   return law.slope(pair.surface_distance()) * pair.normal;
 }
 
-// That of all laws together.
-template <class Real>
-PECLET_ALWAYS_INLINE Vector3Of<Real> conservative_force(const ConservativeLaws& laws,
-                                                        const PairGeometryOf<Real>& pair) {
-  Vector3Of<Real> sum{};
-  for_each_conservative_law(
-      [&](StressTerm /*part*/, const auto& law) PECLET_INLINE_LAMBDA {
-        const auto within = pair.distance < law.range;
-        if (law.range > 0 && any(within)) sum += where(within, conservative_force(law, pair));
-      },
-      laws);
-  return sum;
-}
-
 // weight V'' of all laws together, or zero where that is negative: for what has to stay positive
 // semidefinite.
 template <class Real>

@@ -18,8 +18,7 @@
 //
 // xi is the shifted gap of terms/lubricated_gap.h where the form has one.
 //
-// The stress has R averaged over the way that is made: then the squeezing part of a pair's r F is the change
-// of a function of the gap, whose mean is zero in equilibrium at any step.
+// In steps without noise the squeezing part of a pair's r F is then the change of a function of the gap.
 #pragma once
 
 #include "engine/terms/lubrication.h"
@@ -32,6 +31,8 @@ struct StepResistance {
     at_beginning,  // R_o / 2 + R_b; the pairs stand where the step begins
     ahead,         // the same; the pairs stand in the middle of the predicted step and move with its velocity
     on_the_way,    // R, averaged over the gaps of a step in whose middle the pairs stand
+    jump,          // R_o / 2, beside noise that belongs to R
+    none,          // 0, beside noise that belongs to R
   };
   Part part = Part::whole;
   double timestep = 0;
@@ -138,6 +139,21 @@ PECLET_ALWAYS_INLINE ResistanceModesOf<Real> resistance_modes(const StepResistan
           larger(0.5 * (average.logarithm + logarithm(inverse)) - log_jump, zero) +
               select(was_within, Real{0.5 * log_jump}, zero),
           lever};
+}
+
+// The resistance of noisy pairs to their present motion, where the noise belongs to `whole`.
+template <bool shifted = true, class Real>
+PECLET_ALWAYS_INLINE PairResistanceOf<Real> resistance_beside_noise(
+    const ResistanceConstants& k, const StepResistance& step, const LubricatedGap& range,
+    double lubrication_range, const PairGeometryOf<Real>& pair, const PairResistanceOf<Real>& whole) {
+  if (step.part == StepResistance::Part::whole) return whole;
+  const bool jumps = step.part == StepResistance::Part::jump;
+  const auto within = pair.distance <= lubrication_range;
+  const auto half = [&](double outer) PECLET_INLINE_LAMBDA {
+    return select(within, Real{jumps ? 0.5 * outer : 0.0}, Real{0.0});
+  };
+  return pair_resistance(k, ResistanceModesOf<Real>{half(1 / range.outer), half(range.outer_logarithm),
+                                                    lever_of<shifted>(range, pair)});
 }
 
 // What a change of the motion changes of the load is the product of it with this. Averaged over the way, the

@@ -19,7 +19,6 @@ from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
 from studies.spectra import storage_by_loss, viscosity_at_high_frequency
 from studies.tables import entries, number, read_rows, write_table
 from studies.verdicts import Check, Finding
-from studies.viscosities import controlled_viscosity
 
 import numpy as np
 
@@ -123,7 +122,7 @@ def price_at_rest(fraction, at_rest, viscosity, count=100):
 
 
 def price_rows(program, fraction, viscosity):
-    """Of means in the flow with their control variate."""
+    """Of means in the flow."""
     for peclet in PECLETS:
         windows = EQUILIBRATION, PRICE_WINDOW
         patch = at_peclet(peclet) | {"observables": None, "volume_fraction": fraction}
@@ -133,7 +132,7 @@ def price_rows(program, fraction, viscosity):
         (point,) = program.run(f"price-{fraction:g}-{peclet:g}", scene, settings, PRICE_SEEDS)
         found = [r for r in point["realisations"] if r.get("mean")]
         foretold = flow_over_rest(peclet, fraction, SCENE["particles"]["species"])
-        yield price_row(fraction, peclet, found, windows, controlled_viscosity, viscosity, foretold)
+        yield price_row(fraction, peclet, found, windows, lambda mean: mean["relative_viscosity"], viscosity, foretold)
 
 
 def measure(program):

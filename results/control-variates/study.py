@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""What control variates save: the Brownian stress with the coefficient -1, and with regression on its components.
+"""What the stress B of the random forces takes away from the scatter: as a part of the stress, which is a control
+variate with the coefficient -1 of the rest, and by regression of the rest on its components.
 
 study.py BIN [FOLDER] [--quick | --from-table]
 """
@@ -27,7 +28,7 @@ SCENE = merged(
 )
 BLOCKS = 32  # of a window
 XY = 3
-# Components of B that are controls; None: B_xy with the coefficient -1, which is what peclet does.
+# Components of B that are controls; None: B_xy with the coefficient -1, which makes the stress that acts.
 FIXED, ONE, ALL = "B_xy, coefficient -1", "B_xy, fitted", "six components of B, fitted"
 CONTROLS = {FIXED: None, ONE: (XY,), ALL: range(6)}
 COLOURS = dict(zip(CONTROLS, (BLUE, GREEN, RED)))
@@ -45,8 +46,8 @@ def correlation(a, b):
 
 
 def rows_of(peclet, means):
-    viscosity = np.array([m["relative_viscosity"] for m in means])
-    stress = np.array([m["brownian_pairwise"] for m in means])
+    stress = np.array([m["stress"]["brownian_lubrication"] for m in means])
+    viscosity = np.array([m["relative_viscosity"] for m in means]) - stress[:, XY]
     structural = np.array([m["brownian_structural"][XY] for m in means])
     for name, components in CONTROLS.items():
         found = controlled(viscosity, stress, components)
@@ -60,8 +61,8 @@ def rows_of(peclet, means):
 
 def window_rows(peclet, results):
     """Of averages over parts of the window, with the coefficient -1."""
-    viscosity = np.array([r["blocks"]["relative_viscosity"] for r in results])
-    found = viscosity + [r["blocks"]["control_variates"]["brownian_pairwise"] for r in results]
+    found = np.array([r["blocks"]["relative_viscosity"] for r in results])
+    viscosity = found - [r["blocks"]["shear_stress"]["brownian_lubrication"] for r in results]
     whole = results[0]["time"]["production"] / results[0]["derived"]["brownian_time"]
     for together in (1, 2, 4, 8, 16, 32):
         averages = (rows.reshape(len(rows), -1, together).mean(axis=2) for rows in (viscosity, found))

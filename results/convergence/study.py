@@ -39,14 +39,15 @@ KINDS = {"plain": "without", "controlled": "with"}
 
 
 class Series:
-    """Of one campaign of one point: a row for each seed of the 32 block means of the plain viscosity of the pairs, and
-    of that with the control variate."""
+    """Of one campaign of one point: a row for each seed of the 32 block means of the viscosity of the pairs without
+    the stress of their random forces, and with it."""
 
     def __init__(self, results, published=None):
         blocks = [r["blocks"] for r in results]
-        self.plain = np.array([b["relative_viscosity_pair"] for b in blocks])
-        control = np.array([b["control_variates"]["brownian_pairwise"] for b in blocks])
-        self.controlled = self.plain + control
+        self.controlled = np.array([b["relative_viscosity_pair"] for b in blocks])
+        # Without noise there is none.
+        control = np.array([b["shear_stress"].get("brownian_lubrication", [0] * 32) for b in blocks])
+        self.plain = self.controlled - control
         self.control = control.mean(axis=1)
         first = results[0]
         self.steps, self.strain = first["steps"]["production"], first["strain"]["production"]

@@ -40,10 +40,8 @@ SCENE = merged(TABLE_SCENE, {"duration": None})
 
 
 def series_of(results):
-    """By seed: the block means of the pairs' viscosity with the control variate."""
-    blocks = [r["blocks"] for r in results]
-    control = [b["control_variates"]["brownian_pairwise"] for b in blocks]
-    return np.array([b["relative_viscosity_pair"] for b in blocks]) + np.array(control)
+    """By seed: the block means of the pairs' viscosity."""
+    return np.array([r["blocks"]["relative_viscosity_pair"] for r in results])
 
 
 def part_of(rows, length, ends):

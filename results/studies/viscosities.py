@@ -13,19 +13,8 @@ def completed(point):
     return [r["mean"] for r in point["realisations"] if r.get("mean")]
 
 
-def controlled_viscosity(mean):
-    """Relative viscosity plus the pairs' Brownian stress, whose mean is zero."""
-    control = mean["control_variates"]["brownian_pairwise"]
-    return mean["relative_viscosity"] + (control or 0)
-
-
-def pair_viscosity(mean):
-    """The same of the pairs alone, without the solvent's 1 and the stresslet's 2.5 phi: what Li's thesis plots."""
-    return controlled_viscosity(mean) - mean["relative_viscosity"] + mean["relative_viscosity_pair"]
-
-
 def values_by_seed(realisations):
-    return {r["seed"]: controlled_viscosity(r["mean"]) for r in realisations if r.get("mean")}
+    return {r["seed"]: r["mean"]["relative_viscosity"] for r in realisations if r.get("mean")}
 
 
 def term(mean, *names):
@@ -36,16 +25,16 @@ def term(mean, *names):
 def viscosity_row(point, *others):
     """Of a point of an export: `seeds` that ended well and were `lost`, whether the window is `transient`, and with its
     standard error (NAME_error) each of
-    viscosity     relative, with 1 + 2.5 phi and the control variate
-    pairs         the same without 1 + 2.5 phi
-    lubrication, contact, repulsion    its terms, without the control variate
+    viscosity     relative, with 1 + 2.5 phi
+    pairs         the same without 1 + 2.5 phi: what Li's thesis plots
+    lubrication, contact, repulsion    its terms; lubrication with the random forces
     structural    the structural Brownian stress, which belongs to no sum
     and of `others`: numbers directly in the results' mean."""
     means = completed(point)
     quantities = {
-        "viscosity": controlled_viscosity,
-        "pairs": pair_viscosity,
-        "lubrication": lambda m: term(m, "lubrication"),
+        "viscosity": lambda m: m["relative_viscosity"],
+        "pairs": lambda m: m["relative_viscosity_pair"],
+        "lubrication": lambda m: term(m, "lubrication", "brownian_lubrication"),
         "contact": lambda m: term(m, "contact_normal", "contact_damping", "friction", "rolling"),
         "repulsion": lambda m: term(m, "repulsion"),
         "structural": lambda m: m["brownian_structural"][3],

@@ -86,9 +86,14 @@ def costs(engines, rounds, folder):
 
 
 def blocks_of(result):
-    """Of each block the viscosity without and with the control variate."""
+    """Of each block the viscosity without and with the stress of the random forces; an engine of before this was a
+    part of the stress has it as a control variate."""
     rows = result["blocks"]
-    return [(eta, eta + b) for eta, b in zip(rows["relative_viscosity"], rows["control_variates"]["brownian_pairwise"])]
+    if "control_variates" in rows:
+        noise = rows["control_variates"]["brownian_pairwise"]
+        return [(eta, eta + b) for eta, b in zip(rows["relative_viscosity"], noise)]
+    noise = rows["shear_stress"]["brownian_lubrication"]
+    return [(eta - b, eta) for eta, b in zip(rows["relative_viscosity"], noise)]
 
 
 def variance_of_averages(series, together, which):

@@ -31,8 +31,8 @@ from named_mutations import NAMED
 
 CRASH = "ended by signal"
 STUDIES = """
-    at-rest contacts control-variates convergence diffusion divergence flow-curve friction-repulsion inertia
-    inhomogeneous-flow large-friction learned-rheology literature microstructure mixtures mixtures-map
+    at-rest contacts control-variates convergence diffusion divergence equation-of-state flow-curve friction-repulsion
+    inertia inhomogeneous-flow large-friction learned-rheology literature microstructure mixtures mixtures-map
     mixtures-noise monti-silica monti-viscosity monti-waves oscillation other-flows pair-potential zero-shear
     speed-accuracy stability steady-state stress-control
 """.split()

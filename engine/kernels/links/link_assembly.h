@@ -3,6 +3,7 @@
 
 #include "engine/kernels/lanes/single_access.h"
 #include "engine/kernels/links/link_kernels.h"
+#include "engine/kernels/pairs/lane_sums.h"
 #include "engine/kernels/pairs/pair_coupling.h"
 #include "engine/kernels/pairs/pair_loads.h"
 #include "engine/kernels/pairs/pair_terms.h"
@@ -81,6 +82,7 @@ class LinkedPairs {
     const double range = kind_.range + kind_reach(in.parameters, kind_);
     const auto near = listed_lanes(count, Real{}) & (squared <= Real{range * range});
     near_ = bits(near);
+    not_finite_ = bits(listed_lanes(count, Real{}) & !(squared < Real{__builtin_inf()}));
     // Lanes that are not near compute with a distance at which every term is zero.
     shape_ = {where(near, r), {}, select(near, square_root(squared), Real{2 * range}), kind_.sum_of_radii};
     shape_.normal = (1.0 / shape_.distance) * shape_.separation;
@@ -89,6 +91,7 @@ class LinkedPairs {
   }
 
   unsigned near() const { return near_; }
+  unsigned not_finite() const { return not_finite_; }
 
   // What a change of the motion changes of the forces of lubrication; `terms` has it.
   PECLET_ALWAYS_INLINE PairResistanceOf<Real> resistance() const {
@@ -108,22 +111,78 @@ class LinkedPairs {
     return sum;
   }
 
-  // Adds the loads of the pairs to the rows of their particles. `resistance` is that of their lubrication.
+  // Adds the loads of the pairs to the rows of their particles, and their stress to `sums`. `resistance` is
+  // that of their lubrication.
   PECLET_ALWAYS_INLINE void leave(const Terms& terms, const PairResistanceOf<Real>& resistance,
-                                  const PairKernelOutput& out) const {
+                                  const PairKernelOutput& out, LaneSumsOf<Real>& sums) const {
     PairLoadOf<Real> load = lubrication_load(resistance, shape_, motion_);
+    sums.add_stress(StressTerm::lubrication, shape_, load.force);
     if (terms.conservative) {
-      load.force += conservative_force(kind_.conservative, ahead_);
+      for_each_conservative_law(
+          [&](StressTerm part, const auto& law) PECLET_INLINE_LAMBDA {
+            const auto within = ahead_.distance < law.range;
+            if (!(law.range > 0) || !any(within)) return;
+            const Vector3Of<Real> force = where(within, conservative_force(law, ahead_));
+            sums.add_stress(part, shape_, force);
+            load.force += force;
+          },
+          kind_.conservative);
     }
-    if (terms.contact) {
-      load.force += where(ahead_.overlap() > 0.0,
-                          contact_normal_force(in_.parameters.contact.normal_stiffness, ahead_));
+    if (terms.contact && sums.count_contacts(kind_, ahead_.overlap())) {
+      const Vector3Of<Real> force = where(
+          ahead_.overlap() > 0.0, contact_normal_force(in_.parameters.contact.normal_stiffness, ahead_));
+      sums.add_stress(StressTerm::contact_normal, shape_, force);
+      load.force += force;
     }
-    if (run_.first_is_away) {
-      leave_load<true>(load, run_, begin_, count_, first_, second_, out);
-    } else {
-      leave_load<false>(load, run_, begin_, count_, first_, second_, out);
+    leave(load, out);
+  }
+
+  // Adds what a change of the motion adds to the loads, by the coefficients of coupling(), over the timestep.
+  PECLET_ALWAYS_INLINE void leave_change(const Terms& terms, const LinkWeights& weights,
+                                         const ChangeRows& change, const PairKernelOutput& out,
+                                         LaneSumsOf<Real>& sums) const {
+    const PairMotionOf<Real> motion = {
+        gather_rows(change.velocity, second_, Real{}) - gather_rows(change.velocity, first_, Real{}),
+        gather_rows(change.spin, first_, Real{}), gather_rows(change.spin, second_, Real{})};
+    const PairParameters& parameters = in_.parameters;
+    const Real approach = weights.normal_time * dot(motion.velocity, shape_.normal);
+    PairLoadOf<Real> load{};
+    if (terms.lubrication) {
+      load = lubrication_load(resistance(), shape_, motion);
+      sums.add_stress(StressTerm::lubrication, shape_, load.force);
     }
+    const auto push = [&](StressTerm term, const Vector3Of<Real>& force) PECLET_INLINE_LAMBDA {
+      sums.add_stress(term, shape_, force);
+      load.force += force;
+    };
+    if (terms.conservative) {
+      const auto stiff = positive_stiffness(kind_.conservative, ahead_, 1) > 0.0;
+      for_each_conservative_law(
+          [&](StressTerm part, const auto& law) PECLET_INLINE_LAMBDA {
+            const auto acts = stiff & (ahead_.distance < law.range);
+            if (!(law.range > 0) || !any(acts)) return;
+            const Real stiffness = law.stiffness(ahead_.surface_distance());
+            push(part, where(acts, (stiffness * approach) * shape_.normal));
+          },
+          kind_.conservative);
+    }
+    const auto touching = ahead_.overlap() > 0.0;
+    if (terms.contact && any(touching)) {
+      push(StressTerm::contact_normal,
+           where(touching, (parameters.contact.normal_stiffness * approach) * shape_.normal));
+      push(StressTerm::contact_damping,
+           where(touching, contact_damping_force(parameters.contact.normal_damping, shape_, motion)));
+      if (terms.friction) {
+        PairResistanceOf<Real> springs{};
+        add_springs(springs, terms, parameters.contact, kind_, ahead_,
+                    weights.timestep * parameters.felt_share, held_springs(terms));
+        const PairLoadOf<Real> stretched = lubrication_load(springs, shape_, motion);
+        load.torque_first += stretched.torque_first;
+        load.torque_second += stretched.torque_second;
+        push(StressTerm::friction, stretched.force);
+      }
+    }
+    leave(load, out);
   }
 
   // Of a pair within its block.
@@ -169,6 +228,14 @@ class LinkedPairs {
   }
 
  private:
+  PECLET_ALWAYS_INLINE void leave(const PairLoadOf<Real>& load, const PairKernelOutput& out) const {
+    if (run_.first_is_away) {
+      leave_load<true>(load, run_, begin_, count_, first_, second_, out);
+    } else {
+      leave_load<false>(load, run_, begin_, count_, first_, second_, out);
+    }
+  }
+
   bool is_near(int k) const { return (near_ >> k & 1U) != 0; }
 
   // What links have of each pair, in single precision.
@@ -242,7 +309,7 @@ class LinkedPairs {
   const PairKind& kind_;
   std::uint32_t begin_;
   int count_;
-  unsigned near_;
+  unsigned near_, not_finite_;
 };
 
 template <class Real, bool with_loads>
@@ -253,15 +320,17 @@ void assemble(const PairKernelInput& in, const PairRun* runs, std::size_t count,
   for (std::uint32_t level = block.levels_begin; level < block.levels_end; ++level) {
     places.next[level] = 0;
   }
+  LaneSumsOf<Real> sums;
   for (const PairRun* run = runs; run < runs + count; ++run) {
     for (std::uint32_t begin = run->begin; begin < run->end; begin += width) {
       const std::uint32_t rest = run->end - begin;
       const LinkedPairs<Real> pairs(in, *run, begin, static_cast<int>(rest < width ? rest : width));
       const bool crosses = run->crossing != within_block;
+      if constexpr (with_loads) sums.not_finite |= pairs.not_finite();
       if (pairs.near() == 0 && !crosses) continue;
       const PairResistanceOf<Real> resistance =
           terms.lubrication ? pairs.resistance() : PairResistanceOf<Real>{};
-      if constexpr (with_loads) pairs.leave(terms, resistance, *loads);
+      if constexpr (with_loads) pairs.leave(terms, resistance, *loads, sums);
       const PairResistanceOf<Real> coupling = pairs.coupling(terms, weights, resistance);
       if (crosses) {
         pairs.emit_crossing(places.crossing + run->crossing + (begin - run->begin), places.row, groups,
@@ -274,6 +343,25 @@ void assemble(const PairKernelInput& in, const PairRun* runs, std::size_t count,
   for (std::uint32_t level = block.levels_begin; level < block.levels_end; ++level) {
     fill_up(places.levels[level], places.next[level], groups);
   }
+  if constexpr (with_loads) sums.store(*loads->sums);
+}
+
+// The loads of a change of the motion, as a LinkKernels has it.
+template <class Real>
+void leave_change(const PairKernelInput& in, const PairRun* runs, std::size_t count, const Terms& terms,
+                  const LinkWeights& weights, const ChangeRows& change, const PairKernelOutput& loads) {
+  constexpr std::uint32_t width = width_of<Real>;
+  LaneSumsOf<Real> sums;
+  for (const PairRun* run = runs; run < runs + count; ++run) {
+    for (std::uint32_t begin = run->begin; begin < run->end; begin += width) {
+      const std::uint32_t rest = run->end - begin;
+      const LinkedPairs<Real> pairs(in, *run, begin, static_cast<int>(rest < width ? rest : width));
+      // The rows of crossing pairs are written every time: nothing else clears them.
+      if (pairs.near() == 0 && run->crossing == within_block) continue;
+      pairs.leave_change(terms, weights, change, loads, sums);
+    }
+  }
+  sums.store(*loads.sums);
 }
 
 template <class Real>

@@ -52,6 +52,11 @@ struct LinkWeights {
   double timestep, normal_time;
 };
 
+// A change of all motions: rows of velocity and spin, as those of a VectorField.
+struct ChangeRows {
+  const double *velocity, *spin;
+};
+
 // Consecutive rows of a block, and the groups of links whose first particles they are.
 struct LinkLevel {
   std::uint32_t rows_begin, rows_end;
@@ -164,11 +169,17 @@ struct LinkKernels {
   // last groups of its levels are filled up with links that couple nothing. Those of crossing pairs are
   // complete when all blocks are.
   //
-  // Unless `loads` is null, the pairs leave theirs there as in a PairKernel, but for the sums: those of
+  // Unless `loads` is null, the pairs leave theirs there as in a PairKernel, with one sum of all: those of
   // lubrication, conservative laws and undamped contacts without friction, which terms must not have beyond.
   void (*assemble)(const PairKernelInput& input, const PairRun* runs, std::size_t count, const Terms& terms,
                    const LinkWeights& weights, const LinkPlaces& places, const LinkBlock& block,
                    LinkGroup* groups, const PairKernelOutput* loads);
+
+  // What a change of the motion that `input` holds adds to the loads of the pairs of one block, as their
+  // links have it, with one sum of all. Springs stay as they are.
+  void (*leave_change)(const PairKernelInput& input, const PairRun* runs, std::size_t count,
+                       const Terms& terms, const LinkWeights& weights, const ChangeRows& change,
+                       const PairKernelOutput& loads);
 
   // The pivots of a system, which may be those that it points at.
   void (*factorise)(const LinkSystem& system, Pivot* pivots, Team& team);

@@ -7,6 +7,7 @@
 namespace peclet::engine {
 
 constinit const LinkKernels avx512_link_kernels = {&assemble_links<Lanes<CompiledSet>>,
+                                                   &leave_change<Lanes<CompiledSet>>,
                                                    &factorise,
                                                    &multiply,
                                                    &set_residual,

@@ -5,7 +5,7 @@
 namespace peclet::engine {
 
 constinit const LinkKernels baseline_link_kernels = {
-    &assemble_links<double>, &factorise,  &multiply, &set_residual,
-    &squared_motion,         &add_motion, &begin,    &solve};
+    &assemble_links<double>, &leave_change<double>, &factorise, &multiply, &set_residual,
+    &squared_motion,         &add_motion,           &begin,     &solve};
 
 }  // namespace peclet::engine

@@ -6,20 +6,12 @@
 #pragma once
 
 #include "engine/kernels/lanes/single_access.h"
+#include "engine/kernels/pairs/lane_sums.h"
 #include "engine/kernels/pairs/pair_kernels.h"
 #include "engine/kernels/pairs/pair_loads.h"
 #include "engine/kernels/pairs/pair_terms.h"
 
 namespace peclet::engine {
-
-// Sums of lanes; pairs are added in the order of the list, lane by lane.
-template <class Real>
-struct LaneSumsOf {
-  SymmetricTensorOf<Real> stress[count_of_stress_terms];
-  Real overlaps{}, largest_overlap{};
-  std::uint64_t contacts = 0;
-  unsigned not_finite = 0;
-};
 
 // Up to eight pairs of one run: noise is drawn for all of them together, when the first one needs it.
 struct EightPairs {
@@ -92,7 +84,7 @@ class PairGroup {
     const TermLoadsOf<Real> loads = pair_terms<terms>(
         in_.parameters, kind_, shape, motion, springs, [this] { return normals(); },
         [&](StressTerm part, const Vector3Of<Real>& force)
-            PECLET_INLINE_LAMBDA { add_stress(part, shape, force, sums); },
+            PECLET_INLINE_LAMBDA { sums.add_stress(part, shape, force); },
         [this]() PECLET_INLINE_LAMBDA { return variation_at<Real>(in_.varying, first_, second_); });
     store_springs(springs);
     add_sums(shape, loads, sums);
@@ -124,16 +116,11 @@ class PairGroup {
     return sum;
   }
 
-  PECLET_ALWAYS_INLINE static void add_stress(StressTerm part, const PairGeometryOf<Real>& shape,
-                                              const Vector3Of<Real>& force, LaneSumsOf<Real>& sums) {
-    sums.stress[static_cast<std::size_t>(part)] += symmetric_dyad(shape.separation, force);
-  }
-
   // Those of conservative laws apart.
   PECLET_ALWAYS_INLINE void add_sums(const PairGeometryOf<Real>& shape, const TermLoadsOf<Real>& loads,
                                      LaneSumsOf<Real>& sums) {
     const auto add = [&](StressTerm term, const Vector3Of<Real>& force) {
-      add_stress(term, shape, force, sums);
+      sums.add_stress(term, shape, force);
     };
     if constexpr (terms.lubrication) {
       add(StressTerm::lubrication, loads.lubrication.force);
@@ -142,14 +129,7 @@ class PairGroup {
       add(StressTerm::brownian_lubrication, loads.noise.force);
     }
     if constexpr (terms.contact) {
-      const unsigned touching = bits(loads.overlap > Real{});
-      if (touching == 0) {
-        return;
-      }
-      sums.contacts += static_cast<std::uint64_t>(__builtin_popcount(touching));
-      const Real overlap = (1 / kind_.smaller_radius) * loads.overlap;
-      sums.overlaps += larger(Real{}, overlap);
-      sums.largest_overlap = larger(sums.largest_overlap, overlap);
+      if (!sums.count_contacts(kind_, loads.overlap)) return;
       add(StressTerm::contact_normal, loads.contact_normal);
       if constexpr (terms.damping) {
         add(StressTerm::contact_damping, loads.contact_damping);
@@ -295,15 +275,7 @@ template <class Real, Terms terms, bool mirrored>
       }
     }
   }
-  for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
-    const SymmetricTensorOf<Real>& s = sums.stress[t];
-    total.stress[t] = {sum_of_lanes(s.xx), sum_of_lanes(s.yy), sum_of_lanes(s.zz),
-                       sum_of_lanes(s.xy), sum_of_lanes(s.xz), sum_of_lanes(s.yz)};
-  }
-  total.contacts = static_cast<double>(sums.contacts);
-  total.overlaps = sum_of_lanes(sums.overlaps);
-  total.largest_overlap = largest_lane(sums.largest_overlap);
-  total.finite = sums.not_finite == 0;
+  sums.store(total);
 }
 
 // Mirrored runs, the last ones of a block, have a loop of their own: the compiler makes slower code of one

@@ -18,13 +18,11 @@ struct PairSums {
   const SymmetricTensor& of(StressTerm term) const { return stress[static_cast<std::size_t>(term)]; }
 };
 
-// Of all terms but the noise, whose stress has mean zero and belongs to no total.
-inline SymmetricTensor stress_of_forces(const PairSums& sums) {
-  SymmetricTensor sum;
-  for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
-    if (static_cast<StressTerm>(t) != StressTerm::brownian_lubrication) sum += sums.stress[t];
-  }
-  return sum;
+// The stress of all terms together.
+inline SymmetricTensor total_stress(const PairSums& sums) {
+  SymmetricTensor total;
+  for (const SymmetricTensor& term : sums.stress) total += term;
+  return total;
 }
 
 }  // namespace peclet::engine

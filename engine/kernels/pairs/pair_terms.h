@@ -147,7 +147,12 @@ PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& paramete
       const ResistanceModesOf<Real> modes = resistance_modes<terms.strained>(
           terms.noise ? StepResistance{} : parameters.step_resistance, kind.gap, kind.lubrication_range, pair,
           dot(motion.velocity, pair.normal));
-      const PairResistanceOf<Real> resistance = pair_resistance(kind.resistance, modes);
+      const PairResistanceOf<Real> whole = pair_resistance(kind.resistance, modes);
+      PairResistanceOf<Real> resistance = whole;
+      if constexpr (terms.noise) {
+        resistance = resistance_beside_noise<terms.strained>(kind.resistance, parameters.step_resistance,
+                                                             kind.gap, kind.lubrication_range, pair, whole);
+      }
       if constexpr (terms.strained) {
         loads.lubrication =
             strained_lubrication_load(resistance, parameters.flow, kind.strain, pair, motion,
@@ -157,9 +162,9 @@ PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& paramete
       }
       if constexpr (terms.noise) {
         const PairNormalsOf<Real> drawn = normals();
-        loads.noise = pair_noise_load(parameters.noise_amplitude,
-                                      resistance_roots(kind.roots, resistance.squeeze, modes), pair,
-                                      drawn.theta, drawn.chi);
+        loads.noise =
+            pair_noise_load(parameters.noise_amplitude, resistance_roots(kind.roots, whole.squeeze, modes),
+                            pair, drawn.theta, drawn.chi);
       }
     }
   }

@@ -44,13 +44,6 @@ struct OnALine {
   bool lubricated(double h) const { return inner_gap > 0 && 2 * h / sum <= outer_gap; }
   // At the surface distance h.
   double resistance(double h) const { return lubricated(h) ? squeeze(std::max(2 * h / sum, inner_gap)) : 0; }
-  // Over the distances of a way from h, by the midpoint rule.
-  double mean_resistance(double h, double way) const {
-    constexpr int parts = 200'000;
-    double total = 0;
-    for (int k = 0; k < parts; ++k) total += resistance(h + way * (k + 0.5) / parts) / parts;
-    return total;
-  }
   // The part that jumps to zero at the outer gap, and the other one on a predicted way from h.
   double jump(double h) const { return lubricated(h) ? squeeze(outer_gap) : 0; }
   double rest_on_the_way(double h, double way) const {
@@ -106,7 +99,10 @@ struct StepOfTwo {
   Two velocity;
 };
 
-// V' from x_n with what pushes half a step ahead, V from x_n + dt/2 V', the stress at x_n + dt/2 V.
+// V' from x_n with what pushes half a step ahead, V from x' = x_n + dt/2 V'. The stress is that of what made
+// V, brought to x_n + dt/2 V: half of the jump of the resistance at V_n, from x_n; and from x' the resistance
+// to V and what pushes there, by its stiffness for dt/2 of V - V'. What bringing adds belongs to the
+// resistance, or without one to the contact.
 StepOfTwo step_by_hand(const OnALine& pair, const Two& before, double h, double dt) {
   const double jump = pair.inertial ? pair.jump(h) : 0;
   const Two predicted = corrected(pair, before, before, pair.resistance(h) - jump, jump,
@@ -114,8 +110,15 @@ StepOfTwo step_by_hand(const OnALine& pair, const Two& before, double h, double 
   const double way = dt * (predicted[1] - predicted[0]), ahead = h + 0.5 * way;
   const double resistance = pair.inertial ? pair.rest_on_the_way(h, way) : pair.resistance(ahead);
   const Two found = corrected(pair, before, predicted, resistance, jump, ahead, dt);
-  const double closing = found[1] - found[0], middle = h + 0.5 * dt * closing, r = OnALine::sum + middle;
-  return {r * pair.mean_resistance(h, dt * closing) * closing, -r * pair.push(middle), found};
+  const double closing = found[1] - found[0], change = closing - (predicted[1] - predicted[0]);
+  const double at_beginning = 0.5 * jump * (before[1] - before[0]);
+  const double resisting = (resistance + 0.5 * jump) * closing;
+  const double pushing = -pair.push(ahead) + 0.5 * dt * pair.stiffness_at(ahead) * change;
+  const double brought = 0.5 * dt * (closing * at_beginning + change * (resisting + pushing)),
+               there = OnALine::sum + ahead;
+  const double lubrication = (OnALine::sum + h) * at_beginning + there * resisting, push = there * pushing;
+  return pair.inner_gap > 0 ? StepOfTwo{lubrication + brought, push, found}
+                            : StepOfTwo{lubrication, push + brought, found};
 }
 
 struct NamedPair {

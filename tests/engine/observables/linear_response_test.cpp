@@ -94,7 +94,7 @@ Json response_of_dumbbells(const Scene& scene, std::uint64_t seed, double sign_o
       dissipative[c] = -0.5 * length * sign_of_dissipation * f.dissipative;
     }
     observable->take_flux(
-        {with_components(acted), with_components(conservative), with_components(dissipative)});
+        {with_components(acted), {}, with_components(conservative), with_components(dissipative)});
   }
   return mean_of(*observable);
 }
@@ -199,7 +199,7 @@ TEST(LinearResponse, CountsFiveComponentsAlike) {
         SymmetricTensor{.xx = 1, .yy = -2, .zz = 0.5, .yz = 3}, SymmetricTensor{.xx = 4, .yy = 4, .zz = 4}}) {
     auto observable =
         std::move(make_observables(scene, loose_spheres(2), {timestep, 1024, {edge, edge, edge}}).front());
-    for (int step = 0; step < 1024; ++step) observable->take_flux({flux, {}, {}});
+    for (int step = 0; step < 1024; ++step) observable->take_flux({flux, {}, {}, {}});
     const double trace = flux.xx + flux.yy + flux.zz;
     const double square = (flux.xx * flux.xx + flux.yy * flux.yy + flux.zz * flux.zz) / 2 -
                           trace * trace / 6 + flux.xy * flux.xy + flux.xz * flux.xz + flux.yz * flux.yz;

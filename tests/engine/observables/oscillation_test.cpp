@@ -41,9 +41,9 @@ TEST_P(Moduli, AreThoseOfAStressThatIsASumOfHarmonics) {
   for (std::uint64_t k = 0; k < steps * cycles; ++k) {
     const double phase = frequency * timestep * (static_cast<double>(k) + ahead);
     MomentumFlux flux;
-    flux.acted.xy = volume * amplitude *
-                    ((1 + static_cast<double>(k / steps)) * std::sin(phase) + 5 * std::cos(phase) +
-                     2 * std::sin(3 * phase) + 3 * std::cos(3 * phase));
+    flux.by_pairs.xy = volume * amplitude *
+                       ((1 + static_cast<double>(k / steps)) * std::sin(phase) + 5 * std::cos(phase) +
+                        2 * std::sin(3 * phase) + 3 * std::cos(3 * phase));
     made.front()->take_flux(flux);
   }
   const Json mean = mean_of(*made.front());

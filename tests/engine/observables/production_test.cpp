@@ -18,7 +18,7 @@ TEST(Production, EveryStepGoesIntoExactlyOneOfEvenBlocks) {
     for (std::uint64_t index = 0; index < steps; ++index) {
       PairSums sums;
       sums.contacts = static_cast<double>(index);
-      production.add_step(index, sums, 0);
+      production.add_step(index, sums, {}, 0);
     }
     std::uint64_t all = 0;
     double contacts = 0;

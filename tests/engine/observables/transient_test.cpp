@@ -29,7 +29,7 @@ Json measured(const Scene& scene, double begin) {
     ++system.clock.steps;
     MomentumFlux flux;
     const double s = 1 << (k / 10);
-    flux.acted = {.xx = 2 * volume * s, .yy = 5 * volume * s, .zz = -volume * s, .xy = volume * s};
+    flux.by_pairs = {.xx = 2 * volume * s, .yy = 5 * volume * s, .zz = -volume * s, .xy = volume * s};
     made.front()->take_flux(flux);
     made.front()->sample(system, 0);
   }

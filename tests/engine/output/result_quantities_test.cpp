@@ -48,19 +48,13 @@ TEST(Result, DescribesItsQuantitiesAsTheyAre) {
       EXPECT_EQ(shape_of(is_ratio ? value.at(quantity.at("numerator")) : value), shape) << name;
       EXPECT_FALSE(quantity.at("symbol").get<std::string>().empty()) << name;
       EXPECT_FALSE(quantity.at("unit").get<std::string>().empty()) << name;
-      if (quantity.contains("control")) {
-        EXPECT_EQ(shape_of(at_path(result.at("mean"), quantity.at("control").at("quantity"))), shape) << name;
-      }
       if (shape.empty() && result.at("blocks").contains(Json::json_pointer('/' + name))) {
         EXPECT_GE(result.at("inefficiencies").at(name).get<double>(), 1) << name;
       }
     }
   }
   EXPECT_EQ(sheared.at("quantities").at("relative_viscosity"),
-            (Json{{"symbol", "eta_r"},
-                  {"unit", "1"},
-                  {"estimator", "mean"},
-                  {"control", {{"quantity", "control_variates/brownian_pairwise"}, {"mean", 0.0}}}}));
+            (Json{{"symbol", "eta_r"}, {"unit", "1"}, {"estimator", "mean"}}));
   EXPECT_EQ(sheared.at("quantities").at("pressure").at("unit"), "viscosity * shear_rate");
   EXPECT_EQ(at_rest.at("quantities").at("pressure").at("unit"), "stress");
   EXPECT_FALSE(at_rest.at("quantities").contains("relative_viscosity"));
@@ -83,14 +77,6 @@ TEST(Result, AxesOfProfilesByRadiusAreRadiiAndHeights) {
   EXPECT_EQ(axes[0], (Json{{"name", "radius"}, {"unit", "length"}, {"values", {1.0, 1.4}}}));
   EXPECT_EQ(axes[1], result.at("quantities").at("profiles/volume_fraction").at("axes")[0]);
   EXPECT_EQ(result.at("mean").at("profiles").at("volume_fraction_by_radius").size(), 2u);
-}
-
-TEST(Result, WithoutNoiseNothingHasAControlVariate) {
-  const Json result = result_of({{"fluid", {{"thermal_energy", 0}}}});
-  for (const auto& [name, quantity] : result.at("quantities").items()) {
-    EXPECT_FALSE(quantity.contains("control")) << name;
-    EXPECT_FALSE(name.starts_with("control_variates")) << name;
-  }
 }
 
 }  // namespace

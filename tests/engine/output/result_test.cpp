@@ -26,10 +26,9 @@ std::vector<double> sum_of_parts(const Json& stress) {
 TEST(Result, TotalIsTheSumOfItsParts) {
   const Json& stress = usual_result().at("mean").at("stress");
   for (const char* part : {"solvent", "stresslet", "lubrication", "contact_normal", "contact_damping",
-                           "friction", "repulsion", "total"}) {
+                           "friction", "repulsion", "brownian_lubrication", "motion", "total"}) {
     EXPECT_TRUE(stress.contains(part)) << part;
   }
-  EXPECT_FALSE(stress.contains("brownian_lubrication"));  // of mean zero: apart
   const std::vector<double> sum = sum_of_parts(stress);
   for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(stress.at("total")[c], sum[c], 1e-12 * std::abs(sum[3]));
 }
@@ -43,8 +42,14 @@ TEST(Result, AbsentTermsAreAbsent) {
                                  {"repulsion", nullptr}});
   std::vector<std::string> names;
   for (const auto& [name, tensor] : result.at("mean").at("stress").items()) names.push_back(name);
-  EXPECT_EQ(names,
-            (std::vector<std::string>{"contact_normal", "lubrication", "solvent", "stresslet", "total"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"brownian_lubrication", "contact_normal", "lubrication",
+                                             "motion", "solvent", "stresslet", "total"}));
+}
+
+TEST(Result, WithoutNoiseNothingIsRandomAndTheMotionIsNoPartOfTheStress) {
+  const Json result = result_of({{"fluid", {{"thermal_energy", 0}}}});
+  EXPECT_FALSE(result.at("mean").at("stress").contains("brownian_lubrication"));
+  EXPECT_FALSE(result.at("mean").at("stress").contains("motion"));
 }
 
 TEST(Result, SolventIsOneAndTheStressletTwoAndAHalfVolumeFractions) {
@@ -64,7 +69,6 @@ TEST(Result, ViscosityAndNormalStressesAreThoseOfTheTotal) {
   EXPECT_NEAR(mean.at("first_normal_difference"), component(0) - component(1), 1e-12);
   EXPECT_NEAR(mean.at("second_normal_difference"), component(1) - component(2), 1e-12);
   EXPECT_NEAR(mean.at("pressure"), -(component(0) + component(1) + component(2)) / 3, 1e-12);
-  EXPECT_EQ(mean.at("control_variates").at("brownian_pairwise"), mean.at("brownian_pairwise")[3]);
   EXPECT_GT(component(3), 1);
   EXPECT_GT(mean.at("pressure"), 0);
 }
@@ -81,19 +85,6 @@ void expect_average(const Json& blocks, const Json& mean, const std::string& whe
   EXPECT_NEAR(sum / 32, mean.get<double>(), 1e-12 + largest_error) << where;
 }
 
-// What the stress of the pairwise noise would be in each observable, in the mean and in all blocks.
-void expect_controls(const Json& result) {
-  const Json &mean = result.at("mean"), &blocks = result.at("blocks").at("control_variates");
-  const auto b = mean.at("brownian_pairwise").get<std::vector<double>>();  // xx, yy, zz, xy, ...
-  const Json expected = {{"brownian_pairwise", b[3]},
-                         {"first_normal_difference", b[0] - b[1]},
-                         {"second_normal_difference", b[1] - b[2]},
-                         {"pressure", -(b[0] + b[1] + b[2]) / 3}};
-  EXPECT_EQ(mean.at("control_variates"), expected);
-  EXPECT_NE(b[3], 0);
-  for (const auto& [name, value] : expected.items()) expect_average(blocks.at(name), value, name);
-}
-
 TEST(Result, BlocksAverageToTheMean) {
   const Json& mean = usual_result().at("mean");
   const Json& blocks = usual_result().at("blocks");
@@ -108,7 +99,6 @@ TEST(Result, BlocksAverageToTheMean) {
     contacts += of_block;
   }
   EXPECT_NEAR(overlaps / contacts, mean.at("mean_overlap"), 1e-4 * overlaps / contacts);
-  expect_controls(usual_result());
   for (const auto& [term, series] : blocks.at("shear_stress").items()) {
     const Json& whole =
         term == "brownian_structural" ? mean.at("brownian_structural") : mean.at("stress").at(term);
@@ -120,10 +110,11 @@ TEST(Result, BlocksHoldWhatFluctuatesAndNothingElse) {
   const Json& blocks = usual_result().at("blocks");
   std::vector<std::string> terms;
   for (const auto& [term, series] : blocks.at("shear_stress").items()) terms.push_back(term);
-  EXPECT_EQ(terms, (std::vector<std::string>{"brownian_structural", "contact_damping", "contact_normal",
-                                             "friction", "lubrication", "repulsion"}));
-  // Nine numbers, shear_stress and control_variates; in quarters stress and both Brownian stresses.
-  EXPECT_EQ(blocks.size(), 14u);
+  EXPECT_EQ(terms,
+            (std::vector<std::string>{"brownian_lubrication", "brownian_structural", "contact_damping",
+                                      "contact_normal", "friction", "lubrication", "motion", "repulsion"}));
+  // Nine numbers and shear_stress; in quarters the stress and the structural Brownian stress.
+  EXPECT_EQ(blocks.size(), 12u);
   for (const Json& pressure : blocks.at("pressure")) {
     EXPECT_EQ(pressure.get<double>(), std::stod(fmt::format("{:.4e}", pressure.get<double>())));
   }
@@ -179,9 +170,9 @@ double variance(const std::vector<double>& series) {
   return sum / static_cast<double>(series.size());
 }
 
-// Lubrication resists what the noise does, so that pressure and control vary less together than the pressure
-// alone: what makes either usable where there is no viscosity.
-TEST(Result, AtRestThePressureHasBlocksAndAControlVariate) {
+// Lubrication resists what the noise does, so that the stress varies less with that of the noise than without
+// it.
+TEST(Result, AtRestTheStressScattersLessWithThatOfTheNoise) {
   const Json result = result_of(
       {{"flow", {{"shear_rate", 0}}},
        {"repulsion", nullptr},
@@ -189,20 +180,14 @@ TEST(Result, AtRestThePressureHasBlocksAndAControlVariate) {
        {"lubrication", {{"inner_gap", 1e-3}, {"outer_gap", 0.05}}},
        {"integrator", {{"method", "implicit"}, {"timestep", 0.008}}},
        {"duration", {{"production", {{"time", 1280 * 0.008}}}}}});
-  expect_controls(result);
-  const Json& blocks = result.at("blocks");
-  const auto pressure = blocks.at("pressure").get<std::vector<double>>();
-  const auto control = blocks.at("control_variates").at("pressure").get<std::vector<double>>();
-  std::vector<double> sum(pressure.size());
-  for (std::size_t k = 0; k < sum.size(); ++k) sum[k] = pressure[k] + control[k];
-  EXPECT_LT(variance(sum), 0.3 * variance(pressure));
-}
-
-TEST(Result, WithoutNoiseThereIsNoControlVariate) {
-  const Json result = result_of({{"fluid", {{"thermal_energy", 0}}}});
-  for (const auto& [name, value] : result.at("mean").at("control_variates").items()) {
-    EXPECT_TRUE(value.is_null()) << name;
+  const Json& terms = result.at("blocks").at("shear_stress");
+  std::vector<double> whole(32), without(32);
+  for (std::size_t k = 0; k < 32; ++k) {
+    for (const char* term : {"contact_normal", "lubrication", "motion"})
+      without[k] += terms.at(term)[k].get<double>();
+    whole[k] = without[k] + terms.at("brownian_lubrication")[k].get<double>();
   }
+  EXPECT_LT(variance(whole), 0.3 * variance(without));
 }
 
 TEST(Result, SameSeedSameBytesButForTheCost) {

@@ -1,0 +1,124 @@
+#!/usr/bin/python3
+"""The pressure of Brownian spheres at rest beside the equation of state of hard spheres.
+
+study.py BIN [FOLDER] [--quick | --from-table]
+"""
+import math
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from studies.command_line import main
+from studies.estimates import estimate, over
+from studies.figure import BLUE, RED, Figure
+from studies.scenes import REFERENCE_SCENE, during, merged
+from studies.tables import entries, number, read_rows, write_table
+from studies.verdicts import Check
+
+TITLE = "The pressure at rest"
+FRACTIONS = (0.20, 0.30, 0.40, 0.45, 0.50)
+THERMAL_ENERGY, STIFFNESS = 0.017, 1e4  # of the published table
+SIZES = {"one": (1.0,), "1 : 1.4": (1.0, 1.4)}  # radii, in equal volumes
+STEPS = (1, 0.25)  # times the automatic one
+SEEDS = {1: 32, 0.25: 16}
+WIDTH = 0.01  # of agreement
+SCENE = merged(
+    REFERENCE_SCENE,
+    {
+        "particles": {"count": 250},
+        "flow": {"shear_rate": 0},
+        "fluid": {"thermal_energy": THERMAL_ENERGY},
+        "contact": {"normal_stiffness": STIFFNESS},
+        **during({"brownian_times": 30}, {"brownian_times": 60}),
+    },
+)
+
+
+def species(radii):
+    return [{"radius": a, "volume_share": 1 / len(radii)} for a in radii]
+
+
+def hard_pressure(fraction, radii, softness=0.0):
+    """P / (n kT) of hard spheres of these radii in equal volumes: Boublik (1970), J. Chem. Phys. 53, 471; Mansoori,
+    Carnahan, Starling & Leland (1971), J. Chem. Phys. 54, 1523. Good to 0.3 % up to a volume fraction of 0.5. All
+    diameters are less by `softness`, at the same number density."""
+    weights = [a**-3 for a in radii]
+    shares = [w / sum(weights) for w in weights]
+    full = sum(x * (2 * a) ** 3 for x, a in zip(shares, radii))
+    m1, m2, m3 = (sum(x * (2 * a - softness) ** k for x, a in zip(shares, radii)) for k in (1, 2, 3))
+    packed = fraction * m3 / full
+    void = 1 - packed
+    return (
+        1 / void
+        + 3 * packed * m1 * m2 / (m3 * void**2)
+        + packed**2 * (3 - packed) * m2**3 / (m3**2 * void**3)
+    )
+
+
+def softness():
+    """By how much contacts shorten the distance at which spheres repel: the integral of 1 - exp(-U / kT) over the
+    overlap, with U = k_n overlap^2 / 2 (Barker & Henderson 1967, J. Chem. Phys. 47, 4714)."""
+    return math.sqrt(math.pi * THERMAL_ENERGY / (2 * STIFFNESS))
+
+
+def number_density(fraction, radii):
+    weights = [a**-3 for a in radii]
+    return fraction / sum(w / sum(weights) * 4 / 3 * math.pi * a**3 for w, a in zip(weights, radii))
+
+
+def row_of(program, sizes, fraction, step, seeds, patch):
+    radii = SIZES[sizes]
+    scene = merged(SCENE, {"particles": {"species": species(radii)}, "volume_fraction": fraction, **patch})
+    if step != 1:
+        # "auto" of this scene, not of its windows.
+        scene["integrator"] = {"timestep": step * program.derived(scene, "pressure")["timestep"]}
+    name = f"{'one' if len(radii) == 1 else 'two'}-{fraction:g}-{step:g}"
+    (point,) = program.run(name, scene, [{"/volume_fraction": fraction}], seeds, "pressure")
+    pressures = [r["mean"]["pressure"] for r in point["realisations"] if r.get("mean")]
+    expected = number_density(fraction, radii) * THERMAL_ENERGY * hard_pressure(fraction, radii, softness())
+    row = {"sizes": sizes, "fraction": fraction, "step": step, "seeds": len(pressures)}
+    row |= {"hard": hard_pressure(fraction, radii), "soft": hard_pressure(fraction, radii, softness())}
+    return row | entries("ratio", over(estimate(pressures), expected))
+
+
+def measure(program):
+    rows = [
+        row_of(program, sizes, fraction, step, SEEDS[step], {})
+        for step in STEPS
+        for sizes in SIZES
+        for fraction in FRACTIONS
+    ]
+    write_table(HERE / "table.csv", list(rows[0]), rows, 5)
+
+
+def judged(row, width):
+    text = f"sizes {row['sizes']}, φ = {row['fraction']:g}, step {row['step']:g}: pressure over that of the equation"
+    return Check(text, "exact", *number(row, "ratio"), 1 - width, 1 + width, row["seeds"] - 1)
+
+
+def judge():
+    for row in read_rows(HERE / "table.csv"):
+        yield judged(row, WIDTH)
+
+
+def draw():
+    table = read_rows(HERE / "table.csv")
+    figure = Figure(HERE / "chart.png", columns=2, size=(1000, 420))
+    for sizes in SIZES:
+        panel = figure.panel("φ", "P over that of the equation of state", f"sizes {sizes}", y_range=(0.97, 1.03))
+        panel.box("graph 0", "graph 1", "first 0.99", "first 1.01", "#eef4e8")
+        for step, colour, shift in ((1, BLUE, -0.002), (0.25, RED, 0.002)):
+            rows = [
+                (r["fraction"] + shift, *number(r, "ratio")) for r in table if r["sizes"] == sizes and r["step"] == step
+            ]
+            panel.points(rows, "automatic step" if step == 1 else "a quarter of it", colour)
+    figure.draw()
+
+
+def quick_measure(program):
+    patch = during({"brownian_times": 15}, {"brownian_times": 60})
+    yield judged(row_of(program, "1 : 1.4", 0.30, 1, 8, patch), 0.03)
+
+
+main(HERE, TITLE, measure, quick_measure, judge, draw)
