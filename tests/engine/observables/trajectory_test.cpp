@@ -124,6 +124,26 @@ TEST_P(TrajectoryStress, HasTheMeanOfTheResult) {
   }
 }
 
+// The result has the stresslets of waves of a sample every ten explicit steps, and frames have them of every
+// one. In the uniform shear gamma they are 2.5 phi eta gamma.
+TEST(TrajectoryStress, HasTheStressletsOfWaves) {
+  const Way& waves = ways[std::size(ways) - 1];
+  ASSERT_EQ(std::string(waves.name), "explicit_in_waves");
+  Simulation simulation = started(scene_with_trajectory(waves.patch));
+  simulation.advance(equilibration + production);
+  const GsdReader file = file_of(simulation);
+  const BlockSums window = sum_of(simulation.production().blocks());
+  constexpr std::uint64_t interval = 10, samples = production / interval;
+  ASSERT_EQ(window.samples, samples);
+  double xy = 0;
+  for (std::uint64_t k = 0; k < production; k += interval) {
+    xy += file.get<double>(k, "log/stress/stresslet")[3] / samples;
+  }
+  const double of_waves = window.varying_stresslet.xy / samples, uniform = 2.5 * 0.45 * 0.1 * 2;
+  EXPECT_GT(std::abs(of_waves), 1e-5);  // or nothing would be seen of them
+  EXPECT_NEAR(xy, uniform + of_waves, 1e-11);
+}
+
 // Through three changes of the basis: the way of each sphere is that of its unwrapped place.
 TEST(Trajectory, HasPlacesAndMotionOfEverySphereInTheCell) {
   Simulation simulation = started(scene_with_trajectory());

@@ -73,6 +73,20 @@ TEST(Result, ViscosityAndNormalStressesAreThoseOfTheTotal) {
   EXPECT_GT(mean.at("pressure"), 0);
 }
 
+// Of planar extension in x and y, in units of twice the rate of extension times the viscosity: eta_E =
+// (sigma_xx - sigma_yy) / (4 eta rate), the stress of the noise included.
+TEST(Result, TheViscosityOfAnExtensionIsThatOfItsNormalStresses) {
+  const Json result = result_of({{"flow", {{"shear_rate", nullptr}, {"extension_rate", 1}}},
+                                 {"integrator", {{"method", "implicit"}}},
+                                 {"duration", {{"equilibration", {{"time", 0.02}}}}}});
+  const Json &mean = result.at("mean"), &total = mean.at("stress").at("total");
+  const double expected = (total[0].get<double>() - total[1].get<double>()) / 2;
+  EXPECT_NEAR(mean.at("relative_viscosity"), expected, 1e-12 * std::abs(expected));
+  EXPECT_NE(mean.at("stress").at("brownian_lubrication")[0], 0);
+  const std::vector<double> sum = sum_of_parts(mean.at("stress"));
+  for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(total[c], sum[c], 1e-12 * std::abs(expected));
+}
+
 // 320 steps make 32 blocks of ten, so that blocks weigh the same. They have five digits: each is wrong by at
 // most half a unit of the last one.
 void expect_average(const Json& blocks, const Json& mean, const std::string& where) {
