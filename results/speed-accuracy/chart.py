@@ -2,7 +2,7 @@
 """chart.py TABLE PICTURE [PANEL...]
 
 Draws the table of this study: a panel for each case (or for those that are named), relative difference of the viscosity
-from the reference over the processor time to a standard error of 2 %. Bars are 95 %; an arrow stands for what is beyond
+from the reference over the processor time to a standard error of 2 %, and the same of the pressure where it is known. Bars are 95 %; an arrow stands for what is beyond
 the panel. lammps.csv beside this script, where there is one, has points of LAMMPS.
 """
 import csv
@@ -33,9 +33,9 @@ def style_of(row):
     return f"implicit, tolerance {row['tolerance']}" if row["tolerance"] == "0.0001" else row["method"]
 
 
-def bar_of(row):
+def bar_of(row, of):
     """Place of a point, half of its bar, and what is written above it."""
-    bias = float(row["bias_percent"] or 0)
+    bias = float(row[f"{of}bias_percent"] or 0)
     text = "" if row["method"] == "LAMMPS" else f"{float(row['step']):.2g}"
     if row["flags"] or row["lost"] not in ("", "0"):
         text += "!"
@@ -43,7 +43,7 @@ def bar_of(row):
     if abs(bias) > RANGE:
         text += f" {'↑' if bias > 0 else '↓'} {bias:.0f} %"
         shown = 0.85 * RANGE if bias > 0 else -0.85 * RANGE
-    return float(row["seconds_to_2_percent"]), shown, float(row["bias_half_width_percent"] or 0), text
+    return float(row["seconds_to_2_percent"]), shown, float(row[f"{of}bias_half_width_percent"] or 0), text
 
 
 def rows_of_texts(bars, span):
@@ -58,14 +58,17 @@ def rows_of_texts(bars, span):
     return rows
 
 
-def add_panel(figure, name, rows):
+def add_panel(figure, name, rows, of=""):
+    """`of`: nothing for the viscosity, or "pressure_"."""
     chosen = [r for r in rows if r["viscosity"] and float(r["seconds_to_2_percent"]) > 0]
+    if of:
+        chosen = [r for r in chosen if r.get("pressure")]
     dropped = [f"{r['method']} {float(r['step']):.2g}" for r in rows if not r["viscosity"]]
     title = f"{name} (no seed left: {', '.join(dropped)})" if dropped else name
     times = [float(r["seconds_to_2_percent"]) for r in chosen]
     panel = figure.panel(
         "s of processor to a standard error of 2 %",
-        "difference of η_r / %",
+        "difference of P / %" if of else "difference of η_r / %",
         title,
         log="x",
         key=None,
@@ -75,7 +78,7 @@ def add_panel(figure, name, rows):
         settings=["set xlabel offset 0,0.6", "set ylabel offset 1.2", "set title offset 0,-0.6"],
     )
     panel.box("graph 0", "graph 1", "first -2", "first 2", "#eef4e8")
-    bars = sorted((*bar_of(r), style_of(r)) for r in chosen)
+    bars = sorted((*bar_of(r, of), style_of(r)) for r in chosen)
     for (x, y, half, text, style), row in zip(bars, rows_of_texts(bars, 9 * max(times) / min(times))):
         mark, colour = STYLES[style]
         panel.points([(x, y, half)], None, colour, mark, 1.1)
@@ -93,7 +96,8 @@ def add_legend(figure):
 
 def draw(rows, picture):
     names = list(dict.fromkeys(r["panel"] for r in rows))
-    lines = -(-(len(names) + 1) // COLUMNS)
+    with_pressure = [name for name in names if any(r["panel"] == name and r.get("pressure") for r in rows)]
+    lines = -(-(len(names) + len(with_pressure) + 1) // COLUMNS)
     width, height = COLUMNS * 380, lines * 310
     layout = (
         f"margins {70 / width}, {1 - 20 / width}, {60 / height}, {1 - 30 / height} "
@@ -102,6 +106,8 @@ def draw(rows, picture):
     figure = Figure(picture, COLUMNS, lines, (width, height), layout)
     for name in names:
         add_panel(figure, name, [r for r in rows if r["panel"] == name])
+    for name in with_pressure:
+        add_panel(figure, name, [r for r in rows if r["panel"] == name], "pressure_")
     add_legend(figure)
     figure.draw()
 

@@ -80,6 +80,7 @@ def made_of(name, case, scene, program, quick):
             "tolerance": tolerance,
             "timestep": step,
             "values": values_by_seed(realisations),
+            "pressures": values_by_seed(realisations, "pressure"),
             "flags": counts_text(flags(realisations)),
             "lost": len(realisations) - len(living),
             "seeds": len(realisations),
@@ -119,10 +120,14 @@ def rows_of(name, case, program, quick):
         row["seconds_to_2_percent"] = m["cost"] * variance / 0.02**2
         if m["values"]:
             row["viscosity"], row["viscosity_error"] = estimate([*m["values"].values()])
+            row["pressure"], row["pressure_error"] = estimate([*m["pressures"].values()])
             if m is not reference:
                 bias, error, degrees = relative_difference(m["values"], reference["values"], not noise)
                 row["bias_percent"] = 100 * bias
                 row["bias_half_width_percent"] = 100 * error * student_quantile(degrees, 0.975)
+                of_pressure = relative_difference(m["pressures"], reference["pressures"], not noise)
+                row["pressure_bias_percent"] = 100 * of_pressure[0]
+                row["pressure_bias_half_width_percent"] = 100 * of_pressure[1] * student_quantile(of_pressure[2], 0.975)
                 row["surely_wrong"] = abs(bias) > max(0.01, error * student_quantile(degrees, 1 - 0.5e-4))
         yield row
 

@@ -13,8 +13,8 @@ def completed(point):
     return [r["mean"] for r in point["realisations"] if r.get("mean")]
 
 
-def values_by_seed(realisations):
-    return {r["seed"]: r["mean"]["relative_viscosity"] for r in realisations if r.get("mean")}
+def values_by_seed(realisations, name="relative_viscosity"):
+    return {r["seed"]: r["mean"][name] for r in realisations if r.get("mean")}
 
 
 def term(mean, *names):
