@@ -25,7 +25,10 @@ TEST(Contact, ForceIsTheGradientOfTheElasticEnergy) {
     EXPECT_NEAR(dot(force, pair.normal), slope(energy, pair.distance), 1e-6 * norm(force));
     EXPECT_NEAR(norm(across(force, pair.normal)), 0, 1e-12 * norm(force));
     EXPECT_LT(dot(force, pair.normal), 0);  // i is pushed away from j
+    EXPECT_NEAR(contact_energy(stiffness, pair.overlap()), energy(pair.distance),
+                1e-9 * energy(pair.distance));
   }
+  EXPECT_EQ(contact_energy(stiffness, -0.01), 0);
 }
 
 TEST(Contact, DampingOpposesTheNormalVelocityAlone) {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "engine/kernels/pair_pass.h"
+#include "engine/terms/lubrication.h"
 #include "engine/terms/rolling.h"
 #include "tests/engine/two_spheres.h"
 
@@ -78,6 +79,27 @@ TEST(Rolling, GivesACoupleThatOpposesTheDifferenceOfSpins) {
   const Vector3 rolled = 1e-3 * across(motion.spin_first - motion.spin_second, n);
   EXPECT_NEAR(norm(load.torque_first + reduced * reduced * 700 * rolled), 0, 1e-12);
   EXPECT_GT(dissipated(load, motion), 0);
+}
+
+// In a matrix springs act as a resistance: with k_t and k_r for one second it has the loads of springs that
+// have been stretched from nothing for one second.
+TEST(TangentialCoupling, HasTheLoadsOfSpringsThatHaveBeenStretched) {
+  constexpr double sliding = 3e3, rolling = 700;
+  Draws draws(63);
+  for (const double ratio : size_ratios) {
+    const PairGeometry pair = pair_at(1, ratio, -0.02, draws.direction());
+    const ContactLevers lever = contact_levers(1, ratio, pair);
+    const double reduced = 2 * ratio / (1 + ratio);
+    const PairMotion motion = {draws.vector(), draws.vector(), draws.vector()};
+    const PairLoad slid = friction_load(sliding, slip_velocity(lever, pair, motion), lever, pair);
+    const PairLoad rolled = rolling_load(rolling, rolling_velocity(reduced, pair, motion), reduced, pair);
+    const PairLoad found = lubrication_load(
+        tangential_coupling(lever, sliding, rolling_coupling(rolling, reduced)), pair, motion);
+    const double scale = norm(slid.force) + norm(rolled.torque_first);
+    EXPECT_LT(norm(found.force - slid.force), 1e-12 * scale);
+    EXPECT_LT(norm(found.torque_first - slid.torque_first - rolled.torque_first), 1e-12 * scale);
+    EXPECT_LT(norm(found.torque_second - slid.torque_second - rolled.torque_second), 1e-12 * scale);
+  }
 }
 
 TEST(Spring, TurnsWithTheContactAndKeepsItsLength) {
