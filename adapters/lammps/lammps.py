@@ -41,10 +41,16 @@ def die_with(parent):
 
 
 class Thermo:
-    """The thermo output in what LAMMPS prints: the rows of the latest run, as columns."""
+    """The thermo output in what LAMMPS prints: the rows of the latest run, as columns.
 
-    def __init__(self):
+    A row is a line of numbers whose Step is at most `steps` after that of the first row, by a multiple of what the
+    command `thermo` says. LAMMPS prints commands before it executes them (-echo screen).
+    """
+
+    def __init__(self, steps):
         self.columns, self.heading, self.inside, self.expect_heading = {}, [], False, False
+        self.steps = steps
+        self.every = 0  # steps between rows; 0: only both ends of a run, as LAMMPS does unless told; None: unknown
         self.timestep = self.atoms = self.error = None
         self.last_lines = collections.deque(maxlen=12)
 
@@ -56,28 +62,71 @@ class Thermo:
             self.error = self.error or line
         elif line.startswith("Per MPI rank memory allocation"):
             self.expect_heading = True
-        elif self.expect_heading:
+        elif self.expect_heading and not line.startswith("WARNING"):
             self.heading, self.expect_heading, self.inside = line.split(), False, True
             self.columns = {name: [] for name in self.heading}
         elif found := re.match(r"Loop time of .* with (\d+) atoms", line):
             self.atoms, self.inside = int(found[1]), False
         elif self.inside:
-            self.hear_row(line.split())
+            self.hear_row(line)
+        elif found := re.match(r"\s*thermo\s+(\S+)", line):
+            self.every = int(found[1]) if found[1].isdigit() else None
+        elif re.match(r"\s*echo\s+(none|log)\b", line):
+            self.every = None
 
-    def hear_row(self, words):
-        if len(words) != len(self.heading):
-            return  # a warning, or what the script prints
+    def hear_row(self, line):
+        """Takes in a line of a run. Throws LammpsError if the script prints lines that look like rows."""
         try:
-            values = [float(word) for word in words]
+            row = dict(zip(self.heading, [float(word) for word in line.split()], strict=True))
         except ValueError:
-            return
-        for name, value in zip(self.heading, values):
+            return  # a warning, or what the script prints
+        before = self.columns.get("Step")
+        if before:
+            done = row["Step"] - before[0]
+            if not 0 <= done <= self.steps or done % (self.every or self.steps or 1) != 0:
+                return  # what the script prints
+            if row["Step"] <= before[-1]:
+                raise LammpsError(
+                    f"the script prints lines that look like rows of thermo output: Step is {row['Step']:.0f} in "
+                    f"'{line.strip()}', and {before[-1]:.0f} in a line before; they must begin with a word, or go to a "
+                    "file alone (screen no)"
+                )
+        for name, value in row.items():
             self.columns[name].append(value)
 
     def steps_done(self):
-        """Of the latest run."""
+        """Steps of the latest run so far."""
         steps = self.columns.get("Step")
         return int(steps[-1] - steps[0]) if steps else 0
+
+    def check(self):
+        """Throws LammpsError unless the latest run has every row of its steps."""
+        if self.atoms is None or "Step" not in self.heading or self.heading[0].startswith("-"):
+            raise LammpsError(
+                "the script has no run whose thermo output has a column Step and one line per sample "
+                "(thermo_style one or custom)"
+            )
+        if len(self.columns) < len(self.heading):
+            raise LammpsError(f"two columns of the thermo output have the same name: {' '.join(self.heading)}")
+        if self.every is None:
+            raise LammpsError(
+                "the script must give thermo a number of steps, and leave echo alone: these tell rows of thermo output "
+                "from other lines"
+            )
+        first = self.columns["Step"][0]
+        if self.every and (first % self.every != 0 or self.steps % self.every != 0):
+            # At other steps LAMMPS shows means of fixes that are old, or that have not begun.
+            raise LammpsError(
+                f"the script's last run has {self.steps} steps from step {first:.0f}, and rows of thermo output every "
+                f"{self.every}: it must begin and end with one"
+            )
+        if self.steps_done() != self.steps:
+            raise LammpsError(
+                f"the script's last run was to make ${{steps}} = {self.steps} steps and made {self.steps_done()}"
+            )
+        rows, wanted = len(self.columns["Step"]), 1 + self.steps // (self.every or self.steps or 1)
+        if rows != wanted:
+            raise LammpsError(f"the thermo output of the script's last run has {rows} rows of {wanted}")
 
     def is_finite(self):
         return all(math.isfinite(value) for column in self.columns.values() for value in column)
@@ -89,7 +138,7 @@ class Lammps:
 
     def __init__(self, program, launcher, script, folder, variables):
         # stdbuf: without it progress would come in pieces of 4 KiB.
-        command = ["stdbuf", "-oL", program, "-in", script, "-log", "none"]
+        command = ["stdbuf", "-oL", program, "-in", script, "-log", "none", "-echo", "screen"]
         environment = ENVIRONMENT
         self.is_launched = bool(launcher)
         if launcher:
@@ -109,7 +158,7 @@ class Lammps:
             stderr=subprocess.STDOUT,
             preexec_fn=lambda: die_with(parent),
         )
-        self.thermo = Thermo()
+        self.thermo = Thermo(variables["steps"])
         self.unfinished_line = b""
 
     def __enter__(self):
@@ -137,9 +186,8 @@ class Lammps:
             self.thermo.hear(line.decode(errors="replace").rstrip("\r"))
         return bool(part), also in ready
 
-    def finish(self, steps):
-        """Once it has stopped printing: its thermo output, if it ran so many steps. Throws LammpsError,
-        KilledFromOutside."""
+    def finish(self):
+        """Returns its thermo output once it has stopped printing. Throws LammpsError, KilledFromOutside."""
         status = self.process.wait()
         # A launcher leaves as a shell does when one of its ranks was killed: with 128 + the signal.
         killer = status - 128 if self.is_launched and status > 128 else -status
@@ -151,14 +199,5 @@ class Lammps:
             raise LammpsError(
                 self.thermo.error or f"lmp ended with status {status}: {list(self.thermo.last_lines)[-1:]}"
             )
-        heading = self.thermo.heading
-        if self.thermo.atoms is None or "Step" not in heading or heading[0].startswith("-"):
-            raise LammpsError(
-                "the script has no run whose thermo output has a column Step and one line per sample "
-                "(thermo_style one or custom)"
-            )
-        if self.thermo.steps_done() != steps:
-            raise LammpsError(
-                f"the script's last run was to make ${{steps}} = {steps} steps and made {self.thermo.steps_done()}"
-            )
+        self.thermo.check()
         return self.thermo

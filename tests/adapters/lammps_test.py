@@ -14,7 +14,7 @@ import lammps
 import scratch
 from identity import engine_identity
 from input_script import commands
-from realisation import Realisation, ending_of, lammps_seed
+from realisation import Realisation, check_chunks, ending_of, lammps_seed
 from scene import Chunk, Refused, read_scene
 
 GOOD = {
@@ -26,6 +26,9 @@ POINT = "ab" * 32
 
 # As the version of Debian 12 prints it: a run of the set-up, then the one that counts.
 OUTPUT = """LAMMPS (29 Sep 2021 - Update 2)
+thermo ${every}
+thermo 50
+run 50
 Setting up Verlet run ...
   Unit style    : lj
   Current step  : 0
@@ -55,8 +58,8 @@ def with_value(pointer, value):
     return scene
 
 
-def heard(text):
-    thermo = lammps.Thermo()
+def heard(text, steps=100):
+    thermo = lammps.Thermo(steps)
     for line in text.splitlines():
         thermo.hear(line)
     return thermo
@@ -110,6 +113,20 @@ class Scenes(unittest.TestCase):
             with self.assertRaises(Refused):
                 read_scene(scene)
 
+    def test_chunks_that_end_between_rows_are_refused_where_they_are(self):
+        for steps, pointer, value in (
+            ({"production": 1000, "chunk": 400}, "/steps/chunk", "400"),
+            ({"production": 1000}, "/steps/production", "1000"),
+            ({"production": 1000, "chunk": 300}, "/steps/production", "100"),
+        ):
+            scene = read_scene({"steps": steps, "observables": GOOD["observables"]})
+            with self.assertRaises(Refused) as caught:
+                check_chunks(scene, "production", 300)
+            self.assertEqual((caught.exception.pointer, caught.exception.value), (pointer, value))
+        scene = read_scene({"steps": {"production": 900, "chunk": 600}, "observables": GOOD["observables"]})
+        for every in (300, 0):
+            check_chunks(scene, "production", every)
+
 
 class Seeds(unittest.TestCase):
     def test_no_two_chunks_of_a_point_share_one_and_all_are_ones_that_lammps_takes(self):
@@ -129,14 +146,79 @@ class ThermoOutput(unittest.TestCase):
         )
         self.assertEqual((thermo.steps_done(), thermo.timestep, thermo.atoms), (100, 0.005, 500))
 
+    def refusal(self, text, steps=100):
+        """What is wrong with this output."""
+        with self.assertRaises(lammps.LammpsError) as caught:
+            heard(text, steps).check()
+        return str(caught.exception)
+
     def test_several_lines_per_sample_are_refused(self):
         multi = OUTPUT.replace("   Step          Temp", "---------------- Step 50 ----- CPU = 0.0 (sec)")
         for text in (multi, OUTPUT.replace("Step ", "Stop "), ""):
-            ended = types.SimpleNamespace(
-                process=types.SimpleNamespace(wait=lambda: 0), thermo=heard(text), is_launched=False
-            )
-            with self.assertRaisesRegex(lammps.LammpsError, "one line per sample"):
-                lammps.Lammps.finish(ended, 100)
+            self.assertIn("one line per sample", self.refusal(text))
+
+    def test_what_the_script_prints_between_rows_is_none(self):
+        for line in (
+            "60 1e6 5.0 1.0",
+            "1000 1e6 5.0 1.0",
+            "0 1e6 5.0 1.0",
+            "100.5 1e6 5.0 1.0",
+            "nan 1 1 1",
+            "100 1e6",
+            "x 1 1 1",
+        ):
+            thermo = heard(OUTPUT.replace("WARNING", f"{line}\nWARNING"))
+            thermo.check()
+            self.assertEqual(thermo.columns["v_eta"], [-2, 0.03, 5], line)
+
+    def test_a_line_that_may_be_a_row_is_refused(self):
+        for line in ("50 1e6 5.0 1.0", "100 1e6 5.0 1.0", "150 1e6 5.0 1.0"):
+            said = self.refusal(OUTPUT.replace("WARNING", f"{line}\nWARNING"))
+            self.assertIn("look like rows of thermo output: Step is", said)
+
+    def test_a_missing_row_is_noticed(self):
+        self.assertIn("2 rows of 3", self.refusal(OUTPUT.replace("       100   1.5", "       100   1.5 WARNING")))
+
+    def test_runs_begin_and_end_with_a_row(self):
+        late = OUTPUT.replace("thermo 50", "thermo 40")
+        self.assertIn("100 steps from step 50, and rows of thermo output every 40", self.refusal(late))
+        self.assertEqual(heard(OUTPUT.replace("thermo 50", "")).columns["Step"], [50, 150])
+
+    def test_without_a_number_of_steps_between_rows_nothing_tells_them(self):
+        for said in ("thermo v_steps", "thermo 50\necho none", 'thermo "50"'):
+            self.assertIn("must give thermo a number of steps", self.refusal(OUTPUT.replace("thermo 50", said)))
+        heard(OUTPUT.replace("thermo 50", 'if "1 == 1" then "thermo 10" # thermo 20\n  thermo 50   # of 100')).check()
+
+    def test_columns_of_one_name_are_refused(self):
+        self.assertIn("same name", self.refusal(OUTPUT.replace("c_msd[4]", "v_eta")))
+
+    def test_a_warning_before_the_heading_is_no_heading(self):
+        heard(OUTPUT.replace("   Step   ", "WARNING: of another rank\n   Step   ")).check()
+
+    def test_lammps_says_what_tells_its_rows(self):
+        script = """
+            variable every equal 30+20
+            region box block 0 5 0 5 0 5
+            create_box 1 box
+            create_atoms 1 single 1 1 1
+            mass 1 1
+            thermo_style custom step temp vol
+            thermo ${every}
+            fix printed all print 20 "$(step) 5 6" screen yes
+            run ${steps}"""
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "in"), "w") as file:
+                file.write(script)
+            for steps, rows in ((0, [0]), (50, [0, 50])):
+                self.assertEqual(self.ran(folder, steps).columns["Step"], rows)
+            with self.assertRaisesRegex(lammps.LammpsError, "Step is 100 in"):
+                self.ran(folder, 100)
+
+    def ran(self, folder, steps):
+        with lammps.Lammps("lmp", [], "in", folder, {"steps": steps}) as process, open(os.devnull) as nobody:
+            while process.listen(nobody, 1)[0]:
+                pass
+            return process.finish()
 
     def test_numbers_that_are_none_are_noticed(self):
         self.assertTrue(heard(OUTPUT).is_finite())
@@ -226,8 +308,7 @@ class Endings(unittest.TestCase):
         lammps.Lammps.finish(
             types.SimpleNamespace(
                 process=types.SimpleNamespace(wait=lambda: status), thermo=heard(text), is_launched=is_launched
-            ),
-            100,
+            )
         )
 
     def test_a_kill_is_nobodys_fault_whether_it_hits_lmp_or_a_rank_of_it(self):
