@@ -1,9 +1,8 @@
 """Campaigns that are built here and run by the program."""
 import json
 import os
-import subprocess
 
-from peclet.program import PecletError, ask, find_program
+from peclet.program import PecletError, ask, run_shown
 from peclet.results import open_results
 
 # Codes of `peclet run` that are no error: all converged; finished, but not all; stopped, and goes on when run again.
@@ -16,7 +15,7 @@ class Campaign:
         campaign = peclet.Campaign("friction", scene, {"/contact/friction": [0, 0.5, 1]}, tolerance=0.05)
         results = campaign.run()
 
-    scene       a dictionary, or the path of a JSON file
+    scene       a dictionary, or the path of a JSON file (with another name than the campaign's)
     sweep       values by JSON pointer into the scene, all of one combined with all of the others; or the list of
                 entries that a campaign file has
     observable, tolerance, confidence    of the target, the tolerance relative to the mean
@@ -39,9 +38,14 @@ class Campaign:
         maximum=400,
         **more,
     ):
-        if not isinstance(scene, dict):
-            with open(scene, encoding="utf-8") as file:
-                scene = json.load(file)
+        self._scene_file = None if isinstance(scene, dict) else os.fspath(scene)
+        if self._scene_file:
+            try:
+                with open(scene, encoding="utf-8-sig") as file:
+                    scene = json.load(file)
+            except (OSError, ValueError) as error:
+                why = getattr(error, "strerror", None) or error
+                raise PecletError(f"{self._scene_file}: cannot be read as a scene: {why}") from error
         if isinstance(sweep, dict):
             sweep = [{"set": pointer, "values": list(values)} for pointer, values in sweep.items()]
         self.document = {
@@ -54,12 +58,33 @@ class Campaign:
         }
 
     def write(self, path=None):
-        """Writes the campaign file, NAME.json unless told otherwise, and returns its path."""
+        """Writes the campaign file, NAME.json unless told otherwise, and returns its path. A file that is there already
+        must be that of an earlier campaign of this name."""
         path = os.fspath(path) if path else self.document["name"] + ".json"
-        with open(path, "w", encoding="utf-8") as file:
-            json.dump(self.document, file, indent=1)
-            file.write("\n")
+        if os.path.exists(path):
+            self._check_earlier(path)
+        text = json.dumps(self.document, indent=1, default=plain) + "\n"
+        # Whole or not at all: a part of it would be taken for something else the next time.
+        temporary = f"{path}.{os.getpid()}.tmp"
+        with open(temporary, "w", encoding="utf-8") as file:
+            file.write(text)
+        os.replace(temporary, path)
         return path
+
+    def _check_earlier(self, path):
+        """Throws PecletError if the file is something else, such as the scene."""
+        try:
+            with open(path, encoding="utf-8-sig") as file:
+                earlier = json.load(file)
+            if self._scene_file is None or not os.path.samefile(path, self._scene_file):
+                if {"scene", "target"} <= set(earlier) and earlier["name"] == self.document["name"]:
+                    return
+        except (OSError, ValueError, TypeError, KeyError):
+            pass
+        raise PecletError(
+            f"{path}: is there already and not a campaign of the name {self.document['name']}, so it is not "
+            "overwritten; choose another name, or another path"
+        )
 
     def validate(self, path=None, program=None):
         """Writes the file and returns what `peclet validate` says of every point: time step, groups and warnings.
@@ -68,11 +93,21 @@ class Campaign:
 
     def run(self, path=None, program=None, options=()):
         """Writes the file, runs the campaign until every point is decided, or goes on where it was stopped, and returns
-        its results. What `peclet run` prints is shown; `options` are more of its options, such as "--workers=4"."""
+        its results. What `peclet run` prints is shown; `options` are more of its options, such as "--workers=4".
+        """
         path = self.write(path)
-        done = subprocess.run([find_program(program), "run", *options, "--", path])
-        if done.returncode == STOPPED:
+        code, said, interrupted = run_shown(program, "run", *options, "--", path)
+        if interrupted:
+            raise KeyboardInterrupt(f"{path}: stopped; run it again to go on")
+        if code == STOPPED:
             raise PecletError(f"{path}: stopped; run it again to go on")
-        if done.returncode not in ENDED:
-            raise PecletError(f"{path}: peclet run ended with {done.returncode}")
+        if code not in ENDED:
+            raise PecletError(said or f"{path}: peclet run ended with {code}; it says why on standard error")
         return open_results(path, program)
+
+
+def plain(value):
+    """What JSON has for the numbers and arrays of NumPy."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise PecletError(f"{value!r}: must be something that a JSON file may hold")

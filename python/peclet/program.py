@@ -1,7 +1,13 @@
 """The program peclet: where it is, and what it answers."""
+import ctypes
 import os
 import shutil
+import signal
 import subprocess
+import sys
+
+PR_SET_PDEATHSIG = 1
+libc = ctypes.CDLL(None)
 
 
 class PecletError(Exception):
@@ -24,3 +30,31 @@ def ask(program, *arguments, allowed=(0,)):
         said = done.stderr.strip() or f"peclet {arguments[0]} ended with {done.returncode}"
         raise PecletError(said)
     return done.stdout
+
+
+def run_shown(program, *arguments):
+    """Runs `peclet ARGUMENTS` and shows what it prints. Returns its exit code, what it said last on standard error, and
+    whether it was interrupted. An interrupt is passed on, and the end that it leads to is waited for.
+    """
+    # The program has a process group of its own, because a second signal, as a terminal or notebook sends one to all of
+    # the group, would stop it without checkpoints. It is asked to stop when Python is killed.
+    process = subprocess.Popen(
+        [find_program(program), *arguments],
+        stderr=None if sys.stderr.isatty() else subprocess.PIPE,
+        start_new_session=True,
+        preexec_fn=lambda: libc.prctl(PR_SET_PDEATHSIG, signal.SIGTERM),
+    )
+    said, interrupted, code = "", False, None
+    while code is None:
+        try:
+            for line in process.stderr or ():
+                text = line.decode(errors="replace")
+                said = text if text.startswith("peclet: ") else said and said + text
+                sys.stderr.write(text)
+            code = process.wait()
+        except KeyboardInterrupt:
+            interrupted = True
+            process.send_signal(signal.SIGINT)
+    if process.stderr:
+        process.stderr.close()
+    return code, said.strip(), interrupted

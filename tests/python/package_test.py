@@ -2,9 +2,11 @@
 """package_test.py PECLET ENGINE: the Python package says of a campaign what `peclet export` says, and draws it."""
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -142,6 +144,112 @@ class OfACampaign(unittest.TestCase):
         path = os.path.join(self.scratch.name, "faulty.json")
         with self.assertRaisesRegex(peclet.PecletError, "volume_fraction"):
             campaign.validate(path, PECLET)
+        with self.assertRaisesRegex(peclet.PecletError, "^peclet: .*faulty.json: /scene/volume_fraction: 2: must be"):
+            campaign.run(path, PECLET)
+
+
+class Files(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.path = os.path.join(scratch.name, "flow.json")
+
+    def test_only_a_campaign_of_the_same_name_is_overwritten(self):
+        peclet.Campaign("flow", SCENE).write(self.path)
+        written = Path(self.path).read_bytes()
+        peclet.Campaign("flow", SCENE, tolerance=0.01).write(self.path)
+        self.assertNotEqual(Path(self.path).read_bytes(), written)
+        self.assertEqual(os.listdir(os.path.dirname(self.path)), ["flow.json"])
+        of_another_name = json.loads(written) | {"name": "other"}
+        for earlier in (json.dumps(SCENE), json.dumps(of_another_name), "not JSON", "[1]", "3", ""):
+            Path(self.path).write_text(earlier)
+            with self.assertRaisesRegex(
+                peclet.PecletError, "flow.json: is there already and not a campaign of the name flow"
+            ):
+                peclet.Campaign("flow", SCENE).validate(self.path, PECLET)
+            self.assertEqual(Path(self.path).read_text(), earlier)
+
+    def test_the_file_that_the_scene_was_read_from_is_not_overwritten(self):
+        peclet.Campaign("flow", SCENE).write(self.path)
+        with self.assertRaises(peclet.PecletError):
+            peclet.Campaign("flow", self.path).write(self.path)
+        self.assertEqual(json.loads(Path(self.path).read_text())["scene"], SCENE)
+
+    def test_what_cannot_be_read_or_written_is_said(self):
+        with self.assertRaisesRegex(peclet.PecletError, "flow.json: cannot be read as a scene: No such file"):
+            peclet.Campaign("flow", self.path)
+        Path(self.path).write_text("{")
+        with self.assertRaisesRegex(peclet.PecletError, "flow.json: cannot be read as a scene: Expecting"):
+            peclet.Campaign("flow", self.path)
+        with self.assertRaisesRegex(peclet.PecletError, "must be something that a JSON file may hold"):
+            peclet.Campaign("other", {"key": {1}}).write(os.path.join(os.path.dirname(self.path), "other.json"))
+
+    def test_numbers_of_numpy_are_numbers(self):
+        scene = SCENE | {"peclet": np.float32(2), "volume_fraction": np.float64(0.25)}
+        campaign = peclet.Campaign("numbers", scene, {"/particles/count": np.arange(20, 40, 10)})
+        document = json.loads(Path(campaign.write(self.path)).read_text())
+        self.assertEqual(document["sweep"], [{"set": "/particles/count", "values": [20, 30]}])
+        self.assertEqual((document["scene"]["peclet"], document["scene"]["volume_fraction"]), (2, 0.25))
+
+
+# Plays peclet: says that it is there, and after a signal how many came within a second.
+PROGRAM = f"""#!{sys.executable}
+import signal, sys, time
+came = []
+for number in (signal.SIGINT, signal.SIGTERM):
+    signal.signal(number, lambda number, _: came.append(signal.Signals(number).name))
+open("ready", "w").close()
+deadline = time.monotonic() + 60
+while not came and time.monotonic() < deadline:
+    time.sleep(0.01)
+time.sleep(1)
+with open("came", "w") as file:
+    file.write(" ".join(came))
+sys.exit(75)
+"""
+
+
+class Interrupted(unittest.TestCase):
+    def came(self, send):
+        """What comes at the program when `send` does something to Python, which calls run()."""
+        with tempfile.TemporaryDirectory() as folder:
+            program = Path(folder, "program")
+            program.write_text(PROGRAM)
+            program.chmod(0o755)
+            script = (
+                "import peclet, signal; signal.signal(signal.SIGINT, signal.default_int_handler);"
+                "peclet.Campaign('slow', {}).run(program='./program')"
+            )
+            environment = {**os.environ, "PYTHONPATH": str(ROOT / "python")}
+            python = subprocess.Popen(
+                [sys.executable, "-c", script],
+                cwd=folder,
+                env=environment,
+                start_new_session=True,
+                stderr=subprocess.PIPE,
+                text=True,
+            )
+            self.wait_for(Path(folder, "ready"))
+            send(python.pid)
+            said = python.communicate()[1]
+            came = Path(folder, "came")
+            self.wait_for(came)
+            return came.read_text(), said
+
+    def wait_for(self, path):
+        deadline = time.monotonic() + 30
+        while not path.exists():
+            self.assertLess(time.monotonic(), deadline, path)
+            time.sleep(0.01)
+
+    def test_the_program_may_write_its_checkpoints(self):
+        for send in (os.kill, os.killpg):
+            came, said = self.came(lambda process: send(process, signal.SIGINT))
+            self.assertEqual(came, "SIGINT")
+            self.assertIn("KeyboardInterrupt: slow.json: stopped; run it again to go on", said)
+
+    def test_the_program_does_not_outlive_python(self):
+        self.assertEqual(self.came(lambda process: os.kill(process, signal.SIGKILL))[0], "SIGTERM")
 
 
 class Tables(unittest.TestCase):
