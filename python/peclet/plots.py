@@ -4,6 +4,7 @@ import re
 import numpy as np
 
 from peclet.program import PecletError
+from peclet.table import Table, cell_of
 
 # What is swept, as axes name it; beside these the parameter's own name.
 NAMES = {
@@ -51,19 +52,31 @@ def swept(table):
 
 
 def label_of(results, quantity):
-    rows = {row["quantity"]: row for row in results.quantities()}
-    row = rows.get(quantity)
-    if row is None:
-        return quantity
-    unit = f"  [{row['unit']}]" if row["unit"] not in ("", "1") else ""
-    return formula_of(row["symbol"]) + unit
+    """The symbol and unit of a quantity, or of an element of one, such as stress/total/xy."""
+    for row in results.quantities():
+        if (quantity + "/").startswith(row["quantity"] + "/"):
+            element = quantity[len(row["quantity"]) + 1 :].replace("/", ", ")
+            unit = f"  [{row['unit']}]" if row["unit"] not in ("", "1") else ""
+            return formula_of(row["symbol"]) + (f", {element}" if element else "") + unit
+    return quantity
+
+
+def numbered(table, x):
+    """The table with places 0, 1 ... for the values of column x, and these values as text, if some are words; else the
+    table as it is, and None."""
+    values = table[x].tolist()
+    if not any(isinstance(value, str) for value in values):
+        return table, None
+    ticks = list(dict.fromkeys(values))
+    return Table({**table.columns, x: [ticks.index(value) for value in values]}), [cell_of(value) for value in ticks]
 
 
 def plot(results, quantity=None, x=None, by=None, axes=None, label=None, log=None, where=None):
     """Draws an estimate of every point over one swept parameter, with 95 % intervals, and returns matplotlib's Axes.
 
     quantity  the campaign's target unless given
-    x         the swept parameter on the axis; the one with most values unless given
+    x         the swept parameter on the axis; the one with most values unless given. If it has words, such as "auto",
+              its values stand side by side
     by        another one, of which each value is a series; all others that vary unless given
     axes      matplotlib's Axes to draw in; new ones unless given
     label     of the series, where it is a single one
@@ -83,19 +96,24 @@ def plot(results, quantity=None, x=None, by=None, axes=None, label=None, log=Non
     x = x or parameters[0]
     varying = [name for name in parameters if len(set(table[name].tolist())) > 1]
     others = [name for name in varying if name != x] if by is None else [by]
+    table, ticks = numbered(table, x)
+    if ticks and "x" in (log or ""):
+        raise PecletError(f"{x}: has words, and no logarithmic axis")
     axes = axes or pyplot.subplots(figsize=(4.5, 3.4), layout="constrained")[1]
     table = table.take(np.isfinite(table["mean"])).sorted_by(*others, x)
     groups = [tuple(row[name] for name in others) for row in table]
     for k, group in enumerate(sorted(set(groups), key=groups.index)):
         rows = table.take([g == group for g in groups])
-        names = ", ".join(f"{NAMES.get(name, name)} = {value:g}" for name, value in zip(others, group))
+        names = ", ".join(f"{NAMES.get(name, name)} = {cell_of(value)}" for name, value in zip(others, group))
         draw_series(axes, rows, x, COLOURS[k % len(COLOURS)], MARKS[k % len(MARKS)], names or label)
     if log is None:
         log = "".join(name for name, column in (("x", x), ("y", "mean")) if spans_a_decade(table[column]))
     axes.set_xscale("log" if "x" in log else "linear")
     axes.set_yscale("log" if "y" in log else "linear")
+    if ticks:
+        axes.set_xticks(range(len(ticks)), ticks)
     axes.set_xlabel(NAMES.get(x, x.replace("_", " ")))
-    axes.set_ylabel(label_of(results, quantity or results.target["observable"]))
+    axes.set_ylabel(label_of(results, (quantity or results.target["observable"]).lstrip("/")))
     axes.tick_params(which="both", direction="in", top=True, right=True)
     if others or label:
         axes.legend(frameon=False)

@@ -5,9 +5,11 @@ import json
 import os
 
 from peclet.program import PecletError, ask
-from peclet.table import Table
+from peclet.table import Table, cell_of
 
 ESTIMATE = ("mean", "standard_error", "half_width")
+# Columns of the exports that are text, also where it looks like a number.
+TEXTS = ("label", "hash", "verdict", "quantity", "symbol", "unit", "estimator")
 
 
 def open_results(campaign, program=None):
@@ -32,14 +34,35 @@ def short_names(pointers):
     return names
 
 
-def number_of(text):
-    """Of a cell of a CSV table."""
+def value_of(text):
+    """The number, truth or word in a cell of a CSV table; None if it is empty."""
     if text == "":
         return None
     try:
         return float(text)
     except ValueError:
         return {"true": True, "false": False}.get(text, text)
+
+
+def elements(rows, wanted):
+    """The rows of the long export that are the element `wanted` of a list, one a point: by its places, as in
+    transient/shear_stress/3, or by its words, as in stress/total/xy."""
+    places, chosen = {}, []
+    for row in rows:
+        if not wanted.startswith(row["quantity"] + "/"):
+            continue
+        names = [row[f"axis_{k}_value"] for k in (1, 2, 3) if row.get(f"axis_{k}")]
+        seen = [places.setdefault((row["label"], row["quantity"], k), {}) for k in range(len(names))]
+        numbers = [str(known.setdefault(name, len(known))) for known, name in zip(seen, names)]
+        words = [name for name in names if isinstance(value_of(name), str)]
+        if wanted[len(row["quantity"]) + 1 :].split("/") in (numbers, words):
+            chosen.append(row)
+    return chosen
+
+
+def cell_value(value):
+    """What the tables of the program have for a value of a scene."""
+    return json.dumps(value, separators=(",", ":")) if isinstance(value, (dict, list)) else value
 
 
 class Results:
@@ -57,7 +80,8 @@ class Results:
     def _named(self, rows):
         """Rows with the short names of what is swept first, and these names."""
         names = short_names([key for key in (rows[0] if rows else {}) if key.startswith("/")])
-        return [{names.get(k, k): number_of(v) for k, v in row.items()} for row in rows], list(names.values())
+        known = [{names.get(k, k): v if k in TEXTS else value_of(v) for k, v in row.items()} for row in rows]
+        return known, list(names.values())
 
     def export(self):
         """The whole export, as `peclet export` prints it: points, and every realisation of each."""
@@ -88,9 +112,9 @@ class Results:
     def estimates(self, quantity=None):
         """A row for each point: the swept parameters, label, verdict, seeds and lost ones; and `count`, `mean`,
         `standard_error` and `half_width` of the 95 % interval (of the campaign's confidence) at the point's last look,
-        with the control variate. Those of the target, by which the campaign stops, or of another quantity that is a
-        single number; the half-width of such is Student's. `provisional` rows have had no look yet: their mean is that
-        of all seeds so far, and has no interval."""
+        with the control variate. Those of the target, by which the campaign stops, or of another single number, such as
+        pressure, stress/total/xy or transient/shear_stress/3; the half-width of such is Student's. `provisional` rows
+        have had no look yet: their mean is that of all seeds so far, and has no interval."""
         rows, axes = self._named(self._rows("csv"))
         for row in rows:
             row["provisional"] = row["mean"] is None
@@ -102,7 +126,13 @@ class Results:
         return Table.of_rows(axes + known, rows)
 
     def _replace_by(self, quantity, rows):
-        of_label = {row["label"]: row for row in self.profile(quantity)}
+        table = self.profile(quantity)
+        of_label = {row["label"]: row for row in table}
+        if len(of_label) < len(table):
+            name = list(table.columns)[list(table.columns).index("label") + 1]
+            raise PecletError(
+                f"{quantity}: is a list by {name}; name one element, such as {quantity}/{cell_of(table[name][0])}"
+            )
         for row in rows:
             other = of_label.get(row["label"], {})
             row |= {name: other.get(name) for name in ("count", *ESTIMATE)}
@@ -110,9 +140,10 @@ class Results:
     def profile(self, quantity, **wanted):
         """A row for each point and each element of a quantity with axes, such as a profile, a distribution or the
         components of a stress: the swept parameters, label, the axes by their names, count, mean, standard error and
-        half-width. Of the points with these values of swept parameters, of all without."""
-        everything = self._rows("long")
-        chosen = [row for row in everything if row["quantity"] == quantity]
+        half-width. Of the points with these values of swept parameters, of all without. `quantity` may name a single
+        element."""
+        quantity, everything = quantity.lstrip("/"), self._rows("long")
+        chosen = [row for row in everything if row["quantity"] == quantity] or elements(everything, quantity)
         if not chosen:
             there = sorted({row["quantity"] for row in everything})
             raise PecletError(f"{quantity}: not measured; there are {', '.join(there) or 'no results yet'}")
@@ -130,7 +161,7 @@ class Results:
         names = short_names(sorted({pointer for point in document["points"] for pointer in point["settings"]}))
         rows, scalars = [], {}
         for point in document["points"]:
-            settings = {names[pointer]: value for pointer, value in point["settings"].items()}
+            settings = {names[pointer]: cell_value(value) for pointer, value in point["settings"].items()}
             for deciding, kind in ((True, "realisations"), (False, "surplus")):
                 for result in point[kind]:
                     means = {k: v for k, v in (result.get("mean") or {}).items() if isinstance(v, (int, float))}
@@ -141,25 +172,33 @@ class Results:
         known = ["label", "seed", "deciding", "ending", "cpu_seconds"]
         return Table.of_rows([*names.values(), *known, *scalars], rows).where(**wanted)
 
-    def files(self, point=None):
-        """Paths of what realisations have left beside their results."""
-        options = [] if point is None else [point]
-        return ask(self.program, "files", "--paths", "--", self.path, *options).splitlines()
+    def files(self, point=None, **wanted):
+        """Paths of what realisations have left beside their results: those of a point, named as the program does it (by
+        its label, its values alone, digits of its hash), or of the points with these values of swept parameters.
+        """
+        return [file["path"] for file in self._files(point, wanted)]
 
-    def trajectory(self, point, seed=0):
+    def _files(self, point, wanted):
+        left = json.loads(ask(self.program, "files", "--json", "--", self.path, *([] if point is None else [point])))
+        if not wanted:
+            return left
+        labels = set(self.estimates().where(**wanted)["label"].tolist())
+        return [file for file in left if file["point"] in labels]
+
+    def trajectory(self, point=None, seed=0, **wanted):
         """The frames that a seed of a point has left with the observable `trajectory`: gsd.hoomd's trajectory, a
-        sequence of them. `point` is its label, as in estimates()."""
+        sequence of them. The point is named as for files(); it must be a single one."""
         try:
             import gsd.hoomd
         except ImportError as missing:
             raise PecletError("trajectories need the module gsd: install python3-gsd") from missing
-        left = json.loads(self._ask("files", "--json"))
-        own = [file for file in left if file["name"] == "trajectory.gsd"]
-        for file in own:
-            if (file["point"], file["seed"]) == (point, seed):
-                return gsd.hoomd.open(file["path"], "rb")
-        there = sorted({file["point"] for file in own})
-        raise PecletError(f"{point}, seed {seed}: no trajectory; there are those of {', '.join(there) or 'no point'}")
+        own = [file for file in self._files(point, wanted) if file["name"] == "trajectory.gsd"]
+        found = [file["path"] for file in own if file["seed"] == seed]
+        if len(found) != 1:
+            there = ", ".join(f"{file['point']} seed {file['seed']}" for file in own) or "none"
+            what = "no trajectory" if not found else "several points"
+            raise PecletError(f"seed {seed} of {point or wanted or 'all points'}: {what}; there are: {there}")
+        return gsd.hoomd.open(found[0], "rb")
 
     def plot(self, quantity=None, **how):
         """Draws estimates() over what was swept; see peclet.plots.plot."""

@@ -1,7 +1,16 @@
 """Columns of equal length."""
 import html
+import math
 
 import numpy as np
+
+from peclet.program import PecletError
+
+
+class NoSuchColumn(PecletError, KeyError):
+    """A table has no column of this name."""
+
+    __str__ = PecletError.__str__  # KeyError would show quotes
 
 
 class Table:
@@ -22,7 +31,7 @@ class Table:
 
     def __getitem__(self, name):
         if name not in self.columns:
-            raise KeyError(f"{name}: no such column; there are {', '.join(self.columns)}")
+            raise NoSuchColumn(f"{name}: no such column; there are {', '.join(self.columns)}")
         return self.columns[name]
 
     def __contains__(self, name):
@@ -44,13 +53,13 @@ class Table:
         """The rows in which these columns have these values; numbers to nine digits."""
         chosen = np.ones(len(self), bool)
         for name, value in wanted.items():
-            column = self[name]
-            chosen &= column == value if isinstance(value, str) or column.dtype.kind == "U" else close(column, value)
+            chosen &= [is_same(cell, value) for cell in self[name].tolist()]
         return self.take(chosen)
 
     def sorted_by(self, *names):
-        """Of several names the first counts most."""
-        return self.take(np.lexsort([self[name] for name in reversed(names)]))
+        """Rows in order, of several names the first counts most. Numbers come before words, NaN is last."""
+        keys = [[rank_of(cell) for cell in self[name].tolist()] for name in names]
+        return self.take(sorted(range(len(self)), key=lambda row: [key[row] for key in keys]))
 
     def to_dict(self):
         return {name: values.tolist() for name, values in self.columns.items()}
@@ -79,14 +88,25 @@ class Table:
         return "<table>" + "".join(f"<tr>{row}</tr>" for row in rows) + "</table>"
 
 
-def close(column, value):
-    return np.isclose(column.astype(float), float(value), rtol=1e-9, atol=0)
+def is_same(cell, value):
+    if isinstance(cell, str) or isinstance(value, str):
+        return cell == value
+    return math.isclose(cell, value, rel_tol=1e-9)
+
+
+def rank_of(cell):
+    return (2, 0) if cell != cell else (isinstance(cell, str), cell)
 
 
 def column_of(values):
-    """Texts where one of them is one, truths where all are, else numbers."""
+    """Texts where all are, truths where all are, both numbers and words as objects, else numbers."""
+    texts = ["" if v is None else v for v in values]
+    if values and all(isinstance(v, str) for v in texts):
+        return np.array(texts)
     if any(isinstance(v, str) for v in values):
-        return np.array(["" if v is None else str(v) for v in values])
+        column = np.empty(len(texts), object)
+        column[:] = texts
+        return column
     if values and all(isinstance(v, bool) for v in values):
         return np.array(values)
     return np.array([np.nan if v is None else v for v in values], float)

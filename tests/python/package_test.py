@@ -103,8 +103,36 @@ class OfACampaign(unittest.TestCase):
         frames = self.results.trajectory(label, 1)
         self.assertGreaterEqual(len(frames), 4)  # a strain of 0.2 in twentieths
         self.assertEqual(frames[0].particles.N, 20)
-        with self.assertRaisesRegex(peclet.PecletError, f"nowhere, seed 0: no trajectory; .*{label}"):
+        with self.assertRaisesRegex(peclet.PecletError, f"nowhere: must be the label of one point.*{label}"):
             self.results.trajectory("nowhere")
+        with self.assertRaisesRegex(peclet.PecletError, "seed 0 of {'peclet': 10}: several points; there are"):
+            self.results.trajectory(peclet=10)
+        with self.assertRaisesRegex(peclet.PecletError, "seed 99 of .*: no trajectory; there are: .*seed 7"):
+            self.results.trajectory(label, 99)
+
+    def test_a_point_is_named_by_its_values_too(self):
+        label = "peclet=10 volume_fraction=0.3"
+        whole = self.results.files(label)
+        self.assertEqual(len(whole), 2 * 8)
+        self.assertEqual(self.results.files("10 0.3"), whole)
+        self.assertEqual(self.results.files(volume_fraction=0.3, peclet=10), whole)
+        frames = self.results.trajectory(seed=2, volume_fraction=0.3, peclet=10)
+        np.testing.assert_array_equal(
+            frames[1].particles.position, self.results.trajectory(label, 2)[1].particles.position
+        )
+
+    def test_one_element_of_a_list_is_a_number(self):
+        expected = [point["quantities"]["stress/total"]["mean"][3] for point in self.export["points"]]
+        for name in ("stress/total/xy", "stress/total/3", "/stress/total/xy"):
+            np.testing.assert_allclose(self.results.estimates(name)["mean"], expected, err_msg=name)
+        axes = self.results.plot("stress/total/xy", x="peclet", where={"volume_fraction": 0.3})
+        self.assertEqual(axes.get_ylabel(), r"$\sigma$, xy  [viscosity * shear_rate]")
+        with self.assertRaisesRegex(
+            peclet.PecletError, "is a list by component; name one element, such as stress/total/xx"
+        ):
+            self.results.estimates("stress/total")
+        with self.assertRaisesRegex(peclet.PecletError, "stress/total/tt: not measured"):
+            self.results.estimates("stress/total/tt")
 
     def test_a_plot_has_a_series_for_each_value_and_the_intervals_as_bars(self):
         axes = self.results.plot(x="peclet")
@@ -134,8 +162,9 @@ class OfACampaign(unittest.TestCase):
             self.results.profile("viscosty")
         with self.assertRaisesRegex(peclet.PecletError, "absent.peclet: no such file or folder"):
             peclet.open("absent.peclet")
-        with self.assertRaisesRegex(KeyError, "colour: no such column; there are peclet"):
-            self.results.estimates().where(colour=1)
+        for kind in (KeyError, peclet.PecletError):
+            with self.assertRaisesRegex(kind, "^colour: no such column; there are peclet"):
+                self.results.estimates().where(colour=1)
         with self.assertRaisesRegex(peclet.PecletError, "no-such-peclet: no such program"):
             peclet.open(self.path, program="no-such-peclet").estimates()
 
@@ -250,6 +279,51 @@ class Interrupted(unittest.TestCase):
 
     def test_the_program_does_not_outlive_python(self):
         self.assertEqual(self.came(lambda process: os.kill(process, signal.SIGKILL))[0], "SIGTERM")
+
+
+class Words(unittest.TestCase):
+    """Swept values that are words and numbers."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        sweep = {"/integrator/timestep": ["auto", 0.01, 0.005], "/contact/friction": [0, 1]}
+        scene = {key: value for key, value in SCENE.items() if key not in ("observables", "trajectory", "files")}
+        campaign = peclet.Campaign("2024", scene, sweep, minimum=2, maximum=2, engine=[ENGINE, "serve"])
+        cls.results = campaign.run(os.path.join(cls.scratch.name, "words.json"), PECLET, ["--quiet"])
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    def test_are_chosen_as_what_they_are(self):
+        for table in (self.results.estimates(), self.results.realisations()):
+            for value in ("auto", 0.01, 0.005):
+                chosen = table.where(timestep=value)
+                self.assertEqual(len(chosen), len(table) / 3)
+                self.assertEqual(set(chosen["timestep"].tolist()), {value})
+
+    def test_are_ordered_after_numbers(self):
+        ordered = self.results.estimates().sorted_by("friction", "timestep")["timestep"]
+        self.assertEqual(ordered.tolist(), 2 * [0.005, 0.01, "auto"])
+
+    def test_are_ticks_of_an_axis_and_names_of_series(self):
+        axes = self.results.plot(x="timestep")
+        self.assertEqual([tick.get_text() for tick in axes.get_xticklabels()], ["auto", "0.01", "0.005"])
+        table = self.results.estimates().where(friction=1)
+        expected = [table.where(timestep=value)["mean"][0] for value in ("auto", 0.01, 0.005)]
+        line = next(line for line in axes.lines if line.get_label() == r"$\mu$ = 1")
+        np.testing.assert_allclose(line.get_xydata(), np.column_stack([[0, 1, 2], expected]))
+        series = self.results.plot(x="friction").get_legend().get_texts()
+        self.assertEqual([text.get_text() for text in series], [f"timestep = {v}" for v in ("0.005", "0.01", "auto")])
+        with self.assertRaisesRegex(peclet.PecletError, "timestep: has words, and no logarithmic axis"):
+            self.results.plot(x="timestep", log="xy")
+
+    def test_a_label_is_text_whatever_it_looks_like(self):
+        campaign = peclet.Campaign("2024", SCENE, minimum=2, maximum=2, engine=[ENGINE, "serve"])
+        results = campaign.run(os.path.join(self.scratch.name, "2024.json"), PECLET, ["--quiet"])
+        self.assertEqual(results.estimates()["label"].tolist(), ["2024"])
+        self.assertEqual(len(results.estimates("pressure").where(label="2024")), 1)
 
 
 class Tables(unittest.TestCase):
