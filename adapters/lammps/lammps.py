@@ -60,6 +60,10 @@ class Thermo:
             self.timestep = float(found[1])
         elif line.startswith("ERROR"):
             self.error = self.error or line
+        elif not self.inside and re.match(r"\s*run\s", line):
+            # A run without a set-up shows its heading at once; others show their memory before.
+            self.columns, self.heading, self.atoms = {}, [], None
+            self.expect_heading = re.search(r"\spre\s+no\b", line) is not None
         elif line.startswith("Per MPI rank memory allocation"):
             self.expect_heading = True
         elif self.expect_heading and not line.startswith("WARNING"):

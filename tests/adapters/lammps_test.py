@@ -154,7 +154,8 @@ class ThermoOutput(unittest.TestCase):
 
     def test_several_lines_per_sample_are_refused(self):
         multi = OUTPUT.replace("   Step          Temp", "---------------- Step 50 ----- CPU = 0.0 (sec)")
-        for text in (multi, OUTPUT.replace("Step ", "Stop "), ""):
+        yaml = OUTPUT.replace("   Step ", "---\nkeywords: ['Step', 'Temp', ]\ndata:\n   Step ")
+        for text in (multi, yaml, OUTPUT.replace("Step ", "Stop "), ""):
             self.assertIn("one line per sample", self.refusal(text))
 
     def test_what_the_script_prints_between_rows_is_none(self):
@@ -195,8 +196,8 @@ class ThermoOutput(unittest.TestCase):
     def test_a_warning_before_the_heading_is_no_heading(self):
         heard(OUTPUT.replace("   Step   ", "WARNING: of another rank\n   Step   ")).check()
 
-    def test_lammps_says_what_tells_its_rows(self):
-        script = """
+    def test_rows_of_lammps_itself_are_told_from_the_rest(self):
+        begin = """
             variable every equal 30+20
             region box block 0 5 0 5 0 5
             create_box 1 box
@@ -204,15 +205,31 @@ class ThermoOutput(unittest.TestCase):
             mass 1 1
             thermo_style custom step temp vol
             thermo ${every}
-            fix printed all print 20 "$(step) 5 6" screen yes
-            run ${steps}"""
-        with tempfile.TemporaryDirectory() as folder:
-            with open(os.path.join(folder, "in"), "w") as file:
-                file.write(script)
-            for steps, rows in ((0, [0]), (50, [0, 50])):
-                self.assertEqual(self.ran(folder, steps).columns["Step"], rows)
-            with self.assertRaisesRegex(lammps.LammpsError, "Step is 100 in"):
-                self.ran(folder, 100)
+            """
+        printed = 'fix printed all print 20 "$(step) 5 6" screen yes\n'
+        cases = (
+            (0, printed + "run ${steps}", [0]),
+            (50, printed + "run ${steps}", [0, 50]),
+            (100, printed + "run ${steps}", "Step is 100 in"),
+            (100, "thermo_modify format line '%ld %.3g %.3g'\nrun ${steps}", [0, 50, 100]),
+            (100, "run 30\nreset_timestep 0\nrun ${steps}", [0, 50, 100]),
+            (100, "run ${steps}\nrun ${steps} pre no", [100, 150, 200]),
+            (100, "run ${steps} pre no post no", [0, 50, 100]),
+            (100, "run 30\nrun ${steps}", "from step 30"),
+            (100, "variable i loop 2\nlabel again\nrun 50\nnext i\njump SELF again", "made 50"),
+            (100, "run ${steps} every 50 'print next'", "made 50"),
+            (100, "run ${steps}\nrun 0", "made 0"),
+            (100, "thermo_modify line multi\nrun ${steps}", "one line per sample"),
+        )
+        for steps, end, expected in cases:
+            with tempfile.TemporaryDirectory() as folder, self.subTest(end, steps=steps):
+                with open(os.path.join(folder, "in"), "w") as file:
+                    file.write(begin + end)
+                if isinstance(expected, str):
+                    with self.assertRaisesRegex(lammps.LammpsError, expected):
+                        self.ran(folder, steps)
+                else:
+                    self.assertEqual(self.ran(folder, steps).columns["Step"], expected)
 
     def ran(self, folder, steps):
         with lammps.Lammps("lmp", [], "in", folder, {"steps": steps}) as process, open(os.devnull) as nobody:
