@@ -66,9 +66,12 @@ class Campaign:
         text = json.dumps(self.document, indent=1, default=plain) + "\n"
         # Whole or not at all: a part of it would be taken for something else the next time.
         temporary = f"{path}.{os.getpid()}.tmp"
-        with open(temporary, "w", encoding="utf-8") as file:
-            file.write(text)
-        os.replace(temporary, path)
+        try:
+            with open(temporary, "w", encoding="utf-8") as file:
+                file.write(text)
+            os.replace(temporary, path)
+        except OSError as error:
+            raise PecletError(f"{path}: cannot be written: {error.strerror}") from error
         return path
 
     def _check_earlier(self, path):

@@ -24,7 +24,7 @@ NAMES = {
     "thermal_energy": r"$k_B T$",
     "inner_gap": "inner gap",
     "outer_gap": "outer gap",
-    "count": "$N$",
+    "particles_count": "$N$",
 }
 GREEK = "alpha beta gamma delta eta theta kappa lambda mu rho sigma tau phi omega".split()
 # Told apart in grey and by eyes that see few colours: Okabe & Ito (2008).

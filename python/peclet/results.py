@@ -10,6 +10,8 @@ from peclet.table import Table, cell_of
 ESTIMATE = ("mean", "standard_error", "half_width")
 # Columns of the exports that are text, also where it looks like a number.
 TEXTS = ("label", "hash", "verdict", "quantity", "symbol", "unit", "estimator")
+OF_POINTS = ("label", "verdict", "seeds", "lost", "count", *ESTIMATE, "provisional")
+OF_SEEDS = ("label", "seed", "deciding", "ending", "cpu_seconds")
 
 
 def open_results(campaign, program=None):
@@ -22,16 +24,24 @@ def open_results(campaign, program=None):
 
 
 def short_names(pointers):
-    """Of each JSON pointer into the scene its last word, and as many before it as tell it from the others."""
+    """Of each JSON pointer into the scene its last word, and as many before it as tell it from the others and from
+    columns of every table."""
     words = {pointer: pointer.strip("/").split("/") for pointer in pointers}
     names = {}
     for pointer, own in words.items():
         others = [w for p, w in words.items() if p != pointer]
         count = 1
-        while count < len(own) and any(w[-count:] == own[-count:] for w in others):
+        while count < len(own) and (
+            any(w[-count:] == own[-count:] for w in others) or "_".join(own[-count:]) in (*OF_POINTS, *OF_SEEDS, *TEXTS)
+        ):
             count += 1
         names[pointer] = "_".join(own[-count:])
     return names
+
+
+def apart(name, swept, prefix):
+    """The name of a column that is not the name of a swept parameter."""
+    return prefix + name if name in swept else name
 
 
 def value_of(text):
@@ -80,7 +90,10 @@ class Results:
     def _named(self, rows):
         """Rows with the short names of what is swept first, and these names."""
         names = short_names([key for key in (rows[0] if rows else {}) if key.startswith("/")])
-        known = [{names.get(k, k): v if k in TEXTS else value_of(v) for k, v in row.items()} for row in rows]
+        known = []
+        for row in rows:
+            others = {k: v if k in TEXTS else value_of(v) for k, v in row.items() if k not in names}
+            known.append(others | {name: value_of(row[pointer]) for pointer, name in names.items()})
         return known, list(names.values())
 
     def export(self):
@@ -122,8 +135,7 @@ class Results:
                 row |= {name: row.get(f"so_far_{name}") for name in ("count", "mean", "standard_error")}
         if quantity not in (None, self.target["observable"]):
             self._replace_by(quantity, rows)
-        known = ["label", "verdict", "seeds", "lost", "count", *ESTIMATE, "provisional"]
-        return Table.of_rows(axes + known, rows)
+        return Table.of_rows([*axes, *OF_POINTS], rows)
 
     def _replace_by(self, quantity, rows):
         table = self.profile(quantity)
@@ -149,6 +161,7 @@ class Results:
             raise PecletError(f"{quantity}: not measured; there are {', '.join(there) or 'no results yet'}")
         rows, axes = self._named(chosen)
         names = [chosen[0][f"axis_{k}"] for k in (1, 2, 3) if chosen[0].get(f"axis_{k}")]
+        names = [apart(name, axes, "axis_") for name in names]
         for row in rows:
             row |= {name: row[f"axis_{k + 1}_value"] for k, name in enumerate(names)}
         return Table.of_rows(axes + ["label", *names, "count", *ESTIMATE], rows).where(**wanted)
@@ -156,7 +169,7 @@ class Results:
     def realisations(self, **wanted):
         """A row for each seed that has ended: the swept parameters, label, seed, whether it is in the estimate
         (`deciding`), how it ended, processor seconds, and every mean that is a single number, without control
-        variate. Reads the whole export."""
+        variate; one with the name of a swept parameter is called measured_NAME. Reads the whole export."""
         document = self.export()
         names = short_names(sorted({pointer for point in document["points"] for pointer in point["settings"]}))
         rows, scalars = [], {}
@@ -164,13 +177,16 @@ class Results:
             settings = {names[pointer]: cell_value(value) for pointer, value in point["settings"].items()}
             for deciding, kind in ((True, "realisations"), (False, "surplus")):
                 for result in point[kind]:
-                    means = {k: v for k, v in (result.get("mean") or {}).items() if isinstance(v, (int, float))}
+                    means = {
+                        apart(name, settings, "measured_"): value
+                        for name, value in (result.get("mean") or {}).items()
+                        if isinstance(value, (int, float))
+                    }
                     scalars |= dict.fromkeys(means)
                     ending = result["ending"]["cause"] if result.get("ending") else ""
                     own = {"label": point["label"], "seed": result["seed"], "deciding": deciding, "ending": ending}
                     rows.append({**settings, **own, "cpu_seconds": result["cost"]["cpu_seconds"], **means})
-        known = ["label", "seed", "deciding", "ending", "cpu_seconds"]
-        return Table.of_rows([*names.values(), *known, *scalars], rows).where(**wanted)
+        return Table.of_rows([*names.values(), *OF_SEEDS, *scalars], rows).where(**wanted)
 
     def files(self, point=None, **wanted):
         """Paths of what realisations have left beside their results: those of a point, named as the program does it (by

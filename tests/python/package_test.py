@@ -210,6 +210,8 @@ class Files(unittest.TestCase):
         Path(self.path).write_text("{")
         with self.assertRaisesRegex(peclet.PecletError, "flow.json: cannot be read as a scene: Expecting"):
             peclet.Campaign("flow", self.path)
+        with self.assertRaisesRegex(peclet.PecletError, "absent/flow.json: cannot be written: No such file"):
+            peclet.Campaign("flow", SCENE).write(os.path.join(os.path.dirname(self.path), "absent", "flow.json"))
         with self.assertRaisesRegex(peclet.PecletError, "must be something that a JSON file may hold"):
             peclet.Campaign("other", {"key": {1}}).write(os.path.join(os.path.dirname(self.path), "other.json"))
 
@@ -319,6 +321,34 @@ class Words(unittest.TestCase):
         with self.assertRaisesRegex(peclet.PecletError, "timestep: has words, and no logarithmic axis"):
             self.results.plot(x="timestep", log="xy")
 
+    def test_a_swept_number_is_told_from_a_column_of_the_same_name(self):
+        campaign = peclet.Campaign(
+            "sizes", SCENE, {"/particles/count": [20, 30]}, minimum=2, maximum=2, engine=[ENGINE, "serve"]
+        )
+        results = campaign.run(os.path.join(self.scratch.name, "sizes.json"), PECLET, ["--quiet"])
+        for table in (results.estimates(), results.estimates("pressure")):
+            self.assertEqual((table["particles_count"].tolist(), table["count"].tolist()), ([20, 30], [2, 2]))
+        self.assertEqual(set(results.realisations(particles_count=30)["label"].tolist()), {"count=30"})
+        axes = results.plot()
+        self.assertEqual((axes.get_xlabel(), axes.lines[0].get_xdata().tolist()), ("$N$", [20, 30]))
+
+    def test_a_measured_number_or_an_axis_is_told_from_what_is_swept(self):
+        class Same(peclet.Results):
+            def export(self):
+                result = {"seed": 0, "mean": {"rate": 7, "eta": 2}, "cost": {"cpu_seconds": 1}}
+                point = {"label": "rate=1", "settings": {"/flow/rate": 1}, "realisations": [result], "surplus": []}
+                return {"points": [point]}
+
+            def _rows(self, form):
+                return [{"label": "rate=1", "/flow/rate": "1", "quantity": "G", "axis_1": "rate", "axis_1_value": "5"}]
+
+        table = Same("nowhere").realisations(rate=1)
+        self.assertEqual(
+            (table["rate"].tolist(), table["measured_rate"].tolist(), table["eta"].tolist()), ([1], [7], [2])
+        )
+        profile = Same("nowhere").profile("G", rate=1)
+        self.assertEqual((profile["rate"].tolist(), profile["axis_rate"].tolist()), ([1], [5]))
+
     def test_a_label_is_text_whatever_it_looks_like(self):
         campaign = peclet.Campaign("2024", SCENE, minimum=2, maximum=2, engine=[ENGINE, "serve"])
         results = campaign.run(os.path.join(self.scratch.name, "2024.json"), PECLET, ["--quiet"])
@@ -346,6 +376,10 @@ class Names(unittest.TestCase):
     def test_of_what_is_swept_are_as_short_as_they_can_be(self):
         names = short_names(["/contact/friction", "/rolling/friction", "/peclet"])
         self.assertEqual(list(names.values()), ["contact_friction", "rolling_friction", "peclet"])
+
+    def test_of_what_is_swept_are_not_those_of_other_columns(self):
+        names = short_names(["/particles/count", "/variables/mean"])
+        self.assertEqual(list(names.values()), ["particles_count", "variables_mean"])
 
     def test_of_symbols_are_formulas(self):
         self.assertEqual(formula_of("eta_r"), r"$\eta_r$")
