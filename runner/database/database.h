@@ -1,7 +1,8 @@
 // The campaign's database: opening it safely, and reading it.
 //
 // One process writes (it holds campaign.lock and opens with open_owner); any number of others read with
-// open_reader. Writing is in runner/stores. The tables are those of schema/campaign.sql.
+// open_reader. runner/stores writes it, and in this folder number_book, result_text, file_book and
+// prediction_book do. The tables are those of schema/campaign.sql.
 #pragma once
 
 #include <cstdint>
