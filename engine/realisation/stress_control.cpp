@@ -1,7 +1,9 @@
 #include "engine/realisation/stress_control.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "engine/random/keyed_random.h"
 #include "engine/terms/drag.h"
@@ -13,8 +15,8 @@ namespace {
 constexpr double tolerance = 0.01;
 constexpr int most_attempts = 6;
 
-// The time in which the rate follows a stress, in steps.
-constexpr double steps_of_response = 20;
+// The time in which the rate follows a stress: in steps, and in strain where steps are long.
+constexpr double usual_response = 20, shortest_response = 5, strain_of_response = 0.05;
 
 // A realisation that does not strain so far has jammed.
 constexpr double least_strain = 0.01;
@@ -22,6 +24,18 @@ constexpr double usual_jammed_viscosity = 1e4;
 
 double jammed_viscosity(const Scene& scene) {
   return scene.document.value(Json::json_pointer("/flow/jammed_viscosity"), usual_jammed_viscosity);
+}
+
+// Rate of the step that measures a slope with noise [1/time]. Beside the stress of the noise, kT / a^3, which
+// is rounded to single precision, one of its own must be seen; at high stress it is about the rate of the
+// flow.
+double trial_rate(const Scene& scene, double usual_rate) {
+  const double a = scene.particles.reference_radius;
+  return std::max(scene.physics.thermal_energy / (scene.physics.viscosity * a * a * a), usual_rate);
+}
+
+double time_of_response(double timestep, double usual_rate) {
+  return std::clamp(strain_of_response / usual_rate, shortest_response * timestep, usual_response * timestep);
 }
 
 // What a step starts from, to make it again.
@@ -49,6 +63,8 @@ StressControl::StressControl(const Scene& scene, std::shared_ptr<ControlledShear
       stress_(*shear_->stress()),
       thermal_energy_(scene.physics.thermal_energy),
       patience_(least_strain * jammed_viscosity(scene) * scene.physics.viscosity / stress_),
+      trial_rate_(trial_rate(scene, shear_->largest_rate())),
+      response_(time_of_response(timestep, shear_->largest_rate())),
       solvent_(scene.physics.viscosity * (1 + stresslet(scene.volume_fraction, {.xy = 1}).xy)),
       seed_(seed),
       rate_(shear_->present_rate()),
@@ -108,24 +124,27 @@ StepReport StressControl::advance_to_stress(Integrator& integrator, System& syst
   return report;
 }
 
-// The slope of the pairs' stress, by a step at two rates with the same noise.
+// The slope of the pairs' stress, by a step at rest and one at the trial rate with the same noise. Where one
+// of them breaks off the slope stays as it is.
 void StressControl::find_inertia(Integrator& integrator, const System& system) {
   const Origin origin(integrator, system);
   System trial = system;
   integrator.show_pairs_to(nullptr);
-  const double change = shear_->largest_rate();
-  const double at_rate = stress_of_pairs(step(integrator, trial, rate_), trial);
-  origin.restore(integrator, trial);
-  const double above = stress_of_pairs(step(integrator, trial, rate_ + change), trial);
-  origin.restore(integrator, trial);
-  slope_ = std::max((above - at_rate) / change, 0.0);
-  inertia_ = steps_of_response * timestep_ * (slope_ + solvent_);
+  const auto stress_at = [&](double rate) {
+    const StepReport report = step(integrator, trial, rate);
+    const double stress = stress_of_pairs(report, trial);
+    origin.restore(integrator, trial);
+    return report.broke_off || !report.sums.finite ? std::numeric_limits<double>::quiet_NaN() : stress;
+  };
+  const double slope = (stress_at(trial_rate_) - stress_at(0)) / trial_rate_;
+  if (std::isfinite(slope)) slope_ = std::max(slope, 0.0);
+  inertia_ = response_ * (slope_ + solvent_);
 }
 
 // Friction of the pairs is felt half at the old and half at the new rate, as that of the solvent is: of the
 // pairs' stress at the new rate the slope says as much.
 StepReport StressControl::advance_with_inertia(Integrator& integrator, System& system, PairWatcher* watcher) {
-  if (inertia_ == 0) find_inertia(integrator, system);
+  if (inertia_ == 0 || std::has_single_bit(system.step)) find_inertia(integrator, system);
   const double volume = system.box.volume();
   const NormalPair normals = KeyedRandom(seed_, Purpose::strain_noise).normals(system.step, 0);
   const double noise = std::sqrt(2 * thermal_energy_ * solvent_ / (volume * timestep_)) * normals.first.x;

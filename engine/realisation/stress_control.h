@@ -9,7 +9,8 @@
 // phi), bring a noise of variance 2 kT eta (1 + 2.5 phi) / (V dt) with them, as pairs bring theirs. So at
 // stress 0 the rate has the variance kT / M, and gamma diffuses with kT / (V eta eta_r): the theorem of
 // fluctuation and dissipation for the strain of a periodic cell. M is small enough for the rate to follow
-// within some twenty steps, and so large that a step changes little of it.
+// within twenty steps or a strain of 0.05, and so large that a step changes little of it. It is that of the
+// packing at hand, found again at the steps 1, 2, 4, 8 ...
 //
 // What a rate gains its spheres gain (integrators/follow_flow.h): no force depends on where the origin is.
 #pragma once
@@ -38,7 +39,7 @@ class StressControl {
   // From now on.
   void wait_from(const System& system);
 
-  // M / V; 0 before the first step, and without noise.
+  // M / V of the last step; 0 before the first one, and without noise.
   double inertia() const { return inertia_; }
 
   void save(ArchiveWriter& archive) const;
@@ -55,7 +56,9 @@ class StressControl {
 
   std::shared_ptr<ControlledShear> shear_;
   double timestep_, stress_, thermal_energy_, patience_;
-  double solvent_;  // eta (1 + 2.5 phi)
+  double trial_rate_;  // at which a slope is measured with noise
+  double response_;    // the time in which the rate follows a stress with noise
+  double solvent_;     // eta (1 + 2.5 phi)
   std::uint64_t seed_;
 
   double rate_;         // of the next step, as far as it is known

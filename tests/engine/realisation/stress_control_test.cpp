@@ -152,6 +152,47 @@ TEST(StressControl, GivesTheStrainItsShareOfTheTemperature) {
   EXPECT_NEAR(temperature, 1, 3 * std::sqrt(2 * 40.0 / steps));
 }
 
+// kT / (eta a^3), eta = 0.1, kT = 0.02.
+constexpr double thermal_rate = 0.2;
+
+// M / V = 20 dt eta_inf, which has nothing to do with the stress.
+TEST(StressControl, HasTheSameInertiaAtEveryStress) {
+  const auto inertia_at = [](double stress) {
+    const auto simulation = started(at_stress(stress * 0.02, for_colloids));
+    simulation->advance(1);
+    return simulation->stress_control()->inertia() / simulation->schedule().timestep;
+  };
+  const double inertia = inertia_at(1e-9);
+  EXPECT_NEAR(inertia_at(1e-3), inertia, 1e-3 * inertia);
+  EXPECT_NEAR(inertia_at(1), inertia, 1e-3 * inertia);
+}
+
+// Next to no stress the rate is that of temperature, sqrt(kT / M), whatever the packing: at phi = 0.3 the
+// viscosity between pairs that do not move is 1 + 2.5 phi = 1.75 at least, and some 3 by published curves.
+TEST(StressControl, LetsTheStrainOfEveryPackingMove) {
+  Json document = at_stress(1e-9 * 0.02, for_colloids);
+  const Scene scene = read_scene(document, "scene.json");
+  const Schedule schedule = make_schedule(scene, "scene.json");
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Simulation simulation(scene, schedule, seed, 1, "scene.json");
+    simulation.start();
+    double squares = 0;
+    constexpr int steps = 400;
+    for (int n = 0; n < steps; ++n) {
+      ASSERT_EQ(simulation.advance(1), std::nullopt);
+      squares += std::pow(simulation.system().box.velocity_gradient().column[1].x, 2) / steps;
+    }
+    const double volume = simulation.system().box.volume();
+    const double relative = simulation.stress_control()->inertia() / (20 * schedule.timestep * 0.1);
+    EXPECT_GT(relative, 1.75) << "seed " << seed;
+    EXPECT_LT(relative, 10) << "seed " << seed;
+    // 400 steps have the squares of some 20 independent rates.
+    const double expected = 0.02 / (volume * 20 * schedule.timestep * 0.1 * 3);
+    EXPECT_GT(squares, expected / 10) << "seed " << seed;
+    EXPECT_LT(squares, expected * 10) << "seed " << seed;
+  }
+}
+
 class ResumedAtStress : public testing::TestWithParam<bool> {
  protected:
   static Json document() {
