@@ -56,7 +56,7 @@ Transient::Transient(const Scene& scene, const System& system, const Window& win
       volume_fraction_(scene.volume_fraction),
       volume_(system.box.volume()),
       unit_(unit_of_stress(scene.physics)),
-      behind_(scene.method == Method::implicit_steps ? 0.5 * window.timestep : 0),
+      behind_(0.5 * window.timestep),
       steps_(window.steps),
       parts_(bins_of(scene)) {}
 

@@ -34,7 +34,7 @@ class Transient : public Observable {
   ImposedFlow flow_;
   bool has_noise_;
   double viscosity_, volume_fraction_, volume_, unit_;
-  double behind_;  // of the end of a step, in time: the moment that its flux belongs to
+  double behind_;  // half a step: the time from its middle, whose rate is the step's mean, to its end
   std::uint64_t steps_, taken_ = 0;
   SymmetricTensor flux_;
   std::vector<Part> parts_;
