@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 #include "contract/input_error.h"
@@ -45,6 +44,11 @@ std::vector<std::int8_t> names_of_species(std::uint32_t count, std::uint32_t& co
   return names;
 }
 
+// Net strain since the beginning: of shear, or the Hencky strain of an extension along x.
+double net_strain(const PeriodicCell& box) {
+  return box.strain() + std::log1p(box.displacement_gradient().column[0].x);
+}
+
 std::vector<std::uint32_t> places_of_ids(const ParticleState& particles) {
   std::vector<std::uint32_t> place(particles.count());
   for (std::uint32_t i = 0; i < place.size(); ++i) place[particles.id[i]] = i;
@@ -71,6 +75,7 @@ Trajectory::Trajectory(const Scene& scene, const System& system, const Window& w
       physics_(scene.physics),
       kinds_(make_pair_kinds(scene.physics, distinct_radii(system.particles.radius))),
       with_contacts_(scene.observables.at("trajectory").at("contacts").get<bool>()),
+      turns_(!plain_flow(scene.physics.flow.deformation().velocity_gradient(0)).is_simple_shear),
       count_of_species_(static_cast<std::uint32_t>(scene.particles.species.size())),
       shares_(system.particles.count()) {
   const std::vector<std::size_t> number = species_numbers(scene.particles);
@@ -97,7 +102,7 @@ void Trajectory::sample(const System& system, std::size_t /*block*/) {
   add_places(system);
   if (frames_.count() == 0) add_kinds_of_spheres(system);
   frames_.add_single("log/time", system.clock.time());
-  frames_.add_single("log/strain", system.box.strain());
+  frames_.add_single("log/strain", net_strain(system.box));
   add_stress(system);
   add_contacts(system);
   frames_.end_frame();
@@ -125,7 +130,8 @@ void Trajectory::add_places(const System& system) {
   const ParticleState& particles = system.particles;
   const PeriodicCell& box = system.box;
   const CellFrame cell = box.frame();
-  if (cell.axes != identity()) throw std::logic_error("a turned cell has no place in a trajectory");
+  const auto& [along_a, across, up] = cell.axes.column;
+  const auto turned = [&](const Vector3& v) { return Vector3{dot(along_a, v), dot(across, v), dot(up, v)}; };
   std::vector<float> shape, position, velocity, spin;
   std::vector<std::int32_t> image;
   append(shape, cell.lengths);
@@ -135,9 +141,9 @@ void Trajectory::add_places(const System& system) {
     const auto cells = [](double x) { return static_cast<std::int32_t>(std::floor(x + 0.5)); };
     const LatticeShift removed = {cells(place.x), cells(place.y), cells(place.z)};
     const LatticeShift all = particles.image[i] + removed;
-    append(position, particles.position[i] - box.displacement(removed));
-    append(velocity, particles.velocity[i] - box.velocity(removed));
-    append(spin, particles.angular_velocity[i]);
+    append(position, turned(particles.position[i] - box.displacement(removed)));
+    append(velocity, turned(particles.velocity[i] - box.velocity(removed)));
+    append(spin, turned(particles.angular_velocity[i]));
     image.insert(image.end(), {all.x, all.y, all.z});
   }
   frames_.add("configuration/box", shape);
@@ -146,6 +152,10 @@ void Trajectory::add_places(const System& system) {
   frames_.add("particles/image", image, 3);
   frames_.add("particles/velocity", velocity, 3);
   frames_.add("log/particles/angular_velocity", spin, 3);
+  if (!turns_) return;
+  std::vector<double> axes;
+  for (const Vector3& axis : cell.axes.column) axes.insert(axes.end(), {axis.x, axis.y, axis.z});
+  frames_.add("log/axes", axes, 3);
 }
 
 void Trajectory::add_stress(const System& system) {

@@ -5,6 +5,10 @@
 // fractional < 1/2, velocity is that of this image (the streaming flow there is rate y), and centre + image .
 // lattice vectors of the frame is the way that the sphere has gone, also when the basis of the cell changes.
 //
+// A frame has its first lattice vector along x and its second one in the plane of x and y. The cell of an
+// extension or a cross shear does not: places and motion are then those along the rows of log/axes, which are
+// unit vectors in the axes of the flow. Stress is in the axes of the flow.
+//
 // Positions, motion and contacts are those at the end of a step, stress is that of the step: what the means
 // of the result add up. log/particles/stress is V sigma_i, xx yy zz xy xz yz, tension positive: half of sym(r
 // F_i) of each pair of the sphere, its stresslet as if it were alone and, with noise, -m sym(v v), so that
@@ -47,6 +51,7 @@ class Trajectory : public Observable, private PairWatcher {
   Physics physics_;
   std::vector<PairKind> kinds_;
   bool with_contacts_;
+  bool turns_;                          // the cell, against the axes of the flow
   std::vector<std::uint32_t> species_;  // of each id
   std::uint32_t count_of_species_;
   // Of the step that is sampled; shares are those of each id.

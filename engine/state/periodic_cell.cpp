@@ -54,6 +54,12 @@ bool is_thin(const Matrix3& edges) {
   return std::min({w.x, w.y, w.z}) < thin * shortest;
 }
 
+// Changes places with the next vector, one of both reversed: the basis stays right-handed.
+void turn(LatticeShift& first, LatticeShift& second) {
+  std::swap(first, second);
+  second = -1 * second;
+}
+
 // Lovasz's condition: of two neighbours in the basis the second is not much shorter than the first, both
 // taken across those before them.
 BasisChange reduced(const Matrix3& edges) {
@@ -64,9 +70,9 @@ BasisChange reduced(const Matrix3& edges) {
     const CellFrame frame = frame_of(in_basis(edges, basis));
     const Vector3& r = frame.lengths;
     if (r.y * r.y + frame.tilt_xy * frame.tilt_xy < much * r.x * r.x) {
-      std::swap(basis.column[0], basis.column[1]);
+      turn(basis.column[0], basis.column[1]);
     } else if (r.z * r.z + frame.yz * frame.yz < much * r.y * r.y) {
-      std::swap(basis.column[1], basis.column[2]);
+      turn(basis.column[1], basis.column[2]);
     } else {
       swapped = false;
     }

@@ -196,6 +196,64 @@ TEST(Trajectory, HasPlacesAndMotionOfEverySphereInTheCell) {
   EXPECT_GT(wrapped, 1000U);
 }
 
+// The cell of an extension and of a cross shear turns, also as its basis changes: log/axes leads back to the
+// axes of the flow.
+TEST(Trajectory, HasPlacesAndMotionAlongTheAxesOfATurnedCell) {
+  const Json extension = Json::parse(R"({"shear_rate": null, "extension_rate": 2})");
+  const Json across = Json::parse(R"({"shear_rate": 2, "cross_shear": {"amplitude": 0.3, "frequency": 10}})");
+  for (const Json& flow : {extension, across}) {
+    Simulation simulation = started(scene_with_trajectory({{"flow", flow}, {"volume_fraction", 0.3}}));
+    const Schedule schedule = simulation.schedule();
+    simulation.advance(schedule.equilibration);
+    std::vector<System> systems;
+    for (std::uint64_t k = 0; k < schedule.production; ++k) {
+      const std::optional<Ending> ending = simulation.advance(1);
+      ASSERT_TRUE(!ending || ending->cause == Ending::Cause::completed) << ending->message;
+      systems.push_back(simulation.system());
+    }
+    const GsdReader file = file_of(simulation);
+    double largest_turn = 0;
+    for (std::uint64_t k = 0; k < schedule.production; ++k) {
+      const System& system = systems[k];
+      const Matrix3& edges = system.box.edges();
+      const auto rows = file.get<double>(k, "log/axes");
+      ASSERT_EQ(rows.size(), 9U);
+      const Matrix3 axes = {
+          Vector3{rows[0], rows[1], rows[2]}, {rows[3], rows[4], rows[5]}, {rows[6], rows[7], rows[8]}};
+      EXPECT_NEAR(determinant(axes), 1, 1e-12) << "no mirror";
+      largest_turn = std::max(largest_turn, std::acos(std::min(axes.column[1].y, 1.0)));
+      const auto box = file.get<float>(k, "configuration/box");
+      const Matrix3 lattice = {Vector3{box[0], 0, 0}, Vector3{box[3] * box[1], box[1], 0},
+                               Vector3{box[4] * box[2], box[5] * box[2], box[2]}};
+      for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_LT(norm(axes * lattice.column[c] - edges.column[c]), 1e-5) << "frame " << k;
+      }
+      const double time = system.clock.time();
+      const double strain = flow == extension ? 2 * time : system.box.strain();
+      EXPECT_NEAR(file.get<double>(k, "log/strain").front(), strain, 1e-9);
+      const auto position = file.get<float>(k, "particles/position"),
+                 velocity = file.get<float>(k, "particles/velocity"),
+                 spin = file.get<float>(k, "log/particles/angular_velocity");
+      const auto image = file.get<std::int32_t>(k, "particles/image");
+      const ParticleState& particles = system.particles;
+      for (std::size_t i = 0; i < particles.count(); ++i) {
+        const std::size_t at = 3 * std::size_t{particles.id[i]};
+        const auto vector = [at](const auto& all) {
+          return Vector3{double(all[at]), double(all[at + 1]), double(all[at + 2])};
+        };
+        const LatticeShift shift = {image[at], image[at + 1], image[at + 2]};
+        const LatticeShift removed = shift - particles.image[i];
+        const Vector3 back = edges * Vector3{double(removed.x), double(removed.y), double(removed.z)};
+        EXPECT_LT(norm(axes * vector(position) + back - particles.position[i]), 1e-5);
+        const Vector3 streamed = system.box.velocity_gradient() * back;
+        EXPECT_LT(norm(axes * vector(velocity) + streamed - particles.velocity[i]), 1e-4);
+        EXPECT_LT(norm(axes * vector(spin) - particles.angular_velocity[i]), 1e-4);
+      }
+    }
+    EXPECT_GT(largest_turn, 0.2);
+  }
+}
+
 TEST(Trajectory, HasKindsOfSpheresInItsFirstFrame) {
   Simulation simulation = started(scene_with_trajectory());
   simulation.advance(equilibration + 3);
