@@ -19,6 +19,7 @@
 #include "runner/campaign/campaign.h"
 #include "runner/database/sqlite.h"
 #include "runner/statistics/cohorts.h"
+#include "runner/statistics/forecast.h"
 
 namespace peclet::runner {
 
@@ -154,6 +155,10 @@ class Database {
   void for_each_result(std::int64_t point, int end, const std::function<void(int seed, const Json&)>& visit);
   std::vector<AttemptRecord> attempts(std::int64_t point);
   std::vector<LeaseRecord> leases(std::int64_t point);
+  // Of the seeds that workers had at the time of their last news, by PointRecord::id.
+  std::map<std::int64_t, std::vector<Unfinished>> unfinished();
+  // How many workers the last run had, as far as they were needed; 0 where nothing was run here.
+  int last_workers();
   // Looks for the present target, by number of seeds.
   std::vector<LookRecord> looks(std::int64_t point);
   // The most recent `limit` events, oldest first.

@@ -300,6 +300,35 @@ std::vector<LeaseRecord> Database::leases(std::int64_t point) {
   return leases;
 }
 
+std::map<std::int64_t, std::vector<Unfinished>> Database::unfinished() {
+  constexpr double shortest = 0.1;  // share of the steps before which their rate says little
+  // A seed that was recalled goes on from the step at which it left. After any other end of an attempt its
+  // first step is not known.
+  Statement query(*connection_,
+                  "SELECT l.point_id, strftime('%s', l.renewed_at) - strftime('%s', a.started_at), l.step, "
+                  "l.steps, l.phase, (SELECT CASE WHEN total(b.outcome != 'drained' AND b.step > 0) = 0 THEN "
+                  "coalesce(max(b.step), 0) END FROM attempt b WHERE b.point_id = l.point_id AND b.seed = "
+                  "l.seed AND b.attempt_id < l.attempt_id) FROM lease l JOIN attempt a USING (attempt_id)");
+  std::map<std::int64_t, std::vector<Unfinished>> running;
+  while (query.step()) {
+    const double seconds = query.real(1), step = query.real(2), steps = query.real(3);
+    const double made = step - query.real(5);
+    Unfinished one{seconds};
+    if (query.text(4) != "packing" && seconds > 0 && steps > 0 && made >= shortest * steps) {
+      one.whole = seconds * steps / made;
+      one.taken = *one.whole * step / steps;
+    }
+    running[query.integer(0)].push_back(one);
+  }
+  return running;
+}
+
+int Database::last_workers() {
+  return static_cast<int>(connection_->integer(
+      "SELECT coalesce(max(worker) + 1, 0) FROM attempt WHERE process = (SELECT process FROM attempt ORDER "
+      "BY attempt_id DESC LIMIT 1)"));
+}
+
 std::vector<LookRecord> Database::looks(std::int64_t point) { return read_looks(*connection_, point); }
 
 std::vector<EventRecord> Database::events(int limit) {

@@ -16,6 +16,7 @@ struct Aggregate {
   std::vector<int> ended;       // seeds, in order
   std::vector<int> tested;      // the first few seeds with blocks, as many as a test for transients needs
   std::vector<double> seconds;  // of processor time that each of these took
+  Cost cost;                    // time on the wall
 
   void count(SeedState state, int seed, double cpu_seconds) {
     switch (state) {
@@ -57,15 +58,16 @@ struct Aggregate {
 // One pass over the seeds in the order in which they are stored: of a large campaign it is what takes the
 // time.
 std::map<std::int64_t, Aggregate> read_aggregates(Connection& connection) {
-  Statement query(
-      connection,
-      "SELECT point_id, seed, state, value + coalesce(control, 0), cpu_seconds, first_half FROM realisation "
-      "ORDER BY point_id, seed");
+  Statement query(connection,
+                  "SELECT point_id, seed, state, value + coalesce(control, 0), cpu_seconds, first_half, "
+                  "wall_seconds FROM realisation "
+                  "ORDER BY point_id, seed");
   std::map<std::int64_t, Aggregate> aggregates;
   while (query.step()) {
     Aggregate& aggregate = aggregates[query.integer(0)];
     const int seed = static_cast<int>(query.integer(1));
     aggregate.count(seed_state(query.text(2)), seed, query.optional_real(4).value_or(0));
+    if (const std::optional<double> seconds = query.optional_real(6)) aggregate.cost.add(*seconds);
     if (query.is_null(3)) continue;
     aggregate.so_far.add(query.real(3));
     if (!query.is_null(5) && aggregate.tested.size() < fewest_contrasts) aggregate.tested.push_back(seed);
@@ -105,6 +107,23 @@ std::map<std::int64_t, int> read_largest_earlier_looks(Connection& connection) {
   return largest;
 }
 
+// Of the target's observables, in whatever order the seeds came.
+std::vector<Estimate> estimates_so_far(const std::vector<std::optional<Outcome>>& outcomes,
+                                       std::size_t observables) {
+  std::vector<RunningEstimate> sums(observables);
+  for (const std::optional<Outcome>& outcome : outcomes) {
+    if (!outcome) continue;
+    for (std::size_t place = 0; place < observables; ++place) {
+      const Observation of = outcome->of(place);
+      if (!std::isnan(of.value)) sums[place].add(of.value + of.control);
+    }
+  }
+  std::vector<Estimate> estimates(observables);
+  std::transform(sums.begin(), sums.end(), estimates.begin(),
+                 [](const RunningEstimate& sum) { return sum.estimate(); });
+  return estimates;
+}
+
 }  // namespace
 
 std::vector<PointSummary> summarise_points(Database& database, const TargetRecord& target) {
@@ -114,6 +133,8 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
   CountsByPoint losses = read_losses(connection);
   CountsByPoint flags = read_flags(connection);
   const bool any_apart = connection.integer("SELECT count(*) FROM point WHERE kept_apart = 1") > 0;
+  std::map<std::int64_t, std::vector<Unfinished>> unfinished = database.unfinished();
+  const std::size_t observables = target.target.observables().size();
   std::map<std::int64_t, int> earlier = read_largest_earlier_looks(connection);
   const std::map<std::int64_t, StoredPrediction> predictions = stored_predictions(connection);
   const std::vector<int> schedule = look_schedule(target.minimum, target.maximum);
@@ -121,7 +142,7 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
   std::vector<PointSummary> summaries;
   for (PointRecord& point : database.points()) {
     PointSummary summary;
-    const Aggregate& aggregate = aggregates[point.id];
+    Aggregate& aggregate = aggregates[point.id];
     summary.confidence = target.target.confidence;
     summary.counts = aggregate.counts;
     summary.so_far = aggregate.so_far.estimate();
@@ -142,6 +163,11 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
     summary.wanted_ended = aggregate.ended_below(summary.wanted);
     summary.wanted_cpu_seconds = aggregate.seconds_of_first(summary.wanted_ended);
     if (summary.counts.running > 0) summary.leases = database.leases(point.id);
+    summary.forecast = {std::move(aggregate.cost),          {summary.so_far},
+                        summary.counts.terminal(),          summary.counts.running,
+                        summary.decided || point.cancelled, std::move(unfinished[point.id])};
+    if (observables > 1 && !summary.forecast.decided)
+      summary.forecast.so_far = estimates_so_far(database.outcomes(point.id), observables);
     if (any_apart) summary.kept_apart = database.kept_apart(point.hash);
     summary.point = std::move(point);
     summaries.push_back(std::move(summary));

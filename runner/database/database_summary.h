@@ -27,6 +27,7 @@ struct PointSummary {
   double wanted_cpu_seconds = 0;  // that these took
   std::optional<StoredPrediction> prediction{};
   std::vector<LeaseRecord> leases;
+  PointForecast forecast{};
 
   // Neither decided nor cancelled.
   bool open() const { return !decided && !point.cancelled; }

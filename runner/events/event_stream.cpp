@@ -84,10 +84,6 @@ Json event_json(const RunEvent& event) {
 }
 
 Json event_json(const RunReport& report) {
-  Json to_go = nullptr;
-  if (report.to_go) {
-    to_go = {{"likely", report.to_go->likely}, {"low", report.to_go->low}, {"high", report.to_go->high}};
-  }
   return {{"event", "progress"},
           {"schema_version", schema_version},
           {"points", report.points},
@@ -99,7 +95,7 @@ Json event_json(const RunReport& report) {
           {"busy", report.busy},
           {"results", report.results},
           {"elapsed_seconds", report.elapsed},
-          {"seconds_to_go", to_go}};
+          {"seconds_to_go", to_json(report.to_go)}};
 }
 
 EventStream::EventStream(int descriptor, RunListener& audience)

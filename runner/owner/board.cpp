@@ -75,34 +75,38 @@ void Board::add_cost(int place, std::optional<double> wall_seconds, std::optiona
 void Board::tell_cost(int place) {
   const Costs& costs = costs_[static_cast<std::size_t>(place)];
   const Cost& cost = bounds_.budget_seconds ? costs.processor : costs.wall;
-  if (cost.count > 0) scheduler_->set_cost(place, cost.sum / cost.count);
+  if (cost.count() > 0) scheduler_->set_cost(place, cost.mean());
 }
 
 std::optional<double> Board::wall_seconds(int place) const {
   const Cost& cost = costs_.at(static_cast<std::size_t>(place)).wall;
-  return cost.count > 0 ? std::optional(cost.sum / cost.count) : std::nullopt;
+  return cost.count() > 0 ? std::optional(cost.mean()) : std::nullopt;
 }
 
-std::vector<PointForecast> Board::forecasts() const {
+std::vector<PointForecast> Board::forecasts(
+    const std::map<std::int64_t, std::vector<Unfinished>>& unfinished) const {
   std::vector<PointForecast> forecasts;
   for (int place = 0; place < size(); ++place) {
     const int ended = scheduler_->all_ended(place);
+    const auto running = unfinished.find(point(place).id);
     forecasts.push_back({costs_[static_cast<std::size_t>(place)].wall, scheduler_->so_far(place), ended,
                          scheduler_->begun(place) - ended,
-                         scheduler_->decided(place) || scheduler_->cancelled(place)});
+                         scheduler_->decided(place) || scheduler_->cancelled(place),
+                         running == unfinished.end() ? std::vector<Unfinished>{} : running->second});
   }
   return forecasts;
 }
 
 Board::Standing Board::standing(SeedId id) const {
   const auto place = static_cast<std::size_t>(id.point);
-  return {scheduler_->kept(id), costs_[place].wall, costs_[place].processor, running_[place]};
+  return {scheduler_->kept(id), costs_[place].wall.count(), costs_[place].processor.count(), running_[place]};
 }
 
 void Board::put_back(Standing&& standing) noexcept {
   const auto place = static_cast<std::size_t>(standing.seed.id.point);
   scheduler_->put_back(std::move(standing.seed));
-  costs_[place] = {standing.wall, standing.processor};
+  costs_[place].wall.keep_first(standing.wall);
+  costs_[place].processor.keep_first(standing.processor);
   running_[place] = standing.running;
 }
 

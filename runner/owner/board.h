@@ -52,12 +52,14 @@ class Board {
   void add_running(int place, int seeds) { running_[static_cast<std::size_t>(place)] += seeds; }
   // Processor seconds that the seeds which workers have are expected to cost.
   double expected_seconds() const { return scheduler_->expected_seconds(running_); }
-  std::vector<PointForecast> forecasts() const;
+  // `unfinished`: as Database::unfinished().
+  std::vector<PointForecast> forecasts(
+      const std::map<std::int64_t, std::vector<Unfinished>>& unfinished) const;
 
   // What a result of one seed can change, to be put back when taking it fails.
   struct Standing {
     Scheduler::Kept seed;
-    Cost wall, processor;
+    int wall, processor;  // costs that are known
     int running;
   };
   Standing standing(SeedId id) const;

@@ -205,8 +205,8 @@ RunReport Ledger::report(int workers) const {
   report.budget_seconds = board_.bounds().budget_seconds;
   // No forecast under a budget or a ceiling: not every point will be decided.
   if (board_.bounds().ceiling || report.budget_seconds) return report;
-  report.to_go = time_to_go(board_.forecasts(), campaign_.target, campaign_.minimum_realisations,
-                            campaign_.maximum_realisations, workers);
+  report.to_go = time_to_go(board_.forecasts(database_.unfinished()), campaign_.target,
+                            campaign_.minimum_realisations, campaign_.maximum_realisations, workers);
   return report;
 }
 

@@ -1,29 +1,9 @@
 // What the campaign has cost and is expected to cost, and who works on it.
 #include "runner/page/page_parts.h"
-#include "runner/statistics/forecast.h"
 
 namespace peclet::runner {
-namespace {
 
-// Processor time, as one worker after another would take it; null where nothing is known yet.
-Json to_go(const CampaignStatus& status, const KnownPoints& known) {
-  const TargetRecord& target = status.campaign.target;
-  std::vector<PointForecast> points;
-  for (const PointSummary& point : status.points) {
-    PointForecast forecast = known.at(point.point.id).forecast;
-    forecast.decided = !point.open();
-    forecast.ended = point.counts.terminal();
-    forecast.running = point.counts.running;
-    points.push_back(std::move(forecast));
-  }
-  const std::optional<TimeToGo> found = time_to_go(points, target.target, target.minimum, target.maximum, 1);
-  if (!found) return nullptr;
-  return {{"likely", found->likely}, {"low", found->low}, {"high", found->high}};
-}
-
-}  // namespace
-
-Json page_progress(const CampaignStatus& status, const KnownPoints& known) {
+Json page_progress(const CampaignStatus& status) {
   int decided = 0, ended = 0, lost = 0, surplus = 0, running = 0;
   std::size_t workers = 0;
   double cpu_seconds = 0;
@@ -51,7 +31,7 @@ Json page_progress(const CampaignStatus& status, const KnownPoints& known) {
             {"running", running},
             {"handed_over", handed_over}}},
           {"cpu_seconds", cpu_seconds},
-          {"cpu_seconds_to_go", to_go(status, known)},
+          {"seconds_to_go", to_json(status.to_go)},
           {"owner", status.owner ? Json(*status.owner) : Json(nullptr)},
           {"workers", status.owner ? Json(workers) : Json(nullptr)}};
 }

@@ -72,7 +72,7 @@ Json PageReader::read(Database& database, std::optional<std::int64_t> owner, boo
   return {{"schema_version", 1},
           {"campaign", status.campaign.name},
           {"target", target_json(status.campaign.target)},
-          {"progress", page_progress(status, known_)},
+          {"progress", page_progress(status)},
           {"parameters", page_parameters(status)},
           {"quantities", quantities_json(points.drawables)},
           {"points", std::move(points.points)},

@@ -11,7 +11,6 @@
 #include "runner/database/database.h"
 #include "runner/database/number_book.h"
 #include "runner/reports/status.h"
-#include "runner/statistics/forecast.h"
 #include "runner/statistics/quantity_estimates.h"
 
 namespace peclet::runner {
@@ -37,7 +36,6 @@ struct KnownPoint {
   Json json = Json::object();  // members of the point
   std::vector<Drawable> drawables;
   std::vector<Json> estimates;  // in step with these: [mean, standard error, half-width, count]
-  PointForecast forecast;       // but for what changes with the leases
   FirstResult first;
 };
 using KnownPoints = std::map<std::int64_t, KnownPoint>;  // by PointRecord::id
@@ -56,8 +54,8 @@ struct PagePoints {
 };
 PagePoints page_points(Database& database, const CampaignStatus& status, KnownPoints& known);
 
-// Points decided, processor time spent and to go, workers.
-Json page_progress(const CampaignStatus& status, const KnownPoints& known);
+// Points decided, processor time spent, time to go, workers.
+Json page_progress(const CampaignStatus& status);
 
 // Who works on what now, and the attempts that ended last.
 Json page_work(Database& database, const CampaignStatus& status);

@@ -142,31 +142,6 @@ FirstResult first_result(Database& database, const PointRecord& point) {
   return {result->value("derived", Json()), result->value("warnings", Json::array())};
 }
 
-// Of the seeds that have ended.
-Cost cost_of(Connection& connection, const PointRecord& point) {
-  Statement query(connection,
-                  "SELECT count(cpu_seconds), total(cpu_seconds), total(cpu_seconds * cpu_seconds) FROM "
-                  "realisation WHERE point_id = ?");
-  query.bind(point.id).step();
-  return {static_cast<int>(query.integer(0)), query.real(1), query.real(2)};
-}
-
-// Of the target's observables.
-std::vector<Estimate> so_far(const std::vector<std::optional<Outcome>>& outcomes, std::size_t observables) {
-  std::vector<RunningEstimate> sums(observables);
-  for (const std::optional<Outcome>& outcome : outcomes) {
-    if (!outcome) continue;
-    for (std::size_t place = 0; place < observables; ++place) {
-      const Observation of = outcome->of(place);
-      if (!std::isnan(of.value)) sums[place].add(of.value + of.control);
-    }
-  }
-  std::vector<Estimate> estimates;
-  estimates.reserve(sums.size());
-  for (const RunningEstimate& sum : sums) estimates.push_back(sum.estimate());
-  return estimates;
-}
-
 class PointPage {
  public:
   PointPage(Database& database, NumberBook& book, const TargetRecord& target, const PointSummary& point)
@@ -184,8 +159,6 @@ class PointPage {
     KnownPoint known;
     known.key = key_of(point_, target_);
     known.first = first_result(database_, point_.point);
-    known.forecast.cost = cost_of(database_.connection(), point_.point);
-    known.forecast.so_far = so_far(outcomes, target.observables().size());
     known.json = {{"groups", known.first.groups},
                   {"looks", looks_json(point_.looks, target)},
                   {"running_mean", running_mean(found, rule)},

@@ -68,6 +68,13 @@ CampaignStatus read_status(Database& database) {
   status.campaign = database.campaign();
   status.points = summarise_points(database, status.campaign.target);
   status.handed_over = BundleBook(database.connection()).handed_over();
+  if (status.handed_over.empty()) {
+    const TargetRecord& target = status.campaign.target;
+    std::vector<PointForecast> forecasts;
+    for (const PointSummary& point : status.points) forecasts.push_back(point.forecast);
+    status.to_go = time_to_go(forecasts, target.target, target.minimum, target.maximum,
+                              std::max(1, database.last_workers()));
+  }
   return status;
 }
 
@@ -129,6 +136,7 @@ Json status_json(const CampaignStatus& status) {
           {"realisations", {{"minimum", target.minimum}, {"maximum", target.maximum}}},
           {"owner", status.owner ? Json(*status.owner) : Json(nullptr)},
           {"standing", standing(status)},
+          {"seconds_to_go", to_json(status.to_go)},
           {"handed_over", bundles_json(status.handed_over)},
           {"points", points}};
 }

@@ -207,9 +207,11 @@ std::string status_table(Database& database, std::int64_t owner) {
 
 std::string workers_text(const CampaignStatus& status, std::size_t width) {
   constexpr std::size_t most_lines = 16;
+  std::string to_go = status.to_go ? to_string(*status.to_go) : "";
+  if (!to_go.empty()) to_go = ": " + to_go;
   if (!status.owner) {
     if (standing(status) != 4) return "";
-    return status.handed_over.empty() ? "\nnobody runs it now; `peclet run` goes on\n"
+    return status.handed_over.empty() ? fmt::format("\nnobody runs it now; `peclet run` goes on{}\n", to_go)
                                       : "\nnobody takes results in now; `peclet ingest` does\n";
   }
   TextTable table;
@@ -229,7 +231,7 @@ std::string workers_text(const CampaignStatus& status, std::size_t width) {
                      std::isnan(done) ? "-" : fmt::format("{:.0f} %", 100 * done), rough(lease.strain)});
     }
   }
-  std::string text = fmt::format("\nprocess {} runs it\n", *status.owner);
+  std::string text = fmt::format("\nprocess {} runs it{}\n", *status.owner, to_go);
   if (workers > 0) text += table.text_within(width);
   if (workers > most_lines) text += fmt::format("and {} more\n", workers - most_lines);
   return text;

@@ -1,12 +1,18 @@
 #include "runner/statistics/forecast.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "runner/text/duration_text.h"
 
 namespace peclet::runner {
 namespace {
 
-// Of a cost that was seen once or twice nobody knows the scatter.
+// With fewer costs the scatter is assumed.
 constexpr int fewest_costs = 3;
 constexpr double unknown_scatter = 0.5;  // over the mean
 
@@ -14,13 +20,66 @@ struct Spread {
   double mean = 0, deviation = 0, error = 0;
 };
 
-Spread spread(const Cost& cost) {
-  const double mean = cost.sum / cost.count;
-  double deviation = unknown_scatter * mean;
-  if (cost.count >= fewest_costs) {
-    deviation = std::sqrt(std::max(0.0, (cost.sum_of_squares - mean * cost.sum) / (cost.count - 1)));
+// A cost that a seed may have, and its share; the shares of all add up to their number.
+struct SharedCost {
+  double seconds = 0;
+  bool runs = false;
+  std::optional<double> whole{};
+  double share = 1;
+};
+
+std::vector<SharedCost> shared_costs(const Cost& ended, const std::vector<Unfinished>& running) {
+  std::vector<SharedCost> costs;
+  double longest = 0;
+  for (const double seconds : ended.seconds) costs.push_back({seconds});
+  for (const Unfinished& one : running) {
+    costs.push_back({one.taken, true, one.whole});
+    longest = std::max(longest, one.whole.value_or(0));
   }
-  return {mean, deviation, deviation / std::sqrt(cost.count)};
+  std::sort(costs.begin(), costs.end(), [](const SharedCost& one, const SharedCost& other) {
+    return std::pair(one.seconds, one.runs) < std::pair(other.seconds, other.runs);
+  });
+  const auto last_ended =
+      std::find_if(costs.rbegin(), costs.rend(), [](const auto& one) { return !one.runs; });
+  double handed_on = 0;  // to each of those that follow
+  auto later = static_cast<double>(costs.size());
+  for (auto one = costs.begin(); one != costs.end(); ++one) {
+    later -= 1;
+    one->share += handed_on;
+    if (!one->runs) continue;
+    if (one < last_ended.base()) {
+      handed_on += one->share / later;
+      one->share = 0;
+    } else {
+      one->seconds = std::max(one->seconds, one->whole.value_or(longest));
+    }
+  }
+  return costs;
+}
+
+Spread spread(const Cost& ended, const std::vector<Unfinished>& running) {
+  const std::vector<SharedCost> costs = shared_costs(ended, running);
+  const auto count = static_cast<double>(costs.size());
+  double sum = 0, squares_of_shares = 0, squares = 0;
+  for (const SharedCost& one : costs) {
+    sum += one.share * one.seconds;
+    squares_of_shares += one.share * one.share / (count * count);
+  }
+  const double mean = sum / count;
+  for (const SharedCost& one : costs) squares += one.share * std::pow(one.seconds - mean, 2) / count;
+  const double known = 1 / squares_of_shares;  // costs of equal shares that would say as much
+  const double deviation = std::lround(known) < fewest_costs ? unknown_scatter * mean
+                                                             : std::sqrt(squares / (1 - squares_of_shares));
+  return {mean, deviation, deviation / std::sqrt(known)};
+}
+
+// A point of which nothing has ended is taken to cost what its running seeds are expected to, or else what
+// the others do.
+Spread spread(const PointForecast& point, const Cost& all) {
+  const auto is_known = [](const Unfinished& one) { return one.whole.has_value(); };
+  const bool has_own =
+      point.cost.count() > 0 || std::any_of(point.unfinished.begin(), point.unfinished.end(), is_known);
+  return spread(has_own ? point.cost : all, point.unfinished);
 }
 
 struct SeedRange {
@@ -75,10 +134,29 @@ double rounds_of(const PointForecast& point, const std::vector<int>& schedule, i
 
 }  // namespace
 
-void Cost::add(double seconds) {
-  ++count;
-  sum += seconds;
-  sum_of_squares += seconds * seconds;
+void Cost::add(double of_one) {
+  seconds.push_back(of_one);
+  sum += of_one;
+}
+
+void Cost::keep_first(int count) {
+  seconds.resize(static_cast<std::size_t>(count));
+  sum = std::accumulate(seconds.begin(), seconds.end(), 0.0);
+}
+
+double mean_cost(const Cost& ended, const std::vector<Unfinished>& running) {
+  return spread(ended, running).mean;
+}
+
+std::string to_string(const TimeToGo& to_go) {
+  if (!(to_go.likely > 0)) return "";
+  return fmt::format("{} to go ({} to {})", duration_text(to_go.likely), duration_text(to_go.low),
+                     duration_text(to_go.high));
+}
+
+Json to_json(const std::optional<TimeToGo>& to_go) {
+  if (!to_go) return nullptr;
+  return {{"likely", to_go->likely}, {"low", to_go->low}, {"high", to_go->high}};
 }
 
 int PointForecast::fewest_values() const {
@@ -100,14 +178,12 @@ int expected_seeds(const std::vector<Look>& looks, const Target& target, int min
 
 std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, const Target& target,
                                    int minimum, int maximum, int workers) {
-  // A point without any cost yet is taken to cost what the others do.
   Cost all;
   for (const PointForecast& point : points) {
-    all.count += point.cost.count;
+    all.seconds.insert(all.seconds.end(), point.cost.seconds.begin(), point.cost.seconds.end());
     all.sum += point.cost.sum;
-    all.sum_of_squares += point.cost.sum_of_squares;
   }
-  if (all.count == 0) return std::nullopt;
+  if (all.count() == 0) return std::nullopt;
 
   StopRule rule(target, minimum, maximum);
   TimeToGo chains, work;
@@ -116,7 +192,7 @@ std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, con
   for (const PointForecast& point : points) {
     if (point.decided) continue;
     any = true;
-    const Spread cost = spread(point.cost.count > 0 ? point.cost : all);
+    const Spread cost = spread(point, all);
     const SeedRange seeds = seeds_of(point, rule);
     // Half of what runs is done, in the mean.
     const auto to_come = [&](int stop) { return std::max(0.5, stop - point.ended - 0.5 * point.running); };

@@ -24,27 +24,30 @@
 namespace peclet::runner {
 namespace {
 
-MeasuredCost cost_of(const std::vector<RealisationRecord>& realisations) {
-  MeasuredCost cost;
+// Seeds that run meanwhile count as in a forecast: those that jam early end first.
+MeasuredCost cost_of(const std::vector<RealisationRecord>& realisations,
+                     const std::vector<Unfinished>& running) {
+  Cost wall;
+  double cpu_seconds = 0;
   for (const RealisationRecord& record : realisations) {
     // A seed that was given up took time too, but nobody counted it.
     if (!record.cpu_seconds) continue;
-    ++cost.count;
-    cost.cpu_seconds += *record.cpu_seconds;
-    cost.wall_seconds += record.wall_seconds.value_or(*record.cpu_seconds);
+    cpu_seconds += *record.cpu_seconds;
+    wall.add(record.wall_seconds.value_or(*record.cpu_seconds));
   }
-  if (cost.count == 0) return cost;
-  cost.cpu_seconds /= cost.count;
-  cost.wall_seconds /= cost.count;
-  return cost;
+  if (wall.count() == 0) return {};
+  const double seconds = mean_cost(wall, running);
+  return {wall.count(), wall.sum > 0 ? cpu_seconds * seconds / wall.sum : cpu_seconds / wall.count(),
+          seconds};
 }
 
 std::map<std::string, PointHistory> history(Database& database, const Campaign& campaign) {
   const bool sees_the_same = database.campaign().target.target.observables() == campaign.target.observables();
   std::map<std::string, PointHistory> known;
+  std::map<std::int64_t, std::vector<Unfinished>> unfinished = database.unfinished();
   for (const PointRecord& point : database.points()) {
     PointHistory& of = known[point.hash];
-    of.cost = cost_of(database.realisations(point.id));
+    of.cost = cost_of(database.realisations(point.id), unfinished[point.id]);
     if (sees_the_same) of.outcomes = database.outcomes(point.id);
   }
   return known;

@@ -93,14 +93,12 @@ function headline({ progress }) {
   const parts = [`${progress.decided} of ${Format.counted(progress.points, 'point')} decided`];
   const others = Object.entries(progress.standings).filter(([name]) => name !== 'converged' && name !== 'open');
   if (others.length) parts[0] += ` (${others.map(([name, count]) => `${count} ${name}`).join(', ')})`;
-  const ahead = progress.cpu_seconds_to_go;
-  let time = `${Format.duration(progress.cpu_seconds)} of processor time spent`;
+  const ahead = progress.seconds_to_go;
+  parts.push(`${Format.duration(progress.cpu_seconds)} of processor time spent`);
   if (ahead && ahead.likely > 0)
-    time += `, ${Format.duration(ahead.likely)} to go (${[ahead.low, ahead.high].map(Format.duration).join(' to ')})`;
-  else if (ahead) time += ', none to go';
-  parts.push(time);
+    parts.push(`${Format.duration(ahead.likely)} to go (${[ahead.low, ahead.high].map(Format.duration).join(' to ')})`);
   if (progress.owner !== null) parts.push(`${Format.counted(progress.workers, 'worker')} busy`);
-  else if (ahead && ahead.likely > 0) parts.push('nobody runs it now');
+  else if (progress.check === 4) parts.push('nobody runs it now');
   if (progress.seeds.handed_over) parts.push(`${Format.counted(progress.seeds.handed_over, 'seed')} handed over`);
   return parts.join(' · ');
 }

@@ -102,7 +102,7 @@ History run(const Case& about, double expected_time, unsigned start) {
     scheduler.end(ended.id, {Outcome::Kind::value, ended.value});
     const auto place = static_cast<std::size_t>(ended.id.point);
     costs[place].add(ended.took);
-    scheduler.set_cost(ended.id.point, costs[place].sum / costs[place].count);
+    scheduler.set_cost(ended.id.point, costs[place].mean());
     if (now < ask_at) continue;
     ask_at = now + expected_time / 200;
     std::vector<PointForecast> forecasts;

@@ -69,6 +69,41 @@ TEST(Forecast, ScatteredCostsWidenTheRange) {
   EXPECT_GT(left->high, sure->high);
 }
 
+// Kaplan and Meier by hand: of three seeds two have ended after 2 and 4 s, one runs for 3 s. The share of
+// those that last longer is 1 until 2 s, then 2/3 until 4 s.
+TEST(Forecast, ARunningSeedCountsAsLongerThanItHasTaken) {
+  Cost ended;
+  ended.add(4);
+  ended.add(2);
+  EXPECT_DOUBLE_EQ(mean_cost(ended, {{3, {}}}), 2 + 2 * 2.0 / 3);
+  EXPECT_DOUBLE_EQ(mean_cost(ended, {}), 3);
+}
+
+// Two of eight seeds have jammed after a minute. The six others have run for two minutes, a thirteenth of
+// their steps: 26 minutes are what three quarters of the seeds take.
+TEST(Forecast, SeedsThatEndFirstDoNotSpeakForTheOthers) {
+  PointForecast point;
+  for (int i = 0; i < 2; ++i) point.cost.add(60);
+  point.ended = 2;
+  point.running = 6;
+  point.unfinished.assign(6, {120, 1560});
+  const double mean = 0.25 * 60 + 0.75 * 1560;
+  EXPECT_DOUBLE_EQ(mean_cost(point.cost, point.unfinished), mean);
+  const std::optional<TimeToGo> left = time_to_go({point}, ten_percent, 10, 100, 6);
+  ASSERT_TRUE(left);
+  EXPECT_NEAR(left->likely, 1.5 * mean, 1e-9);  // eight more of six workers in two rounds, half of one done
+  EXPECT_LE(left->low, 1560);
+  EXPECT_GE(left->high, 2 * 1560);
+}
+
+// Where the rate is not known yet, a seed that runs takes as long as the others that run.
+TEST(Forecast, ASeedWithoutARateIsTakenForAsLongAsTheOthers) {
+  Cost ended;
+  ended.add(10);
+  EXPECT_DOUBLE_EQ(mean_cost(ended, {{20, 100}, {20, {}}}), (10 + 100 + 100) / 3.0);
+  EXPECT_DOUBLE_EQ(mean_cost(ended, {{20, {}}}), 15);
+}
+
 // What runs is not done: a worker that has just been given the last seed needs the time of a seed.
 TEST(Forecast, SeedsThatRunAreStillToCome) {
   PointForecast point = five_of_six_seconds();
@@ -107,6 +142,13 @@ TEST(Forecast, DecidedPointsCostNothing) {
   decided.cost.add(1000);
   decided.decided = true;
   EXPECT_EQ(time_to_go({decided}, ten_percent, 10, 100, 1)->likely, 0);
+}
+
+TEST(Forecast, IsOneTextAndOneJson) {
+  EXPECT_EQ(to_string(TimeToGo{720, 600, 1080}), "12 min to go (10 min to 18 min)");
+  EXPECT_EQ(to_string(TimeToGo{}), "");
+  EXPECT_EQ(to_json(TimeToGo{3, 2, 4}), Json({{"likely", 3.0}, {"low", 2.0}, {"high", 4.0}}));
+  EXPECT_EQ(to_json(std::optional<TimeToGo>()), nullptr);
 }
 
 TEST(Progress, SaysDurationsAsPeopleDo) {
