@@ -43,7 +43,9 @@ std::string progress_line(const RunReport& report) {
   if (report.cancelled > 0) line += fmt::format(", {} cancelled", report.cancelled);
   line += fmt::format(" | seeds {}/{}", report.seeds_ended, report.seeds_wanted);
   if (report.results > 0) line += fmt::format(" | {:.3g}/min", 60 * report.results / report.elapsed);
-  if (report.to_go && report.to_go->likely > 0) line += " | " + to_string(*report.to_go);
+  if (const std::string to_go = report.to_go ? to_string(*report.to_go) : ""; !to_go.empty()) {
+    line += " | " + to_go;
+  }
   if (report.budget_seconds) {
     line += fmt::format(" | budget {} of {} h", rough(report.spent_seconds / seconds_per_hour),
                         rough(*report.budget_seconds / seconds_per_hour));

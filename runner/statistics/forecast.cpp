@@ -149,7 +149,7 @@ double mean_cost(const Cost& ended, const std::vector<Unfinished>& running) {
 }
 
 std::string to_string(const TimeToGo& to_go) {
-  if (!(to_go.likely > 0)) return "";
+  if (!(to_go.likely >= 0.5)) return "";
   return fmt::format("{} to go ({} to {})", duration_text(to_go.likely), duration_text(to_go.low),
                      duration_text(to_go.high));
 }

@@ -65,7 +65,7 @@ struct TimeToGo {
   double likely = 0, low = 0, high = 0;
 };
 
-// "12 min to go (10 min to 18 min)"; "" for a time of 0.
+// "12 min to go (10 min to 18 min)"; "" below half a second.
 std::string to_string(const TimeToGo& to_go);
 // {"likely": 720, "low": 600, "high": 1080}; null for nothing.
 Json to_json(const std::optional<TimeToGo>& to_go);

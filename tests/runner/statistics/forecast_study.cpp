@@ -10,7 +10,6 @@
 #include <cstdlib>
 #include <functional>
 #include <numbers>
-#include <queue>
 #include <random>
 #include <vector>
 
@@ -83,7 +82,7 @@ History run(const Case& about, double expected_time, unsigned start) {
   Scheduler scheduler(std::vector<std::vector<std::optional<Outcome>>>(points), three_percent, minimum,
                       maximum);
   std::vector<Cost> costs(points);
-  std::priority_queue<Running, std::vector<Running>, std::greater<>> clock;
+  std::vector<Running> clock;  // a heap, the first one to end on top
   History history;
   double now = 0, ask_at = 0;
   while (!scheduler.finished()) {
@@ -94,10 +93,12 @@ History run(const Case& about, double expected_time, unsigned start) {
       const auto point = static_cast<std::size_t>(next->point);
       // Run times scatter by 20 %.
       const double took = seconds[point] * std::exp(0.2 * normal(random)) * machine.slowness(now);
-      clock.push({now + took, took, *next, 1 + spread[point] * normal(random)});
+      clock.push_back({now + took, took, *next, 1 + spread[point] * normal(random)});
+      std::push_heap(clock.begin(), clock.end(), std::greater<>());
     }
-    const Running ended = clock.top();
-    clock.pop();
+    std::pop_heap(clock.begin(), clock.end(), std::greater<>());
+    const Running ended = clock.back();
+    clock.pop_back();
     now = ended.end;
     scheduler.end(ended.id, {Outcome::Kind::value, ended.value});
     const auto place = static_cast<std::size_t>(ended.id.point);
@@ -110,6 +111,12 @@ History run(const Case& about, double expected_time, unsigned start) {
       const int all_ended = scheduler.all_ended(point);
       forecasts.push_back({costs[static_cast<std::size_t>(point)], scheduler.so_far(point), all_ended,
                            scheduler.begun(point) - all_ended, scheduler.decided(point)});
+    }
+    for (const Running& one : clock) {
+      const double taken = now - (one.end - one.took);
+      const bool has_rate = taken > 0.1 * one.took;
+      forecasts[static_cast<std::size_t>(one.id.point)].unfinished.push_back(
+          {taken, has_rate ? std::optional(one.took) : std::nullopt});
     }
     history.told.push_back({now, time_to_go(forecasts, three_percent, minimum, maximum, about.workers)});
   }
