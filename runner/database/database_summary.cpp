@@ -1,5 +1,7 @@
 #include "runner/database/database_summary.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -91,6 +93,24 @@ CountsByPoint read_losses(Connection& connection) {
                          " 'quarantined') GROUP BY point_id, cause");
 }
 
+// What engines said of results without a value, and the last attempts of seeds that were given up.
+std::map<std::int64_t, std::map<std::string, std::string>> read_loss_reasons(Connection& connection) {
+  Statement query(
+      connection,
+      "SELECT e.point_id, r.cause, e.seed, e.event_id, e.message FROM event e JOIN realisation r USING "
+      "(point_id, seed) WHERE e.kind = 'lost' AND r.state = 'failed' UNION ALL "
+      "SELECT a.point_id, r.cause, a.seed, -a.attempt_id, a.message FROM attempt a JOIN realisation r USING "
+      "(point_id, seed) WHERE a.blamed = 1 AND a.pardoned = 0 AND r.state = 'quarantined' AND a.message != "
+      "'' "
+      "ORDER BY 1, 3, 4");
+  std::map<std::int64_t, std::map<std::string, std::string>> reasons;
+  while (query.step()) {
+    reasons[query.integer(0)].emplace(query.text(1),
+                                      fmt::format("{} (seed {})", query.text(4), query.integer(2)));
+  }
+  return reasons;
+}
+
 CountsByPoint read_flags(Connection& connection) {
   return counts_by_point(connection,
                          "SELECT point_id, message, count(DISTINCT seed) FROM event WHERE kind = 'flag'"
@@ -131,6 +151,7 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
   std::map<std::int64_t, Aggregate> aggregates = read_aggregates(connection);
   std::map<std::int64_t, std::vector<Look>> looks = database.looks_by_point();
   CountsByPoint losses = read_losses(connection);
+  std::map<std::int64_t, std::map<std::string, std::string>> reasons = read_loss_reasons(connection);
   CountsByPoint flags = read_flags(connection);
   const bool any_apart = connection.integer("SELECT count(*) FROM point WHERE kept_apart = 1") > 0;
   std::map<std::int64_t, std::vector<Unfinished>> unfinished = database.unfinished();
@@ -147,6 +168,7 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
     summary.counts = aggregate.counts;
     summary.so_far = aggregate.so_far.estimate();
     summary.losses = std::move(losses[point.id]);
+    summary.loss_reasons = std::move(reasons[point.id]);
     summary.flags = std::move(flags[point.id]);
     if (const auto known = looks.find(point.id); known != looks.end())
       summary.looks = std::move(known->second);

@@ -16,8 +16,10 @@ struct PointSummary {
   // Of value + control, over all seeds that have ended with a value, in whatever order they came.
   Estimate so_far;
   std::map<std::string, int> losses;  // seeds by cause
-  std::map<std::string, int> flags;   // completed seeds by what they say against themselves
-  std::vector<Look> looks;            // for the present target
+  // Why, in words, by cause: of the first seed of which it is known.
+  std::map<std::string, std::string> loss_reasons{};
+  std::map<std::string, int> flags;  // completed seeds by what they say against themselves
+  std::vector<Look> looks;           // for the present target
   int earlier_look = 0;  // seeds of the largest look for an earlier target, if it is beyond the deciding one
   double confidence = 0.95;  // of its intervals
   bool decided = false;

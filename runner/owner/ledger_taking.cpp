@@ -145,7 +145,8 @@ void Ledger::take(const RealisationResult& result, const fs::path& spool) {
   if (!board_.has_seeds()) return;  // load() finds it
   board_.add_cost(*place, cost_of(result, "wall_seconds"), cpu_seconds);
   if (!value) {
-    after_.note(fmt::format("{}: ended with {}", name({*place, result.seed}), stored.cause));
+    after_.note(fmt::format("{}: ended with {}{}{}", name({*place, result.seed}), stored.cause,
+                            stored.reason.empty() ? "" : ": ", stored.reason));
   }
   book_outcome({*place, result.seed}, outcome_of(stored.observed));
 }

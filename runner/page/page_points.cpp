@@ -48,6 +48,7 @@ Json point_json(const PointSummary& point, const std::optional<int>& looked_at) 
             {"running", counts.running},
             {"surplus", point.surplus()}}},
           {"losses", point.losses},
+          {"loss_reasons", point.loss_reasons},
           {"flags", point.flags},
           {"cpu_seconds", counts.cpu_seconds}};
 }

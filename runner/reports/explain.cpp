@@ -320,6 +320,7 @@ Json explain_json(Database& database, const CampaignDirectory& directory, const 
          {"next", next_step(summary, campaign.target, directory)},
          {"looks", looks},
          {"losses", losses_json(database, summary.point.id)},
+         {"loss_reasons", summary.loss_reasons},
          {"files", files_json(database, directory, summary.point.id)},
          {"blamed_attempts", blamed_attempts_json(database, summary.point.id)}});
   }
@@ -337,7 +338,7 @@ std::string explain(Database& database, const CampaignDirectory& directory, cons
     text += observables_table(summary.looks, target.target);
     text += prediction_text(summary);
     text += estimate_text(database, summary, target);
-    text += losses_text(database, summary.point.id);
+    text += losses_text(database, summary);
     text += attempts_text(database, summary.point.id);
     text += files_text(database, directory, summary.point.id);
     for (const KeptApart& kept : summary.kept_apart)

@@ -28,10 +28,10 @@ std::string line(const AttemptRecord& attempt) {
 
 }  // namespace
 
-std::string losses_text(Database& database, std::int64_t point) {
+std::string losses_text(Database& database, const PointSummary& point) {
   constexpr std::size_t most_seeds = 10;
   std::map<std::string, std::vector<int>> seeds;
-  for (const RealisationRecord& record : database.realisations(point)) {
+  for (const RealisationRecord& record : database.realisations(point.point.id)) {
     const bool is_lost = record.state == SeedState::failed || record.state == SeedState::quarantined;
     if (is_lost) seeds[record.cause].push_back(record.seed);
   }
@@ -41,6 +41,8 @@ std::string losses_text(Database& database, std::int64_t point) {
     if (count > most_seeds) of_cause.resize(most_seeds);
     text += fmt::format("  lost: {} {} (seed{} {}{})\n", count, cause, count == 1 ? "" : "s",
                         fmt::join(of_cause, ", "), count > most_seeds ? ", ..." : "");
+    const auto reason = point.loss_reasons.find(cause);
+    if (reason != point.loss_reasons.end()) text += fmt::format("    {}\n", reason->second);
   }
   return text;
 }

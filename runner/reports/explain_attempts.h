@@ -3,12 +3,12 @@
 
 #include <string>
 
-#include "runner/database/database.h"
+#include "runner/database/database_summary.h"
 
 namespace peclet::runner {
 
-// "  lost: 2 overlap (seeds 3, 17)" in a line for every cause; nothing when no seed is lost.
-std::string losses_text(Database& database, std::int64_t point);
+// "  lost: 2 overlap (seeds 3, 17)" for every cause, and why in the line below; nothing when no seed is lost.
+std::string losses_text(Database& database, const PointSummary& point);
 
 // How many attempts ended how, and the latest ones that count against their seed.
 std::string attempts_text(Database& database, std::int64_t point);

@@ -53,6 +53,7 @@ Json point_json(const PointSummary& point) {
             {"quarantined", counts.quarantined},
             {"surplus", point.surplus()}}},
           {"losses", point.losses},
+          {"loss_reasons", point.loss_reasons},
           {"flags", point.flags},
           {"so_far", estimate_json(point.so_far)},
           {"look", point.looks.empty() ? Json(nullptr) : look_json(point.looks.back())},

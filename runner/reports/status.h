@@ -38,9 +38,6 @@ int standing(const CampaignStatus& status);
 // The exit code of a process that has run it: standing(), or 75 when it did not finish what it was to do.
 int ending(const CampaignStatus& status, bool finished);
 
-// Whether the last look of some point has a control variate.
-bool any_control(const CampaignStatus& status);
-
 // "3 points: 1 capped, 2 open"
 std::string point_totals(const CampaignStatus& status);
 

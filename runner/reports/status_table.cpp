@@ -31,19 +31,17 @@ std::string farthest(const Look& look) {
   return fmt::format("{} {} x", found->observable, rough(found->share));
 }
 
-std::vector<std::string> cells(const PointSummary& point, bool with_control, const Target& target) {
+std::vector<std::string> cells(const PointSummary& point, const Target& target) {
   const bool with_others = target.observables().size() > 1;
   std::vector<std::string> cells{fmt::format("{}/{}", point.wanted_ended, point.wanted),
                                  with_error(point.so_far.mean, point.so_far.standard_error)};
   if (point.looks.empty()) {
     cells.emplace_back("-");
     if (with_others) cells.emplace_back("-");
-    if (with_control) cells.emplace_back("-");
   } else {
     const Look& look = point.looks.back();
     cells.push_back(interval(look, target.tolerance));
     if (with_others) cells.push_back(farthest(look));
-    if (with_control) cells.push_back(with_error(look.estimate.mean, look.half_width));
   }
   cells.push_back(verdict_text(point));
   return cells;
@@ -58,11 +56,11 @@ std::string heading(const CampaignStatus& status) {
 
 // Columns as a narrow terminal does without them; which point and which verdict are always there.
 namespace importance {
-constexpr int uncontrolled = 1, so_far = 2, seeds = 3, look = 4, farthest = 5;
+constexpr int so_far = 1, seeds = 2, look = 3, farthest = 4;
 }
 
 // Of the columns that are shown.
-std::string legend(const CampaignStatus& status, bool with_control, const std::vector<std::string>& left_out,
+std::string legend(const CampaignStatus& status, const std::vector<std::string>& left_out,
                    std::size_t width) {
   // Where both lines of it fit, it is broken so that neither is much longer.
   const char* const blank = width >= 100 ? "\n" : " ";
@@ -75,9 +73,6 @@ std::string legend(const CampaignStatus& status, bool with_control, const std::v
     parts.push_back(fmt::format("look: mean ± half-width of the{}{:g} % interval at the last look", blank,
                                 100 * status.campaign.target.target.confidence));
   }
-  if (with_control && parts.size() == 2) parts.emplace_back("both with the control variate");
-  if (with_control && parts.size() == 1) parts.back() += ", with the control variate";
-  if (with_control && shows("uncontrolled")) parts.emplace_back("uncontrolled: the look without it");
   if (shows("farthest") && status.campaign.target.target.observables().size() > 1) {
     parts.emplace_back("farthest: the largest half-width, as a multiple of its tolerance");
   }
@@ -158,13 +153,22 @@ std::string seed_totals(const CampaignStatus& status) {
   return text + fmt::format("; processor time {}\n", duration_text(cpu_seconds));
 }
 
-}  // namespace
-
-bool any_control(const CampaignStatus& status) {
-  return std::any_of(status.points.begin(), status.points.end(), [](const PointSummary& point) {
-    return !point.looks.empty() && has_control(point.looks.back());
-  });
+// Why seeds were lost: one line for each cause at each point.
+std::string losses_text(const CampaignStatus& status) {
+  constexpr int most_lines = 10;
+  std::string text;
+  int lines = 0;
+  for (const PointSummary& point : status.points) {
+    for (const auto& [cause, reason] : point.loss_reasons) {
+      if (++lines > most_lines) continue;
+      text += fmt::format("{}: {} lost, {}: {}\n", point.point.label, point.losses.at(cause), cause, reason);
+    }
+  }
+  if (lines > most_lines) text += fmt::format("and {} more: `peclet explain` has them\n", lines - most_lines);
+  return text;
 }
+
+}  // namespace
 
 std::string point_totals(const CampaignStatus& status) {
   std::map<std::string, int> verdicts;
@@ -173,7 +177,6 @@ std::string point_totals(const CampaignStatus& status) {
 }
 
 std::string status_table(const CampaignStatus& status, std::size_t width) {
-  const bool with_control = any_control(status);
   std::vector<std::string> labels;
   for (const PointSummary& point : status.points) labels.push_back(point.point.label);
   const PointColumns points(labels);
@@ -184,19 +187,18 @@ std::string status_table(const CampaignStatus& status, std::size_t width) {
   table.add_column("look", TextTable::Align::right, importance::look);
   if (status.campaign.target.target.observables().size() > 1)
     table.add_column("farthest", TextTable::Align::left, importance::farthest);
-  if (with_control) table.add_column("uncontrolled", TextTable::Align::right, importance::uncontrolled);
   table.add_column("verdict", TextTable::Align::left);
   for (std::size_t i = 0; i < labels.size(); ++i) {
     std::vector<std::string> row = points.cells(i);
-    const std::vector<std::string> rest =
-        cells(status.points[i], with_control, status.campaign.target.target);
+    const std::vector<std::string> rest = cells(status.points[i], status.campaign.target.target);
     row.insert(row.end(), rest.begin(), rest.end());
     table.add_row(std::move(row));
   }
-  const std::string totals = point_totals(status) + '\n' + seed_totals(status) + earlier_looks_text(status) +
-                             kept_apart_text(status) + predictions_text(status.points);
+  const std::string totals = point_totals(status) + '\n' + seed_totals(status) + losses_text(status) +
+                             earlier_looks_text(status) + kept_apart_text(status) +
+                             predictions_text(status.points);
   return folded(heading(status), width) + table.text_within(width) + '\n' +
-         legend(status, with_control, table.left_out(width), width) + '\n' + folded(totals, width);
+         legend(status, table.left_out(width), width) + '\n' + folded(totals, width);
 }
 
 std::string status_table(Database& database, std::int64_t owner) {

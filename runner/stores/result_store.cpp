@@ -7,6 +7,7 @@
 #include "runner/database/result_text.h"
 #include "runner/statistics/look_json.h"
 #include "runner/stores/engine_row.h"
+#include "runner/text/plain_text.h"
 #include "runner/text/utc_time.h"
 
 namespace peclet::runner {
@@ -65,6 +66,10 @@ StoredResult ResultStore::store(const RealisationResult& result, const Target& t
                       "", point, true};
   stored.cause = cause_of(result, stored.observed.front());
   store_numbers(point, result, stored, observables);
+  if (!stored.observed.front().value) {
+    stored.reason = plain(result.document.at("ending").value("message", ""));
+    if (!stored.reason.empty()) events_.write("lost", point, result.seed, stored.reason);
+  }
   for (const std::string& code : flags_of(result)) events_.write("flag", point, result.seed, code);
   Statement(connection_, "UPDATE point SET engine_identity = ? WHERE point_id = ?")
       .bind(identity)

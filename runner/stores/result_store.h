@@ -29,6 +29,7 @@ struct StoredResult {
   std::string cause{};               // see cause_of()
   std::int64_t point = 0;            // the row of its point, where it has one
   bool is_new = false;               // not known before
+  std::string reason{};              // of a loss, in the engine's words
 };
 
 class ResultStore {

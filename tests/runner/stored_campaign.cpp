@@ -85,6 +85,12 @@ void StoredCampaign::blow_up(int point, int seed, const std::string& cause) {
   store(point, result);
 }
 
+void StoredCampaign::begin(int point, int seed) {
+  Transaction booking(database_.connection());
+  SeedStore(database_).begin_attempt(id(point), seed, 0, 4711, engine_row(database_, plain_engine()));
+  booking.commit();
+}
+
 void StoredCampaign::crash(int point, int seed) {
   Transaction booking(database_.connection());
   const std::int64_t attempt =

@@ -28,6 +28,8 @@ class StoredCampaign {
   // One more result of a seed that has ended.
   void repeat(int point, int seed, double viscosity);
   void blow_up(int point, int seed, const std::string& cause = "overlap");
+  // A worker has the seed.
+  void begin(int point, int seed);
   // One attempt that crashed, after which the seed is given up.
   void crash(int point, int seed);
 

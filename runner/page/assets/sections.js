@@ -1,12 +1,12 @@
 // What each section shows, so that it is made anew only when that has changed.
-const doubtsShown = (data) => [data.points.map((point) => [point.label, point.losses]), data.meanings, data.warnings],
+const doubtsShown = (data) => [data.points.map((point) => [point.label, point.losses, point.loss_reasons]), data.meanings, data.warnings],
   costShown = (data) => [data.progress.seeds, data.points.map(({ label, seeds, cpu_seconds }) => [label, seeds.ended, seeds.surplus, cpu_seconds])],
   originShown = (data) => [data.scene, data.parameters, data.provenance, data.commands, data.document, data.points.map((point) => point.groups)];
 
 // What may be doubted: lost seeds by cause, what each mark means, what engines warn of.
 function writeDoubts(data, host) {
   const lost = data.points.flatMap((point) =>
-    Object.entries(point.losses).map(([cause, count]) => ({ point: point.label, cause, count })),
+    Object.entries(point.losses).map(([cause, count]) => ({ point: point.label, cause, count, reason: point.loss_reasons[cause] || '' })),
   );
   const meanings = Object.entries(data.meanings);
   if (!lost.length && !meanings.length && !data.warnings.length) return;
@@ -23,11 +23,15 @@ function writeDoubts(data, host) {
         { title: 'point', text: true, wrap: true, cell: (row) => row.point, sort: (row) => row.point },
         { title: 'cause', text: true, cell: (row) => row.cause, sort: (row) => row.cause },
         { title: 'seeds', cell: (row) => String(row.count), sort: (row) => row.count },
+        { title: 'why', text: true, wrap: true, cell: (row) => row.reason, sort: (row) => row.reason },
       ],
       lost,
       {
         name: `${data.campaign} lost`,
-        csv: { columns: ['label', 'cause', 'seeds'], rows: lost.map((row) => [row.point, row.cause, row.count]) },
+        csv: {
+          columns: ['label', 'cause', 'seeds', 'why'],
+          rows: lost.map((row) => [row.point, row.cause, row.count, row.reason]),
+        },
       },
     );
   }

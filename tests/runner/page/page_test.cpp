@@ -68,8 +68,8 @@ TEST_F(CampaignPage, OfAnOpenPointHasWhatIsKnownSoFar) {
   EXPECT_EQ(point["seeds"]["looked_at"], nullptr);
   EXPECT_EQ(point["seeds"]["wanted_ended"], 2);
   EXPECT_EQ(point["running_mean"]["seeds"], Json({1}));  // seed 1 has not ended
-  // Two points of four seeds each, of which two have ended, at 4 s on the wall for one worker.
-  EXPECT_EQ(page["progress"]["seconds_to_go"]["likely"], 24);
+  // Two points of four seeds each, of which two have ended, at 4 s on the wall, for two workers.
+  EXPECT_EQ(page["progress"]["seconds_to_go"]["likely"], 12);
 }
 
 TEST_F(CampaignPage, ShowsHowAMeanCameAbout) {

@@ -37,6 +37,44 @@ TEST(Status, AnOpenPointShowsTheSeedsOfItsNextLookAndAProvisionalMean) {
   EXPECT_NE(table.find("1 point: 1 open\n4 seeds ended; processor time 8 s"), std::string::npos) << table;
 }
 
+TEST(Status, SaysWhySeedsWereLost) {
+  StoredCampaign campaign(1, 4, 20);
+  campaign.blow_up(0, 0, "packing");
+  campaign.blow_up(0, 1, "packing");
+  campaign.crash(0, 2);
+  const CampaignStatus status = read_status(campaign.database());
+  const std::string table = status_table(status);
+  EXPECT_TRUE(says(table, "point=0: 2 lost, packing: too near (seed 0)\n")) << table;
+  EXPECT_TRUE(says(table, "point=0: 1 lost, crashed: signal 11 (Segmentation fault) (seed 2)\n")) << table;
+  const Json reasons = status_json(status)["points"][0]["loss_reasons"];
+  EXPECT_EQ(reasons["packing"], "too near (seed 0)");
+  const std::string text = explain(campaign.database(), campaign.directory(), "");
+  EXPECT_TRUE(says(text, "lost: 2 packing (seeds 0, 1)\n    too near (seed 0)\n")) << text;
+}
+
+// Four of eight seeds have ended after 4 s each. One has made 10 of its 100 steps in 120 s. The mean by
+// Kaplan and Meier is (4 * 4 + 1200) / 5.
+TEST(Status, TheForecastKnowsOfSeedsThatRun) {
+  StoredCampaign campaign(1, 8, 20);
+  for (int seed = 0; seed < 4; ++seed) campaign.complete(0, seed, 10);
+  campaign.begin(0, 4);
+  Connection& connection = campaign.database().connection();
+  connection.execute("UPDATE attempt SET started_at = '2026-01-01T00:00:00Z' WHERE outcome = 'running'");
+  connection.execute(
+      "UPDATE lease SET phase = 'equilibration', step = 10, steps = 100, renewed_at = "
+      "'2026-01-01T00:02:00Z'");
+  CampaignStatus status = read_status(campaign.database());
+  status.owner = 4711;
+  ASSERT_EQ(status.points.at(0).forecast.unfinished.size(), 1U);
+  const double mean = (4 * 4 + 1200) / 5.0;
+  ASSERT_TRUE(status.to_go);
+  EXPECT_NEAR(status.to_go->likely, 3.5 * mean / 2, 1e-6);  // four seeds of two workers, half of one is done
+  EXPECT_EQ(status_json(status)["seconds_to_go"], to_json(status.to_go));
+  EXPECT_TRUE(says(workers_text(status), "process 4711 runs it: " + to_string(*status.to_go) + "\n"));
+  status.owner.reset();
+  EXPECT_TRUE(says(workers_text(status), "`peclet run` goes on: " + to_string(*status.to_go) + "\n"));
+}
+
 TEST(Status, SeedsOfARunThatWasKilledAreNotCalledRunning) {
   StoredCampaign campaign(1, 4, 20);
   four_values(campaign, 0, 1);
