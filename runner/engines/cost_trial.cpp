@@ -1,5 +1,7 @@
 #include "runner/engines/cost_trial.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cstdlib>
 #include <string>
@@ -10,6 +12,7 @@
 #include "contract/json.h"
 #include "runner/engines/stop_signals.h"
 #include "runner/engines/worker_process.h"
+#include "runner/text/plain_text.h"
 
 namespace peclet::runner {
 namespace {
@@ -53,20 +56,22 @@ class Trial {
     }
     if (const auto* progressed = std::get_if<Progressed>(&event)) return hear(*progressed);
     if (const auto* spooled = std::get_if<ResultSpooled>(&event)) {
-      seconds_.reset();
-      if (is_complete(read_json(spooled->spool))) seconds_ = since_begun();
+      found_.seconds.reset();
+      const Json ending = read_json(spooled->spool).at("ending");
+      const auto cause = ending.at("cause").get<std::string>();
+      if (has_results(cause)) {
+        found_.seconds = since_begun();
+      } else {
+        found_.broke_off = plain(fmt::format("{}: {}", cause, ending.value("message", "")));
+      }
     }
     return false;
   }
   bool is_late() const { return since_begun() > longest; }
-  std::optional<double> seconds() const { return seconds_; }
+  const CostTrial& found() const { return found_; }
 
  private:
   static constexpr double long_enough = 2, longest = 10;
-
-  static bool is_complete(const Json& result) {
-    return has_results(result.at("/ending/cause"_json_pointer).get<std::string>());
-  }
 
   bool hear(const Progressed& progressed) {
     // Packing has steps of its own.
@@ -79,7 +84,7 @@ class Trial {
     const double measured = since_begun() - first_after_;
     const auto steps = static_cast<double>(progressed.step - *first_);
     if (steps <= 0) return true;
-    seconds_ = first_after_ + measured / steps * static_cast<double>(progressed.steps - *first_);
+    found_.seconds = first_after_ + measured / steps * static_cast<double>(progressed.steps - *first_);
     return since_begun() < long_enough;
   }
   double since_begun() const { return std::chrono::duration<double>(Clock::now() - begun_).count(); }
@@ -100,12 +105,12 @@ class Trial {
   Clock::time_point begun_ = Clock::now();
   std::optional<std::int64_t> first_;
   double first_after_ = 0;
-  std::optional<double> seconds_;
+  CostTrial found_;
 };
 
 }  // namespace
 
-std::optional<double> try_cost(const Json& scene, const EngineCommand& command) {
+CostTrial try_cost(const Json& scene, const EngineCommand& command) {
   const TrialFolder folder;
   StopSignals signals;
   ProcessPool pool(1, command, folder.directory(), signals);
@@ -118,7 +123,7 @@ std::optional<double> try_cost(const Json& scene, const EngineCommand& command) 
     }
   }
   pool.kill(0);
-  return trial.seconds();
+  return trial.found();
 }
 
 }  // namespace peclet::runner

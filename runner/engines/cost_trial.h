@@ -3,16 +3,22 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "runner/campaign/campaign.h"
 #include "runner/engines/engine_process.h"
 
 namespace peclet::runner {
 
-// Seconds of a worker for one realisation of the scene: the engine runs seed 0 in a folder of its own that is
+struct CostTrial {
+  std::optional<double> seconds{};  // of a worker for one realisation of the scene
+  std::string broke_off{};          // "packing: ..." where the realisation ended early; "" where it did not
+};
+
+// The engine runs seed 0 in a folder of its own that is
 // removed again, and is killed when it has said after two seconds how far it is. So it is a guess, from the
-// beginning of one realisation. Nothing when the engine does not get that far within ten seconds, when the
+// beginning of one realisation. No seconds when the engine does not get that far within ten seconds, when the
 // realisation ends early, as one that jams, or when the engine cannot run the scene.
-std::optional<double> try_cost(const Json& scene, const EngineCommand& command);
+CostTrial try_cost(const Json& scene, const EngineCommand& command);
 
 }  // namespace peclet::runner

@@ -68,6 +68,7 @@ struct Plan {
   std::time_t made_at = 0;
   std::vector<PointPlan> points{};
   Totals totals{};
+  std::vector<std::string> broke_off{};  // trials that ended early: "peclet=10 broke off: packing: ..."
   std::string guessed_from{};  // label of the point of the guess that all costs come from; "": none does
 };
 

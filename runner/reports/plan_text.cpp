@@ -116,6 +116,7 @@ std::string legend(const Plan& plan, bool predicted) {
         "--pilot measures\n",
         plan.guessed_from);
   }
+  for (const std::string& trial : plan.broke_off) text += fmt::format("the trial of {}\n", trial);
   if (predicted) {
     text +=
         "seeds: of the look that will decide, expected (range that holds it 95 % of the time)\n"
@@ -231,6 +232,7 @@ Json plan_json(const Plan& plan) {
           {"points", points},
           {"cpu_hours_minimum", number(total_hours(plan, plan.minimum))},
           {"cpu_hours_maximum", number(total_hours(plan, plan.maximum))},
+          {"trials_broken_off", plan.broke_off},
           {"guessed_from", plan.guessed_from.empty() ? Json(nullptr) : Json(plan.guessed_from)},
           {"prediction", totals_json(plan)}};
 }

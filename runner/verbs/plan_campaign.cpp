@@ -89,9 +89,9 @@ std::vector<double> work_of(const std::vector<SceneAnswer>& scenes) {
 }
 
 // Of the point with the median of the work, from which the others are least far; of one with less or more
-// where that one jams.
+// where that one jams, which `broke_off` then says.
 std::optional<CostGuess> guess_cost(const Campaign& campaign, const std::vector<double>& work,
-                                    const EngineCommand& command) {
+                                    const EngineCommand& command, std::vector<std::string>& broke_off) {
   std::vector<std::size_t> order(work.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(),
@@ -101,8 +101,10 @@ std::optional<CostGuess> guess_cost(const Campaign& campaign, const std::vector<
   for (const double share : {0.5, 0.25, 0.0, 0.75, 1.0}) {
     const std::size_t place = order[static_cast<std::size_t>(std::lround(share * last))];
     if (!tried.insert(place).second) continue;
-    if (const std::optional<double> seconds = try_cost(campaign.points.at(place).scene, command))
-      return CostGuess{place, *seconds};
+    const StatePoint& point = campaign.points.at(place);
+    const CostTrial trial = try_cost(point.scene, command);
+    if (trial.seconds) return CostGuess{place, *trial.seconds};
+    if (!trial.broke_off.empty()) broke_off.push_back(point.label + " broke off: " + trial.broke_off);
   }
   return std::nullopt;
 }
@@ -159,8 +161,11 @@ int plan_campaign(const PlanOptions& options) {
   const EngineCommand command = resolve_engine(campaign, file);
   const std::vector<SceneAnswer> scenes = check_scenes(campaign, file, command);
   std::optional<CostGuess> guess;
-  if (!any_cost(known)) guess = guess_cost(campaign, work_of(scenes), command);
-  print(plan_of(campaign, scenes, known, options.run, guess), options.json);
+  std::vector<std::string> broke_off;
+  if (!any_cost(known)) guess = guess_cost(campaign, work_of(scenes), command, broke_off);
+  Plan plan = plan_of(campaign, scenes, known, options.run, guess);
+  plan.broke_off = std::move(broke_off);
+  print(plan, options.json);
   return 0;
 }
 

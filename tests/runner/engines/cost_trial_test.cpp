@@ -19,23 +19,25 @@ class FakeFaults {
   FakeFaults& operator=(const FakeFaults&) = delete;
 };
 
-std::optional<double> seconds_of_a_trial() {
+CostTrial trial() {
   const TemporaryFolder folder;
   return try_cost({{"fluid", {{"viscosity", 1}}}, {"peclet", 1}},
                   {.program = FAKE_ENGINE, .arguments = {"serve"}, .folder = folder.path()});
 }
 
 TEST(CostTrial, ARealisationThatEndsWithinItTellsItsTime) {
-  const std::optional<double> seconds = seconds_of_a_trial();
+  const std::optional<double> seconds = trial().seconds;
   ASSERT_TRUE(seconds);
   EXPECT_GT(*seconds, 0);
   EXPECT_LT(*seconds, 10);
 }
 
 // What jams ends sooner than what flows, and would make a campaign look cheap.
-TEST(CostTrial, OneThatEndsEarlyTellsNothing) {
+TEST(CostTrial, OneThatEndsEarlyTellsNoTimeButWhy) {
   const FakeFaults jams("overlap:0");
-  EXPECT_FALSE(seconds_of_a_trial());
+  const CostTrial found = trial();
+  EXPECT_FALSE(found.seconds);
+  EXPECT_TRUE(found.broke_off.starts_with("overlap: ")) << found.broke_off;
 }
 
 }  // namespace
