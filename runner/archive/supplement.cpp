@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "contract/input_error.h"
 #include "contract/provenance.h"
 #include "contract/sha256.h"
@@ -61,6 +63,14 @@ void check_supplement_name(const std::filesystem::path& output) {
 std::vector<ArchivedFile> supplement_files(Database& database, std::optional<std::int64_t> owner) {
   const CampaignStatus status = read_status(database);
   const CampaignRecord& campaign = status.campaign;
+  const auto has_number = [](const PointSummary& point) { return point.so_far.count > 0; };
+  if (std::none_of(status.points.begin(), status.points.end(), has_number)) {
+    throw InputError(
+        "", "--bundle", campaign.name,
+        fmt::format("has no number of {} yet, so that there is nothing to give to readers; `peclet "
+                    "explain` says why",
+                    campaign.target.target.observable));
+  }
   const Figure figure = make_figure(database, {});
   std::vector<ArchivedFile> files{{"README.md", supplement_readme(status)},
                                   {campaign.name + ".json", campaign.document.dump(2) + '\n'},

@@ -81,8 +81,12 @@ int exit_code(const Findings& findings) {
 }
 
 std::string as_text(const CampaignUnderExamination& examined, const Findings& findings) {
-  std::string text = fmt::format("{}: {}", examined.directory.root().string(),
-                                 findings.empty() ? "sound\n" : counted(findings.size(), "finding") + '\n');
+  const auto is_note = [](const Finding& finding) { return finding.severity == Severity::note; };
+  const auto notes = static_cast<std::size_t>(std::count_if(findings.begin(), findings.end(), is_note));
+  const bool is_sound = notes == findings.size();
+  std::string text = fmt::format("{}: {}{}\n", examined.directory.root().string(),
+                                 is_sound ? "sound" : counted(findings.size() - notes, "finding"),
+                                 notes == 0 ? "" : ", " + counted(notes, "note"));
   for (const Finding& finding : findings) {
     text += fmt::format("\n{}: {}\n", name_of(finding.severity), finding.message);
     if (!finding.cure.empty())

@@ -72,7 +72,7 @@ void LiveCampaign::read() {
 // Throws InputError for a campaign with a fault, because `run` would refuse it.
 void LiveCampaign::wait_for_beginning() {
   const bool is_file = fs::is_regular_file(campaign_);
-  const std::string name = is_file ? read_campaign(campaign_).name : campaign_.string();
+  const std::string name = is_file ? read_new_campaign(campaign_, directory_).name : campaign_.string();
   become({{"campaign", name},
           {"waiting", is_file ? fmt::format("Nothing has been run yet. Waiting for `peclet run {}`.",
                                             words_for(campaign_, directory_))

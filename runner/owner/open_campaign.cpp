@@ -5,6 +5,7 @@
 #include "contract/guarded_file.h"
 #include "runner/campaign/campaign_file.h"
 #include "runner/database/backup_files.h"
+#include "runner/owner/renamed_file.h"
 
 namespace peclet::runner {
 namespace {
@@ -21,6 +22,12 @@ bool awaits_its_first_run(const fs::path& given, const fs::path& chosen) {
   return fs::is_regular_file(given) && !has_been_run(campaign_directory(given, chosen));
 }
 
+Campaign read_new_campaign(const fs::path& given, const fs::path& chosen) {
+  Campaign campaign = read_campaign(given);
+  if (chosen.empty()) refuse_renamed_file(campaign, given, campaign_directory(given, chosen));
+  return campaign;
+}
+
 CampaignDirectory find_campaign(const fs::path& given, const fs::path& chosen) {
   const bool is_folder = fs::is_directory(given);
   CampaignDirectory directory = is_folder ? CampaignDirectory(fs::absolute(given).lexically_normal())
@@ -32,6 +39,7 @@ CampaignDirectory find_campaign(const fs::path& given, const fs::path& chosen) {
   }
   if (!fs::exists(given))
     throw InputError(given.string(), "", "", "no such file or folder" + similar_name(given));
+  read_new_campaign(given, chosen);
   throw InputError(
       given.string(), "", "",
       fmt::format("has not been run yet (there is no {}); start it with `peclet run {}`, or name its folder "

@@ -20,6 +20,10 @@ CampaignDirectory find_campaign(const std::filesystem::path& given, const std::f
 // Whether `given` is a file, of which there may be a campaign once it is run.
 bool awaits_its_first_run(const std::filesystem::path& given, const std::filesystem::path& chosen);
 
+// Reads the file of a campaign that awaits its first run. Throws InputError as read_campaign(), and for a
+// file that was renamed since its campaign was run.
+Campaign read_new_campaign(const std::filesystem::path& given, const std::filesystem::path& chosen);
+
 // `given` is a campaign's folder, or its file (whose folder is `chosen`, or beside it when that is empty).
 // Throws InputError when there is no campaign there that has been run, IntegrityError, DatabaseError.
 OpenCampaign open_campaign(const std::filesystem::path& given, const std::filesystem::path& chosen);

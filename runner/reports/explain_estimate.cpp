@@ -136,14 +136,16 @@ std::string window_text(Database& database, const PointSummary& point, const std
   if (advice->twice_as_long_at_best * (1 + std::max(advice->high, 0.0)) < 0.9) {
     conclusion = "longer windows are cheaper than more seeds";
   }
+  std::string longer = fmt::format("{:.2f}", advice->twice_as_long_at_best);
+  const std::string at_worst = fmt::format("{:.2f}", advice->twice_as_long_at_worst);
+  if (at_worst != longer) longer += " to " + at_worst;
   return fmt::format(
       "  window: {}; its halves correlate by {:.2f} ({:.2f} .. {:.2f}), equilibration is {:.0f} % of a "
       "realisation;\n"
-      "    for the same error half the window takes {:.2f} times the processor time, twice the window {:.2f} "
-      "to {:.2f}\n",
+      "    for the same error half the window takes {:.2f} times the processor time, twice the window "
+      "{}\n",
       conclusion, advice->correlation, advice->low, advice->high,
-      100 * cost.equilibration / (cost.equilibration + cost.production), advice->half_as_long,
-      advice->twice_as_long_at_best, advice->twice_as_long_at_worst);
+      100 * cost.equilibration / (cost.equilibration + cost.production), advice->half_as_long, longer);
 }
 
 }  // namespace

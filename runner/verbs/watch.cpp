@@ -2,15 +2,17 @@
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <optional>
 #include <vector>
 
 #include "contract/exit_codes.h"
-#include "runner/campaign/campaign.h"
+#include "runner/campaign/campaign_file.h"
 #include "runner/engines/stop_signals.h"
 #include "runner/folder/being_set_up.h"
 #include "runner/folder/owner_lock.h"
@@ -33,6 +35,26 @@ Size terminal_size() {
   return {size.ws_row, size.ws_col};
 }
 
+// Keeps the terminal from showing what is typed, which would stand within the table. Reads nothing.
+class SilentKeys {
+ public:
+  SilentKeys() : is_ours_(tcgetpgrp(STDIN_FILENO) == getpgrp() && tcgetattr(STDIN_FILENO, &before_) == 0) {
+    if (!is_ours_) return;
+    termios silent = before_;
+    silent.c_lflag &= ~static_cast<tcflag_t>(ECHO);
+    tcsetattr(STDIN_FILENO, TCSANOW, &silent);
+  }
+  ~SilentKeys() {
+    if (is_ours_) tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_);  // the shell is not to read them either
+  }
+  SilentKeys(const SilentKeys&) = delete;
+  SilentKeys& operator=(const SilentKeys&) = delete;
+
+ private:
+  termios before_{};
+  bool is_ours_;
+};
+
 struct Sight {
   std::string text;
   int standing = 0;
@@ -50,10 +72,9 @@ Sight look(const WatchOptions& options, std::size_t width) {
 
 // Throws InputError for a campaign with a fault, because `run` would refuse it.
 Sight look_for_beginning(const WatchOptions& options, std::size_t width) {
-  const std::string text =
-      fmt::format("{}: nothing has been run yet; waiting for `peclet run {}{}`\n",
-                  read_campaign(options.campaign).name, options.campaign.string(),
-                  options.directory.empty() ? "" : " --directory " + options.directory.string());
+  const std::string text = fmt::format("{}: nothing has been run yet; waiting for `peclet run {}`\n",
+                                       read_new_campaign(options.campaign, options.directory).name,
+                                       words_for(options.campaign, options.directory));
   return {folded(text, width), ExitCode::unfinished};
 }
 
@@ -129,6 +150,8 @@ std::string fitted(std::string_view text, int rows, int columns) {
 int watch_campaign(const WatchOptions& options) {
   StopSignals signals;
   const bool terminal = isatty(STDOUT_FILENO) != 0;
+  std::optional<SilentKeys> silent;
+  if (terminal) silent.emplace();
   const std::chrono::milliseconds interval(static_cast<int>(1000 * options.interval_seconds));
   std::string before;
   for (;;) {

@@ -55,6 +55,16 @@ TEST_F(Supplement, IsUnpackedByTarAndCheckedBySha256sum) {
   EXPECT_FALSE(times.text.starts_with("0 ")) << times.text;
 }
 
+TEST_F(Supplement, OfNothingIsRefusedInWordsAboutTheBundle) {
+  campaign_.blow_up(0, 0);
+  try {
+    supplement(campaign_.database(), std::nullopt);
+    FAIL() << "made";
+  } catch (const InputError& error) {
+    EXPECT_TRUE(says(error.what(), "--bundle: plain: has no number of relative_viscosity yet")) << error.what();
+  }
+}
+
 TEST_F(Supplement, IsTheSameBytesForTheSameState) {
   complete();
   const std::string first = supplement(campaign_.database(), std::nullopt);

@@ -67,6 +67,18 @@ TEST_F(Doctor, FindsNothingWrongWithASoundCampaign) {
   EXPECT_EQ(Json::parse(diagnosis.text).at("schema_version"), 1);
 }
 
+// A checkpoint of a seed that was not needed is a note, and nothing that is wrong.
+TEST_F(Doctor, ANoteIsNoFinding) {
+  const std::string hash = campaign_.reader().points().at(0).hash;
+  std::ofstream(campaign_.directory().checkpoint(hash, 39)) << "state";
+  DoctorOptions options;
+  options.campaign = campaign_.options.campaign;
+  const Diagnosis diagnosis = examine_campaign(options);
+  EXPECT_EQ(diagnosis.exit_code, 0);
+  EXPECT_NE(diagnosis.text.find(": sound, 1 note\n\nnote: 1 checkpoints"), std::string::npos)
+      << diagnosis.text;
+}
+
 struct Fault {
   const char *sql, *code, *severity;
 };
