@@ -1,3 +1,4 @@
 #!/bin/sh
 # cancel.sh NAME: ends the jobs of this name, waiting or running.
-scancel --me --name="$1"
+clusters=$(cat "$(dirname "$0")/clusters" 2>/dev/null)  # as submit.sh leaves them
+scancel ${clusters:+--clusters="$clusters"} --me --name="$1"

@@ -4,6 +4,8 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 
 #include "contract/input_error.h"
@@ -12,6 +14,8 @@
 
 namespace peclet::runner {
 namespace {
+
+namespace fs = std::filesystem;
 
 TEST(Command, SaysWhatItPrintedAndHowItLeft) {
   const CommandAnswer good = run_command({"sh", "-c", "echo yes; echo but >&2"}, std::chrono::seconds(10));
@@ -87,6 +91,79 @@ TEST_F(Query, WithoutAWholeAnswerNobodyKnows) {
   EXPECT_FALSE(answer("echo 7 N/A running"));
   EXPECT_FALSE(answer("echo slurm_load_jobs error: Unable to contact slurm controller"));
   EXPECT_TRUE(answer(":"));
+}
+
+// The built-in scripts, with sbatch, squeue and scancel that know one cluster beside the usual one.
+class SlurmScripts : public testing::Test {
+ protected:
+  SlurmScripts() {
+    for (const auto& [name, text] : batch_template("slurm", "")) std::ofstream(folder_.path() / name) << text;
+    fs::create_directory(folder_.path() / "bin");
+    program("sbatch", "echo \"$*\" >submitted; echo '7;nautilus'");
+    program("squeue",
+            "case $* in *--clusters=nautilus*) echo CLUSTER: nautilus; echo; echo 7 0 RUNNING; echo 7 1 "
+            "COMPLETED ;; "
+            "esac");
+    program("scancel", "case $* in *--clusters=nautilus*) : >cancelled ;; esac");
+    setenv("PATH", ((folder_.path() / "bin").string() + ":" + path_).c_str(), 1);
+  }
+  ~SlurmScripts() override {
+    setenv("PATH", path_.c_str(), 1);
+    unsetenv("SBATCH_CLUSTERS");
+  }
+  void program(const std::string& name, const std::string& script) {
+    const fs::path file = folder_.path() / "bin" / name;
+    std::ofstream(file) << "#!/bin/sh\ncd '" << folder_.path().string() << "'\n" << script << '\n';
+    fs::permissions(file, fs::perms(0755));
+  }
+  Submission submit(const std::vector<std::string>& options) {
+    fs::remove(folder_.path() / "clusters");
+    return submit_job(folder_.path(), "name", options);
+  }
+  void expect_found(const std::string& how) {
+    std::string why;
+    const std::optional<QueryAnswer> answer = query_job(folder_.path(), "name", why);
+    ASSERT_TRUE(answer) << how << ": " << why;
+    EXPECT_TRUE(answer->alive(0)) << how;
+    EXPECT_FALSE(answer->alive(1)) << how;
+    EXPECT_TRUE(cancel_job(folder_.path(), "name", why));
+    EXPECT_TRUE(fs::remove(folder_.path() / "cancelled")) << how;
+  }
+
+  TemporaryFolder folder_;
+  std::string path_ = std::getenv("PATH");
+};
+
+TEST_F(SlurmScripts, AskTheClusterToWhichTheJobWent) {
+  const std::vector<std::vector<std::string>> ways{
+      {"--clusters=nautilus"}, {"-Mnautilus"}, {"-M", "nautilus"}, {"--partition=x", "--clus=nautilus"}};
+  for (const auto& options : ways) {
+    EXPECT_TRUE(std::holds_alternative<JobTaken>(submit(options))) << options.front();
+    expect_found(options.front());
+  }
+  setenv("SBATCH_CLUSTERS", "nautilus", 1);
+  submit({});
+  expect_found("SBATCH_CLUSTERS");
+  unsetenv("SBATCH_CLUSTERS");
+  std::ofstream(folder_.path() / "job.sh") << "#!/bin/sh\n#SBATCH --time=1\n#SBATCH --clusters=nautilus\n";
+  submit({});
+  expect_found("the script");
+}
+
+TEST_F(SlurmScripts, RefuseAnotherName) {
+  for (const char* const option : {"-Jmine", "--job-name=mine", "-a0-3", "--array=0-3"}) {
+    const Submission answer = submit({option});
+    ASSERT_TRUE(std::holds_alternative<JobRefused>(answer)) << option;
+    EXPECT_TRUE(says(std::get<JobRefused>(answer).complaint, option));
+    EXPECT_FALSE(fs::exists(folder_.path() / "submitted")) << option;
+  }
+}
+
+TEST_F(SlurmScripts, SayHowToStayWithinALimitOnTasks) {
+  program("sbatch", "echo 'sbatch: error: QOSMaxSubmitJobPerUserLimit' >&2; exit 1");
+  const Submission answer = submit({});
+  ASSERT_TRUE(std::holds_alternative<JobRefused>(answer));
+  EXPECT_TRUE(says(std::get<JobRefused>(answer).complaint, "--largest-array N"));
 }
 
 }  // namespace
