@@ -1,6 +1,8 @@
 // How both programs leave.
 #pragma once
 
+#include <exception>
+
 namespace peclet {
 
 struct ExitCode {
@@ -16,5 +18,9 @@ struct ExitCode {
     stopped = 75,    // by a signal, a time limit or a budget; the same command goes on
   };
 };
+
+// Whether an error is about a name that no file can have, too long or a loop of links: only a person gives such
+// names, so that it is one of usage.
+bool is_impossible_name(const std::exception& error);
 
 }  // namespace peclet

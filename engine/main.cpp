@@ -78,6 +78,7 @@ std::filesystem::path target_of(const std::filesystem::path& path) {
 
 int run(const RunOptions& options) {
   if (!options.output.empty()) check_output(options.output);
+  if (!options.checkpoint.empty()) check_output(options.checkpoint);
   JobSpecification job;
   job.header.seed = options.seed;
   job.scene = read_json_input(options.scene);
@@ -226,7 +227,7 @@ int main(int argc, char** argv) {
     return ExitCode::integrity;
   } catch (const std::exception& error) {
     fmt::print(stderr, "peclet-engine: {}\n", error.what());
-    return ExitCode::error;
+    return is_impossible_name(error) ? ExitCode::usage : ExitCode::error;
   }
   return ExitCode::error;
 }

@@ -99,7 +99,7 @@ class Worker {
       const Scene scene = read_scene(message.at("scene"), "scene");
       const Schedule schedule = make_schedule(scene, "scene");
       check_fit(scene, schedule, "scene");
-      if (scene.start) check_start_of_campaign(scene, "scene");
+      if (scene.start) check_start_of_campaign(scene, "scene", message.value("seeds", std::int64_t{1}));
       answer["type"] = "validated";
       answer["timestep"] = schedule.timestep;
       answer["steps"] = schedule.total();

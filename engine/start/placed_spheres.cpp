@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <system_error>
 
 #include "contract/input_error.h"
 #include "contract/input_file.h"
@@ -44,6 +46,19 @@ class Placing {
     return placed;
   }
 
+  // A list needs a line for each seed that may ever be run.
+  void require_lines(std::int64_t seeds) const {
+    if (!start_.is_list) return;
+    require_hash(start_.path, start_.sha256, "/start/sha256");
+    const std::string text = read_input(start_.path);
+    const std::int64_t lines = std::count(text.begin(), text.end(), '\n') + (text.ends_with('\n') ? 0 : 1);
+    if (lines >= seeds) return;
+    refuse(
+        "/start/list", start_.path,
+        fmt::format("must have a line for each of the {} seeds that /realisations/maximum allows; it has {}",
+                    seeds, lines));
+  }
+
  private:
   [[noreturn]] void refuse(const std::string& pointer, const std::string& value,
                            const std::string& rule) const {
@@ -51,7 +66,8 @@ class Placing {
   }
 
   void require_hash(const std::string& path, const std::string& expected, const std::string& pointer) const {
-    if (!std::filesystem::is_regular_file(path))
+    std::error_code impossible;  // such a name is not there either
+    if (!std::filesystem::is_regular_file(path, impossible))
       refuse(start_.pointer(), path, "must be a file that is there");
     const std::string found = sha256_of_file(path);
     if (found != expected) {
@@ -126,12 +142,13 @@ PlacedSpheres placed_spheres(const Scene& scene, std::uint64_t seed, const std::
   return Placing(scene, file).place(seed);
 }
 
-void check_start_of_campaign(const Scene& scene, const std::string& file) {
+void check_start_of_campaign(const Scene& scene, const std::string& file, std::int64_t seeds) {
   if (!scene.start->is_list && !(scene.physics.thermal_energy > 0)) {
     throw InputError(
         file, "/start/file", scene.start->path,
         "must be a /start/list without noise: every seed of a campaign would be the same realisation");
   }
+  Placing(scene, file).require_lines(seeds);
   placed_spheres(scene, 0, file);
 }
 

@@ -1,6 +1,7 @@
 // Spheres where a file has them: the start of a realisation that follows another one.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "engine/scene/scene.h"
@@ -20,8 +21,9 @@ struct PlacedSpheres {
 // has both. Throws InputError where a file is not the one of the hash, or does not fit.
 PlacedSpheres placed_spheres(const Scene& scene, std::uint64_t seed, const std::string& file);
 
-// For a campaign, before it runs: the same of the first seed. One file for all seeds is refused without
-// noise, where they would be one realisation.
-void check_start_of_campaign(const Scene& scene, const std::string& file);
+// For a campaign of at most `seeds` seeds, before it runs: the same of the first seed. A list has to have a
+// line for each of them. One file for all seeds is refused without noise, where they would be one
+// realisation.
+void check_start_of_campaign(const Scene& scene, const std::string& file, std::int64_t seeds = 1);
 
 }  // namespace peclet::engine

@@ -218,8 +218,10 @@ std::vector<SceneAnswer> ask_once(const Campaign& campaign, const std::filesyste
   Conversation engine(command);
   std::vector<SceneAnswer> answers;
   for (const StatePoint& point : campaign.points) {
-    const Json answer =
-        engine.ask({{"type", "validate"}, {"request", answers.size()}, {"scene", point.scene}});
+    const Json answer = engine.ask({{"type", "validate"},
+                                    {"request", answers.size()},
+                                    {"scene", point.scene},
+                                    {"seeds", campaign.maximum_realisations}});
     if (answer.at("type") == "refused") {
       const std::string where =
           point.label.empty() ? "" : fmt::format(" (in the point {})", printable(point.label, 60));

@@ -1,7 +1,6 @@
 #include "runner/verbs/exit_code.h"
 
 #include <filesystem>
-#include <system_error>
 
 #include "contract/exit_codes.h"
 #include "contract/input_error.h"
@@ -11,17 +10,6 @@
 #include "runner/folder/owner_lock.h"
 
 namespace peclet::runner {
-namespace {
-
-// Only a name that a person gave can be a loop of links or too long: ours are none.
-bool is_impossible_name(const std::exception& error) {
-  const auto* const fault = dynamic_cast<const std::system_error*>(&error);
-  return fault != nullptr && (fault->code() == std::errc::too_many_symbolic_link_levels ||
-                              fault->code() == std::errc::filename_too_long);
-}
-
-}  // namespace
-
 int exit_code_of(const std::exception& error) {
   if (dynamic_cast<const InputError*>(&error) != nullptr || is_impossible_name(error)) return ExitCode::usage;
   if (dynamic_cast<const OwnedByAnother*>(&error) != nullptr) return ExitCode::owned;

@@ -150,6 +150,10 @@ Json studies_json(const std::vector<StudySummary>& studies) {
 }
 
 int perform_study(const StudyOptions& options) {
+  std::error_code impossible;
+  if (fs::status(options.folder, impossible).type() == fs::file_type::none) {
+    throw InputError("", "--folder", options.folder.string(), "cannot be made: " + impossible.message());
+  }
   const fs::path results = results_folder(options.results);
   const std::vector<StudySummary> studies = read_studies(results);
   if (options.all) become_driver_of_all(options, results, studies);

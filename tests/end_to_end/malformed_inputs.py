@@ -57,6 +57,7 @@ SCENE_FAULTS = [
     ("/lubrication/inner_gap", 0.2, ["/lubrication", "0.2"]),
     ("/lubrication/form", "brenner", ["/lubrication/form", "brenner", "kim-karrila"]),
     ("/duration/production", {"brownian_times": 3}, ["/duration/production", "brownian_times"]),
+    ("/start", {"list": "/" + "n" * 5000, "sha256": "0" * 64}, ["/start/list", "must be a file that is there"]),
     ("/duration/production", {"strain": 1e300}, ["/duration/production", "1e+300", "at most"]),
     ("/integrator", {"timestep": 1.0}, ["/integrator/timestep", ": 1: ", "at most"]),
     ("/peclet", 10, ["peclet"]),

@@ -178,6 +178,27 @@ TEST_F(StartedJob, OfOneFileIsNoCampaignWithoutNoise) {
   EXPECT_NO_THROW(check(scene(start("starts", "list"), patch)));
 }
 
+TEST_F(StartedJob, OfAListNeedsALineForEverySeedOfTheCampaign) {
+  const std::string line = fmt::format("{}  {}\n", sha256_of_file(path("a.final.xyz")), path("a.final.xyz"));
+  write_durably(path("starts"), line + line + line);
+  const Scene listed = read_scene(scene(start("starts", "list")), "");
+  EXPECT_NO_THROW(check_start_of_campaign(listed, "scene", 3));
+  try {
+    check_start_of_campaign(listed, "scene", 4);
+    FAIL() << "taken";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.pointer(), "/start/list");
+    EXPECT_NE(std::string(error.what()).find("for each of the 4 seeds"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(StartedJob, OfANameThatNoFileCanHaveIsRefused) {
+  for (const char* const key : {"file", "list"}) {
+    Json named = {{"sha256", std::string(64, 'a')}, {key, "/" + std::string(5000, 'a')}};
+    EXPECT_THROW(check_start_of_campaign(read_scene(scene(named), ""), "scene"), InputError) << key;
+  }
+}
+
 // Positions alone: the streaming flow, and noise by the seed, as after packing.
 TEST_F(StartedJob, WithoutMotionInItsFileBeginsWithThatOfAFreshOne) {
   std::string text = read_file(path("a.final.xyz"));
