@@ -64,10 +64,11 @@ void check_kind(Connection& connection) {
   }
   const std::int64_t version = version_of(connection);
   if (version > newest_version) {
-    throw IntegrityError(fmt::format(
-        "{}: was written by a newer peclet (version {} of its tables; this program knows versions up to "
-        "{}); use that peclet or a newer one",
-        connection.path(), version, newest_version));
+    throw InputError(
+        connection.path(), "", "",
+        fmt::format("was written by a newer peclet (version {} of its tables; this program knows "
+                    "versions up to {}); use that peclet or a newer one",
+                    version, newest_version));
   }
   if (version < 1) {
     throw IntegrityError(

@@ -126,8 +126,8 @@ bool is_campaign_database(Connection& connection);
 class Database {
  public:
   // Opens or creates the database for its owner. Requires the campaign's lock.
-  // Throws IntegrityError for a file that is no campaign database, is damaged or is of a newer version, and
-  // DatabaseError.
+  // Throws IntegrityError for a file that is no campaign database or is damaged, InputError for one of a
+  // newer version, and DatabaseError.
   static Database open_owner(const std::filesystem::path& path);
   // Opens it for reading. All that one Database reads is one snapshot, taken at the first read.
   // Throws as above; InputError when there is no such file.

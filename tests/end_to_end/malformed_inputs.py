@@ -266,11 +266,11 @@ class Trial:
                 with open(path, "rb") as f:
                     return f.read()
 
-            for name, content in [
-                ("that is none", b"once upon a time " * 500),
-                ("cut off", good[: len(good) // 2]),
-                ("of another program", changed("PRAGMA application_id = 1")),
-                ("of a later version", changed("PRAGMA user_version = 99")),
+            for name, content, code in [
+                ("that is none", b"once upon a time " * 500, 6),
+                ("cut off", good[: len(good) // 2], 6),
+                ("of another program", changed("PRAGMA application_id = 1"), 6),
+                ("of a later version", changed("PRAGMA user_version = 99"), 2),
             ]:
                 for verb in ("status", "export", "run"):
                     for suffix in ("-wal", "-shm"):
@@ -278,9 +278,8 @@ class Trial:
                             os.remove(path + suffix)
                     with open(path, "wb") as f:
                         f.write(content)
-                    self.refuse(
-                        f"database {name}, {verb}", folder, [self.peclet, verb, "small.json"], 6, ["campaign.db"]
-                    )
+                    command = [self.peclet, verb, "small.json"]
+                    self.refuse(f"database {name}, {verb}", folder, command, code, ["campaign.db"])
 
 
 def main():

@@ -131,9 +131,9 @@ def newer_program(night):
     database.close()
     night.remarks("Here the database says that its tables are of version 99.")
     night.types(
-        "peclet run night.json", 6, ["written by a newer peclet", "version 99", "use that peclet or a newer one"]
+        "peclet run night.json", 2, ["written by a newer peclet", "version 99", "use that peclet or a newer one"]
     )
-    night.types("peclet status night.json", 6, ["written by a newer peclet"])
+    night.types("peclet status night.json", 2, ["written by a newer peclet"])
     night.lost_nothing()
 
 

@@ -58,7 +58,7 @@ TEST_F(Databases, ANewerVersionAsksForANewerProgram) {
     try {
       owner ? Database::open_owner(path()) : Database::open_reader(path());
       FAIL() << "opened";
-    } catch (const IntegrityError& error) {
+    } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find("newer peclet (version 8"), std::string::npos) << error.what();
     }
   }
