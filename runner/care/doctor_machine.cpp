@@ -8,10 +8,10 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
-#include <thread>
 #include <utility>
 
 #include "runner/care/doctor.h"
+#include "runner/engines/usable_cores.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {
@@ -95,7 +95,7 @@ Expected still_needed(Database& database, const CampaignDirectory& directory) {
       if (!gone) checkpoint = std::max(checkpoint, bytes);
     }
   }
-  const std::uintmax_t workers = std::max<std::uintmax_t>(1, std::thread::hardware_concurrency());
+  const auto workers = static_cast<std::uintmax_t>(usable_cores());
   return {seeds * each * 4 + size + workers * (2 * checkpoint + each), 2 * workers + 16};
 }
 

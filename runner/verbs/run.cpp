@@ -8,13 +8,13 @@
 #include <cstdio>
 #include <memory>
 #include <string>
-#include <thread>
 
 #include "contract/exit_codes.h"
 #include "runner/batch/bundle_files.h"
 #include "runner/campaign/campaign_file.h"
 #include "runner/care/periodic_backup.h"
 #include "runner/database/sqlite.h"
+#include "runner/engines/usable_cores.h"
 #include "runner/engines/worker_process.h"
 #include "runner/events/event_stream.h"
 #include "runner/events/progress.h"
@@ -43,7 +43,7 @@ WorkerCount useful_worker_count(const RunOptions& options, const Campaign& campa
 // What a person should know who asked for more than the machine has.
 void judge_worker_count(const WorkerCount& size, RunListener& listener) {
   constexpr int tolerable = 4;
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int cores = usable_cores();
   if (size.workers * std::int64_t{size.threads} <= std::int64_t{tolerable} * cores) return;
   listener.warn(
       fmt::format("{} workers of {} threads share {} cores: that is slower than --workers {}, and takes "
@@ -195,7 +195,7 @@ int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion&
 }  // namespace
 
 WorkerCount worker_count(const RunOptions& options) {
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int cores = usable_cores();
   if (options.workers > 0 && options.threads > 0) return {options.workers, options.threads};
   if (options.workers > 0) return {options.workers, std::max(1, cores / options.workers)};
   const int threads = std::max(1, options.threads);

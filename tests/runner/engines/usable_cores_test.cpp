@@ -1,0 +1,62 @@
+#include "runner/engines/usable_cores.h"
+
+#include <gtest/gtest.h>
+#include <sched.h>
+
+#include "contract/durable_file.h"
+#include "tests/runner/runner_fixture.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+
+// taskset and Slurm's cpusets set this mask; the machine may have more cores.
+TEST(UsableCores, AreThoseOfTheAffinityMask) {
+  cpu_set_t before;
+  ASSERT_EQ(sched_getaffinity(0, sizeof(before), &before), 0);
+  EXPECT_LE(usable_cores(), CPU_COUNT(&before));
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  for (int core = 0; core < CPU_SETSIZE; ++core) {
+    if (CPU_ISSET(core, &before) && CPU_COUNT(&one) == 0) CPU_SET(core, &one);
+  }
+  ASSERT_EQ(sched_setaffinity(0, sizeof(one), &one), 0);
+  EXPECT_EQ(usable_cores(), 1);
+  ASSERT_EQ(sched_setaffinity(0, sizeof(before), &before), 0);
+}
+
+class CoreQuota : public testing::Test {
+ protected:
+  void write(const std::string& file, const std::string& text) {
+    fs::create_directories((folder_.path() / file).parent_path());
+    write_durably(folder_.path() / file, text);
+  }
+  std::optional<double> quota(const std::string& groups) { return core_quota(folder_.path(), groups); }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(CoreQuota, IsTheLeastOfAGroupAndThoseAboveIt) {
+  EXPECT_EQ(quota("0::/slurm/job_7\n"), std::nullopt);
+  write("slurm/job_7/cpu.max", "400000 100000\n");
+  EXPECT_EQ(quota("0::/slurm/job_7\n"), 4);
+  write("slurm/cpu.max", "max 100000\n");
+  EXPECT_EQ(quota("0::/slurm/job_7\n"), 4);
+  write("cpu.max", "150000 100000\n");
+  EXPECT_EQ(quota("0::/slurm/job_7\n"), 1.5);
+  EXPECT_EQ(quota("0::/\n"), 1.5);
+  EXPECT_EQ(quota("rubbish\n\n0:\n"), std::nullopt);
+}
+
+TEST_F(CoreQuota, OfVersionOneIsThatOfItsController) {
+  write("cpu,cpuacct/job/cpu.cfs_quota_us", "200000\n");
+  write("cpu,cpuacct/job/cpu.cfs_period_us", "100000\n");
+  const std::string groups = "5:memory:/job\n4:cpu,cpuacct:/job\n1:name=systemd:/job\n";
+  EXPECT_EQ(quota(groups), 2);
+  write("cpu,cpuacct/job/cpu.cfs_quota_us", "-1\n");
+  EXPECT_EQ(quota(groups), std::nullopt);
+}
+
+}  // namespace
+}  // namespace peclet::runner
