@@ -20,6 +20,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Pages that look now and then are a few revisions behind.
+constexpr int most_revisions = 16;
+constexpr std::size_t most_details = 64;
+
 CampaignDirectory folder_of(const fs::path& campaign, const fs::path& directory) {
   return fs::is_directory(campaign) ? CampaignDirectory(campaign) : campaign_directory(campaign, directory);
 }
@@ -135,6 +139,8 @@ std::shared_ptr<const std::string> LiveCampaign::changes_since(const std::string
     std::from_chars(token.data() + process_.size() + 1, token.data() + token.size(), since);
   }
   if (since == revision_) return nullptr;
+  // What was made up, or is older than any page that still asks, is told everything: what is kept is bounded.
+  if (since < revision_ - most_revisions || since > revision_) since = 0;
   Text& known = changes_[since];
   if (!known) {
     std::string points;
@@ -151,6 +157,7 @@ std::shared_ptr<const std::string> LiveCampaign::changes_since(const std::string
 std::shared_ptr<const std::string> LiveCampaign::details(const std::string& hash) {
   const std::optional<std::string> key = reader_.key(hash);
   if (!key) return nullptr;
+  if (details_.size() >= most_details && !details_.contains(hash)) details_.clear();
   Details& known = details_[hash];
   const Clock::time_point begun = Clock::now();
   if (known.text && (known.key == *key || begun < detailed_)) return known.text;

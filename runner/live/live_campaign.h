@@ -33,7 +33,8 @@ class LiveCampaign {
   // what is waited for, in the place of points.
   std::shared_ptr<const std::string> page();
   // What has changed since the token: {"live", "head": the document without points, "count", "points": those
-  // that have changed, by their place}; of a token that is none of this process everything. Null: nothing.
+  // that have changed, by their place}; of a token that is none of this process, or a much older one,
+  // everything. Null: nothing.
   std::shared_ptr<const std::string> changes_since(const std::string& token);
   // point_details() of the point with this hash; null when there is none.
   std::shared_ptr<const std::string> details(const std::string& hash);
@@ -74,8 +75,8 @@ class LiveCampaign {
   Part head_;
   std::vector<Part> points_;
   Text page_;
-  std::map<int, Text> changes_;  // by the revision since which
-  std::map<std::string, Details> details_;
+  std::map<int, Text> changes_;             // by the revision since which; a bounded number
+  std::map<std::string, Details> details_;  // by the point's hash; a bounded number
 };
 
 }  // namespace peclet::runner

@@ -113,13 +113,16 @@ class Exchange {
   bool without_body_ = false;
 };
 
+std::list<Exchange>::const_iterator soonest_to_end(const std::list<Exchange>& exchanges) {
+  return std::min_element(exchanges.begin(), exchanges.end(),
+                          [](const Exchange& a, const Exchange& b) { return a.deadline() < b.deadline(); });
+}
+
 // Until the next deadline; without connections as long as it takes.
 int wait_milliseconds(const std::list<Exchange>& exchanges) {
   if (exchanges.empty()) return -1;
-  const auto soonest =
-      std::min_element(exchanges.begin(), exchanges.end(),
-                       [](const Exchange& a, const Exchange& b) { return a.deadline() < b.deadline(); });
-  const auto left = std::chrono::ceil<std::chrono::milliseconds>(soonest->deadline() - Clock::now());
+  const auto left =
+      std::chrono::ceil<std::chrono::milliseconds>(soonest_to_end(exchanges)->deadline() - Clock::now());
   return static_cast<int>(std::max<std::chrono::milliseconds::rep>(left.count() + 1, 0));
 }
 
@@ -152,8 +155,7 @@ void LoopbackServer::serve(int stop, const Handler& handler) {
   std::list<Exchange> exchanges;
   std::vector<pollfd> watched;
   for (;;) {
-    // A listener that nobody watches lets others wait in its queue.
-    watched = {{stop, POLLIN, 0}, {exchanges.size() < most_connections ? listener_ : -1, POLLIN, 0}};
+    watched = {{stop, POLLIN, 0}, {listener_, POLLIN, 0}};
     for (const Exchange& one : exchanges) watched.push_back({one.socket(), one.awaits(), 0});
     if (poll(watched.data(), watched.size(), wait_milliseconds(exchanges)) < 0 && errno != EINTR)
       fail("poll");
@@ -166,7 +168,10 @@ void LoopbackServer::serve(int stop, const Handler& handler) {
     exchanges.remove_if([&](const Exchange& one) { return one.is_over(now); });
     if (watched[1].revents == 0) continue;
     const int socket = accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
-    if (socket >= 0) exchanges.emplace_back(socket);
+    if (socket < 0) continue;
+    // Slow connections make no other wait: the one that has got on least makes room.
+    if (exchanges.size() >= most_connections) exchanges.erase(soonest_to_end(exchanges));
+    exchanges.emplace_back(socket);
   }
 }
 

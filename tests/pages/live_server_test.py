@@ -114,6 +114,18 @@ class Answers(ServerTest):
             self.assertEqual(one.recv(1), b"")  # closed by the server
             one.close()
 
+    def test_connections_that_say_little_make_no_other_wait(self):
+        slow = []
+        for number in range(200):
+            slow.append(socket.create_connection(("127.0.0.1", self.server.port)))
+            slow[-1].sendall(b"GET / HTTP/1.1\r\nHost: local")
+        begun = time.monotonic()
+        for _ in range(5):
+            self.assertEqual(self.server.ask()[0], 200)
+        self.assertLess(time.monotonic() - begun, 5)  # a connection that gets nowhere is closed after 10 s
+        for one in slow:
+            one.close()
+
     def test_it_listens_on_this_machine_only(self):
         with open(f"/proc/{self.server.process.pid}/net/tcp", encoding="ascii") as file:
             places = [line.split()[1] for line in file.readlines()[1:]]
@@ -131,6 +143,16 @@ class Cost(ServerTest):
         took = self.server.seconds() - before
         # Measured: 0.1 s of 1000 questions. Ten pages ask ten a second.
         self.assertLess(took, 1, f"{time.monotonic() - begun:.1f} s on the wall")
+
+    def test_tokens_that_were_made_up_take_no_memory(self):
+        process, count = json.loads(self.server.ask("state?since=")[2])["live"]["token"].rsplit(".", 1)
+        everything = self.server.ask(f"state?since={process}.{int(count) + 1}")
+        self.assertEqual(everything[0], 200)
+        before = self.server.memory()
+        for made_up in range(1000):
+            self.server.ask(f"state?since={process}.{(-1) ** made_up * (1000 + made_up)}")
+        # Kept, each would take the length of the whole state.
+        self.assertLess(self.server.memory() - before, 100 * len(everything[2]))
 
     def test_a_report_reads_what_a_server_has_left(self):
         self.assertIn("9 points", Stage.folder.peclet("status", "curve.json"))

@@ -53,6 +53,18 @@ TEST_F(LivePage, TellsEverythingAtFirstAndThenOnlyWhatHasChanged) {
   EXPECT_EQ(live.standing(), ExitCode::unfinished);
 }
 
+// Whatever is asked for, a bounded number of texts is kept.
+TEST_F(LivePage, TokensThatWereMadeUpAreToldEverythingInOneText) {
+  campaign_.complete(0, 0, 10);
+  LiveCampaign live = this->live();
+  const auto everything = live.changes_since("");
+  const std::string token = token_of(parsed(everything));
+  const std::string process = token.substr(0, token.rfind('.') + 1);
+  for (const char* const made_up : {"-1", "-2147483648", "17", "2147483647", "9999999999999", "x", ""}) {
+    EXPECT_EQ(live.changes_since(process + made_up), everything) << made_up;
+  }
+}
+
 TEST_F(LivePage, WhatHasNotChangedIsNoNews) {
   campaign_.complete(0, 0, 10);
   LiveCampaign live = this->live();
