@@ -174,6 +174,10 @@ void examine_disk(Database& database, const CampaignUnderExamination& examined, 
     findings.push_back({"network-file-system", Severity::warning,
                         fmt::format("the campaign is on {}, where locks and fsync cannot be trusted", *kind),
                         "move it with `peclet backup` and `peclet restore` to a local disk"});
+  } else if (const std::string doubt = doubt_about_file_system(root); !doubt.empty()) {
+    findings.push_back(
+        {"network-file-system", Severity::warning, doubt,
+         "move it with `peclet backup` and `peclet restore` if more than one machine uses it"});
   }
   struct statvfs about {};
   if (statvfs(root.c_str(), &about) != 0) return;

@@ -2,12 +2,12 @@
 #include <memory>
 
 #include "contract/output_file.h"
+#include "runner/command_line/open_to_look.h"
 #include "runner/command_line/print.h"
 #include "runner/command_line/verb_set.h"
 #include "runner/figure/figure_script.h"
 #include "runner/figure/picture.h"
 #include "runner/figure/svg_figure.h"
-#include "runner/owner/open_campaign.h"
 
 namespace peclet::runner {
 namespace {
@@ -28,7 +28,7 @@ void draw_campaign(const PlotOptions& options) {
     check_output(options.output);
     check_output(beside);
   }
-  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  OpenCampaign open = open_to_look(options.campaign, options.directory);
   const Figure figure = make_figure(open.database, options.choice);
   const std::string script = figure_script(figure);
   deliver(picture(figure, form, script), options.output, options.quiet);

@@ -5,10 +5,10 @@
 
 #include "contract/output_file.h"
 #include "runner/archive/supplement.h"
+#include "runner/command_line/open_to_look.h"
 #include "runner/command_line/print.h"
 #include "runner/command_line/verb_set.h"
 #include "runner/folder/owner_lock.h"
-#include "runner/owner/open_campaign.h"
 #include "runner/page/page_html.h"
 #include "runner/reports/explain.h"
 #include "runner/reports/export.h"
@@ -22,7 +22,7 @@ namespace peclet::runner {
 namespace {
 
 int show_status(const StatusOptions& options) {
-  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  OpenCampaign open = open_to_look(options.campaign, options.directory);
   CampaignStatus status = read_status(open.database);
   status.owner = current_owner(open.directory);
   print(options.json ? status_json(status).dump(2) + '\n' : status_table(status) + workers_text(status));
@@ -73,7 +73,7 @@ it changes.
 }
 
 void show_explanation(const ExplainOptions& options) {
-  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  OpenCampaign open = open_to_look(options.campaign, options.directory);
   print(options.json ? explain_json(open.database, open.directory, options.point).dump(2) + '\n'
                      : explain(open.database, open.directory, options.point));
 }
@@ -100,7 +100,7 @@ said last, whether the window is long enough, and what would bring the point fur
 }
 
 void show_files(const FilesOptions& options) {
-  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  OpenCampaign open = open_to_look(options.campaign, options.directory);
   print(list_files(open.database, open.directory, options));
 }
 
@@ -130,11 +130,11 @@ void export_campaign(const ExportOptions& options) {
   if (!options.bundle.empty()) {
     check_supplement_name(options.bundle);
     check_output(options.bundle);
-    OpenCampaign whole = open_campaign(options.campaign, options.directory);
+    OpenCampaign whole = open_to_look(options.campaign, options.directory);
     deliver(supplement(whole.database, current_owner(whole.directory)), options.bundle, options.quiet);
     return;
   }
-  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  OpenCampaign open = open_to_look(options.campaign, options.directory);
   const auto text = [&] {
     switch (options.format) {
       case ExportFormat::json:
@@ -203,7 +203,7 @@ rest gives the same bytes at any time.
 }
 
 void print_results(const ResultsOptions& options) {
-  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  OpenCampaign open = open_to_look(options.campaign, options.directory);
   for_each_result_line(open.database, options.point, options.seed,
                        [](const std::string& line) { print(line + '\n'); });
 }
@@ -234,7 +234,7 @@ must not enter a mean: which seeds end first depends on the machine. Also while 
 }
 
 void write_report(const ReportOptions& options) {
-  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  OpenCampaign open = open_to_look(options.campaign, options.directory);
   deliver(report_html(open.database, current_owner(open.directory)), options.output, options.quiet);
 }
 

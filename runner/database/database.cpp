@@ -1,6 +1,8 @@
 #include "runner/database/database.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -85,6 +87,10 @@ void create_tables(Connection& connection) {
   connection.empty_log();  // what is to become larger later has its place now
 }
 
+bool may_write(const std::filesystem::path& folder) {
+  return faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) == 0;
+}
+
 // A log of some 4 MB, and less on a small disk: a full one whose log takes most of it has no room to bring
 // the log into the database either, and nobody could ever go on.
 int pages_of_log(const std::filesystem::path& database) {
@@ -93,7 +99,30 @@ int pages_of_log(const std::filesystem::path& database) {
   return static_cast<int>(std::clamp(available / (part * page), least, most));
 }
 
+// SQLite keeps an index of its log beside a database that somebody reads, and cannot where nothing may be
+// written.
+std::unique_ptr<Connection> connection_of_reader(const std::filesystem::path& path) {
+  constexpr int busy_milliseconds = 5'000;
+  const bool is_frozen = is_frozen_for_us(path);
+  try {
+    const auto access = is_frozen ? Connection::Access::frozen : Connection::Access::read_only;
+    auto connection = std::make_unique<Connection>(path.string(), access, busy_milliseconds);
+    connection->integer("PRAGMA schema_version");  // the first read
+    return connection;
+  } catch (const DatabaseError&) {
+    if (is_frozen || may_write(path.parent_path())) throw;
+    throw InputError(
+        path.string(), "", "",
+        "has a log beside it (campaign.db-wal) that can be read only where the folder may be written: "
+        "copy the folder, or ask its owner for `peclet backup`");
+  }
+}
+
 }  // namespace
+
+bool is_frozen_for_us(const std::filesystem::path& path) {
+  return kind_of(path.string() + "-wal").empty() && !may_write(path.parent_path());
+}
 
 bool is_campaign_database(Connection& connection) {
   return connection.integer("PRAGMA application_id") == our_application;
@@ -136,7 +165,7 @@ Database Database::open_reader(const std::filesystem::path& path) {
     throw InputError(path.string(), "", "",
                      "no such database; has the campaign been started with `peclet run`?");
   }
-  Database database(std::make_unique<Connection>(path.string(), Connection::Access::read_only, 5'000));
+  Database database(connection_of_reader(path));
   database.snapshot_ = std::make_unique<Transaction>(database.connection(), Transaction::Kind::snapshot);
   if (is_empty(database.connection())) throw BeingSetUp(path.string());
   check_kind(database.connection());

@@ -123,6 +123,10 @@ struct CampaignRecord {
 // Whether a file that SQLite can open is a campaign's database, of whatever version.
 bool is_campaign_database(Connection& connection);
 
+// Whether a reader reads this database without locks and without a log: there is no log, and its folder may
+// not be written, so that nobody here can write it.
+bool is_frozen_for_us(const std::filesystem::path& path);
+
 class Database {
  public:
   // Opens or creates the database for its owner. Requires the campaign's lock.
@@ -130,7 +134,8 @@ class Database {
   // newer version, and DatabaseError.
   static Database open_owner(const std::filesystem::path& path);
   // Opens it for reading. All that one Database reads is one snapshot, taken at the first read.
-  // Throws as above; InputError when there is no such file.
+  // In a folder that may not be written, and without a log, the file is read as it is. Throws as above;
+  // InputError when there is no such file, or a log beside it that cannot be read there.
   static Database open_reader(const std::filesystem::path& path);
 
   CampaignRecord campaign();

@@ -54,10 +54,25 @@ std::string without_links_above(const std::filesystem::path& path) {
 bool DatabaseError::no_room() const {
   const int primary = code_ & 0xff;
   if (primary == SQLITE_FULL) return true;
+    case Connection::Access::frozen:
+      return SQLITE_OPEN_READONLY | SQLITE_OPEN_URI;
   return (primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN) && peclet::means_no_room(system_error_);
 }
 
 bool means_no_room(const std::exception& error) {
+// What has a meaning in a URI (https://sqlite.org/uri.html) is escaped.
+std::string uri_of_frozen(const std::string& path) {
+  std::string uri = "file:";
+  for (const char c : path) {
+    if (c == '%' || c == '?' || c == '#') {
+      uri += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    } else {
+      uri += c;
+    }
+  }
+  return uri + "?immutable=1";
+}
+
   if (const auto* database = dynamic_cast<const DatabaseError*>(&error)) return database->no_room();
   const auto* system = dynamic_cast<const std::system_error*>(&error);
   return system != nullptr && peclet::means_no_room(system->code().value());
@@ -73,7 +88,7 @@ Connection::Connection(const std::string& path, Access access, int busy_millisec
   // Looked at beforehand, because SQLite would wait for a FIFO; that it never follows a link is its own rule.
   for (const char* const suffix : {"", "-wal", "-shm", "-journal"}) require_regular(path + suffix);
   const int code = sqlite3_open_v2(
-      without_links_above(path).c_str(), &handle_,
+      (access == Access::frozen ? uri_of_frozen(place) : place).c_str(), &handle_,
       flags_of(access) | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE | SQLITE_OPEN_NOFOLLOW, nullptr);
   if (code != SQLITE_OK) {
     sqlite3* const broken = handle_;
@@ -117,6 +132,7 @@ void Connection::put_back(sqlite3_stmt* statement) noexcept {
       idle_.emplace(sql, statement);
       return;
     }
+  const std::string place = without_links_above(path);
   } catch (const std::bad_alloc&) {  // then it is compiled again
   }
   sqlite3_finalize(statement);

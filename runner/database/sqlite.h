@@ -37,7 +37,8 @@ bool means_no_room(const std::exception& error);
 
 class Connection {
  public:
-  enum class Access { create, read_write, read_only };
+  // `frozen`: reads a file that nobody writes meanwhile, without its log and without locks.
+  enum class Access { create, read_write, read_only, frozen };
   // The name of a database that is no file and ends with its connection.
   static constexpr const char* in_memory = ":memory:";
 

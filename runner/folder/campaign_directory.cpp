@@ -21,17 +21,46 @@ std::string stem(const std::string& hash, int seed) {
 }
 
 // statfs(2) magic numbers of file systems whose locks or fsync cannot be trusted between machines.
-constexpr std::array<std::pair<unsigned long, const char*>, 9> network_kinds{{{0x6969, "NFS"},
-                                                                              {0x517b, "SMB"},
-                                                                              {0xff534d42, "CIFS"},
-                                                                              {0xfe534d42, "SMB2"},
-                                                                              {0x00c36400, "Ceph"},
-                                                                              {0x0bd00bd0, "Lustre"},
-                                                                              {0x47504653, "GPFS"},
-                                                                              {0x19830326, "BeeGFS"},
-                                                                              {0x5346414f, "AFS"}}};
+constexpr std::array<std::pair<unsigned long, const char*>, 11> network_kinds{{{0x6969, "NFS"},
+                                                                               {0x517b, "SMB"},
+                                                                               {0xff534d42, "CIFS"},
+                                                                               {0xfe534d42, "SMB2"},
+                                                                               {0x00c36400, "Ceph"},
+                                                                               {0x0bd00bd0, "Lustre"},
+                                                                               {0x47504653, "GPFS"},
+                                                                               {0x19830326, "BeeGFS"},
+                                                                               {0x5346414f, "AFS"},
+                                                                               {0x6b414653, "AFS"},
+                                                                               {0xaad7aaea, "PanFS"}}};
+// Those of a network or of this machine, which the number does not say.
+constexpr std::array<std::pair<unsigned long, const char*>, 8> doubtful_kinds{
+    {{0x65735546, "FUSE (sshfs, DAOS, Gluster and others)"},
+     {0x01021997, "9P (a virtual machine's host)"},
+     {0x20030528, "OrangeFS"},
+     {0x7461636f, "OCFS2"},
+     {0x01161970, "GFS2"},
+     {0x73757245, "Coda"},
+     {0x786f4256, "a folder that VirtualBox shares"},
+     {0xbacbacbc, "a folder that VMware shares"}}};
 
 constexpr std::string_view suffix_of_growing = "@growing";
+
+// The kind of the file system among `kinds`, of the path or of the nearest folder above it that exists.
+template <typename Kinds>
+std::optional<std::string> kind_among(const Kinds& kinds, const fs::path& path) {
+  fs::path existing = fs::absolute(path);
+  while (!fs::exists(existing) && existing.has_relative_path()) existing = existing.parent_path();
+  struct statfs about {};
+  if (statfs(existing.c_str(), &about) != 0) {
+    throw std::system_error(errno, std::generic_category(), existing.string());
+  }
+  // The field is signed or not, 32 or 64 bits wide, depending on the machine.
+  const unsigned long magic = static_cast<unsigned long>(about.f_type) & 0xffffffffUL;
+  for (const auto& [number, name] : kinds) {
+    if (number == magic) return name;
+  }
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -98,18 +127,17 @@ fs::path make_folder_aside(const CampaignDirectory& directory) {
 }
 
 std::optional<std::string> network_file_system(const fs::path& path) {
-  fs::path existing = fs::absolute(path);
-  while (!fs::exists(existing) && existing.has_relative_path()) existing = existing.parent_path();
-  struct statfs about {};
-  if (statfs(existing.c_str(), &about) != 0) {
-    throw std::system_error(errno, std::generic_category(), existing.string());
-  }
-  // The field is signed or not, 32 or 64 bits wide, depending on the machine.
-  const unsigned long magic = static_cast<unsigned long>(about.f_type) & 0xffffffffUL;
-  for (const auto& [number, name] : network_kinds) {
-    if (number == magic) return name;
-  }
-  return std::nullopt;
+  return kind_among(network_kinds, path);
+}
+
+std::string doubt_about_file_system(const fs::path& path) {
+  const std::optional<std::string> kind = kind_among(doubtful_kinds, path);
+  if (!kind) return "";
+  return fmt::format(
+      "{}: is on {}; if that is one of a network, its locks and fsync cannot be trusted: use it from one "
+      "machine "
+      "alone, or choose a --directory on a local disk",
+      path.string(), *kind);
 }
 
 }  // namespace peclet::runner

@@ -71,3 +71,6 @@ std::filesystem::path make_folder_aside(const CampaignDirectory& directory);
 std::optional<std::string> network_file_system(const std::filesystem::path& path);
 
 }  // namespace peclet::runner
+// Returns a warning if the folder is on a file system that may be one of a network; "" if it is not.
+std::string doubt_about_file_system(const std::filesystem::path& path);
+

@@ -276,6 +276,8 @@ int hand_over_campaign(const HandOverOptions& options) {
     finished = Follower(ledger, bundles, requests, progress, owned.directory, options).run(settings);
     code = ending(read_status(owned.database), finished);
   }
+    if (const std::string doubt = doubt_about_file_system(owned.directory.root()); !doubt.empty())
+      progress.warn(doubt);
   std::fputs(status_table(owned.database, getpid()).c_str(), stdout);
   return code;
 }

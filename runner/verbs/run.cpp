@@ -171,6 +171,8 @@ int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion&
     try {
       opened = open_when_there_is_room(claimed, options, log, signals);
       if (opened) {
+    if (const std::string doubt = doubt_about_file_system(claimed.directory.root()); !doubt.empty())
+      log.warn(doubt);
         opened->ledger.set_bounds(bounds_of(options, claimed, ceiling));
         opened->before = summed_error(opened->ledger.scheduler());
         code = dispatch(*opened, options, claimed, log, signals);

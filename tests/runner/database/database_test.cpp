@@ -1,6 +1,7 @@
 #include "runner/database/database.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
@@ -151,6 +152,39 @@ TEST_F(Databases, AReaderOfWhatIsOnlyJustBeingSetUpMayWait) {
   EXPECT_THROW(Database::open_reader(path()), BeingSetUp);
   PointStore(owner).adopt(plain_campaign(1, 4, 40, 0.05));
   EXPECT_NO_THROW(Database::open_reader(path()));
+}
+
+// As of a colleague's campaign; root may write anywhere and becomes somebody else meanwhile.
+TEST_F(Databases, AReaderNeedsNoRightToWrite) {
+  {
+    Database owner = Database::open_owner(path());
+    PointStore(owner).adopt(plain_campaign(1, 4, 40, 0.05));
+  }
+  ASSERT_FALSE(std::filesystem::exists(path().string() + "-wal"));
+  constexpr uid_t nobody = 65534;
+  const uid_t self = geteuid();
+  const auto as_stranger = [&](const auto& what) {
+    std::filesystem::permissions(path().parent_path(), std::filesystem::perms(0555));
+    if (self == 0) ASSERT_EQ(seteuid(nobody), 0);
+    what();
+    if (self == 0) ASSERT_EQ(seteuid(self), 0);
+    std::filesystem::permissions(path().parent_path(), std::filesystem::perms(0755));
+  };
+  EXPECT_FALSE(is_frozen_for_us(path()));
+  as_stranger([&] {
+    EXPECT_TRUE(is_frozen_for_us(path()));
+    EXPECT_EQ(Database::open_reader(path()).points().size(), 1U);
+  });
+  // What a log holds cannot be told without one's own index of it.
+  std::ofstream(path().string() + "-wal") << std::string(4152, 'x');
+  as_stranger([&] {
+    try {
+      Database::open_reader(path());
+      ADD_FAILURE() << "opened";
+    } catch (const InputError& error) {
+      EXPECT_TRUE(says(error.what(), "has a log beside it")) << error.what();
+    }
+  });
 }
 
 TEST_F(Databases, AReaderCannotWrite) {

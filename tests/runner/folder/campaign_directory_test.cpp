@@ -1,6 +1,8 @@
 #include "runner/folder/campaign_directory.h"
 
 #include <gtest/gtest.h>
+#include <sys/syscall.h>
+#include <sys/vfs.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -10,6 +12,20 @@
 #include "contract/guarded_file.h"
 #include "runner/folder/owner_lock.h"
 #include "tests/runner/runner_fixture.h"
+
+namespace {
+
+unsigned long kind_of_file_system = 0;  // 0: what the kernel says
+
+}  // namespace
+
+// In the place of the C library's.
+extern "C" int statfs(const char* path, struct statfs* about) noexcept {
+  const auto result = static_cast<int>(syscall(SYS_statfs, path, about));
+  if (result == 0 && kind_of_file_system != 0)
+    about->f_type = static_cast<decltype(about->f_type)>(kind_of_file_system);
+  return result;
+}
 
 namespace peclet::runner {
 namespace {
@@ -38,9 +54,21 @@ TEST(CampaignDirectory, KnowsWhatGrowsBesideACheckpoint) {
   EXPECT_EQ(checkpoint_of(checkpoint), checkpoint);
 }
 
-TEST(CampaignDirectory, ALocalFileSystemIsNoNetwork) {
+// Magic numbers of linux/magic.h and of the file systems' own sources.
+TEST(CampaignDirectory, ALocalFileSystemIsNoNetworkAndOthersAreNamed) {
   const TemporaryFolder folder;
-  EXPECT_EQ(network_file_system(folder.path() / "not" / "there" / "yet"), std::nullopt);
+  const std::filesystem::path path = folder.path() / "not" / "there" / "yet";
+  kind_of_file_system = 0xef53;  // ext4
+  EXPECT_EQ(network_file_system(path), std::nullopt);
+  EXPECT_EQ(doubt_about_file_system(path), "");
+  kind_of_file_system = 0x6969;
+  EXPECT_EQ(network_file_system(path), "NFS");
+  kind_of_file_system = 0x65735546;
+  EXPECT_EQ(network_file_system(path), std::nullopt);
+  EXPECT_TRUE(says(doubt_about_file_system(path), "is on FUSE (sshfs, DAOS, Gluster and others)"));
+  kind_of_file_system = 0x01021997;
+  EXPECT_TRUE(says(doubt_about_file_system(path), "is on 9P"));
+  kind_of_file_system = 0;
 }
 
 TEST(OwnerLock, OfWhatSomebodyElseMayLeadElsewhereIsRefused) {
