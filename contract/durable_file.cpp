@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -46,6 +47,11 @@ void synchronise_folder(const std::filesystem::path& path) {
 }  // namespace
 
 bool means_no_room(int error) { return error == ENOSPC || error == EDQUOT; }
+
+bool means_machine_fault(int error) {
+  constexpr std::array faults{EIO, ENOMEM, ENFILE, EMFILE, ESTALE, ETIMEDOUT, ENOTCONN, ENOLCK};
+  return means_no_room(error) || std::find(faults.begin(), faults.end(), error) != faults.end();
+}
 
 namespace {
 

@@ -28,6 +28,10 @@ class NoRoomError : public std::system_error {
 // Whether an errno says that there is no room: ENOSPC or EDQUOT.
 bool means_no_room(int error);
 
+// Whether an errno says that the machine failed and the file may be sound: no room, an I/O error, no memory,
+// no descriptor left, a file system that is away.
+bool means_machine_fault(int error);
+
 // Replaces `path` by `bytes` so that a crash at any moment leaves the old content or the new one.
 // Throws NoRoomError, or std::system_error naming the path; the temporary file is then removed.
 void write_durably(const std::filesystem::path& path, std::string_view bytes);

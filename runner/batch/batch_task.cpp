@@ -16,6 +16,7 @@
 #include "runner/batch/bundle_files.h"
 #include "runner/engines/attempt_report.h"
 #include "runner/engines/engine_error.h"
+#include "runner/engines/job_folders.h"
 #include "runner/engines/worker_process.h"
 #include "runner/engines/worker_watch.h"
 #include "runner/folder/disk_room.h"
@@ -87,6 +88,10 @@ class BatchTask {
   void handle(const Garbled& event) { condemn({AttemptOutcome::garbled, event.message}); }
   void handle(const Exited& event);
   void handle(const StopSignal& event);
+  // The outcome, or `drained` where the engine may have failed for want of room.
+  AttemptOutcome unless_it_lacked_room(AttemptOutcome outcome) const {
+    return is_blamed(outcome) && unwritable_folder(job_) ? AttemptOutcome::drained : outcome;
+  }
   bool is_in_hand(std::int64_t job) const { return watch_.is_busy() && job == job_.attempt; }
   void take_result(const ResultSpooled& result);
   void judge_lease();
@@ -191,7 +196,7 @@ void BatchTask::handle(const ResultSpooled& event) {
 }
 
 void BatchTask::handle(const JobFailed& event) {
-  if (is_in_hand(event.job)) end({AttemptOutcome::refused, event.message});
+  if (is_in_hand(event.job)) end({unless_it_lacked_room(AttemptOutcome::refused), event.message});
 }
 
 void BatchTask::handle(const Drained& event) {
@@ -220,7 +225,7 @@ void BatchTask::take_result(const ResultSpooled& result) {
     if (read.point != job_.point || read.seed != job_.seed) {
       throw ResultError("its result is of another point or seed than the job");
     }
-    check_files_in_spool(read.document, job_.spool);
+    open_files_in_spool(read.document, job_.spool);
   } catch (const ResultError& error) {
     if (fs::exists(job_.spool)) reject(folder_.shared(), job_.spool);
     condemn({AttemptOutcome::garbled, error.what()});
@@ -239,7 +244,8 @@ void BatchTask::handle(const Exited& event) {
   // A result may be durable although nobody could announce it any more.
   if (!watch.condemned()) publish_results(folder_, manifest_, index_);
   if (fs::exists(folder_.ended(place_))) return;
-  const AttemptReason how = watch.ended(event.ending, stopping_);
+  AttemptReason how = watch.ended(event.ending, stopping_);
+  if (!watch.condemned()) how.outcome = unless_it_lacked_room(how.outcome);
   if (watch.condemned() || (!drained_ && how.outcome != AttemptOutcome::drained))
     return end(how, event.ending);
   drained_ = true;

@@ -184,6 +184,7 @@ void publish_results(const BundleFolder& folder, const Manifest& manifest, int t
         write_report(folder.ended(*place), *place, report);
       }
       const fs::path spool = folder.shared().spool() / (file.stem().string() + ".json");
+      create_folders_durably(left_folder(spool));  // somebody may have deleted it
       // What was moved before somebody died is in its place; what is in neither, the owner misses.
       for (const fs::path& left : left_files_of(file)) {
         rename_durably(left, left_folder(spool) / left.filename());

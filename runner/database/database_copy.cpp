@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <memory>
 #include <thread>
@@ -47,7 +48,10 @@ void copy_pages(Connection& from, Connection& to) {
   if (!backup) to.fail("copying " + from.path());
   const auto pages = static_cast<int>(bytes_at_a_time / from.integer("PRAGMA page_size"));
   int code = SQLITE_OK;
-  while ((code = sqlite3_backup_step(backup.get(), pages)) == SQLITE_OK) {
+  for (;;) {
+    errno = 0;
+    code = sqlite3_backup_step(backup.get(), pages);
+    if (code != SQLITE_OK) break;
     std::this_thread::sleep_for(breath);
   }
   if (code != SQLITE_DONE) to.fail("copying " + from.path(), code);

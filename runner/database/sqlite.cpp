@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 #include <sqlite3.h>
+#include <sys/stat.h>
 
+#include <cerrno>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <new>
 #include <system_error>
@@ -12,12 +15,27 @@
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
 #include "contract/integrity_error.h"
+#include "runner/folder/kernel_locks.h"
+#include "runner/text/plain_text.h"
 
 namespace peclet::runner {
 namespace {
 
-[[noreturn]] void complain(const std::string& path, sqlite3* handle, int code, std::string_view doing) {
-  const std::string said = handle != nullptr ? sqlite3_errmsg(handle) : sqlite3_errstr(code);
+// Of the codes behind which there is an errno, with it.
+bool comes_from_the_system(int code) {
+  const int primary = code & 0xff;
+  return primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN || primary == SQLITE_FULL;
+}
+
+// `error` is the errno after the call, which began with 0: what SQLite remembers by itself may be older, and
+// after COMMIT it remembers nothing.
+[[noreturn]] void complain(const std::string& path, sqlite3* handle, int code, std::string_view doing,
+                           int error) {
+  if ((code & 0xff) == SQLITE_BUSY) throw DatabaseError(lock_text(path), code);
+  const bool is_said = handle != nullptr && sqlite3_extended_errcode(handle) == code;
+  std::string said = is_said ? sqlite3_errmsg(handle) : sqlite3_errstr(code);
+  if (!comes_from_the_system(code)) error = 0;
+  if (error != 0) said += ": " + std::generic_category().message(error);
   const std::string message = fmt::format("{}: {} (SQLite code {}) while: {}", path, said, code, doing);
   const int primary = code & 0xff;
   if (primary == SQLITE_CORRUPT) {
@@ -25,7 +43,7 @@ namespace {
         fmt::format("{}: is damaged: {} (SQLite code {}) while: {}", path, said, code, doing));
   }
   if (primary == SQLITE_NOTADB) throw IntegrityError(message);
-  throw DatabaseError(message, code, handle != nullptr ? sqlite3_system_errno(handle) : 0);
+  throw DatabaseError(message, code, error);
 }
 
 int flags_of(Connection::Access access) {
@@ -36,8 +54,23 @@ int flags_of(Connection::Access access) {
       return SQLITE_OPEN_READWRITE;
     case Connection::Access::read_only:
       break;
+    case Connection::Access::frozen:
+      return SQLITE_OPEN_READONLY | SQLITE_OPEN_URI;
   }
   return SQLITE_OPEN_READONLY;
+}
+
+// What has a meaning in a URI (https://sqlite.org/uri.html) is escaped.
+std::string uri_of_frozen(const std::string& path) {
+  std::string uri = "file:";
+  for (const char c : path) {
+    if (c == '%' || c == '?' || c == '#') {
+      uri += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    } else {
+      uri += c;
+    }
+  }
+  return uri + "?immutable=1";
 }
 
 // SQLITE_OPEN_NOFOLLOW minds links anywhere in the path; the folder is where its user wanted it to be.
@@ -54,25 +87,37 @@ std::string without_links_above(const std::filesystem::path& path) {
 bool DatabaseError::no_room() const {
   const int primary = code_ & 0xff;
   if (primary == SQLITE_FULL) return true;
-    case Connection::Access::frozen:
-      return SQLITE_OPEN_READONLY | SQLITE_OPEN_URI;
   return (primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN) && peclet::means_no_room(system_error_);
 }
 
-bool means_no_room(const std::exception& error) {
-// What has a meaning in a URI (https://sqlite.org/uri.html) is escaped.
-std::string uri_of_frozen(const std::string& path) {
-  std::string uri = "file:";
-  for (const char c : path) {
-    if (c == '%' || c == '?' || c == '#') {
-      uri += fmt::format("%{:02X}", static_cast<unsigned char>(c));
-    } else {
-      uri += c;
-    }
+bool DatabaseError::is_locked() const { return (code_ & 0xff) == SQLITE_BUSY; }
+
+// In WAL mode the writer locks byte 120 of the -shm file; in other modes, and to the exclusion of readers,
+// bytes of the database from 0x40000000 on (SQLite's os_unix.c and wal.c).
+std::string lock_text(const std::string& database) {
+  constexpr std::uint64_t write_lock = 120, pending = 0x40000000;
+  const auto holder = [](const std::string& file, std::uint64_t byte) -> std::int64_t {
+    struct stat about {};
+    return stat(file.c_str(), &about) == 0 ? process_that_locks(about.st_ino, "POSIX", byte) : 0;
+  };
+  std::int64_t process = holder(database + "-shm", write_lock);
+  for (std::uint64_t byte = pending; process == 0 && byte < pending + 3; ++byte)
+    process = holder(database, byte);
+  if (process <= 0) {
+    return fmt::format(
+        "{0}: is locked by another program, which writes to it: let that end its transaction or close the "
+        "database (`fuser -v {0}` names it)",
+        database);
   }
-  return uri + "?immutable=1";
+  std::string name;
+  std::getline(std::ifstream(fmt::format("/proc/{}/comm", process)), name);
+  return fmt::format(
+      "{}: is locked by {} (process {}), which writes to it: let it end its transaction (COMMIT or "
+      "ROLLBACK) or close the database",
+      database, name.empty() ? "another program" : plain(name), process);
 }
 
+bool means_no_room(const std::exception& error) {
   if (const auto* database = dynamic_cast<const DatabaseError*>(&error)) return database->no_room();
   const auto* system = dynamic_cast<const std::system_error*>(&error);
   return system != nullptr && peclet::means_no_room(system->code().value());
@@ -87,6 +132,7 @@ Connection::Connection(const std::string& path, Access access, int busy_millisec
     : path_(path), busy_milliseconds_(busy_milliseconds) {
   // Looked at beforehand, because SQLite would wait for a FIFO; that it never follows a link is its own rule.
   for (const char* const suffix : {"", "-wal", "-shm", "-journal"}) require_regular(path + suffix);
+  const std::string place = without_links_above(path);
   const int code = sqlite3_open_v2(
       (access == Access::frozen ? uri_of_frozen(place) : place).c_str(), &handle_,
       flags_of(access) | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE | SQLITE_OPEN_NOFOLLOW, nullptr);
@@ -115,9 +161,10 @@ sqlite3_stmt* Connection::take(std::string_view sql) {
     return statement;
   }
   sqlite3_stmt* statement = nullptr;
+  errno = 0;
   const int code = sqlite3_prepare_v3(handle_, sql.data(), static_cast<int>(sql.size()),
                                       SQLITE_PREPARE_PERSISTENT, &statement, nullptr);
-  if (code != SQLITE_OK) complain(path_, handle_, code, sql);
+  if (code != SQLITE_OK) complain(path_, handle_, code, sql, errno);
   return statement;
 }
 
@@ -132,15 +179,15 @@ void Connection::put_back(sqlite3_stmt* statement) noexcept {
       idle_.emplace(sql, statement);
       return;
     }
-  const std::string place = without_links_above(path);
   } catch (const std::bad_alloc&) {  // then it is compiled again
   }
   sqlite3_finalize(statement);
 }
 
 void Connection::execute(const std::string& sql) {
+  errno = 0;
   const int code = sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr);
-  if (code != SQLITE_OK) complain(path_, handle_, code, sql);
+  if (code != SQLITE_OK) complain(path_, handle_, code, sql, errno);
 }
 
 std::int64_t Connection::integer(const std::string& sql) {
@@ -160,8 +207,9 @@ std::int64_t Connection::last_insert_id() const { return sqlite3_last_insert_row
 // Without waiting for a reader: it is only tried.
 void Connection::empty_log() {
   sqlite3_busy_timeout(handle_, 0);
+  errno = 0;
   const int code = sqlite3_wal_checkpoint_v2(handle_, nullptr, SQLITE_CHECKPOINT_TRUNCATE, nullptr, nullptr);
-  const int system_error = sqlite3_system_errno(handle_);
+  const int system_error = errno;
   sqlite3_busy_timeout(handle_, busy_milliseconds_);
   const int primary = code & 0xff;
   if (primary == SQLITE_OK || primary == SQLITE_BUSY || primary == SQLITE_LOCKED) return;
@@ -172,7 +220,13 @@ void Connection::empty_log() {
 int Connection::changes() const { return sqlite3_changes(handle_); }
 
 void Connection::fail(const std::string& doing, int code) const {
-  complain(path_, handle_, code != 0 ? code : sqlite3_extended_errcode(handle_), doing);
+  const int system_error = errno;
+  complain(path_, handle_, code != 0 ? code : sqlite3_extended_errcode(handle_), doing, system_error);
+}
+
+void Connection::wait_for_locks(int busy_milliseconds) {
+  busy_milliseconds_ = busy_milliseconds;
+  sqlite3_busy_timeout(handle_, busy_milliseconds);
 }
 
 Statement::Statement(Connection& connection, std::string_view sql)
@@ -182,7 +236,7 @@ Statement::~Statement() { connection_.put_back(statement_); }
 
 void Statement::check(int code) const {
   if (code == SQLITE_OK) return;
-  complain(connection_.path(), connection_.handle(), code, sqlite3_sql(statement_));
+  complain(connection_.path(), connection_.handle(), code, sqlite3_sql(statement_), errno);
 }
 
 Statement& Statement::bind(std::int64_t value) {
@@ -213,13 +267,15 @@ Statement& Statement::bind(std::nullptr_t) {
 }
 
 bool Statement::step() {
+  errno = 0;
   const int code = sqlite3_step(statement_);
   if (code == SQLITE_ROW) return true;
   if (code != SQLITE_DONE) {
+    const int system_error = errno;
     const std::string sql = sqlite3_sql(statement_);
     // Read the message before the statement is reset.
     try {
-      complain(connection_.path(), connection_.handle(), code, sql);
+      complain(connection_.path(), connection_.handle(), code, sql, system_error);
     } catch (...) {
       sqlite3_reset(statement_);
       throw;

@@ -23,8 +23,12 @@ class DatabaseError : public std::runtime_error {
   DatabaseError(const std::string& message, int code, int system_error = 0)
       : std::runtime_error(message), code_(code), system_error_(system_error) {}
   int code() const { return code_; }
+  // The errno behind it, if there is one.
+  int system_error() const { return system_error_; }
   // The file system, or the user's quota of it, is full: nothing was changed, and it may be tried again.
   bool no_room() const;
+  // Another program has locked the database: nothing was changed, and it may be tried again.
+  bool is_locked() const;
   // What was to be written is not what the tables hold: the statement changed nothing, and never will.
   bool refuses_values() const;
 
@@ -34,6 +38,10 @@ class DatabaseError : public std::runtime_error {
 
 // Whether an exception says that there was no room to write something.
 bool means_no_room(const std::exception& error);
+
+// Says who has locked a database: "campaign.db: is locked by sqlite3 (process 4711), which writes to it:
+// ...".
+std::string lock_text(const std::string& database);
 
 class Connection {
  public:
@@ -48,6 +56,9 @@ class Connection {
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
+
+  // Waits so long for other connections' locks from now on.
+  void wait_for_locks(int busy_milliseconds);
 
   // Runs any number of statements and ignores their rows.
   void execute(const std::string& sql);

@@ -100,21 +100,21 @@ CampaignDirectory campaign_directory(const fs::path& campaign_file, const fs::pa
   return CampaignDirectory(folder);
 }
 
+std::vector<fs::path> folders_below(const CampaignDirectory& directory) {
+  return {directory.spool(),    directory.rejected(), directory.left(),   directory.checkpoints(),
+          directory.failures(), directory.logs(),     directory.backup(), directory.requests()};
+}
+
 void create_folders(const CampaignDirectory& directory) {
-  for (const fs::path& folder :
-       {directory.root(), directory.rejected(), directory.left(), directory.checkpoints(),
-        directory.failures(), directory.logs(), directory.backup(), directory.requests()}) {
-    fs::create_directories(folder);
-  }
+  fs::create_directories(directory.root());
+  for (const fs::path& folder : folders_below(directory)) fs::create_directories(folder);
 }
 
 void require_own_folders(const CampaignDirectory& directory) {
   require_own_folder(directory.root(), true);
-  for (const fs::path& folder : {directory.spool(), directory.rejected(), directory.left(), directory.files(),
-                                 directory.checkpoints(), directory.failures(), directory.logs(),
-                                 directory.backup(), directory.requests(), directory.aside()}) {
-    require_own_folder(folder);
-  }
+  for (const fs::path& folder : folders_below(directory)) require_own_folder(folder);
+  require_own_folder(directory.files());
+  require_own_folder(directory.aside());
 }
 
 fs::path make_folder_aside(const CampaignDirectory& directory) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace peclet::runner {
 
@@ -55,6 +56,9 @@ std::filesystem::path checkpoint_of(const std::filesystem::path& file);
 CampaignDirectory campaign_directory(const std::filesystem::path& campaign_file,
                                      const std::filesystem::path& chosen);
 
+// Folders below its own that a running campaign needs.
+std::vector<std::filesystem::path> folders_below(const CampaignDirectory& directory);
+
 // Makes the folder and those below it. Throws std::filesystem::filesystem_error.
 void create_folders(const CampaignDirectory& directory);
 
@@ -70,7 +74,7 @@ std::filesystem::path make_folder_aside(const CampaignDirectory& directory);
 // one.
 std::optional<std::string> network_file_system(const std::filesystem::path& path);
 
-}  // namespace peclet::runner
 // Returns a warning if the folder is on a file system that may be one of a network; "" if it is not.
 std::string doubt_about_file_system(const std::filesystem::path& path);
 
+}  // namespace peclet::runner

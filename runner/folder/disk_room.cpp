@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <system_error>
 
 #include "contract/durable_file.h"
@@ -17,7 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::seconds patience{3}, vain_patience{20};
 // Less than this is no room: a campaign that goes on with the last free block stops again at the next result.
 constexpr std::uint64_t least = 1 << 20;
 // More than this is not tried, so that looking costs nothing.
@@ -41,23 +41,33 @@ double megabytes(std::uintmax_t bytes) { return 1e-6 * static_cast<double>(bytes
 
 }  // namespace
 
-bool has_room(const fs::path& folder, std::uint64_t bytes) {
+int lack_of_room(const fs::path& folder, std::uint64_t bytes) {
   // Named as write_durably() names its temporary files, so that it is cleared away after a crash.
   const fs::path trial = folder / fmt::format(".room.{}.0.tmp", getpid());
   unlink(trial.c_str());
   const int descriptor = open(trial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (descriptor < 0) return !peclet::means_no_room(errno);
-  const int error = try_to_write(descriptor, std::clamp(bytes, least, most));
-  close(descriptor);
+  const int error = descriptor < 0 ? errno : try_to_write(descriptor, std::clamp(bytes, least, most));
+  if (descriptor >= 0) close(descriptor);
   unlink(trial.c_str());
-  return !peclet::means_no_room(error);
+  return means_no_room(error) ? error : 0;
 }
 
-std::string shortage_text(const fs::path& folder, std::uint64_t bytes) {
+std::string shortage_text(const fs::path& folder, std::uint64_t bytes, int error) {
+  const double needed = megabytes(std::max(bytes, least));
+  if (error == EDQUOT) {
+    return fmt::format("{} is full: your disk quota is used up there (`quota -s`), {:.1f} MB are needed",
+                       folder.string(), needed);
+  }
+  struct statvfs about {};
+  if (statvfs(folder.c_str(), &about) == 0 && about.f_files > 0 && about.f_favail == 0) {
+    return fmt::format(
+        "{} is full: all {} inodes of its file system are taken, and no further file can be made",
+        folder.string(), static_cast<std::uintmax_t>(about.f_files));
+  }
   std::error_code unknown;
   const fs::space_info space = fs::space(folder, unknown);
   return fmt::format("{} is full: {:.1f} MB are free there, {:.1f} MB are needed", folder.string(),
-                     unknown ? 0 : megabytes(space.available), megabytes(std::max(bytes, least)));
+                     unknown ? 0 : megabytes(space.available), needed);
 }
 
 std::string why_in_vain(const fs::path& root, const fs::path& folder, std::uint64_t bytes) {
@@ -81,37 +91,6 @@ std::string why_in_vain(const fs::path& root, const fs::path& folder, std::uint6
       "{}: its file system has {:.1f} MB in all, of which the campaign takes {:.1f} MB; {:.1f} MB more are "
       "needed, for which nobody can make room: move the campaign to a larger one",
       folder.string(), megabytes(size), megabytes(own), megabytes(needed));
-}
-
-std::string DiskShortage::in_vain(const fs::path& root, Time now) {
-  if (!lasts() || now != looked_) return "";
-  std::string why = why_in_vain(root, *folder_, bytes_);
-  if (why.empty()) {
-    vain_since_.reset();
-  } else if (!vain_since_) {
-    vain_since_ = now;
-  }
-  return vain_since_ && now - *vain_since_ >= vain_patience ? why : "";
-}
-
-void DiskShortage::begin(const fs::path& folder, std::uint64_t bytes, Time now) {
-  const bool news = !lasts();
-  if (news) {
-    looked_ = now;
-    vain_since_.reset();
-  }
-  bytes_ = news || *folder_ != folder ? bytes : std::max(bytes_, bytes);
-  folder_ = folder;
-}
-
-bool DiskShortage::is_looked_at(Time now) const { return lasts() && now - looked_ >= patience; }
-
-bool DiskShortage::is_over(Time now) {
-  if (!is_looked_at(now)) return false;
-  looked_ = now;
-  if (!has_room(*folder_, bytes_)) return false;
-  folder_.reset();
-  return true;
 }
 
 }  // namespace peclet::runner

@@ -3,6 +3,8 @@
 #include <csignal>
 #include <utility>
 
+#include "contract/guarded_file.h"
+
 namespace peclet::runner {
 
 namespace fs = std::filesystem;
@@ -59,7 +61,8 @@ void FileRemoval::work() {
     for (const fs::path& file : files) {
       std::error_code own;
       fs::remove(file, own);
-      if (own && !error) {
+      // A folder in a file's place stays; the next start moves it aside.
+      if (own && kind_of(file) != "a folder" && !error) {
         error = own;
         culprit = file;
       }

@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "contract/durable_file.h"
 #include "contract/guarded_file.h"
 #include "runner/text/plain_text.h"
 
@@ -71,6 +72,15 @@ void move_intruders_aside(const CampaignDirectory& directory,
                      guarded.folder.lexically_relative(directory.root()).string(), names,
                      directory.aside().filename().string(), aside.filename().string()));
   }
+}
+
+std::string make_way(const fs::path& path, const std::string& wanted) {
+  const std::string kind = kind_of(path);
+  if (kind.empty() || kind == wanted) return "";
+  const fs::path aside = free_name(path.string() + "@aside");
+  fs::rename(path, aside);
+  return fmt::format("{}: was {} in the place of {}; moved to {}", path.string(), kind, wanted,
+                     plain_name(aside));
 }
 
 }  // namespace peclet::runner

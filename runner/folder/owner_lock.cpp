@@ -10,8 +10,6 @@
 #include <cerrno>
 #include <charconv>
 #include <chrono>
-#include <fstream>
-#include <sstream>
 #include <string_view>
 #include <system_error>
 #include <thread>
@@ -20,6 +18,7 @@
 #include "contract/descriptor.h"
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
+#include "runner/folder/kernel_locks.h"
 #include "runner/text/quoting.h"
 
 namespace peclet::runner {
@@ -50,20 +49,11 @@ std::int64_t written_owner(const CampaignDirectory& directory) {
   return count > 0 ? number_in({text.data(), static_cast<std::size_t>(count)}) : 0;
 }
 
-// Who has locked the folder, by the kernel's list: "1: FLOCK ADVISORY WRITE 4711 fe:01:1234 0 EOF". For an
-// owner whose campaign.lock was deleted. 0: the list does not say.
+// Who has locked the folder, by the kernel's list: for an owner whose campaign.lock was deleted. 0: the list
+// does not say.
 std::int64_t listed_owner(int folder) {
   struct stat about {};
-  if (fstat(folder, &about) != 0) return 0;
-  const std::string inode = fmt::format(":{}", about.st_ino);
-  std::ifstream locks("/proc/locks");
-  for (std::string line; std::getline(locks, line);) {
-    std::istringstream words(line);
-    std::string count, kind, mode, access, process, place;
-    words >> count >> kind >> mode >> access >> process >> place;
-    if (kind == "FLOCK" && access == "WRITE" && place.ends_with(inode)) return number_in(process);
-  }
-  return 0;
+  return fstat(folder, &about) == 0 ? process_that_locks(about.st_ino, "FLOCK") : 0;
 }
 
 std::int64_t owner_of(const CampaignDirectory& directory, int folder) {

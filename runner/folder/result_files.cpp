@@ -9,6 +9,7 @@
 #include <set>
 #include <system_error>
 
+#include "contract/durable_file.h"
 #include "contract/guarded_file.h"
 #include "contract/sha256.h"
 #include "runner/folder/result_shape.h"
@@ -96,30 +97,47 @@ std::vector<fs::path> left_files_of(const fs::path& spool) {
   return files;
 }
 
-std::string fault_of_file(const fs::path& path, std::uint64_t bytes, const std::string& sha256) {
-  if (!is_there(path)) return "is missing";
+Descriptor open_left_file(const fs::path& path, std::uint64_t bytes, const std::string& sha256) {
+  if (!is_there(path)) throw ResultError("is missing");
   try {
-    const Descriptor file = open_regular(path, O_RDONLY);
+    Descriptor file = open_regular(path, O_RDONLY);
     struct stat about {};
     if (fstat(file.number(), &about) != 0) fail_to("cannot examine", path);
     if (static_cast<std::uint64_t>(about.st_size) != bytes) {
-      return fmt::format("has {} bytes instead of {}", about.st_size, bytes);
+      throw ResultError(fmt::format("has {} bytes instead of {}", about.st_size, bytes));
     }
-    if (sha256_of_open(file.number(), path) != sha256) return "does not have its hash";
+    if (sha256_of_open(file.number(), path) != sha256) throw ResultError("does not have its hash");
     if (::fsync(file.number()) != 0) fail_to("cannot synchronise", path);
-    return "";
+    return file;
   } catch (const UnsuitableFile& error) {
-    return error.value();
+    throw ResultError(error.value());
+  } catch (const std::system_error& error) {
+    if (means_machine_fault(error.code().value())) throw;
+    throw ResultError(plain(error.what()));
+  }
+}
+
+std::string fault_of_file(const fs::path& path, std::uint64_t bytes, const std::string& sha256) {
+  try {
+    open_left_file(path, bytes, sha256);
+    return "";
+  } catch (const ResultError& error) {
+    return error.what();
   } catch (const std::system_error& error) {
     return plain(error.what());
   }
 }
 
-void check_files_in_spool(const Json& result, const fs::path& spool) {
+std::vector<Descriptor> open_files_in_spool(const Json& result, const fs::path& spool) {
+  std::vector<Descriptor> opened;
   for (const LeftFile& file : left_files(result)) {
-    const std::string fault = fault_of_file(left_file(spool, file.name), file.bytes, file.sha256);
-    if (!fault.empty()) throw ResultError(fmt::format("its file {} {}", file.name, fault));
+    try {
+      opened.push_back(open_left_file(left_file(spool, file.name), file.bytes, file.sha256));
+    } catch (const ResultError& error) {
+      throw ResultError(fmt::format("its file {} {}", file.name, error.what()));
+    }
   }
+  return opened;
 }
 
 }  // namespace peclet::runner

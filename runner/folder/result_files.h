@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/descriptor.h"
 #include "contract/json.h"
 
 namespace peclet::runner {
@@ -40,11 +41,15 @@ std::filesystem::path left_file(const std::filesystem::path& spool, const std::s
 // Those that are there, listed or not, without unfinished ones.
 std::vector<std::filesystem::path> left_files_of(const std::filesystem::path& spool);
 
-// Whether there is a regular file of that size and hash at `path`; "" or what is wrong. Its bytes are then on
-// disk.
+// Returns the regular file of that size and hash at `path`, open for reading; its bytes are then on disk.
+// Throws ResultError, which says what is wrong with the file, and std::system_error if the machine fails to
+// read it.
+Descriptor open_left_file(const std::filesystem::path& path, std::uint64_t bytes, const std::string& sha256);
+
+// Returns what is wrong with the file at `path`, or with the machine that reads it; "" if nothing is.
 std::string fault_of_file(const std::filesystem::path& path, std::uint64_t bytes, const std::string& sha256);
 
-// Throws ResultError that names the first file of the result which is absent or another one.
-void check_files_in_spool(const Json& result, const std::filesystem::path& spool);
+// Returns the files of the result, in its order, as open_left_file(). The ResultError names the file.
+std::vector<Descriptor> open_files_in_spool(const Json& result, const std::filesystem::path& spool);
 
 }  // namespace peclet::runner

@@ -39,6 +39,7 @@ RealisationResult read_spool_file(const fs::path& path, const std::string& sha25
   } catch (const UnsuitableFile& error) {
     throw ResultError(fmt::format("it {} and {}", error.value(), error.allowed()));
   } catch (const std::system_error& error) {
+    if (means_machine_fault(error.code().value())) throw;
     throw ResultError(error.what());
   }
   if (!sha256.empty() && peclet::sha256(text) != sha256) {
@@ -66,6 +67,7 @@ std::vector<fs::path> spool_files(const CampaignDirectory& directory) {
 
 std::vector<fs::path> whole_files(const fs::path& folder) {
   std::vector<fs::path> files;
+  if (kind_of(folder).empty()) return files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const bool is_regular = entry.symlink_status().type() == fs::file_type::regular;
     if (is_regular && entry.path().extension() != ".tmp") files.push_back(entry.path());
@@ -80,11 +82,17 @@ bool is_there(const fs::path& path) {
 }
 
 fs::path reject(const CampaignDirectory& directory, const fs::path& path) {
-  for (const fs::path& left : left_files_of(path)) {
-    fs::rename(left, free_name(directory.rejected() / left.filename()));
+  std::vector<fs::path> files = left_files_of(path);
+  files.push_back(path);
+  fs::path target;
+  fs::create_directories(directory.rejected());
+  for (const fs::path& file : files) {
+    target = free_name(directory.rejected() / file.filename());
+    std::error_code error;
+    fs::rename(file, target, error);
+    const bool is_gone = error == std::errc::no_such_file_or_directory;
+    if (error && !is_gone) throw fs::filesystem_error("cannot move", file, target, error);
   }
-  const fs::path target = free_name(directory.rejected() / path.filename());
-  fs::rename(path, target);
   return target;
 }
 

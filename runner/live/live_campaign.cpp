@@ -67,20 +67,20 @@ void LiveCampaign::read() {
   try {
     OpenCampaign open = open_campaign(campaign_, directory_);
     become(reader_.read(open.database, current_owner(open.directory), false));
-  } catch (const BeingSetUp&) {
+  } catch (const BeingSetUp& error) {
     doubtful_ = true;
-    wait_for_beginning();
+    wait_for_beginning(error.allowed());
   }
 }
 
 // Throws InputError for a campaign with a fault, because `run` would refuse it.
-void LiveCampaign::wait_for_beginning() {
+void LiveCampaign::wait_for_beginning(const std::string& set_up) {
   const bool is_file = fs::is_regular_file(campaign_);
   const std::string name = is_file ? read_new_campaign(campaign_, directory_).name : campaign_.string();
   become({{"campaign", name},
-          {"waiting", is_file ? fmt::format("Nothing has been run yet. Waiting for `peclet run {}`.",
-                                            words_for(campaign_, directory_))
-                              : "The campaign is only just being set up."}});
+          {"waiting", set_up.empty() ? fmt::format("Nothing has been run yet. Waiting for `peclet run {}`.",
+                                                   words_for(campaign_, directory_))
+                                     : set_up}});
 }
 
 void LiveCampaign::become(Json document) {

@@ -57,7 +57,8 @@ class LiveCampaign {
   };
 
   void read();
-  void wait_for_beginning();
+  // `set_up`: how far its setting up is; "" before the first run.
+  void wait_for_beginning(const std::string& set_up = "");
   void become(Json document);
   void tell(const std::string& fault);
   Json live() const;

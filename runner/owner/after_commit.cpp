@@ -4,6 +4,7 @@
 
 #include "contract/durable_file.h"
 #include "runner/folder/campaign_directory.h"
+#include "runner/folder/intruders.h"
 #include "runner/folder/spool.h"
 
 namespace peclet::runner {
@@ -21,13 +22,20 @@ void AfterCommit::back_to(const Mark& mark) {
 }
 
 void AfterCommit::carry_out(RunListener& listener) {
+  const auto make_way_for_file = [&listener](const std::filesystem::path& path) {
+    if (const std::string text = make_way(path, "a regular file"); !text.empty()) listener.warn(text);
+  };
   for (const auto& [from, place] : to_keep_) {
     // `peclet doctor` names one that somebody has taken away meanwhile.
-    if (is_there(from)) rename_durably(from, place);
+    if (!is_there(from)) continue;
+    make_way_for_file(place);
+    rename_durably(from, place);
   }
   for (const std::filesystem::path& checkpoint : to_discard_) {
-    std::filesystem::remove(checkpoint);
-    std::filesystem::remove(growing_beside(checkpoint));
+    for (const std::filesystem::path& file : {checkpoint, growing_beside(checkpoint)}) {
+      make_way_for_file(file);
+      std::filesystem::remove(file);
+    }
   }
   removal_.add(to_remove_);
   for (const std::filesystem::path& file : to_reject_) peclet::runner::reject(home_of_spool_file(file), file);

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "runner/engines/engine_error.h"
+#include "runner/folder/disk_room.h"
 #include "runner/folder/result_files.h"
 
 namespace peclet::runner {
@@ -17,6 +18,8 @@ namespace {
 using std::chrono::seconds;
 
 constexpr seconds report_interval{1};
+// A lock of another program is a pause, in which workers and signals are to be heard.
+constexpr std::chrono::milliseconds lock_patience{500};
 constexpr seconds lease_display_interval{2};
 // Workers that have not checkpointed and left by then are killed; the seeds lose what came after the last
 // checkpoint.
@@ -42,7 +45,9 @@ Dispatcher::Dispatcher(Database& database, Ledger& ledger, WorkerPool& pool, Run
       awake_(clock_(), settings_.lease),
       started_(awake_.heard()),
       reported_(started_),
-      leases_shown_(started_) {}
+      leases_shown_(started_) {
+  database_.connection().wait_for_locks(static_cast<int>(lock_patience.count()));
+}
 
 Dispatcher::Ending Dispatcher::run() {
   while (!ledger_.scheduler().finished() && stopping_ == Stopping::no) {
@@ -81,16 +86,12 @@ const char* Dispatcher::why_nothing() const {
 }
 
 void Dispatcher::turn() {
-  settings_.chore();
+  if (settings_.chore()) mark_lost_folders();
   start_workers();
   listen();
   judge_time();
-  look_for_room();
-  if (!unbooked_ && book()) {
-    for (const std::string& warning : std::exchange(now_.warnings, {})) listener_.warn(warning);
-    ledger_.after_commit();  // a checkpoint that is discarded goes before its seed's next attempt begins
-    for (const auto& [worker, job] : to_send_) pool_.assign(worker, job);
-    to_send_.clear();
+  look_whether_it_is_over();
+  if (!unbooked_ && (uncarried_ || book()) && follow_up()) {
     judge_leases();
     hear_requests();
   }
@@ -201,6 +202,8 @@ void Dispatcher::handle(const ResultSpooled& event) {
     ++now_.results;
     now_.early_exits = 0;
     go_on(event.worker);
+  } else if (lacked_room(event.worker)) {
+    end_assignment(event.worker, {AttemptOutcome::drained, 0, {}, why});
   } else {
     condemn(event.worker, {AttemptOutcome::garbled, why});
   }
@@ -238,8 +241,9 @@ void Dispatcher::handle(const ShortOfRoom& event) {
     condemn(event.worker, {AttemptOutcome::garbled, "wrote a file that is none of its job"});
     return;
   }
-  if (has_room(folder, event.bytes)) return;
-  begin_shortage(folder, event.bytes);
+  const int error = lack_of_room(folder, event.bytes);
+  if (error == 0) return;
+  begin_pause(lack_of_room_in(folder, event.bytes, error));
   at(event.worker).watch.renew(awake_.awake());
 }
 

@@ -1,9 +1,9 @@
 // Gives seeds to workers and hears what becomes of them, until every point is decided or the run is stopped.
 //
 // One turn: hear what happened, book all of it in one transaction, and act only after the commit: a job is
-// sent when its attempt is durable, a spool file goes when its result is. When the disk is full, what
-// happened is kept and booked again every few seconds, and until that succeeds no seed is given out: workers
-// go on with those they have.
+// sent when its attempt is durable, a spool file goes when its result is. When something is in the way that
+// passes (pause.h), what happened is kept and booked again every few seconds, and until that succeeds no seed
+// is given out: workers go on with those they have.
 //
 // A worker whose jobs are short would wait for that commit longer than it works. Where its engine can do it,
 // it has a second job, which it begins by itself when the first has ended; until then that one has not begun,
@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "runner/engines/worker_watch.h"
-#include "runner/folder/disk_room.h"
 #include "runner/owner/ledger.h"
+#include "runner/owner/pause.h"
 
 namespace peclet::runner {
 
@@ -28,10 +28,11 @@ struct DispatchSettings {
   std::chrono::duration<double> lease{120};
   double checkpoint_seconds = 60;
   std::optional<std::chrono::duration<double>> time_limit{};
-  // Called at every turn, about twice a second or more often.
-  std::function<void()> chore = [] {};
+  // Called at every turn, about twice a second or more often. True when folders into which engines write had
+  // been deleted and were made anew.
+  std::function<bool()> chore = [] { return false; };
   // Called about once a second, between two bookings: carries out what people ask for. True when the ledger's
-  // picture was taken again; a DatabaseError for want of room leaves it taken again, and nothing changed.
+  // picture was taken again; a hindrance that passes leaves it taken again, and nothing changed.
   std::function<bool()> requests = [] { return false; };
 };
 
@@ -53,9 +54,10 @@ class Dispatcher {
   // A seed in the hands of a worker.
   struct Assignment {
     GivenSeed given_seed;
-    Time given{};        // when the worker got it
-    Time begun{};        // when there was no other before it any more, as far as we know
-    bool shown = false;  // the database says how far it is
+    Time given{};                // when the worker got it
+    Time begun{};                // when there was no other before it any more, as far as we know
+    bool shown = false;          // the database says how far it is
+    bool lost_a_folder = false;  // somebody deleted one into which it writes
   };
   struct Worker {
     WorkerWatch watch{};
@@ -86,12 +88,16 @@ class Dispatcher {
 
   void turn();
   void listen();
-  // Books what was heard. False: there is no room, and nothing has changed.
+  // Books what was heard. False: something is in the way, and nothing has changed.
   bool book();
   void take_back(const Picture& before);
-  void begin_shortage(const std::filesystem::path& folder, std::uint64_t bytes);
-  void look_for_room();
-  void end_shortage();
+  // Does what follows the commit. False: something is in the way of the rest.
+  bool follow_up();
+  std::uint64_t bytes_of_news() const;
+  std::filesystem::path root() const;
+  void begin_pause(const Hindrance& hindrance);
+  void look_whether_it_is_over();
+  void end_pause();
   void settle_spool();
   void obey_stop_signal();
   void hear_requests();
@@ -110,6 +116,7 @@ class Dispatcher {
   bool has_job(int worker, std::int64_t job);
   // Whether the worker may have failed because it could not write: no room, or no folder.
   bool lacked_room(int worker);
+  void mark_lost_folders();
   void condemn(int worker, AttemptReason reason);
   // The worker is through with its job, and is at the one that waited or idle.
   void go_on(int worker);
@@ -136,10 +143,11 @@ class Dispatcher {
   Picture now_;
   std::vector<WorkerEvent> news_;             // and not booked yet
   std::vector<std::pair<int, Job>> to_send_;  // after the commit
-  DiskShortage shortage_;
-  bool unbooked_ = false;       // for want of room
-  bool request_waits_ = false;  // for the same
-  bool told_of_shortage_ = false;
+  Pause pause_;
+  bool unbooked_ = false;       // something is in the way
+  bool uncarried_ = false;      // booked, and what follows the commit is not done
+  bool request_waits_ = false;  // for something in the way
+  bool told_of_pause_ = false;
   Stopping stopping_ = Stopping::no;
   AwakeClock awake_;
   Time started_, reported_, leases_shown_, requests_heard_{};

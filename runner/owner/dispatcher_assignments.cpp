@@ -20,7 +20,7 @@ constexpr double longest_job_to_queue_behind = 1;
 
 // Idle workers first: a seed waits for none that could begin it.
 void Dispatcher::give_out_seeds() {
-  if (stopping_ != Stopping::no || shortage_.lasts() || ledger_.scheduler().finished()) return;
+  if (stopping_ != Stopping::no || pause_.lasts() || ledger_.scheduler().finished()) return;
   for (int number = 0; number < pool_.size(); ++number) {
     Worker& worker = at(number);
     if (!worker.watch.is_idle() || worker.watch.is_recalled()) continue;
@@ -65,6 +65,14 @@ bool Dispatcher::has_job(int worker, std::int64_t job) {
   if (about.finished_job == job) return false;  // said once too often, which does no harm
   condemn(worker, {AttemptOutcome::garbled, fmt::format("spoke of job {}, which it does not have", job)});
   return false;
+}
+
+void Dispatcher::mark_lost_folders() {
+  for (Worker& worker : now_.workers) {
+    for (std::optional<Assignment>* const about : {&worker.assignment, &worker.waiting}) {
+      if (*about) (*about)->lost_a_folder = true;
+    }
+  }
 }
 
 void Dispatcher::go_on(int number) {

@@ -1,10 +1,14 @@
-// The dispatcher's transaction, and what it does when the disk is full: what was heard is kept until it can
-// be booked.
+// The dispatcher's transaction, and what it does when something is in the way: what was heard is kept until
+// it can be booked.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <system_error>
 #include <utility>
 #include <variant>
 
+#include "runner/engines/job_folders.h"
+#include "runner/folder/disk_room.h"
 #include "runner/owner/dispatcher.h"
 
 namespace peclet::runner {
@@ -70,12 +74,13 @@ bool Dispatcher::book() {
     show_leases();
     booking.commit();
   } catch (const std::exception& error) {
-    if (!means_no_room(error)) throw;
+    const std::optional<Hindrance> hindrance = hindrance_in(error, root(), bytes_of_news());
+    if (!hindrance) throw;
     take_back(before);
+    begin_pause(*hindrance);
     return false;
   }
   news_.clear();
-  if (told_of_shortage_ && !shortage_.lasts() && !request_waits_) end_shortage();
   return true;
 }
 
@@ -85,7 +90,28 @@ void Dispatcher::take_back(const Picture& before) {
   ledger_.roll_back();
   mark_running_seeds();
   unbooked_ = true;
-  // What is booked of a result is about as long as its file, and goes into log and database.
+}
+
+bool Dispatcher::follow_up() {
+  for (const std::string& warning : std::exchange(now_.warnings, {})) listener_.warn(warning);
+  try {
+    ledger_.after_commit();  // a checkpoint that is discarded goes before its seed's next attempt begins
+  } catch (const std::exception& error) {
+    const std::optional<Hindrance> hindrance = hindrance_in(error, root());
+    if (!hindrance) throw;
+    uncarried_ = unbooked_ = true;
+    begin_pause(*hindrance);
+    return false;
+  }
+  uncarried_ = false;
+  for (const auto& [worker, job] : to_send_) pool_.assign(worker, job);
+  to_send_.clear();
+  if (told_of_pause_ && !pause_.lasts() && !request_waits_) end_pause();
+  return true;
+}
+
+// What is booked of a result is about as long as its file, and goes into log and database.
+std::uint64_t Dispatcher::bytes_of_news() const {
   std::uint64_t bytes = 1 << 20;
   for (const WorkerEvent& event : news_) {
     const auto* const result = std::get_if<ResultSpooled>(&event);
@@ -93,58 +119,59 @@ void Dispatcher::take_back(const Picture& before) {
     const std::uintmax_t size = result == nullptr ? 0 : std::filesystem::file_size(result->spool, absent);
     if (result != nullptr && !absent) bytes += 2 * size;
   }
-  begin_shortage(std::filesystem::path(database_.connection().path()).parent_path(), bytes);
+  return bytes;
 }
 
-// Said once, however often it turns out that there still is too little.
-void Dispatcher::begin_shortage(const std::filesystem::path& folder, std::uint64_t bytes) {
-  shortage_.begin(folder, bytes, clock_());
-  if (std::exchange(told_of_shortage_, true)) return;
-  listener_.happened(ShortageBegan{shortage_.text()});
-  listener_.warn(
-      shortage_.text() +
-      "; workers keep what they have, no further seed is given out, and the campaign goes on by itself "
-      "when there is room");
+std::filesystem::path Dispatcher::root() const {
+  return std::filesystem::path(database_.connection().path()).parent_path();
 }
 
-void Dispatcher::look_for_room() {
-  if (!shortage_.lasts()) return;
+// Said once, however often it turns out that it is still in the way.
+void Dispatcher::begin_pause(const Hindrance& hindrance) {
+  pause_.begin(hindrance, clock_());
+  if (std::exchange(told_of_pause_, true)) return;
+  listener_.happened(ShortageBegan{hindrance.text});
+  listener_.warn(fmt::format(
+      "{}; workers keep what they have, no further seed is given out, and the campaign goes on by "
+      "itself {}",
+      hindrance.text, hindrance.end));
+}
+
+void Dispatcher::look_whether_it_is_over() {
+  if (!pause_.lasts()) return;
   const Time now = clock_();
   // The write-ahead log keeps its largest size, which on a small disk is most of what there is.
-  if (shortage_.is_looked_at(now)) database_.connection().empty_log();
-  if (shortage_.is_over(now)) {
+  if (pause_.is_looked_at(now)) database_.connection().empty_log();
+  if (pause_.is_over(now)) {
     unbooked_ = false;
     return;
   }
   if (stopping_ != Stopping::no) return;
-  const std::filesystem::path root = std::filesystem::path(database_.connection().path()).parent_path();
-  const std::string why = shortage_.in_vain(root, now);
+  const std::string why = pause_.in_vain(root(), now);
   if (why.empty()) return;
   listener_.warn(why + "; workers checkpoint and stop");
   stop(Stopping::draining);
 }
 
-void Dispatcher::end_shortage() {
-  told_of_shortage_ = false;
-  listener_.note("there is room again: the campaign goes on");
+void Dispatcher::end_pause() {
+  told_of_pause_ = false;
+  listener_.note("nothing is in the way any more: the campaign goes on");
   listener_.happened(ShortageEnded{});
   for (Worker& worker : now_.workers) {
     worker.watch.renew(awake_.awake());  // nobody listened meanwhile
   }
 }
 
-// An engine that does not know how to wait for room may crash or give up instead. So may any whose folders
-// somebody has deleted or moved.
+// Also while somebody's deletion or move of its folders is being mended.
 bool Dispatcher::lacked_room(int number) {
-  const Job& job = at(number).assignment->given_seed.job;
-  for (const std::filesystem::path& folder :
-       {job.spool.parent_path(), job.checkpoint.parent_path(), job.failures}) {
-    if (!std::filesystem::exists(folder)) return true;
-    if (has_room(folder, 0)) continue;
-    begin_shortage(folder, 0);
-    return true;
+  const Assignment& about = *at(number).assignment;
+  if (about.lost_a_folder) return true;
+  const std::optional<std::filesystem::path> folder = unwritable_folder(about.given_seed.job);
+  if (folder && std::filesystem::exists(*folder)) {
+    if (const int error = lack_of_room(*folder, 0); error != 0)
+      begin_pause(lack_of_room_in(*folder, 0, error));
   }
-  return false;
+  return folder.has_value();
 }
 
 // A worker that outlived an earlier owner may have left a result meanwhile; so may ours, when nothing could
@@ -153,9 +180,10 @@ void Dispatcher::settle_spool() {
   try {
     ledger_.ingest_spool();
   } catch (const std::exception& error) {
-    if (!means_no_room(error)) throw;
+    const std::optional<Hindrance> hindrance = hindrance_in(error, root());
+    if (!hindrance) throw;
     ledger_.roll_back();  // nothing of it counts: what is decided is what the database says
-    listener_.warn("there is no room to book what workers did last: the next run does it");
+    listener_.warn(hindrance->text + "; what workers did last is booked by the next run");
   }
 }
 

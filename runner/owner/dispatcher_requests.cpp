@@ -8,18 +8,19 @@ constexpr std::chrono::seconds request_interval{1};
 
 }  // namespace
 
-// While workers stop, requests wait for the next owner. While there is no room, they wait as everything does.
+// While workers stop, requests wait for the next owner. During a pause they wait as everything does.
 void Dispatcher::hear_requests() {
-  if (stopping_ != Stopping::no || shortage_.lasts() || clock_() - requests_heard_ < request_interval) return;
+  if (stopping_ != Stopping::no || pause_.lasts() || clock_() - requests_heard_ < request_interval) return;
   requests_heard_ = clock_();
   try {
     if (settings_.requests()) mark_running_seeds();
     request_waits_ = false;
-  } catch (const DatabaseError& error) {
-    if (!error.no_room()) throw;
+  } catch (const std::exception& error) {
+    const std::optional<Hindrance> hindrance = hindrance_in(error, root(), 1 << 20);
+    if (!hindrance) throw;
     mark_running_seeds();
     request_waits_ = true;
-    begin_shortage(std::filesystem::path(database_.connection().path()).parent_path(), 1 << 20);
+    begin_pause(*hindrance);
   }
 }
 

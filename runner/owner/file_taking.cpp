@@ -1,17 +1,21 @@
 #include "runner/owner/file_taking.h"
 
-#include <sys/stat.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <charconv>
 #include <csignal>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "contract/descriptor.h"
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
 #include "runner/database/file_book.h"
+#include "runner/folder/intruders.h"
 #include "runner/folder/spool.h"
 
 namespace peclet::runner {
@@ -19,22 +23,40 @@ namespace {
 
 namespace fs = std::filesystem;
 
-dev_t device_of(const fs::path& path) {
-  struct stat about {};
-  if (stat(path.c_str(), &about) != 0) fail_to("cannot examine", path);
-  return about.st_dev;
+// Gives the file that is open the further name `name`, on the same file system; elsewhere copies it. What has
+// lost its own name since it was checked, or has another file in its place, is the file that was checked all
+// the same.
+void link_or_copy(const Descriptor& file, std::uint64_t bytes, const fs::path& name) {
+  fs::remove_all(name);
+  const std::string open_file = fmt::format("/proc/self/fd/{}", file.number());
+  if (linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) return;
+  if (lseek(file.number(), 0, SEEK_SET) != 0) fail_to("cannot read what becomes", name);
+  copy_durably(file.number(), bytes, name);
 }
 
-// After the commit it only changes its name, which needs no room. So what lies on another file system is
-// copied before that, under a name that no file of a result has.
-void bring_home(const fs::path& from, const FileRecord& record, const CampaignDirectory& directory,
+// After the commit the file only changes its name, which needs no room. Until then it has a name that no file
+// of a result has.
+void bring_home(const Descriptor& file, const FileRecord& record, const CampaignDirectory& directory,
                 AfterCommit& after) {
-  const fs::path place = record.place(directory);
-  create_folders_durably(place.parent_path());
-  if (device_of(from) == device_of(place.parent_path())) return after.keep(from, place);
-  const fs::path copy = place.parent_path() / ('@' + record.file.name);
-  copy_regular(from, copy, largest_left_file);
-  after.keep(copy, place);
+  const fs::path place = record.place(directory), seed = place.parent_path();
+  for (const fs::path& folder : {seed.parent_path(), seed}) {
+    if (const std::string text = make_way(folder, "a folder"); !text.empty()) after.warn(text);
+  }
+  create_folders_durably(seed);
+  const fs::path waiting = seed / ('@' + record.file.name);
+  link_or_copy(file, record.file.bytes, waiting);
+  after.keep(waiting, place);
+}
+
+// Brings the file of a known result that is not in its place to it, if the spool still has it.
+void heal(const FileRecord& record, const fs::path& spool, const CampaignDirectory& directory,
+          AfterCommit& after) {
+  if (!record.kept || kind_of(record.place(directory)) == "a regular file") return;
+  try {
+    const auto& [name, bytes, sha256] = record.file;
+    bring_home(open_left_file(left_file(spool, name), bytes, sha256), record, directory, after);
+  } catch (const ResultError&) {  // the doctor names what is missing
+  }
 }
 
 // The attempt that writes files with this stem, as CampaignDirectory::spool_file() spells it.
@@ -62,18 +84,17 @@ void take_files(Connection& connection, const CampaignDirectory& directory, cons
                 const fs::path& spool, const StoredResult& stored, bool keep, AfterCommit& after) {
   const std::vector<LeftFile> files = left_files(result.document);
   if (stored.is_new) {
-    check_files_in_spool(result.document, spool);
-    for (const LeftFile& file : files) store_file(connection, stored.point, result.seed, file, keep);
+    const std::vector<Descriptor> opened = open_files_in_spool(result.document, spool);
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      store_file(connection, stored.point, result.seed, files[i], keep);
+      const FileRecord record{result.point, stored.point, result.seed, files[i], keep};
+      if (keep) bring_home(opened[i], record, directory, after);
+    }
+  } else if (!files.empty()) {
+    for (const FileRecord& record : files_of_seed(connection, stored.point, result.seed))
+      heal(record, spool, directory, after);
   }
   if (files.empty()) return;
-  for (const FileRecord& record : files_of_seed(connection, stored.point, result.seed)) {
-    const fs::path from = left_file(spool, record.file.name);
-    // Of a result that is known, what is not in its place yet.
-    const bool is_wanted = record.kept && (stored.is_new || !is_there(record.place(directory)));
-    if (!is_wanted) continue;
-    if (!stored.is_new && !fault_of_file(from, record.file.bytes, record.file.sha256).empty()) continue;
-    bring_home(from, record, directory, after);
-  }
   // What is then left of them: unwanted ones, and those that were copied.
   for (const fs::path& file : left_files_of(spool)) after.remove(file);
 }
@@ -86,7 +107,8 @@ void remove_files_of_the_dead(Connection& connection, const CampaignDirectory& d
     const std::string stem = name.substr(0, end);
     // In this order: what a process that is gone has written is there by now.
     if (is_at_work(connection, stem) || is_there(directory.spool() / (stem + ".json"))) continue;
-    fs::remove(file);
+    std::error_code replaced;  // by a folder meanwhile, which the next start moves aside
+    fs::remove(file, replaced);
   }
 }
 

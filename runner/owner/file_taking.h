@@ -1,8 +1,8 @@
 // What becomes of the files that a realisation left beside its result.
 //
-// Their rows are stored with the result, and they are moved to their places after that commit, before the
-// spool file of the result goes. So whatever is killed when, the spool file is found again, as a result that
-// is known by then, and the moving goes on from there.
+// Their rows are stored with the result, and they get their places after that commit, before the spool file
+// of the result goes. What was checked is what gets there: it is held open meanwhile. So whatever is killed
+// when, the spool file is found again, as a result that is known by then, and the moving goes on from there.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,8 @@
 namespace peclet::runner {
 
 // Of a result that has been stored, or that is known. Inside its transaction. With `keep` files of a new one
-// are kept. Throws ResultError when a file of a new one is absent or another one; NoRoomError.
+// are kept. Throws ResultError if a file of a new one is absent or another one; std::system_error if the
+// machine fails.
 void take_files(Connection& connection, const CampaignDirectory& directory, const RealisationResult& result,
                 const std::filesystem::path& spool, const StoredResult& stored, bool keep,
                 AfterCommit& after);

@@ -26,13 +26,13 @@ FolderWatch::FolderWatch(const CampaignDirectory& directory, const OwnerLock& lo
                          RunListener& listener)
     : directory_(directory), lock_(lock), database_(database), listener_(listener) {}
 
-void FolderWatch::attend(Time now) {
-  if (now - last_ < interval) return;
+bool FolderWatch::attend(Time now) {
+  if (now - last_ < interval) return false;
   last_ = now;
   refuse_move();
   refuse_deletion();
   require_own_folders(directory_);
-  mend_folders();
+  return mend_folders();
 }
 
 void FolderWatch::refuse_move() const {
@@ -58,19 +58,26 @@ void FolderWatch::refuse_deletion() const {
       saved.string(), shell_word(saved.string()), shell_word(directory_.root().string())));
 }
 
-void FolderWatch::mend_folders() const {
+bool FolderWatch::mend_folders() const {
   std::vector<std::string> gone;
-  for (const fs::path& folder : {directory_.spool(), directory_.checkpoints(), directory_.failures(),
-                                 directory_.logs(), directory_.backup()}) {
-    if (kind_of(folder).empty()) gone.push_back(folder.filename().string() + "/");
+  for (const fs::path& folder : folders_below(directory_)) {
+    // One that went with the folder above it is not named.
+    if (kind_of(folder).empty() && !kind_of(folder.parent_path()).empty())
+      gone.push_back(folder.lexically_relative(directory_.root()).string() + "/");
   }
-  if (gone.empty()) return;
-  create_folders(directory_);
+  if (gone.empty()) return false;
+  try {
+    create_folders(directory_);
+  } catch (const fs::filesystem_error& error) {
+    if (!means_machine_fault(error.code().value())) throw;
+    return false;  // looked at again in a second
+  }
   listener_.warn(
       fmt::format("{}: somebody deleted {} while the campaign runs; made anew: the database keeps what it "
                   "has, and a seed "
                   "whose checkpoint or unbooked result was there runs again",
                   directory_.root().string(), fmt::join(gone, ", ")));
+  return true;
 }
 
 }  // namespace peclet::runner

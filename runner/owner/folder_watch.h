@@ -23,14 +23,15 @@ class FolderWatch {
   FolderWatch(const CampaignDirectory& directory, const OwnerLock& lock, Database& database,
               RunListener& listener);
 
-  // Looks about once a second. Makes folders below anew, and says so. Throws IntegrityError when folder or
-  // database are no longer where they were: it says what was saved where, and how to go on.
-  void attend(Time now);
+  // Looks about once a second. Makes folders below anew, says so, and returns whether it did. Throws
+  // IntegrityError when folder or database are no longer where they were: it says what was saved where, and
+  // how to go on.
+  bool attend(Time now);
 
  private:
   void refuse_move() const;
   void refuse_deletion() const;
-  void mend_folders() const;
+  bool mend_folders() const;
 
   const CampaignDirectory& directory_;
   const OwnerLock& lock_;

@@ -5,6 +5,9 @@
 #include "contract/guarded_file.h"
 #include "runner/campaign/campaign_file.h"
 #include "runner/database/backup_files.h"
+#include "runner/folder/being_set_up.h"
+#include "runner/folder/disk_room.h"
+#include "runner/folder/owner_lock.h"
 #include "runner/owner/renamed_file.h"
 
 namespace peclet::runner {
@@ -14,6 +17,21 @@ namespace fs = std::filesystem;
 
 bool has_been_run(const CampaignDirectory& directory) {
   return !kind_of(directory.database()).empty() || !restore_hint(directory).empty();
+}
+
+// Setting up takes moments. It takes longer where there is no room, or when the run that began has ended.
+void refuse_unfinished_beginning(const CampaignDirectory& directory) {
+  const std::string database = directory.database().string();
+  if (!current_owner(directory)) {
+    throw BeingSetUp(
+        database,
+        "the campaign was never set up: the run that began it has ended, perhaps for want of room; "
+        "`peclet run` begins it again");
+  }
+  if (const int error = lack_of_room(directory.root(), 0); error != 0) {
+    throw BeingSetUp(database,
+                     shortage_text(directory.root(), 0, error) + "; the campaign begins when there is room");
+  }
 }
 
 }  // namespace
@@ -55,6 +73,9 @@ OpenCampaign open_campaign(const fs::path& given, const fs::path& chosen) {
     return {std::move(directory), std::move(database)};
   } catch (const IntegrityError& error) {
     throw IntegrityError(error.what() + hint_if_damaged(directory));
+  } catch (const BeingSetUp&) {
+    refuse_unfinished_beginning(directory);
+    throw;
   }
 }
 

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include "contract/exit_codes.h"
 #include "contract/input_error.h"
@@ -20,6 +21,7 @@
 #include "runner/events/progress.h"
 #include "runner/owner/dispatcher.h"
 #include "runner/owner/owned_campaign.h"
+#include "runner/owner/pause.h"
 #include "runner/reports/status.h"
 #include "runner/requests/request_handler.h"
 #include "runner/text/quoting.h"
@@ -105,6 +107,7 @@ class Follower {
         bundles_(bundles),
         requests_(requests),
         progress_(progress),
+        root_(directory.root()),
         options_(options),
         started_(Clock::now()),
         backup_(directory, std::chrono::duration<double>(options.backup_seconds), progress, started_) {}
@@ -120,12 +123,17 @@ class Follower {
   bool follow(const BundleSettings& settings) {
     StopSignals signals;
     for (;;) {
-      const Bundles::SettleReport settled = bundles_.settle();
-      give_up_on_lifeless_tasks(settled);
-      requests_.carry_out();
-      if (ledger_.scheduler().finished()) break;
-      give_up_on_refusals(submit(settings));
-      report(settled);
+      try {
+        const Bundles::SettleReport settled = bundles_.settle();
+        give_up_on_lifeless_tasks(settled);
+        requests_.carry_out();
+        if (ledger_.scheduler().finished()) break;
+        give_up_on_refusals(submit(settings));
+        report(settled);
+        hindrance_.clear();
+      } catch (const std::exception& error) {
+        wait_out(error);
+      }
       backup_.attend(Clock::now());
       if (wait(signals)) {
         progress_.note("stopped; jobs go on, and the same command or `peclet ingest` takes their results in");
@@ -133,6 +141,17 @@ class Follower {
       }
     }
     return call_back(signals);
+  }
+
+  // What a turn could not book is found again by the next one. Throws what does not pass.
+  void wait_out(const std::exception& error) {
+    const std::optional<Hindrance> hindrance = hindrance_in(error, root_);
+    if (!hindrance) throw;
+    ledger_.roll_back();
+    if (std::exchange(hindrance_, hindrance->text) != hindrance->text) {
+      progress_.warn(
+          fmt::format("{}; jobs go on, and results are taken in {}", hindrance->text, hindrance->end));
+    }
   }
 
   std::string submit(const BundleSettings& settings) {
@@ -193,11 +212,12 @@ class Follower {
   Bundles& bundles_;
   RequestHandler& requests_;
   Progress& progress_;
+  fs::path root_;
   const HandOverOptions& options_;
   Clock::time_point started_;
   PeriodicBackup backup_;
   int results_ = 0, lifeless_turns_ = 0;
-  std::string refusal_;
+  std::string refusal_, hindrance_;  // as they were told
 };
 
 void admit(Ledger& ledger, const OwnedCampaign& owned, const HandOverOptions& options, Progress& progress) {
@@ -256,6 +276,8 @@ int hand_over_campaign(const HandOverOptions& options) {
   int code = 0;
   {
     Progress progress(Progress::style_of_stderr(options.quiet));
+    if (const std::string doubt = doubt_about_file_system(owned.directory.root()); !doubt.empty())
+      progress.warn(doubt);
     Ledger ledger(owned.database, owned.campaign, owned.directory, progress, retries);
     RequestHandler requests(owned.database, ledger, owned.directory, progress);
     if (!options.dry_run) requests.carry_out();
@@ -273,11 +295,10 @@ int hand_over_campaign(const HandOverOptions& options) {
       if (!refusal.empty()) throw SubmissionRefused(refusal);
       return 0;
     }
+    owned.database.connection().wait_for_locks(1000);  // a lock is waited for turn by turn
     finished = Follower(ledger, bundles, requests, progress, owned.directory, options).run(settings);
     code = ending(read_status(owned.database), finished);
   }
-    if (const std::string doubt = doubt_about_file_system(owned.directory.root()); !doubt.empty())
-      progress.warn(doubt);
   std::fputs(status_table(owned.database, getpid()).c_str(), stdout);
   return code;
 }

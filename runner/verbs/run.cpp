@@ -22,6 +22,7 @@
 #include "runner/folder/disk_room.h"
 #include "runner/owner/dispatcher.h"
 #include "runner/owner/folder_watch.h"
+#include "runner/owner/pause.h"
 #include "runner/reports/status.h"
 #include "runner/requests/request_handler.h"
 #include "runner/statistics/budget.h"
@@ -67,25 +68,27 @@ struct OpenedRun {
   SummedError before;  // the run
 };
 
-// Waits while the disk is too full to begin. Nothing: a signal came first, or there never will be room.
-std::unique_ptr<OpenedRun> open_when_there_is_room(const ClaimedCampaign& claimed, const RunOptions& options,
-                                                   RunListener& listener, StopSignals& signals) {
+// Waits while something is in the way: the disk is full, or another program has locked the database. Nothing:
+// a signal came first, or there never will be room.
+std::unique_ptr<OpenedRun> open_when_it_is_possible(const ClaimedCampaign& claimed, const RunOptions& options,
+                                                    RunListener& listener, StopSignals& signals) {
+  const std::filesystem::path& root = claimed.directory.root();
   for (bool first = true;; first = false) {
     try {
       auto opened = std::make_unique<OpenedRun>(claimed, options, listener);
       if (!first) listener.happened(ShortageEnded{});
       return opened;
     } catch (const std::exception& error) {
-      if (!means_no_room(error)) throw;
-      const CampaignDirectory& directory = claimed.directory;
-      if (const std::string why = why_in_vain(directory.root(), directory.root(), 0); !why.empty()) {
+      const std::optional<Hindrance> hindrance = hindrance_in(error, root);
+      if (!hindrance) throw;
+      const bool lacks_room = !hindrance->folder.empty();
+      if (const std::string why = lacks_room ? why_in_vain(root, root, 0) : ""; !why.empty()) {
         listener.warn(why);
         return nullptr;
       }
       if (first) {
-        const std::string shortage = shortage_text(claimed.directory.root(), 0);
-        listener.happened(ShortageBegan{shortage});
-        listener.warn(shortage + "; the campaign begins when there is room");
+        listener.happened(ShortageBegan{hindrance->text});
+        listener.warn(fmt::format("{}; the campaign begins {}", hindrance->text, hindrance->end));
       }
     }
     if (signals.wait(std::chrono::seconds(3))) return nullptr;
@@ -119,8 +122,8 @@ int dispatch(OpenedRun& opened, const RunOptions& options, const ClaimedCampaign
   settings.checkpoint_seconds = options.checkpoint_seconds;
   if (options.time_limit) settings.time_limit = std::chrono::duration<double>(*options.time_limit);
   settings.chore = [&backup, &watch] {
-    watch.attend(steady_clock::now());
     backup.attend(steady_clock::now());
+    return watch.attend(steady_clock::now());
   };
   settings.requests = [&opened] { return opened.requests.carry_out(); };
   log.record(fmt::format("{} begins: process {}, {} workers of {} threads, engine {}",
@@ -168,11 +171,11 @@ int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion&
     if (options.jsonl) events.emplace(STDOUT_FILENO, progress);
     RunLog log(claimed.directory.run_log(), events ? static_cast<RunListener&>(*events) : progress);
     log.happened(beginning(claimed, options));
-    try {
-      opened = open_when_there_is_room(claimed, options, log, signals);
-      if (opened) {
     if (const std::string doubt = doubt_about_file_system(claimed.directory.root()); !doubt.empty())
       log.warn(doubt);
+    try {
+      opened = open_when_it_is_possible(claimed, options, log, signals);
+      if (opened) {
         opened->ledger.set_bounds(bounds_of(options, claimed, ceiling));
         opened->before = summed_error(opened->ledger.scheduler());
         code = dispatch(*opened, options, claimed, log, signals);

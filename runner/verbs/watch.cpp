@@ -106,8 +106,8 @@ Sight sight_of(const WatchOptions& options, std::size_t width) {
   if (awaits_its_first_run(options.campaign, options.directory)) return look_for_beginning(options, width);
   try {
     return look(options, width);
-  } catch (const BeingSetUp&) {
-    return {folded(options.campaign.string() + ": is only just being set up\n", width), ExitCode::unfinished};
+  } catch (const BeingSetUp& error) {
+    return {folded(std::string(error.what()) + '\n', width), ExitCode::unfinished};
   }
 }
 

@@ -91,6 +91,7 @@ CASES = [
         for call, action in (
             ("write", "eio"),
             ("write", "enospc"),
+            ("write", "edquot"),
             ("sync", "eio"),
             ("sync", "enospc"),
             ("truncate", "eio"),
@@ -102,6 +103,12 @@ CASES = [
         storage.failing_calls,
         {"call": "allocation", "action": "fail", "path": "", "stride": 20},
         {"call": "allocation", "action": "fail", "path": "", "stride": 2000},
+    ),
+    case(
+        "owner cannot write or synchronise files of realisations",
+        storage.passing_failures,
+        {"calls": ["create", "sync", "rename"], "actions": ["enospc", "edquot", "eio"], "path": "/files/"},
+        {"calls": ["sync"], "actions": ["enospc", "edquot", "eio"], "path": "/files/", "stride": 7},
     ),
     case("changed while owner and verbs are killed", requests.changes_and_kills, {"times": 40}, {"times": 2}),
     case("kill before each call of a verb", requests.edges_of_a_verb, {"stride": 1}, {"stride": 12}),

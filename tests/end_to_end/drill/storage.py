@@ -40,6 +40,33 @@ def failing_calls(lab, tally, chance, call, action, path, stride=1, role="owner"
     tally.remarks.append("exit codes " + ", ".join(f"{code}: {count}" for code, count in sorted(codes.items())))
 
 
+def passing_failures(lab, tally, chance, calls, actions, path, stride=1):
+    """The owner's nth call on files of realisations fails once, for all n: it waits and goes on by itself, and nobody
+    is blamed. A result that could be read is not thrown away because the disk failed."""
+    codes = collections.Counter()
+    for call in calls:
+        for action in actions:
+            number, last = 1 if stride == 1 else chance.randint(1, stride), None
+            while last is None or number <= last:
+                campaign = Campaign(lab, SHORT, workers=1)
+                board = Board(campaign.folder)
+                code = campaign.run(
+                    board.environment(lab.shim, role="owner", call=call, path=path, number=number, action=action)
+                )
+                if not board.struck:
+                    last = number
+                    campaign.close()
+                    break
+                codes[code] += 1
+                what = f"{board.what} (call {number}, {action})"
+                blamed = campaign.count("SELECT total(blamed) FROM attempt")
+                tally.expect(campaign, code == lab.undisturbed(campaign)[0], f"{what}: exit code {code}")
+                tally.expect(campaign, not blamed, f"{what}: {blamed} attempts were blamed")
+                tally.judge(campaign)
+                number += stride
+    tally.remarks.append("exit codes " + ", ".join(f"{code}: {count}" for code, count in sorted(codes.items())))
+
+
 def enter_private_mounts():
     """What is mounted from now on is seen by this process and its children only, and goes with them."""
     library = ctypes.CDLL(None, use_errno=True)

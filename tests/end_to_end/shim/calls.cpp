@@ -131,6 +131,12 @@ int rename(const char* from, const char* to) noexcept {
   return static_cast<int>(syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
 }
 
+int linkat(int from_folder, const char* from, int to_folder, const char* to, int flags) noexcept {
+  if (fails(Call::create, to)) return -1;
+  note_created(to);
+  return static_cast<int>(syscall(SYS_linkat, from_folder, from, to_folder, to, flags));
+}
+
 int unlink(const char* path) noexcept { return remove_file(path); }
 
 int remove(const char* path) noexcept {

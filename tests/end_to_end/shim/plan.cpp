@@ -31,12 +31,13 @@ constexpr std::array<std::pair<const char*, Call>, 9> call_names{{{"create", Cal
                                                                   {"send", Call::send},
                                                                   {"read", Call::read},
                                                                   {"allocation", Call::allocation}}};
-constexpr std::array<std::pair<const char*, Action>, 7> action_names{{{"kill", Action::kill},
+constexpr std::array<std::pair<const char*, Action>, 8> action_names{{{"kill", Action::kill},
                                                                       {"cut", Action::cut},
                                                                       {"stop", Action::stop},
                                                                       {"wait", Action::wait},
                                                                       {"eio", Action::eio},
                                                                       {"enospc", Action::enospc},
+                                                                      {"edquot", Action::edquot},
                                                                       {"fail", Action::fail}}};
 
 // A plan that makes no sense must not look like a drill that was passed.
@@ -177,6 +178,8 @@ int strike(Call call, std::string_view path) {
       return EIO;
     case Action::enospc:
       return ENOSPC;
+    case Action::edquot:
+      return EDQUOT;
     case Action::fail:
       return ENOMEM;
   }

@@ -32,6 +32,7 @@ enum class Action {
   wait,    // the calling process hangs in the call until the board's `off`
   eio,     // the call fails with EIO
   enospc,  // the call fails with ENOSPC
+  edquot,  // the call fails with EDQUOT
   fail     // an allocation that gives nothing
 };
 

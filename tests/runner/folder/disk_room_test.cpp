@@ -39,6 +39,15 @@ TEST(Room, IsThereInAnOrdinaryFolderAndLeavesNoTrace) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
+TEST(Room, ThatIsLackingIsNamed) {
+  const TemporaryFolder folder;
+  const std::string place = folder.path().string();
+  EXPECT_TRUE(says(shortage_text(place, 3 << 20, ENOSPC), place + " is full: "));
+  EXPECT_TRUE(says(shortage_text(place, 3 << 20, ENOSPC), "MB are free there, 3.1 MB are needed"));
+  EXPECT_EQ(shortage_text(place, 3 << 20, EDQUOT),
+            place + " is full: your disk quota is used up there (`quota -s`), 3.1 MB are needed");
+}
+
 // The name of the trial can be foretold.
 TEST(Room, IsTriedWithoutFollowingALink) {
   const TemporaryFolder folder;

@@ -97,7 +97,7 @@ TEST(ResultFiles, AreCheckedWhereTheyAre) {
   EXPECT_EQ(file, directory.left() / "aaaaaaaaaaaaaaaa-000003-17@final.xyz");
   const auto complaint = [&] {
     try {
-      check_files_in_spool(with_files(Json::array({listed("final.xyz")})), spool);
+      open_files_in_spool(with_files(Json::array({listed("final.xyz")})), spool);
       return std::string();
     } catch (const ResultError& error) {
       return std::string(error.what());

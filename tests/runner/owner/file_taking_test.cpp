@@ -284,5 +284,77 @@ TEST_F(TakingFiles, FromAnotherFileSystemTheyComeAsCopies) {
   fs::remove_all(elsewhere);
 }
 
+TEST_F(TakingFiles, KeepsWhatWasCheckedWhateverHasItsNameSince) {
+  const fs::path spool = leave(0);
+  AfterCommit after;
+  {
+    Transaction booking(database_.connection());
+    const RealisationResult read = read_spool_file(spool, "");
+    const StoredResult stored = ResultStore(database_).store(read, campaign_.target);
+    take_files(database_.connection(), directory_, read, spool, stored, true, after);
+    fs::remove(left(spool, 0));
+    fs::remove(left(spool, 1));
+    fs::create_directories(left(spool, 1) / "inside");
+    booking.commit();
+  }
+  after.carry_out(listener_);
+  EXPECT_NO_THROW(after.finish_removals());
+  expect_in_place(0);
+}
+
+TEST_F(TakingFiles, MovesAsideWhatIsInTheirPlaces) {
+  fs::create_directories(place(0, 1) / "inside");
+  leave(0);
+  ledger_->ingest_spool();
+  expect_in_place(0);
+  EXPECT_TRUE(fs::exists(place(0, 1).string() + "@aside/inside"));
+  EXPECT_TRUE(
+      was_warned_of("file-1.txt: was a folder in the place of a regular file; moved to file-1.txt@aside"));
+  // A file in the place of the folder of a seed.
+  write_durably(place(1, 0).parent_path(), "in the way");
+  leave(1);
+  ledger_->ingest_spool();
+  expect_in_place(1);
+  EXPECT_EQ(read_file(place(1, 0).parent_path().string() + "@aside"), "in the way");
+}
+
+TEST_F(TakingFiles, CountsNoFolderAsAFile) {
+  leave(0);
+  ledger_->ingest_spool();
+  fs::remove(place(0, 0));
+  fs::create_directory(place(0, 0));
+  leave(0, 2);
+  ledger_->ingest_spool();
+  expect_in_place(0);
+}
+
+TEST_F(TakingFiles, OfAFolderThatIsGoneTakesNothing) {
+  leave(0);
+  fs::remove_all(directory_.spool());
+  EXPECT_NO_THROW(ledger_->ingest_spool());
+  EXPECT_EQ(database_.counts(1).done, 0);
+}
+
+// Somebody else may be in the folders, too.
+TEST_F(TakingFiles, ReplacesNoFolderAndMissesNoFileThatHasGone) {
+  AfterCommit after;
+  const fs::path result = directory_.spool() / "x.json", place = directory_.root() / "files" / "x";
+  fs::create_directories(place.parent_path());
+  write_durably(result, "result");
+  write_durably(directory_.root() / "files" / "@x", "file");
+  after.keep(directory_.root() / "files" / "@x", place);
+  after.reject(directory_.spool() / "vanished.json");
+  after.remove(result);
+  after.discard(directory_.checkpoints() / "c.checkpoint");
+  fs::create_directories(directory_.checkpoints() / "c.checkpoint" / "inside");
+  fs::remove_all(directory_.rejected());
+  after.carry_out(listener_);
+  after.finish_removals();
+  EXPECT_EQ(read_file(place), "file");
+  EXPECT_FALSE(fs::exists(result));
+  EXPECT_FALSE(fs::exists(directory_.checkpoints() / "c.checkpoint"));
+  EXPECT_TRUE(fs::exists(directory_.checkpoints() / "c.checkpoint@aside" / "inside"));
+}
+
 }  // namespace
 }  // namespace peclet::runner

@@ -90,6 +90,20 @@ TEST_F(FolderWatched, FoldersBelowAreMadeAnewAndNoSeedIsGivenUp) {
   expect_undisturbed_answer(campaign_.directory().database());
 }
 
+TEST(FolderWatchedOfFiles, FoldersOfFilesAreMadeAnewAndNobodyIsBlamed) {
+  CampaignOnDisk campaign;
+  campaign.start(campaign.held_from(7, {{"PECLET_FAKE_STEP_MS", "10"}, {"PECLET_FAKE_FILES", "2"}}));
+  campaign.wait_for_results(3);
+  fs::remove_all(campaign.directory().left());
+  fs::remove_all(campaign.directory().rejected());
+  campaign.wait_until("what the watch says", [&] {
+    return campaign.log().find("somebody deleted spool/rejected/, spool/files/") != std::string::npos;
+  });
+  campaign.release();
+  EXPECT_EQ(campaign.finish(), 0) << campaign.log();
+  EXPECT_EQ(campaign.count("SELECT total(blamed) FROM attempt"), 0) << campaign.log();
+}
+
 TEST(FolderWatch, SaysNothingOfAWholeFolderAndNeverReplacesWhatWasSavedBefore) {
   StoredCampaign stored(1, 5, 50);
   stored.complete(0, 0, 10);

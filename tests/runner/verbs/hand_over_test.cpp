@@ -80,6 +80,29 @@ TEST_F(HandOver, WhoFollowsCarriesOutWhatIsAskedForWithoutWaitingForTheNextTurn)
   EXPECT_EQ(count("SELECT total(blamed) FROM attempt"), 0);
 }
 
+TEST_F(HandOver, WhoFollowsWaitsForALockOfAnotherProgram) {
+  ASSERT_EQ(hand_over(), 0);
+  states(all_waiting);
+  options.follow = true;
+  options.interval = 0.05;
+  std::atomic<int> code = -1;
+  std::jthread owner([&] { code = hand_over(); });
+  const CampaignDirectory directory = campaign_directory(options.campaign, {});
+  ASSERT_TRUE(comes_true([&] { return current_owner(directory).has_value(); }));
+  {
+    Connection other(directory.database().string(), Connection::Access::read_write, 20'000);
+    const Transaction lock(other);
+    std::this_thread::sleep_for(std::chrono::seconds(3));  // every turn wants to write
+    EXPECT_EQ(code, -1);
+  }
+  cancel_points({options.campaign, {}, {"peclet=1", "peclet=2"}});
+  states("");
+  if (!comes_true([&] { return code != -1; })) kill(getpid(), SIGTERM);
+  owner.join();
+  EXPECT_EQ(code, 3);
+  EXPECT_EQ(seeds_out(), 0);
+}
+
 TEST_F(HandOver, WhoFollowsMakesBackups) {
   ASSERT_EQ(hand_over(), 0);
   for (int index = 0; index < tasks; ++index) ASSERT_EQ(run_task(1, index), 0);
