@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <sstream>
 #include <system_error>
 
 #include "contract/input_error.h"
@@ -57,6 +59,22 @@ class Placing {
         "/start/list", start_.path,
         fmt::format("must have a line for each of the {} seeds that /realisations/maximum allows; it has {}",
                     seeds, lines));
+  }
+
+  // Throws InputError if two lines of the list have one hash.
+  void require_different_files() const {
+    std::map<std::string, std::uint64_t> seeds;
+    std::istringstream lines(read_input(start_.path));
+    std::string line;
+    for (std::uint64_t seed = 0; std::getline(lines, line); ++seed) {
+      const auto [first, is_new] = seeds.emplace(line.substr(0, 64), seed);
+      if (is_new || !is_sha256(first->first)) continue;
+      refuse(
+          "/start/list", line,
+          fmt::format("must have another file for each seed without noise, but seed {} begins at a file of "
+                      "the same hash as seed {}: both would be one realisation",
+                      seed, first->second));
+    }
   }
 
  private:
@@ -148,8 +166,10 @@ void check_start_of_campaign(const Scene& scene, const std::string& file, std::i
         file, "/start/file", scene.start->path,
         "must be a /start/list without noise: every seed of a campaign would be the same realisation");
   }
-  Placing(scene, file).require_lines(seeds);
-  placed_spheres(scene, 0, file);
+  const Placing placing(scene, file);
+  placing.require_lines(seeds);
+  placing.place(0);
+  if (scene.start->is_list && !(scene.physics.thermal_energy > 0)) placing.require_different_files();
 }
 
 }  // namespace peclet::engine

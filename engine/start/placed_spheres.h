@@ -22,8 +22,8 @@ struct PlacedSpheres {
 PlacedSpheres placed_spheres(const Scene& scene, std::uint64_t seed, const std::string& file);
 
 // For a campaign of at most `seeds` seeds, before it runs: the same of the first seed. A list has to have a
-// line for each of them. One file for all seeds is refused without noise, where they would be one
-// realisation.
+// line for each of them. Without noise two seeds that begin at one file would be one realisation: a list that
+// has a hash twice is refused, and so is one file for all seeds.
 void check_start_of_campaign(const Scene& scene, const std::string& file, std::int64_t seeds = 1);
 
 }  // namespace peclet::engine

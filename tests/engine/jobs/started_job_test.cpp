@@ -199,6 +199,30 @@ TEST_F(StartedJob, OfANameThatNoFileCanHaveIsRefused) {
   }
 }
 
+// The file of seeds 0 and 2, under another name the second time.
+TEST_F(StartedJob, OfAListThatHasOneFileTwiceIsNoCampaignWithoutNoise) {
+  const Json patch = {{"fluid", {{"thermal_energy", nullptr}}}};
+  const auto refusal_of = [&](const Json& document) -> std::string {
+    try {
+      check_start_of_campaign(read_scene(document, ""), "scene.json");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  fs::copy_file(path("a.final.xyz"), path("b.xyz"));
+  const auto line = [&](const std::string& name) {
+    return fmt::format("{}  {}\n", sha256_of_file(path(name)), path(name));
+  };
+  write_durably(path("starts"), line("a.final.xyz") + line("a.trajectory.gsd") + line("b.xyz"));
+  const std::string message = refusal_of(scene(start("starts", "list"), patch));
+  EXPECT_NE(message.find("scene.json: /start/list"), std::string::npos) << message;
+  EXPECT_NE(message.find("seed 2 begins at a file of the same hash as seed 0"), std::string::npos) << message;
+  EXPECT_EQ(refusal_of(scene(start("starts", "list"))), "") << "with noise";
+  write_durably(path("starts"), line("a.final.xyz") + line("a.trajectory.gsd"));
+  EXPECT_EQ(refusal_of(scene(start("starts", "list"), patch)), "");
+}
+
 // Positions alone: the streaming flow, and noise by the seed, as after packing.
 TEST_F(StartedJob, WithoutMotionInItsFileBeginsWithThatOfAFreshOne) {
   std::string text = read_file(path("a.final.xyz"));
