@@ -3,7 +3,9 @@
 namespace peclet::engine {
 
 Json to_json(const Quantity& quantity) {
-  Json json = {{"symbol", quantity.symbol}, {"unit", quantity.unit}, {"estimator", "mean"}};
+  Json json = {{"symbol", quantity.symbol},
+               {"unit", quantity.unit},
+               {"estimator", quantity.is_share ? "share" : "mean"}};
   for (const Axis& axis : quantity.axes) {
     json["axes"].push_back({{"name", axis.name}, {"unit", axis.unit}, {"values", axis.values}});
   }

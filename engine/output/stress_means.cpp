@@ -82,6 +82,8 @@ class Described {
   void viscosity(const char* name, const char* symbol) {
     all_.push_back({.name = name, .symbol = symbol, .unit = "1", .ratio = {{"stress", "viscous_stress"}}});
   }
+  // The last one is 0 or 1.
+  void as_share() { all_.back().is_share = true; }
 
   const char* unit() const { return unit_; }
   std::vector<Quantity> take() { return std::move(all_); }
@@ -191,6 +193,7 @@ std::vector<Quantity> stress_quantities(const Scene& scene) {
   if (at_stress) {
     described.scalar("shear_rate", "<rate>", "1 / time");
     described.scalar("flowing", "P(flows)", "1");
+    described.as_share();
     described.viscosity("apparent_viscosity", "eta_r");
     described.viscosity("viscosity_of_those_flowing", "eta_r^flowing");
     described.stress("stress/solvent", "sigma^S");

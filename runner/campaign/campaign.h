@@ -32,9 +32,9 @@ struct Target {
   Tolerance tolerance;
   double confidence;  // of each two-sided interval
 
-  // Of the rule by which looks decide. The first one took every look within the tolerance for converged;
-  // looks that were made by it are read by it.
-  static constexpr int first_rule = 1, newest_rule = 2;
+  // Number of the rule by which looks decide. The second one widened intervals near the tolerance. Looks that
+  // an earlier rule made are shown as they were made, until the campaign is run again.
+  static constexpr int first_rule = 1, newest_rule = 3;
   int rule = newest_rule;
 
   std::vector<Criterion> also{};  // must be met, too

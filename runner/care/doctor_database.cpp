@@ -15,6 +15,7 @@
 #include "runner/stores/event_log.h"
 #include "runner/stores/result_store.h"
 #include "runner/stores/seed_store.h"
+#include "runner/text/number_text.h"
 
 namespace peclet::runner {
 namespace {
@@ -187,9 +188,23 @@ void examine_looks(Database& database, Findings& findings) {
            point.label + ": a seed gave two different results; the other one is in spool/rejected/",
            "find out why the engine does not repeat itself, and run in another --directory"});
     }
+    if (const std::vector<int> repeated = repeated_seeds(database.outcomes(point.id)); !repeated.empty()) {
+      findings.push_back(
+          {"seeds-repeated", Severity::warning,
+           fmt::format(
+               "{}: seed {} ended in the same state as an earlier one, and {} in all did: such values "
+               "are not independent, and the point gets no interval",
+               point.label, repeated.front(), counted(repeated.size(), "seed")),
+           "find out why seeds repeat each other (a start list with equal files, an engine that ignores the "
+           "seed), and run in another --directory"});
+    }
     try {
       checked_look(database, point, target);
     } catch (const IntegrityError& error) {
+      if (target.target.rule != Target::newest_rule) {
+        findings.push_back({"look-differs", Severity::integrity, error.what(), "`peclet run` looks again"});
+        continue;
+      }
       findings.push_back(
           {"look-differs", Severity::integrity, error.what(),
            "`peclet doctor --repair` looks again at the stored results",

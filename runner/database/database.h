@@ -86,6 +86,9 @@ struct TargetRecord {
   std::int64_t id = 0;
   Target target;
   int minimum = 0, maximum = 0;
+
+  // Of every interval that is shown of a point.
+  double level() const { return adjusted_confidence(target.confidence, minimum, maximum); }
 };
 
 struct LookRecord {

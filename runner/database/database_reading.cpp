@@ -9,6 +9,7 @@
 #include "runner/database/further_values.h"
 #include "runner/database/result_text.h"
 #include "runner/statistics/look_json.h"
+#include "runner/statistics/number_layout.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {
@@ -86,6 +87,8 @@ Look read_look(const Statement& query) {
   look.controlled_half_width = query.real(5);
   look.estimate = {count, query.real(6), query.real(7)};
   look.half_width = query.real(8);
+  look.controlled.values = stored_values(look.controlled, look.controlled_half_width);
+  look.estimate.values = stored_values(look.estimate, look.half_width);
   look.verdict = stored_verdict(query.text(9));
   look.skewness = query.real(10);
   look.transient = query.integer(11) != 0;
@@ -124,6 +127,15 @@ EventRecord read_event(const Statement& query) {
   EventRecord record{query.text(0), query.text(1), query.optional_integer(2), std::nullopt, query.text(4)};
   if (!query.is_null(3)) record.seed = static_cast<int>(query.integer(3));
   return record;
+}
+
+// Small quantities of the point, as its first result describes them: all of its results come from one engine.
+std::vector<Quantity> described_quantities(Connection& connection, std::int64_t point) {
+  Statement query(connection,
+                  "SELECT quantities FROM numbers JOIN number_layout USING (layout_id) WHERE point_id = ? "
+                  "ORDER BY seed LIMIT 1");
+  if (!query.bind(point).step()) return {};
+  return NumberLayout::of_text(query.text(0)).quantities();
 }
 
 constexpr const char* result_columns =
@@ -225,21 +237,28 @@ std::vector<RealisationRecord> Database::realisations(std::int64_t point) {
 std::vector<std::optional<Outcome>> Database::outcomes(std::int64_t point) {
   Statement query(
       *connection_,
-      "SELECT seed, state, value, control, first_quarter, first_half, further FROM realisation "
+      "SELECT seed, state, value, control, first_quarter, first_half, further, final_state_sha256 FROM "
+      "realisation "
       "WHERE point_id = ? AND seed < ? AND state IN ('done', 'failed', 'quarantined') ORDER BY seed");
   query.bind(point).bind(most_realisations);
-  std::vector<std::string> observables;  // asked for once, and only where there are several
+  const std::vector<std::string> observables = campaign().target.target.observables();
+  const std::vector<Quantity> described = described_quantities(*connection_, point);
   std::vector<std::optional<Outcome>> outcomes;
   while (query.step()) {
     outcomes.resize(static_cast<std::size_t>(query.integer(0)) + 1);
     outcomes.back() = Outcome{};  // lost, unless there is a value
     const std::optional<double> value = query.optional_real(2);
     if (!value) continue;
-    outcomes.back() = Outcome{Outcome::Kind::value, *value, query.optional_real(3).value_or(0), query.real(4),
-                              query.real(5)};
-    if (query.is_null(6)) continue;
-    if (observables.empty()) observables = campaign().target.target.observables();
-    outcomes.back()->further = further_values(query.text(6), observables);
+    Outcome outcome{Outcome::Kind::value, *value, query.optional_real(3).value_or(0), query.real(4),
+                    query.real(5)};
+    outcome.is_share = is_share(described, observables.front());
+    outcome.final_state = leading_digits(query.text(7));
+    if (!query.is_null(6)) {
+      outcome.further = further_values(query.text(6), observables);
+      for (std::size_t place = 1; place < observables.size(); ++place)
+        outcome.further[place - 1].is_share = is_share(described, observables[place]);
+    }
+    outcomes.back() = std::move(outcome);
   }
   return outcomes;
 }

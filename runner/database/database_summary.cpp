@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "runner/statistics/transient.h"
@@ -144,6 +145,19 @@ std::vector<Estimate> estimates_so_far(const std::vector<std::optional<Outcome>>
   return estimates;
 }
 
+// What is not stored of a look. Outcomes are read only where it has no interval, which is rare.
+void make_again(Database& database, const PointRecord& point, const TargetRecord& target,
+                PointSummary& summary) {
+  if (summary.looks.empty()) return;
+  Look& look = summary.looks.back();
+  look.near_maximum = is_near_maximum(look, target.target, target.maximum);
+  summary.without_interval = without_interval(look, target.target);
+  if (summary.without_interval.empty()) return;
+  const std::vector<std::optional<Outcome>> outcomes = database.outcomes(point.id);
+  look.repeated = repeated_seeds(
+      std::span(outcomes).first(std::min(outcomes.size(), static_cast<std::size_t>(look.seeds))));
+}
+
 }  // namespace
 
 std::vector<PointSummary> summarise_points(Database& database, const TargetRecord& target) {
@@ -175,6 +189,7 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
     if (!summary.looks.empty() && summary.looks.back().each.empty()) {
       summary.looks.back().untested = aggregate.lacks_blocks_of(summary.looks.back());
     }
+    make_again(database, point, target, summary);
     summary.decided = !summary.looks.empty() && summary.looks.back().verdict != Verdict::more;
     const int seen = summary.looks.empty() ? 0 : summary.looks.back().seeds;
     if (summary.decided && earlier[point.id] > seen) summary.earlier_look = earlier[point.id];

@@ -21,7 +21,8 @@ struct PointSummary {
   std::map<std::string, int> flags;  // completed seeds by what they say against themselves
   std::vector<Look> looks;           // for the present target
   int earlier_look = 0;  // seeds of the largest look for an earlier target, if it is beyond the deciding one
-  double confidence = 0.95;  // of its intervals
+  double confidence = 0.95;                     // that was asked for
+  std::vector<std::string> without_interval{};  // observables of the last look
   bool decided = false;
   std::vector<KeptApart> kept_apart{};  // results of other engines
   int wanted = 0;                 // seeds of the next look; of a decided point those of the deciding one

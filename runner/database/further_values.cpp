@@ -1,5 +1,7 @@
 #include "runner/database/further_values.h"
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -16,9 +18,16 @@ double number(const Json& value) { return value.is_null() ? none : value.get<dou
 
 }  // namespace
 
+std::uint64_t leading_digits(const std::string& hash) {
+  constexpr std::size_t digits = 16;
+  std::uint64_t number = 0;
+  std::from_chars(hash.data(), hash.data() + std::min(digits, hash.size()), number, 16);
+  return number;
+}
+
 Observation observation_of(const Observed& observed) {
   return {observed.value.value_or(none), observed.control.value_or(0), observed.first_quarter.value_or(none),
-          observed.first_half.value_or(none)};
+          observed.first_half.value_or(none), observed.is_share};
 }
 
 std::optional<std::string> further_values_text(const std::vector<std::string>& observables,

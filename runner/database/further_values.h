@@ -2,6 +2,7 @@
 // keeps it: {"pressure": [value, control, first quarter, first half]}, null for what does not exist.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,9 @@
 #include "runner/statistics/cohorts.h"
 
 namespace peclet::runner {
+
+// The first 16 hexadecimal digits of a hash as a number; 0 for none.
+std::uint64_t leading_digits(const std::string& hash);
 
 Observation observation_of(const Observed& observed);
 

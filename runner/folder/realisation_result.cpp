@@ -154,9 +154,13 @@ std::vector<double> block_values(const Json& result, const std::string& observab
 }
 
 std::vector<Observed> observe(const Json& result, const std::vector<std::string>& observables) {
+  const std::vector<Quantity> quantities = quantities_of(result);
   std::vector<Observed> observed;
   observed.reserve(observables.size());
-  for (const std::string& observable : observables) observed.push_back(observe(result, observable));
+  for (const std::string& observable : observables) {
+    observed.push_back(observe(result, observable));
+    observed.back().is_share = is_share(quantities, observable);
+  }
   return observed;
 }
 

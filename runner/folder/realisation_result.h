@@ -31,6 +31,7 @@ struct Observed {
   std::optional<double> control;  // variate of mean zero that belongs to it
   // value + control over the first quarter and the first half of the window; none without such blocks
   std::optional<double> first_quarter{}, first_half{};
+  bool is_share = false;  // the value is 0 or 1 by its nature
 };
 
 // Warning codes of a completed result, without those that the scene alone implies ("inertia-..."), which

@@ -179,8 +179,14 @@ void check_description(const Place& about) {
   if (const Place symbol = about.at("symbol"); !text_at(symbol).empty()) must_be_name(symbol);
   about.with("axes", check_axes);
   const std::string& estimator = text_at(about.at("estimator"));
-  if (estimator != "mean" && estimator != "ratio")
-    refuse(about.pointer + "/estimator", "must be mean or ratio");
+  if (estimator != "mean" && estimator != "ratio" && estimator != "share")
+    refuse(about.pointer + "/estimator", "must be mean, ratio or share");
+  if (estimator == "share") {
+    for (const char* const key : {"axes", "control"})
+      about.with(key, [](const Place& place) {
+        refuse(place.pointer, "must not be there beside the estimator share");
+      });
+  }
   if (estimator == "ratio") {
     for (const char* const key : {"numerator", "denominator"}) must_be_name(about.at(key));
   }

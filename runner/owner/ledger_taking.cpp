@@ -25,10 +25,12 @@ namespace fs = std::filesystem;
 constexpr std::size_t files_at_a_time = 64;
 constexpr int most_told = 10;
 
-Outcome outcome_of(const std::vector<Observed>& observed) {
+Outcome outcome_of(const std::vector<Observed>& observed, const Json& final_state) {
   if (!observed.front().value) return {};
-  const auto [value, control, first_quarter, first_half] = observation_of(observed.front());
+  const auto [value, control, first_quarter, first_half, is_share] = observation_of(observed.front());
   Outcome outcome{Outcome::Kind::value, value, control, first_quarter, first_half};
+  outcome.is_share = is_share;
+  outcome.final_state = leading_digits(final_state.is_string() ? final_state.get<std::string>() : "");
   for (std::size_t place = 1; place < observed.size(); ++place) {
     outcome.further.push_back(observation_of(observed[place]));
   }
@@ -148,7 +150,7 @@ void Ledger::take(const RealisationResult& result, const fs::path& spool) {
     after_.note(fmt::format("{}: ended with {}{}{}", name({*place, result.seed}), stored.cause,
                             stored.reason.empty() ? "" : ": ", stored.reason));
   }
-  book_outcome({*place, result.seed}, outcome_of(stored.observed));
+  book_outcome({*place, result.seed}, outcome_of(stored.observed, result.document.at("final_state_sha256")));
 }
 
 void Ledger::note_lacking(const RealisationResult& result) {

@@ -44,7 +44,7 @@ Json warnings_json(const CampaignStatus& status, const KnownPoints& known) {
   return list;
 }
 
-Json details_of(Database& database, const PointSummary& point, const Target& target, int seeds) {
+Json details_of(Database& database, const PointSummary& point, const TargetRecord& target, int seeds) {
   const int end = point.looks.empty() ? std::numeric_limits<int>::max() : point.looks.back().seeds;
   return point_details(database, point.point.id, end, target, seeds);
 }
@@ -55,8 +55,7 @@ void add_details(Database& database, const CampaignStatus& status, Json& points)
   const int each = std::clamp(most_results / std::max(1, static_cast<int>(points.size())), fewest_seeds,
                               most_detailed_seeds);
   for (std::size_t place = 0; place < points.size(); ++place) {
-    points[place]["details"] =
-        details_of(database, status.points[place], status.campaign.target.target, each);
+    points[place]["details"] = details_of(database, status.points[place], status.campaign.target, each);
   }
 }
 
@@ -97,7 +96,7 @@ std::optional<std::string> PageReader::key(const std::string& hash) const {
 }
 
 Json PageReader::details(Database& database, const std::string& hash) const {
-  return details_of(database, *find(hash), status_.campaign.target.target, most_detailed_seeds);
+  return details_of(database, *find(hash), status_.campaign.target, most_detailed_seeds);
 }
 
 Json page_data(Database& database, std::optional<std::int64_t> owner) {

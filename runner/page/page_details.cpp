@@ -18,7 +18,7 @@ bool is_profile(const Quantity& quantity) {
   return std::all_of(values.begin(), values.end(), [](const Json& value) { return value.is_number(); });
 }
 
-Json profile_json(const QuantityEstimate& found, double confidence) {
+Json profile_json(const QuantityEstimate& found, double level) {
   constexpr std::size_t most_values = 400;
   const Quantity& quantity = found.quantity;
   const QuantityAxis& axis = quantity.axes.front();
@@ -29,7 +29,7 @@ Json profile_json(const QuantityEstimate& found, double confidence) {
     values.push_back(axis.values[k]);
     means.push_back(number_json(estimate.mean));
     errors.push_back(number_json(estimate.standard_error));
-    widths.push_back(number_json(student_half_width(estimate, confidence)));
+    widths.push_back(number_json(half_width(estimate, level)));
   }
   return {{"name", quantity.name}, {"symbol", quantity.symbol},
           {"unit", quantity.unit}, {"axis", {{"name", axis.name}, {"unit", axis.unit}, {"values", values}}},
@@ -47,12 +47,12 @@ class Blocks {
       if (!std::isnan(values[block])) sums_[block].add(values[block]);
     }
   }
-  Json json(double confidence) const {
+  Json json(double level) const {
     if (sums_.empty()) return nullptr;
     Json means = Json::array(), widths = Json::array();
     for (const RunningEstimate& sum : sums_) {
       means.push_back(number_json(sum.estimate().mean));
-      widths.push_back(number_json(student_half_width(sum.estimate(), confidence)));
+      widths.push_back(number_json(half_width(sum.estimate(), level)));
     }
     return {{"mean", means}, {"half_width", widths}};
   }
@@ -76,7 +76,7 @@ int end_of_first(Connection& connection, std::int64_t point, int end, int seeds)
 
 }  // namespace
 
-Json point_details(Database& database, std::int64_t point, int end, const Target& target, int seeds) {
+Json point_details(Database& database, std::int64_t point, int end, const TargetRecord& target, int seeds) {
   Connection& connection = database.connection();
   const int completed = completed_below(connection, point, end);
   QuantityEstimates sums;
@@ -86,14 +86,14 @@ Json point_details(Database& database, std::int64_t point, int end, const Target
     if (!result.at("mean").is_object()) return;
     ++read;
     sums.add(result);
-    blocks.add(block_values(result, target.observable));
+    blocks.add(block_values(result, target.target.observable));
   });
   Json profiles = Json::array();
   for (const QuantityEstimate& found : sums.estimates()) {
-    if (is_profile(found.quantity)) profiles.push_back(profile_json(found, target.confidence));
+    if (is_profile(found.quantity)) profiles.push_back(profile_json(found, target.level()));
   }
   return {
-      {"seeds", read}, {"of", completed}, {"blocks", blocks.json(target.confidence)}, {"profiles", profiles}};
+      {"seeds", read}, {"of", completed}, {"blocks", blocks.json(target.level())}, {"profiles", profiles}};
 }
 
 }  // namespace peclet::runner

@@ -12,9 +12,6 @@ std::string meaning(const std::string& mark) {
       {"converged-with-losses",
        "the interval is within the tolerance, but the mean leaves out the seeds that were lost; if they were "
        "lost because of what they would have given, it is biased"},
-      {"converged-near-maximum",
-       "the interval is about as wide as the tolerance, but the seeds that are allowed are too few to tell "
-       "whether by luck: the one that is given is wider, and holds the mean as often as it says"},
       {"capped", "all seeds that are allowed have ended, and the interval is still wider than the tolerance"},
       {"failed", "too many seeds were lost to give an interval"},
       {"open", "not decided yet: the numbers are provisional"},
@@ -28,6 +25,16 @@ std::string meaning(const std::string& mark) {
       {"skewed",
        "some values are far from the rest on one side, and the interval holds the mean less often than it "
        "says"},
+      {"near-maximum",
+       "the interval is within the tolerance, but perhaps by luck: with a spread as large as the values "
+       "leave "
+       "open the point would need more seeds than are allowed, and intervals of such points hold the mean "
+       "less "
+       "often than they say"},
+      {"equal-values",
+       "all values are one and the same number, so that there is no spread to make an interval from"},
+      {"repeated-seeds",
+       "some seeds ended in the same state, so that their values are not independent and have no interval"},
       {"earlier-look",
        "the target was tighter before: the first look within the present one decides, as if there had been "
        "no "

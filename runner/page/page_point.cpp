@@ -28,6 +28,7 @@ struct Values {
   std::vector<double> values;
   std::vector<int> seeds;
   int closed = 0;
+  bool is_share = false;
 };
 
 Values values_of(const std::vector<std::optional<Outcome>>& outcomes, int end) {
@@ -38,6 +39,7 @@ Values values_of(const std::vector<std::optional<Outcome>>& outcomes, int end) {
     if (outcome->kind == Outcome::Kind::lost) continue;
     found.values.push_back(outcome->value + outcome->control);
     found.seeds.push_back(found.closed);
+    found.is_share = outcome->is_share;
   }
   return found;
 }
@@ -53,7 +55,7 @@ bool is_drawn(int seeds) {
 
 Json running_mean(const Values& found, StopRule& rule) {
   Json seeds = Json::array(), means = Json::array(), widths = Json::array();
-  RunningEstimate estimate;
+  RunningEstimate estimate(found.is_share);
   for (std::size_t i = 0; i < found.values.size(); ++i) {
     estimate.add(found.values[i]);
     if (!is_drawn(found.seeds[i]) && i + 1 < found.values.size()) continue;
@@ -172,7 +174,7 @@ class PointPage {
   int end() const { return look_ ? look_->seeds : std::numeric_limits<int>::max(); }
 
   void add_estimates(KnownPoint& known) {
-    const double confidence = target_.target.confidence;
+    const double level = target_.level();
     QuantityEstimates sums;
     book_.for_each(
         point_.point.id, end(),
@@ -181,12 +183,11 @@ class PointPage {
     for (const QuantityEstimate& found : sums.estimates()) {
       const std::vector<Drawable> drawables = drawables_of(found.quantity);
       for (std::size_t k = 0; k < drawables.size(); ++k) {
-        known.estimates.push_back(
-            numbers(found.estimates[k], student_half_width(found.estimates[k], confidence)));
+        known.estimates.push_back(numbers(found.estimates[k], half_width(found.estimates[k], level)));
         known.drawables.push_back(drawables[k]);
         if (found.uncontrolled.empty()) continue;
         uncontrolled[drawables[k].path] =
-            numbers(found.uncontrolled[k], student_half_width(found.uncontrolled[k], confidence));
+            numbers(found.uncontrolled[k], half_width(found.uncontrolled[k], level));
       }
     }
     if (look_) add_deciding(known, uncontrolled, allowed);

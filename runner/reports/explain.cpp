@@ -1,6 +1,7 @@
 #include "runner/reports/explain.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -117,11 +118,38 @@ std::string advice_when_capped(const Look& look, const Target& target) {
                      key_of(worst->criterion.tolerance));
 }
 
-// Why the look did not decide although its interval is narrow enough.
-std::string luck_text(const Look& look, const Target& target) {
-  if (!(largest_share(look, target) <= 1)) return "";
-  return "; the last look is within the tolerance, but perhaps by luck: were the spread as large as its "
-         "seeds allow, the maximum would not do";
+// Why observables of the last look have no interval; nothing where all have one.
+std::string missing_interval_text(const PointSummary& point) {
+  if (point.without_interval.empty()) return "";
+  const Look& look = point.looks.back();
+  if (!look.repeated.empty()) {
+    return fmt::format(
+        "seed{} {} ended in the same state as an earlier one, so that these values are not "
+        "independent",
+        look.repeated.size() == 1 ? "" : "s", fmt::join(look.repeated, ", "));
+  }
+  return fmt::format("all values of {} are equal, so that they have no spread to judge by",
+                     fmt::join(point.without_interval, ", "));
+}
+
+// What makes a share of another observable's mean less sure.
+std::string measure_text(const std::vector<Known>& all) {
+  for (const Known& known : all) {
+    const bool is_its_own = known.measure.observable == known.look.observable;
+    const double mean = known.measure.estimate.mean;
+    if (is_its_own || known.criterion.tolerance.share(known.look.half_width, mean) > 1) continue;
+    if (!(known.look.share <= 1))
+      return fmt::format(", because {} itself is known to {} only", known.measure.observable,
+                         percent(known.measure.half_width / std::abs(mean)));
+  }
+  return "";
+}
+
+std::string luck_text(const Look& look) {
+  if (!look.near_maximum) return "";
+  return "; perhaps by luck: with a spread as large as these values leave open it would need more seeds than "
+         "are "
+         "allowed, and intervals of such points hold the mean less often";
 }
 
 std::string earlier_look_text(const PointSummary& point) {
@@ -134,9 +162,11 @@ std::string earlier_look_text(const PointSummary& point) {
 
 std::string reason(const PointSummary& point, const Target& target) {
   if (!point.decided) {
+    const std::string missing = missing_interval_text(point);
     return fmt::format(
-        "{} of the {} seeds of the next look have ended, {}", point.wanted_ended, point.wanted,
-        point.point.cancelled ? "and it gets no more" : fmt::format("{} run", point.counts.running));
+        "{} of the {} seeds of the next look have ended, {}{}", point.wanted_ended, point.wanted,
+        point.point.cancelled ? "and it gets no more" : fmt::format("{} run", point.counts.running),
+        missing.empty() ? "" : "; " + missing);
   }
   const Look& look = point.looks.back();
   const std::vector<Known> all = known_of(look, target);
@@ -145,16 +175,14 @@ std::string reason(const PointSummary& point, const Target& target) {
   switch (look.verdict) {
     case Verdict::converged:
     case Verdict::converged_with_losses:
-      return fmt::format("{} seeds give {}, within the tolerance of {}{}", look.seeds, widths_text(all),
-                         tolerances_text(all, is_any), earlier_look_text(point));
-    case Verdict::converged_near_maximum:
-      return fmt::format(
-          "all {} seeds that are allowed are just about enough for the tolerance of {}, perhaps by luck: "
-          "they are sure of {} only",
-          look.seeds, tolerances_text(all, is_as_the_look), widths_text(all));
+      return fmt::format("{} seeds give {}, within the tolerance of {}{}{}", look.seeds, widths_text(all),
+                         tolerances_text(all, is_any), luck_text(look), earlier_look_text(point));
     case Verdict::capped:
-      return fmt::format("all {} seeds that are allowed give {}, not within the tolerance of {}", look.seeds,
-                         widths_text(all), tolerances_text(all, is_as_the_look));
+      if (const std::string missing = missing_interval_text(point); !missing.empty())
+        return fmt::format("all {} seeds that are allowed have ended, and {}", look.seeds, missing);
+      return fmt::format("all {} seeds that are allowed give {}, not within the tolerance of {}{}",
+                         look.seeds, widths_text(all), tolerances_text(all, is_as_the_look),
+                         measure_text(all));
     case Verdict::failed: {
       const auto failed = std::find_if(all.begin(), all.end(), is_as_the_look);
       return fmt::format("{} of {} seeds are lost{}", look.seeds - failed->look.estimate.count, look.seeds,
@@ -174,27 +202,36 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
   if (point.point.cancelled && !point.decided) return "nothing; `peclet cancel --undo` takes it up again";
   if (!point.decided) {
     if (point.looks.empty()) return fmt::format("the first look, at {} seeds", point.wanted);
+    if (!point.without_interval.empty()) {
+      return fmt::format("the look at {} seeds; how many will be enough cannot be told without an interval",
+                         point.wanted);
+    }
     return fmt::format(
-        "the look at {} seeds; {}{}", point.wanted,
+        "the look at {} seeds; {}", point.wanted,
         that_may_be_zero(known_of(point.looks.back(), target.target)) != nullptr
             ? "how many will be enough cannot be told while the interval contains zero"
             : fmt::format("{} are expected to be enough",
-                          expected_seeds(point.looks, target.target, target.minimum, target.maximum)),
-        luck_text(point.looks.back(), target.target));
+                          expected_seeds(point.looks, target.target, target.minimum, target.maximum)));
   }
   const Look& look = point.looks.back();
   switch (look.verdict) {
     case Verdict::converged:
       if (look.transient) return "a longer /scene/duration/equilibration: see transient above";
+      if (look.near_maximum)
+        return fmt::format(
+            "a larger /realisations/maximum and a smaller tolerance (`peclet set`), or nothing");
       return "nothing; a smaller tolerance (`peclet set`) reopens it";
     case Verdict::converged_with_losses:
       return fmt::format(
           "see why seeds are lost: the mean leaves them out (states in {}){}", directory.failures().string(),
           point.counts.quarantined > 0 ? "; `peclet retry` runs those again that were given up" : "");
-    case Verdict::converged_near_maximum:
-      return fmt::format("a larger /realisations/maximum ({} seeds; `peclet set`), and run again",
-                         seeds_for(look, target.target));
     case Verdict::capped:
+      if (!look.repeated.empty())
+        return "find out why seeds give the same: a start list with one file twice, or an engine without "
+               "noise";
+      if (!point.without_interval.empty())
+        return fmt::format("a larger /realisations/maximum than {} (`peclet set`), or another observable",
+                           target.maximum);
       return advice_when_capped(look, target.target);
     case Verdict::failed:
       return fmt::format("change the scene: states are in {}, logs in {}", directory.failures().string(),

@@ -34,11 +34,21 @@ std::vector<double> controlled(const std::vector<Outcome>& outcomes) {
 
 std::string interval_text(const Look& look, const std::vector<Outcome>& outcomes,
                           const TargetRecord& target) {
-  const double confidence = adjusted_confidence(target.target.confidence, target.minimum, target.maximum);
+  const double level = target.level();
+  const std::vector<double> values = controlled(outcomes);
+  if (!std::isfinite(look.controlled_half_width)) return "";
+  const bool is_share =
+      std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome& outcome) { return outcome.is_share; });
+  if (estimate(values, is_share).values == Estimate::Values::share) {
+    const Interval interval = share_interval(look.controlled.count, look.controlled.mean, level);
+    return fmt::format(
+        "  interval: {} .. {} of the share (Clopper and Pearson); the half-width is its larger side\n",
+        rough(interval.low), rough(interval.high));
+  }
   std::string text;
-  if (const std::optional<Interval> interval = bootstrap_t(controlled(outcomes), confidence)) {
-    text = fmt::format("  interval: Student {} .. {}, bootstrap-t {} .. {}; skewness {}\n",
-                       rough(look.controlled.mean - look.controlled_half_width),
+  if (const std::optional<Interval> interval = bootstrap_t(values, level)) {
+    text = fmt::format("  interval of {:.3g} %: Student {} .. {}, bootstrap-t {} .. {}; skewness {}\n",
+                       100 * level, rough(look.controlled.mean - look.controlled_half_width),
                        rough(look.controlled.mean + look.controlled_half_width), rough(interval->low),
                        rough(interval->high), rough(look.skewness));
   }

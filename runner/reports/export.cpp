@@ -64,7 +64,7 @@ class PointExport {
         point_(point),
         canonical_(canonical),
         look_(checked_look(database, point, target)),
-        confidence_(target.target.confidence) {
+        level_(target.level()) {
     if (!canonical_) {
       for (const AttemptRecord& attempt : database.attempts(point.id)) {
         attempts_[attempt.seed].push_back(attempt_json(attempt));
@@ -88,7 +88,7 @@ class PointExport {
                   look_ && look_->verdict != Verdict::more ? Json(to_string(look_->verdict)) : Json(nullptr)},
                  {"derived", derived_},
                  {"warnings", warnings_},
-                 {"quantities", estimates_.json(confidence_)},
+                 {"quantities", estimates_.json(level_)},
                  {"realisations", realisations_}};
     if (!canonical_) {
       json["suspect"] = point_.suspect;
@@ -144,7 +144,7 @@ class PointExport {
   std::map<int, Json> attempts_, files_, results_;
   Json derived_, warnings_;
   Json realisations_ = Json::array(), surplus_ = Json::array();
-  double confidence_;
+  double level_;
   QuantityEstimates estimates_;
 };
 

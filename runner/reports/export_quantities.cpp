@@ -38,7 +38,7 @@ Fields place_fields(const Quantity& quantity, std::size_t element, std::size_t m
 Fields number_fields(const QuantityEstimate& found, std::size_t element, double confidence) {
   const Estimate& estimate = found.estimates[element];
   Fields fields{fmt::format("{}", estimate.count), csv_number(estimate.mean),
-                csv_number(estimate.standard_error), csv_number(student_half_width(estimate, confidence))};
+                csv_number(estimate.standard_error), csv_number(half_width(estimate, confidence))};
   if (found.uncontrolled.empty()) {
     fields.insert(fields.end(), {"", ""});
   } else {
@@ -89,10 +89,10 @@ std::string export_long_csv(Database& database) {
     for (const QuantityEstimate& found : point.estimates) {
       const Quantity& quantity = found.quantity;
       const Fields what{csv_text(quantity.name), csv_text(quantity.symbol), csv_text(quantity.unit),
-                        quantity.ratio ? "ratio" : "mean"};
+                        estimator_of(quantity)};
       for (std::size_t k = 0; k < found.estimates.size(); ++k) {
         text += row(point.which, what, place_fields(quantity, k, most_axes),
-                    number_fields(found, k, target.target.confidence));
+                    number_fields(found, k, target.level()));
       }
     }
   }

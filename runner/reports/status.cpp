@@ -55,6 +55,7 @@ Json point_json(const PointSummary& point) {
           {"losses", point.losses},
           {"loss_reasons", point.loss_reasons},
           {"flags", point.flags},
+          {"reservations", reservations(point)},
           {"so_far", estimate_json(point.so_far)},
           {"look", point.looks.empty() ? Json(nullptr) : look_json(point.looks.back())},
           {"cpu_seconds", counts.cpu_seconds},
@@ -121,6 +122,9 @@ std::vector<std::string> reservations(const PointSummary& point) {
   if (!point.looks.empty() && point.looks.back().transient) found.emplace_back("transient");
   if (!point.looks.empty() && point.looks.back().untested) found.emplace_back("no-transient-test");
   if (point.decided && is_skewed(point.looks.back(), point.confidence)) found.emplace_back("skewed");
+  if (!point.looks.empty() && point.looks.back().near_maximum) found.emplace_back("near-maximum");
+  if (!point.without_interval.empty())
+    found.emplace_back(point.looks.back().repeated.empty() ? "equal-values" : "repeated-seeds");
   if (point.earlier_look > 0) found.emplace_back("earlier-look");
   for (const auto& [code, count] : point.flags) found.push_back(fmt::format("{} flagged {}", count, code));
   if (point.point.suspect) found.emplace_back("suspect");

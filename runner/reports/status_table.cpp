@@ -17,9 +17,11 @@ namespace {
 
 // With its share of the mean, where the tolerance is one.
 std::string interval(const Look& look, const Tolerance& tolerance) {
-  if (!std::isfinite(look.controlled_half_width)) return "-";
+  const bool has_interval = std::isfinite(look.controlled_half_width);
+  if (!has_interval && look.controlled.count < 2) return "-";
   const std::string text = with_error(look.controlled.mean, look.controlled_half_width);
-  return tolerance.is_relative() ? fmt::format("{} ({})", text, percent(relative_width(look))) : text;
+  return tolerance.is_relative() && has_interval ? fmt::format("{} ({})", text, percent(relative_width(look)))
+                                                 : text;
 }
 
 // "pressure 2.6 x": the observable whose half-width is the largest multiple of what is good enough.

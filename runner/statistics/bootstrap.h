@@ -4,11 +4,9 @@
 #include <optional>
 #include <span>
 
-namespace peclet::runner {
+#include "runner/statistics/statistics.h"
 
-struct Interval {
-  double low = 0, high = 0;
-};
+namespace peclet::runner {
 
 // The two-sided interval m - t*(1 - a/2) s .. m - t*(a/2) s, a = 1 - confidence, of the mean m with standard
 // error s, t* being quantiles of (m* - m) / s* over 4000 resamples of the values with replacement (B. Efron

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "runner/statistics/transient.h"
@@ -33,12 +34,14 @@ ObservableLook look_at(const std::vector<Observation>& observed) {
   std::vector<double> controlled;
   controlled.reserve(observed.size());
   int contrasts = 0;
+  bool is_share = !observed.empty();
   for (const Observation& observation : observed) {
     controlled.push_back(observation.value + observation.control);
+    is_share = is_share && observation.is_share;
     if (std::isfinite(observation.first_half)) ++contrasts;
   }
   ObservableLook look;
-  look.estimate = estimate(controlled);
+  look.estimate = estimate(controlled, is_share);
   look.skewness = skewness(controlled);
   look.transient = has_transient(observed);
   look.untested = lacks_blocks(look.estimate.count, contrasts);
@@ -48,12 +51,16 @@ ObservableLook look_at(const std::vector<Observation>& observed) {
 Estimate without_control(const std::vector<Observation>& observed) {
   std::vector<double> values;
   values.reserve(observed.size());
-  for (const Observation& observation : observed) values.push_back(observation.value);
-  return estimate(values);
+  bool is_share = !observed.empty();
+  for (const Observation& observation : observed) {
+    values.push_back(observation.value);
+    is_share = is_share && observation.is_share;
+  }
+  return estimate(values, is_share);
 }
 
 Look look_at(std::span<const std::optional<Outcome>> cohort, StopRule& rule,
-             const std::vector<std::string>& observables) {
+             const std::vector<std::string>& observables, const Target& target) {
   std::vector<ObservableLook> each;
   std::vector<Estimate> estimates;
   Look look;
@@ -63,8 +70,13 @@ Look look_at(std::span<const std::optional<Outcome>> cohort, StopRule& rule,
     if (place == 0) look.estimate = without_control(observed);
     each.push_back(look_at(observed));
     each.back().observable = observables[place];
-    estimates.push_back(each.back().estimate);
   }
+  look.repeated = repeated_seeds(cohort);
+  if (!look.repeated.empty()) {
+    look.estimate.values = Estimate::Values::repeated;
+    for (ObservableLook& one : each) one.estimate.values = Estimate::Values::repeated;
+  }
+  for (const ObservableLook& one : each) estimates.push_back(one.estimate);
   const StopRule::Judgement judgement = rule.judge(look.seeds, estimates);
   for (std::size_t place = 0; place < each.size(); ++place) {
     const StopRule::Finding& finding = judgement.findings[place];
@@ -81,6 +93,7 @@ Look look_at(std::span<const std::optional<Outcome>> cohort, StopRule& rule,
   look.skewness = each.front().skewness;
   look.verdict = judgement.verdict;
   if (each.size() > 1) look.each = std::move(each);
+  look.near_maximum = is_near_maximum(look, target, rule.schedule().back());
   return look;
 }
 
@@ -88,7 +101,7 @@ Look look_at(std::span<const std::optional<Outcome>> cohort, StopRule& rule,
 
 Observation Outcome::of(std::size_t place) const {
   if (kind == Kind::lost) return {};
-  if (place == 0) return {value, control, first_quarter, first_half};
+  if (place == 0) return {value, control, first_quarter, first_half, is_share};
   return place <= further.size() ? further[place - 1] : Observation{};
 }
 
@@ -115,13 +128,40 @@ std::vector<Estimate> estimates_of(const Look& look, const Target& target) {
   return estimates;
 }
 
+bool is_near_maximum(const Look& look, const Target& target, int maximum) {
+  if (!is_converged(look.verdict)) return false;
+  const std::vector<ObservableLook> each = each_of(look, target);
+  return std::any_of(each.begin(), each.end(), [&](const ObservableLook& one) {
+    return one.verdict && is_near_maximum(look.seeds, one.estimate.count, one.share, maximum);
+  });
+}
+
+std::vector<std::string> without_interval(const Look& look, const Target& target) {
+  std::vector<std::string> found;
+  for (const ObservableLook& one : each_of(look, target)) {
+    if (one.estimate.count > 1 && !std::isfinite(one.half_width)) found.push_back(one.observable);
+  }
+  return found;
+}
+
+std::vector<int> repeated_seeds(std::span<const std::optional<Outcome>> cohort) {
+  std::vector<int> repeated;
+  std::set<std::uint64_t> seen;
+  for (std::size_t seed = 0; seed < cohort.size(); ++seed) {
+    const std::optional<Outcome>& outcome = cohort[seed];
+    if (!outcome || outcome->kind == Outcome::Kind::lost || outcome->final_state == 0) continue;
+    if (!seen.insert(outcome->final_state).second) repeated.push_back(static_cast<int>(seed));
+  }
+  return repeated;
+}
+
 double relative_width(const Look& look) {
   return look.controlled_half_width / std::abs(look.controlled.mean);
 }
 
 bool is_skewed(const Look& look, double confidence) {
   const double n = look.controlled.count;
-  if (!std::isfinite(look.skewness)) return false;
+  if (!std::isfinite(look.skewness) || look.controlled.values == Estimate::Values::share) return false;
   const double chance = std::sqrt(6 * n * (n - 1) / ((n - 2) * (n + 1) * (n + 3)));  // of a normal population
   const boost::math::normal standard;
   const double z = boost::math::quantile(standard, (1 + confidence) / 2);
@@ -141,8 +181,9 @@ std::vector<Look> replay_looks(const std::vector<std::optional<Outcome>>& outcom
   std::vector<Look> looks;
   for (const int seeds : rule.schedule()) {
     if (!is_closed(outcomes, seeds)) break;
-    looks.push_back(look_at(std::span(outcomes).first(static_cast<std::size_t>(seeds)), rule, observables));
-    if (looks.back().verdict != Verdict::more) break;
+    looks.push_back(
+        look_at(std::span(outcomes).first(static_cast<std::size_t>(seeds)), rule, observables, target));
+    if (looks.back().verdict != Verdict::more && target.rule == Target::newest_rule) break;
   }
   return looks;
 }

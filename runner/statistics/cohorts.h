@@ -5,8 +5,10 @@
 // and resumed or not, give the same looks, the same deciding look and the same mean.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,7 @@ struct Observation {
   // value + control over the first quarter and the first half of the window; NaN where they are not known
   double first_quarter = std::numeric_limits<double>::quiet_NaN();
   double first_half = std::numeric_limits<double>::quiet_NaN();
+  bool is_share = false;  // the value is 0 or 1 by its nature
 };
 
 // How a seed ended; a seed that is queued or runs has no outcome yet. The numbers are of the target's leading
@@ -34,6 +37,8 @@ struct Outcome {
   double first_quarter = std::numeric_limits<double>::quiet_NaN();
   double first_half = std::numeric_limits<double>::quiet_NaN();
   std::vector<Observation> further{};  // of the other ones of Target::observables(), in that order
+  bool is_share = false;               // the value is 0 or 1 by its nature
+  std::uint64_t final_state = 0;       // first digits of its hash; 0 where it is not known
 
   // Of the observable at that place of Target::observables(); without a value of a seed that is lost.
   Observation of(std::size_t place) const;
@@ -44,7 +49,7 @@ struct ObservableLook {
   std::string observable;
   Estimate estimate;      // of value + control
   double half_width = 0;  // the rule's
-  double share = 0;       // of the one that is good enough; NaN without a tolerance
+  double share = 0;       // of the one that is allowed; NaN without a tolerance
   double skewness = std::numeric_limits<double>::quiet_NaN();
   bool transient = false, untested = false;  // as of a look
   std::optional<Verdict> verdict;            // none where it only measures others
@@ -57,13 +62,17 @@ struct Look {
   int seeds = 0;  // n
   int lost = 0;
   Estimate estimate;                 // of the observable
-  double half_width = 0;             // Student-t, at the level of adjusted_confidence()
+  double half_width = 0;             // as of the next, of the observable
   Estimate controlled;               // of value + control
-  double controlled_half_width = 0;  // the rule's: see stop_rule.h
+  double controlled_half_width = 0;  // the rule's: see stop_rule.h; NaN where there is no interval
   double skewness = std::numeric_limits<double>::quiet_NaN();  // of value + control
   bool transient = false;  // the beginning of the window differs from its end: see transient.h
   bool untested = false;   // for transients: lacks_blocks(), see transient.h; made again, never stored
   Verdict verdict = Verdict::more;
+  // Made again, never stored: the convergence may be luck (is_near_maximum()), and seeds that are no
+  // independent ones (repeated_seeds()).
+  bool near_maximum = false;
+  std::vector<int> repeated{};
   // Of a target of several observables, each of them, the leading one first; empty otherwise. Transient,
   // untested and verdict above are then of all of them.
   std::vector<ObservableLook> each{};
@@ -72,8 +81,7 @@ struct Look {
 // Look::each, also of a target of one observable.
 std::vector<ObservableLook> each_of(const Look& look, const Target& target);
 
-// The largest half-width over the one that is good enough, of all criteria: met at 1. NaN for what is not
-// known.
+// The largest half-width over the one that is allowed, of all criteria: met at 1. NaN for what is not known.
 double largest_share(const Look& look, const Target& target);
 
 // The estimates that decide, of Target::observables() in that order.
@@ -83,8 +91,19 @@ std::vector<Estimate> estimates_of(const Look& look, const Target& target);
 // the skewness is beyond what a normal population of this size shows, and the loss of coverage that belongs
 // to it,
 //   2 phi(z) z (z^4 + 2 z^2 - 3) g^2 / (18 n)    (P. Hall, The Bootstrap and Edgeworth Expansion, 1992, 2.6),
-// is more than 0.01; z is the two-sided normal quantile of the confidence, g the skewness, n the count.
+// is more than 0.01. Not so of a share, which has an interval of its own. z is the two-sided normal quantile
+// of the confidence, g the skewness, n the count.
 bool is_skewed(const Look& look, double confidence);
+
+// Whether the look has converged, and one of its criteria perhaps by luck: see stop_rule.h.
+bool is_near_maximum(const Look& look, const Target& target, int maximum);
+
+// The observables of the look that have values and no interval, because all are equal or seeds are repeated.
+std::vector<std::string> without_interval(const Look& look, const Target& target);
+
+// Seeds that ended in the same final state as one before them: their values are one value. Student's interval
+// of such seeds is too narrow, so that a look at them has none.
+std::vector<int> repeated_seeds(std::span<const std::optional<Outcome>> cohort);
 
 // Half-width over |mean| of the estimate that decides; NaN where there is no interval.
 double relative_width(const Look& look);
@@ -94,7 +113,8 @@ double relative_width(const Look& look);
 bool has_control(const Look& look);
 
 // All looks that the outcomes allow, in order, ending with the first that decides (any verdict but more).
-// outcomes[s] is that of seed s. A pure function: replaying it is how a stored look is checked.
+// outcomes[s] is that of seed s. A pure function: replaying it is how a stored look is checked. For a target
+// with an earlier rule, which may have decided elsewhere, no look is the last one.
 std::vector<Look> replay_looks(const std::vector<std::optional<Outcome>>& outcomes, const Target& target,
                                int minimum, int maximum);
 

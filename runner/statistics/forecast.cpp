@@ -94,7 +94,7 @@ std::vector<Estimate> expected_at(const PointForecast& point, int seeds, double 
     const double growth = static_cast<double>(seeds) / point.ended;
     const auto values = static_cast<int>(std::lround(known.count * growth));
     const double share = static_cast<double>(values) / known.count;
-    expected.push_back({values, known.mean, known.standard_error * std::sqrt(factor / share)});
+    expected.push_back({values, known.mean, known.standard_error * std::sqrt(factor / share), known.values});
   }
   return expected;
 }

@@ -12,6 +12,18 @@ Json estimate_json(const Estimate& estimate) {
           {"standard_error", number_json(estimate.standard_error)}};
 }
 
+Estimate::Values stored_values(const Estimate& estimate, double half_width) {
+  if (estimate.count < 2) return Estimate::Values::spread;
+  if (std::isnan(half_width)) return Estimate::Values::equal;
+  const double mean = estimate.mean, ones = estimate.count * mean;
+  const double variance = estimate.standard_error * estimate.standard_error * (estimate.count - 1);
+  constexpr double rounding = 1e-12;
+  const bool is_share = half_width > 0 && mean >= 0 && mean <= 1 &&
+                        std::abs(ones - std::round(ones)) <= rounding * estimate.count &&
+                        std::abs(variance - mean * (1 - mean)) <= rounding;
+  return is_share ? Estimate::Values::share : Estimate::Values::spread;
+}
+
 Json observables_json(const Look& look) {
   Json json = Json::array();
   for (const ObservableLook& one : look.each) {
@@ -34,6 +46,7 @@ std::vector<ObservableLook> observables_of(const Json& json) {
     one.observable = of.at("observable").get<std::string>();
     one.estimate = {of.at("count").get<int>(), number(of.at("mean")), number(of.at("standard_error"))};
     one.half_width = number(of.at("half_width"));
+    one.estimate.values = stored_values(one.estimate, one.half_width);
     one.share = number(of.at("share_of_tolerance"));
     one.skewness = number(of.at("skewness"));
     one.untested = of.at("transient").is_null();
@@ -53,6 +66,8 @@ Json look_json(const Look& look) {
   json["skewness"] = number_json(look.skewness);
   json["transient"] = look.untested ? Json(nullptr) : Json(look.transient);
   json["verdict"] = to_string(look.verdict);
+  json["near_maximum"] = look.near_maximum;
+  json["repeated_seeds"] = look.repeated;
   if (!look.each.empty()) json["observables"] = observables_json(look);
   return json;
 }

@@ -17,6 +17,11 @@ Json estimate_json(const Estimate& estimate);
 // exist are null.
 Json look_json(const Look& look);
 
+// What values an estimate with this half-width is of. Shares m of n have the standard error
+// sqrt(m (1 - m) / (n - 1)) and a whole number n m of ones, other values next to never. Repeated ones look
+// like equal ones.
+Estimate::Values stored_values(const Estimate& estimate, double half_width);
+
 // Look::each, and the same read back. Throws a std::exception for what is none.
 Json observables_json(const Look& look);
 std::vector<ObservableLook> observables_of(const Json& json);

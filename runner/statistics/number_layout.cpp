@@ -39,11 +39,10 @@ std::vector<Quantity> small_ones(const std::vector<Quantity>& quantities) {
 }
 
 Json description(const Quantity& quantity) {
-  Json about{{"symbol", quantity.symbol}, {"unit", quantity.unit}, {"estimator", "mean"}};
+  Json about{{"symbol", quantity.symbol}, {"unit", quantity.unit}, {"estimator", estimator_of(quantity)}};
   for (const QuantityAxis& axis : quantity.axes)
     about["axes"].push_back({{"name", axis.name}, {"unit", axis.unit}, {"values", axis.values}});
   if (quantity.ratio) {
-    about["estimator"] = "ratio";
     about["numerator"] = quantity.ratio->numerator;
     about["denominator"] = quantity.ratio->denominator;
   }

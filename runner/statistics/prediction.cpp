@@ -18,6 +18,7 @@ constexpr std::uint64_t common_stream = std::numeric_limits<std::uint64_t>::max(
 struct Sample {
   int count = 0;
   double mean = 0, squares = 0;
+  Estimate::Values values = Estimate::Values::spread;
 
   // Two samples become one (Chan, Golub and LeVeque's update).
   void add(const Sample& other) {
@@ -28,13 +29,14 @@ struct Sample {
     mean += difference * other.count / total;
     count = total;
   }
-  Estimate estimate() const { return {count, mean, std::sqrt(squares / (count - 1) / count)}; }
+  Estimate estimate() const { return {count, mean, std::sqrt(squares / (count - 1) / count), values}; }
 };
 
 // What a point's first seeds say of each observable.
 struct Pilot {
   int seeds = 0;
   std::vector<std::vector<double>> values{};  // of those that were not lost to it
+  std::vector<bool> are_shares{};
 
   std::size_t fewest_values() const {
     return std::min_element(values.begin(), values.end(),
@@ -44,13 +46,14 @@ struct Pilot {
   std::vector<Estimate> estimates() const {
     std::vector<Estimate> of_each;
     of_each.reserve(values.size());
-    for (const std::vector<double>& one : values) of_each.push_back(estimate(one));
+    for (std::size_t place = 0; place < values.size(); ++place)
+      of_each.push_back(estimate(values[place], are_shares[place]));
     return of_each;
   }
 };
 
 Pilot pilot_of(const std::vector<std::optional<Outcome>>& outcomes, std::size_t observables, int maximum) {
-  Pilot pilot{0, std::vector<std::vector<double>>(observables)};
+  Pilot pilot{0, std::vector<std::vector<double>>(observables), std::vector<bool>(observables)};
   for (const std::optional<Outcome>& outcome : outcomes) {
     if (!outcome || pilot.seeds == maximum) break;
     ++pilot.seeds;
@@ -58,6 +61,7 @@ Pilot pilot_of(const std::vector<std::optional<Outcome>>& outcomes, std::size_t 
       const Observation observation = outcome->of(place);
       if (std::isnan(observation.value)) continue;
       pilot.values[place].push_back(observation.value + observation.control);
+      pilot.are_shares[place] = observation.is_share;
     }
   }
   return pilot;
@@ -65,7 +69,8 @@ Pilot pilot_of(const std::vector<std::optional<Outcome>>& outcomes, std::size_t 
 
 Sample sample_of(const Estimate& known) {
   const double count = known.count;
-  return {known.count, known.mean, known.standard_error * known.standard_error * count * (count - 1)};
+  return {known.count, known.mean, known.standard_error * known.standard_error * count * (count - 1),
+          known.values};
 }
 
 class Futures {
@@ -84,14 +89,18 @@ class Futures {
   // `factor`, or each by a factor of its own.
   int draw(std::optional<double> factor = {}) {
     std::vector<Normal> population;
-    for (const Sample& known : known_) population.push_back(draw_population(known, factor));
+    for (const Sample& known : known_)
+      population.push_back(known.values == Estimate::Values::share ? draw_share(known)
+                                                                   : draw_population(known, factor));
     std::vector<Sample> samples = known_;
     std::vector<Estimate> estimates(samples.size());
     int seeds = seeds_;
     const std::vector<int>& schedule = rule_.schedule();
     for (std::size_t place = first_; place < schedule.size(); ++place) {
       for (std::size_t i = 0; i < samples.size(); ++i) {
-        samples[i].add(draw_values(survivors(known_[i], schedule[place] - seeds), population[i]));
+        const int count = survivors(known_[i], schedule[place] - seeds);
+        samples[i].add(known_[i].values == Estimate::Values::share ? draw_ones(count, population[i].mean)
+                                                                   : draw_values(count, population[i]));
         estimates[i] = samples[i].estimate();
       }
       seeds = schedule[place];
@@ -114,6 +123,20 @@ class Futures {
     if (!factor) factor = degrees / chi_squared(degrees);
     const double deviation = std::sqrt(*factor * known.squares / degrees);
     return {known.mean + deviation / std::sqrt(known.count) * normal_(random_), deviation};
+  }
+
+  // What k of n leave open by Jeffreys' prior, Beta(k + 1/2, n - k + 1/2), as a ratio of gamma variates.
+  Normal draw_share(const Sample& known) {
+    const double ones = known.count * known.mean;
+    const double above = std::gamma_distribution<double>(ones + 0.5)(random_);
+    const double below = std::gamma_distribution<double>(known.count - ones + 0.5)(random_);
+    return {above / (above + below), 0};
+  }
+
+  Sample draw_ones(int count, double share) {
+    if (count == 0) return {};
+    const double ones = std::binomial_distribution<int>(count, share)(random_);
+    return {count, ones / count, ones * (1 - ones / count), Estimate::Values::share};
   }
 
   int survivors(const Sample& known, int seeds) {
@@ -151,6 +174,16 @@ bool may_be_zero(const Target& target, const std::vector<Estimate>& estimates) {
   });
 }
 
+// Whether all values of a criterion's observable are equal.
+bool lacks_spread(const Target& target, const std::vector<Estimate>& estimates) {
+  const std::vector<std::string> observables = target.observables();
+  const std::vector<Criterion> criteria = target.criteria();
+  return std::any_of(criteria.begin(), criteria.end(), [&](const Criterion& criterion) {
+    const auto place = std::find(observables.begin(), observables.end(), criterion.observable);
+    return estimates[static_cast<std::size_t>(place - observables.begin())].values == Estimate::Values::equal;
+  });
+}
+
 std::size_t rank_of(double probability, std::size_t count) {
   return std::min(count - 1, static_cast<std::size_t>(probability * static_cast<double>(count)));
 }
@@ -171,6 +204,10 @@ Prediction predict(const std::vector<std::optional<Outcome>>& outcomes, const Ta
   prediction.lost = pilot.seeds - static_cast<int>(pilot.fewest_values());
   if (pilot.fewest_values() < 2) {
     prediction.obstacle = pilot.seeds < 2 ? Obstacle::too_few : Obstacle::lost;
+    return prediction;
+  }
+  if (lacks_spread(target, pilot.estimates())) {
+    prediction.obstacle = Obstacle::no_spread;
     return prediction;
   }
   if (may_be_zero(target, pilot.estimates())) {
@@ -224,6 +261,8 @@ std::string obstacle_text(const Prediction& prediction) {
       return "fewer than two seeds have ended";
     case Obstacle::lost:
       return fmt::format("{} of {} seeds are lost", prediction.lost, prediction.pilot);
+    case Obstacle::no_spread:
+      return fmt::format("the values of {} seeds are equal", prediction.pilot - prediction.lost);
     case Obstacle::near_zero:
       return fmt::format("the mean of {} seeds may be zero", prediction.pilot - prediction.lost);
   }

@@ -3,10 +3,10 @@
 // The stop rule is carried out in many futures. In each of them the true mean mu and standard deviation sigma
 // are drawn from what n values of mean m and sample variance s^2 leave open,
 //   (n - 1) s^2 / sigma^2 ~ chi^2(n - 1),   mu ~ N(m, sigma^2 / n),
-// and the values to come from a normal population of these, look by look, until the stop rule
-// (stop_rule.h) calls it converged or the maximum is reached. What is expected is the median of the
-// futures' deciding looks; 95 % of them lie within the range. Several observables of a target are drawn
-// independently of each other.
+// and the values to come from a normal population of these (of a share of k in n, from one with p ~ Beta(k +
+// 1/2, n - k + 1/2)), look by look, until the stop rule (stop_rule.h) calls it converged or the maximum is
+// reached. What is expected is the median of the futures' deciding looks; 95 % of them lie within the range.
+// Several observables of a target are drawn independently of each other.
 //
 // Of a sum over points more is known than of each, since their errors partly cancel. There the variances of
 // all points are off by one factor, f / chi^2(f), with the degrees of freedom that Satterthwaite gives a sum
@@ -27,9 +27,10 @@ namespace peclet::runner {
 // Why nothing can be said of a point.
 enum class Obstacle {
   none,
-  too_few,   // fewer than two seeds have ended
-  lost,      // fewer than two of them with a value
-  near_zero  // the mean of a relative tolerance is within two standard errors of zero: it means nothing yet
+  too_few,    // fewer than two seeds have ended
+  lost,       // fewer than two of them with a value
+  no_spread,  // all values of an observable are equal, and it is no share
+  near_zero   // the mean of a relative tolerance is within two standard errors of zero: it means nothing yet
 };
 
 struct Prediction {

@@ -56,6 +56,7 @@ Quantity described(const std::string& name, const Json& about) {
   for (const Json& axis : about.value("axes", Json::array())) {
     quantity.axes.push_back({axis.at("name"), axis.at("unit"), axis.at("values")});
   }
+  quantity.is_share = about.at("estimator") == "share";
   if (about.at("estimator") == "ratio") {
     quantity.ratio = RatioOfMeans{about.at("numerator"), about.at("denominator")};
   }
@@ -152,6 +153,17 @@ std::optional<ControlVariate> control_of(const Json& result, std::string_view pa
     }
     if (name.find('/') == std::string_view::npos) return std::nullopt;
   }
+}
+
+const char* estimator_of(const Quantity& quantity) {
+  if (quantity.ratio) return "ratio";
+  return quantity.is_share ? "share" : "mean";
+}
+
+bool is_share(const std::vector<Quantity>& quantities, std::string_view path) {
+  path = without_slash(path);
+  return std::any_of(quantities.begin(), quantities.end(),
+                     [&](const Quantity& quantity) { return quantity.is_share && quantity.name == path; });
 }
 
 bool matches(std::string_view pattern, std::string_view path) {

@@ -39,6 +39,7 @@ struct Quantity {
   std::vector<QuantityAxis> axes{};
   std::optional<RatioOfMeans> ratio{};
   std::optional<ControlVariate> control{};
+  bool is_share = false;  // one number, 0 or 1 in each realisation
 
   std::size_t elements() const;
 };
@@ -54,6 +55,12 @@ const Json* at_path(const Json& document, std::string_view path);
 // The control variate of the number at a path of "mean", and the path to the control's own number; none for
 // most.
 std::optional<ControlVariate> control_of(const Json& result, std::string_view path);
+
+// "mean", "ratio" or "share", as the result names it.
+const char* estimator_of(const Quantity& quantity);
+
+// Whether the number at the path is a share.
+bool is_share(const std::vector<Quantity>& quantities, std::string_view path);
 
 // Whether the pattern names the path: "stress/total/*" names any element of the list.
 bool matches(std::string_view pattern, std::string_view path);

@@ -21,6 +21,10 @@ bool is_like(const Quantity& one, const Quantity& other) {
          std::equal(one.axes.begin(), one.axes.end(), other.axes.begin(), other.axes.end(), same_axis);
 }
 
+void add_number(RunningEstimate& running, double value) {
+  if (!std::isnan(value)) running.add(value);
+}
+
 // The list of numbers as lists over the axes from `axis` on.
 Json over_axes(const std::vector<Json>& numbers, const std::vector<QuantityAxis>& axes, std::size_t axis,
                std::size_t& next) {
@@ -43,11 +47,10 @@ Json column(const std::vector<Estimate>& estimates, const Quantity& quantity, co
 
 Json columns(const std::vector<Estimate>& estimates, const Quantity& quantity, double confidence) {
   const auto of = [&](const auto& value) { return column(estimates, quantity, value); };
-  return {
-      {"count", of([](const Estimate& e) { return Json(e.count); })},
-      {"mean", of([](const Estimate& e) { return number_json(e.mean); })},
-      {"standard_error", of([](const Estimate& e) { return number_json(e.standard_error); })},
-      {"half_width", of([&](const Estimate& e) { return number_json(student_half_width(e, confidence)); })}};
+  return {{"count", of([](const Estimate& e) { return Json(e.count); })},
+          {"mean", of([](const Estimate& e) { return number_json(e.mean); })},
+          {"standard_error", of([](const Estimate& e) { return number_json(e.standard_error); })},
+          {"half_width", of([&](const Estimate& e) { return number_json(half_width(e, confidence)); })}};
 }
 
 }  // namespace
@@ -67,19 +70,9 @@ Estimate ratio_of_means(const std::vector<double>& numerators, const std::vector
   double squares = 0;
   for (const double ratio : without) squares += (ratio - mean) * (ratio - mean);
   found.standard_error = std::sqrt((n - 1) / n * squares);
+  // Equal ratios of the seeds, whatever their parts.
+  if (estimate(without).values == Estimate::Values::equal) found.values = Estimate::Values::equal;
   return found;
-}
-
-void QuantityEstimates::Running::add(double value) {
-  if (std::isnan(value)) return;
-  const double before = mean;
-  mean += (value - before) / ++count;
-  squares += (value - before) * (value - mean);
-}
-
-Estimate QuantityEstimates::Running::estimate() const {
-  if (count == 0) return {0, nan, nan};
-  return {count, mean, count < 2 ? nan : std::sqrt(squares / (count - 1) / count)};
 }
 
 QuantityEstimates::Sums& QuantityEstimates::sums_of(const Quantity& quantity) {
@@ -88,7 +81,7 @@ QuantityEstimates::Sums& QuantityEstimates::sums_of(const Quantity& quantity) {
                        [](const Sums& sums, const std::string& name) { return sums.quantity.name < name; });
   if (place != sums_.end() && place->quantity.name == quantity.name) return *place;
   Sums sums{quantity, {}, {}, {}, {}};
-  if (!quantity.ratio) sums.plain.resize(quantity.elements());
+  if (!quantity.ratio) sums.plain.resize(quantity.elements(), RunningEstimate(quantity.is_share));
   if (quantity.control) sums.controlled.resize(quantity.elements());
   return *sums_.insert(place, std::move(sums));
 }
@@ -102,11 +95,12 @@ void QuantityEstimates::add_numbers(Sums& sums, std::span<const double> numbers)
     sums.denominators.emplace_back(second.begin(), second.end());
     return;
   }
-  for (std::size_t k = 0; k < elements; ++k) sums.plain[k].add(values[k]);
+  for (std::size_t k = 0; k < elements; ++k) add_number(sums.plain[k], values[k]);
   if (!quantity.control) return;
   // As in a look: a value without its control counts as it is.
   for (std::size_t k = 0; k < elements; ++k) {
-    sums.controlled[k].add(values[k] + (std::isnan(second[k]) ? 0 : second[k] - quantity.control->mean));
+    add_number(sums.controlled[k],
+               values[k] + (std::isnan(second[k]) ? 0 : second[k] - quantity.control->mean));
   }
 }
 
@@ -163,10 +157,10 @@ std::vector<QuantityEstimate> QuantityEstimates::estimates() const {
   std::vector<QuantityEstimate> all;
   for (const Sums& sums : sums_) {
     QuantityEstimate found{sums.quantity, {}, {}, sums.unlike};
-    const auto estimates_of = [](const std::vector<Running>& running) {
+    const auto estimates_of = [](const std::vector<RunningEstimate>& running) {
       std::vector<Estimate> estimates(running.size());
       std::transform(running.begin(), running.end(), estimates.begin(),
-                     [](const Running& element) { return element.estimate(); });
+                     [](const RunningEstimate& element) { return element.estimate(); });
       return estimates;
     };
     if (sums.quantity.control) {
@@ -197,7 +191,7 @@ Json QuantityEstimates::json(double confidence) const {
     Json json = columns(found.estimates, quantity, confidence);
     json["symbol"] = quantity.symbol;
     json["unit"] = quantity.unit;
-    json["estimator"] = quantity.ratio ? "ratio" : "mean";
+    json["estimator"] = estimator_of(quantity);
     json["axes"] = Json::array();
     for (const QuantityAxis& axis : quantity.axes) {
       json["axes"].push_back({{"name", axis.name}, {"unit", axis.unit}, {"values", axis.values}});

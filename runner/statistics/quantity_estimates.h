@@ -44,20 +44,13 @@ class QuantityEstimates {
   // In the order of the names.
   std::vector<QuantityEstimate> estimates() const;
   // {"NAME": {"symbol", "unit", "estimator", "axes", "count", "mean", "standard_error", "half_width",
-  // "uncontrolled"}}, the numbers as lists over the axes; half-widths of Student's interval.
+  // "uncontrolled"}}, the numbers as lists over the axes; half-widths as of half_width().
   Json json(double confidence) const;
 
  private:
-  // Welford's sums.
-  struct Running {
-    int count = 0;
-    double mean = 0, squares = 0;
-    void add(double value);
-    Estimate estimate() const;
-  };
   struct Sums {
     Quantity quantity;
-    std::vector<Running> plain, controlled;
+    std::vector<RunningEstimate> plain, controlled;
     std::vector<std::vector<double>> numerators, denominators;  // by seed
     int unlike = 0;
     const NumberLayout* followed = nullptr;  // describes the quantity as it is described here

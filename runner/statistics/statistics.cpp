@@ -1,6 +1,7 @@
 #include "runner/statistics/statistics.h"
 
 #include <algorithm>
+#include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -19,12 +20,25 @@ double unit_of(std::span<const double> values) {
                                                : 1;
 }
 
+bool is_binary(double value) { return value == 0 || value == 1; }
+
+Estimate::Values values_between(int count, double low, double high, bool are_binary, bool is_share) {
+  // Sums of equal numbers in another order differ by less.
+  constexpr double rounding = 1e-13;
+  const bool are_equal = high - low <= rounding * std::max(std::abs(low), std::abs(high));
+  if (count > 0 && are_binary && (is_share || !are_equal)) return Estimate::Values::share;
+  return count > 1 && are_equal ? Estimate::Values::equal : Estimate::Values::spread;
+}
+
 }  // namespace
 
-Estimate estimate(std::span<const double> values) {
+Estimate estimate(std::span<const double> values, bool is_share) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   Estimate result{static_cast<int>(values.size()), none, none};
   if (values.empty()) return result;
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  result.values = values_between(result.count, *low, *high,
+                                 std::all_of(values.begin(), values.end(), is_binary), is_share);
   const auto count = static_cast<double>(values.size());
   const double unit = unit_of(values);
 
@@ -46,6 +60,9 @@ Estimate estimate(std::span<const double> values) {
 }
 
 void RunningEstimate::add(double value) {
+  low_ = count_ == 0 ? value : std::min(low_, value);
+  high_ = count_ == 0 ? value : std::max(high_, value);
+  are_binary_ = are_binary_ && is_binary(value);
   const double before = mean_;
   mean_ += (value - before) / ++count_;
   squares_ += (value - before) * (value - mean_);
@@ -54,7 +71,8 @@ void RunningEstimate::add(double value) {
 Estimate RunningEstimate::estimate() const {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   if (count_ == 0) return {0, none, none};
-  return {count_, mean_, count_ < 2 ? none : std::sqrt(squares_ / (count_ - 1) / count_)};
+  return {count_, mean_, count_ < 2 ? none : std::sqrt(squares_ / (count_ - 1) / count_),
+          values_between(count_, low_, high_, are_binary_, is_share_)};
 }
 
 double skewness(std::span<const double> values) {
@@ -82,6 +100,30 @@ double variance_excess(int degrees, double probability) {
 double student_half_width(const Estimate& estimate, double confidence) {
   if (estimate.count < 2) return std::numeric_limits<double>::quiet_NaN();
   return student_quantile(estimate.count - 1, confidence) * estimate.standard_error;
+}
+
+Interval share_interval(int count, double mean, double confidence) {
+  using Beta = boost::math::beta_distribution<>;
+  const double ones = std::clamp(count * mean, 0.0, static_cast<double>(count)), zeros = count - ones;
+  const double outside = (1 - confidence) / 2;
+  return {ones > 0 ? boost::math::quantile(Beta(ones, zeros + 1), outside) : 0,
+          zeros > 0 ? boost::math::quantile(boost::math::complement(Beta(ones + 1, zeros), outside)) : 1};
+}
+
+double half_width(const Estimate& estimate, double confidence) {
+  switch (estimate.values) {
+    case Estimate::Values::spread:
+      return student_half_width(estimate, confidence);
+    case Estimate::Values::share: {
+      if (estimate.count < 2) break;
+      const auto [low, high] = share_interval(estimate.count, estimate.mean, confidence);
+      return std::max(estimate.mean - low, high - estimate.mean);
+    }
+    case Estimate::Values::equal:
+    case Estimate::Values::repeated:
+      break;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace peclet::runner

@@ -10,19 +10,33 @@ struct Estimate {
   int count = 0;
   double mean = 0;
   double standard_error = 0;  // NaN for fewer than two values
+  // What the values are, which decides what interval they have: see half_width().
+  enum class Values {
+    spread,   // different numbers
+    share,    // each is 0 or 1
+    equal,    // one and the same number, but for rounding
+    repeated  // of seeds that are not independent: see repeated_seeds()
+  };
+  Values values = Values::spread;
 };
 
-Estimate estimate(std::span<const double> values);
+// `is_share`: each value is 0 or 1 by its nature. Without it, values are a share if both have been seen and
+// nothing else.
+Estimate estimate(std::span<const double> values, bool is_share = false);
 
 // The same of values that come one by one (Welford's update); NaN for a mean without any.
 class RunningEstimate {
  public:
+  explicit RunningEstimate(bool is_share = false) : is_share_(is_share) {}
   void add(double value);
   Estimate estimate() const;
 
  private:
+  bool is_share_;
   int count_ = 0;
   double mean_ = 0, squares_ = 0;  // squares: the sum of the squared deviations from the mean
+  double low_ = 0, high_ = 0;
+  bool are_binary_ = true;
 };
 
 // Third central moment over the 3/2 power of the second, both with n; NaN for fewer than three values or
@@ -39,5 +53,19 @@ double variance_excess(int degrees, double probability);
 // Half-width t(n - 1, (1 + confidence) / 2) * standard error of Student's interval; NaN for fewer than two
 // values.
 double student_half_width(const Estimate& estimate, double confidence);
+
+struct Interval {
+  double low = 0, high = 0;
+};
+
+// Clopper and Pearson's interval of a share, of k = count * mean values that are 1 (Biometrika 26 (1934)
+// 404): the shares p for which k or more, and k or fewer, of `count` have a probability of (1 - confidence) /
+// 2 or more. It holds the true share at least as often as it says. Requires count > 0.
+Interval share_interval(int count, double mean, double confidence);
+
+// Half-width of the interval at this confidence: Student's of values with a spread; the larger side of
+// share_interval() of a share. NaN for fewer than two values, and for equal or repeated ones, which have no
+// spread to judge by.
+double half_width(const Estimate& estimate, double confidence);
 
 }  // namespace peclet::runner

@@ -8,24 +8,12 @@
 namespace peclet::runner {
 namespace {
 
-// Probabilities of a larger spread: see the header.
-constexpr double before_last = 0.02, at_last = 0.05;
-
-// Looks of fewer values than the smallest minimum are of campaigns with a single look, or with many losses:
-// their spread is all but unknown, and what it might be at most is no measure.
-constexpr int fewest_degrees = 7;
-
-constexpr std::array<std::pair<Verdict, const char*>, 6> verdict_names{
+constexpr std::array<std::pair<Verdict, const char*>, 5> verdict_names{
     {{Verdict::more, "more"},
      {Verdict::converged, "converged"},
      {Verdict::converged_with_losses, "converged-with-losses"},
-     {Verdict::converged_near_maximum, "converged-near-maximum"},
      {Verdict::capped, "capped"},
      {Verdict::failed, "failed"}}};
-
-double excess(int values, double probability) {
-  return variance_excess(std::max(values - 1, fewest_degrees), probability);
-}
 
 }  // namespace
 
@@ -40,6 +28,7 @@ std::optional<Verdict> verdict_of(std::string_view word) {
   for (const auto& [known, name] : verdict_names) {
     if (name == word) return known;
   }
+  if (word == "converged-near-maximum") return Verdict::capped;
   return std::nullopt;
 }
 
@@ -48,12 +37,8 @@ bool is_converged(Verdict verdict) {
 }
 
 Verdict less_favourable(Verdict one, Verdict other) {
-  constexpr std::array order{Verdict::converged,
-                             Verdict::converged_with_losses,
-                             Verdict::converged_near_maximum,
-                             Verdict::capped,
-                             Verdict::more,
-                             Verdict::failed};
+  constexpr std::array order{Verdict::converged, Verdict::converged_with_losses, Verdict::capped,
+                             Verdict::more, Verdict::failed};
   const auto rank = [&](Verdict verdict) { return std::find(order.begin(), order.end(), verdict); };
   return std::max(rank(one), rank(other)) == rank(one) ? one : other;
 }
@@ -70,18 +55,8 @@ std::vector<int> look_schedule(int minimum, int maximum) {
   return schedule;
 }
 
-// An estimate as a criterion sees it.
-struct StopRule::Measured {
-  Estimate estimate;
-  double own = 0;          // Student's half-width
-  double good_enough = 0;  // the one that the tolerance allows
-  double share = 0;        // of both
-  double mean_factor = 1;  // 1 + w, for the mean of which a relative tolerance is a share
-};
-
 StopRule::StopRule(const Target& target, int minimum, int maximum)
-    : rule_(target.rule),
-      minimum_(minimum),
+    : minimum_(minimum),
       maximum_(maximum),
       confidence_(adjusted_confidence(target.confidence, minimum, maximum)),
       schedule_(look_schedule(minimum, maximum)) {
@@ -98,7 +73,9 @@ StopRule::StopRule(const Target& target, int minimum, int maximum)
 }
 
 double StopRule::half_width(const Estimate& estimate) {
-  if (estimate.count < 2) return std::nan("");
+  if (estimate.values != Estimate::Values::spread || estimate.count < 2) {
+    return runner::half_width(estimate, confidence_);
+  }
   const auto known = student_.find(estimate.count);
   const double factor =
       known != student_.end()
@@ -113,80 +90,46 @@ bool StopRule::has_measure(Estimates estimates) const {
   });
 }
 
-StopRule::Measured StopRule::measure(const Part& part, Estimates estimates) {
-  const Estimate& of = estimates[part.measure];
-  Measured measured;
-  measured.estimate = estimates[part.place];
-  measured.own = half_width(measured.estimate);
-  measured.good_enough = part.tolerance.half_width(of.mean);
-  measured.share = part.tolerance.share(measured.own, of.mean);
-  if (!part.tolerance.is_share_of(of.mean)) return measured;
-  const bool is_own = part.measure == part.place;
-  measured.mean_factor =
-      1 + (is_own ? measured.share * part.tolerance.value : half_width(of) / std::abs(of.mean));
-  return measured;
-}
-
-double StopRule::needed(int seeds, const Measured& measured, Strictness strictness) {
-  const auto key = std::pair(measured.estimate.count, strictness);
-  auto known = may_exceed_.find(key);
-  if (known == may_exceed_.end()) {
-    const double probability = strictness == Strictness::last ? at_last : before_last;
-    known = may_exceed_.emplace(key, excess(measured.estimate.count, probability)).first;
+double StopRule::share(const Part& part, Estimates estimates) {
+  const Estimate& measure = estimates[part.measure];
+  double mean = measure.mean;
+  if (part.measure != part.place && measure.values != Estimate::Values::equal) {
+    mean = std::max(0.0, std::abs(mean) - half_width(measure));
   }
-  const double ratio = measured.share * measured.mean_factor;
-  return seeds * ratio * ratio * known->second;
-}
-
-bool StopRule::converges(int seeds, const Measured& measured) {
-  // Not so an interval that does not exist, and a share of a mean of 0.
-  if (measured.estimate.count < 2 || !(measured.share <= 1)) return false;
-  if (rule_ == Target::first_rule) return true;
-  const Strictness strictness = seeds < maximum_ ? Strictness::before_last : Strictness::last;
-  return needed(seeds, measured, strictness) <= maximum_;
+  return part.tolerance.share(half_width(estimates[part.place]), mean);
 }
 
 bool StopRule::stops(int seeds, Estimates estimates) {
-  return seeds >= maximum_ || std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) {
-           return converges(seeds, measure(part, estimates));
-         });
+  return seeds >= maximum_ || std::all_of(parts_.begin(), parts_.end(),
+                                          [&](const Part& part) { return share(part, estimates) <= 1; });
 }
 
 StopRule::Judgement StopRule::judge(int seeds, Estimates estimates) {
   Judgement judgement{Verdict::converged, std::vector<Finding>(observables_)};
   for (std::size_t place = 0; place < observables_; ++place) {
-    judgement.findings[place] = {std::nullopt, half_width(estimates[place]), std::nan("")};
+    judgement.findings[place].half_width = half_width(estimates[place]);
   }
   for (const Part& part : parts_) {
-    Finding finding = judge(seeds, measure(part, estimates));
-    finding.share = part.tolerance.share(finding.half_width, estimates[part.measure].mean);
-    judgement.findings[part.place] = finding;
+    Finding& finding = judgement.findings[part.place];
+    finding.share = share(part, estimates);
+    finding.verdict = verdict(seeds, estimates[part.place], finding.share);
     judgement.verdict = less_favourable(judgement.verdict, *finding.verdict);
   }
   return judgement;
 }
 
-StopRule::Finding StopRule::judge(int seeds, const Measured& measured) {
-  const auto& [estimate, own, good_enough, share, mean_factor] = measured;
-  if (converges(seeds, measured)) {
-    const Strictness strictness = seeds < maximum_ ? Strictness::before_last : Strictness::last;
-    const bool is_near = rule_ != Target::first_rule && needed(seeds, measured, strictness) > maximum_ / 3.0;
-    return {estimate.count == seeds ? Verdict::converged : Verdict::converged_with_losses,
-            is_near ? std::max(own, good_enough) : own};
-  }
+Verdict StopRule::verdict(int seeds, const Estimate& estimate, double share) const {
+  // Not so for an interval that does not exist, and a share of a mean of 0.
+  if (share <= 1) return estimate.count == seeds ? Verdict::converged : Verdict::converged_with_losses;
   // Where not one of the first seeds lives, more of them are waste.
-  if (seeds == minimum_ && estimate.count == 0) return {Verdict::failed, own};
-  if (seeds < maximum_) return {Verdict::more, own};
-  if (estimate.count < 2) return {Verdict::failed, own};
-  // Not so around a mean of 0, whose relative width has no end.
-  const bool is_within = std::isfinite(share) && share <= mean_factor;
-  if (rule_ == Target::first_rule || !is_within) return {Verdict::capped, own};
-  return {Verdict::converged_near_maximum, widened(measured)};
+  if (seeds == minimum_ && estimate.count == 0) return Verdict::failed;
+  if (seeds < maximum_) return Verdict::more;
+  return estimate.count < 2 ? Verdict::failed : Verdict::capped;
 }
 
-double StopRule::widened(const Measured& measured) const {
-  const double factor = std::sqrt(excess(measured.estimate.count, before_last));
-  return std::max(1.0, measured.share * measured.mean_factor * factor) * measured.good_enough;
+bool is_near_maximum(int seeds, int values, double share, int maximum) {
+  constexpr double probability = 0.05;
+  return values > 1 && seeds * share * share * variance_excess(values - 1, probability) > maximum;
 }
 
 }  // namespace peclet::runner

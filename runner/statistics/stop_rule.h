@@ -1,27 +1,25 @@
 // When a look decides, and which interval it gives.
 //
-// Let n be the seeds of the look, w = half-width / |mean| of Student's interval at the level of
-// adjusted_confidence(), and e the tolerance. A look is within the tolerance when w <= e. Points stop where
-// their spread has come out small, which harms nothing as long as all points stop some time: those that stop
-// too early and those that stop too late make up for each other. The maximum cuts the late ones off, and
-// then what has converged is a selection (results/coverage). So a look converges only if the point would
-// have done so within the maximum with a larger spread, too:
-//   needed = n (w (1 + w) / e)^2 f  <=  maximum,
-// f being by what the true variance may exceed the sample's, (v - 1) / chi^2_p(v - 1) for v >= 8 values, p =
-// 0.02 before the last look, where it costs only seeds that are allowed, and 0.05 at the last one. 1 + w is
-// for the mean, which may come out too large. Where `needed` is more than a third of the maximum, the
-// interval that is given is no narrower than the tolerance. At the last look, what is within the tolerance
-// but no more than that is near the maximum, also if it is the mean that came out too small (w <= e (1 + w)):
-// its interval is wider than the tolerance by the same f,
-//   max(e, w (1 + w) sqrt(f)) |mean|,   p = 0.02.
-// An absolute tolerance takes the same rule with w and e in the observable's unit, and 1 in the place of
-// |mean| and of 1 + w. One relative to another observable takes |mean| and 1 + w of that one. Where a floor
-// counts, the tolerance is an absolute one.
+// The interval of a look is that of half_width() (statistics.h) at the level of adjusted_confidence():
+// Student's, of shares Clopper and Pearson's. It depends on the values of the look, the confidence that is
+// asked for, and minimum and maximum; the tolerance has no part in it. With a single look the level is the
+// confidence itself.
+//
+// A look converges when its half-width is within the tolerance e. A relative one allows e |mean|; one that is
+// relative to another observable allows e (|mean| - half-width) of that one, so that the error of the measure
+// counts, too. Equal values have no spread to judge by: such a look never converges. As a measure they are
+// taken for exact.
+//
+// A point stops where its spread has come out small. That harms nothing as long as all points stop some time:
+// those that stop too early and those that stop too late make up for each other. The maximum cuts the late
+// ones off, and then what has converged is a selection whose intervals hold the mean less often
+// (results/coverage). is_near_maximum() tells of such a point.
 //
 // A target of several criteria is met at the first look at which each of them is by its own rule. What is
 // said of the point is the least favourable of what is said of them.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -34,17 +32,17 @@
 namespace peclet::runner {
 
 enum class Verdict {
-  more,                    // nothing is decided: go on to the next look
-  converged,               // within the tolerance
-  converged_with_losses,   // within the tolerance, but seeds of the cohort were lost
-  converged_near_maximum,  // perhaps within it by luck: the maximum is too near to tell
-  capped,                  // the maximum is reached without convergence
-  failed                   // fewer than two values at the maximum or every seed of the first cohort lost
+  more,                   // nothing is decided: go on to the next look
+  converged,              // within the tolerance
+  converged_with_losses,  // within the tolerance, but seeds of the cohort were lost
+  capped,                 // the maximum is reached without convergence
+  failed                  // fewer than two values at the maximum or every seed of the first cohort lost
 };
 
 // "converged-with-losses"
 const char* to_string(Verdict verdict);
-// Nothing for a word that is no verdict.
+// Nothing for a word that is no verdict. "converged-near-maximum", which an earlier rule gave to looks with
+// intervals wider than the tolerance, is `capped`.
 std::optional<Verdict> verdict_of(std::string_view word);
 
 // With losses or without.
@@ -75,8 +73,9 @@ class StopRule {
   // What is said of one observable.
   struct Finding {
     std::optional<Verdict> verdict;  // none where it only measures others
-    double half_width = 0;           // NaN for fewer than two values
-    double share = 0;                // of the half-width that is good enough; NaN without a tolerance
+    double half_width = 0;           // NaN where there is no interval
+    double share =
+        std::numeric_limits<double>::quiet_NaN();  // of the one that is allowed; NaN without a tolerance
   };
   struct Judgement {
     Verdict verdict = Verdict::more;
@@ -86,7 +85,7 @@ class StopRule {
   // Whether the verdict would not be `more`.
   bool stops(int seeds, Estimates estimates);
 
-  // Student's half-width at the adjusted level; NaN for fewer than two values.
+  // At the adjusted level; NaN where there is no interval.
   double half_width(const Estimate& estimate);
   // Whether for each criterion some half-width is good enough: not so a share of 0, and of what is unknown.
   bool has_measure(Estimates estimates) const;
@@ -94,29 +93,26 @@ class StopRule {
   const std::vector<int>& schedule() const { return schedule_; }
 
  private:
-  enum class Strictness { before_last, last };
-  struct Measured;
   // One criterion, and where its observable and the one that it is relative to stand among the estimates.
   struct Part {
     Tolerance tolerance;
     std::size_t place = 0, measure = 0;
   };
-  Measured measure(const Part& part, Estimates estimates);
-  // Upper limit of the seeds that the tolerance takes.
-  double needed(int seeds, const Measured& measured, Strictness strictness);
-  bool converges(int seeds, const Measured& measured);
-  // All but the share.
-  Finding judge(int seeds, const Measured& measured);
-  double widened(const Measured& measured) const;
+  // Half-width over the one that is allowed: converged at 1. Infinite or NaN where there is no measure.
+  double share(const Part& part, Estimates estimates);
+  Verdict verdict(int seeds, const Estimate& estimate, double share) const;
 
-  int rule_;
   std::vector<Part> parts_;
   std::size_t observables_;
   int minimum_, maximum_;
   double confidence_;
   std::vector<int> schedule_;
-  std::map<int, double> student_;                            // by number of values, each computed once
-  std::map<std::pair<int, Strictness>, double> may_exceed_;  // f of the same
+  std::map<int, double> student_;  // by number of values, each computed once
 };
+
+// Whether the maximum is so near that a look which has converged may have done so by luck: with the largest
+// spread that its values leave open (variance_excess() at 5 %) the point would need more seeds than are
+// allowed, n share^2 f > maximum. `share` is the largest of its criteria, of `values` values.
+bool is_near_maximum(int seeds, int values, double share, int maximum);
 
 }  // namespace peclet::runner

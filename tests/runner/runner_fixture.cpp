@@ -81,7 +81,7 @@ Json plain_result(const std::string& point, int seed, double viscosity, const st
             {"half_step_difference", 1e-4},
             {"solver", nullptr}}},
           {"cost", {{"cpu_seconds", 2.0}, {"wall_seconds", 4.0}}},
-          {"final_state_sha256", sha256("state")},
+          {"final_state_sha256", sha256(std::to_string(seed))},
           {"engine", plain_engine(identity)}};
 }
 

@@ -206,7 +206,7 @@ class PointView {
       said = [];
     if (last) {
       const relative = this.data.target.relative_tolerance !== undefined && !this.data.target.relative_to;
-      const share = relative && last.mean ? ` (${Format.percent(last.half_width / Math.abs(last.mean))})` : '';
+      const share = relative && last.mean && Format.isNumber(last.half_width) ? ` (${Format.percent(last.half_width / Math.abs(last.mean))})` : '';
       const look = Format.counted(last.seeds, 'seed');
       said.push(`${Format.withError(last.mean, last.half_width)}${share}: ${point.verdict}, at the look at ${look}.`);
       const plain = point.uncontrolled[this.data.target.observable.replace(/^\//, '')];

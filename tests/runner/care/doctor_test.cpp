@@ -96,6 +96,10 @@ TEST_F(Doctor, FindsWhatContradictsItself) {
       {"UPDATE numbers SET numbers = zeroblob(length(numbers)) WHERE seed = 1", "result-altered",
        "integrity"},
       {"UPDATE look SET mean = mean + 1", "look-differs", "integrity"},
+      {"UPDATE realisation SET final_state_sha256 = (SELECT final_state_sha256 FROM realisation WHERE seed = "
+       "0) "
+       "WHERE seed = 1",
+       "seeds-repeated", "warning"},
       {"UPDATE point SET suspect = 1", "suspect", "integrity"},
       {"PRAGMA foreign_keys = OFF; DELETE FROM engine", "database-damaged", "integrity"},
       {"INSERT INTO lease SELECT point_id, seed, attempt_id, 0, '', 0, 0, 0, '' FROM attempt LIMIT 1",

@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "runner/reports/explain.h"
+#include "runner/reports/export.h"
 #include "runner/stores/point_store.h"
 #include "tests/runner/stored_campaign.h"
 
@@ -129,14 +130,70 @@ TEST(Status, ALoosenedToleranceSaysThatAnEarlierLookDecides) {
 
 // Ten values 10.25 +- 0.5 at 95 % with a maximum of 10: half-width 2.262 * 0.5 / 3 = 0.377, 3.7 %; the spread
 // may be sqrt(9 / chi2(9)) = 1.65 times as large (p = 5 %), for which 10 seeds would not do.
-TEST(Status, APointThatTheMaximumIsTooNearToIsNotCalledConverged) {
+TEST(Status, APointThatTheMaximumIsTooNearToIsMarked) {
   StoredCampaign campaign(1, 10, 10);
   for (int seed = 0; seed < 10; ++seed) campaign.complete(0, seed, seed % 2 == 0 ? 9.5 : 10.5);
   const CampaignStatus status = read_status(campaign.database());
-  EXPECT_EQ(standing(status), 3);
-  EXPECT_EQ(verdict_text(status.points.at(0)), "converged-near-maximum");
+  EXPECT_EQ(standing(status), 0);
+  EXPECT_EQ(verdict_text(status.points.at(0)), "converged, near-maximum");
+  EXPECT_EQ(status_json(status)["points"][0]["reservations"], Json({"near-maximum"}));
+  EXPECT_TRUE(status_json(status)["points"][0]["look"]["near_maximum"].get<bool>());
   EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), ""), "perhaps by luck"));
   EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), ""), "a larger /realisations/maximum"));
+}
+
+TEST(Status, EqualValuesHaveNoIntervalAndNoConvergence) {
+  StoredCampaign campaign(1, 8, 10);
+  for (int seed = 0; seed < 8; ++seed) campaign.complete(0, seed, 10);
+  const auto explained = [&] { return explain(campaign.database(), campaign.directory(), ""); };
+  CampaignStatus status = read_status(campaign.database());
+  EXPECT_EQ(verdict_text(status.points.at(0)), "open, equal-values");
+  EXPECT_TRUE(says(status_table(status), "10.2 ± -")) << status_table(status);
+  EXPECT_TRUE(status_json(status)["points"][0]["look"]["half_width"].is_null());
+  EXPECT_TRUE(says(explained(), "; all values of relative_viscosity are equal")) << explained();
+  for (int seed = 8; seed < 10; ++seed) campaign.complete(0, seed, 10);
+  status = read_status(campaign.database());
+  EXPECT_EQ(verdict_text(status.points.at(0)), "capped, equal-values");
+  EXPECT_EQ(standing(status), 3);
+  EXPECT_TRUE(says(explained(), "all 10 seeds that are allowed have ended, and all values of"))
+      << explained();
+}
+
+TEST(Status, SeedsThatRepeatEachOtherAreNamed) {
+  StoredCampaign campaign(1, 4, 4);
+  for (int seed = 0; seed < 4; ++seed) {
+    campaign.complete_with(0, seed, 10 + seed % 2, [&](Json& result) {
+      result["final_state_sha256"] = std::string(64, seed % 2 == 0 ? 'a' : 'b');
+    });
+  }
+  const CampaignStatus status = read_status(campaign.database());
+  EXPECT_EQ(verdict_text(status.points.at(0)), "capped, repeated-seeds");
+  EXPECT_EQ(status_json(status)["points"][0]["look"]["repeated_seeds"], Json({2, 3}));
+  EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), ""),
+                   "seeds 2, 3 ended in the same state as an earlier one"));
+}
+
+// 8 of 8 leave 1 - 0.0205^(1/8) = 0.385 at the level of several looks, 1 - 0.05 (1 - 1.4 / 8) = 95.9 %.
+TEST(Status, ASharesIntervalIsThatOfAShare) {
+  Campaign plain = plain_campaign(1, 8, 100, 0.05);
+  plain.target = {"flowing", Tolerance::absolute(0.1), 0.95};
+  StoredCampaign campaign(plain);
+  for (int seed = 0; seed < 8; ++seed) {
+    campaign.complete_with(0, seed, 10, [](Json& result) {
+      result["mean"] = {{"flowing", 1}};
+      result["blocks"] = Json::object();
+      result["quantities"] = {{"flowing", {{"symbol", "P"}, {"unit", "1"}, {"estimator", "share"}}}};
+    });
+  }
+  const CampaignStatus status = read_status(campaign.database());
+  const Json look = status_json(status)["points"][0]["look"];
+  EXPECT_EQ(verdict_text(status.points.at(0)), "open, no-transient-test");
+  EXPECT_NEAR(look["half_width"].get<double>(), 1 - std::pow((1 - 0.95875) / 2, 1 / 8.0), 1e-9);
+  const std::string text = explain(campaign.database(), campaign.directory(), "");
+  EXPECT_TRUE(says(text, "interval: 0.616 .. 1 of the share (Clopper and Pearson)")) << text;
+  const Json exported = Json::parse(export_json(campaign.database(), true))["points"][0];
+  EXPECT_EQ(exported["quantities"]["flowing"]["estimator"], "share");
+  EXPECT_EQ(exported["quantities"]["flowing"]["half_width"], exported["look"]["half_width"]);
 }
 
 TEST(Status, APointWithoutSeedsHasNoNumbers) {

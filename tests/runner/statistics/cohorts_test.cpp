@@ -4,8 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <random>
+
+#include "runner/statistics/look_json.h"
 
 namespace peclet::runner {
 namespace {
@@ -138,63 +142,183 @@ TEST(Cohorts, TheControlledEstimateDecides) {
   EXPECT_NEAR(relative_width(open), 0.0785, 1e-4);
 }
 
-// Ten values 10 +- s: w = 2.354 s / 30 at 95.7 %. chi^2_0.02(9) = 2.532 (f = 3.554), chi^2_0.05(9) = 3.325 (f
-// = 2.707).
-TEST(Cohorts, ALookConvergesOnlyIfALargerSpreadWouldHaveDoneSoWithinTheMaximum) {
-  // s = 0.6: w = 4.708 %, 10 (w (1 + w) / 5 %)^2 f = 34.6 seeds.
+// Ten values 10 +- 0.6: w = 2.354 * 0.6 / 30 = 4.708 % at 95.7 %. With chi^2_0.05(9) = 3.325 (f = 2.707) up
+// to 10 (4.708 / 5)^2 2.707 = 24.0 seeds may be needed.
+TEST(Cohorts, ALookWithinTheToleranceConvergesAndIsMarkedNearTheMaximum) {
   const Outcomes outcomes = alternating(10, 10, 0.6);
-  EXPECT_EQ(replay_looks(outcomes, five_percent, 10, 35).at(0).verdict, Verdict::converged);
-  EXPECT_EQ(replay_looks(outcomes, five_percent, 10, 34).at(0).verdict, Verdict::more);
-  // Between the maximum and a third of it the interval is no narrower than the tolerance.
-  EXPECT_NEAR(replay_looks(outcomes, five_percent, 10, 35).at(0).controlled_half_width, 0.5, 1e-12);
-  EXPECT_NEAR(replay_looks(outcomes, five_percent, 10, 104).at(0).controlled_half_width, 0.4708, 1e-4);
-  EXPECT_NEAR(replay_looks(outcomes, five_percent, 10, 35).at(0).half_width, 0.4708, 1e-4);
+  for (const int maximum : {11, 23, 25, 1000}) {
+    const Look look = replay_looks(outcomes, five_percent, 10, maximum).at(0);
+    EXPECT_EQ(look.verdict, Verdict::converged);
+    EXPECT_EQ(look.near_maximum, maximum < 24) << maximum;
+    EXPECT_NEAR(look.controlled_half_width, 0.4708, 1e-4);
+  }
+  const Look open = replay_looks(alternating(10, 10, 1), five_percent, 10, 11).at(0);
+  EXPECT_EQ(open.verdict, Verdict::more);
+  EXPECT_FALSE(open.near_maximum);
 }
 
-// With a single look t(9, 0.975) = 2.262 and w = 2.262 s / 30.
-TEST(Cohorts, TheLastLookIsConvergedNearMaximumOrCapped) {
+// With a single look t(9, 0.975) = 2.262 and w = 2.262 s / 30: 5 % at s = 0.663.
+TEST(Cohorts, TheLastLookIsConvergedOrCapped) {
   const auto last = [](double spread) {
     return replay_looks(alternating(10, 10, spread), five_percent, 10, 10).at(0);
   };
-  // w (1 + w) sqrt(2.707) <= 5 % up to w = 2.95 %, s = 0.39.
-  EXPECT_EQ(last(0.38).verdict, Verdict::converged);
-  EXPECT_EQ(last(0.40).verdict, Verdict::converged_near_maximum);
-  EXPECT_FALSE(is_converged(Verdict::converged_near_maximum));
-  // w = 3.016 %, w (1 + w) sqrt(3.554) = 5.86 % of the mean.
-  EXPECT_NEAR(last(0.40).controlled_half_width, 0.586, 1e-3);
-  // Within the tolerance of some mean of the interval: w <= 5 % (1 + w), w <= 5.26 %, s = 0.698.
-  EXPECT_EQ(last(0.69).verdict, Verdict::converged_near_maximum);
-  EXPECT_EQ(last(0.71).verdict, Verdict::capped);
-  EXPECT_NEAR(last(0.71).controlled_half_width, 2.262 * 0.71 / 3, 1e-3);
+  EXPECT_EQ(last(0.66).verdict, Verdict::converged);
+  EXPECT_TRUE(last(0.66).near_maximum);
+  EXPECT_EQ(last(0.67).verdict, Verdict::capped);
+  EXPECT_FALSE(last(0.67).near_maximum);
+  EXPECT_NEAR(last(0.67).controlled_half_width, 2.262 * 0.67 / 3, 1e-3);
+  // 10 (w / 5 %)^2 2.707 <= 10 up to w = 3.04 %, s = 0.403.
+  EXPECT_FALSE(last(0.40).near_maximum);
+  EXPECT_TRUE(last(0.41).near_maximum);
 }
 
-// Values 0 +- s, of which a share of the mean says nothing; h = 2.354 s / 3, 10 (h / 0.5)^2 3.554 seeds.
+// Values 0 +- s, of which a share of the mean says nothing; h = 2.354 s / 3.
 TEST(Cohorts, AnAbsoluteToleranceNeedsNoMean) {
   const Target half{"first_normal_stress_difference", Tolerance::absolute(0.5), 0.95};
   const Outcomes outcomes = alternating(10, 0, 0.6);
   EXPECT_EQ(replay_looks(outcomes, five_percent, 10, 32).at(0).verdict, Verdict::more);
-  EXPECT_EQ(replay_looks(outcomes, half, 10, 31).at(0).verdict, Verdict::more);  // 31.5 are needed
   const Look look = replay_looks(outcomes, half, 10, 32).at(0);
   EXPECT_EQ(look.verdict, Verdict::converged);
-  EXPECT_NEAR(look.controlled_half_width, 0.5, 1e-12);  // no narrower so near the maximum
-  EXPECT_NEAR(look.half_width, 0.4708, 1e-4);
-  // The last look, h = 2.262 s / 3: up to 0.5 / sqrt(2.707), s = 0.403, and up to 0.5, s = 0.663.
-  const auto last = [&](double spread) {
-    return replay_looks(alternating(10, 0, spread), half, 10, 10).at(0);
-  };
-  EXPECT_EQ(last(0.40).verdict, Verdict::converged);
-  EXPECT_EQ(last(0.41).verdict, Verdict::converged_near_maximum);
-  EXPECT_NEAR(last(0.41).controlled_half_width, 2.262 * 0.41 / 3 * std::sqrt(3.554), 1e-3);
-  EXPECT_EQ(last(0.65).verdict, Verdict::converged_near_maximum);
-  EXPECT_EQ(last(0.67).verdict, Verdict::capped);
+  EXPECT_NEAR(look.controlled_half_width, 0.4708, 1e-4);
+  EXPECT_EQ(replay_looks(alternating(10, 0, 0.65), half, 10, 32).at(0).verdict, Verdict::more);
 }
 
-TEST(Cohorts, TheFirstRuleTookEveryLookWithinTheToleranceForConverged) {
+// Values of every kind of population, at every look of the schedule and for tolerances of both kinds, from
+// those that the first look meets to those that no look does.
+TEST(Cohorts, NoIntervalDependsOnTheTolerance) {
+  const auto alone = [](double tolerance) { return Target{"x", tolerance, 0.95}; };
+  std::vector<Target> targets;
+  for (const double tolerance : {1e-9, 0.01, 0.03, 0.05, 0.06, 0.1, 0.2, 0.5, 0.9}) {
+    targets.push_back(alone(tolerance));
+    targets.push_back({"x", Tolerance::absolute(tolerance), 0.95});
+  }
+  std::mt19937_64 random(20261127);
+  std::normal_distribution<double> normal(1, 0.2);
+  std::lognormal_distribution<double> lognormal(0, 0.8);
+  std::bernoulli_distribution share(0.9);
+  for (const auto& [minimum, maximum] : {std::pair(8, 60), {10, 800}, {16, 16}}) {
+    for (int replication = 0; replication < 30; ++replication) {
+      Outcomes outcomes;
+      for (int seed = 0; seed < maximum; ++seed) {
+        outcomes.emplace_back(value(replication % 3 == 0   ? normal(random)
+                                    : replication % 3 == 1 ? lognormal(random)
+                                                           : static_cast<double>(share(random))));
+      }
+      const std::vector<Look> all = replay_looks(outcomes, alone(1e-9), minimum, maximum);
+      ASSERT_EQ(all.size(), look_schedule(minimum, maximum).size());
+      for (const Target& target : targets) {
+        const std::vector<Look> looks = replay_looks(outcomes, target, minimum, maximum);
+        for (std::size_t i = 0; i < looks.size(); ++i) {
+          EXPECT_EQ(std::bit_cast<std::uint64_t>(looks[i].controlled_half_width),
+                    std::bit_cast<std::uint64_t>(all[i].controlled_half_width));
+          EXPECT_EQ(std::bit_cast<std::uint64_t>(looks[i].half_width),
+                    std::bit_cast<std::uint64_t>(all[i].half_width));
+        }
+      }
+    }
+  }
+}
+
+// t(15, 0.975) = 2.131 (NIST): 0.2, 0.5 and 1 over sqrt(15) times it.
+TEST(Cohorts, TheIntervalOfASingleLookIsStudents) {
+  for (const double spread : {0.2, 0.5, 1.0}) {
+    for (const double tolerance : {0.06, 0.1, 1.0}) {
+      const Target target{"x", tolerance, 0.95};
+      const Look look = replay_looks(alternating(16, 10, spread), target, 16, 16).at(0);
+      EXPECT_NEAR(look.controlled_half_width, 2.131 * spread / std::sqrt(15), 1e-3 * spread);
+    }
+  }
+}
+
+TEST(Cohorts, EqualValuesHaveNoIntervalAndNeverConverge) {
+  const Target absolute{"x", Tolerance::absolute(1), 0.95};
+  for (const double number : {10.0, 0.1, 0.0, 1.0, -3e-7}) {
+    for (const Target& target : {five_percent, absolute}) {
+      const std::vector<Look> looks = replay_looks(Outcomes(20, value(number)), target, 8, 20);
+      EXPECT_EQ(looks.back().seeds, 20);
+      EXPECT_EQ(looks.back().verdict, Verdict::capped);
+      EXPECT_EQ(looks.back().controlled.mean, number);
+      EXPECT_TRUE(std::isnan(looks.back().controlled_half_width));
+      EXPECT_EQ(without_interval(looks.back(), target), (std::vector<std::string>{target.observable}));
+    }
+  }
+  // A sum of the same numbers in another order.
+  Outcomes rounded(20, value(0.1 + 0.2 + 0.3));
+  rounded[3] = value(0.3 + 0.2 + 0.1);
+  EXPECT_NE(rounded[3]->value, rounded[2]->value);
+  EXPECT_EQ(replay_looks(rounded, five_percent, 8, 20).back().verdict, Verdict::capped);
+  // Values that a control variate makes equal.
+  Outcomes controlled;
+  for (int seed = 0; seed < 8; ++seed) controlled.emplace_back(value(10 + 0.25 * seed, -0.25 * seed));
+  const Look look = replay_looks(controlled, five_percent, 8, 8).at(0);
+  EXPECT_TRUE(std::isnan(look.controlled_half_width));
+  EXPECT_GT(look.half_width, 0);
+  // Two seeds, and all but one equal, have a spread.
+  EXPECT_GT(replay_looks({value(10), value(10.1)}, five_percent, 2, 2).at(0).half_width, 0);
+  Outcomes but_one(8, value(10));
+  but_one[5] = value(10.1);
+  EXPECT_NEAR(replay_looks(but_one, five_percent, 8, 8).at(0).half_width, 2.365 * 0.1 / 8, 1e-4);
+}
+
+Outcome share(int number) {
+  Outcome outcome = value(number);
+  outcome.is_share = true;
+  return outcome;
+}
+
+// 8 of 8: from 0.025^(1/8) = 0.6306 to 1; none of 10: up to 1 - 0.025^(1/10) = 0.3085. A tolerance of 0.1
+// takes 36 equal values, 0.025^(1/36) = 0.9026, with a single look.
+TEST(Cohorts, SharesHaveAnIntervalOfShares) {
+  const Target tenth{"flowing", Tolerance::absolute(0.1), 0.95};
+  const auto single = [&](const Outcomes& outcomes) {
+    const int seeds = static_cast<int>(outcomes.size());
+    return replay_looks(outcomes, tenth, seeds, seeds).at(0);
+  };
+  EXPECT_NEAR(single(Outcomes(8, share(1))).controlled_half_width, 1 - 0.6306, 1e-4);
+  EXPECT_EQ(single(Outcomes(8, share(1))).verdict, Verdict::capped);
+  EXPECT_NEAR(single(Outcomes(10, share(0))).controlled_half_width, 0.3085, 1e-4);
+  EXPECT_EQ(single(Outcomes(35, share(1))).verdict, Verdict::capped);
+  EXPECT_EQ(single(Outcomes(36, share(1))).verdict, Verdict::converged);
+  // 5 of 10: .187 to .813 (Clopper and Pearson's chart); what nobody called a share is one when both are
+  // seen.
+  Outcomes both;
+  for (int seed = 0; seed < 10; ++seed) both.emplace_back(value(seed % 2));
+  EXPECT_NEAR(single(both).controlled_half_width, 0.3129, 1e-4);
+  EXPECT_TRUE(std::isnan(single(Outcomes(8, value(1))).controlled_half_width));
+}
+
+// 59 of 60: far from a normal population, which an interval of shares does not need.
+TEST(Cohorts, ASkewedShareIsNotMarked) {
+  Outcomes outcomes(60, share(1));
+  outcomes[7] = share(0);
+  const Target tenth{"flowing", Tolerance::absolute(0.1), 0.95};
+  const Look look = replay_looks(outcomes, tenth, 60, 60).at(0);
+  EXPECT_GT(std::abs(look.skewness), 5);
+  EXPECT_FALSE(is_skewed(look, 0.95));
+  // As it is stored.
+  Estimate stored{look.controlled.count, look.controlled.mean, look.controlled.standard_error};
+  EXPECT_EQ(stored_values(stored, look.controlled_half_width), Estimate::Values::share);
+}
+
+TEST(Cohorts, SeedsThatEndInOneStateAreNotIndependent) {
+  Outcomes outcomes = alternating(12, 10, 0.1);
+  for (std::size_t seed = 0; seed < outcomes.size(); ++seed) outcomes[seed]->final_state = 1 + seed % 3;
+  const Look look = replay_looks(outcomes, five_percent, 12, 12).at(0);
+  EXPECT_EQ(look.verdict, Verdict::capped);
+  EXPECT_EQ(look.repeated, (std::vector<int>{3, 4, 5, 6, 7, 8, 9, 10, 11}));
+  EXPECT_TRUE(std::isnan(look.controlled_half_width));
+  EXPECT_TRUE(std::isnan(look.half_width));
+  for (std::size_t seed = 0; seed < outcomes.size(); ++seed) outcomes[seed]->final_state = 1 + seed;
+  EXPECT_EQ(replay_looks(outcomes, five_percent, 12, 12).at(0).verdict, Verdict::converged);
+  for (std::optional<Outcome>& outcome : outcomes) outcome->final_state = 0;  // not known
+  EXPECT_TRUE(replay_looks(outcomes, five_percent, 12, 12).at(0).repeated.empty());
+}
+
+// It may have stopped later.
+TEST(Cohorts, ForAnEarlierRuleNoLookIsTheLastOne) {
   Target target = five_percent;
   target.rule = Target::first_rule;
-  const Look look = replay_looks(alternating(10, 10, 0.6), target, 10, 11).at(0);
-  EXPECT_EQ(look.verdict, Verdict::converged);
-  EXPECT_NEAR(look.controlled_half_width, 0.4708, 1e-4);
+  EXPECT_EQ(replay_looks(alternating(13, 10, 0.6), target, 10, 20).size(), 2U);
 }
 
 TEST(Cohorts, IntervalsAreWidenedForRepeatedLooksOnly) {

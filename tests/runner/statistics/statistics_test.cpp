@@ -60,6 +60,52 @@ TEST(Statistics, FewerThanTwoValuesHaveNoStandardErrorAndNoInterval) {
   EXPECT_TRUE(std::isnan(student_half_width(one, 0.95)));
 }
 
+// Clopper and Pearson, Biometrika 26, 404: 95 % limits of 0, 1, 5 of 10 and 1 of 20 as printed in tables of
+// the binomial distribution; all of 8: 0.025^(1/8).
+TEST(Statistics, SharesHaveClopperAndPearsonsInterval) {
+  struct Row {
+    int ones, count;
+    double low, high;
+  };
+  for (const auto& [ones, count, low, high] : {Row{0, 10, 0, 0.3085},
+                                               {1, 10, 0.0025, 0.4450},
+                                               {5, 10, 0.1871, 0.8129},
+                                               {1, 20, 0.0013, 0.2487},
+                                               {8, 8, 0.6306, 1}}) {
+    const Interval found = share_interval(count, static_cast<double>(ones) / count, 0.95);
+    EXPECT_NEAR(found.low, low, 5.1e-5);
+    EXPECT_NEAR(found.high, high, 5.1e-5);
+  }
+}
+
+// Of binomial numbers of 1 to 40 the interval holds the share with at least the probability that it says,
+// summed over all numbers.
+TEST(Statistics, IntervalsOfSharesAreNeverTooNarrow) {
+  for (const int count : {2, 8, 17, 40}) {
+    for (const double share : {0.01, 0.1, 0.5, 0.62, 0.95, 0.999}) {
+      double held = 0;
+      for (int ones = 0; ones <= count; ++ones) {
+        const auto [low, high] = share_interval(count, static_cast<double>(ones) / count, 0.95);
+        if (low > share || share > high) continue;
+        held += std::exp(std::lgamma(count + 1) - std::lgamma(ones + 1) - std::lgamma(count - ones + 1) +
+                         ones * std::log(share) + (count - ones) * std::log1p(-share));
+      }
+      EXPECT_GE(held, 0.95) << count << ' ' << share;
+    }
+  }
+}
+
+TEST(Statistics, ValuesThatComeOneByOneAreOfTheSameKind) {
+  const std::vector<std::vector<double>> all{{1, 1, 1}, {0, 1, 0}, {2, 2, 2}, {1, 2, 3}, {0, 0}, {1}};
+  for (const bool is_share : {false, true}) {
+    for (const std::vector<double>& values : all) {
+      RunningEstimate running(is_share);
+      for (const double value : values) running.add(value);
+      EXPECT_EQ(running.estimate().values, estimate(values, is_share).values);
+    }
+  }
+}
+
 // NIST/SEMATECH e-Handbook of Statistical Methods, 1.3.6.7.2 (three decimals).
 TEST(Statistics, HalfWidthsAreThoseOfThePrintedTable) {
   struct Row {
