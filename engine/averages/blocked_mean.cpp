@@ -16,12 +16,8 @@ Json rounded(const Json& number) {
   return std::stod(fmt::format("{:.5g}", number.get<double>()));
 }
 
-BlockedMean::BlockedMean(std::size_t elements, bool is_list)
-    : is_list_(is_list),
-      kept_(is_list ? blocks_kept(elements) : count_of_blocks),
-      sums_(elements),
-      blocks_(kept_ * elements),
-      block_weights_(kept_) {}
+BlockedMean::BlockedMean(std::size_t elements, std::size_t kept, bool is_list)
+    : is_list_(is_list), kept_(kept), sums_(elements), blocks_(kept_ * elements), block_weights_(kept_) {}
 
 void BlockedMean::add(std::size_t block, std::size_t element, double value) {
   sums_[element] += value;

@@ -30,8 +30,10 @@ Json rounded(const Json& number);
 class BlockedMean {
  public:
   // Of a number, or of a list.
-  BlockedMean() : BlockedMean(1, false) {}
-  explicit BlockedMean(std::size_t elements) : BlockedMean(elements, true) {}
+  BlockedMean() : BlockedMean(1, count_of_blocks, false) {}
+  explicit BlockedMean(std::size_t elements) : BlockedMean(elements, blocks_kept(elements), true) {}
+  // Of a number that has its value in fewer blocks, in equal parts of the window.
+  static BlockedMean number_with_blocks(std::size_t blocks) { return {1, blocks, false}; }
 
   // `block` counts from 0 to 31.
   void add(std::size_t block, std::size_t element, double value);
@@ -47,7 +49,7 @@ class BlockedMean {
   void load(ArchiveReader& archive);
 
  private:
-  BlockedMean(std::size_t elements, bool is_list);
+  BlockedMean(std::size_t elements, std::size_t kept, bool is_list);
   Json ratio(std::span<const double> sums, double weight) const;
 
   bool is_list_;

@@ -1,5 +1,7 @@
 #include "engine/responses/oscillation.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -16,6 +18,13 @@ constexpr std::array<Named, 5> quantities = {{{"storage_modulus", "G'", "stress"
                                               {"dynamic_viscosity", "eta' / eta", "1"},
                                               {"third_storage_modulus", "G'_3", "stress"},
                                               {"third_loss_modulus", "G''_3", "stress"}}};
+
+// Of so many cycles: equal parts of the window, each with a cycle at least. Below four none, as the beginning
+// of a window is told by its quarters.
+std::size_t blocks_of_cycles(std::uint64_t cycles) {
+  const std::size_t blocks = std::bit_floor(std::min<std::uint64_t>(cycles, count_of_blocks));
+  return blocks < count_of_quarters ? 0 : blocks;
+}
 
 std::vector<Quantity> oscillation_quantities(const Scene&, const Window&) {
   std::vector<Quantity> all;
@@ -36,7 +45,9 @@ Oscillation::Oscillation(const Scene& scene, const System& system, const Window&
       steps_of_cycle_(
           static_cast<std::uint64_t>(std::llround(*scene.physics.flow.period() / window.timestep))),
       cycles_(window.steps / steps_of_cycle_),
-      ahead_(scene.method == Method::implicit_steps ? 0.5 : 1.0) {}
+      ahead_(scene.method == Method::implicit_steps ? 0.5 : 1.0) {
+  means_.fill(BlockedMean::number_with_blocks(blocks_of_cycles(cycles_)));
+}
 
 void Oscillation::take_flux(const MomentumFlux& flux) {
   const double in_cycle = static_cast<double>(taken_ % steps_of_cycle_) + ahead_;
@@ -71,6 +82,7 @@ void Oscillation::add_to(Json& mean) const {
 }
 
 void Oscillation::add_blocks_to(Json& blocks) const {
+  if (blocks_of_cycles(cycles_) == 0) return;
   for (std::size_t k = 0; k < means_.size(); ++k) blocks[quantities[k].name] = means_[k].blocks();
 }
 

@@ -7,7 +7,7 @@
 // third_storage_modulus and third_loss_modulus. All in the units of the scene. The stress is the flux of
 // momentum that acted in each step (kernels/momentum_flux.h), at the moment that it belongs to: the middle of
 // an implicit step, the end of an explicit one. What solvent and stresslets add, 1 + 2.5 phi times eta w, is
-// exact. Blocks have whole cycles.
+// exact. Blocks have whole cycles: 4, 8, 16 or 32 of them, as many as there are cycles for.
 #pragma once
 
 #include <array>

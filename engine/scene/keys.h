@@ -77,7 +77,7 @@ inline Keys duration_keys(const std::string& pointer, const std::string& meaning
       limit(pointer + "/strain", "", "Strain: shear rate times time.", false),
       limit(pointer + "/brownian_times", "eta a^3 / k_B T", "Time in units of the Brownian time.", false),
       limit(pointer + "/time", "time", "Time.", false),
-      limit(pointer + "/cycles", "", "Cycles of /flow/oscillation or /flow/cross_shear.", false),
+      limit(pointer + "/cycles", "", "Cycles of /flow/oscillation or /flow/cross_shear, at least.", false),
       limit(pointer + "/stress_times", "eta / stress", "Time in units of viscosity over /flow/stress.",
             false),
   };

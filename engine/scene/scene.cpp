@@ -31,7 +31,7 @@ class Reading : public SceneDocument {
   Physics physics() const;
   void check_lubrication(const Particles& particles, const Physics& physics) const;
   Duration duration(const std::string& pointer, const Physics& physics) const;
-  void check_cycles() const;
+  Duration phase(const std::string& pointer, const Physics& physics) const;
   // That the production window, which begins then, ends, and in time.
   void check_window(const Scene& scene, double begin) const;
   void set_observables(Scene& scene) const;
@@ -66,20 +66,25 @@ Duration Reading::duration(const std::string& pointer, const Physics& physics) c
     refuse(pointer, "must have at least one of strain, brownian_times, time, cycles, stress_times");
   check_duration_of_flow(*this, pointer);
   Duration duration;
-  for (const auto& [name, limit] : limits.items()) {
-    if (limit == 0) return {unlimited, unlimited, 0};  // over before it starts, whatever the flow
-  }
   if (physics.flow.rate() > 0) duration.strain = limits.value("strain", unlimited);
   if (physics.thermal_energy > 0) duration.brownian_times = limits.value("brownian_times", unlimited);
   duration.time = limits.value("time", unlimited);
-  if (limits.contains("cycles")) {
-    duration.time = std::min(duration.time, limits.at("cycles").get<double>() * *physics.flow.period());
-  }
   if (limits.contains("stress_times")) {
     const double unit = physics.viscosity / number("/flow/stress");
     duration.time = std::min(duration.time, limits.at("stress_times").get<double>() * unit);
   }
-  if (duration.strain == unlimited && duration.brownian_times == unlimited && duration.time == unlimited) {
+  for (const auto& [name, limit] : limits.items()) {
+    // Over before it starts, whatever the flow.
+    if (limit == 0 && name != "cycles") duration = {unlimited, unlimited, 0};
+  }
+  const auto is_unlimited = [&] {
+    return duration.strain == unlimited && duration.brownian_times == unlimited && duration.time == unlimited;
+  };
+  if (limits.contains("cycles")) {
+    duration.least_time = limits.at("cycles").get<double>() * *physics.flow.period();
+    if (is_unlimited()) duration.time = duration.least_time;
+  }
+  if (is_unlimited()) {
     refuse(pointer,
            "would never end: strain needs a shear rate > 0, brownian_times a thermal energy > 0; give one of "
            "them "
@@ -88,22 +93,19 @@ Duration Reading::duration(const std::string& pointer, const Physics& physics) c
   return duration;
 }
 
-// So that moduli are those of whole cycles.
-void Reading::check_cycles() const {
-  const Json& list = at("/observables");
+// One of the two of a realisation: of whole cycles where moduli are measured.
+Duration Reading::phase(const std::string& pointer, const Physics& physics) const {
+  Duration duration = this->duration(pointer, physics);
+  const Json &list = at("/observables"), &limits = at(pointer);
   const bool across =
       has("/flow/cross_shear") && std::find(list.begin(), list.end(), "oscillation") != list.end();
-  if (!has("/flow/oscillation") && !across) return;
-  for (const char* pointer : {"/duration/equilibration", "/duration/production"}) {
-    const Json& limits = at(pointer);
-    const auto is_whole = [](const Json& number) {
-      return number.get<double>() == std::floor(number.get<double>());
-    };
-    if (limits.size() != 1 || !limits.contains("cycles") || !is_whole(limits.at("cycles"))) {
-      refuse(pointer, fmt::format("must have a whole number of cycles and nothing else with {}",
-                                  across ? "the observable oscillation" : "/flow/oscillation"));
-    }
+  if (!has("/flow/oscillation") && !across) return duration;
+  if (const double cycles = limits.value("cycles", 0.0); cycles != std::floor(cycles)) {
+    refuse(pointer + "/cycles", fmt::format("must be a whole number with {}",
+                                            across ? "the observable oscillation" : "/flow/oscillation"));
   }
+  duration.period = *physics.flow.period();
+  return duration;
 }
 
 void Reading::check_window(const Scene& scene, double begin) const {
@@ -171,7 +173,9 @@ double time_of(const Duration& duration, const Scene& scene, double from) {
     const double a = scene.particles.reference_radius;
     time = std::min(time, duration.brownian_times * physics.viscosity * a * a * a / physics.thermal_energy);
   }
-  return time;
+  time = std::max(time, duration.least_time);
+  // What is a whole number of cycles must not gain one by rounding.
+  return duration.period > 0 ? std::ceil(time / duration.period * (1 - 1e-12)) * duration.period : time;
 }
 
 Vector3 box_lengths(const Scene& scene, double cube_edge) {
@@ -206,9 +210,8 @@ Scene read_scene(const Json& document, const std::string& file) {
   }
   const Json& timestep = filled["integrator"]["timestep"];
   if (timestep.is_number()) scene.timestep = timestep.get<double>();
-  reading.check_cycles();
-  scene.equilibration = reading.duration("/duration/equilibration", scene.physics);
-  scene.production = reading.duration("/duration/production", scene.physics);
+  scene.equilibration = reading.phase("/duration/equilibration", scene.physics);
+  scene.production = reading.phase("/duration/production", scene.physics);
   const double begin = time_of(scene.equilibration, scene);
   scene.physics.flow.measure_from(begin);
   reading.check_window(scene, begin);

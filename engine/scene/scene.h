@@ -48,11 +48,13 @@ inline constexpr double usual_tolerance = 2e-3, usual_tolerance_with_noise = 4e-
 
 // Ends with the first of its limits that is reached; infinity where there is none or where the scene cannot
 // reach it (strain without shear, Brownian times without temperature). One at least is finite. A limit of 0
-// in the document makes time 0 and the others infinite.
+// in the document makes time 0 and the others infinite. Cycles are a least time.
 struct Duration {
   double strain = std::numeric_limits<double>::infinity();
   double brownian_times = std::numeric_limits<double>::infinity();  // units of eta a^3 / kT
   double time = std::numeric_limits<double>::infinity();
+  double least_time = 0;
+  double period = 0;  // of which it lasts a whole number; 0: of none
 };
 
 // Limits that end a realisation with a named cause, and one beyond which its result is flagged.

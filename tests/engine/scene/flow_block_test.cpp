@@ -58,11 +58,41 @@ TEST(FlowBlock, ReadsRampsAndStops) {
 TEST(FlowBlock, ReadsShearAcross) {
   const Scene scene = read_scene(
       flowing(Json::parse(R"({"shear_rate": 2, "cross_shear": {"amplitude": 0.1, "frequency": 20}})"),
-              {{"cycles", 2}}, {{"strain", 5}}),
+              {{"cycles", 2}}, {{"strain", 5}, {"cycles", 2}}),
       "scene.json");
   EXPECT_EQ(scene.physics.flow.steady_rate(), 2);
   EXPECT_DOUBLE_EQ(time_of(scene.equilibration, scene), 2 * 2 * M_PI / 20);
+  EXPECT_DOUBLE_EQ(time_of(scene.production, scene), 2.5);
   EXPECT_EQ(scene.physics.flow.deformation().swing()->component, &SymmetricTensor::yz);
+}
+
+// A Brownian time is 5 and a cycle 2 pi / 20. What moduli are measured of lasts whole cycles, and those that
+// are given at least.
+TEST(FlowBlock, RoundsAnOscillationUpToWholeCycles) {
+  constexpr double period = 2 * M_PI / 20;
+  const auto cycles_of = [&](const Json& flow, const Json& equilibration) {
+    Json document = flowing(flow, equilibration, {{"time", 3.2 * period}});
+    document["observables"] = {"oscillation"};
+    const Scene scene = read_scene(document, "scene.json");
+    const Schedule schedule = make_schedule(scene, "scene.json");
+    EXPECT_NEAR(schedule.timestep * static_cast<double>(schedule.production), 4 * period, 1e-9);
+    const double cycles = schedule.timestep * static_cast<double>(schedule.equilibration) / period;
+    EXPECT_NEAR(cycles, std::round(cycles), 1e-9);
+    return std::lround(cycles);
+  };
+  const Json alone = Json::parse(R"({"oscillation": {"amplitude": 0.01, "frequency": 20}})");
+  const Json across =
+      Json::parse(R"({"shear_rate": 0.1, "cross_shear": {"amplitude": 0.1, "frequency": 20}})");
+  for (const Json& flow : {alone, across}) {
+    EXPECT_EQ(cycles_of(flow, {{"cycles", 2}}), 2);
+    EXPECT_EQ(cycles_of(flow, {{"brownian_times", 1}}), 16);  // of 15.9
+    EXPECT_EQ(cycles_of(flow, {{"cycles", 2}, {"brownian_times", 1}}), 16);
+    EXPECT_EQ(cycles_of(flow, {{"cycles", 20}, {"brownian_times", 1}}), 20);
+    EXPECT_EQ(cycles_of(flow, {{"brownian_times", 1}, {"time", 1.5 * period}}), 2);
+    EXPECT_EQ(cycles_of(flow, {{"cycles", 0}}), 0);
+    EXPECT_EQ(cycles_of(flow, {{"time", 0}}), 0);
+  }
+  EXPECT_EQ(cycles_of(across, {{"strain", 0.1}}), 4);  // of 3.2
 }
 
 TEST(FlowBlock, CountsExtensionInHenckyStrains) {

@@ -60,6 +60,17 @@ TEST(RealisationResult, AnElementHasTheControlVariateAndTheBlocksOfItsList) {
   EXPECT_EQ(names_of_targets(result), "alone, noise/*, profile/velocity/*");
 }
 
+// Of few cycles moduli have few blocks.
+TEST(RealisationResult, TheBeginningOfEightBlocksIsThatOfTwoAndOfFour) {
+  Json result = plain_result(sha256("point"), 3, 12.5);
+  result["mean"]["loss_modulus"] = 4.5;
+  result["blocks"]["loss_modulus"] = {1, 2, 3, 4, 5, 6, 7, 8};
+  const Observed observed = observe(result, "loss_modulus");
+  EXPECT_EQ(observed.value, 4.5);
+  EXPECT_EQ(observed.first_quarter, 1.5);
+  EXPECT_EQ(observed.first_half, 2.5);
+}
+
 TEST(RealisationResult, WithoutBlocksTheBeginningOfTheWindowIsNotKnown) {
   const Observed observed = observe(described_result(), "alone");
   EXPECT_EQ(observed.value, 7);
