@@ -300,7 +300,7 @@ class PointView {
         },
         { title: 'unit', text: true, cell: (row) => row.about.unit, sort: (row) => row.about.unit },
         {
-          title: 'uncontrolled',
+          title: 'without control variate',
           minor: true,
           cell: (row) => (row.plain ? Format.withError(row.plain[0], row.plain[2]) : ''),
           sort: (row) => (row.plain ? row.plain[0] : null),

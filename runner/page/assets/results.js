@@ -60,14 +60,6 @@ function resultsTable(data, sweep, host, onPick) {
       sort: measure,
     },
   );
-  if (data.points.some((point) => plain(point) && plain(point)[0] !== numbers(point)[0])) {
-    columns.push({
-      title: 'uncontrolled',
-      minor: true,
-      cell: (row) => (plain(row.point) ? Format.withError(plain(row.point)[0], plain(row.point)[2]) : ''),
-      sort: (row) => (plain(row.point) ? plain(row.point)[0] : null),
-    });
-  }
   columns.push(
     { title: 'lost', minor: true, cell: (row) => String(lost(row)), sort: lost },
     { title: 'verdict', text: true, cell: (row) => row.point.standing, sort: (row) => row.point.standing },

@@ -271,11 +271,12 @@ TEST(Status, SeedsThatWarnOfTheirResultsAreCountedWithTheVerdict) {
   EXPECT_EQ(status_json(status)["points"][0]["flags"], (Json{{"timestep", 4}}));
 }
 
-TEST(Status, TheEstimateWithoutTheControlVariateStandsBesideTheOneThatDecides) {
+// The estimate without the control variate is 10.00 ± 0.15: explain has it.
+TEST(Status, TheTableHasTheEstimateThatDecidesAlone) {
   StoredCampaign campaign(1, 4, 20);
   four_values(campaign, 0, 0.1);
   const std::string table = status_table(read_status(campaign.database()));
-  EXPECT_NE(table.find("10.25 ± 0.15 (1.5 %)  10.00 ± 0.15  converged"), std::string::npos) << table;
+  EXPECT_NE(table.find("10.25 ± 0.15 (1.5 %)  converged\n"), std::string::npos) << table;
 }
 
 // 20 points with 800 seeds each. A third of a second is what a person does not notice.
