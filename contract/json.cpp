@@ -66,8 +66,8 @@ std::string place(std::string_view text, std::size_t offset) {
 }
 
 // The parser's message without its own name and the place: "[json.exception.parse_error.101] parse error at
-// line 1, column 2: syntax error ..." ends as "syntax error ...". What it read last may be a part of a
-// character, which no terminal can show.
+// line 1, column 2: syntax error while parsing value - unexpected ..." ends as "must be JSON: unexpected
+// ...". What it read last may be a part of a character, which no terminal can show.
 std::string reason(std::string_view message) {
   const auto skip_past = [&](std::string_view mark) {
     const auto found = message.find(mark);
@@ -75,9 +75,12 @@ std::string reason(std::string_view message) {
   };
   skip_past("] ");
   if (message.starts_with("parse error")) skip_past(": ");
+  const bool is_syntax = message.starts_with("syntax error");
+  if (is_syntax) skip_past(" - ");
   const bool is_plain = std::all_of(message.begin(), message.end(),
                                     [](char c) { return static_cast<unsigned char>(c) < 0x80U; });
-  return std::string(is_plain ? message : message.substr(0, message.find("; last read")));
+  return (is_syntax ? "must be JSON: " : "") +
+         std::string(is_plain ? message : message.substr(0, message.find("; last read")));
 }
 
 // What people type who write JSON by hand or paste it from a document: the usual faults, named.

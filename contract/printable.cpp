@@ -86,6 +86,14 @@ std::vector<std::string> fitting(Iterator begin, Iterator end, std::size_t room)
   return taken;
 }
 
+// Drops the part of a word at the cut, so that a list ends with a whole name. Longer words are cut.
+void drop_part_of_word(std::vector<std::string>& shown) {
+  constexpr std::ptrdiff_t longest_word = 36;
+  const auto most = std::min(longest_word, std::ssize(shown) / 2);
+  const auto blank = std::find(shown.rbegin(), shown.rbegin() + most, " ");
+  if (blank != shown.rbegin() + most) shown.erase(blank.base(), shown.end());
+}
+
 }  // namespace
 
 std::string printable(std::string_view text, std::size_t longest) {
@@ -103,8 +111,11 @@ std::string printable(std::string_view text, std::size_t longest) {
   const std::vector<std::string> tail =
       is_vast ? shown_characters(text.substr(text.size() - most_bytes * longest)) : head;
   const std::size_t room = longest - std::min(longest, gap.size());
-  const std::vector<std::string> last = fitting(tail.rbegin(), tail.rend(), room / 3);
-  for (const std::string& shown : fitting(head.begin(), head.end(), room - room / 3)) line += shown;
+  std::vector<std::string> last = fitting(tail.rbegin(), tail.rend(), room / 3);
+  std::vector<std::string> first = fitting(head.begin(), head.end(), room - room / 3);
+  drop_part_of_word(first);
+  drop_part_of_word(last);
+  for (const std::string& shown : first) line += shown;
   line += gap;
   std::for_each(last.rbegin(), last.rend(), [&](const std::string& shown) { line += shown; });
   return line;

@@ -1,5 +1,6 @@
 // peclet-engine: one realisation, a worker, a single evaluation, or a benchmark.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <omp.h>
 
 #include <CLI/CLI.hpp>
@@ -17,6 +18,7 @@
 #include "contract/integrity_error.h"
 #include "contract/output_file.h"
 #include "contract/provenance.h"
+#include "contract/usage_fault.h"
 #include "engine/benchmark/benchmark.h"
 #include "engine/evaluation/configuration.h"
 #include "engine/jobs/job.h"
@@ -49,18 +51,28 @@ struct RunOptions {
   bool quiet = false;
 };
 
-// CLI11 would read "-1" as the largest number there is.
-const CLI::Validator whole_number(
-    [](const std::string& text) {
-      std::uint64_t number = 0;
-      const char* const end = text.data() + text.size();
-      const auto read = std::from_chars(text.data(), end, number);
-      return read.ec == std::errc() && read.ptr == end
-                 ? std::string()
-                 : fmt::format("\"{}\" must be a whole number from 0 to {}", text,
-                               std::numeric_limits<std::uint64_t>::max());
-    },
-    "");
+// The parser would read "-1" as the largest number there is, and says nothing that names what is allowed.
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
+  return {[least, most](const std::string& text) {
+            std::uint64_t number = 0;
+            const char* const end = text.data() + text.size();
+            const auto read = std::from_chars(text.data(), end, number);
+            const bool is_one =
+                read.ec == std::errc() && read.ptr == end && number >= least && number <= most;
+            return is_one ? std::string()
+                          : fmt::format("\"{}\" must be a whole number from {} to {}", text, least, most);
+          },
+          ""};
+}
+
+CLI::Validator one_of(const std::vector<std::string>& names) {
+  return {[names](const std::string& text) {
+            const bool is_one = std::find(names.begin(), names.end(), text) != names.end();
+            return is_one ? std::string()
+                          : fmt::format("\"{}\" must be one of {}", text, fmt::join(names, ", "));
+          },
+          fmt::format("{{{}}}", fmt::join(names, ","))};
+}
 
 // What the names of files begin with that a realisation leaves: "out." beside out.json. None beside what is
 // no file.
@@ -82,6 +94,10 @@ int run(const RunOptions& options) {
   JobSpecification job;
   job.header.seed = options.seed;
   job.scene = read_json_input(options.scene);
+  if (job.scene.is_object() && job.scene.contains("scene")) {
+    throw InputError(options.scene, "", "",
+                     "is a campaign, and a scene is asked for; `peclet run` runs campaigns");
+  }
   job.scene_name = options.scene;
   job.threads = options.threads;
   job.checkpoint = target_of(options.checkpoint);
@@ -130,7 +146,7 @@ int forces(const std::string& path) {
 
 int main(int argc, char** argv) {
   let_waiting_threads_sleep(argv);
-  CLI::App app{"The particle engine of peclet: Langevin dynamics of dense suspensions."};
+  CLI::App app{"The particle engine of peclet: Langevin dynamics of dense suspensions.", "peclet-engine"};
   app.require_subcommand(1);
   app.set_version_flag("--version", version() + " " + provenance().at("git_commit").get<std::string>());
 
@@ -140,12 +156,12 @@ int main(int argc, char** argv) {
   run_command->add_option("scene", options.scene, "Scene, a JSON file")->required();
   run_command->add_option("--seed", options.seed, "Seed of packing and noise")
       ->capture_default_str()
-      ->check(whole_number);
+      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
   run_command
       ->add_option("--threads", options.threads,
                    "Threads, of which each has 4000 particles or more and a processor")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1024));
+      ->check(whole_number(1, 1024));
   run_command->add_option("--output", options.output, "File for the result instead of standard output");
   run_command->add_option("--checkpoint", options.checkpoint,
                           "File that is written every five minutes and resumed from when it exists");
@@ -163,7 +179,7 @@ int main(int argc, char** argv) {
   trajectory_command->add_option("file", conversion.file, "GSD file or extended XYZ")->required();
   trajectory_command
       ->add_option("--format", conversion.format, "lammps (dump) or xyz; else by the output's name")
-      ->check(CLI::IsMember({"lammps", "xyz"}));
+      ->check(one_of({"lammps", "xyz"}));
   trajectory_command->add_option("--output", conversion.output,
                                  "File for the text instead of standard output");
   trajectory_command
@@ -178,21 +194,24 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   snapshot_command->add_option("--colour", picture.colour, "What the colours of spheres mean")
       ->capture_default_str()
-      ->check(CLI::IsMember(names_of_colourings()));
+      ->check(one_of(names_of_colourings()));
   snapshot_command->add_flag("--chains", picture.chains,
                              "Contacts, as wide as their normal force, in glass spheres");
   snapshot_command
       ->add_option("--view", picture.view, "corner; x, y or z to look along; or AZIMUTH,ELEVATION in degrees")
       ->capture_default_str();
   snapshot_command->add_option("--size", picture.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (words == std::vector<std::string>{"version"}) words.front() = "--version";
   std::vector<std::string> cases;
   CLI::App* bench_command = app.add_subcommand("bench", "Processor time per particle and step");
   bench_command->add_option("case", cases, "Names of cases; all of them when none is given");
   try {
-    app.parse(argc, argv);
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // as the parser wants them
   } catch (const CLI::ParseError& error) {
-    // Help and the version end here, too.
-    return app.exit(error) == 0 ? ExitCode::done : ExitCode::usage;
+    if (error.get_exit_code() == 0) return app.exit(error);  // help or version
+    fmt::print(stderr, "peclet-engine: {}\n", usage_fault(app, words, error));
+    return ExitCode::usage;
   }
 
   try {

@@ -48,6 +48,16 @@ int seeds_with_files(const Json& document, const std::string& file) {
                    fmt::format("must be \"all\", \"none\" or an integer >= 0 and <= {}", most_realisations));
 }
 
+// What many begin with.
+void refuse_bare_scene(const Json& written, const std::string& file) {
+  if (!written.is_object() || written.contains("scene") || !written.contains("particles")) return;
+  throw InputError(
+      file, "", "",
+      "is a scene, and a campaign is asked for: { \"name\": ..., \"scene\": this, \"target\": { "
+      "\"relative_tolerance\": 0.05 }, \"realisations\": { \"minimum\": 10, \"maximum\": 200 } }; "
+      "`peclet init NEW.json` writes one to begin with, `peclet-engine run` runs a scene once");
+}
+
 }  // namespace
 
 std::vector<Criterion> Target::criteria() const {
@@ -130,6 +140,7 @@ Campaign read_campaign(const std::filesystem::path& path) {
 }
 
 Campaign parse_campaign(const Json& written, const std::string& file) {
+  refuse_bare_scene(written, file);
   Campaign campaign;
   campaign.document = campaign_keys().validate(written, file);
   const Json& document = campaign.document;

@@ -12,8 +12,8 @@
 #include "contract/exit_codes.h"
 #include "contract/input_error.h"
 #include "contract/provenance.h"
+#include "contract/usage_fault.h"
 #include "runner/command_line/parser_tree.h"
-#include "runner/command_line/usage_fault.h"
 #include "runner/command_line/verb_set.h"
 
 namespace peclet::runner {
@@ -80,6 +80,7 @@ class Reader {
 
 CommandLine read_command_line(int argc, char** argv) {
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (words == std::vector<std::string>{"version"}) words.front() = "--version";
   if (!words.empty() && words.front() == "help") {  // `peclet help run` is `peclet run --help`
     words.erase(words.begin());
     words.insert(words.begin() + std::min<std::ptrdiff_t>(1, std::ssize(words)), "--help");

@@ -40,7 +40,7 @@ verb waits for it; points of a finished one that are no longer decided go on wit
   add_file(verb, options->campaign);
   add_directory(verb, options->directory);
   add_number(verb, "--tolerance", options->tolerance, *campaign_keys().find("/target/relative_tolerance"),
-             "/target/relative_tolerance; 5 % is written 0.05");
+             "/target/relative_tolerance: 0.05 or 5%");
   add_number(verb, "--absolute-tolerance", options->absolute_tolerance,
              *campaign_keys().find("/target/absolute_tolerance"),
              "/target/absolute_tolerance, where the campaign has that");

@@ -9,19 +9,24 @@
 namespace peclet::runner {
 namespace {
 
-// The word spelt anew for the parser, which would take 010 for 8 and 1e3 for no integer. Throws InputError at
-// the option's name.
+// The word spelt anew for the parser, which would take 010 for 8 and 1e3 for no integer. What is at most 1
+// may be given in per cent. Throws InputError at the option's name.
 std::string checked(const std::string& name, const std::string& word, const Key& allowed) {
   double number = 0;
-  const char* const end = word.data() + word.size();
+  const bool in_percent = allowed.maximum <= 1 && word.ends_with('%');
+  const std::size_t digits = in_percent ? word.find_last_not_of(" %") + 1 : word.size();
+  const char* const end = word.data() + digits;
   const auto [stop, error] = std::from_chars(word.data(), end, number);
+  if (in_percent) number /= 100;
   if (error != std::errc{} || stop != end || !std::isfinite(number)) {
     throw InputError("", name, word, allowed_values(allowed));
   }
   try {
     return KeyTable("", {allowed}).validate(number, "").dump();
   } catch (const InputError& fault) {
-    throw InputError("", name, word, fault.allowed());
+    // How per cent are written, after a semicolon, is no news for somebody who has written them.
+    throw InputError("", name, word,
+                     in_percent ? fault.allowed().substr(0, fault.allowed().find(';')) : fault.allowed());
   }
 }
 

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "contract/input_error.h"
+#include "runner/text/quoting.h"
 
 namespace peclet::runner {
 namespace {
@@ -38,7 +39,8 @@ std::size_t find_point(const std::vector<PointRecord>& points, const std::string
   constexpr std::size_t most_labels = 12;
   std::vector<std::string> labels;
   labels.reserve(std::min(points.size(), most_labels));
-  for (std::size_t i = 0; i < std::min(points.size(), most_labels); ++i) labels.push_back(points[i].label);
+  for (std::size_t i = 0; i < std::min(points.size(), most_labels); ++i)
+    labels.push_back(shell_word(points[i].label));
   throw InputError(
       "", "", name,
       fmt::format(

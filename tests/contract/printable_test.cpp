@@ -52,6 +52,16 @@ TEST(Printable, ALongTextLosesItsMiddleNotItsEnds) {
   EXPECT_EQ(printable(std::string(100, '\x01'), 12), "\\u0001...");
 }
 
+TEST(Printable, AListIsCutBetweenItsNames) {
+  std::string list = "must be one of: ";
+  for (int i = 0; i < 100; ++i) list += "quantity_" + std::to_string(1000 + i) + ", ";
+  const std::string shown = printable(list + "last_quantity", 120);
+  EXPECT_LE(shown.size(), 120U);
+  const std::size_t gap = shown.find("...");
+  EXPECT_EQ(shown.substr(gap - 2, 2), ", ") << shown;
+  EXPECT_EQ(shown.substr(gap + 3, 10), " quantity_") << shown;
+}
+
 TEST(Printable, LinesStayLines) { EXPECT_EQ(printable_lines("a\x1b\nb\tc\n"), "a\\u001b\nb\\tc\n"); }
 
 std::size_t characters(const std::string& text) {

@@ -28,21 +28,33 @@ SCENE = {
 
 def bad_arguments(engine, scene):
     for arguments, named in [
-        ([], "subcommand"),
-        (["run"], "scene"),
-        (["frobnicate"], "subcommand"),
-        (["run", scene, "--sead", "1"], "--sead"),
+        ([], "peclet-engine: a verb is missing; `peclet-engine --help` lists them\n"),
+        (["run"], "peclet-engine: run: scene: is missing: Scene, a JSON file; `peclet-engine run --help` says more\n"),
+        (["frobnicate"], "peclet-engine: frobnicate: there is no such verb; `peclet-engine --help` lists them\n"),
+        ([scene, "run"], "the verb goes first: peclet-engine run "),
+        (["run", scene, "--sead", "1"], "run: --sead: there is no such option"),
+        (["run", scene, "-j", "1"], "run: -j: there is no such option"),
+        (["run", scene, "--output"], "run: --output: must have one value"),
         (["run", scene, "--seed", "-1"], '"-1" must be a whole number from 0 to 18446744073709551615'),
         (["run", scene, "--seed", "1.5"], '"1.5"'),
         (["run", scene, "--seed", "18446744073709551616"], '"18446744073709551616"'),
         (["run", scene, "--seed", ""], '""'),
-        (["run", scene, "--threads", "0"], "--threads"),
-        (["run", scene, "--threads", "two"], "two"),
+        (["run", scene, "--threads", "0"], '--threads: "0" must be a whole number from 1 to 1024'),
+        (["run", scene, "--threads", "two"], '"two" must be a whole number'),
+        (["trajectory", "t.gsd", "--format", "pdb"], '--format: "pdb" must be one of lammps, xyz'),
+        (["snapshot", "t.gsd", "--output", "t.png", "--colour", "blue"], '"blue" must be one of species, '),
     ]:
         done = subprocess.run([engine, *arguments], capture_output=True, text=True)
         assert (done.returncode, done.stdout) == (2, ""), f"{arguments}: exit {done.returncode}, {done.stdout!r}"
         assert named in done.stderr, f"{arguments}: {done.stderr!r} does not say {named!r}"
-    for arguments in (["--help"], ["run", "--help"], ["--version"]):
+        assert done.stderr.count("\n") == 1 and done.stderr.startswith("peclet-engine: "), done.stderr
+    with tempfile.TemporaryDirectory() as folder:
+        campaign = os.path.join(folder, "campaign.json")
+        with open(campaign, "w") as file:
+            json.dump({"name": "a", "scene": SCENE}, file)
+        done = subprocess.run([engine, "run", campaign], capture_output=True, text=True)
+        assert done.returncode == 2 and "is a campaign" in done.stderr, done.stderr
+    for arguments in (["--help"], ["run", "--help"], ["--version"], ["version"]):
         assert subprocess.run([engine, *arguments], capture_output=True).returncode == 0, arguments
 
 

@@ -61,7 +61,8 @@ TEST_F(Supplement, OfNothingIsRefusedInWordsAboutTheBundle) {
     supplement(campaign_.database(), std::nullopt);
     FAIL() << "made";
   } catch (const InputError& error) {
-    EXPECT_TRUE(says(error.what(), "--bundle: plain: has no number of relative_viscosity yet")) << error.what();
+    EXPECT_TRUE(says(error.what(), "--bundle: plain: has no number of relative_viscosity yet"))
+        << error.what();
   }
 }
 

@@ -54,6 +54,7 @@ TEST_F(CommandLine, FaultsOfUsageAreExitCodeTwo) {
 TEST_F(CommandLine, HelpOfEveryVerbHasAnExample) {
   EXPECT_EQ(peclet("--version").code, 0);
   EXPECT_TRUE(peclet("--version").text.starts_with("peclet "));
+  EXPECT_EQ(peclet("version").text, peclet("--version").text);
   for (const char* const verb :
        {"validate", "plan", "run", "status", "explain", "export", "report", "set", "cancel", "retry"}) {
     const Answer answer = peclet(std::string(verb) + " --help");
@@ -99,6 +100,40 @@ TEST_F(CommandLine, AnObservableThatTheEngineDoesNotMeasureIsRefusedBeforeAnythi
         "the point peclet=1 will have: relative_viscosity; did you mean relative_viscosity?\n");
   }
   EXPECT_EQ(files(), 1);
+}
+
+TEST_F(CommandLine, ASceneIsToldWhatACampaignIs) {
+  campaign = {{"particles", {{"count", 10}}}, {"volume_fraction", 0.5}};
+  write();
+  for (const char* const verb : {"validate", "plan", "run", "status", "explain"}) {
+    const Answer answer = peclet(std::string(verb) + " small.json");
+    EXPECT_EQ(answer.code, 2) << verb;
+    EXPECT_TRUE(answer.text.starts_with("peclet: small.json: is a scene, and a campaign is asked for: "))
+        << answer.text;
+    EXPECT_TRUE(says(answer.text, "`peclet init NEW.json`")) << answer.text;
+  }
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(CommandLine, AShareMayBeGivenInPerCent) {
+  write();
+  EXPECT_EQ(peclet("set small.json --tolerance 8%").code, 0);
+  const Json changed = Json::parse(read_file(file()));
+  EXPECT_EQ(changed["target"]["relative_tolerance"], 0.08);
+  EXPECT_TRUE(says(peclet("set small.json --tolerance 800%").text,
+                   "--tolerance: 800%: must be a number > 0 and < 1"));
+}
+
+// The same advice from those who look as from those who run.
+TEST_F(CommandLine, ARenamedFileIsRecognisedByEveryVerb) {
+  write();
+  ASSERT_EQ(peclet("run small.json --quiet --workers 1").code, 0);
+  std::filesystem::rename(file(), file().parent_path() / "new.json");
+  const std::string advice = peclet("run new.json").text;
+  EXPECT_TRUE(says(advice, "was it renamed?")) << advice;
+  for (const char* const verb : {"status", "watch", "explain", "export"}) {
+    EXPECT_EQ(peclet(std::string(verb) + " new.json").text, advice) << verb;
+  }
 }
 
 TEST_F(CommandLine, ANumberThatIsNoneOrOutOfRangeIsNamedWithItsOptionAndWhatIsAllowed) {
@@ -147,6 +182,9 @@ TEST_F(CommandLine, FaultsOfUsageAreOneLineThatNamesTheVerb) {
       {"run small.json --wrokers 2",
        "peclet: run: --wrokers: there is no such option; `peclet run --help` lists them; did you mean "
        "--workers?\n"},
+      {"run small.json -j 2",
+       "peclet: run: -j: there is no such option; `peclet run --help` lists them; did you mean --workers?\n"},
+      {"small.json run", "peclet: small.json: the verb goes first: peclet run small.json\n"},
       {"run small.json --lease",
        "peclet: run: --lease: must have one value; `peclet run --help` says more\n"},
       {"export small.json --csv --json",

@@ -1,15 +1,16 @@
-#include "runner/command_line/usage_fault.h"
+#include "contract/usage_fault.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <functional>
 #include <string_view>
+#include <utility>
 
 #include "contract/nearest_name.h"
 #include "contract/printable.h"
 
-namespace peclet::runner {
+namespace peclet {
 namespace {
 
 constexpr std::size_t longest_word = 60, longest_reason = 300;
@@ -29,14 +30,34 @@ std::vector<std::string> option_names(const CLI::App& verb) {
   return names;
 }
 
+// A word that begins as an option does; "-1" is a number.
+bool looks_like_option(const std::string& word) {
+  return word.size() > 1 && word.front() == '-' && (word[1] < '0' || word[1] > '9') && word[1] != '.';
+}
+
 // The first word that looks like an option and is none of the verb's; "" when there is none.
-std::string unknown_option(const std::vector<std::string>& words, const std::vector<std::string>& names) {
+std::string unknown_option(const CLI::App& verb, const std::vector<std::string>& words) {
+  bool is_value = false;
   for (const std::string& word : words) {
-    std::string name = word.substr(0, word.find('='));
+    const std::string name = word.substr(0, word.find('='));
     if (name == "--") return "";  // what follows is taken as it is
-    if (name.starts_with("--") && std::find(names.begin(), names.end(), name) == names.end()) return name;
+    if (std::exchange(is_value, false) || !looks_like_option(name)) continue;
+    const CLI::Option* const known =
+        verb.get_option_no_throw(name.starts_with("--") ? name : name.substr(0, 2));
+    if (known == nullptr) return name;
+    is_value = name == word && known->get_items_expected_max() > 0;
   }
   return "";
+}
+
+// Other programs have short options: -j for workers as make has, or the first letter of a name.
+std::string meant_by(const std::string& unknown, const std::vector<std::string>& names) {
+  if (unknown.starts_with("--")) return suggestion(unknown, names);
+  const char letter = unknown[1] == 'j' ? 'w' : unknown[1];
+  const auto begins = [&](const std::string& name) { return name[2] == letter; };
+  const auto found = std::find_if(names.begin(), names.end(), begins);
+  const bool is_only_one = std::count_if(names.begin(), names.end(), begins) == 1;
+  return is_only_one ? "; did you mean " + *found + "?" : "";
 }
 
 // What precedes `mark`: the parser begins with the name of the option.
@@ -87,19 +108,22 @@ const CLI::App* verb_called(const CLI::App& app, const std::vector<std::string>&
 std::string usage_fault(const CLI::App& app, const std::vector<std::string>& words,
                         const CLI::ParseError& fault) {
   const CLI::App* const verb = verb_called(app, words);
+  const std::string& program = app.get_name();
   if (verb == nullptr) {
-    if (words.empty()) return "a verb is missing; `peclet --help` lists them";
-    return fmt::format(
-        "{}: there is no such {}; `peclet --help` lists them{}", printable(words.front(), longest_word),
-        words.front().starts_with("-") ? "option" : "verb", suggestion(words.front(), verb_names(app)));
+    if (words.empty()) return fmt::format("a verb is missing; `{} --help` lists them", program);
+    const std::string first = printable(words.front(), longest_word);
+    const bool verb_is_second = words.size() > 1 && verb_called(app, {words[1]}) != nullptr;
+    if (verb_is_second) return fmt::format("{0}: the verb goes first: {1} {2} {0}", first, program, words[1]);
+    return fmt::format("{}: there is no such {}; `{} --help` lists them{}", first,
+                       words.front().starts_with("-") ? "option" : "verb", program,
+                       suggestion(words.front(), verb_names(app)));
   }
-  const std::vector<std::string> names = option_names(*verb);
-  if (const std::string unknown = unknown_option(words, names); !unknown.empty()) {
-    return fmt::format("{0}: {1}: there is no such option; `peclet {0} --help` lists them{2}",
-                       verb->get_name(), printable(unknown, longest_word), suggestion(unknown, names));
+  if (const std::string unknown = unknown_option(*verb, words); !unknown.empty()) {
+    return fmt::format("{0}: {1}: there is no such option; `{3} {0} --help` lists them{2}", verb->get_name(),
+                       printable(unknown, longest_word), meant_by(unknown, option_names(*verb)), program);
   }
-  return fmt::format("{0}: {1}; `peclet {0} --help` says more", verb->get_name(),
-                     printable(reason(*verb, fault), longest_reason));
+  return fmt::format("{0}: {1}; `{2} {0} --help` says more", verb->get_name(),
+                     printable(reason(*verb, fault), longest_reason), program);
 }
 
-}  // namespace peclet::runner
+}  // namespace peclet
