@@ -106,9 +106,11 @@ class Worker {
       answer["particles"] = scene.particles.count;
       answer["derived"] = to_json(derived_groups(scene));
       answer["observables"] = names_of_targets(scene, schedule);
+      answer["hints"] = target_hints(scene);
       answer["warnings"] = Json::array();
-      for (const Warning& warning : scene_warnings(scene)) {
-        answer["warnings"].push_back({{"code", warning.code}, {"message", warning.message}});
+      for (const std::vector<Warning>& warnings : {scene_warnings(scene), warnings_before_run(scene)}) {
+        for (const Warning& warning : warnings)
+          answer["warnings"].push_back({{"code", warning.code}, {"message", warning.message}});
       }
     } catch (const InputError& error) {
       answer["type"] = "refused";

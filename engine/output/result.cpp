@@ -249,6 +249,55 @@ std::vector<std::string> names_of_targets(const Scene& scene, const Schedule& sc
   return names;
 }
 
+Json target_hints(const Scene& scene) {
+  struct Pair {
+    const char *name, *meant;
+  };
+  // Numbers that are not named after the observable that measures them.
+  constexpr Pair measured_by[] = {{"storage_modulus", "oscillation"},
+                                  {"loss_modulus", "oscillation"},
+                                  {"dynamic_viscosity", "oscillation"},
+                                  {"third_storage_modulus", "oscillation"},
+                                  {"third_loss_modulus", "oscillation"},
+                                  {"zero_shear_viscosity", "linear_response"},
+                                  {"zero_shear_rise", "linear_response"},
+                                  {"green_kubo_viscosity", "stress_correlation"},
+                                  {"self_diffusion", "mean_squared_displacement"},
+                                  {"mobilised_friction", "contact_network"},
+                                  {"sliding_contacts", "contact_network"},
+                                  {"frictional_contacts", "contact_network"}};
+  constexpr Pair called[] = {{"eta_r", "relative_viscosity"},
+                             {"eta", "relative_viscosity"},
+                             {"viscosity", "relative_viscosity"},
+                             {"N1", "first_normal_difference"},
+                             {"N_1", "first_normal_difference"},
+                             {"N2", "second_normal_difference"},
+                             {"N_2", "second_normal_difference"},
+                             {"P", "pressure"},
+                             {"p", "pressure"},
+                             {"Z", "contacts_per_particle"},
+                             {"G'", "storage_modulus"},
+                             {"G''", "loss_modulus"},
+                             {"shear_stress", "stress/total/3"}};
+  Json hints = Json::object();
+  const auto add = [&](const char* name, const char* kind) {
+    if (!scene.observables.contains(kind))
+      hints[name] = fmt::format("needs \"observables\": [\"{}\"] in the scene", kind);
+  };
+  for (const ObservableKind& kind : observable_kinds()) add(kind.name, kind.name);
+  for (const auto& [name, kind] : measured_by) add(name, kind);
+  for (const auto& [name, meant] : called) {
+    hints[name] = fmt::format("is called {}", meant);
+    if (hints.contains(meant))
+      hints[name] = fmt::format("is called {}, which {}", meant, hints[meant].get<std::string>());
+  }
+  if (scene.physics.flow.deformation().stress()) {
+    for (const char* const name : {"relative_viscosity", "eta_r", "eta", "viscosity"})
+      hints[name] = "follows from the mean rate at a given stress: aim at shear_rate";
+  }
+  return hints;
+}
+
 const Json& engine_identity() {
   static const Json identity = [] {
     Json all = provenance();

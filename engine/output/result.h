@@ -34,6 +34,10 @@ std::vector<Quantity> quantities_of(const Scene& scene, const Schedule& schedule
 // may leave undefined (friction without a contact) is among them.
 std::vector<std::string> names_of_targets(const Scene& scene, const Schedule& schedule);
 
+// What to do about targets that the results do not have: by name, also for what lies below it, the rest of a
+// sentence that begins with the name.
+Json target_hints(const Scene& scene);
+
 // Provenance of this engine with the instruction set that its results depend on.
 const Json& engine_identity();
 

@@ -286,4 +286,49 @@ std::vector<Warning> scene_warnings(const Scene& scene) {
   return warnings;
 }
 
+namespace {
+
+// Volume fraction that random packings reach: phi = 0.634 + 0.0658 d + 0.0857 S d^2, d the standard deviation
+// of the radius over its mean and S its skewness (Desmond & Weeks, Phys. Rev. E 90, 022204, 2014, eq. 4).
+double densest_random_packing(const Particles& particles) {
+  const std::vector<std::size_t> number = species_numbers(particles);
+  const auto moment = [&](double centre, int power) {
+    double sum = 0;
+    for (std::size_t s = 0; s < number.size(); ++s) {
+      sum += static_cast<double>(number[s]) * std::pow(particles.species[s].radius - centre, power);
+    }
+    return sum / static_cast<double>(particles.count);
+  };
+  const double mean = moment(0, 1), variance = moment(mean, 2), width = std::sqrt(variance) / mean;
+  const double skewness = variance > 0 ? moment(mean, 3) / std::pow(variance, 1.5) : 0;
+  return 0.634 + 0.0658 * width + 0.0857 * skewness * width * width;
+}
+
+}  // namespace
+
+std::vector<Warning> warnings_before_run(const Scene& scene) {
+  // Below this contacts overlap by more than 0.1 % of a radius in the mean: by 0.4 % at half of it and phi =
+  // 0.40, and spheres at phi = 0.50 come to overlap by the 5 % at which a realisation ends.
+  constexpr double stiff = 1e4;
+  std::vector<Warning> warnings;
+  if (const double densest = densest_random_packing(scene.particles);
+      !scene.start && scene.volume_fraction > densest) {
+    warnings.push_back(
+        {"packing", fmt::format("random packings of these spheres reach a volume fraction of about "
+                                "{:.3f} (Desmond & Weeks 2014); at {:.4g} seeds are likely to end "
+                                "with the cause packing",
+                                densest, scene.volume_fraction)});
+  }
+  if (const std::optional<double> stiffness = derived_groups(scene).relative_stiffness;
+      stiffness && *stiffness < stiff) {
+    warnings.push_back(
+        {"soft",
+         fmt::format("spheres are soft: normal_stiffness / (viscosity a rate) = {:.4g}, below {:g} contacts "
+                     "overlap visibly; dense suspensions then end with the cause overlap, others flow as "
+                     "softer ones; a larger normal_stiffness cures it",
+                     *stiffness, stiff)});
+  }
+  return warnings;
+}
+
 }  // namespace peclet::engine

@@ -52,5 +52,7 @@ Json to_json(const DerivedGroups& groups);
 // What the author should know before anything runs: inertia that is not small, a step beyond the automatic
 // one.
 std::vector<Warning> scene_warnings(const Scene& scene);
+// What the result itself would say in the end: spheres that are too soft, or too dense to be packed.
+std::vector<Warning> warnings_before_run(const Scene& scene);
 
 }  // namespace peclet::engine

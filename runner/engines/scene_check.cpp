@@ -177,10 +177,16 @@ void check_observables(const Json& answer, const Campaign& campaign, const State
   for (const std::string& wanted : campaign.target.observables()) {
     const auto is_it = [&](const std::string& pattern) { return matches(pattern, wanted); };
     if (std::any_of(known.begin(), known.end(), is_it)) continue;
-    throw InputError(
-        campaign_file.string(), pointer_of(campaign.target, wanted), wanted,
-        fmt::format("must be a number that the results{} will have: {}{}", of_point(campaign, point),
-                    fmt::join(known, ", "), suggestion(wanted, known)));
+    const std::string must =
+        fmt::format("must be a number that the results{} will have: ", of_point(campaign, point));
+    const Json hints = answer.value("hints", Json::object());
+    for (const auto& [name, hint] : hints.items()) {
+      if (wanted != name && !wanted.starts_with(name + '/')) continue;
+      throw InputError(campaign_file.string(), pointer_of(campaign.target, wanted), wanted,
+                       must + fmt::format("{} {}", wanted, hint.get_ref<const std::string&>()));
+    }
+    throw InputError(campaign_file.string(), pointer_of(campaign.target, wanted), wanted,
+                     fmt::format("{}{}{}", must, fmt::join(known, ", "), suggestion(wanted, known)));
   }
 }
 

@@ -130,6 +130,18 @@ bool is_no_target(const std::string& name) {
          name == "linear_response/frequency/*" || last == "radius";
 }
 
+TEST(TargetHints, SayWhatPeopleMayMean) {
+  const Json hints = target_hints(read_scene(small_scene(), "scene.json"));
+  EXPECT_EQ(hints["N1"], "is called first_normal_difference");
+  EXPECT_EQ(hints["storage_modulus"], "needs \"observables\": [\"oscillation\"] in the scene");
+  EXPECT_EQ(hints["G'"],
+            "is called storage_modulus, which needs \"observables\": [\"oscillation\"] in the scene");
+  const Json rest = {{"flow", {{"shear_rate", nullptr}, {"stress", 0.1}}},
+                     {"integrator", {{"method", "implicit"}, {"timestep", nullptr}}}};
+  EXPECT_EQ(target_hints(read_scene(small_scene(rest), "scene.json"))["relative_viscosity"],
+            "follows from the mean rate at a given stress: aim at shear_rate");
+}
+
 TEST(NamesOfTargets, AreThoseOfTheNumbersThatTheResultHas) {
   const Json rest = {{"flow", {{"shear_rate", 0}}}, {"duration", {{"equilibration", {{"time", 0.02}}}}}};
   const Json patches[] = {
@@ -150,6 +162,10 @@ TEST(NamesOfTargets, AreThoseOfTheNumbersThatTheResultHas) {
          {"rolling_friction", nullptr}}},
        {"duration", {{"production", {{"time", 1.2}}}}},
        {"observables", {"linear_response"}}}};
+  const Scene plain = read_scene(small_scene(), "scene.json");
+  const std::vector<std::string> plain_names = names_of_targets(plain, make_schedule(plain, "scene.json"));
+  const std::set<std::string> names_of_all(plain_names.begin(), plain_names.end());
+  const Json hints = target_hints(plain);
   for (const Json& patch : patches) {
     JobSpecification job;
     job.scene = small_scene(patch);
@@ -162,6 +178,12 @@ TEST(NamesOfTargets, AreThoseOfTheNumbersThatTheResultHas) {
     const Scene scene = read_scene(job.scene, "scene.json");
     const std::vector<std::string> names = names_of_targets(scene, make_schedule(scene, "scene.json"));
     EXPECT_EQ(names, std::vector<std::string>(numbers.begin(), numbers.end())) << patch;
+    // What another observable measures is hinted at where the scene does not ask for it.
+    for (const std::string& name : names) {
+      const bool is_of_all = names_of_all.contains(name) || name.starts_with("stress/");
+      EXPECT_TRUE(is_of_all || hints.contains(name) || hints.contains(name.substr(0, name.find('/'))))
+          << name;
+    }
   }
 }
 

@@ -128,6 +128,32 @@ TEST(SceneWarnings, InertiaIsReportedFromTheBoundOn) {
   EXPECT_EQ(warning_codes(scene_of(0, 0)), Codes{});
 }
 
+// Of radii 1 : 1.4 in equal volumes, 1000 : 364 in number, d = 0.160 and S = 1.05: 0.634 + 0.0105 + 0.0023.
+TEST(WarningsBeforeRun, DenserThanARandomPackingIsSaid) {
+  const auto text = [](double fraction) {
+    const std::vector<Warning> found =
+        warnings_before_run(read_scene(small_scene({{"volume_fraction", fraction}}), "scene.json"));
+    return found.empty() ? "" : found.front().code + ": " + found.front().message;
+  };
+  EXPECT_EQ(text(0.63), "");
+  EXPECT_NE(
+      text(0.66).find("packing: random packings of these spheres reach a volume fraction of about 0.647"),
+      std::string::npos)
+      << text(0.66);
+}
+
+TEST(WarningsBeforeRun, SoftSpheresAreSaid) {
+  const auto codes = [](double stiffness) {  // viscosity times radius times rate is 0.2
+    std::vector<std::string> found;
+    const Json scene = small_scene({{"contact", {{"normal_stiffness", stiffness}}}});
+    for (const Warning& warning : warnings_before_run(read_scene(scene, "scene.json")))
+      found.push_back(warning.code);
+    return found;
+  };
+  EXPECT_EQ(codes(40), std::vector<std::string>{"soft"});
+  EXPECT_EQ(codes(2e3), std::vector<std::string>{});
+}
+
 TEST(SceneWarnings, MessagesGiveTheNumbers) {
   const std::string message = scene_warnings(scene_of(0.25, 0)).at(0).message;
   EXPECT_NE(message.find("tau_I / tau_S = 0.25 (tau_I = 1, tau_S = 4)"), std::string::npos) << message;
