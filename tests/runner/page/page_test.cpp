@@ -148,7 +148,7 @@ TEST_F(CampaignPage, ListsLostSeedsByCauseAndWhatTheyMean) {
 
 TEST_F(CampaignPage, ExplainsTheMarksAndShowsWhatTheEngineWarnsOf) {
   const Json warning = {{{"code", "overlap"}, {"message", "0.02 > 0.01 & more"}}};
-  for (int seed = 0; seed < 4; ++seed) campaign_.complete(0, seed, 10, warning);
+  for (int seed = 0; seed < 4; ++seed) campaign_.complete(0, seed, 10 + 0.01 * seed, warning);
   const Json page = data();
   EXPECT_EQ(page["points"][0]["marks"][0], "4 flagged overlap");
   EXPECT_TRUE(says(page["meanings"]["flagged overlap"], "contacts overlapped"));

@@ -63,10 +63,12 @@ TEST(Plan, APointWithoutASeedCostsWhatTheOthersDoForEachParticleStep) {
   EXPECT_NEAR(plan_json(plan)["cpu_hours_maximum"].get<double>(), 12, 1e-9);
 }
 
-// Equal values: the minimum of 10 is enough, whatever comes.
+// Values so near each other that the minimum of 10 is enough, whatever comes.
 PointHistory four_equal_seeds(double cpu_seconds, double wall_seconds) {
-  return {{4, cpu_seconds, wall_seconds},
-          std::vector<std::optional<Outcome>>(4, Outcome{Outcome::Kind::value, 10})};
+  PointHistory history{{4, cpu_seconds, wall_seconds}, {}};
+  for (const double value : {10.0, 10.001, 9.999, 10.0})
+    history.outcomes.emplace_back(Outcome{Outcome::Kind::value, value});
+  return history;
 }
 
 TEST(Plan, WhatIsToComeFollowsFromThePilot) {
