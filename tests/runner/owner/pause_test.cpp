@@ -60,7 +60,7 @@ TEST_F(LockedDatabase, IsAPauseThatEndsWithTheLock) {
   int turns = 0;
   pool_.script = [&, this] {
     ++turns;
-    if (turns == 3) other_.execute("BEGIN IMMEDIATE");
+    if (turns == 2) other_.execute("BEGIN IMMEDIATE");
     if (turns == 20) other_.execute("ROLLBACK");
     ASSERT_LT(turns, 400) << "it does not go on";
     finish_all();
@@ -71,7 +71,7 @@ TEST_F(LockedDatabase, IsAPauseThatEndsWithTheLock) {
             database_.connection().integer("SELECT count(*) FROM result"));
   EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM attempt WHERE outcome != 'result'"), 0);
   EXPECT_TRUE(spool_files(directory_).empty());
-  ASSERT_EQ(listener_.warnings.size(), 1U) << listener_.warnings.at(1);
+  ASSERT_EQ(listener_.warnings.size(), 1U);
   EXPECT_TRUE(was_warned_of("campaign.db: is locked by "));
   EXPECT_TRUE(was_warned_of("the campaign goes on by itself when the lock is released"));
   EXPECT_EQ(listener_.count<ShortageBegan>(), 1);
