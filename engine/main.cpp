@@ -142,6 +142,11 @@ int forces(const std::string& path) {
   return ExitCode::done;
 }
 
+int done_with(const std::string& note) {
+  if (!note.empty()) fmt::print(stderr, "peclet-engine: {}\n", note);
+  return ExitCode::done;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -225,12 +230,10 @@ int main(int argc, char** argv) {
       return forces(configuration);
     }
     if (*trajectory_command) {
-      convert_trajectory(conversion);
-      return ExitCode::done;
+      return done_with(convert_trajectory(conversion));
     }
     if (*snapshot_command) {
-      draw_picture(picture);
-      return ExitCode::done;
+      return done_with(draw_picture(picture));
     }
     if (*bench_command) {
       return run_benchmarks(cases);

@@ -19,6 +19,8 @@ namespace {
 
 // Of an index in memory: 128 MB. Trajectories of this program have a tenth of it at most.
 constexpr std::uint64_t most_entries = std::uint64_t{4} << 20, most_segments = std::uint64_t{1} << 16;
+// An entry of the index has 16 bits for its name.
+constexpr std::size_t most_names = 65536;
 
 // Not opened as a person's other input is: chunks are read where they are, and a trajectory need not fit into
 // memory. A FIFO would wait for ever.
@@ -103,7 +105,12 @@ void Reader::read_names(const Header& header) {
   for (std::size_t at = 0; at < list.size() && list[at] != '\0';) {
     const std::size_t end = list.find('\0', at);
     if (end == std::string::npos) refuse("the list of names", "must end with a zero");
-    names_.push_back(list.substr(at, end - at));
+    std::string name = list.substr(at, end - at);
+    if (names_.size() == most_names)
+      refuse("the list of names", fmt::format("must have at most {}", most_names));
+    const bool is_new = number_of_name_.emplace(name, static_cast<std::uint16_t>(names_.size())).second;
+    if (!is_new) refuse(name, "must be in the list of names once");
+    names_.push_back(std::move(name));
     at = end + 1;
   }
 }
@@ -119,16 +126,18 @@ void Reader::read_index(const Header& header) {
   index_.erase(std::ranges::find(index_, 0, &IndexEntry::location), index_.end());
   for (std::size_t k = 0; k < index_.size(); ++k) {
     const IndexEntry& entry = index_[k];
-    const std::string of_entry = fmt::format("entry {} of the index", k);
+    const auto refuse_entry = [&](const std::string& why) {
+      refuse(fmt::format("entry {} of the index", k), why);
+    };
     if (entry.name >= names_.size())
-      refuse(of_entry, fmt::format("has name {} of {}", entry.name, names_.size()));
+      refuse_entry(fmt::format("has name {} of {}", entry.name, names_.size()));
     // Frames are counted by the last entry: none may be far from the one before it.
     const std::uint64_t before = k == 0 ? 0 : index_[k - 1].frame;
     const bool is_in_order =
         k == 0 || std::pair(before, index_[k - 1].name) < std::pair(entry.frame, entry.name);
-    if (!is_in_order || entry.frame > before + 1) refuse(of_entry, "is out of order");
+    if (!is_in_order || entry.frame > before + 1) refuse_entry("is out of order");
     const std::uint64_t size = size_of_value(entry.type);
-    if (size == 0) refuse(of_entry, fmt::format("has type {}: must be 1 to 10", entry.type));
+    if (size == 0) refuse_entry(fmt::format("has type {}: must be 1 to 10", entry.type));
     const std::uint64_t width = size * entry.columns;  // below 2^36
     const bool has_place = entry.location > 0 && entry.columns > 0 && entry.rows <= length_ / width &&
                            holds(static_cast<std::uint64_t>(entry.location), entry.rows * width);
@@ -141,12 +150,17 @@ void Reader::read_index(const Header& header) {
 }
 
 const IndexEntry* Reader::find(std::uint64_t frame, std::string_view name) const {
-  const auto known = std::ranges::find(names_, name);
-  if (known == names_.end()) return nullptr;
-  const std::pair wanted(frame, static_cast<std::uint16_t>(known - names_.begin()));
+  const auto known = number_of_name_.find(name);
+  if (known == number_of_name_.end()) return nullptr;
+  const std::pair wanted(frame, known->second);
   const auto key = [](const IndexEntry& entry) { return std::pair(entry.frame, entry.name); };
   const auto found = std::ranges::lower_bound(index_, wanted, {}, key);
   return found != index_.end() && key(*found) == wanted ? &*found : nullptr;
+}
+
+std::span<const IndexEntry> Reader::chunks(std::uint64_t frame) const {
+  const auto found = std::ranges::equal_range(index_, frame, {}, &IndexEntry::frame);
+  return {found.begin(), found.end()};
 }
 
 void Reader::check(const IndexEntry& chunk, std::uint8_t type, std::uint32_t columns) const {

@@ -6,6 +6,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,6 +29,8 @@ class Reader {
 
   // The chunk of that frame; null where it has none of that name.
   const IndexEntry* find(std::uint64_t frame, std::string_view name) const;
+  // All chunks of that frame, by their places in names().
+  std::span<const IndexEntry> chunks(std::uint64_t frame) const;
   // Names of all chunks of all frames.
   const std::vector<std::string>& names() const { return names_; }
 
@@ -59,6 +63,7 @@ class Reader {
   Descriptor file_;
   std::uint64_t length_ = 0;
   std::vector<std::string> names_;
+  std::map<std::string, std::uint16_t, std::less<>> number_of_name_;
   std::vector<IndexEntry> index_;  // by frame, then by name
 };
 

@@ -36,14 +36,20 @@ Colouring by_species(const Snapshot& snapshot) {
   return all;
 }
 
+// The velocity gradient of the file or, of a file with strain and time, that of a simple shear; else 0.
+Matrix3 mean_flow(const Snapshot& snapshot) {
+  if (snapshot.velocity_gradient) return *snapshot.velocity_gradient;
+  const bool flows = snapshot.strain && snapshot.time && *snapshot.time > 0;
+  return simple_shear(flows ? *snapshot.strain / *snapshot.time : 0);
+}
+
 std::pair<std::string, std::vector<double>> speeds(const Snapshot& snapshot) {
-  const bool flows = snapshot.strain && snapshot.time && *snapshot.time > 0 && *snapshot.strain != 0;
-  const double rate = flows ? *snapshot.strain / *snapshot.time : 0;
+  const Matrix3 flow = mean_flow(snapshot);
   std::vector<double> values;
   for (std::size_t i = 0; i < snapshot.count(); ++i) {
-    values.push_back(norm(snapshot.velocity[i] - Vector3{rate * snapshot.position[i].y, 0, 0}));
+    values.push_back(norm(snapshot.velocity[i] - flow * snapshot.position[i]));
   }
-  return {flows ? "speed beyond the flow" : "speed", values};
+  return {flow == Matrix3{} ? "speed" : "speed beyond the flow", values};
 }
 
 }  // namespace
@@ -60,8 +66,9 @@ ColourScale scale_over(const std::string& title, std::vector<double> values) {
     return *place;
   };
   const double low = percentile(2), high = percentile(98);
-  // All alike: a scale of no width has no places.
-  return {title, low, high > low ? high : low + std::max(1e-12, std::abs(low))};
+  // All alike, or so nearly that ticks between them would be one number: such a scale has no places.
+  const bool is_wide = high - low > 1e-9 * std::max(std::abs(low), std::abs(high));
+  return {title, low, is_wide ? high : low + std::max(1e-12, std::abs(low))};
 }
 
 std::vector<double> ticks_of(const ColourScale& scale) {

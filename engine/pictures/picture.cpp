@@ -12,6 +12,7 @@
 #include "engine/pictures/legend.h"
 #include "engine/pictures/renderer.h"
 #include "engine/snapshots/snapshot_file.h"
+#include "engine/state/periodic_cell.h"
 
 namespace peclet::engine {
 namespace {
@@ -50,28 +51,30 @@ void add_cell(const Snapshot& snapshot, double thickness, Stage& stage) {
   }
 }
 
-Vector3 into_cell(const Snapshot& snapshot, const Vector3& place) {
-  const auto& [a, b, c] = snapshot.lattice.column;
-  const Vector3 from_corner = place - snapshot.corner;
-  const double z = from_corner.z / c.z, y = (from_corner.y - c.y * z) / b.y,
-               x = (from_corner.x - c.x * z - b.x * y) / a.x;
-  return place - snapshot.lattice * Vector3{std::floor(x), std::floor(y), std::floor(z)};
+Vector3 into_cell(const Snapshot& snapshot, const CellFrame& cell, const Vector3& place) {
+  const Vector3 cells = cell.fractional(place - snapshot.corner);
+  return place - snapshot.lattice * Vector3{std::floor(cells.x), std::floor(cells.y), std::floor(cells.z)};
 }
 
-// From the first sphere to the nearest image of the second. A sheared cell is compact: one of the images that
-// are next to each other in fractions is the nearest of spheres that touch.
-Vector3 apart(const Snapshot& snapshot, const Vector3& from, const Vector3& to) {
+CellFrame cell_of(const Snapshot& snapshot) {
+  return PeriodicCell::with_edges(snapshot.lattice, Matrix3{}).frame();
+}
+
+// From the first sphere to the nearest image of the second. A sheared cell is compact: the lattice planes
+// next to the first sphere hold the nearest of spheres that touch.
+Vector3 apart(const Snapshot& snapshot, const CellFrame& cell, const Vector3& from, const Vector3& to) {
   const auto& [a, b, c] = snapshot.lattice.column;
+  const auto& [x, y, z] = cell.axes.column;
   Vector3 d = to - from;
-  d -= std::round(d.z / c.z) * c;
-  d -= std::round(d.y / b.y) * b;
-  d -= std::round(d.x / a.x) * a;
+  d -= std::round(dot(z, d) / cell.lengths.z) * c;
+  d -= std::round(dot(y, d) / cell.lengths.y) * b;
+  d -= std::round(dot(x, d) / cell.lengths.x) * a;
   return d;
 }
 
 // Contacts as rods, as wide as their normal force, up to four times its mean. One that leaves the cell is
-// drawn at both of its ends.
-ColourScale add_chains(const Snapshot& snapshot, Stage& stage) {
+// drawn at both of its ends; one without force has no width, and one of no length nothing to be drawn along.
+ColourScale add_chains(const Snapshot& snapshot, const CellFrame& cell, Stage& stage) {
   std::vector<double> forces;
   double sum = 0;
   for (const SnapshotContact& contact : *snapshot.contacts) sum += contact.normal_force;
@@ -80,10 +83,12 @@ ColourScale add_chains(const Snapshot& snapshot, Stage& stage) {
   const ColourScale scale{"force / mean", 0, widest};
   const double thickest = 0.42 * *std::ranges::min_element(snapshot.radius);
   for (const SnapshotContact& contact : *snapshot.contacts) {
+    if (!(contact.normal_force > 0)) continue;
     const double force = std::min(contact.normal_force / mean, widest);
     const double thickness = thickest * std::sqrt(force / widest);
     const Vector3 &p = snapshot.position[contact.first], &q = snapshot.position[contact.second];
-    const Vector3 d = apart(snapshot, p, q);
+    const Vector3 d = apart(snapshot, cell, p, q);
+    if (norm(d) < 1e-6 * thickest) continue;
     const Colour colour = scale.at(force);
     const bool stays = norm(p + d - q) < 1e-6 * norm(d);
     if (stays) {
@@ -116,16 +121,17 @@ Image picture_of(const Snapshot& given, const PictureOptions& options) {
   const auto [width, height] = size_named(options.size);
   const View view = view_named(options.view);
   Snapshot snapshot = given;
-  for (Vector3& place : snapshot.position) place = into_cell(snapshot, place);
-  Stage stage;
   Colouring colouring = colouring_of(snapshot, options.colour, options.file);
+  const CellFrame cell = cell_of(snapshot);
+  for (Vector3& place : snapshot.position) place = into_cell(snapshot, cell, place);
+  Stage stage;
   if (options.chains) {
     if (!snapshot.contacts) {
       throw InputError(
           options.file, "", "",
           "has no contacts, which --chains asks for: \"trajectory\": {\"contacts\": true} leaves them");
     }
-    colouring = {{}, {add_chains(snapshot, stage)}, {}};
+    colouring = {{}, {add_chains(snapshot, cell, stage)}, {}};
     for (std::size_t i = 0; i < snapshot.count(); ++i) {
       stage.glass.push_back({snapshot.position[i], snapshot.radius[i], {}});
     }
@@ -144,12 +150,14 @@ Image picture_of(const Snapshot& given, const PictureOptions& options) {
   return canvas.image();
 }
 
-void draw_picture(const PictureOptions& options) {
+std::string draw_picture(const PictureOptions& options) {
   size_named(options.size);
   view_named(options.view);
   check_output(options.output);
   const SnapshotFile file(options.file);
-  write_output(options.output, png(picture_of(file.read(file.index_of(options.frame)), options)));
+  const Snapshot snapshot = file.read(file.index_of(options.frame));
+  write_output(options.output, png(picture_of(snapshot, options)));
+  return snapshot.has_sizes ? "" : note_on_sizes(options.file);
 }
 
 }  // namespace peclet::engine

@@ -17,8 +17,9 @@ struct PictureOptions {
   int threads = 1;
 };
 
-// Writes a PNG file. Throws InputError, std::system_error.
-void draw_picture(const PictureOptions& options);
+// Writes a PNG file. Returns what there is to say of the frame, if anything. Throws InputError,
+// std::system_error.
+std::string draw_picture(const PictureOptions& options);
 
 // "corner", "x", "y" or "z", along which one looks, or "AZIMUTH,ELEVATION" in degrees. Throws InputError.
 View view_named(const std::string& name);

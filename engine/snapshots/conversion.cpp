@@ -27,15 +27,25 @@ FrameText text_of(const ConversionOptions& options) {
 
 }  // namespace
 
-void convert_trajectory(const ConversionOptions& options) {
+std::string convert_trajectory(const ConversionOptions& options) {
   const FrameText text = text_of(options);
   const std::filesystem::path output = options.output.empty() ? "/dev/stdout" : options.output;
   check_output(output);
   const SnapshotFile file(options.file);
   const std::vector<std::uint64_t> frames = chosen_frames(options.frames, file, "--frames");
-  for (const std::uint64_t frame : frames) file.read(frame);
+  bool has_sizes = true;
+  for (const std::uint64_t frame : frames) {
+    const Snapshot snapshot = file.read(frame);
+    has_sizes = has_sizes && snapshot.has_sizes;
+    if (text == lammps_frame && is_turned(snapshot)) {
+      throw InputError(options.file, "", "",
+                       "has a cell whose first edge is not along x, which a dump of LAMMPS cannot hold: "
+                       "--format must be xyz");
+    }
+  }
   auto next = frames.begin();
   write_output(output, [&] { return next == frames.end() ? std::string() : text(file.read(*next++)); });
+  return has_sizes ? "" : note_on_sizes(options.file);
 }
 
 }  // namespace peclet::engine

@@ -12,7 +12,8 @@ struct ConversionOptions {
   std::string frames = "0:-1";
 };
 
-// Reads every frame that is chosen before anything is written. Throws InputError, std::system_error.
-void convert_trajectory(const ConversionOptions& options);
+// Reads every frame that is chosen before anything is written. Returns what there is to say of the file, if
+// anything. Throws InputError, std::system_error.
+std::string convert_trajectory(const ConversionOptions& options);
 
 }  // namespace peclet::engine

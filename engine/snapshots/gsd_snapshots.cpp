@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <utility>
+
+#include "engine/snapshots/snapshot_check.h"
 
 namespace peclet::engine {
 namespace {
@@ -40,6 +41,7 @@ class FrameReading {
     }
     read_contacts(snapshot);
     read_stress_of_cell(snapshot);
+    check_snapshot(snapshot, file_.path().string());
     return snapshot;
   }
 
@@ -54,28 +56,12 @@ class FrameReading {
     return found != nullptr ? found : file_.find(0, name);
   }
 
-  // Throws for a float that is none.
-  template <class Value>
-  void check(const std::string& name, const std::vector<Value>& values) const {
-    if constexpr (std::is_floating_point_v<Value>) {
-      const auto bad = std::ranges::find_if(values, [](Value x) { return !std::isfinite(x); });
-      if (bad != values.end()) refuse(name, fmt::format("{}", *bad), "must be finite");
-    }
-  }
-
-  template <class Value>
-  std::vector<Value> get(const std::string& name, const gsd::IndexEntry& chunk, std::uint32_t columns) const {
-    std::vector<Value> values = file_.get<Value>(chunk, columns);
-    check(name, values);
-    return values;
-  }
-
   template <class Value>
   Value single(const std::string& name, Value missing) const {
     const gsd::IndexEntry* const chunk = own_or_first(name);
     if (chunk == nullptr) return missing;
     if (chunk->rows != 1) refuse(name, fmt::format("{} rows", chunk->rows), "must be a single number");
-    return get<Value>(name, *chunk, 1).front();
+    return file_.get<Value>(*chunk).front();
   }
 
   // Of each sphere so many numbers; none where the file has none.
@@ -90,7 +76,7 @@ class FrameReading {
       refuse(name, fmt::format("{} rows", chunk->rows),
              fmt::format("must have one for each of {} spheres", count_));
     }
-    const std::vector<Value> values = get<Value>(name, *chunk, columns);
+    const std::vector<Value> values = file_.get<Value>(*chunk, columns);
     std::vector<std::array<Value, columns>> all(count_);
     std::memcpy(all.data(), values.data(), values.size() * sizeof(Value));
     return all;
@@ -106,10 +92,16 @@ class FrameReading {
   void read_cell(Snapshot& snapshot) const {
     const gsd::IndexEntry* const chunk = own_or_first("configuration/box");
     if (chunk == nullptr) refuse("configuration/box", "missing", "must be there");
-    const auto box = get<float>("configuration/box", *chunk, 1);
-    if (box.size() != 6 || !(std::min({box[0], box[1], box[2]}) > 0)) {
+    const auto box = file_.get<float>(*chunk);
+    if (box.size() != 6) {
       refuse("configuration/box", fmt::format("{} numbers", box.size()),
-             "must be six, of which three are lengths > 0");
+             "must be three lengths and three tilts");
+    }
+    if (!(std::min({box[0], box[1], box[2]}) > 0)) {
+      const bool is_flat = box[0] > 0 && box[1] > 0 && box[2] == 0;
+      refuse("configuration/box", fmt::format("lengths {}, {} and {}", box[0], box[1], box[2]),
+             is_flat ? "must be > 0: with Lz = 0 the file has two dimensions, spheres have three"
+                     : "must be three lengths > 0");
     }
     const double lx = box[0], ly = box[1], lz = box[2];
     snapshot.lattice = {Vector3{lx, 0, 0}, Vector3{box[3] * ly, ly, 0},
@@ -120,6 +112,7 @@ class FrameReading {
   void read_spheres(Snapshot& snapshot) const {
     snapshot.radius.assign(count_, 0.5);
     const auto diameters = rows<float, 1>("particles/diameter");
+    snapshot.has_sizes = !diameters.empty();
     for (std::size_t i = 0; i < diameters.size(); ++i) {
       if (!(diameters[i][0] > 0))
         refuse("particles/diameter", fmt::format("{}", diameters[i][0]), "must be > 0");
@@ -158,25 +151,22 @@ class FrameReading {
              fmt::format("must be {}, as many as bonds/group", group->rows));
     }
     const auto ids = file_.get<std::uint32_t>(*group, 2);
-    const auto forces = get<float>("log/bonds/normal_force", *normal, 1);
-    const auto across = get<float>("log/bonds/tangential_force", *tangential, 1);
+    const auto forces = file_.get<float>(*normal);
+    const auto across = file_.get<float>(*tangential);
     snapshot.contacts.emplace();
     for (std::size_t k = 0; k < forces.size(); ++k) {
       const std::uint32_t i = ids[2 * k], j = ids[2 * k + 1];
-      if (std::max(i, j) >= count_) {
-        refuse("bonds/group", std::to_string(std::max(i, j)), fmt::format("must be below {}", count_));
-      }
       snapshot.contacts->push_back({i, j, forces[k], across[k]});
     }
   }
 
   void read_stress_of_cell(Snapshot& snapshot) const {
     constexpr std::string_view prefix = "log/stress/";
-    for (const std::string& name : file_.names()) {
-      const gsd::IndexEntry* const chunk = own(name);
-      if (!name.starts_with(prefix) || chunk == nullptr) continue;
-      if (chunk->rows != 6) refuse(name, fmt::format("{} rows", chunk->rows), "must be six");
-      const auto t = get<double>(name, *chunk, 1);
+    for (const gsd::IndexEntry& chunk : file_.chunks(frame_)) {
+      const std::string& name = file_.names()[chunk.name];
+      if (!name.starts_with(prefix)) continue;
+      if (chunk.rows != 6) refuse(name, fmt::format("{} rows", chunk.rows), "must be six");
+      const auto t = file_.get<double>(chunk);
       snapshot.stress_of_cell[name.substr(prefix.size())] = {t[0], t[1], t[2], t[3], t[4], t[5]};
     }
   }

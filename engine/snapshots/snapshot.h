@@ -28,13 +28,15 @@ struct SnapshotContact {
 struct Snapshot {
   std::size_t count() const { return position.size(); }
 
-  // Lattice vectors as columns, upper triangular: (lx, 0, 0), (xy, ly, 0), (xz, yz, lz); and the corner of
-  // the cell from which they lead.
+  // Lattice vectors as columns, and the corner of the cell from which they lead. Simple shear keeps them
+  // (lx, 0, 0), (xy, ly, 0), (xz, yz, lz); in extension the cell is turned.
   Matrix3 lattice;
   Vector3 corner;
   std::uint64_t step = 0;
   std::optional<double> time, strain;
+  std::optional<Matrix3> velocity_gradient;  // of the uniform part of the flow
   bool single = false;
+  bool has_sizes = true;  // false: the radii are the default of a file without any
 
   std::vector<Vector3> position;
   std::vector<double> radius;
@@ -47,5 +49,12 @@ struct Snapshot {
   std::optional<std::vector<SnapshotContact>> contacts;
   std::map<std::string, SymmetricTensor> stress_of_cell;  // "total", "solvent" ...
 };
+
+// Whether the cell is not the one of simple shear, whose first edge is along x and the second in the plane of
+// x and y.
+inline bool is_turned(const Snapshot& snapshot) {
+  const auto& [a, b, c] = snapshot.lattice.column;
+  return a.y != 0 || a.z != 0 || b.z != 0 || !(a.x > 0 && b.y > 0 && c.z > 0);
+}
 
 }  // namespace peclet::engine

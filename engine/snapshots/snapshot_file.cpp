@@ -25,6 +25,10 @@ std::int64_t whole(std::string_view text, std::int64_t missing, const std::strin
 
 }  // namespace
 
+std::string note_on_sizes(const std::string& file) {
+  return file + " has no diameters (particles/diameter): its spheres are shown with the diameter 1";
+}
+
 SnapshotFile::SnapshotFile(const std::filesystem::path& path) : path_(path) {
   if (gsd::begins_as_gsd(path)) {
     gsd_.emplace(path);

@@ -37,6 +37,9 @@ class SnapshotFile {
   std::unique_ptr<Text> text_;
 };
 
+// What a person should know of a file without sizes.
+std::string note_on_sizes(const std::string& file);
+
 // "first:last:step", of which each may be left out, or one number: the frames, at most `count`, that it
 // names. Both ends are included, and count from the last frame where they are negative. Throws InputError for
 // what is no such text (in `option`) and for frames that are not there.

@@ -39,6 +39,16 @@ class Row {
 
 std::string spaced(const Vector3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 
+// Names of species as words of a line: those that are none, for they are empty or have blanks, are numbered.
+std::vector<std::string> words_of_species(const Snapshot& snapshot) {
+  const auto is_plain = [](char c) { return c > ' ' && c <= '~'; };
+  std::vector<std::string> words = snapshot.species_names;
+  for (std::size_t s = 0; s < words.size(); ++s) {
+    if (words[s].empty() || !std::ranges::all_of(words[s], is_plain)) words[s] = std::to_string(s + 1);
+  }
+  return words;
+}
+
 }  // namespace
 
 std::string lammps_frame(const Snapshot& snapshot) {
@@ -75,7 +85,7 @@ std::string xyz_frame(const Snapshot& snapshot) {
   std::string text =
       fmt::format("{}\nLattice=\"{} {} {}\" Origin=\"{}\" ", snapshot.count(), spaced(edges[0]),
                   spaced(edges[1]), spaced(edges[2]), spaced(snapshot.corner));
-  text += "Properties=id:I:1:species:S:1:pos:R:3:radius:R:1";
+  text += "Properties=id:I:1:type:S:1:pos:R:3:radius:R:1";
   if (!snapshot.velocity.empty()) text += ":velo:R:3";
   if (!snapshot.spin.empty()) text += ":angular_velocity:R:3";
   if (!snapshot.image.empty()) text += ":image:I:3";
@@ -84,13 +94,18 @@ std::string xyz_frame(const Snapshot& snapshot) {
   text += fmt::format(" pbc=\"T T T\" Step={}", snapshot.step);
   if (snapshot.time) text += fmt::format(" Time={}", *snapshot.time);
   if (snapshot.strain) text += fmt::format(" Strain={}", *snapshot.strain);
+  if (snapshot.velocity_gradient) {
+    const auto& l = snapshot.velocity_gradient->column;
+    text += fmt::format(" Velocity_gradient=\"{} {} {}\"", spaced(l[0]), spaced(l[1]), spaced(l[2]));
+  }
   for (const auto& [term, t] : snapshot.stress_of_cell) {
     text += fmt::format(" stress_{}=\"{} {} {} {} {} {}\"", term, t.xx, t.yy, t.zz, t.xy, t.xz, t.yz);
   }
   text += '\n';
+  const std::vector<std::string> types = words_of_species(snapshot);
   Row row(text, snapshot.single);
   for (std::size_t i = 0; i < snapshot.count(); ++i) {
-    fmt::format_to(std::back_inserter(text), "{} {}", i, snapshot.species_names[snapshot.species[i]]);
+    fmt::format_to(std::back_inserter(text), "{} {}", i, types[snapshot.species[i]]);
     row.add(snapshot.position[i]);
     row.add(snapshot.radius[i]);
     row.add(snapshot.velocity, i);

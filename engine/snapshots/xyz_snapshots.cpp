@@ -3,172 +3,208 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
+#include <array>
 #include <numeric>
+#include <optional>
+#include <set>
+#include <utility>
 
 #include "contract/input_error.h"
+#include "contract/text_lines.h"
+#include "engine/snapshots/snapshot_check.h"
 
 namespace peclet::engine {
 namespace {
 
-std::string_view line_of(std::string_view& text) {
-  const std::size_t end = text.find('\n');
-  std::string_view line = text.substr(0, end);
-  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-  if (line.ends_with('\r')) line.remove_suffix(1);
-  return line;
-}
+// Columns that are taken, by their names and widths; what a file calls otherwise is passed over.
+enum class Field { none, id, species, position, radius, velocity, spin, image, stress, contacts };
 
-std::string_view word_of(std::string_view& line) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t'; };
-  const auto begin = std::ranges::find_if_not(line, blank);
-  const auto end = std::find_if(begin, line.end(), blank);
-  const std::string_view word(begin, end);
-  line.remove_prefix(static_cast<std::size_t>(end - line.begin()));
-  return word;
-}
+struct Column {
+  std::string_view name;
+  std::size_t width;
+  Field field;
+};
+
+// Other programs ask of a column `species` that it holds chemical symbols.
+constexpr std::array<Column, 10> known_columns = {{{"id", 1, Field::id},
+                                                   {"type", 1, Field::species},
+                                                   {"species", 1, Field::species},
+                                                   {"pos", 3, Field::position},
+                                                   {"radius", 1, Field::radius},
+                                                   {"velo", 3, Field::velocity},
+                                                   {"angular_velocity", 3, Field::spin},
+                                                   {"image", 3, Field::image},
+                                                   {"stress", 6, Field::stress},
+                                                   {"contacts", 1, Field::contacts}}};
 
 class XyzReading {
  public:
   XyzReading(std::string_view frame, std::string file) : rest_(frame), file_(std::move(file)) {}
 
   Snapshot read() {
-    const auto count = number<std::size_t>(line_of(rest_), "the number of spheres");
-    const std::string_view about = line_of(rest_);
+    std::string_view first = take_line(rest_);
+    const auto count = number<std::size_t>(take_word(first), "the number of spheres");
+    read_keys(take_line(rest_));
     Snapshot snapshot;
-    read_about(about, snapshot);
-    read_columns(about);
-    for (std::size_t row = 0; row < count; ++row) read_sphere(line_of(rest_), row, snapshot);
+    read_about(snapshot);
+    read_columns();
+    for (std::size_t row = 0; row < count; ++row) read_sphere(take_line(rest_), row, snapshot);
     sort(snapshot);
+    check_snapshot(snapshot, file_);
     return snapshot;
   }
 
  private:
-  struct Column {
-    std::string name;
-    std::size_t width;
-  };
-
   [[noreturn]] void refuse(const std::string& value, const std::string& rule) const {
     throw InputError(file_, "", value, rule);
   }
 
   template <class Number>
   Number number(std::string_view word, const std::string& what) const {
-    Number value{};
-    const auto read = std::from_chars(word.data(), word.data() + word.size(), value);
-    bool is_good = read.ec == std::errc() && read.ptr == word.data() + word.size();
-    if constexpr (std::is_floating_point_v<Number>) is_good = is_good && std::isfinite(value);
-    if (!is_good) refuse(fmt::format("{}: \"{}\"", what, word), "must be a number");
-    return value;
+    const std::optional<Number> value = number_in<Number>(word);
+    if (!value) refuse(fmt::format("{}: \"{}\"", what, word), "must be a number");
+    return *value;
   }
 
-  // The value of a key of the second line, without its quotes; empty where there is none.
-  static std::string_view value_of(std::string_view about, std::string_view key) {
-    for (std::size_t at = about.find(key); at != std::string_view::npos; at = about.find(key, at + 1)) {
-      const std::size_t after = at + key.size();
-      const bool is_whole = (at == 0 || about[at - 1] == ' ') && after < about.size() && about[after] == '=';
-      if (!is_whole) continue;
-      std::string_view value = about.substr(after + 1);
-      if (!value.starts_with('"')) return value.substr(0, value.find(' '));
-      value.remove_prefix(1);
-      return value.substr(0, value.find('"'));
+  // Parts the second line, NAME=VALUE NAME="VALUE" NAME='VALUE' ..., and words without a value.
+  void read_keys(std::string_view about) {
+    while (!is_blank(about)) {
+      about.remove_prefix(about.find_first_not_of(" \t"));
+      const std::size_t end = about.find_first_of(" \t=");
+      const std::string_view name = about.substr(0, end);
+      about.remove_prefix(name.size());
+      if (!about.starts_with('=')) continue;
+      about.remove_prefix(1);
+      const bool is_quoted = about.starts_with('"') || about.starts_with('\'');
+      if (!is_quoted) {
+        keys_.emplace_back(name, about.substr(0, about.find_first_of(" \t")));
+        about.remove_prefix(keys_.back().second.size());
+        continue;
+      }
+      const std::size_t close = about.find(about[0], 1);
+      if (close == std::string_view::npos)
+        refuse(std::string(name), "must end its value with a quotation mark");
+      keys_.emplace_back(name, about.substr(1, close - 1));
+      about.remove_prefix(close + 1);
     }
-    return {};
+  }
+
+  // Returns the value of a key of the second line; empty where there is none.
+  std::string_view value_of(std::string_view name) const {
+    std::string_view value;
+    bool is_there = false;
+    for (const auto& [key, text] : keys_) {
+      if (key != name) continue;
+      if (is_there) refuse(std::string(name), "must be in the second line of a frame once");
+      is_there = true;
+      value = text;
+    }
+    return value;
   }
 
   Vector3 vector(std::string_view& words, const std::string& what) const {
     Vector3 v;
-    for (double* const x : {&v.x, &v.y, &v.z}) *x = number<double>(word_of(words), what);
+    for (double* const x : {&v.x, &v.y, &v.z}) *x = number<double>(take_word(words), what);
     return v;
   }
 
-  void read_about(std::string_view about, Snapshot& snapshot) const {
-    std::string_view lattice = value_of(about, "Lattice");
+  Matrix3 matrix(std::string_view words, const std::string& what) const {
+    Matrix3 m;
+    for (Vector3& column : m.column) column = vector(words, what);
+    if (!is_blank(words)) refuse(what, "must be nine numbers");
+    return m;
+  }
+
+  void read_about(Snapshot& snapshot) const {
+    const std::string_view lattice = value_of("Lattice");
     if (lattice.empty())
       refuse("Lattice", "must be in the second line of a frame: extended XYZ has the cell there");
-    for (Vector3& edge : snapshot.lattice.column) edge = vector(lattice, "Lattice");
-    const auto& [a, b, c] = snapshot.lattice.column;
-    if (a.y != 0 || a.z != 0 || b.z != 0 || !(std::min({a.x, b.y, c.z}) > 0)) {
-      refuse(fmt::format("Lattice \"{}\"", value_of(about, "Lattice")),
-             "must have its first vector along x, the second in the plane of x and y, and three lengths > 0");
-    }
-    if (std::string_view origin = value_of(about, "Origin"); !origin.empty())
+    snapshot.lattice = matrix(lattice, "Lattice");
+    if (std::string_view origin = value_of("Origin"); !origin.empty())
       snapshot.corner = vector(origin, "Origin");
-    if (const auto step = value_of(about, "Step"); !step.empty())
+    if (const auto step = value_of("Step"); !step.empty())
       snapshot.step = number<std::uint64_t>(step, "Step");
-    if (const auto time = value_of(about, "Time"); !time.empty())
-      snapshot.time = number<double>(time, "Time");
-    if (const auto strain = value_of(about, "Strain"); !strain.empty()) {
+    if (const auto time = value_of("Time"); !time.empty()) snapshot.time = number<double>(time, "Time");
+    if (const auto strain = value_of("Strain"); !strain.empty()) {
       snapshot.strain = number<double>(strain, "Strain");
+    }
+    if (const auto gradient = value_of("Velocity_gradient"); !gradient.empty()) {
+      snapshot.velocity_gradient = matrix(gradient, "Velocity_gradient");
     }
   }
 
-  void read_columns(std::string_view about) {
-    std::string_view properties = value_of(about, "Properties");
+  void read_columns() {
+    std::string_view properties = value_of("Properties");
     const auto next = [&] {
       const std::size_t end = properties.find(':');
       const std::string_view part = properties.substr(0, end);
       properties.remove_prefix(end == std::string_view::npos ? properties.size() : end + 1);
       return part;
     };
-    const auto has = [&](const char* name, std::size_t width) {
-      return std::ranges::any_of(columns_,
-                                 [&](const Column& c) { return c.name == name && c.width == width; });
-    };
+    std::set<std::string_view> names;
+    std::set<Field> fields;
     while (!properties.empty()) {
       const std::string_view name = next(), kind = next();
       const auto width = number<std::size_t>(next(), "Properties");
       if (kind.size() != 1 || width < 1 || width > 1000)
         refuse("Properties", "must be names, types and columns");
-      columns_.push_back({std::string(name), width});
+      const auto* const known = std::ranges::find_if(
+          known_columns, [&](const Column& c) { return c.name == name && c.width == width; });
+      const Field field = known == known_columns.end() ? Field::none : known->field;
+      const bool is_new = names.insert(name).second && (field == Field::none || fields.insert(field).second);
+      if (!is_new) refuse(fmt::format("Properties: {}", name), "must be there once");
+      columns_.push_back({name, width, field});
     }
-    if (!has("pos", 3) || !has("radius", 1)) {
+    if (!fields.contains(Field::position) || !fields.contains(Field::radius)) {
       refuse("Properties", "must have pos:R:3 and radius:R:1, centres and radii");
     }
   }
 
   void read_sphere(std::string_view line, std::size_t row, Snapshot& snapshot) {
     const std::string where = "sphere " + std::to_string(row + 1);
-    for (const Column& column : columns_) {
-      const auto is = [&](const char* name, std::size_t width) {
-        return column.name == name && column.width == width;
-      };
-      if (is("id", 1)) {
-        id_.push_back(number<std::int64_t>(word_of(line), where));
-      } else if (is("species", 1)) {
-        snapshot.species.push_back(species(word_of(line), snapshot));
-      } else if (is("pos", 3)) {
-        snapshot.position.push_back(vector(line, where));
-      } else if (is("radius", 1)) {
-        snapshot.radius.push_back(number<double>(word_of(line), where));
-        if (!(snapshot.radius.back() > 0)) refuse(where, "must have a radius > 0");
-      } else if (is("velo", 3)) {
-        snapshot.velocity.push_back(vector(line, where));
-      } else if (is("angular_velocity", 3)) {
-        snapshot.spin.push_back(vector(line, where));
-      } else if (is("image", 3)) {
-        LatticeShift shift;
-        for (std::int32_t* const k : {&shift.x, &shift.y, &shift.z})
-          *k = number<std::int32_t>(word_of(line), where);
-        snapshot.image.push_back(shift);
-      } else if (is("stress", 6)) {
-        SymmetricTensor t;
-        for (double* const x : {&t.xx, &t.yy, &t.zz, &t.xy, &t.xz, &t.yz})
-          *x = number<double>(word_of(line), where);
-        snapshot.stress.push_back(t);
-      } else if (is("contacts", 1)) {
-        snapshot.contact_number.push_back(number<std::uint32_t>(word_of(line), where));
-      } else {
-        for (std::size_t k = 0; k < column.width; ++k) word_of(line);
-      }
-    }
-    if (!word_of(line).empty())
-      refuse(where, fmt::format("must have the columns of Properties, and no more"));
+    for (const Column& column : columns_) take(column, line, where, snapshot);
+    if (!is_blank(line)) refuse(where, "must have the columns of Properties, and no more");
   }
 
-  std::uint32_t species(std::string_view name, Snapshot& snapshot) const {
+  // Takes the words of one column of a sphere off its line. Each field becomes one entry of its list.
+  void take(const Column& column, std::string_view& line, const std::string& where, Snapshot& snapshot) {
+    switch (column.field) {
+      case Field::id:
+        return id_.push_back(number<std::int64_t>(take_word(line), where));
+      case Field::species:
+        return snapshot.species.push_back(species(take_word(line), where, snapshot));
+      case Field::position:
+        return snapshot.position.push_back(vector(line, where));
+      case Field::radius:
+        return snapshot.radius.push_back(number<double>(take_word(line), where));
+      case Field::velocity:
+        return snapshot.velocity.push_back(vector(line, where));
+      case Field::spin:
+        return snapshot.spin.push_back(vector(line, where));
+      case Field::image: {
+        LatticeShift shift;
+        for (std::int32_t* const k : {&shift.x, &shift.y, &shift.z})
+          *k = number<std::int32_t>(take_word(line), where);
+        return snapshot.image.push_back(shift);
+      }
+      case Field::stress: {
+        SymmetricTensor t;
+        for (double* const x : {&t.xx, &t.yy, &t.zz, &t.xy, &t.xz, &t.yz})
+          *x = number<double>(take_word(line), where);
+        return snapshot.stress.push_back(t);
+      }
+      case Field::contacts:
+        return snapshot.contact_number.push_back(number<std::uint32_t>(take_word(line), where));
+      case Field::none:
+        break;
+    }
+    for (std::size_t k = 0; k < column.width; ++k) {
+      if (take_word(line).empty()) refuse(where, fmt::format("must have a value for {}", column.name));
+    }
+  }
+
+  std::uint32_t species(std::string_view name, const std::string& where, Snapshot& snapshot) const {
+    if (name.empty()) refuse(where, "must have a species");
     std::vector<std::string>& names = snapshot.species_names;
     const auto known = std::ranges::find(names, name);
     if (known != names.end()) return static_cast<std::uint32_t>(known - names.begin());
@@ -216,6 +252,7 @@ class XyzReading {
 
   std::string_view rest_;
   std::string file_;
+  std::vector<std::pair<std::string_view, std::string_view>> keys_;  // of the second line
   std::vector<Column> columns_;
   std::vector<std::int64_t> id_;
 };
@@ -224,29 +261,26 @@ class XyzReading {
 
 std::vector<std::string_view> xyz_frames(std::string_view text, const std::string& file) {
   std::vector<std::string_view> frames;
-  while (!text.empty()) {
+  text = without_byte_order_mark(text);
+  while (!is_blank(text)) {
     std::string_view rest = text;
-    std::string_view first = line_of(rest);
-    if (word_of(first).empty() && rest.empty()) break;  // an empty line at the end
-    std::string_view line = text.substr(0, text.find('\n'));
-    const std::string_view word = word_of(line);
-    std::size_t count = 0;
-    const auto read = std::from_chars(word.data(), word.data() + word.size(), count);
-    if (read.ec != std::errc() || read.ptr != word.data() + word.size() || count < 1 ||
-        count > most_spheres) {
+    std::string_view line = take_line(rest);
+    const std::string_view word = take_word(line);
+    const auto count = number_in<std::size_t>(word);
+    if (!count || *count < 1 || *count > most_spheres) {
       throw InputError(file, "",
                        fmt::format("frame {} begins with \"{}\"", frames.size(), word.substr(0, 40)),
                        fmt::format("must be a GSD file, or extended XYZ, of which a frame begins with the "
                                    "number of its spheres, 1 to {}",
                                    most_spheres));
     }
-    for (std::size_t left = count + 1; left > 0; --left) {
+    for (std::size_t left = *count + 1; left > 0; --left) {
       if (rest.empty()) {
         throw InputError(
             file, "", fmt::format("frame {}", frames.size()),
-            fmt::format("must have {} lines after the first, and ends {} before", count + 1, left));
+            fmt::format("must have {} lines after the first, and ends {} before", *count + 1, left));
       }
-      line_of(rest);
+      take_line(rest);
     }
     frames.push_back(text.substr(0, text.size() - rest.size()));
     text = rest;

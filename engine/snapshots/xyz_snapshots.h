@@ -14,10 +14,10 @@ namespace peclet::engine {
 // each sphere. `file` names the text in messages. Throws InputError where a frame is not whole.
 std::vector<std::string_view> xyz_frames(std::string_view text, const std::string& file);
 
-// One of these. Asks for pos:R:3, radius:R:1 and a Lattice whose first vector is along x and whose second one
-// is in the plane of x and y; takes id:I:1, by which spheres are sorted, species:S:1, velo:R:3,
-// angular_velocity:R:3, image:I:3, stress:R:6 and contacts:I:1, and of the second line Origin, Step, Time and
-// Strain. Other columns are passed over. Throws InputError.
+// Reads one of these frames. Asks for a Lattice, pos:R:3 and radius:R:1; takes id:I:1, by which spheres are
+// sorted, type:S:1 or species:S:1, velo:R:3, angular_velocity:R:3, image:I:3, stress:R:6 and contacts:I:1,
+// and of the second line Origin, Step, Time, Strain and Velocity_gradient. Other columns and keys are passed
+// over. Throws InputError, also for what check_snapshot() refuses.
 Snapshot read_xyz_frame(std::string_view frame, const std::string& file);
 
 }  // namespace peclet::engine

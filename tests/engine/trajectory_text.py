@@ -89,7 +89,7 @@ def xyz_is_the_trajectory(text, frames):
         assert (int(keys["Step"]), float(keys["Strain"])) == (frame.configuration.step, frame.log["strain"][0])
         assert (columns["id"][:, 0] == range(frame.particles.N)).all()
         types = numpy.array(frame.particles.types)[frame.particles.typeid]
-        assert (columns["species"][:, 0] == types).all()
+        assert (columns["type"][:, 0] == types).all()
         assert (columns["radius"][:, 0].astype("f4") == frame.particles.diameter / 2).all()
         for name, expected in (
             ("pos", frame.particles.position),

@@ -80,6 +80,14 @@ TEST_F(GsdFile, OfNoSuchKindIsRefusedWithWhatItIs) {
   EXPECT_NE(refusal(with(40, version(2, 0))).find("schema hoomd 2"), std::string::npos);
 }
 
+TEST_F(GsdFile, WithANameTwiceIsRefused) {
+  std::string bytes = whole_;
+  const std::string name = "particles/position";
+  bytes.replace(bytes.find(name), name.size() + 1, std::string("configuration/step") + '\0');
+  EXPECT_NE(refusal(bytes).find("configuration/step: must be in the list of names once"), std::string::npos)
+      << refusal(bytes);
+}
+
 // Nothing is allocated for them: the machine has not as much memory.
 TEST_F(GsdFile, OfCountsBeyondItsLengthIsRefused) {
   const auto index = value_at<std::uint64_t>(whole_, 8);

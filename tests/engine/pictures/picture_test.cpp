@@ -64,6 +64,63 @@ TEST(Picture, ColoursSpeedsBeyondTheFlow) {
   EXPECT_EQ(colouring.scale.front().at(0.25).red, colouring.of_spheres[1].red);
 }
 
+// u = 3 (x, -y, 0): the second sphere is 0.5 faster along z.
+TEST(Picture, ColoursSpeedsBeyondTheFlowThatTheFileHas) {
+  Snapshot snapshot = small_frame();
+  snapshot.velocity = {{0, 0, 0}, {27, -3, 0.5}};
+  snapshot.velocity_gradient = Matrix3{Vector3{3, 0, 0}, Vector3{0, -3, 0}, Vector3{}};
+  snapshot.time = 1;
+  snapshot.strain = 3;
+  const Colouring colouring = colouring_of(snapshot, "speed", "");
+  EXPECT_EQ(colouring.scale.front().title, "speed beyond the flow");
+  EXPECT_EQ(colouring.scale.front().at(0.5).red, colouring.of_spheres[1].red);
+}
+
+// Ticks a step apart that is smaller than the rounding of their values would never come to an end.
+TEST(Picture, OfValuesThatAreAlikeButForRoundingHasAScaleWithTicks) {
+  for (const double width : {0.0, 1e-16, 1e-12}) {
+    const ColourScale scale = scale_over("x", {1, 1 + width, 1 + 2 * width});
+    EXPECT_EQ(scale.high, 2) << width;
+    EXPECT_LT(ticks_of(scale).size(), 10U);
+  }
+  EXPECT_EQ(scale_over("x", {1, 1 + 1e-8}).low, 1);
+}
+
+// The first of them would be a rod without width, the second one without length, both of no colour.
+TEST(Picture, OfContactsWithoutForceOrLengthHasNoRods) {
+  Snapshot snapshot = small_frame();
+  snapshot.position[1] = snapshot.position[0];
+  PictureOptions options;
+  options.size = "64x64";
+  options.chains = true;
+  for (const double force : {0.0, 1.0}) {
+    snapshot.contacts = {{0, 1, force, 0}};
+    Snapshot without = snapshot;
+    without.contacts->clear();
+    EXPECT_EQ(picture_of(snapshot, options).rgb, picture_of(without, options).rgb);
+  }
+}
+
+// A cube and the same cube turned by 90 degrees about z: its lattice is the same.
+TEST(Picture, OfATurnedCellHasTheSameSpheres) {
+  Snapshot snapshot = small_frame();
+  snapshot.lattice = {Vector3{4, 0, 0}, Vector3{0, 4, 0}, Vector3{0, 0, 4}};
+  snapshot.corner = {-2, -2, -2};
+  snapshot.contacts = {{0, 1, 1, 0}};
+  Snapshot turned = snapshot;
+  turned.lattice = {Vector3{0, 4, 0}, Vector3{-4, 0, 0}, Vector3{0, 0, 4}};
+  turned.corner = {2, -2, -2};
+  PictureOptions options;
+  options.size = "64x64";
+  for (const bool chains : {false, true}) {
+    options.chains = chains;
+    const Image a = picture_of(snapshot, options), b = picture_of(turned, options);
+    std::size_t different = 0;
+    for (std::size_t k = 0; k < a.rgb.size(); ++k) different += std::abs(a.rgb[k] - b.rgb[k]) > 2 ? 1 : 0;
+    EXPECT_EQ(different, 0U);
+  }
+}
+
 TEST(Picture, ColoursStressesOverTheVolumeOfTheSphere) {
   Snapshot snapshot = small_frame();
   snapshot.stress.resize(2);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <functional>
 #include <limits>
 
@@ -10,6 +11,7 @@
 #include "contract/input_error.h"
 #include "engine/gsd/frames.h"
 #include "engine/snapshots/snapshot_file.h"
+#include "tests/engine/gsd/gsd_reader.h"
 #include "tests/engine/temporary_folder.h"
 
 namespace peclet::engine {
@@ -63,6 +65,7 @@ TEST_F(GsdSnapshot, WithoutMoreHasTheDefaultsOfTheSchema) {
   EXPECT_EQ(snapshot.radius, (std::vector<double>{0.5, 0.5}));
   EXPECT_EQ(snapshot.species, (std::vector<std::uint32_t>{0, 0}));
   EXPECT_EQ(snapshot.species_names, std::vector<std::string>{"A"});
+  EXPECT_FALSE(snapshot.has_sizes);
   EXPECT_TRUE(snapshot.velocity.empty() && snapshot.stress.empty() && !snapshot.contacts && !snapshot.strain);
 }
 
@@ -80,6 +83,7 @@ TEST_F(GsdSnapshot, TakesFromTheFirstFrameWhatItLacks) {
   };
   const Snapshot snapshot = read(1, add);
   EXPECT_EQ(snapshot.radius, (std::vector<double>{1, 0.5 * double{2.8F}}));
+  EXPECT_TRUE(snapshot.has_sizes);
   EXPECT_EQ(snapshot.species_names, (std::vector<std::string>{"A", "Bb"}));
   EXPECT_EQ(snapshot.species, (std::vector<std::uint32_t>{1, 0}));
   EXPECT_FALSE(snapshot.contacts) << "contacts are of one moment";
@@ -114,7 +118,7 @@ TEST_F(GsdSnapshot, OfWhatTheSchemaForbidsIsRefused) {
   expect(with([&](Frames& frames) {
            frames.add("particles/diameter", std::vector<float>{1, nan});
          }),
-         "must be finite");
+         "nan: must be > 0");
   expect(with([](Frames& frames) {
            frames.add("particles/typeid", std::vector<std::uint32_t>{0, 1});
          }),
@@ -124,13 +128,48 @@ TEST_F(GsdSnapshot, OfWhatTheSchemaForbidsIsRefused) {
            frames.add("log/bonds/normal_force", std::vector<float>{3});
            frames.add("log/bonds/tangential_force", std::vector<float>{4});
          }),
-         "must be below 2");
+         "contact of 0 and 2: forces 3 and 4: must be of two spheres below 2");
   expect(
       [](Frames& frames, int) {
         frames.add("configuration/box", std::vector<float>{10, -20, 40, 0, 0, 0});
         frames.add_single<std::uint32_t>("particles/N", 1);
       },
-      "lengths > 0");
+      "lengths 10, -20 and 40: must be three lengths > 0");
+  expect(
+      [](Frames& frames, int) {
+        frames.add("configuration/box", std::vector<float>{10, 20, 0, 0, 0, 0});
+        frames.add_single<std::uint32_t>("particles/N", 1);
+      },
+      "lengths 10, 20 and 0: must be > 0: with Lz = 0 the file has two dimensions");
+}
+
+// Rows of a GSD file of 65 536 names, the most that an index can tell apart.
+TEST_F(GsdSnapshot, OfManyNamesIsReadInATimeThatGrowsAsTheyDo) {
+  Frames frames;
+  add_least(frames, 0);
+  frames.end_frame();
+  const std::string head = frames.head(), tail = frames.tail();
+  const auto names = value_at<std::uint64_t>(head, 24), segments = value_at<std::uint64_t>(head, 32);
+  const auto with_names = [&](std::size_t more) {
+    std::string list = tail.substr(0, 64 * segments);
+    list.resize(list.find_last_not_of('\0') + 2);
+    for (std::size_t k = 0; k < more; ++k) list += "log/stress/" + std::to_string(k) + '\0';
+    list.resize((list.size() / 64 + 1) * 64, '\0');
+    std::string whole = head + frames.pending() + list + tail.substr(64 * segments);
+    const std::uint64_t now = list.size() / 64, index = names + list.size();
+    std::memcpy(whole.data() + 32, &now, sizeof now);
+    std::memcpy(whole.data() + 8, &index, sizeof index);
+    write_durably(path_, whole);
+  };
+  with_names(65'000);
+  const auto begin = std::chrono::steady_clock::now();
+  const gsd::Reader reader(path_);
+  EXPECT_EQ(reader.names().size(), 65'003U);
+  EXPECT_EQ(read_gsd_frame(reader, 0).count(), 2U);
+  // Compared name by name with all that come before, they would take 10 s.
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
+  with_names(80'000);
+  EXPECT_THROW(gsd::Reader{path_}, InputError);
 }
 
 TEST_F(GsdSnapshot, IsChosenByRangesThatIncludeBothEnds) {

@@ -57,6 +57,38 @@ TEST(XyzSnapshot, OfATextThatWasWrittenIsWhatWasWritten) {
   EXPECT_NE(written.find("stress_total=\"1 2 3 4 5 6\""), std::string::npos);
 }
 
+// The same spheres as editors, shells and other programs save them.
+TEST(XyzSnapshot, IsReadInEveryDialect) {
+  const auto replaced = [](std::string bytes, const std::string& from, const std::string& to) {
+    for (std::size_t at = bytes.find(from); at != std::string::npos; at = bytes.find(from, at + to.size()))
+      bytes.replace(at, from.size(), to);
+    return bytes;
+  };
+  for (const std::string& bytes :
+       {replaced(text, "\n", "\r\n"), "\xef\xbb\xbf" + text, text + "\n \t\n\r\n", replaced(text, "\"", "'"),
+        replaced(text, " 1 ", "\t+1 "), replaced(text, "2\nL", " 2 \nL"),
+        replaced(text, " pbc", "  note=\"Lattice=1 Time=2\" flag pbc"),
+        replaced(text, "species:S", "type:S")}) {
+    EXPECT_EQ(refusal(bytes), "") << bytes;
+    const std::vector<std::string_view> frames = xyz_frames(bytes, "t.xyz");
+    ASSERT_EQ(frames.size(), 1U) << bytes;
+    const Snapshot read = read_xyz_frame(frames[0], "t.xyz"), plain = read_xyz_frame(text, "t.xyz");
+    EXPECT_TRUE(read.position == plain.position && read.radius == plain.radius) << bytes;
+    EXPECT_TRUE(read.species == plain.species && read.species_names == plain.species_names) << bytes;
+    EXPECT_EQ(read.time, 1.5) << bytes;
+  }
+}
+
+// What a chemist's program would take for the symbols of elements has another name.
+TEST(XyzSnapshot, IsWrittenWithTypesThatAreWords) {
+  Snapshot snapshot = read_xyz_frame(text, "t.xyz");
+  snapshot.species_names = {"", "two words"};
+  const std::string written = xyz_frame(snapshot);
+  EXPECT_NE(written.find("Properties=id:I:1:type:S:1:pos:R:3"), std::string::npos) << written;
+  EXPECT_EQ(written.find("species"), std::string::npos) << written;
+  EXPECT_EQ(read_xyz_frame(written, "t.xyz").species_names, (std::vector<std::string>{"2", "1"}));
+}
+
 TEST(XyzSnapshot, HasAsManyFramesAsTheText) {
   const std::string both = text + text + "\n";
   EXPECT_EQ(xyz_frames(both, "t.xyz").size(), 2U);
@@ -75,8 +107,14 @@ TEST(XyzSnapshot, ThatIsNoneIsRefused) {
            {"two\n", "begins with \"two\""},
            {"99999999999999999999\n", "begins with"},
            {"-1\n\n", "begins with"},
-           {replaced("Lattice=\"10 0 0", "Lattice=\"10 0 1"), "first vector along x"},
-           {replaced("Lattice=\"10", "Lattice=\"-10"), "lengths > 0"},
+           {replaced("2.5 20 0", "20 0 0"), "must have three edges of different directions"},
+           {replaced("2.5 20 0", "2.5 20"), "Lattice: \"\": must be a number"},
+           {replaced("2.5 20 0", "2.5 20 0 0"), "Lattice: must be nine numbers"},
+           {replaced("pbc=\"T T T\"", "pbc=\"T T T"), "pbc: must end its value with a quotation mark"},
+           {replaced("pbc=\"T T T\"", "Time=2"), "Time: must be in the second line of a frame once"},
+           {replaced("other:R:2", "id:I:1:x:R:1"), "Properties: id: must be there once"},
+           {replaced("other:R:2", "id:I:2"), "Properties: id: must be there once"},
+           {replaced("other:R:2", "type:S:1:x:R:1"), "Properties: type: must be there once"},
            {replaced("Lattice", "lattice"), "must be in the second line"},
            {replaced("radius:R:1", "radii:R:1"), "must have pos:R:3 and radius:R:1"},
            {replaced("other:R:2", "other:R:x"), "Properties: \"x\""},
@@ -84,7 +122,7 @@ TEST(XyzSnapshot, ThatIsNoneIsRefused) {
            {replaced("1.4 0 0 7", "1.4 0 0"), "sphere 1: \"\": must be a number"},
            {replaced("1.4 0 0 7", "1.4 0 0 7 8"), "sphere 1: must have the columns"},
            {replaced("1.4 0 0 7", "nan 0 0 7"), "must be a number"},
-           {replaced("1.4 0 0 7", "-1.4 0 0 7"), "must have a radius > 0"},
+           {replaced("1.4 0 0 7", "-1.4 0 0 7"), "radius -1.4 of sphere 1: must be > 0"},
            {replaced("0 0 7", "0 0 2"), "id 2: must be there once"}}) {
     EXPECT_NE(refusal(bytes).find(reason), std::string::npos) << refusal(bytes) << " has not " << reason;
   }
