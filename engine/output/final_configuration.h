@@ -7,10 +7,15 @@
 
 namespace peclet::engine {
 
-// Extended XYZ: the number of spheres; a line with the three lattice vectors of the sheared cell, the
-// columns, time and strain; then of each sphere its number for life, by which they are sorted, the centre,
-// the radius, the velocity and the angular velocity, in the units of the scene. Numbers are read back as they
-// were, bit by bit. A centre may lie outside of the cell; its velocity is that of the image there.
+// Returns the strain that a cell has made since the start: D_xy of a simple shear, or the Hencky strain
+// ln(1 + D_xx) of a planar extension, D the displacement gradient. Either is 0 in the other flow.
+double strain_made(const PeriodicCell& box);
+
+// Extended XYZ: the number of spheres; a line with the three lattice vectors of the deformed cell, the
+// columns, time, strain and the columns of the velocity gradient; then of each sphere its number for life, by
+// which they are sorted, the centre, the radius, the velocity and the angular velocity, in the units of the
+// scene. Numbers are read back as they were, bit by bit. A centre may lie outside of the cell; its velocity
+// is that of the image there.
 std::string extended_xyz(const System& system);
 
 }  // namespace peclet::engine

@@ -10,7 +10,9 @@
 #include "contract/input_error.h"
 #include "contract/sha256.h"
 #include "engine/jobs/job.h"
+#include "engine/pictures/picture.h"
 #include "engine/realisation/simulation.h"
+#include "engine/snapshots/snapshot_file.h"
 #include "tests/engine/small_scene.h"
 #include "tests/engine/temporary_folder.h"
 
@@ -133,6 +135,22 @@ TEST(FinalConfiguration, OfARealisationIsThatOfTheSameTimeLoop) {
   // rate 2 over 420 steps of 0.002
   EXPECT_NEAR(text.strain, 1.68, 1e-12);
   EXPECT_NEAR(text.time, 0.84, 1e-12);
+}
+
+// A turned cell and its strain: L = e (x, -y, 0), and the Hencky strain e t.
+TEST(FinalConfiguration, OfAnExtensionIsReadBack) {
+  const Json scene = small_scene({{"files", {{"final_configuration", true}}},
+                                  {"flow", {{"shear_rate", nullptr}, {"extension_rate", 1}}}});
+  const TemporaryFolder folder;
+  run_job(job_of(scene, (folder / "job@").string()), {}).value();
+  const SnapshotFile file(folder / "job@final.xyz");
+  const Snapshot snapshot = file.read(0);
+  EXPECT_EQ(snapshot.count(), read_scene(small_scene(), "").particles.count);
+  EXPECT_NEAR(*snapshot.strain, 0.84, 1e-12);
+  EXPECT_NEAR(*snapshot.time, 0.84, 1e-12);
+  EXPECT_TRUE(*snapshot.velocity_gradient == (Matrix3{Vector3{1, 0, 0}, Vector3{0, -1, 0}, Vector3{}}));
+  EXPECT_NE(snapshot.lattice.column[0].y, 0);
+  EXPECT_FALSE(picture_of(snapshot, {.file = "", .output = "", .size = "64x64"}).rgb.empty());
 }
 
 TEST(FinalConfiguration, IsLeftOnlyWhereItIsAskedFor) {
