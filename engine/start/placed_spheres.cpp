@@ -6,12 +6,14 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <sstream>
+#include <numbers>
 #include <system_error>
+#include <vector>
 
 #include "contract/input_error.h"
 #include "contract/input_file.h"
 #include "contract/sha256.h"
+#include "contract/text_lines.h"
 #include "engine/scene/start_block.h"
 #include "engine/snapshots/snapshot_file.h"
 #include "engine/start/packing.h"
@@ -19,10 +21,17 @@
 namespace peclet::engine {
 namespace {
 
-// Of two lengths that a file of single numbers has in common with the scene.
-constexpr double rounding = 1e-6;
+// Half of the sixth digit of a length that begins with 1: files of other programs have no more digits.
+constexpr double rounding = 5e-6;
 
 bool is_near(double a, double b, double scale) { return std::abs(a - b) <= rounding * scale; }
+
+// Whether the radii are alike in some order.
+bool are_the_same(std::vector<double> found, std::vector<double> wanted) {
+  std::ranges::sort(found);
+  std::ranges::sort(wanted);
+  return std::ranges::equal(found, wanted, [](double a, double b) { return is_near(a, b, b); });
+}
 
 class Placing {
  public:
@@ -48,12 +57,10 @@ class Placing {
     return placed;
   }
 
-  // A list needs a line for each seed that may ever be run.
+  // Throws InputError if the list has fewer lines than `seeds`.
   void require_lines(std::int64_t seeds) const {
     if (!start_.is_list) return;
-    require_hash(start_.path, start_.sha256, "/start/sha256");
-    const std::string text = read_input(start_.path);
-    const std::int64_t lines = std::count(text.begin(), text.end(), '\n') + (text.ends_with('\n') ? 0 : 1);
+    const auto lines = static_cast<std::int64_t>(lines_of_list().size());
     if (lines >= seeds) return;
     refuse(
         "/start/list", start_.path,
@@ -63,14 +70,13 @@ class Placing {
 
   // Throws InputError if two lines of the list have one hash.
   void require_different_files() const {
-    std::map<std::string, std::uint64_t> seeds;
-    std::istringstream lines(read_input(start_.path));
-    std::string line;
-    for (std::uint64_t seed = 0; std::getline(lines, line); ++seed) {
-      const auto [first, is_new] = seeds.emplace(line.substr(0, 64), seed);
+    std::map<std::string, std::size_t> seeds;
+    const std::vector<std::string> lines = lines_of_list();
+    for (std::size_t seed = 0; seed < lines.size(); ++seed) {
+      const auto [first, is_new] = seeds.emplace(lines[seed].substr(0, 64), seed);
       if (is_new || !is_sha256(first->first)) continue;
       refuse(
-          "/start/list", line,
+          "/start/list", lines[seed],
           fmt::format("must have another file for each seed without noise, but seed {} begins at a file of "
                       "the same hash as seed {}: both would be one realisation",
                       seed, first->second));
@@ -94,19 +100,23 @@ class Placing {
   }
 
   // The file of a line of the list, "HASH  PATH" or "HASH *PATH", which has this hash.
-  std::string listed(std::uint64_t seed) const {
+  // Of the list, which is the one of its hash, without blank ones at its end.
+  std::vector<std::string> lines_of_list() const {
     require_hash(start_.path, start_.sha256, "/start/sha256");
     const std::string text = read_input(start_.path);
-    std::size_t begin = 0;
-    for (std::uint64_t line = 0; line < seed && begin < text.size(); ++line) {
-      const std::size_t end = text.find('\n', begin);
-      begin = end == std::string::npos ? text.size() : end + 1;
-    }
-    const std::string line = text.substr(begin, text.find('\n', begin) - begin);
-    if (begin >= text.size()) {
+    std::string_view rest = without_byte_order_mark(text);
+    std::vector<std::string> lines;
+    while (!is_blank(rest)) lines.emplace_back(take_line(rest));
+    return lines;
+  }
+
+  std::string listed(std::uint64_t seed) const {
+    const std::vector<std::string> lines = lines_of_list();
+    if (seed >= lines.size()) {
       refuse("/start/list", start_.path,
              fmt::format("must have a line for seed {}, the {}th", seed, seed + 1));
     }
+    const std::string& line = lines[seed];
     const bool is_good = line.size() > 67 && is_sha256(line.substr(0, 64)) && line[64] == ' ' &&
                          (line[65] == ' ' || line[65] == '*') && line[66] == '/';
     if (!is_good) {
@@ -120,16 +130,25 @@ class Placing {
   PeriodicCell box_of(const Snapshot& snapshot) const {
     const Vector3 box = box_lengths(scene_, cube_edge(scene_.particles, scene_.volume_fraction));
     const auto& [a, b, c] = snapshot.lattice.column;
-    const bool fits = is_near(a.x, box.x, box.x) && is_near(b.y, box.y, box.y) &&
-                      is_near(c.z, box.z, box.z) && is_near(c.x, 0, box.x) && is_near(c.y, 0, box.y);
-    if (!fits) {
-      refuse(
-          scene_.document.contains("addition") ? "/addition" : "/volume_fraction",
-          Json(scene_.volume_fraction).dump(),
-          fmt::format(
-              "makes a box of {:.9g} by {:.9g} by {:.9g}, but the cell of the start has the edges {:.9g}, "
-              "{:.9g} and {:.9g} and the tilts {:.9g} and {:.9g} along z: must be that box, sheared along x",
-              box.x, box.y, box.z, a.x, b.y, c.z, c.x, c.y));
+    const std::string pointer = scene_.document.contains("addition") ? "/addition" : "/volume_fraction";
+    const std::string fraction = Json(scene_.volume_fraction).dump();
+    const auto is_zero = [&](double x) { return is_near(x, 0, box.x); };
+    if (!(is_zero(a.y) && is_zero(a.z) && is_zero(b.z) && is_zero(c.x) && is_zero(c.y))) {
+      refuse(pointer, fraction,
+             fmt::format("must be of a box sheared along x, and the start has a cell with the edges ({:.6g}, "
+                         "{:.6g}, {:.6g}), ({:.6g}, {:.6g}, {:.6g}) and ({:.6g}, {:.6g}, {:.6g})",
+                         a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z));
+    }
+    if (!is_near(a.x, box.x, box.x) || !is_near(b.y, box.y, box.y) || !is_near(c.z, box.z, box.z)) {
+      double solid = 0;
+      for (const double radius : species_radii(scene_.particles)) {
+        solid += 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+      }
+      refuse(pointer, fraction,
+             fmt::format("makes a box of {:.9g} by {:.9g} by {:.9g}, and the cell of the start is {:.9g} by "
+                         "{:.9g} by {:.9g}: must be as long within {:g} of each; in that cell the volume "
+                         "fraction is {:.8g}",
+                         box.x, box.y, box.z, a.x, b.y, c.z, rounding, solid / (a.x * b.y * c.z)));
     }
     return PeriodicCell(box, scene_.physics.flow.deformation().velocity_gradient(0), b.x);
   }
@@ -140,11 +159,19 @@ class Placing {
       refuse("/particles/count", std::to_string(radius.size()),
              fmt::format("must be {}, the number of spheres of the start", snapshot.count()));
     }
+    if (!snapshot.has_sizes) {
+      refuse(start_.pointer(), start_.path,
+             "must have particles/diameter, and has none: HOOMD-blue 4 writes diameters if its "
+             "GSD.write_diameter is True");
+    }
     for (std::size_t i = 0; i < radius.size(); ++i) {
-      if (!is_near(snapshot.radius[i], radius[i], radius[i])) {
-        refuse("/particles/species", fmt::format("sphere {} of radius {}", i, radius[i]),
-               fmt::format("must be as in the start, where its radius is {}", snapshot.radius[i]));
-      }
+      if (is_near(snapshot.radius[i], radius[i], radius[i])) continue;
+      refuse("/particles/species", fmt::format("sphere {} of radius {}", i, radius[i]),
+             fmt::format("must be as in the start, where its radius is {:.8g}{}", snapshot.radius[i],
+                         are_the_same(snapshot.radius, radius)
+                             ? ": the start has the same radii in another order, and they must follow each "
+                               "other as the species do, from the first one on"
+                             : ""));
     }
     return radius;
   }

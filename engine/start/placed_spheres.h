@@ -16,8 +16,8 @@ struct PlacedSpheres {
 
 // The frame that a scene's start names for this seed. Requires a scene with a start; `file` names it in
 // messages. Sphere i of the file, in the order of its ids, has to have the radius of the scene's sphere i,
-// and the cell to be the scene's box, sheared along x: both to a millionth, because a GSD file
-// rounds. Places are taken as they are, and so are velocities and spins (angular velocities) where the file
+// and the cell to be the scene's box, sheared along x: both to 5e-6, because files of other programs have six
+// digits. Places are taken as they are, and so are velocities and spins (angular velocities) where the file
 // has both. Throws InputError where a file is not the one of the hash, or does not fit.
 PlacedSpheres placed_spheres(const Scene& scene, std::uint64_t seed, const std::string& file);
 

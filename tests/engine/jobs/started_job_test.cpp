@@ -5,8 +5,10 @@
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
 #include "contract/sha256.h"
+#include "engine/gsd/frames.h"
 #include "engine/jobs/job.h"
 #include "engine/output/final_configuration.h"
+#include "engine/start/packing.h"
 #include "engine/start/placed_spheres.h"
 #include "tests/engine/small_scene.h"
 #include "tests/engine/temporary_folder.h"
@@ -162,8 +164,77 @@ TEST_F(StartedJob, ThatDoesNotFitItsFileIsRefused) {
   expect(scene(changed), "must be a file that is there");
   changed["list"] = path("absent");
   expect(scene(changed), "/start");
+  changed = start_;
+  changed["file"] = "/" + std::string(5000, 'x');
+  expect(scene(changed), "must be a file that is there");
   write_durably(path("no.xyz"), "no file of spheres\n");
   expect(scene(start("no.xyz")), path("no.xyz"));
+}
+
+// A list as it is saved elsewhere: with a byte-order mark, lines that end as on Windows, and empty ones
+// behind.
+TEST_F(StartedJob, OfAListInAnotherDialectIsTheSame) {
+  const std::string line = fmt::format("{}  {}", sha256_of_file(path("a.final.xyz")), path("a.final.xyz"));
+  write_durably(path("plain"), line + "\n" + line + "\n");
+  write_durably(path("dialect"), "\xef\xbb\xbf" + line + "\r\n" + line + "\r\n\r\n");
+  const Json dialect = start("dialect", "list");
+  const auto place = [&](const Json& start_, std::uint64_t seed) {
+    return placed_spheres(read_scene(scene(start_), ""), seed, "").system.particles.position[7];
+  };
+  for (const std::uint64_t seed : {std::uint64_t{0}, std::uint64_t{1}}) {
+    EXPECT_TRUE(place(dialect, seed) == place(start("plain", "list"), seed));
+  }
+  EXPECT_NE(refusal(scene(dialect), 2).find("must have a line for seed 2,"), std::string::npos)
+      << refusal(scene(dialect), 2);
+}
+
+// The edge of the cell with six digits, as LF_DEM has it: up to 5e-6 of it may be lost.
+TEST_F(StartedJob, OfAFileWithSixDigitsIsTaken) {
+  const double edge =
+      placed_spheres(read_scene(scene(start("a.final.xyz")), ""), 0, "").system.box.lengths().x;
+  const auto with_edge = [&](double length) {
+    std::string text =
+        fmt::format("60\nLattice=\"{0} 0 0 0 {0} 0 0 0 {0}\" Properties=pos:R:3:radius:R:1\n", length);
+    for (const double a : species_radii(read_scene(small_scene(), "").particles)) {
+      text += fmt::format("1 2 3 {:.6g}\n", a);
+    }
+    write_durably(path("six.xyz"), text);
+    return refusal(scene(start("six.xyz")));
+  };
+  EXPECT_EQ(with_edge(edge * (1 + 4.9e-6)), "");
+  // phi (L / L')^3
+  const double other = 1.01 * edge, fraction = 0.45 / std::pow(1.01, 3);
+  EXPECT_NE(with_edge(other).find(fmt::format("in that cell the volume fraction is {:.8g}", fraction)),
+            std::string::npos)
+      << with_edge(other);
+  EXPECT_NE(with_edge(edge * (1 + 5.1e-6)).find("must be as long within 5e-06"), std::string::npos);
+}
+
+TEST_F(StartedJob, OfSpheresInAnotherOrderNamesTheOrder) {
+  std::vector<double> radius = species_radii(read_scene(small_scene(), "").particles);
+  std::ranges::reverse(radius);
+  const double edge =
+      placed_spheres(read_scene(scene(start("a.final.xyz")), ""), 0, "").system.box.lengths().x;
+  std::string text =
+      fmt::format("60\nLattice=\"{0} 0 0 0 {0} 0 0 0 {0}\" Properties=pos:R:3:radius:R:1\n", edge);
+  for (const double a : radius) text += fmt::format("1 2 3 {}\n", a);
+  write_durably(path("order.xyz"), text);
+  EXPECT_NE(refusal(scene(start("order.xyz")))
+                .find("where its radius is 1.4: the start has the same radii in another order"),
+            std::string::npos)
+      << refusal(scene(start("order.xyz")));
+}
+
+TEST_F(StartedJob, OfAGsdFileWithoutDiametersSaysSo) {
+  gsd::Frames frames;
+  frames.add("configuration/box", std::vector<float>{10, 10, 10, 0, 0, 0});
+  frames.add_single<std::uint32_t>("particles/N", 60);
+  frames.add("particles/position", std::vector<float>(180), 3);
+  frames.end_frame();
+  write_durably(path("bare.gsd"), frames.head() + frames.pending() + frames.tail());
+  EXPECT_NE(refusal(scene(start("bare.gsd"))).find("must have particles/diameter, and has none"),
+            std::string::npos)
+      << refusal(scene(start("bare.gsd")));
 }
 
 TEST_F(StartedJob, OfOneFileIsNoCampaignWithoutNoise) {
