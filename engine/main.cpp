@@ -26,6 +26,8 @@
 #include "engine/output/summary.h"
 #include "engine/pictures/colouring.h"
 #include "engine/pictures/picture.h"
+#include "engine/scene/smallest_count.h"
+#include "engine/sizes/size_choice.h"
 #include "engine/snapshots/conversion.h"
 #include "engine/threads/waiting_threads.h"
 
@@ -206,11 +208,28 @@ int main(int argc, char** argv) {
       ->add_option("--view", picture.view, "corner; x, y or z to look along; or AZIMUTH,ELEVATION in degrees")
       ->capture_default_str();
   snapshot_command->add_option("--size", picture.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
-  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
-  if (words == std::vector<std::string>{"version"}) words.front() = "--version";
+  SizesOptions sizes;
+  CLI::App* sizes_command = app.add_subcommand(
+      "sizes", "Species of a scene from a measured size distribution, and how many spheres they take");
+  sizes_command->add_option("file", sizes.file, "Table of sizes and shares, as an instrument saves it")
+      ->required();
+  sizes_command->add_option("--sizes", sizes.sizes, "What the sizes are: radius or diameter")
+      ->required()
+      ->check(one_of({"radius", "diameter"}));
+  sizes_command->add_option("--shares", sizes.shares, "What the shares are of: volume or number")
+      ->required()
+      ->check(one_of({"volume", "number"}));
+  sizes_command->add_option("--columns", sizes.columns,
+                            "Columns of size and share, such as 1,3, where there are more");
+  sizes_command
+      ->add_option("--count", sizes.count,
+                   "Spheres of the scene: thin sizes are merged until each has one of them")
+      ->check(whole_number(1, most_particles));
   std::vector<std::string> cases;
   CLI::App* bench_command = app.add_subcommand("bench", "Processor time per particle and step");
   bench_command->add_option("case", cases, "Names of cases; all of them when none is given");
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (words == std::vector<std::string>{"version"}) words.front() = "--version";
   try {
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // as the parser wants them
   } catch (const CLI::ParseError& error) {
@@ -234,6 +253,12 @@ int main(int argc, char** argv) {
     }
     if (*snapshot_command) {
       return done_with(draw_picture(picture));
+    }
+    if (*sizes_command) {
+      const SizesAnswer answer = choose_sizes(sizes);
+      fmt::print(stderr, "{}", answer.remarks);
+      fmt::print("{}", answer.block);
+      return ExitCode::done;
     }
     if (*bench_command) {
       return run_benchmarks(cases);

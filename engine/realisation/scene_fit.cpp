@@ -8,6 +8,7 @@
 #include "contract/input_error.h"
 #include "engine/catalogue/catalogue.h"
 #include "engine/kernels/pairs/pair_kinds.h"
+#include "engine/scene/smallest_count.h"
 #include "engine/start/packing.h"
 
 namespace peclet::engine {
@@ -24,10 +25,15 @@ std::vector<double> present_radii(const Particles& particles, const std::string&
   for (std::size_t s = 0; s < number.size(); ++s) {
     const double radius = particles.species[s].radius;
     if (!std::binary_search(present.begin(), present.end(), radius)) {
-      throw InputError(file, "/particles/count", std::to_string(particles.count),
-                       fmt::format("must be large enough for one sphere of radius {}, whose share is that of "
-                                   "{:.2g} spheres",
-                                   radius, exact_numbers(particles)[s]));
+      const std::size_t enough = smallest_count(particles);
+      throw InputError(
+          file, "/particles/count", std::to_string(particles.count),
+          fmt::format("must be large enough for one sphere of radius {}, whose share is that of {:.2g} "
+                      "spheres; {}{}",
+                      radius, exact_numbers(particles)[s],
+                      enough > 0 ? fmt::format("{} would do for all sizes", enough)
+                                 : fmt::format("not even {} would do for all sizes", most_particles),
+                      particles.distributed ? ", and `peclet-engine sizes` merges thin ones" : ""));
     }
   }
   return present;

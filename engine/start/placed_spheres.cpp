@@ -99,8 +99,7 @@ class Placing {
     }
   }
 
-  // The file of a line of the list, "HASH  PATH" or "HASH *PATH", which has this hash.
-  // Of the list, which is the one of its hash, without blank ones at its end.
+  // Returns the lines of the list, which has to have its hash, without blank ones at its end.
   std::vector<std::string> lines_of_list() const {
     require_hash(start_.path, start_.sha256, "/start/sha256");
     const std::string text = read_input(start_.path);
@@ -110,6 +109,7 @@ class Placing {
     return lines;
   }
 
+  // Returns the file of a line, "HASH  PATH" or "HASH *PATH", which has to have this hash.
   std::string listed(std::uint64_t seed) const {
     const std::vector<std::string> lines = lines_of_list();
     if (seed >= lines.size()) {

@@ -59,6 +59,7 @@ ENGINE = [
             "random",
             "terms",
             "scene",
+            "sizes",
             "kernels/lanes",
             "kernels/bodies",
             "kernels/pairs",
