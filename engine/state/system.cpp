@@ -1,8 +1,30 @@
 #include "engine/state/system.h"
 
+#include <cmath>
+
 #include "engine/state/particle_order.h"
 
 namespace peclet::engine {
+namespace {
+
+// Throws ArchiveError unless the cell has a volume and all spheres are so near that whole cells between them
+// can be counted: lists of neighbours take both for granted.
+void require_places(const VectorField& position, const PeriodicCell& box) {
+  constexpr double most_cells = 1e6;
+  const CellFrame cell = box.frame();
+  const auto is_length = [](double x) { return x >= 1e-100 && x <= 1e100; };
+  const auto is_near = [](double x) { return std::abs(x) <= most_cells; };
+  bool is_good = is_length(cell.lengths.x) && is_length(cell.lengths.y) && is_length(cell.lengths.z) &&
+                 is_near(cell.tilt_xy / cell.lengths.x) && is_near(cell.xz / cell.lengths.x) &&
+                 is_near(cell.yz / cell.lengths.y);
+  for (std::size_t i = 0; is_good && i < position.size(); ++i) {
+    const Vector3 cells = cell.fractional(position[i]);
+    is_good = is_near(cells.x) && is_near(cells.y) && is_near(cells.z);
+  }
+  if (!is_good) throw ArchiveError("has a cell without volume, or a sphere that is not near it");
+}
+
+}  // namespace
 
 void rebuild_neighbours(System& system, int threads) {
   ParticleState& particles = system.particles;
@@ -62,9 +84,18 @@ void load(System& system, ArchiveReader& archive) {
     *field = archive.get_field(count);
   }
   particles.image = archive.get_vector<LatticeShift>(count);
+  {
+    PeriodicCell box = system.box;
+    box.deform(displacement_gradient);
+    require_places(particles.position, box);
+  }
   const auto moment = [&] {
     VectorField position = archive.get_field(count);
-    return ListMoment{std::move(position), archive.get<Matrix3>()};
+    const auto gradient = archive.get<Matrix3>();
+    PeriodicCell box = system.box;
+    box.deform(gradient);
+    if (position.size() > 0) require_places(position, box);
+    return ListMoment{std::move(position), gradient};
   };
   ListMoment candidates = moment(), listed = moment();
   const auto builds = archive.get<std::uint64_t>();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <cmath>
 #include <functional>
 
 #include "contract/durable_file.h"
@@ -122,6 +123,28 @@ TEST_F(Checkpoint, PayloadsOfTheWrongLengthAreRefused) {
   expect_refused(with_payload(payload() + "x"), "more than belongs there");
   expect_refused(with_payload(payload().substr(0, payload().size() - 8)), "ends too early");
   expect_refused(with_payload(""), "ends too early");
+}
+
+// A sphere or a cell that cannot be computed with would become an index of the grid of neighbours.
+TEST_F(Checkpoint, PayloadsWithoutPlacesAreRefused) {
+  const auto bytes_of = [](const auto& value) {
+    ArchiveWriter writer;
+    writer.put(value);
+    return writer.bytes();
+  };
+  const Vector3 place = simulation_.system().particles.position[5];
+  const Matrix3 gradient = simulation_.system().box.displacement_gradient();
+  for (const double bad : {std::nan(""), INFINITY, 1e300, 1e9}) {
+    std::string bytes = payload();
+    const std::string known = bytes_of(place);
+    bytes.replace(bytes.find(known), known.size(), bytes_of(Vector3{place.x, bad, place.z}));
+    expect_refused(with_payload(bytes), "a sphere that is not near it");
+    bytes = payload();
+    const std::string cell = bytes_of(gradient);
+    bytes.replace(bytes.find(cell), cell.size(),
+                  bytes_of(Matrix3{Vector3{-1, 0, 0}, Vector3{bad, 0, 0}, Vector3{}}));
+    expect_refused(with_payload(bytes), "has a cell without volume");
+  }
 }
 
 TEST_F(Checkpoint, OfAnotherRealisationIsRefusedWithWhatDiffers) {
