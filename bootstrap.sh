@@ -4,7 +4,7 @@
 #   ./bootstrap.sh demo     install what building needs, build, run the demonstration campaign, print its table
 #   ./bootstrap.sh package  the same, and make a .tar.gz for any Linux and a .deb of it
 #   ./bootstrap.sh test     install the packages, build, run every test
-#   ./bootstrap.sh sanitize run the tests of contract/ and runner/ with sanitizers
+#   ./bootstrap.sh sanitize run the tests of contract/ and runner/, and what reads files of spheres, with sanitizers
 #   ./bootstrap.sh tidy     look through the whole source with clang-tidy; with --programs leave out the tests
 #   ./bootstrap.sh lint     the same, after the form of C++ and Python
 #   ./bootstrap.sh deps     install the packages only
@@ -97,9 +97,10 @@ sanitize() {
   # Lines are all that a report needs; more take half as long again to compile.
   cmake --preset asan-ubsan -DBUILD_TESTING=ON -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1" \
     -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=10 >/dev/null
-  cmake --build --preset asan-ubsan --target contract_tests runner_tests
+  cmake --build --preset asan-ubsan --target contract_tests runner_tests fuzz_spheres
   say "Running their tests"
   build/asan-ubsan/bin/contract_tests --gtest_brief=1
+  build/asan-ubsan/bin/fuzz_spheres --runs 20000 --findings build/asan-ubsan tests/fuzz/corpus/spheres
   local shards=2 shard runs=()
   for ((shard = 0; shard < shards; ++shard)); do
     GTEST_TOTAL_SHARDS=$shards GTEST_SHARD_INDEX=$shard build/asan-ubsan/bin/runner_tests --gtest_brief=1 &
