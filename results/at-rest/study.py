@@ -168,9 +168,9 @@ def select(table, **wanted):
 
 
 def in_errors(a, b):
-    """The difference over its standard error, which is 1."""
+    """The difference over its standard error, a number that has no error of its own."""
     value, error = difference(a, b)
-    return value / error, 1.0
+    return value / error, 0.0
 
 
 def compared(table, fraction, label, **which):

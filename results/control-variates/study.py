@@ -90,7 +90,7 @@ def measure(program):
 def change_of(row, most=3):
     value, error = number(row, "change")
     text = f"Pe = {row['peclet']:g}, {row['controls']}: change of the mean, in standard errors of it"
-    return Check(text, "no bias", value / error, 1, -most, most)
+    return Check(text, "no bias", value / error, 0, -most, most)
 
 
 def judge():

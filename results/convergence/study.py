@@ -256,7 +256,7 @@ def mean_rows(numbers):
     """It "averages to zero": within three standard errors."""
     for name, (value, error, _) in numbers.items():
         if BROWNIAN_MEAN in name:
-            yield Statement(f"{name}, in standard errors", "L 3.6", value / error, 1, -3, 3)
+            yield Statement(f"{name}, in standard errors", "L 3.6", value / error, 0, -3, 3)
             yield Finding(name, "L 3.6", value, error)
 
 

@@ -5,10 +5,11 @@
     Check       of our own methods and their consistency: "ok" or "failed"; it says nothing about the publication
     Finding     a number where nothing is published, or where what is tested is a reading of ours: no answer
 
-The value itself answers as soon as it is known well enough (Judged.known); until then the answer is "open". The study's
+A row answers when its whole interval of 95 % lies on one side of each bound; until then the answer is "open". The study's
 verdict follows from its statements: "does not hold" when one that is marked essential does not; "not yet" when one is
-open; "holds with a difference" when another one does not hold; "holds" when all do; "findings only" without any. A
-statement is not essential when its bound hangs on a number, a definition or a word like "weakly" that is not in print.
+open; "holds with a difference" when another one does not hold; "holds" when all do; "findings only" without any. Checks
+that failed are counted behind it: "holds (2 checks failed)". A statement is not essential when its bound hangs on a
+number, a definition or a word like "weakly" that is not in print.
 """
 import math
 
@@ -21,33 +22,62 @@ HEADS = {
 }
 
 
+ROUNDING = 1e-12  # an error below this share of its value is that of floating point
+
+
 def five_digits(x):
     return float(f"{x:.5g}") if math.isfinite(x) else None
 
 
+def value_in_json(value):
+    """To five digits; "infinite" or "-infinite", of a viscosity that jams for example; None where it was not measured."""
+    if math.isinf(value):
+        return "infinite" if value > 0 else "-infinite"
+    return five_digits(value)
+
+
+def value_of_json(entry):
+    named = {"infinite": math.inf, "-infinite": -math.inf, None: math.nan}
+    return named[entry] if entry is None or isinstance(entry, str) else entry
+
+
+def with_error(value, error):
+    """ "1.235 ± 0.12"; the value alone where it has no error."""
+    if math.isnan(value):
+        return "not measured"
+    if math.isinf(value):
+        return value_in_json(value)
+    if not math.isfinite(error):
+        return f"{value:.4g}, error unknown"
+    return f"{value:.4g} ± {error:.2g}" if error > 0 else f"{value:.4g}"
+
+
 class Row:
-    """`value` with its standard error, of so many degrees of freedom."""
+    """`value` with its standard error, of so many degrees of freedom. An error of 0 is that of a number that seeds do not
+    change: a count, a time, a place on a grid, a difference in standard errors."""
 
     kind = None
 
     def __init__(self, text, source, value, error, degrees=30):
-        self.text, self.source, self.value, self.error = text, source, value, error
-        self.half_width = student_quantile(degrees, 0.975) * error
+        self.text, self.source, self.value = text, source, value
+        is_rounding = math.isfinite(error) and error <= ROUNDING * abs(value)
+        self.error = 0.0 if is_rounding else error
+        self.half_width = 0.0 if is_rounding else student_quantile(degrees, 0.975) * error
 
     def as_json(self):
         return {
             "kind": self.kind,
             "statement": self.text,
             "source": self.source,
-            "value": five_digits(self.value),
+            "value": value_in_json(self.value),
             "standard_error": five_digits(self.error),
             "half_width": five_digits(self.half_width),
         }
 
     def cells(self):
         # Of what study.json has, so that a page can be held to it.
-        value, error = (math.nan if x is None else x for x in (five_digits(self.value), five_digits(self.error)))
-        return [self.text, self.source, f"{value:.4g} ± {error:.2g}"]
+        value, error = value_of_json(value_in_json(self.value)), five_digits(self.error)
+        return [self.text, self.source, with_error(value, math.nan if error is None else error)]
 
 
 class Finding(Row):
@@ -73,16 +103,8 @@ class Judged(Row):
             return bool(self.low <= ends[0] and ends[1] <= self.high)
         return bool(ends[1] < self.low or ends[0] > self.high)
 
-    def known(self):
-        """Whether the value may answer: it is sure, or its interval of 95 % is no wider than the range between the
-        bounds; where there is one bound, no wider than a fifth (ratios about 1, decades and powers about 0)."""
-        if not math.isfinite(self.value) or not math.isfinite(self.half_width):
-            return False
-        range_ = self.high - self.low
-        return self.sure() or 2 * self.half_width <= (range_ if math.isfinite(range_) else 0.2)
-
     def answer(self):
-        if not self.known():
+        if not self.sure():
             return "open"
         return self.yes if self.within() else self.no
 
@@ -121,15 +143,16 @@ def rows_of(study):
             bounds["low"] = -math.inf if entry["low"] is None else entry["low"]
             bounds["high"] = math.inf if entry["high"] is None else entry["high"]
             bounds["essential"] = entry.get("essential", True)
-        value, error, half_width = (
-            math.nan if entry[name] is None else entry[name] for name in ("value", "standard_error", "half_width")
+        value = value_of_json(entry["value"])
+        error, half_width = (
+            math.inf if entry[name] is None else entry[name] for name in ("standard_error", "half_width")
         )
         row = kinds[entry["kind"]](entry["statement"], entry["source"], value, error, **bounds)
         row.half_width = half_width
         yield row
 
 
-def verdict(rows):
+def verdict_of_statements(rows):
     statements = [row for row in rows if row.kind == "statement"]
     answers = [row.answer() for row in statements]
     if not statements:
@@ -139,3 +162,13 @@ def verdict(rows):
     if "open" in answers:
         return "not yet"
     return "holds" if all(answer == "holds" for answer in answers) else "holds with a difference"
+
+
+def with_failed_checks(text, rows):
+    """ "holds (2 checks failed)" """
+    failed = sum(row.kind == "check" and row.answer() == "failed" for row in rows)
+    return f"{text} ({failed} check{'s' if failed > 1 else ''} failed)" if failed else text
+
+
+def verdict(rows):
+    return with_failed_checks(verdict_of_statements(rows), rows)

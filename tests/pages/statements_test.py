@@ -8,7 +8,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "results"))
-from studies.verdicts import rows_of, verdict
+from studies.verdicts import rows_of, verdict_of_statements, with_failed_checks
 
 PAGE = ROOT / "docs" / "statements.md"
 LINES, WIDTH = 45, 130  # as it is read: without the targets of links
@@ -23,16 +23,22 @@ def study_of(name):
     return json.loads((ROOT / "results" / name / "study.json").read_text())
 
 
+def rows_with_kinds(name):
+    """Of a study whose rows have no kinds yet none."""
+    study = study_of(name)
+    return list(rows_of(study)) if "kind" in study["statements"][0] else []
+
+
 def statements_of(name):
-    """Those of a publication; of a study whose rows have no kinds yet none."""
-    entries = study_of(name)["statements"]
-    return [row for row in rows_of(study_of(name)) if row.kind == "statement"] if "kind" in entries[0] else []
+    return [row for row in rows_with_kinds(name) if row.kind == "statement"]
 
 
-def found_of(rows):
-    """As of a study, but of a group of rows: where none holds, none of it does."""
+def found_of(rows, checks):
+    """As of a study, but of a group of its statements: where none holds, none of it does."""
     holding = sum(row.answer() == "holds" for row in rows)
-    return ("does not hold" if rows and not holding else verdict(rows)), str(holding), str(len(rows))
+    none_holds = rows and all(row.answer() == "does not hold" for row in rows)
+    of_rows = "does not hold" if none_holds else verdict_of_statements(rows)
+    return with_failed_checks(of_rows, checks), str(holding), str(len(rows))
 
 
 def faults(page):
@@ -44,7 +50,7 @@ def faults(page):
         name, sources = row["study"], row["sources"].split(", ")
         said.update((name, source) for source in sources)
         rows = [r for r in statements_of(name) if r.source in sources]
-        found = found_of(rows)
+        found = found_of(rows, rows_with_kinds(name))
         if (row["verdict"], row["holding"], row["count"]) != found:
             yield f"{name}, {row['sources']}: the page has {row['verdict']}, the study {', '.join(found)}"
     there = {

@@ -40,19 +40,29 @@ class Answers(unittest.TestCase):
     """Half-widths are those of Student's t with 7 degrees of freedom, 2.365 standard errors."""
 
     def test_are_those_of_the_value(self):
-        for value, answer in ((1.02, "holds"), (0.98, "holds"), (1.06, "does not hold"), (0.94, "does not hold")):
+        for value, answer in ((1.02, "holds"), (0.98, "holds"), (1.07, "does not hold"), (0.93, "does not hold")):
             self.assertEqual(statement(value, 0.005, 0.95, 1.05).answer(), answer)
         self.assertEqual(statement(1.3, 0.1, low=1).answer(), "holds")
         self.assertEqual(statement(0.7, 0.1, high=1).answer(), "holds")
         self.assertEqual(statement(0.7, 0.1, low=1).answer(), "does not hold")
 
-    def test_across_a_bound_are_given_while_the_interval_is_no_wider_than_the_range(self):
-        self.assertEqual(statement(1.04, 0.021, 0.95, 1.05).answer(), "holds")  # half-width 0.0497
-        self.assertEqual(statement(1.06, 0.021, 0.95, 1.05).answer(), "does not hold")
-        self.assertEqual(statement(1.04, 0.0215, 0.95, 1.05).answer(), "open")  # 0.0508
-        self.assertEqual(statement(1.02, 0.042, low=1).answer(), "holds")  # 0.0993
-        self.assertEqual(statement(0.98, 0.042, low=1).answer(), "does not hold")
-        self.assertEqual(statement(1.02, 0.043, low=1).answer(), "open")  # 0.1017
+    def test_whose_interval_contains_a_bound_are_open(self):
+        self.assertEqual(statement(1.03, 0.0084, 0.95, 1.05).answer(), "holds")  # half-width 0.0199
+        self.assertEqual(statement(1.03, 0.0085, 0.95, 1.05).answer(), "open")  # 0.0201
+        self.assertEqual(statement(1.07, 0.0085, 0.95, 1.05).answer(), "open")
+        self.assertEqual(statement(1.07, 0.0084, 0.95, 1.05).answer(), "does not hold")
+        self.assertEqual(statement(1.02, 0.0085, low=1).answer(), "open")
+        self.assertEqual(statement(0.98, 0.0085, low=1).answer(), "open")
+
+    def test_without_an_error_are_those_of_the_number(self):
+        self.assertEqual(statement(1, 0, 1, 1).answer(), "holds")
+        self.assertEqual(statement(0.6, 1.1e-16, 0.6, 0.8).answer(), "holds")
+        self.assertEqual(statement(2, 0, high=1).answer(), "does not hold")
+
+    def test_of_what_is_infinite_are_given(self):
+        self.assertEqual(statement(math.inf, 0, low=5).answer(), "holds")
+        self.assertEqual(statement(math.inf, 0, high=5).answer(), "does not hold")
+        self.assertEqual(statement(math.inf, math.inf, low=5).answer(), "open")
 
     def test_beyond_a_bound_are_given_however_wide_the_interval_is(self):
         self.assertEqual(statement(5, 1, 0.95, 1.05).answer(), "does not hold")
@@ -89,9 +99,14 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(verdict([self.holds, self.fails_beside, self.open_]), "not yet")
         self.assertEqual(verdict([self.holds, self.open_, self.fails]), "does not hold")
 
-    def test_do_not_follow_from_checks_and_findings(self):
-        self.assertEqual(verdict([self.holds, self.failed, self.finding]), "holds")
-        self.assertEqual(verdict([self.failed, self.finding]), "findings only")
+    def test_do_not_follow_from_findings(self):
+        self.assertEqual(verdict([self.holds, self.finding]), "holds")
+        self.assertEqual(verdict([self.finding]), "findings only")
+
+    def test_count_the_checks_that_failed(self):
+        self.assertEqual(verdict([self.holds, self.failed]), "holds (1 check failed)")
+        self.assertEqual(verdict([self.holds, self.failed, self.failed]), "holds (2 checks failed)")
+        self.assertEqual(verdict([self.failed, self.finding]), "findings only (1 check failed)")
 
     def test_of_the_studies_follow_from_their_rows(self):
         self.assertGreaterEqual(len(STUDIES), 13)
@@ -104,13 +119,37 @@ class Verdicts(unittest.TestCase):
                     if row.kind != "finding":
                         self.assertEqual((row.answer(), row.sure()), (entry["answer"], entry["sure"]), row.text)
 
-    def test_of_the_studies_are_given(self):
+    def test_of_the_studies_do_not_rest_on_an_interval_that_contains_its_bound(self):
+        for name in STUDIES:
+            for row in study_of(name)["statements"]:
+                if row["kind"] == "finding" or row["answer"] == "open" or row["value"] == "infinite":
+                    continue
+                low, high = row["value"] - row["half_width"], row["value"] + row["half_width"]
+                with self.subTest(name, row=row["statement"]):
+                    for bound in (row["low"], row["high"]):
+                        self.assertFalse(bound is not None and low < bound < high)
+
+
+class Numbers(unittest.TestCase):
+    def test_are_written_with_an_error_that_seeds_make(self):
+        for value, error, text in (
+            (1.23456, 0.123, "1.235 ± 0.12"),
+            (0.6, 1.1e-16, "0.6"),
+            (1, 0, "1"),
+            (math.inf, 0, "infinite"),
+            (-math.inf, 0, "-infinite"),
+            (math.nan, math.nan, "not measured"),
+            (1.5, math.inf, "1.5, error unknown"),
+        ):
+            row = Finding("", "", value, error)
+            self.assertEqual(row.cells()[2], text)
+            (again,) = rows_of({"statements": [json.loads(json.dumps(row.as_json()))]})
+            self.assertEqual((again.cells(), again.as_json()), (row.cells(), row.as_json()))
+
+    def test_of_the_studies_have_no_error_of_rounding_and_no_number_for_infinity(self):
         for name in STUDIES:
             with self.subTest(name):
-                rows = rows_of(study_of(name))
-                judged = ("holds", "holds with a difference", "does not hold")
-                found = judged if any(row.kind == "statement" for row in rows) else ("findings only",)
-                self.assertIn(study_of(name)["verdict"], found)
+                self.assertNotRegex(page_of(name), r"± (0|nan|inf|\S*e-1[0-9]) |1e\+06")
 
 
 class Pages(unittest.TestCase):
