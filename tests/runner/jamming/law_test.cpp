@@ -5,9 +5,11 @@
 
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <optional>
 #include <random>
 
+#include "runner/jamming/common_law.h"
 #include "runner/statistics/cohorts.h"
 #include "runner/statistics/statistics.h"
 
@@ -87,6 +89,60 @@ TEST(JammingLaw, SmallErrorsAreThoseOfTheNormalEquations) {
   EXPECT_NEAR(answer.law->exponent.standard_error / exponent, 1, 0.01);
   EXPECT_NEAR(answer.law->prefactor.standard_error / (truth.prefactor * constant), 1, 0.01);
   EXPECT_NEAR((answer.law->high - answer.law->low) / (2 * 1.96 * jamming), 1, 0.01);
+}
+
+// The points with residuals in ln eta whose chi^2 is this. The residuals are a zigzag without its part along
+// g, 1 and x of above, so that least squares finds the same law.
+std::vector<LawPoint> scattered(const Truth& truth, std::vector<LawPoint> points, double chi_squared) {
+  std::vector<std::vector<double>> columns(3);
+  std::vector<double> residuals;
+  for (const LawPoint& point : points) {
+    const double gap = truth.fraction - point.fraction;
+    columns[0].push_back(-truth.exponent * point.fraction / (truth.fraction * gap));
+    columns[1].push_back(1);
+    columns[2].push_back(-std::log(gap / truth.fraction));
+    residuals.push_back(residuals.size() % 2 == 0 ? 1 : -1);
+  }
+  const auto product = [](const std::vector<double>& a, const std::vector<double>& b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+  };
+  const auto remove = [&](std::vector<double>& from, const std::vector<double>& along) {
+    const double share = product(from, along) / product(along, along);
+    for (std::size_t i = 0; i < from.size(); ++i) from[i] -= share * along[i];
+  };
+  remove(columns[1], columns[0]);
+  remove(columns[2], columns[0]);
+  remove(columns[2], columns[1]);
+  for (const std::vector<double>& column : columns) remove(residuals, column);
+  const double s = points[0].standard_error / points[0].value * std::sqrt(15.0 / 13);  // alike at all points
+  const double scale = s * std::sqrt(chi_squared / product(residuals, residuals));
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].value *= std::exp(scale * residuals[i]);
+  return points;
+}
+
+// chi^2 = 9 per degree of freedom.
+TEST(JammingLaw, ScatterOfThreeTimesTheErrorsGivesThreeTimesTheErrors) {
+  const Truth truth;
+  const std::vector<LawPoint> smooth = exact(truth, dense, 1e-4);
+  const LawAnswer alone = fit_law(smooth, {}, 0.62);
+  const LawAnswer answer = fit_law(scattered(truth, smooth, 9.0 * 6), {}, 0.62);
+  ASSERT_TRUE(alone.law && answer.law);
+  EXPECT_NEAR(answer.law->chi_squared / answer.law->degrees, 9, 0.05);
+  EXPECT_NEAR(answer.law->fraction.standard_error / alone.law->fraction.standard_error, 3, 0.05);
+  EXPECT_NEAR(answer.law->exponent.standard_error / alone.law->exponent.standard_error, 3, 0.05);
+  EXPECT_NEAR(answer.law->prefactor.standard_error / alone.law->prefactor.standard_error, 3, 0.05);
+  EXPECT_NEAR((answer.law->high - answer.law->low) / (alone.law->high - alone.law->low), 3, 0.05);
+}
+
+TEST(JammingLaw, ScatterOfThreeTimesTheErrorsGivesTheCommonExponentThreeTimesItsError) {
+  const Truth truth;
+  const std::vector<LawPoint> smooth = exact(truth, dense, 1e-4);
+  constexpr int degrees = 2 * (9 - 2) - 1;
+  const LawCurve curve{scattered(truth, smooth, 9.0 * degrees / 2), 0.62};
+  const CommonAnswer alone = fit_common_law({{smooth, 0.62}, {smooth, 0.62}}, {});
+  const CommonAnswer answer = fit_common_law({curve, curve}, {});
+  ASSERT_TRUE(alone.common && answer.common);
+  EXPECT_NEAR(answer.common->exponent.standard_error / alone.common->exponent.standard_error, 3, 0.05);
 }
 
 TEST(JammingLaw, IsRefusedWhereThePointsDoNotBoundIt) {
