@@ -135,11 +135,11 @@ void leave_no_nans(Json& value) {
   for (Json& part : value) leave_no_nans(part);
 }
 
-void add_measurements(const Scene& scene, const Simulation& simulation, Json& result) {
+void add_measurements(const Scene& scene, const Simulation& simulation, const Ending& ending, Json& result) {
   const StressMeans stress(scene, simulation.system());
   const std::vector<Quantity> quantities = quantities_of(scene, simulation.schedule());
   Json &mean = result["mean"], &blocks = result["blocks"];
-  mean = stress.means(sum_of(simulation.production().blocks()));
+  mean = stress.means(sum_of(simulation.production().blocks()), ending.cause == Ending::Cause::jammed);
   blocks = stress.blocks(simulation.production());
   const char* const usual = scene.physics.flow.steady_rate() > 0 ? "/relative_viscosity" : "/pressure";
   for (const std::unique_ptr<Observable>& observable : simulation.observables()) {
@@ -166,28 +166,34 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
   std::vector<Warning> warnings = scene_warnings(scene);
   if (const double overlap = sum_of(simulation.production().blocks()).mean_overlap(); overlap > 0.001) {
     warnings.push_back(
-        {"overlap", "contacts overlapped by " + Json(overlap).dump() +
-                        " of a radius in the mean, more than 0.001: they are too soft for this "
-                        "stress, and spheres take up less than their volume fraction"});
+        {"overlap",
+         fmt::format("contacts overlapped by {:.3g} of a radius in the mean, more than 0.001: they are "
+                     "too soft for this stress, and spheres take up less than their volume fraction",
+                     overlap)});
   }
   const std::optional<double> imbalance = energy_imbalance(scene, simulation);
   if (imbalance && std::abs(*imbalance) > scene.guard.energy_imbalance) {
-    warnings.push_back({"timestep", "the step makes " + Json(*imbalance).dump() +
-                                        " times the energy that the flow puts in, more than " +
-                                        Json(scene.guard.energy_imbalance).dump() +
-                                        ": the stress may depend on the step, choose a smaller one"});
+    warnings.push_back(
+        {"timestep",
+         fmt::format("the step makes {:.3g} times the energy that the flow puts in, more than {:.3g}: "
+                     "the stress may depend on the step, choose a smaller one",
+                     *imbalance, scene.guard.energy_imbalance)});
   }
   const std::optional<double> difference = half_step_difference(simulation.step_errors());
   if (difference && std::abs(*difference) > scene.guard.half_step_difference) {
-    warnings.push_back({"timestep", "half steps change the stress by " + Json(-*difference).dump() +
-                                        " of it, more than " + Json(scene.guard.half_step_difference).dump() +
-                                        ": choose a smaller step"});
+    warnings.push_back(
+        {"timestep",
+         fmt::format("half steps change the stress by {:.3g} of it, more than {:.3g}: choose a smaller "
+                     "step",
+                     -*difference, scene.guard.half_step_difference)});
   }
   const Json solver = solver_json(scene, simulation);
   if (!solver.is_null() && solver["mean_residual"] > largest_mean_residual) {
-    warnings.push_back({"solver", "the equations of the steps are left with a residual of " +
-                                      solver["mean_residual"].dump() + " of the motion, more than " +
-                                      Json(largest_mean_residual).dump() + ": choose a smaller step"});
+    warnings.push_back(
+        {"solver",
+         fmt::format("the equations of the steps are left with a residual of {:.3g} of the motion, more "
+                     "than {:.3g}: choose a smaller step",
+                     solver["mean_residual"].get<double>(), largest_mean_residual)});
   }
   if (!solver.is_null()) {
     const auto steps = static_cast<double>(sum_of(simulation.production().blocks()).steps);
@@ -201,8 +207,7 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
     }
   }
   if (ending.cause == Ending::Cause::jammed) {
-    warnings.push_back(
-        {"jammed", ending.message + "; for the rest of its window it counts as standing still"});
+    warnings.push_back({"jammed", ending.message + "; its rate is 0, and it has no viscosity"});
   }
   result["warnings"] = warnings_json(warnings);
   result["gate"] = {{"largest_stability_share", simulation.step_errors().largest_stability_share},
@@ -215,7 +220,7 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
   save(simulation.system(), state);
   result["final_state_sha256"] = sha256(state.bytes());
   if (is_measured(ending.cause)) {
-    add_measurements(scene, simulation, result);
+    add_measurements(scene, simulation, ending, result);
   }
   return result;
 }

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "engine/stability/derived_groups.h"
 #include "engine/start/packing.h"
 #include "engine/terms/drag.h"
 
@@ -100,9 +101,10 @@ StressMeans::StressMeans(const Scene& scene, const System& system)
       volume_(system.box.volume()),
       volume_fraction_(solid_volume(system.particles) / volume_),
       particles_(static_cast<double>(system.particles.count())),
-      unit_(unit_of_stress(physics_)) {}
+      unit_(unit_of_stress(physics_)),
+      notices_jams_(notices_jams(scene)) {}
 
-Json StressMeans::means(const BlockSums& sums) const {
+Json StressMeans::means(const BlockSums& sums, bool has_jammed) const {
   Json stress = Json::object();
   SymmetricTensor total;
   const auto part = [&](const char* name, const SymmetricTensor& value) {
@@ -149,20 +151,25 @@ Json StressMeans::means(const BlockSums& sums) const {
                 {"mean_overlap", sums.mean_overlap()},
                 {"kinetic_temperature", per_sample * sums.temperature.translational},
                 {"rotational_temperature", per_sample * sums.temperature.rotational}};
-  if (const std::optional<double> given = physics_.flow.deformation().stress()) add_flow(sums, *given, means);
+  if (const std::optional<double> given = physics_.flow.deformation().stress()) {
+    add_flow(sums, *given, has_jammed, means);
+  }
   return means;
 }
 
-// What has jammed stands still for the rest of its window: shear_rate is the strain over the time of all of
-// it, and over the seeds the mean of `flowing` is the share that flows to the end. Viscosities are stress
-// over mean rate, never a mean of stress over rate.
-void StressMeans::add_flow(const BlockSums& sums, double stress, Json& means) const {
-  const double rate = sums.shear_rate / static_cast<double>(sums.planned);
-  const double flows = sums.steps == sums.planned ? 1 : 0, viscous = physics_.viscosity * rate;
+// What has jammed stands still in the long run: its rate is 0, however far it strained before. Over the seeds
+// the mean of `flowing` is the share that flows to the end, which nothing tells in a window that is too short
+// to notice a jam. Viscosities are stress over mean rate, never a mean of stress over rate.
+void StressMeans::add_flow(const BlockSums& sums, double stress, bool has_jammed, Json& means) const {
+  const double rate = has_jammed ? 0 : sums.shear_rate / static_cast<double>(sums.planned);
+  const double viscous = physics_.viscosity * rate;
+  const double flows = !has_jammed && sums.steps == sums.planned ? 1 : 0;
+  const auto known = [&](double number) { return notices_jams_ ? Json(number) : Json(); };
   means["shear_rate"] = rate;
-  means["flowing"] = flows;
+  means["flowing"] = known(flows);
   means["apparent_viscosity"] = {{"stress", stress}, {"viscous_stress", viscous}};
-  means["viscosity_of_those_flowing"] = {{"stress", flows * stress}, {"viscous_stress", flows * viscous}};
+  means["viscosity_of_those_flowing"] = {{"stress", known(flows * stress)},
+                                         {"viscous_stress", known(flows * viscous)}};
 }
 
 Json StressMeans::blocks(const Production& production) const {

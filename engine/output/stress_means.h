@@ -18,17 +18,19 @@ class StressMeans {
   StressMeans(const Scene& scene, const System& system);
 
   // Of these sums. Stresses are divided by viscosity * shear_rate, or in the scene's units at rest.
-  Json means(const BlockSums& sums) const;
+  // `has_jammed`: the flow at a given stress stands still in the end.
+  Json means(const BlockSums& sums, bool has_jammed = false) const;
   // Of all blocks: what is one number, and xy of every stress that fluctuates, in 32 of them; whole tensors
   // in the quarters of the window. Five digits.
   Json blocks(const Production& production) const;
 
  private:
   // Of a flow at a given stress.
-  void add_flow(const BlockSums& sums, double stress, Json& means) const;
+  void add_flow(const BlockSums& sums, double stress, bool has_jammed, Json& means) const;
 
   const Physics& physics_;
   double volume_, volume_fraction_, particles_, unit_;
+  bool notices_jams_;
 };
 
 // Those that means() of the scene have as numbers.

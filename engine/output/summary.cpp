@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/observables/production.h"
+#include "engine/realisation/ending.h"
 
 namespace peclet::engine {
 namespace {
@@ -47,8 +48,10 @@ std::string means(const Json& result) {
     const double viscous = viscosity.at("viscous_stress").get<double>();
     const std::string relative =
         viscous > 0 ? fmt::format("; viscosity {:.4g} relative to the solvent", stress / viscous) : "";
-    text +=
-        line("shear rate", fmt::format("{} at a stress of {:.4g}{}", value("shear_rate"), stress, relative));
+    const std::string rate = result.at("ending").at("cause") == name_of(Ending::Cause::jammed)
+                                 ? fmt::format("{:.4g}", mean.at("shear_rate").get<double>())
+                                 : value("shear_rate");
+    text += line("shear rate", fmt::format("{} at a stress of {:.4g}{}", rate, stress, relative));
   }
   if (mean.value("loss_modulus", Json()).is_number()) {
     const auto number = [&](const char* name) { return mean.at(name).get<double>(); };

@@ -174,7 +174,7 @@ std::optional<Ending> Simulation::look_for_jam() {
     control_->wait_from(system_);
     return std::nullopt;
   }
-  if (!has_jammed || system_.step == schedule_.total()) return std::nullopt;
+  if (!has_jammed) return std::nullopt;
   return Ending{Ending::Cause::jammed, system_.step,
                 fmt::format("the suspension stands still under its stress: jammed at a strain of {:.4g}",
                             system_.box.strain())};

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/random/keyed_random.h"
+#include "engine/stability/derived_groups.h"
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {
@@ -17,14 +18,6 @@ constexpr int most_attempts = 6;
 
 // The time in which the rate follows a stress: in steps, and in strain where steps are long.
 constexpr double usual_response = 20, shortest_response = 5, strain_of_response = 0.05;
-
-// A realisation that does not strain so far has jammed.
-constexpr double least_strain = 0.01;
-constexpr double usual_jammed_viscosity = 1e4;
-
-double jammed_viscosity(const Scene& scene) {
-  return scene.document.value(Json::json_pointer("/flow/jammed_viscosity"), usual_jammed_viscosity);
-}
 
 // Rate of the step that measures a slope with noise [1/time]. Beside the stress of the noise, kT / a^3, which
 // is rounded to single precision, one of its own must be seen; at high stress it is about the rate of the
@@ -62,7 +55,7 @@ StressControl::StressControl(const Scene& scene, std::shared_ptr<ControlledShear
       timestep_(timestep),
       stress_(*shear_->stress()),
       thermal_energy_(scene.physics.thermal_energy),
-      patience_(least_strain * jammed_viscosity(scene) * scene.physics.viscosity / stress_),
+      patience_(*patience(scene)),
       trial_rate_(trial_rate(scene, shear_->largest_rate())),
       response_(time_of_response(timestep, shear_->largest_rate())),
       solvent_(scene.physics.viscosity * (1 + stresslet(scene.volume_fraction, {.xy = 1}).xy)),

@@ -67,7 +67,7 @@ struct Guard {
 };
 
 struct Warning {
-  std::string code;  // "inertia-shear", "inertia-thermal", "composition", "overlap", "timestep", "solver"
+  std::string code;  // "inertia-shear", "inertia-thermal", "composition", "patience", "overlap" ...
   std::string message;
 };
 

@@ -237,7 +237,32 @@ void warn_of_composition(const Scene& scene, const DerivedGroups& groups, std::v
                    groups.mixture->alpha, particles.mixture->alpha)});
 }
 
+void warn_of_patience(const Scene& scene, std::vector<Warning>& warnings) {
+  if (!patience(scene) || notices_jams(scene)) return;
+  const double stress_time = scene.physics.viscosity / *scene.physics.flow.deformation().stress();
+  warnings.push_back(
+      {"patience",
+       fmt::format("the window of {:.4g} stress times is not longer than the {:.4g} after which a flow that "
+                   "stands still counts as jammed: flowing and viscosity_of_those_flowing have no value; a "
+                   "longer /duration/production or a smaller /flow/jammed_viscosity cures it",
+                   time_of(scene.production, scene) / stress_time, *patience(scene) / stress_time)});
+}
+
 }  // namespace
+
+std::optional<double> patience(const Scene& scene) {
+  constexpr double usual_jammed_viscosity = 1e4;
+  const std::optional<double> stress = scene.physics.flow.deformation().stress();
+  if (!stress) return std::nullopt;
+  const double viscosity =
+      scene.document.value(Json::json_pointer("/flow/jammed_viscosity"), usual_jammed_viscosity);
+  return least_strain * viscosity * scene.physics.viscosity / *stress;
+}
+
+bool notices_jams(const Scene& scene) {
+  const std::optional<double> waited = patience(scene);
+  return waited && time_of(scene.production, scene) > *waited * (1 + 1e-9);
+}
 
 std::vector<Warning> scene_warnings(const Scene& scene) {
   const DerivedGroups groups = derived_groups(scene);
@@ -267,6 +292,7 @@ std::vector<Warning> scene_warnings(const Scene& scene) {
   warn_of_oscillation(scene, warnings);
   warn_of_other_sizes(scene, groups, warnings);
   warn_of_composition(scene, groups, warnings);
+  warn_of_patience(scene, warnings);
   // Of smooth motion in uniform shear half steps tell the error.
   const bool noise = scene.physics.thermal_energy > 0;
   const bool friction = scene.physics.contact && scene.physics.contact->friction > 0;

@@ -46,11 +46,19 @@ struct DerivedGroups {
 // meaning or linear_response is refused.
 inline constexpr double nearly_at_rest = 0.1;
 
+// At a given stress what does not strain by `least_strain` within its patience has jammed,
+//   patience = least_strain eta_j eta / stress  [time],
+// eta_j the relative viscosity `jammed_viscosity`. No patience unless the stress is given.
+inline constexpr double least_strain = 0.01;
+std::optional<double> patience(const Scene& scene);
+// Returns whether a jam is noticed that is there when the window begins: if the window outlasts the patience.
+bool notices_jams(const Scene& scene);
+
 DerivedGroups derived_groups(const Scene& scene);
 Json to_json(const DerivedGroups& groups);
 
 // What the author should know before anything runs: inertia that is not small, a step beyond the automatic
-// one.
+// one, a window in which no jam is noticed.
 std::vector<Warning> scene_warnings(const Scene& scene);
 // What the result itself would say in the end: spheres that are too soft, or too dense to be packed.
 std::vector<Warning> warnings_before_run(const Scene& scene);

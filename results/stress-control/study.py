@@ -67,7 +67,8 @@ def stress_row(program, kind, scene, stress, times, seeds):
     rate = estimate([m["shear_rate"] for m in means])
     row = {"kind": kind, "fraction": scene["volume_fraction"], "control": "stress", "at": stress, "seeds": len(means)}
     row |= entries("viscosity", quotient((stress, 0), rate) if rate[0] > 0 else (math.inf, math.inf))
-    return row | {"flowing": sum(m["flowing"] for m in means) / len(means)}
+    flowing = [math.nan if m["flowing"] is None else m["flowing"] for m in means]  # of long windows only
+    return row | {"flowing": sum(flowing) / len(means)}
 
 
 def measure(program):

@@ -133,7 +133,7 @@ def every_flow(peclet, folder):
 
 
 def share_that_flows(peclet, folder):
-    flows = [{"stress": 5, "jammed_viscosity": 1.5}, {"stress": 5, "jammed_viscosity": 1e4}]
+    flows = [{"stress": 5, "jammed_viscosity": 1.5}, {"stress": 5, "jammed_viscosity": 100}]
     path = written(folder, standing_still(flows))
     subprocess.run([peclet, "run", path, "--quiet"], check=True, stdout=subprocess.DEVNULL)
     exported = json.loads(subprocess.run([peclet, "export", path], check=True, capture_output=True).stdout)
