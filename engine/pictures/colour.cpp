@@ -19,8 +19,8 @@ constexpr std::array<std::uint32_t, 52> viridis_table = {
 };
 
 // The scheme "light".
-constexpr std::array<std::uint32_t, 8> species_table = {0x77aadd, 0xee8866, 0xeedd88, 0x44bb99,
-                                                        0xffaabb, 0x99ddff, 0xbbcc33, 0xaaaa00};
+constexpr std::array<std::uint32_t, count_of_species_colours> species_table = {
+    0x77aadd, 0xee8866, 0xeedd88, 0x44bb99, 0xffaabb, 0x99ddff, 0xbbcc33, 0xaaaa00};
 
 }  // namespace
 
@@ -59,8 +59,6 @@ Colour viridis(double place) {
   return {part(16), part(8), part(0)};
 }
 
-Colour colour_of_species(std::size_t species) {
-  return colour_of(species_table[species % species_table.size()]);
-}
+Colour colour_of_species(std::size_t species) { return colour_of(species_table.at(species)); }
 
 }  // namespace peclet::engine

@@ -31,7 +31,8 @@ std::uint8_t encoded(float linear);
 Colour viridis(double place);
 
 // Eight colours that most people with a defect of colour vision tell apart: P. Tol, "Colour Schemes" (2021),
-// scheme light. Species beyond the eighth begin again.
+// scheme light. Requires species < count_of_species_colours.
+constexpr std::size_t count_of_species_colours = 8;
 Colour colour_of_species(std::size_t species);
 
 }  // namespace peclet::engine

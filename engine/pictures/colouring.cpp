@@ -17,7 +17,22 @@ void require(bool is_there, const std::string& file, const char* what, const cha
     throw InputError(file, "", "", fmt::format("has no {}, which --colour asks for{}", what, cure));
 }
 
+// For more species than there are colours: their radii on a scale, or their places where all are alike.
+Colouring by_radius(const Snapshot& snapshot) {
+  const auto [low, high] = std::minmax_element(snapshot.radius.begin(), snapshot.radius.end());
+  Colouring all;
+  all.scale = {ColourScale{"radius", *low, *high}};
+  const bool has_sizes = *low < *high;
+  if (!has_sizes) all.scale = {{"species", 0, static_cast<double>(snapshot.species_names.size() - 1)}};
+  for (std::size_t i = 0; i < snapshot.count(); ++i) {
+    all.of_spheres.push_back(
+        all.scale.front().at(has_sizes ? snapshot.radius[i] : static_cast<double>(snapshot.species[i])));
+  }
+  return all;
+}
+
 Colouring by_species(const Snapshot& snapshot) {
+  if (snapshot.species_names.size() > count_of_species_colours) return by_radius(snapshot);
   Colouring all;
   std::vector<double> radius(snapshot.species_names.size(), 0);
   std::vector<bool> is_one_size(radius.size(), true);

@@ -38,10 +38,11 @@ struct Colouring {
   std::vector<NamedColour> names;
 };
 
-// species; speed: of the centre beyond the mean flow L r, L the velocity gradient of the file, or without it
-// gamma y along x with gamma = strain / time, or in the laboratory where the file has neither; contacts: of a
-// sphere; stress: sigma_xy, what the sphere adds to V sigma over its own volume. Throws InputError naming the
-// file where the frame does not have what is asked for.
+// species, of more than eight their radii on a scale; speed: of the centre beyond the mean flow L r, L the
+// velocity gradient of the file, or without it gamma y along x with gamma = strain / time, or in the
+// laboratory where the file has neither; contacts: of a sphere; stress: sigma_xy, what the sphere adds to V
+// sigma over its own volume. Throws InputError naming the file where the frame does not have what is asked
+// for.
 Colouring colouring_of(const Snapshot& snapshot, const std::string& name, const std::string& file);
 
 }  // namespace peclet::engine

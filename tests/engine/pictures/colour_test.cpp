@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <set>
+#include <string>
 
 #include "engine/pictures/colouring.h"
 
@@ -38,6 +40,36 @@ TEST(PictureColour, OfViridisIsThePublishedOne) {
   }
   EXPECT_EQ(shown(viridis(-5)), shown(viridis(0)));
   EXPECT_EQ(shown(viridis(9)), shown(viridis(1)));
+}
+
+Snapshot of_sizes(std::size_t sizes) {
+  Snapshot made;
+  for (std::size_t s = 0; s < sizes; ++s) {
+    made.position.push_back({});
+    made.radius.push_back(1 + 0.1 * static_cast<double>(s));
+    made.species.push_back(static_cast<std::uint32_t>(s));
+    made.species_names.push_back(std::string(1, static_cast<char>('A' + s)));
+  }
+  return made;
+}
+
+// Eight colours are told apart by name; more sizes lie on a scale of radii, whose ends are the least and the
+// largest, each with a colour of its own.
+TEST(PictureColour, OfSpeciesIsNoOtherOnesColour) {
+  for (const std::size_t sizes : {1, 8, 9, 14}) {
+    const Colouring all = colouring_of(of_sizes(sizes), "species", "x.gsd");
+    std::set<std::array<int, 3>> colours;
+    for (const Colour& colour : all.of_spheres) colours.insert(shown(colour));
+    EXPECT_EQ(colours.size(), sizes);
+    EXPECT_EQ(all.names.size(), sizes <= 8 ? sizes : 0);
+    ASSERT_EQ(all.scale.size(), sizes <= 8 ? 0U : 1U);
+    if (sizes <= 8) continue;
+    EXPECT_EQ(all.scale[0].title, "radius");
+    EXPECT_EQ(all.scale[0].low, 1);
+    EXPECT_NEAR(all.scale[0].high, 1 + 0.1 * static_cast<double>(sizes - 1), 1e-12);
+    EXPECT_EQ(shown(all.of_spheres.front()), shown(viridis(0)));
+    EXPECT_EQ(shown(all.of_spheres.back()), shown(viridis(1)));
+  }
 }
 
 TEST(PictureColour, OfAScaleLeavesOutliersAside) {
