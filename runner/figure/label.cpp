@@ -6,18 +6,20 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <set>
 #include <string_view>
 
 namespace peclet::runner {
 namespace {
 
 const std::map<std::string, std::string, std::less<>> greek{
-    {"alpha", "α"}, {"beta", "β"},  {"gamma", "γ"},  {"delta", "δ"}, {"epsilon", "ε"}, {"eta", "η"},
-    {"theta", "θ"}, {"kappa", "κ"}, {"lambda", "λ"}, {"mu", "μ"},    {"nu", "ν"},      {"xi", "ξ"},
-    {"pi", "π"},    {"rho", "ρ"},   {"sigma", "σ"},  {"tau", "τ"},   {"phi", "φ"},     {"chi", "χ"},
-    {"psi", "ψ"},   {"omega", "ω"}, {"Gamma", "Γ"},  {"Delta", "Δ"}, {"Theta", "Θ"},   {"Lambda", "Λ"},
-    {"Sigma", "Σ"}, {"Phi", "Φ"},   {"Psi", "Ψ"},    {"Omega", "Ω"}};
+    {"alpha", "α"},  {"beta", "β"},  {"gamma", "γ"},  {"delta", "δ"}, {"epsilon", "ε"}, {"eta", "η"},
+    {"theta", "θ"},  {"kappa", "κ"}, {"lambda", "λ"}, {"mu", "μ"},    {"nu", "ν"},      {"xi", "ξ"},
+    {"pi", "π"},     {"rho", "ρ"},   {"sigma", "σ"},  {"tau", "τ"},   {"phi", "φ"},     {"chi", "χ"},
+    {"psi", "ψ"},    {"omega", "ω"}, {"rate", "γ̇"},   {"Gamma", "Γ"}, {"Delta", "Δ"},   {"Theta", "Θ"},
+    {"Lambda", "Λ"}, {"Sigma", "Σ"}, {"Phi", "Φ"},    {"Psi", "Ψ"},   {"Omega", "Ω"}};
 
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
@@ -57,9 +59,28 @@ Label title(const std::string& words, const Label& symbol, const std::string& un
   return label;
 }
 
+// Whether a unit is made of dimensions alone, such as "stress" or "length^2 / time^2": that of the scene.
+bool is_of_scene(const std::string& unit) {
+  static const std::set<std::string, std::less<>> dimensions{"stress", "energy", "time",     "length",
+                                                             "mass",   "force",  "viscosity"};
+  bool has_dimension = false;
+  for (auto at = unit.begin(); at != unit.end();) {
+    if (!is_letter(*at)) {
+      ++at;
+      continue;
+    }
+    const auto end = std::find_if_not(at, unit.end(), is_letter);
+    if (!dimensions.contains(std::string(at, end))) return false;
+    has_dimension = true;
+    at = end;
+  }
+  return has_dimension;
+}
+
 // Names of scales, such as "viscosity * shear_rate", in the letters of the field; nothing of a pure number.
 std::string unit_text(const std::string& unit) {
   if (unit == "1") return "";
+  if (is_of_scene(unit)) return "scene units";
   std::string text;
   for (std::size_t at = 0; at < unit.size();) {
     const std::size_t end = std::min(unit.find(" * ", at), unit.size());
@@ -96,7 +117,7 @@ std::string unit_of_parameter(const Json& parameter) {
   const std::string meaning = parameter.value("meaning", "");
   const std::size_t begin = meaning.rfind('[');
   if (begin == std::string::npos || !meaning.ends_with(']')) return "";
-  return meaning.substr(begin + 1, meaning.size() - begin - 2);
+  return unit_text(meaning.substr(begin + 1, meaning.size() - begin - 2));
 }
 
 std::string raised(int power) {
@@ -110,7 +131,28 @@ std::string raised(int power) {
 
 }  // namespace
 
+namespace {
+
+// A formula in words, such as "<|F_t| / (mu F_n)>": a mean, and what stands lowered behind each underscore.
+Label formula_label(std::string text) {
+  if (text.starts_with('<') && text.ends_with('>')) text = "⟨" + text.substr(1, text.size() - 2) + "⟩";
+  Label label;
+  while (!text.empty()) {
+    const std::size_t floor = std::min(text.find('_'), text.size());
+    if (floor > 0) label.push_back({with_greek(text.substr(0, floor))});
+    text.erase(0, floor + 1);
+    const auto end =
+        static_cast<std::size_t>(std::find_if_not(text.begin(), text.end(), is_letter) - text.begin());
+    if (end > 0) label.push_back({with_greek(text.substr(0, end)), -1});
+    text.erase(0, end);
+  }
+  return label;
+}
+
+}  // namespace
+
 Label symbol_label(const std::string& symbol, const std::string& element) {
+  if (element.empty() && symbol.find_first_of("<(|") != std::string::npos) return formula_label(symbol);
   const std::size_t roof = symbol.find('^'), floor = symbol.substr(0, roof).find('_');
   const std::string base = symbol.substr(0, std::min(floor, roof));
   const std::string below = floor == std::string::npos ? "" : symbol.substr(floor + 1, roof - floor - 1);

@@ -69,7 +69,9 @@ class Rules(PageTest):
             ("eta_r^pairs", "", [["η", 0], ["r", -1], ["pairs", 1]]),
             ("N_1^noise", "", [["N", 0], ["1", -1], ["noise", 1]]),
             ("P", "", [["P", 0]]),
-            ("g(r)", "", [["g", 0], ["(r)", 0]]),
+            ("g(r)", "", [["g(r)", 0]]),
+            ("<rate>", "", [["⟨γ̇⟩", 0]]),
+            ("P(F_n > F_CL)", "", [["P(F", 0], ["n", -1], [" > F", 0], ["CL", -1], [")", 0]]),
             ("u_x(y) - U(y)", "", [["u", 0], ["x", -1], ["(y) - U(y)", 0]]),
         ):
             call = f"Format.symbol({json.dumps(symbol)}, {json.dumps(element)}).map(part => [part.text, part.level])"

@@ -100,6 +100,7 @@ const Format = {
     chi: 'χ',
     psi: 'ψ',
     omega: 'ω',
+    rate: 'γ̇',
     Gamma: 'Γ',
     Delta: 'Δ',
     Theta: 'Θ',
@@ -114,17 +115,31 @@ const Format = {
   // name of a term, with underscores of its own; a few letters behind its last one are lowered: sigma^noise_xy. With an
   // `element` all of it is the name, and the element is lowered. Parentheses and what follows stay: u_x(y).
   symbol(text, element = '') {
+    if (!element && /[<(|]/.test(text)) return Format.formula(text);
     const [, whole, rest] = /^([^(]*)(.*)$/.exec(text);
     const [, base, below, above] = /^([^_^]*)(?:_([^^]*))?(?:\^(.*))?$/.exec(whole) || [null, whole, '', ''];
     const [, name, tail] = (element ? null : /^(.*)_(\w{1,2})$/.exec(above || '')) || [null, above, ''];
-    const translate = (part) => part.replace(/[A-Za-z]+/g, (word) => Format.greek[word] || word);
     const parts = [
       [base, 0],
       [[below, tail, element].filter(Boolean).join(' '), -1],
       [(name || '').replace(/_/g, ' '), 1],
       [rest, 0],
     ];
-    return parts.filter(([part]) => part).map(([part, level]) => ({ text: translate(part), level }));
+    return parts.filter(([part]) => part).map(([part, level]) => ({ text: Format.translated(part), level }));
+  },
+
+  translated(text) {
+    return text.replace(/[A-Za-z]+/g, (word) => Format.greek[word] || word);
+  },
+
+  // A formula in words, such as "<|F_t| / (mu F_n)>": a mean, and what stands lowered behind each underscore.
+  formula(text) {
+    return text
+      .replace(/^<(.*)>$/, '⟨$1⟩')
+      .split(/(_[A-Za-z]+)/)
+      .filter(Boolean)
+      .map((part) => (part[0] === '_' ? [part.slice(1), -1] : [part, 0]))
+      .map(([part, level]) => ({ text: Format.translated(part), level }));
   },
 
   // The same for matplotlib.
@@ -143,6 +158,11 @@ const Format = {
 
   unit(unit) {
     if (!unit || unit === '1') return '';
+    // Made of dimensions alone, such as "stress" or "length^2 / time^2": that of the scene.
+    const dimensions = ['stress', 'energy', 'time', 'length', 'mass', 'force', 'viscosity'],
+      words = unit.match(/[A-Za-z]+/g) || [];
+    const isOfScene = words.length > 0 && words.every((word) => dimensions.includes(word));
+    if (isOfScene) return 'scene units';
     return unit
       .split(' * ')
       .map((word) => ({ viscosity: 'η', shear_rate: 'γ̇' })[word] || word.replace(/_/g, ' '))
@@ -160,7 +180,7 @@ const Format = {
     return {
       words: words || Format.words(last.join(' ')),
       symbol: symbol ? Format.keySymbol(symbol) : [],
-      unit: bracket ? bracket[1] : '',
+      unit: bracket ? Format.unit(bracket[1]) : '',
     };
   },
 

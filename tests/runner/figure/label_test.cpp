@@ -15,6 +15,10 @@ TEST(FigureLabel, OfASymbolHasWhatIsLoweredAndRaised) {
   EXPECT_EQ(symbol_label("sigma^contact_normal", "xz"), (Label{{"σ", 0}, {"xz", -1}, {"contact normal", 1}}));
   EXPECT_EQ(symbol_label("eta_r^pairs"), (Label{{"η", 0}, {"r", -1}, {"pairs", 1}}));
   EXPECT_EQ(symbol_label("N_1^noise"), (Label{{"N", 0}, {"1", -1}, {"noise", 1}}));
+  EXPECT_EQ(symbol_label("<rate>"), (Label{{"⟨γ̇⟩", 0}}));
+  EXPECT_EQ(symbol_label("<delta/a>"), (Label{{"⟨δ/a⟩", 0}}));
+  EXPECT_EQ(symbol_label("P(F_n > F_CL)"), (Label{{"P(F", 0}, {"n", -1}, {" > F", 0}, {"CL", -1}, {")", 0}}));
+  EXPECT_EQ(symbol_label("u_x(y)"), (Label{{"u", 0}, {"x", -1}, {"(y)", 0}}));
 }
 
 TEST(FigureLabel, OfAnAxisHasWordsSymbolAndUnit) {
@@ -23,6 +27,12 @@ TEST(FigureLabel, OfAnAxisHasWordsSymbolAndUnit) {
   const Drawable stress{"stress/total/3", "stress/total", "xy", "sigma", "1"};
   EXPECT_EQ(text_of(title_of(stress)), "stress, total, xy σxy");
   EXPECT_EQ(mathtext_of(title_of(stress)), "stress, total, xy σ$_{\\mathrm{xy}}$");
+  const Drawable rate{"shear_rate", "shear_rate", "", "<rate>", "1 / time"};
+  EXPECT_EQ(text_of(title_of(rate)), "shear rate ⟨γ̇⟩ [scene units]");
+  const Drawable of_scene{"pressure", "pressure", "", "P", "stress"};
+  EXPECT_EQ(text_of(title_of(of_scene)), "pressure P [scene units]");
+  const Drawable of_others{"pressure", "pressure", "", "P", "MPa"};
+  EXPECT_EQ(text_of(title_of(of_others)), "pressure P [MPa]");
 }
 
 TEST(FigureLabel, OfAParameterIsItsNameInTheField) {
@@ -30,7 +40,7 @@ TEST(FigureLabel, OfAParameterIsItsNameInTheField) {
                    {"meaning", "Energy [energy]"},
                    {"words", "thermal energy"},
                    {"symbol", "k_B T"}};
-  EXPECT_EQ(text_of(title_of(known)), "thermal energy kBT [energy]");
+  EXPECT_EQ(text_of(title_of(known)), "thermal energy kBT [scene units]");
   EXPECT_EQ(short_name_of(known), (Label{{"k", 0}, {"B", -1}, {"T", 0}}));
   const Json element{{"pointer", "/particles/species/1/radius"}, {"meaning", ""}};
   EXPECT_EQ(text_of(title_of(element)), "radius");
