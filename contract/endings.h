@@ -9,4 +9,10 @@ namespace peclet {
 // ending there are no means.
 inline bool has_results(std::string_view cause) { return cause == "completed" || cause == "jammed"; }
 
+// Returns whether a realisation with this cause has jammed: it stood still under its stress, was pressed
+// together further than the guard allows, or could not be packed.
+inline bool is_jam(std::string_view cause) {
+  return cause == "jammed" || cause == "overlap" || cause == "packing";
+}
+
 }  // namespace peclet

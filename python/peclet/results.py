@@ -4,13 +4,13 @@ import io
 import json
 import os
 
-from peclet.program import PecletError, ask
+from peclet.program import PecletError, ask, cure_for
 from peclet.table import Table, cell_of
 
 ESTIMATE = ("mean", "standard_error", "half_width")
 # Columns of the exports that are text, also where it looks like a number.
 TEXTS = ("label", "hash", "verdict", "quantity", "symbol", "unit", "estimator")
-OF_POINTS = ("label", "verdict", "seeds", "lost", "count", *ESTIMATE, "provisional")
+OF_POINTS = ("label", "verdict", "seeds", "lost", "count", *ESTIMATE, "provisional", "jammed")
 OF_SEEDS = ("label", "seed", "deciding", "ending", "cpu_seconds")
 
 
@@ -127,10 +127,12 @@ class Results:
         `standard_error` and `half_width` of the 95 % interval (of the campaign's confidence) at the point's last look,
         with the control variate. Those of the target, by which the campaign stops, or of another single number, such as
         pressure, stress/total/xy or transient/shear_stress/3; the half-width of such is Student's. `provisional` rows
-        have had no look yet: their mean is that of all seeds so far, and has no interval."""
+        have had no look yet: their mean is that of all seeds so far, and has no interval. `jammed`: half of the seeds or
+        more have jammed, as `peclet jamming` counts them; such a point has no viscosity."""
         rows, axes = self._named(self._rows("csv"))
         for row in rows:
             row["provisional"] = row["mean"] is None
+            row["jammed"] = row.get("jammed") == 1
             if row["provisional"]:
                 row |= {name: row.get(f"so_far_{name}") for name in ("count", "mean", "standard_error")}
         if quantity not in (None, self.target["observable"]):
@@ -207,7 +209,7 @@ class Results:
         try:
             import gsd.hoomd
         except ImportError as missing:
-            raise PecletError("trajectories need the module gsd: install python3-gsd") from missing
+            raise PecletError(f"trajectories need the module gsd: {cure_for('gsd', 'python3-gsd')}") from missing
         own = [file for file in self._files(point, wanted) if file["name"] == "trajectory.gsd"]
         found = [file["path"] for file in own if file["seed"] == seed]
         if len(found) != 1:

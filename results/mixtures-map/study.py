@@ -280,7 +280,9 @@ def rows_of_branches(jams):
     for row, name in ((SMOOTH, "μ = 0, no noise"), (ROUGH, "no noise"), (100, "Pe_cg = 100"), (10, "Pe_cg = 10")):
         shares = jams.shares(row)
         best = propagated([jams.jammed(row, a) for a in shares], lambda v, of=shares: float(of[int(np.argmax(v))]))
-        yield Statement(f"{name}: share α of grains, of those measured, at which φ_m is largest", "L5.3", *best, 0.6, 0.8)
+        yield Statement(
+            f"{name}: share α of grains, of those measured, at which φ_m is largest", "L5.3", *best, 0.6, 0.8
+        )
 
 
 def interpolated(jams, alpha):

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <utility>
 
+#include "contract/endings.h"
 #include "runner/statistics/transient.h"
 
 namespace peclet::runner {
@@ -16,12 +18,13 @@ namespace {
 struct Aggregate {
   StateCounts counts;
   RunningEstimate so_far;
-  std::vector<int> ended;       // seeds, in order
-  std::vector<int> tested;      // the first few seeds with blocks, as many as a test for transients needs
-  std::vector<double> seconds;  // of processor time that each of these took
-  Cost cost;                    // time on the wall
+  std::vector<int> ended;         // seeds, in order
+  std::vector<int> tested;        // the first few seeds with blocks, as many as a test for transients needs
+  std::vector<double> seconds;    // of processor time that each of these took
+  std::vector<int> jammed, lost;  // those of these that have jammed, or have no value for another reason
+  Cost cost;                      // time on the wall
 
-  void count(SeedState state, int seed, double cpu_seconds) {
+  void count(SeedState state, int seed, const std::string& cause, double cpu_seconds) {
     switch (state) {
       case SeedState::queued:
         ++counts.queued;
@@ -39,6 +42,11 @@ struct Aggregate {
         ++counts.quarantined;
         break;
     }
+    if (is_jam(cause)) {
+      jammed.push_back(seed);
+    } else if (state != SeedState::done) {
+      lost.push_back(seed);
+    }
     ended.push_back(seed);
     seconds.push_back(cpu_seconds);
     counts.cpu_seconds += cpu_seconds;
@@ -47,6 +55,9 @@ struct Aggregate {
     return std::accumulate(seconds.begin(), seconds.begin() + count, 0.0);
   }
   int ended_below(int seed) const { return below(ended, seed); }
+  Endings endings_below(int seed) const {
+    return {below(ended, seed), below(jammed, seed), below(lost, seed)};
+  }
   // Whether the look could not be tested for transients.
   bool lacks_blocks_of(const Look& look) const {
     return lacks_blocks(look.estimate.count, below(tested, look.seeds));
@@ -63,13 +74,13 @@ struct Aggregate {
 std::map<std::int64_t, Aggregate> read_aggregates(Connection& connection) {
   Statement query(connection,
                   "SELECT point_id, seed, state, value + coalesce(control, 0), cpu_seconds, first_half, "
-                  "wall_seconds FROM realisation "
+                  "wall_seconds, cause FROM realisation "
                   "ORDER BY point_id, seed");
   std::map<std::int64_t, Aggregate> aggregates;
   while (query.step()) {
     Aggregate& aggregate = aggregates[query.integer(0)];
     const int seed = static_cast<int>(query.integer(1));
-    aggregate.count(seed_state(query.text(2)), seed, query.optional_real(4).value_or(0));
+    aggregate.count(seed_state(query.text(2)), seed, query.text(7), query.optional_real(4).value_or(0));
     if (const std::optional<double> seconds = query.optional_real(6)) aggregate.cost.add(*seconds);
     if (query.is_null(3)) continue;
     aggregate.so_far.add(query.real(3));
@@ -160,6 +171,13 @@ void make_again(Database& database, const PointRecord& point, const TargetRecord
 
 }  // namespace
 
+Json to_json(const Endings& endings) {
+  return {{"ended", endings.ended},
+          {"jammed", endings.jammed},
+          {"lost", endings.lost},
+          {"has_jammed", endings.has_jammed()}};
+}
+
 std::vector<PointSummary> summarise_points(Database& database, const TargetRecord& target) {
   Connection& connection = database.connection();
   std::map<std::int64_t, Aggregate> aggregates = read_aggregates(connection);
@@ -190,6 +208,9 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
       summary.looks.back().untested = aggregate.lacks_blocks_of(summary.looks.back());
     }
     make_again(database, point, target, summary);
+    const int last_look =
+        summary.looks.empty() ? std::numeric_limits<int>::max() : summary.looks.back().seeds;
+    summary.endings = aggregate.endings_below(last_look);
     summary.decided = !summary.looks.empty() && summary.looks.back().verdict != Verdict::more;
     const int seen = summary.looks.empty() ? 0 : summary.looks.back().seeds;
     if (summary.decided && earlier[point.id] > seen) summary.earlier_look = earlier[point.id];

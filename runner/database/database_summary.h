@@ -10,9 +10,23 @@
 
 namespace peclet::runner {
 
+// How the seeds that a point is judged by have ended: those of its last look; before the first one, all that
+// have ended. Whether a point has jammed is said here and nowhere else.
+struct Endings {
+  int ended = 0;
+  int jammed = 0;  // is_jam(), with a result or without
+  int lost = 0;    // without a value, for another reason
+
+  // Half of the seeds or more.
+  bool has_jammed() const { return jammed > 0 && 2 * jammed >= ended; }
+  // More than a tenth, less than half: means are of seeds that happened to flow.
+  bool has_partly_jammed() const { return !has_jammed() && 10 * jammed > ended; }
+};
+
 struct PointSummary {
   PointRecord point;
   StateCounts counts;
+  Endings endings;
   // Of value + control, over all seeds that have ended with a value, in whatever order they came.
   Estimate so_far;
   std::map<std::string, int> losses;  // seeds by cause
@@ -38,6 +52,9 @@ struct PointSummary {
   // Seeds of a decided point that have ended beyond the deciding look.
   int surplus() const { return decided ? counts.terminal() - wanted_ended : 0; }
 };
+
+// {"ended", "jammed", "lost", "has_jammed"}
+Json to_json(const Endings& endings);
 
 // The points of the sweep, in its order.
 std::vector<PointSummary> summarise_points(Database& database, const TargetRecord& target);

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string>
 
+#include "contract/endings.h"
 #include "contract/integrity_error.h"
 
 namespace peclet::runner {
@@ -55,7 +56,8 @@ const NumberLayout& NumberBook::layout(std::int64_t id) {
 void NumberBook::for_each(std::int64_t point, int end, const Visit& visit) {
   Statement query(
       connection_,
-      "SELECT seed, layout_id, numbers FROM numbers WHERE point_id = ? AND seed < ? ORDER BY seed");
+      "SELECT seed, layout_id, numbers, cause FROM numbers JOIN realisation USING (point_id, seed) "
+      "WHERE point_id = ? AND seed < ? ORDER BY seed");
   query.bind(point).bind(end);
   std::vector<double> numbers;
   while (query.step()) {
@@ -68,7 +70,7 @@ void NumberBook::for_each(std::int64_t point, int end, const Visit& visit) {
     }
     numbers.resize(about.count());
     std::memcpy(numbers.data(), bytes.data(), bytes.size());
-    visit(seed, about, numbers);
+    visit({seed, is_jam(query.text(3)), about, numbers});
   }
 }
 

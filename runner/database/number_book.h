@@ -23,8 +23,15 @@ class NumberBook {
   // The connection must outlive it.
   explicit NumberBook(Connection& connection) : connection_(connection) {}
 
-  // Of the seeds below `end`, in their order. The layout lives as long as the book. Throws IntegrityError.
-  using Visit = std::function<void(int seed, const NumberLayout& layout, std::span<const double> numbers)>;
+  // The numbers of one seed. The layout lives as long as the book.
+  struct Entry {
+    int seed;
+    bool has_jammed;
+    const NumberLayout& layout;
+    std::span<const double> numbers;
+  };
+  // Of the seeds below `end`, in their order. Throws IntegrityError.
+  using Visit = std::function<void(const Entry& entry)>;
   void for_each(std::int64_t point, int end, const Visit& visit);
 
   // Whether what is stored of the seed are the numbers of this result, bit by bit.

@@ -69,8 +69,25 @@ Standing standing_of(const Json& point) {
 
 double number_or_none(const Json& value) { return value.is_number() ? value.get<double>() : none; }
 
+// Whether the point has a number of the quantity. At one that has jammed a number of fewer than half of its
+// seeds is that of those which happened to flow.
+bool has_number(const Json& point, const Json& estimate) {
+  if (estimate.is_null() || !estimate[0].is_number()) return false;
+  const Json& endings = point.at("endings");
+  return !endings.at("has_jammed").get<bool>() || 2 * estimate[3].get<int>() > endings.at("ended").get<int>();
+}
+
+Mark jammed_mark(const Json& point, double x) {
+  Mark mark{point.at("label").get<std::string>(), x, none, none, none};
+  mark.count = point.at("endings").at("ended").get<int>();
+  mark.standing = standing_of(point);
+  mark.jam = Jam::above;
+  return mark;
+}
+
 Mark mark_of(const Json& point, const Json& estimate, double x, const std::string& path) {
   Mark mark{point.at("label").get<std::string>(), x};
+  if (point.at("endings").at("has_jammed").get<bool>()) mark.jam = Jam::at_number;
   mark.mean = estimate[0].get<double>();
   mark.standard_error = number_or_none(estimate[1]);
   mark.half_width = number_or_none(estimate[2]);
@@ -94,8 +111,9 @@ Label curve_name(const std::vector<const Swept*>& by, std::size_t point) {
 
 // What of a mark has to be seen. Bars of numbers that are not decided may still be enormous.
 std::vector<double> ends(const Mark& mark) {
+  if (!mark.has_place()) return {};
   if (mark.standing == Standing::provisional || !std::isfinite(mark.half_width)) return {mark.mean};
-  return {mark.mean - mark.half_width, mark.mean + mark.half_width};
+  return {mark.mean, mark.mean - mark.half_width, mark.mean + mark.half_width};
 }
 
 // Scales, and the range of what is drawn.
@@ -104,7 +122,7 @@ void set_ranges(Figure& figure, const FigureChoice& choice) {
   for (const Curve& curve : figure.curves) {
     for (const Mark& mark : curve.marks) {
       x.push_back(mark.x);
-      means.push_back(mark.mean);
+      if (mark.has_place()) means.push_back(mark.mean);
       for (const double end : ends(mark)) y.push_back(end);
     }
   }
@@ -112,15 +130,21 @@ void set_ranges(Figure& figure, const FigureChoice& choice) {
   const bool numeric = figure.x.words.empty();
   figure.x.range.log = numeric && (choice.scale ? asked('x') : is_logarithmic(x));
   figure.y.range.log = choice.scale ? asked('y') : is_logarithmic(y);
+  const auto leaves_the_axis = [&](const Mark& mark) {
+    return figure.y.range.log && mark.has_place() && !(mark.mean > 0);
+  };
   // What a logarithmic axis has no place for.
   const auto is_hidden = [&](const Mark& mark) {
-    return (figure.x.range.log && !(mark.x > 0)) || (figure.y.range.log && !(mark.mean > 0));
+    return (figure.x.range.log && !(mark.x > 0)) || (leaves_the_axis(mark) && mark.jam == Jam::none);
   };
   for (Curve& curve : figure.curves) {
+    for (Mark& mark : curve.marks) {
+      if (mark.jam == Jam::at_number && leaves_the_axis(mark)) mark.jam = Jam::below;
+    }
     figure.hidden += static_cast<int>(std::erase_if(curve.marks, is_hidden));
     if (!figure.tolerance) continue;
     for (const Mark& mark : curve.marks) {
-      if (!mark.good_enough) continue;
+      if (!mark.good_enough || mark.jam != Jam::none) continue;
       y.push_back(mark.mean - *mark.good_enough);
       y.push_back(mark.mean + *mark.good_enough);
     }
@@ -146,7 +170,14 @@ void set_ranges(Figure& figure, const FigureChoice& choice) {
 bool Figure::has(Standing standing) const {
   return std::any_of(curves.begin(), curves.end(), [&](const Curve& curve) {
     return std::any_of(curve.marks.begin(), curve.marks.end(),
-                       [&](const Mark& mark) { return mark.standing == standing; });
+                       [&](const Mark& mark) { return mark.jam == Jam::none && mark.standing == standing; });
+  });
+}
+
+bool Figure::has_jammed() const {
+  return std::any_of(curves.begin(), curves.end(), [](const Curve& curve) {
+    return std::any_of(curve.marks.begin(), curve.marks.end(),
+                       [](const Mark& mark) { return mark.jam != Jam::none; });
   });
 }
 
@@ -179,24 +210,32 @@ Figure make_figure(Database& database, const FigureChoice& choice) {
   for (std::size_t i = 0; i < page.points.size(); ++i) {
     const Json& point = page.points[i];
     const Json& estimate = point.at("estimates")[column];
-    if (estimate.is_null() || !estimate[0].is_number()) {
+    const bool has_jammed = point.at("endings").at("has_jammed").get<bool>(),
+               is_known = has_number(point, estimate);
+    if (!is_known && !has_jammed) {
       ++figure.absent;
       continue;
     }
     const Label name = curve_name(by, i);
     const auto [place, is_new] = places.emplace(text_of(name), figure.curves.size());
     if (is_new) figure.curves.push_back({name, {}});
-    figure.curves[place->second].marks.push_back(mark_of(point, estimate, axis.numbers[i], quantity.path));
+    figure.curves[place->second].marks.push_back(
+        is_known ? mark_of(point, estimate, axis.numbers[i], quantity.path)
+                 : jammed_mark(point, axis.numbers[i]));
   }
   for (Curve& curve : figure.curves) {
     std::stable_sort(curve.marks.begin(), curve.marks.end(),
                      [](const Mark& a, const Mark& b) { return a.x < b.x; });
   }
   set_ranges(figure, choice);
-  if (figure.curves.empty()) {
+  const auto has_place = [](const Mark& mark) { return mark.has_place(); };
+  if (std::none_of(figure.curves.begin(), figure.curves.end(), [&](const Curve& curve) {
+        return std::any_of(curve.marks.begin(), curve.marks.end(), has_place);
+      })) {
     throw InputError("", "--quantity", quantity.path,
-                     figure.hidden > 0 ? "has no number that a logarithmic axis has a place for"
-                                       : "has no number at any point yet");
+                     figure.hidden > 0     ? "has no number that a logarithmic axis has a place for"
+                     : figure.has_jammed() ? "has no number at any point: those that have ended have jammed"
+                                           : "has no number at any point yet");
   }
   return figure;
 }

@@ -24,6 +24,11 @@ struct FigureChoice {
 // How sure a number is: of a point that has converged, of one that has ended otherwise, of one still open.
 enum class Standing { converged, undecided, provisional };
 
+// Where the mark of a point that has jammed stands: at its number; where it has none, at the upper edge of
+// the frame; where a logarithmic axis has no place for it, as for the rate 0, at the lower one. No line leads
+// to it.
+enum class Jam { none, at_number, above, below };
+
 struct Mark {
   std::string label;  // of the point
   double x = 0, mean = 0;
@@ -31,6 +36,9 @@ struct Mark {
   std::optional<double> good_enough{};        // half-width that the target asks for
   int count = 0;                              // seeds
   Standing standing = Standing::provisional;
+  Jam jam = Jam::none;
+
+  bool has_place() const { return jam == Jam::none || jam == Jam::at_number; }
 };
 
 struct Curve {
@@ -53,7 +61,8 @@ struct Figure {
   // What is not drawn: points without the number yet, and numbers that a logarithmic axis has no place for.
   int absent = 0, hidden = 0;
 
-  bool has(Standing standing) const;
+  bool has(Standing standing) const;  // among marks that have not jammed
+  bool has_jammed() const;
   bool has_tolerance() const;  // a mark of it has one, which it has from the first look on
 };
 

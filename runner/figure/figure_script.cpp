@@ -26,6 +26,20 @@ const char* word_of(Standing standing) {
   throw std::logic_error("a standing that is none");
 }
 
+Json jam_word(Jam jam) {
+  switch (jam) {
+    case Jam::none:
+      return nullptr;
+    case Jam::at_number:
+      return "at its number";
+    case Jam::above:
+      return "upper edge";
+    case Jam::below:
+      return "lower edge";
+  }
+  throw std::logic_error("a jam that is none");
+}
+
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 // One text of JSON, numbers spelt as `peclet export` spells them. Between r""" and """ nothing in it ends the
@@ -57,7 +71,7 @@ std::string data(const Figure& figure) {
                        text(axis_json(figure.y, layout.y)));
   lines +=
       " \"columns\": [\"label\", \"x\", \"mean\", \"standard_error\", \"half_width\", \"good_enough\", "
-      "\"count\", \"standing\"],\n \"curves\": [";
+      "\"count\", \"standing\", \"jammed\"],\n \"curves\": [";
   const char* separator = "\n";
   for (const Curve& curve : figure.curves) {
     lines += fmt::format("{}  {{\"name\": {}, \"marks\": [", separator, text(mathtext_of(curve.name)));
@@ -65,12 +79,13 @@ std::string data(const Figure& figure) {
     for (const Mark& mark : curve.marks) {
       const Json row{mark.label,
                      mark.x,
-                     mark.mean,
+                     number(mark.mean),
                      number(mark.standard_error),
                      number(mark.half_width),
                      mark.good_enough ? Json(*mark.good_enough) : Json(nullptr),
                      mark.count,
-                     word_of(mark.standing)};
+                     word_of(mark.standing),
+                     jam_word(mark.jam)};
       lines += separator + ("   " + text(row));
       separator = ",\n";
     }

@@ -18,6 +18,7 @@ Legend::Legend(const Figure& figure) {
   }
   if (figure.has(Standing::undecided)) items_.push_back({Sign::hollow, 0, {{"not converged"}}});
   if (figure.has(Standing::provisional)) items_.push_back({Sign::dashed, 0, {{"provisional"}}});
+  if (figure.has_jammed()) items_.push_back({Sign::cross, 0, {{"jammed"}}});
   if (figure.tolerance) items_.push_back({Sign::band, 0, {{"tolerance"}}});
   for (const Item& item : items_) width_ = std::max(width_, text_width(item.text, text_size));
   width_ += sign_width + 2 * margin;
@@ -52,6 +53,8 @@ std::string Legend::svg(Place corner) const {
       text += fmt::format(
           "<rect x=\"{}\" y=\"{}\" width=\"16\" height=\"12\" fill=\"{}\" fill-opacity=\"0.16\"/>\n",
           svg_number(sign.x - 8), svg_number(y - 6), colour);
+    } else if (item.sign == Sign::cross) {
+      text += svg_cross(item.curve, sign);
     } else {
       if (item.sign == Sign::dashed) {
         const std::string style = fmt::format("stroke=\"{}\" stroke-dasharray=\"3 2\"", colour);

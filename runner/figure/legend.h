@@ -34,7 +34,7 @@ class Legend {
   std::string svg(Place corner) const;
 
  private:
-  enum class Sign { curve, hollow, dashed, band };
+  enum class Sign { curve, hollow, dashed, cross, band };
   struct Item {
     Sign sign;
     std::size_t curve;

@@ -37,11 +37,10 @@ class ScratchFolder {
   fs::path path_;
 };
 
+// The script itself says what cures a lack of matplotlib.
 [[noreturn]] void refuse(const std::string& why) {
   throw std::runtime_error(
-      fmt::format("PNG and PDF are drawn by python3 with matplotlib: {}; install python3-matplotlib for the "
-                  "python3 in PATH, or name a file that ends in .svg, which needs neither",
-                  why));
+      fmt::format("{}; a file that ends in .svg needs neither python3 nor matplotlib", why));
 }
 
 CommandAnswer run_python(const fs::path& script, const fs::path& drawn) {
@@ -49,7 +48,8 @@ CommandAnswer run_python(const fs::path& script, const fs::path& drawn) {
   try {
     return run_command({"python3", script.string(), drawn.string()}, patience);
   } catch (const std::system_error& fault) {
-    refuse(fault.what());
+    refuse(
+        fmt::format("PNG and PDF are drawn by the python3 in PATH, which cannot be run ({})", fault.what()));
   }
 }
 
@@ -58,7 +58,7 @@ std::string drawn_by_matplotlib(const std::string& script, const char* ending) {
   const fs::path source = folder.path() / "figure.py", drawn = folder.path() / ending;
   write_durably(source, script);
   const CommandAnswer answer = run_python(source, drawn);
-  if (!answer.succeeded()) refuse(answer.complaint());
+  if (!answer.succeeded()) refuse("python3 has not drawn the figure: " + answer.complaint());
   return read_file(drawn);
 }
 

@@ -13,12 +13,20 @@ namespace peclet::runner {
 namespace {
 
 constexpr double whole_width = 620, least_height = 430;
-constexpr double beside = 76, below = 56, around = 16;  // of the frame
+constexpr double least_beside = 76, below = 56, around = 16;  // of the frame
+constexpr std::size_t most_across = 8, most_up = 8;           // ticks
+constexpr int tick_size = 13;
 
-// The frame, widened by nothing: a legend that stands beside it widens the picture.
-Box frame_of(const Legend& legend) {
-  const double height = std::max(least_height, legend.height() + below + around);
-  return {beside, around, whole_width - around, height - below};
+// The frame. Numbers at the ticks make room for themselves between it and the title; a legend that stands
+// beside it widens the picture.
+Box frame_of(const Figure& figure, const Legend& legend) {
+  constexpr double title_end = 32, tick_gap = 7;
+  const double bottom = std::max(least_height, legend.height() + below + around) - below;
+  double widest = 0;
+  for (const double value : Axis(figure.y.range, bottom, around, most_up).ticks()) {
+    widest = std::max(widest, text_width({{plain_number(value)}}, tick_size));
+  }
+  return {std::max(least_beside, title_end + widest + tick_gap), around, whole_width - around, bottom};
 }
 
 struct Axes {
@@ -26,7 +34,6 @@ struct Axes {
 };
 
 Axes axes_in(const Figure& figure, const Box& frame) {
-  constexpr std::size_t most_across = 8, most_up = 8;
   const std::size_t words = figure.x.words.size();
   return {words > 0 ? Axis(words, frame.left, frame.right)
                     : Axis(figure.x.range, frame.left, frame.right, most_across),
@@ -36,7 +43,7 @@ Axes axes_in(const Figure& figure, const Box& frame) {
 class Drawing {
  public:
   explicit Drawing(const Figure& figure)
-      : figure_(figure), legend_(figure), frame_(frame_of(legend_)), axes_(axes_in(figure, frame_)) {}
+      : figure_(figure), legend_(figure), frame_(frame_of(figure, legend_)), axes_(axes_in(figure, frame_)) {}
 
   std::string svg() {
     const std::string inside = curves();
@@ -108,12 +115,12 @@ class Drawing {
       across(places[i], major);
       if (i % step != 0) continue;
       const std::string word = figure_.x.words.empty() ? plain_number(places[i]) : figure_.x.words[i];
-      text += svg_text({{word}}, {axes_.x.place(places[i]), frame_.bottom + 19}, Anchor::middle, 13);
+      text += svg_text({{word}}, {axes_.x.place(places[i]), frame_.bottom + 19}, Anchor::middle, tick_size);
     }
     for (const double value : axes_.y.ticks()) {
       upward(value, major);
-      text +=
-          svg_text({{plain_number(value)}}, {frame_.left - 7, axes_.y.place(value) + 4.5}, Anchor::end, 13);
+      text += svg_text({{plain_number(value)}}, {frame_.left - 7, axes_.y.place(value) + 4.5}, Anchor::end,
+                       tick_size);
     }
     return text;
   }
@@ -127,11 +134,18 @@ class Drawing {
            svg_text(figure_.y.title, {20, (frame_.top + frame_.bottom) / 2}, Anchor::middle, 15, true);
   }
 
-  Place place(const Mark& mark) const { return {axes_.x.place(mark.x), axes_.y.place(mark.mean)}; }
+  Place place(const Mark& mark) const {
+    const double x = axes_.x.place(mark.x);
+    if (mark.jam == Jam::above) return {x, frame_.top};
+    if (mark.jam == Jam::below) return {x, frame_.bottom};
+    return {x, axes_.y.place(mark.mean)};
+  }
 
   std::string guide(std::size_t curve) {
     std::vector<Place> places;
-    for (const Mark& mark : figure_.curves[curve].marks) places.push_back(place(mark));
+    for (const Mark& mark : figure_.curves[curve].marks) {
+      if (mark.jam == Jam::none) places.push_back(place(mark));
+    }
     if (places.size() < 2) return "";
     for (std::size_t i = 1; i < places.size(); ++i) keep_clear(places[i - 1], places[i]);
     return svg_path(
@@ -142,7 +156,7 @@ class Drawing {
   std::string band(std::size_t curve) const {
     std::vector<Place> above, under;
     for (const Mark& mark : figure_.curves[curve].marks) {
-      if (!mark.good_enough) continue;
+      if (!mark.good_enough || mark.jam != Jam::none) continue;
       const double x = axes_.x.place(mark.x);
       above.push_back({x, axes_.y.clamped(mark.mean + *mark.good_enough)});
       under.push_back({x, axes_.y.clamped(mark.mean - *mark.good_enough)});
@@ -167,7 +181,7 @@ class Drawing {
     const std::string style = fmt::format("class=\"bar\" stroke=\"{}\" stroke-width=\"1.4\"{}", colour(curve),
                                           provisional ? " stroke-dasharray=\"3 2\"" : "");
     Box box{centre.x - room, centre.y - room, centre.x + room, centre.y + room};
-    if (std::isfinite(mark.half_width)) {
+    if (mark.has_place() && std::isfinite(mark.half_width)) {
       for (const double end : {mark.mean - mark.half_width, mark.mean + mark.half_width}) {
         const double y = axes_.y.clamped(end);
         text += svg_line(centre, {centre.x, y}, style);
@@ -178,7 +192,10 @@ class Drawing {
       }
     }
     drawn_.push_back(box);
-    return text + svg_mark(curve, centre, mark.standing != Standing::converged) + "</g>\n";
+    return text +
+           (mark.jam == Jam::none ? svg_mark(curve, centre, mark.standing != Standing::converged)
+                                  : svg_cross(curve, centre)) +
+           "</g>\n";
   }
 
   // Small boxes along a line.

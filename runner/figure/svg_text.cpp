@@ -77,6 +77,14 @@ std::string svg_mark(std::size_t curve, Place centre, bool hollow) {
   return svg_path(corners, true, style);
 }
 
+std::string svg_cross(std::size_t curve, Place centre) {
+  constexpr double reach = 5;
+  const std::string style = fmt::format("class=\"jammed\" stroke=\"{}\" stroke-width=\"2\"",
+                                        figure_colours.at(curve % figure_colours.size()));
+  return svg_line({centre.x - reach, centre.y - reach}, {centre.x + reach, centre.y + reach}, style) +
+         svg_line({centre.x - reach, centre.y + reach}, {centre.x + reach, centre.y - reach}, style);
+}
+
 std::string svg_text(const Label& label, Place at, Anchor anchor, int size, bool upright) {
   std::string spans;
   int shift = 0;

@@ -26,6 +26,8 @@ std::string svg_path(const std::vector<Place>& places, bool closed, const std::s
 
 // The mark of the i-th curve; one that is hollow shows the ground.
 std::string svg_mark(std::size_t curve, Place centre, bool hollow);
+// The mark of what has jammed.
+std::string svg_cross(std::size_t curve, Place centre);
 
 enum class Anchor { start, middle, end };
 std::string svg_text(const Label& label, Place at, Anchor anchor, int size = 14, bool upright = false);

@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <string_view>
 
 #include "contract/input_error.h"
 #include "contract/nearest_name.h"
@@ -20,11 +18,6 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-bool is_jam(const std::string& cause) {
-  constexpr std::array<std::string_view, 3> jams{"overlap", "packing", "jammed"};
-  return std::find(jams.begin(), jams.end(), cause) != jams.end();
-}
-
 bool is_soft(const JammingPoint& point, double softest) {
   constexpr double largest_over_mean = 10;
   if (point.overlap) return *point.overlap > softest;
@@ -35,28 +28,24 @@ bool is_soft(const JammingPoint& point, double softest) {
 void judge(JammingPoint& made, Database& database, const PointSummary& point, double softest) {
   const int end = point.looks.empty() ? std::numeric_limits<int>::max() : point.looks.back().seeds;
   RunningEstimate overlaps;
-  int lost = 0;
   for (const RealisationRecord& seed : database.realisations(point.point.id)) {
     made.cpu_seconds += seed.cpu_seconds.value_or(0);
-    if (seed.seed >= end || seed.state == SeedState::queued || seed.state == SeedState::running) continue;
-    ++made.ended;
-    if (seed.state == SeedState::done) {
-      if (seed.largest_overlap) overlaps.add(*seed.largest_overlap);
-    } else {
-      ++(is_jam(seed.cause) ? made.jammed : lost);
-    }
+    const bool counts = seed.seed < end && seed.state == SeedState::done;
+    if (counts && seed.largest_overlap) overlaps.add(*seed.largest_overlap);
   }
   if (overlaps.estimate().count > 0) made.largest_overlap = overlaps.estimate().mean;
-  constexpr int least_share = 10;
+  const Endings& endings = point.endings;
+  made.ended = endings.ended;
+  made.jammed = endings.jammed;
   if (point.point.suspect) {
     made.state = FlowState::suspect;
   } else if (made.ended == 0) {
     made.state = FlowState::open;
-  } else if (2 * made.jammed >= made.ended) {
+  } else if (endings.has_jammed()) {
     made.state = FlowState::jammed;
-  } else if (2 * lost >= made.ended) {
+  } else if (2 * endings.lost >= endings.ended) {
     made.state = FlowState::lost;
-  } else if (least_share * made.jammed > made.ended) {
+  } else if (endings.has_partly_jammed()) {
     made.state = FlowState::partly_jammed;
   } else {
     made.state = is_soft(made, softest) ? FlowState::soft : FlowState::flowing;

@@ -3,9 +3,9 @@
 //
 // A point is judged by the seeds of its last look, before the first one by all that have ended:
 //   suspect  a seed gave two different results
-//   jammed   half of the seeds or more ended as jammed: the engine's causes "overlap", "packing" and "jammed"
+//   jammed   half of the seeds or more have jammed (contract/endings.h)
 //   lost     half or more ended without a value for other reasons
-//   partly   more than a tenth ended as jammed: the mean is of those that happened to flow
+//   partly   more than a tenth have: the mean is of those that happened to flow
 //   soft     contacts overlap by more than the limit in the mean: spheres that are not hard flow beyond their
 //            jamming point. Where results have no mean overlap, the largest of a seed, mean over the seeds,
 //            is above ten times the limit

@@ -16,6 +16,9 @@ std::string meaning(const std::string& mark) {
       {"failed", "too many seeds were lost to give an interval"},
       {"open", "not decided yet: the numbers are provisional"},
       {"cancelled", "somebody decided that it gets no more seeds: the numbers stay provisional"},
+      {"jammed",
+       "half of the seeds or more have jammed: the point has no viscosity, and under a given stress its rate "
+       "is 0"},
       {"transient",
        "the beginning of the measured windows differs from their end: they begin before the equilibration is "
        "over, which more seeds do not mend"},

@@ -176,9 +176,9 @@ class PointPage {
   void add_estimates(KnownPoint& known) {
     const double level = target_.level();
     QuantityEstimates sums;
-    book_.for_each(
-        point_.point.id, end(),
-        [&](int, const NumberLayout& layout, std::span<const double> numbers) { sums.add(layout, numbers); });
+    book_.for_each(point_.point.id, end(), [&](const NumberBook::Entry& seed) {
+      sums.add(seed.layout, seed.numbers, seed.has_jammed);
+    });
     Json uncontrolled = Json::object(), allowed = Json::object();
     for (const QuantityEstimate& found : sums.estimates()) {
       const std::vector<Drawable> drawables = drawables_of(found.quantity);

@@ -47,6 +47,7 @@ Json point_json(const PointSummary& point, const std::optional<int>& looked_at) 
             {"ended", counts.terminal()},
             {"running", counts.running},
             {"surplus", point.surplus()}}},
+          {"endings", to_json(point.endings)},
           {"losses", point.losses},
           {"loss_reasons", point.loss_reasons},
           {"flags", point.flags},

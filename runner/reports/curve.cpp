@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <vector>
@@ -63,11 +64,14 @@ class Scale {
   double low_ = 0, width_ = 0;
 };
 
-using Curve = std::map<double, double>;  // means over the axis; NaN where there is none
+// Means over the axis; NaN where there is none, infinite where the point has jammed.
+using Curve = std::map<double, double>;
+constexpr double jammed = std::numeric_limits<double>::infinity();
 
 const char* sign(double mean, const Scale& scale) {
   constexpr std::array<const char*, 8> bars{"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
   if (std::isnan(mean)) return "·";
+  if (mean == jammed) return "×";
   return bars[static_cast<std::size_t>(std::lround(7 * scale.height(mean)))];
 }
 
@@ -83,7 +87,7 @@ std::string drawn(const Curve& curve, const Scale& scale, std::size_t columns_ea
 std::string ends(const Curve& curve) {
   std::vector<double> means;
   for (const auto& [x, mean] : curve) {
-    if (!std::isnan(mean)) means.push_back(mean);
+    if (std::isfinite(mean)) means.push_back(mean);
   }
   if (means.empty()) return "-";
   return means.size() == 1 ? rough(means.front()) : rough(means.front()) + " to " + rough(means.back());
@@ -99,9 +103,10 @@ std::string curve_text(const CampaignStatus& status, std::size_t width) {
   std::vector<double> means;
   for (const PointSummary& point : status.points) {
     if (axis.empty()) break;
-    const double mean = point.decided ? point.looks.back().controlled.mean : point.so_far.mean;
+    const double estimate = point.decided ? point.looks.back().controlled.mean : point.so_far.mean;
+    const double mean = point.endings.has_jammed() ? jammed : estimate;
     curves[name_beside(point, axis)][point.point.settings[axis].get<double>()] = mean;
-    if (!std::isnan(mean)) means.push_back(mean);
+    if (std::isfinite(mean)) means.push_back(mean);
   }
   std::size_t name = 0, values = 0;
   for (const auto& [beside, curve] : curves) {

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "runner/database/checked_look.h"
+#include "runner/database/database_summary.h"
 #include "runner/database/file_book.h"
 #include "runner/statistics/look_json.h"
 #include "runner/statistics/quantity_estimates.h"
@@ -178,8 +179,10 @@ std::string export_json(Database& database, bool canonical) {
       continue;
     }
     const char* separator = "[\n";
-    for (const PointRecord& point : database.points()) {
-      text += separator + canonical_json(PointExport(database, point, campaign.target, canonical).json());
+    for (const PointSummary& summary : summarise_points(database, campaign.target)) {
+      Json point = PointExport(database, summary.point, campaign.target, canonical).json();
+      if (!canonical) point["endings"] = to_json(summary.endings);
+      text += separator + canonical_json(point);
       separator = ",\n";
     }
     text += "\n]";

@@ -31,7 +31,8 @@ std::vector<std::string> look_fields(const std::optional<Look>& look) {
 std::vector<std::string> full_fields(const PointSummary& point) {
   return {fmt::format("{}", point.so_far.count),   csv_number(point.so_far.mean),
           csv_number(point.so_far.standard_error), fmt::format("{}", point.surplus()),
-          csv_number(point.counts.cpu_seconds),    point.point.suspect ? "1" : "0"};
+          csv_number(point.counts.cpu_seconds),    point.point.suspect ? "1" : "0",
+          point.endings.has_jammed() ? "1" : "0"};
 }
 
 void append(std::vector<std::string>& fields, const std::vector<std::string>& more) {
@@ -95,8 +96,8 @@ std::string export_csv(Database& database, bool canonical) {
   append(titles, {"verdict", "seeds", "lost", "count", "mean", "standard_error", "half_width",
                   "uncontrolled_mean", "uncontrolled_standard_error", "uncontrolled_half_width"});
   if (!canonical) {
-    append(titles,
-           {"so_far_count", "so_far_mean", "so_far_standard_error", "surplus", "cpu_seconds", "suspect"});
+    append(titles, {"so_far_count", "so_far_mean", "so_far_standard_error", "surplus", "cpu_seconds",
+                    "suspect", "jammed"});
   }
   std::vector<std::vector<std::string>> rows;
   ScalarColumns scalars;

@@ -17,10 +17,9 @@ std::vector<QuantityEstimate> scalar_estimates(NumberBook& numbers, const PointR
                                                const std::optional<Look>& look) {
   QuantityEstimates estimates(QuantityEstimates::Wanted::scalars);
   if (look) {
-    numbers.for_each(point.id, look->seeds,
-                     [&](int, const NumberLayout& layout, std::span<const double> of_seed) {
-                       estimates.add(layout, of_seed);
-                     });
+    numbers.for_each(point.id, look->seeds, [&](const NumberBook::Entry& seed) {
+      estimates.add(seed.layout, seed.numbers, seed.has_jammed);
+    });
   }
   return estimates.estimates();
 }

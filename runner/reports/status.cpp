@@ -56,6 +56,7 @@ Json point_json(const PointSummary& point) {
           {"loss_reasons", point.loss_reasons},
           {"flags", point.flags},
           {"reservations", reservations(point)},
+          {"endings", to_json(point.endings)},
           {"so_far", estimate_json(point.so_far)},
           {"look", point.looks.empty() ? Json(nullptr) : look_json(point.looks.back())},
           {"cpu_seconds", counts.cpu_seconds},
@@ -119,6 +120,7 @@ std::string verdict_text(const PointSummary& point) {
 
 std::vector<std::string> reservations(const PointSummary& point) {
   std::vector<std::string> found;
+  if (point.endings.has_jammed()) found.emplace_back("jammed");
   if (!point.looks.empty() && point.looks.back().transient) found.emplace_back("transient");
   if (!point.looks.empty() && point.looks.back().untested) found.emplace_back("no-transient-test");
   if (point.decided && is_skewed(point.looks.back(), point.confidence)) found.emplace_back("skewed");
@@ -126,7 +128,10 @@ std::vector<std::string> reservations(const PointSummary& point) {
   if (!point.without_interval.empty())
     found.emplace_back(point.looks.back().repeated.empty() ? "equal-values" : "repeated-seeds");
   if (point.earlier_look > 0) found.emplace_back("earlier-look");
-  for (const auto& [code, count] : point.flags) found.push_back(fmt::format("{} flagged {}", count, code));
+  for (const auto& [code, count] : point.flags) {
+    if (code == "jammed" && point.endings.has_jammed()) continue;  // said already
+    found.push_back(fmt::format("{} flagged {}", count, code));
+  }
   if (point.point.suspect) found.emplace_back("suspect");
   return found;
 }

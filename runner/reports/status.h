@@ -47,9 +47,9 @@ std::string standing_word(const PointSummary& point);
 // "converged", "converged-with-losses(2)", "capped, 2 lost", "failed, 10 lost", "open"; "open, suspect";
 // "cancelled".
 std::string verdict_text(const PointSummary& point);
-// What speaks against its estimate: "transient", "no-transient-test", "skewed", "near-maximum",
-// "equal-values", "repeated-seeds", "2 flagged timestep", "suspect"; and "earlier-look" where a target that was loosened is met by an earlier look than there are
-// seeds for.
+// What speaks against its estimate: "jammed", "transient", "no-transient-test", "skewed", "near-maximum",
+// "equal-values", "repeated-seeds", "2 flagged timestep", "suspect"; and "earlier-look" where a target that
+// was loosened is met by an earlier look than there are seeds for.
 std::vector<std::string> reservations(const PointSummary& point);
 
 // The table and its totals; as the process that owns the campaign prints them at the end. In few columns of a

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "contract/endings.h"
 #include "runner/statistics/look_json.h"
 
 namespace peclet::runner {
@@ -86,13 +87,14 @@ QuantityEstimates::Sums& QuantityEstimates::sums_of(const Quantity& quantity) {
   return *sums_.insert(place, std::move(sums));
 }
 
-void QuantityEstimates::add_numbers(Sums& sums, std::span<const double> numbers) {
+void QuantityEstimates::add_numbers(Sums& sums, std::span<const double> numbers, bool has_jammed) {
   const Quantity& quantity = sums.quantity;
   const std::size_t elements = quantity.elements();
   const std::span<const double> values = numbers.first(elements), second = numbers.subspan(elements);
   if (quantity.ratio) {
     sums.numerators.emplace_back(values.begin(), values.end());
     sums.denominators.emplace_back(second.begin(), second.end());
+    if (has_jammed && quantity.axes.empty() && values.front() != 0) ++sums.infinite;
     return;
   }
   for (std::size_t k = 0; k < elements; ++k) add_number(sums.plain[k], values[k]);
@@ -104,10 +106,10 @@ void QuantityEstimates::add_numbers(Sums& sums, std::span<const double> numbers)
   }
 }
 
-void QuantityEstimates::add(Sums& sums, const Json& mean) {
+void QuantityEstimates::add(Sums& sums, const Json& mean, bool has_jammed) {
   std::vector<double> numbers;
   append_numbers(sums.quantity, mean, numbers);
-  add_numbers(sums, numbers);
+  add_numbers(sums, numbers, has_jammed);
 }
 
 bool QuantityEstimates::is_wanted(const Quantity& quantity) const {
@@ -117,11 +119,12 @@ bool QuantityEstimates::is_wanted(const Quantity& quantity) const {
 void QuantityEstimates::add(const Json& result) {
   const Json& mean = result.at("mean");
   if (!mean.is_object()) return;
+  const bool has_jammed = is_jam(result.value(Json::json_pointer("/ending/cause"), ""));
   const bool is_first = sums_.empty();
   const auto descriptions = result.find("quantities");
   if (descriptions != result.end() && !descriptions->empty() && *descriptions == descriptions_) {
     for (Sums& sums : sums_) {
-      if (descriptions->contains(sums.quantity.name)) add(sums, mean);
+      if (descriptions->contains(sums.quantity.name)) add(sums, mean, has_jammed);
     }
     return;
   }
@@ -129,7 +132,7 @@ void QuantityEstimates::add(const Json& result) {
     if (!is_wanted(quantity)) continue;
     Sums& sums = sums_of(quantity);
     if (is_like(sums.quantity, quantity)) {
-      add(sums, mean);
+      add(sums, mean, has_jammed);
     } else {
       ++sums.unlike;
     }
@@ -137,7 +140,7 @@ void QuantityEstimates::add(const Json& result) {
   if (is_first && descriptions != result.end()) descriptions_ = *descriptions;
 }
 
-void QuantityEstimates::add(const NumberLayout& layout, std::span<const double> numbers) {
+void QuantityEstimates::add(const NumberLayout& layout, std::span<const double> numbers, bool has_jammed) {
   for (const Quantity& quantity : layout.quantities()) {
     const std::span<const double> its = numbers.first(numbers_needed(quantity));
     numbers = numbers.subspan(its.size());
@@ -146,7 +149,7 @@ void QuantityEstimates::add(const NumberLayout& layout, std::span<const double> 
     // To compare every axis for every seed would take longer than all else.
     if (sums.followed != &layout && is_like(sums.quantity, quantity)) sums.followed = &layout;
     if (sums.followed == &layout) {
-      add_numbers(sums, its);
+      add_numbers(sums, its, has_jammed);
     } else {
       ++sums.unlike;
     }
@@ -176,7 +179,10 @@ std::vector<QuantityEstimate> QuantityEstimates::estimates() const {
           above.push_back(sums.numerators[seed][k]);
           below.push_back(sums.denominators[seed][k]);
         }
-        found.estimates.push_back(ratio_of_means(above, below));
+        const int count = static_cast<int>(above.size());
+        found.estimates.push_back(sums.infinite > 0 && 2 * sums.infinite >= count
+                                      ? Estimate{count, nan, nan}
+                                      : ratio_of_means(above, below));
       }
     }
     all.push_back(std::move(found));

@@ -7,6 +7,10 @@
 //   s^2 = (n - 1) / n sum_i (R_i - mean of R_i)^2,
 // R_i the ratio without seed i. Both errors are those of independent seeds; s of a constant D is the standard
 // error of a mean.
+//
+// Under a given stress a seed that has jammed has a stress and no rate: its own ratio is infinite. Where half
+// of the seeds or more have such a ratio, that of the means is that of a few seeds which happened to flow,
+// and has no value. A jammed seed whose N is 0 takes no part in the ratio.
 #pragma once
 
 #include <functional>
@@ -37,9 +41,9 @@ class QuantityEstimates {
   // One more result, in the order of the seeds; one that has not completed adds nothing. Memory: a few
   // numbers for each element of a mean, two for each element and seed of a ratio.
   void add(const Json& result);
-  // The same of numbers that were taken from a result before; quantities that the layout leaves out stay out.
-  // A layout must outlive the last call.
-  void add(const NumberLayout& layout, std::span<const double> numbers);
+  // The same of numbers that were taken from a result before, and whether its realisation has jammed;
+  // quantities that the layout leaves out stay out. A layout must outlive the last call.
+  void add(const NumberLayout& layout, std::span<const double> numbers, bool has_jammed = false);
 
   // In the order of the names.
   std::vector<QuantityEstimate> estimates() const;
@@ -52,14 +56,15 @@ class QuantityEstimates {
     Quantity quantity;
     std::vector<RunningEstimate> plain, controlled;
     std::vector<std::vector<double>> numerators, denominators;  // by seed
+    int infinite = 0;                                           // seeds whose ratio is
     int unlike = 0;
     const NumberLayout* followed = nullptr;  // describes the quantity as it is described here
   };
 
   bool is_wanted(const Quantity& quantity) const;
   Sums& sums_of(const Quantity& quantity);
-  static void add(Sums& sums, const Json& mean);
-  static void add_numbers(Sums& sums, std::span<const double> numbers);
+  static void add(Sums& sums, const Json& mean, bool has_jammed);
+  static void add_numbers(Sums& sums, std::span<const double> numbers, bool has_jammed);
 
   Wanted wanted_;
   Json descriptions_;       // of the first result, which the sums follow

@@ -194,19 +194,26 @@ class Faults(PageTest):
         self.assertIn("no such file", self.refusal(2, "absent.json"))
 
     def test_of_the_machine_name_the_cure(self):
-        with_python, without = Stage.folder.file("without-matplotlib"), Stage.folder.file("without-python")
-        for place in (with_python, without):
+        debian, without, pip, conda = (Stage.folder.file(name) for name in ("debian", "without", "pip", "conda"))
+        for place in (debian, without):
             os.makedirs(place, exist_ok=True)
-        script = os.path.join(with_python, "python3")
+        script = os.path.join(debian, "python3")
         with open(script, "w", encoding="utf-8") as file:
             file.write('#!/bin/sh\nexec /usr/bin/python3 -S "$@"\n')
         os.chmod(script, 0o755)
-        for path, why in ((with_python, "matplotlib is missing"), (without, "No such file")):
+        for place in (pip, conda):
+            subprocess.run(["/usr/bin/python3", "-m", "venv", "--without-pip", place], check=True)
+        os.makedirs(os.path.join(conda, "conda-meta"))
+        for path, why, cure in (
+            (debian, "cannot import matplotlib", "install it with apt install python3-matplotlib;"),
+            (f"{pip}/bin", "cannot import matplotlib", f"install it with {pip}/bin/python3 -m pip install matplotlib;"),
+            (f"{conda}/bin", "cannot import matplotlib", "install it with conda install matplotlib;"),
+            (without, "cannot be run", "python3 in PATH"),
+        ):
             for ending in ("png", "pdf"):
                 said = self.refusal(1, "curve.json", "--output", f"absent.{ending}", path=path)
-                self.assertIn(why, said)
-                self.assertIn("install python3-matplotlib", said)
-                self.assertIn(".svg", said)
+                for words in (why, cure, ".svg"):
+                    self.assertEqual(said.count(words), 1, said)
             self.assertEqual(peclet("plot", "curve.json", path=path).returncode, 0)  # SVG needs neither
 
 

@@ -8,6 +8,7 @@ import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -15,7 +16,8 @@ sys.path.insert(0, str(ROOT / "python"))
 import matplotlib
 import numpy as np
 import peclet
-from peclet.plots import formula_of
+from peclet.plots import formula_of, unit_text
+from peclet.program import cure_for
 from peclet.results import short_names
 
 matplotlib.use("Agg")
@@ -42,6 +44,59 @@ SWEEP = {"/peclet": [10, 1000], "/volume_fraction": [0.2, 0.3]}
 
 def export_of(path):
     return json.loads(subprocess.run([PECLET, "export", path], check=True, capture_output=True).stdout)
+
+
+# No suspension flows under a stress that would need less than 1 + 2.5 phi: the first point stands still.
+UNDER_STRESS = SCENE | {
+    "fluid": {"viscosity": 1},
+    "particles": SCENE["particles"] | {"density": 0.001},
+    "flow": {"stress": 5},
+    "duration": {"equilibration": {"stress_times": 0.5}, "production": {"stress_times": 12}},
+    "observables": ["stress"],
+}
+UNDER_STRESS = {
+    key: value for key, value in UNDER_STRESS.items() if key not in ("peclet", "limits", "trajectory", "files")
+}
+
+
+class OfWhatHasJammed(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        path = os.path.join(cls.scratch.name, "still.json")
+        sweep = {"/flow/jammed_viscosity": [1.5, 200, 1000]}
+        target = {"observable": "shear_rate", "tolerance": 0.5, "minimum": 4, "maximum": 4}
+        campaign = peclet.Campaign("still", UNDER_STRESS, sweep, **target, engine=[ENGINE, "serve"])
+        cls.results = campaign.run(path, PECLET, ["--quiet"])
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    def test_the_table_says_so_and_has_no_viscosity(self):
+        rates = self.results.estimates()
+        self.assertEqual(rates["jammed"].tolist(), [True, False, False])
+        self.assertEqual(rates["mean"][0], 0)
+        self.assertEqual(np.isnan(self.results.estimates("apparent_viscosity")["mean"]).tolist(), [True, False, False])
+
+    def test_a_plot_has_a_cross_at_the_edge_and_no_line_to_it(self):
+        for quantity, log, height in (
+            ("apparent_viscosity", "", 1),
+            ("apparent_viscosity", "y", 1),
+            ("shear_rate", "y", 0),
+            ("shear_rate", "", None),
+        ):
+            axes = self.results.plot(quantity, log=log)
+            (cross,) = (line for line in axes.lines if line.get_marker() == "x")
+            self.assertEqual(cross.get_xdata().tolist(), [1.5])
+            if height is not None:
+                self.assertEqual(cross.get_ydata().tolist(), [height])
+                inside = axes.transAxes.inverted().transform(cross.get_transform().transform(cross.get_xydata()))
+                self.assertAlmostEqual(inside[0][1], height)
+            self.assertIn("jammed", [text.get_text() for text in axes.get_legend().get_texts()])
+            for line in axes.lines:
+                if line is not cross:
+                    self.assertNotIn(1.5, line.get_xdata())
 
 
 class OfACampaign(unittest.TestCase):
@@ -385,6 +440,30 @@ class Names(unittest.TestCase):
         self.assertEqual(formula_of("eta_r"), r"$\eta_r$")
         self.assertEqual(formula_of("sigma^noise_xy"), r"$\sigma^{\mathrm{noise}}_{\mathrm{xy}}$")
         self.assertEqual(formula_of("N_1"), "$N_1$")
+        self.assertEqual(formula_of("<rate>"), r"$\langle \dot\gamma\rangle$")
+
+    def test_of_units_of_the_scene_say_no_more(self):
+        for unit, text in (
+            ("1", ""),
+            ("", ""),
+            ("viscosity * shear_rate", r"$\eta\dot\gamma$"),
+            ("stress", "scene units"),
+            ("1 / time", "scene units"),
+            ("length^2 / time^2", "scene units"),
+            ("MPa", "MPa"),
+        ):
+            self.assertEqual(unit_text(unit), text)
+
+    def test_of_cures_are_those_of_this_python(self):
+        for prefix, there, cure in (
+            ("/usr", ["/etc/debian_version"], "apt install python3-gsd"),
+            ("/opt/conda", ["/opt/conda/conda-meta"], "conda install -c conda-forge gsd"),
+            ("/home/a b/.pyenv", ["/etc/debian_version"], f"{sys.executable} -m pip install gsd"),
+        ):
+            with unittest.mock.patch.object(sys, "prefix", prefix), unittest.mock.patch(
+                "os.path.exists", there.__contains__
+            ):
+                self.assertEqual(cure_for("gsd", "python3-gsd"), cure)
 
 
 class Installed(unittest.TestCase):

@@ -5,13 +5,21 @@ Its numbers are below, as `peclet export` has them. Without a file the figure is
 script only while it is as peclet wrote it.
 """
 import json
+import os
+import shlex
 import sys
 
 try:
     import matplotlib
     import matplotlib.pyplot as plt
-except ImportError:
-    sys.exit("matplotlib is missing: install it (Debian: python3-matplotlib)")
+except ImportError as missing:
+    # By whose python3 this is: conda's, Debian's, or another one (pyenv, venv), which pip serves.
+    cure = f"{shlex.quote(sys.executable)} -m pip install matplotlib"
+    if os.path.exists(os.path.join(sys.prefix, "conda-meta")):
+        cure = "conda install matplotlib"
+    elif sys.prefix == "/usr" and os.path.exists("/etc/debian_version"):
+        cure = "apt install python3-matplotlib"
+    sys.exit(f"{sys.executable} cannot import matplotlib ({missing}); install it with {cure}")
 
 FIGURE = json.loads(r"""@FIGURE@""")
 COLOURS = ["#0072b2", "#c44e00", "#00805c", "#a8487f", "#b07700", "#3a8fc0", "#6b6b00", "#1b1b1b"]
@@ -31,8 +39,9 @@ STYLE = {
 
 
 def columns_of(curve):
-    """Lists by name, and for each mark whether it has converged and whether it is provisional."""
-    columns = {name: list(values) for name, values in zip(FIGURE["columns"], zip(*curve["marks"]))}
+    """Lists by name of what has not jammed, and for each mark whether it has converged."""
+    marks = [mark for mark in curve["marks"] if mark[-1] is None]
+    columns = {name: [mark[k] for mark in marks] for k, name in enumerate(FIGURE["columns"])}
     return columns, [standing == "converged" for standing in columns["standing"]]
 
 
@@ -52,6 +61,20 @@ def draw_bars(axes, curve, colour):
                 bars[2][0].set_linestyle((0, (3, 2)))
 
 
+def draw_jams(axes, curve, colour):
+    """Points that have jammed: at their number, or at the edge of the frame where they have none."""
+    for mark in curve["marks"]:
+        row = dict(zip(FIGURE["columns"], mark))
+        if row["jammed"] is None:
+            continue
+        here = row["jammed"] == "at its number"
+        height = row["mean"] if here else float(row["jammed"] == "upper edge")
+        if here and row["half_width"] is not None:
+            axes.errorbar(row["x"], height, row["half_width"], fmt="none", ecolor=colour, elinewidth=1, capsize=2.5)
+        scale_of = axes.transData if here else axes.get_xaxis_transform()
+        axes.plot(row["x"], height, "x", color=colour, markersize=6, transform=scale_of, clip_on=False, zorder=3)
+
+
 def draw_curve(axes, curve, place):
     colour, marker = COLOURS[place % len(COLOURS)], MARKERS[place % len(MARKERS)]
     columns, converged = columns_of(curve)
@@ -66,17 +89,21 @@ def draw_curve(axes, curve, place):
         rows = [(at, y) for at, y, whole in zip(x, mean, converged) if whole == full]
         if rows:
             axes.plot(*zip(*rows), marker, color=colour, markersize=5, markerfacecolor=colour if full else "white")
+    draw_jams(axes, curve, colour)
     if curve["name"]:
         axes.plot([], [], marker, color=colour, markersize=5, label=curve["name"])
 
 
 def draw_legend(axes):
-    standings = {row[-1] for curve in FIGURE["curves"] for row in curve["marks"]}
+    marks = [dict(zip(FIGURE["columns"], row)) for curve in FIGURE["curves"] for row in curve["marks"]]
+    standings = {row["standing"] for row in marks if row["jammed"] is None}
     hollow = {"color": COLOURS[0], "marker": MARKERS[0], "markersize": 5, "markerfacecolor": "white"}
     if "undecided" in standings:
         axes.plot([], [], linestyle="none", label="not converged", **hollow)
     if "provisional" in standings:
         axes.plot([], [], linestyle=(0, (3, 2)), linewidth=1, label="provisional", **hollow)
+    if any(row["jammed"] for row in marks):
+        axes.plot([], [], "x", color=COLOURS[0], markersize=6, label="jammed")
     if FIGURE["tolerance"]:
         axes.fill_between([], [], [], color=COLOURS[0], alpha=0.16, linewidth=0, label="tolerance")
     if axes.get_legend_handles_labels()[1]:

@@ -1,7 +1,8 @@
 // A figure as SVG, with what it can be saved as.
 //
 // figure: {name, x, y: {about, log, categories}, panels: [{title, marks, lines, bands, columns, levels}], legend,
-// kinds, hasBand, notes, caption, table, pick, height}. Marks: {series, x, y, half, kind, point, text}; lines: {series,
+// kinds, hasBand, notes, caption, empty, table, pick, height}. Marks: {series, x, y, half, kind, point, text}; y is null of
+// the kind "jammed" where there is no number; lines: {series,
 // style, places: [x, y]}; bands: {series, places: [x, low, high]}; columns, which are boxes: {from, to, low, high, series,
 // text}; levels: {value, across}. In the legend {series, name, kind}: "column" for a box, "line", or a mark.
 class Chart {
@@ -39,9 +40,10 @@ class Chart {
     host.replaceChildren();
     const caption = document.createElement('figcaption');
     caption.textContent = [figure.caption, ...(figure.notes || [])].filter(Boolean).join(' ');
-    const isDrawn = ({ marks, lines = [], columns = [] }) => marks.length + lines.length + columns.length > 0;
+    const isDrawn = ({ marks, lines = [], columns = [] }) =>
+      marks.length + columns.length > 0 || lines.some((line) => line.places.length > 1);
     if (!figure.panels.some(isDrawn)) {
-      caption.textContent = 'There is nothing to draw yet.';
+      caption.textContent = figure.empty || 'There is nothing to draw yet.';
       host.append(caption);
       return;
     }
@@ -80,6 +82,7 @@ class Chart {
       for (const level of panel.levels || []) if (level.across === (direction === 'y')) numbers.push(level.value);
     }
     const usable = numbers.filter((number) => Format.isNumber(number) && (!log || number > 0));
+    if (!usable.length) return log ? [1, 10] : [0, 1]; // marks at the edge alone
     // A bar that reaches almost down to zero must not squeeze all else: it is cut off.
     const centres =
       log && direction === 'y'
@@ -121,7 +124,19 @@ class Chart {
   panel(panel, left, top, width, height, ranges) {
     const { figure } = this,
       group = Svg.element('g');
-    const frame = { left: left + 66, right: left + width - 12, top: top + 8, bottom: top + height - 48 };
+    const frame = { right: left + width - 12, top: top + 8, bottom: top + height - 48 };
+    const y = new Axis({
+      log: figure.y.log,
+      low: ranges.y[0],
+      high: ranges.y[1],
+      begin: frame.bottom,
+      end: frame.top,
+      mostTicks: Math.max(3, Math.min(9, Math.floor((frame.bottom - frame.top) / 36))),
+      categories: figure.y.categories,
+    });
+    // Numbers at the ticks make room for themselves beside the title.
+    const widest = y.categories ? 0 : Math.max(...y.ticks().map((tick) => Svg.width(tick.text)));
+    frame.left = left + Math.max(66, 32 + widest);
     const across = Math.max(3, Math.min(9, Math.floor((frame.right - frame.left) / 58)));
     const x = new Axis({
       log: figure.x.log,
@@ -132,17 +147,9 @@ class Chart {
       mostTicks: across,
       categories: figure.x.categories,
     });
-    const y = new Axis({
-      log: figure.y.log,
-      low: ranges.y[0],
-      high: ranges.y[1],
-      begin: frame.bottom,
-      end: frame.top,
-      mostTicks: Math.max(3, Math.min(9, Math.floor((frame.bottom - frame.top) / 36))),
-      categories: figure.y.categories,
-    });
     this.frame(group, frame, x, y, panel, left, height, top);
-    const visible = (mark) => (!figure.y.log || mark.y > 0) && (!figure.x.log || mark.x > 0);
+    const visible = (mark) =>
+      (!figure.y.log || mark.y > 0 || mark.kind === 'jammed') && (!figure.x.log || mark.x > 0);
     for (const band of panel.bands || []) this.band(group, band, x, y);
     for (const column of panel.columns || []) group.append(Chart.box(column, x, y));
     for (const level of panel.levels || []) this.level(group, level, frame, x, y);
@@ -152,7 +159,7 @@ class Chart {
         .map(([px, py]) => [x.place(px), y.clamped(py)]);
       if (places.length > 1) group.append(Svg.path(`${line.style} s${line.series % Svg.colours}`, places));
     }
-    for (const mark of panel.marks) if (visible(mark)) group.append(this.mark(mark, x, y));
+    for (const mark of panel.marks) if (visible(mark)) group.append(this.mark(mark, x, y, frame));
     return group;
   }
 
@@ -248,14 +255,22 @@ class Chart {
     );
   }
 
-  mark(mark, x, y) {
+  // What has jammed stands at its number, or at the edge of the frame: the upper one without a number, the lower one
+  // where a logarithmic axis has no place for it.
+  place(mark, y, frame) {
+    if (mark.kind !== 'jammed') return y.place(mark.y);
+    if (!Format.isNumber(mark.y)) return frame.top;
+    return this.figure.y.log && mark.y <= 0 ? frame.bottom : y.place(mark.y);
+  }
+
+  mark(mark, x, y, frame) {
     const group = Svg.element('g', mark.kind === 'provisional' ? { class: 'provisional' } : {});
     const px = x.place(mark.x),
-      py = y.place(mark.y),
+      py = this.place(mark, y, frame),
       style = `bar s${mark.series % Svg.colours}`,
       cap = 4;
     if (mark.text) group.append(Svg.element('title', {}, mark.text));
-    if (Format.isNumber(mark.half)) {
+    if (Format.isNumber(mark.half) && !(this.figure.y.log && mark.y <= 0)) {
       for (const end of [mark.y - mark.half, mark.y + mark.half]) {
         const to = y.clamped(end);
         group.append(Svg.line(style, px, py, px, to));
@@ -307,6 +322,7 @@ class Chart {
       say = (kind, text) => items.push({ series: 0, kind, name: [{ text, level: 0 }] });
     if (kinds.includes('undecided')) say('undecided', 'not converged');
     if (kinds.includes('provisional')) say('provisional', 'provisional');
+    if (kinds.includes('jammed')) say('jammed', 'jammed');
     if (figure.hasBand)
       items.push({ series: 0, kind: 'band', name: [{ text: figure.bandName || 'tolerance', level: 0 }] });
     let x = 8,

@@ -9,11 +9,14 @@ function matplotlibScript(figure) {
       (figure.legend || []).filter((one) => one.kind === 'column').map((one) => [one.series, name(one.name)]),
     ),
     panels: figure.panels.map((panel) => {
-      const series = [...new Set(panel.marks.map((mark) => mark.series))].sort((a, b) => a - b);
+      const series = [...new Set(panel.marks.map((mark) => mark.series))].sort((a, b) => a - b),
+        jammed = panel.marks.filter((mark) => mark.kind === 'jammed');
       return {
         title: name(panel.title || []),
         series: series.map((place) => {
-          const marks = panel.marks.filter((mark) => mark.series === place).sort((a, b) => a.x - b.x);
+          const marks = panel.marks
+            .filter((mark) => mark.series === place && mark.kind !== 'jammed')
+            .sort((a, b) => a.x - b.x);
           return {
             place,
             name: names.get(place) || '',
@@ -23,6 +26,7 @@ function matplotlibScript(figure) {
             decided: marks.map((mark) => mark.kind === 'decided'),
           };
         }),
+        jammed: jammed.map(({ series: place, x, y }) => ({ place, x, y })),
         lines: (panel.lines || []).filter((line) => line.style !== 'guide'),
         bands: panel.bands || [],
         columns: panel.columns || [],
@@ -67,6 +71,12 @@ for axis, panel in zip(axes.flat, panels):
                       markerfacecolor="white", label=series["name"])
         full = [i for i, decided in enumerate(series["decided"]) if decided]
         axis.plot([series["x"][i] for i in full], [series["y"][i] for i in full], marker, color=colour)
+    for jam in panel["jammed"]:  # at its number, or at the edge of the frame where the axis has no place for one
+        at, where = jam["y"], axis.transData
+        if at is None or figure["y"]["log"] and at <= 0:
+            at, where = 1 if at is None else 0, axis.get_xaxis_transform()
+        name = "jammed" if jam is panel["jammed"][0] else None
+        axis.plot(jam["x"], at, "x", color=COLOURS[jam["place"] % 8], transform=where, clip_on=False, label=name)
     if figure["x"]["log"]:
         axis.set_xscale("log")
     if figure["y"]["log"]:
@@ -78,7 +88,7 @@ for axis, panel in zip(axes.flat, panels):
     axis.set_ylabel(figure["y"]["title"])
     if figure["y"]["categories"]:
         axis.set_yticks(range(len(figure["y"]["categories"])), figure["y"]["categories"])
-    if figure["boxes"] or any(series["name"] for series in panel["series"]):
+    if figure["boxes"] or panel["jammed"] or any(series["name"] for series in panel["series"]):
         axis.legend(fontsize="small")
 for axis in axes.flat[len(panels):]:
     axis.set_visible(False)

@@ -221,6 +221,8 @@ class PointView {
     } else {
       said.push(`Nothing is known yet: ${point.verdict}.`);
     }
+    const { ended, jammed, has_jammed: hasJammed } = point.endings;
+    if (hasJammed) said.push(`It has jammed: ${jammed} of ${Format.counted(ended, 'seed')}.`);
     if (!point.decided) said.push(`${seeds.wanted_ended} of the ${seeds.wanted} seeds of the next look have ended.`);
     const each = seeds.ended ? `, ${Format.duration(point.cpu_seconds / seeds.ended)} each` : '';
     said.push(
@@ -249,7 +251,8 @@ class PointView {
     this.facts.replaceChildren(Page.paragraph(this.sentences(point)));
     if (groups.length)
       this.facts.append(Page.paragraph(groups.map(([name, value]) => Page.group(name, value)).join(' · '), 'faint'));
-    const figures = [...this.convergence(point), this.scatter(point)];
+    const empty = point.decided ? 'Nothing to draw: no seed has a value.' : '';
+    const figures = [...this.convergence(point), this.scatter(point)].map((figure) => ({ ...figure, empty }));
     this.charts.forEach((chart, i) => chart.show(figures[i]));
     this.details.show(data, point, this.about);
     this.losses.replaceChildren();

@@ -12,6 +12,7 @@ function resultsShown(data) {
       point.seeds.wanted_ended,
       point.seeds.looked_at,
       point.losses,
+      point.endings,
       point.cpu_seconds,
     ]),
   ];
@@ -23,7 +24,8 @@ function resultsTable(data, sweep, host, onPick) {
   const column = data.quantities.findIndex((quantity) => quantity.path === path);
   const about =
     column < 0 ? { words: Format.words(path), symbol: [], unit: '' } : Format.quantity(data.quantities[column]);
-  const numbers = (point) => (column < 0 ? null : point.estimates[column]) || [null, null, null, 0];
+  const isKnown = (point) => column >= 0 && Sweep.isKnown(point, point.estimates[column]);
+  const numbers = (point) => (isKnown(point) ? point.estimates[column] : [null, null, null, 0]);
   const plain = (point) => point.uncontrolled[path] || null;
   const rows = data.points.map((point, i) => ({ point, i })),
     relative = target.relative_tolerance !== undefined;
@@ -49,6 +51,7 @@ function resultsTable(data, sweep, host, onPick) {
       title: about.symbol.length ? about.symbol : about.words,
       cell: (row) => {
         const [mean, , half] = numbers(row.point);
+        if (row.point.endings.has_jammed && !isKnown(row.point)) return 'jammed';
         return Format.withError(mean, half) + (row.point.decided || !Format.isNumber(mean) ? '' : ' *');
       },
       sort: (row) => numbers(row.point)[0],
@@ -69,7 +72,6 @@ function resultsTable(data, sweep, host, onPick) {
       title: 'marks',
       text: true,
       wrap: true,
-      minor: true,
       cell: (row) => row.point.marks.join(', '),
       sort: (row) => row.point.marks.join(', '),
     });

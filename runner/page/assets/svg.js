@@ -94,6 +94,10 @@ const Svg = {
   colours: 8,
 
   mark(series, x, y, kind, radius = 4.5) {
+    if (kind === 'jammed') {
+      const d = [1, -1].map((turn) => `M${Svg.number(x - 5)} ${Svg.number(y - 5 * turn)}L${Svg.number(x + 5)} ${Svg.number(y + 5 * turn)}`);
+      return Svg.element('path', { class: `jammed s${series % Svg.colours}`, d: d.join('') });
+    }
     const style = `mark s${series % Svg.colours} ${kind === 'decided' ? 'solid' : 'hollow'}`;
     const shape = Svg.shapes[series % Svg.shapes.length],
       n = Svg.number;

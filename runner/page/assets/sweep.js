@@ -103,10 +103,19 @@ class Sweep {
     return drawn.sort((a, b) => order.indexOf(a.group) - order.indexOf(b.group));
   }
 
-  // How sure the number of a point is: of a look that decides, of one that does not, or of the seeds so far.
+  // How sure the number of a point is: of a look that decides, of one that does not, or of the seeds so far; or that it
+  // has jammed.
   static kind(point) {
+    if (point.endings.has_jammed) return 'jammed';
     if (!point.decided) return 'provisional';
     return point.standing.startsWith('converged') ? 'decided' : 'undecided';
+  }
+
+  // Whether the point has a number. At one that has jammed a number of fewer than half of its seeds is that of those
+  // which happened to flow.
+  static isKnown({ endings }, estimate) {
+    if (!estimate || !Format.isNumber(estimate[0])) return false;
+    return !endings.has_jammed || 2 * estimate[3] > endings.ended;
   }
 
   nameOf(parameter, i) {
@@ -132,12 +141,13 @@ class Sweep {
     let absent = 0;
     this.points.forEach((point, i) => {
       for (const index of choice.indices) {
-        const estimate = point.estimates[index];
-        if (!estimate || !Format.isNumber(estimate[0])) {
+        const { endings } = point,
+          known = Sweep.isKnown(point, point.estimates[index]);
+        if (!known && !endings.has_jammed) {
           absent += 1;
           continue;
         }
-        const [y, error, half, count] = estimate,
+        const [y, error, half, count] = known ? point.estimates[index] : [null, null, null, endings.ended],
           kind = Sweep.kind(point),
           { path } = quantities[index];
         const order = panelBy.map((one) => one.values.indexOf(one.cells[i])),
@@ -158,10 +168,11 @@ class Sweep {
           allowed: point.good_enough[path],
           kind,
           point: i,
-          text: `${point.label}${terms ? `, ${term(index).text}` : ''}: ${Format.withError(y, half)} (${Format.counted(
-            count,
-            'seed',
-          )}, ${point.standing})`,
+          text: `${point.label}${terms ? `, ${term(index).text}` : ''}: ${
+            known ? Format.withError(y, half) : 'no number'
+          } (${Format.counted(count, 'seed')}, ${point.standing}${
+            endings.has_jammed ? `, ${endings.jammed} of ${endings.ended} jammed` : ''
+          })`,
         });
         kinds.add(kind);
         rows.push([
@@ -172,7 +183,7 @@ class Sweep {
           error,
           half,
           count,
-          point.standing,
+          endings.has_jammed ? `${point.standing}, jammed` : point.standing,
         ]);
       }
     });
@@ -190,7 +201,9 @@ class Sweep {
       if (stacked) Sweep.stack(panel, total, scales.x);
       else Sweep.connect(panel, series.size);
     }
-    const hidden = marks.filter((mark) => (scales.y && !(mark.y > 0)) || (scales.x && !(mark.x > 0))).length;
+    const hidden = marks.filter(
+      (mark) => (scales.y && !(mark.y > 0) && mark.kind !== 'jammed') || (scales.x && !(mark.x > 0)),
+    ).length;
     const notes = [];
     if (hidden)
       notes.push(`Left out, because a logarithmic axis has no place for them: ${hidden} that are not positive.`);
@@ -228,7 +241,7 @@ class Sweep {
   addControl(panels, total, series, path) {
     const place = Math.max(series.size, 6); // a colour that is like none of the first
     for (const { marks } of panels) {
-      for (const mark of marks.filter((one) => one.series === total)) {
+      for (const mark of marks.filter((one) => one.series === total && Format.isNumber(one.y))) {
         const plain = this.points[mark.point].uncontrolled[path];
         if (!plain || plain[0] === mark.y) continue;
         const text = `${this.points[mark.point].label}, control variate: ${Format.rough(mark.y - plain[0])}`;
@@ -262,7 +275,7 @@ class Sweep {
 
   // Parts one above another, those below zero downward, and the sum as a mark with its bar.
   static stack(panel, total, log) {
-    const parts = panel.marks.filter((mark) => mark.series !== total),
+    const parts = panel.marks.filter((mark) => mark.series !== total && Format.isNumber(mark.y)),
       along = (x) => (log ? Math.log10(x) : x),
       xs = [...new Set(panel.marks.map((mark) => mark.x))].filter((x) => !log || x > 0).map(along).sort((a, b) => a - b);
     const gaps = xs.slice(1).map((x, i) => x - xs[i]),
@@ -284,6 +297,7 @@ class Sweep {
 
   // What of a mark has to be seen. Bars of numbers that are not decided may still be enormous.
   static ends(mark) {
+    if (!Format.isNumber(mark.y)) return [];
     const whole = mark.kind !== 'provisional' && Format.isNumber(mark.half);
     return whole ? [mark.y - mark.half, mark.y + mark.half] : [mark.y];
   }
@@ -292,7 +306,9 @@ class Sweep {
   static connect(panel, series) {
     [panel.lines, panel.bands] = [[], []];
     for (let place = 0; place < series; ++place) {
-      const marks = panel.marks.filter((mark) => mark.series === place).sort((a, b) => a.x - b.x);
+      const marks = panel.marks
+        .filter((mark) => mark.series === place && mark.kind !== 'jammed')
+        .sort((a, b) => a.x - b.x);
       const places = marks.map((mark) => [mark.x, mark.y]);
       if (places.length > 1) panel.lines.push({ series: place, style: 'guide', places });
       const banded = marks

@@ -41,9 +41,8 @@ class Numbers : public testing::Test {
   std::vector<QuantityEstimate> estimates(int end) {
     QuantityEstimates sums;
     NumberBook book(campaign_.database().connection());
-    book.for_each(1, end, [&](int, const NumberLayout& layout, std::span<const double> numbers) {
-      sums.add(layout, numbers);
-    });
+    book.for_each(
+        1, end, [&](const NumberBook::Entry& seed) { sums.add(seed.layout, seed.numbers, seed.has_jammed); });
     return sums.estimates();
   }
   Connection& connection() { return campaign_.database().connection(); }

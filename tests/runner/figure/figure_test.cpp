@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 
 #include "contract/input_error.h"
 #include "runner/figure/figure_script.h"
@@ -110,6 +111,60 @@ TEST_F(CampaignFigure, IsAPictureWithAMarkAndABarForEachPoint) {
   EXPECT_EQ(count(svg, "class=\"band\""), 1U);
   EXPECT_TRUE(says(svg, ">tolerance</tspan>"));
   EXPECT_EQ(svg, svg_figure(figure({.quantity = {}, .over = {}, .scale = {}, .tolerance = true})));
+}
+
+// Points at x = 0, 1 and 2, of which the second one has jammed.
+TEST_F(CampaignFigure, ShowsWhatHasJammedAtTheEdgeAndLeadsNoLineToIt) {
+  complete_widely(0);
+  for (int seed = 0; seed < 3; ++seed) campaign_.blow_up(1, seed, "overlap");
+  campaign_.complete(1, 3, 11);  // one that happened to flow
+  complete_widely(2);
+  const Figure drawn = figure();
+  const std::vector<Mark>& marks = drawn.curves.at(0).marks;
+  ASSERT_EQ(marks.size(), 3U);
+  EXPECT_EQ(marks[1].jam, Jam::above);
+  EXPECT_EQ(drawn.absent, 0);
+  EXPECT_TRUE(std::isnan(marks[1].mean));
+  const std::string svg = svg_figure(drawn);
+  EXPECT_EQ(count(svg, "class=\"jammed\""), 2 * 2U);  // two strokes, and two in the legend
+  EXPECT_TRUE(says(svg, ">jammed</tspan>"));
+  const std::size_t guide = svg.find("<path d=\"") + 9;
+  EXPECT_EQ(count(svg.substr(guide, svg.find('"', guide) - guide), "L"), 1U);  // from the first to the third
+  const Json row = Json::parse(raw_string(figure_script(drawn)))["curves"][0]["marks"][1];
+  EXPECT_EQ(row.back(), "upper edge");
+  EXPECT_TRUE(row[2].is_null());
+}
+
+// A rate of 0 is a number; a logarithmic axis has no place for it.
+TEST_F(CampaignFigure, ShowsARateOfZeroAtTheLowerEdgeOfALogarithmicAxis) {
+  complete_widely(0);
+  const auto stand_still = [](Json& result) { result["ending"]["cause"] = "jammed"; };
+  for (int seed = 0; seed < 4; ++seed)
+    campaign_.complete_with(1, seed, -0.25, stand_still);  // with its control 0
+  for (const auto& [scale, jam] : {std::pair{"none", Jam::at_number}, {"y", Jam::below}}) {
+    const Figure drawn = figure({.quantity = {}, .over = {}, .scale = scale, .tolerance = false});
+    EXPECT_EQ(drawn.curves.at(0).marks.at(1).jam, jam);
+    EXPECT_EQ(drawn.hidden, 0);
+  }
+  const Figure drawn = figure({.quantity = {}, .over = {}, .scale = "y", .tolerance = false});
+  EXPECT_GT(drawn.y.range.low, 1);
+}
+
+// 10.3 ± 26 and 1000 ± 0: the bar goes below zero, its mean stays.
+TEST_F(CampaignFigure, HasEveryPositiveMeanWithinALogarithmicAxis) {
+  for (int seed = 0; seed < 4; ++seed) campaign_.complete(0, seed, 10.05 + (seed % 2 == 0 ? 14 : -14));
+  for (int seed = 0; seed < 4; ++seed) campaign_.complete(1, seed, 1000 + seed);
+  const Figure drawn = figure({.quantity = {}, .over = {}, .scale = "y", .tolerance = false});
+  EXPECT_LE(drawn.y.range.low, 10.3);
+  EXPECT_GE(drawn.y.range.high, 1002);
+  // Nothing is beyond the frame, from its title on the left to its lower edge.
+  const std::string svg = svg_figure(drawn);
+  std::smatch bar;
+  for (std::string rest = svg; std::regex_search(rest, bar, std::regex("y2=\"([0-9.]+)\" class=\"bar\""));
+       rest = bar.suffix()) {
+    EXPECT_GE(std::stod(bar[1]), 16);
+    EXPECT_LE(std::stod(bar[1]), 430 - 56);
+  }
 }
 
 TEST_F(CampaignFigure, ObeysNothingThatANameSays) {

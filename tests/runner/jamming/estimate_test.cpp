@@ -90,6 +90,27 @@ TEST(JammingOfACampaign, PointsThatDoNotFlowAreNoPartOfTheLaw) {
   EXPECT_FALSE(remarks_say(found, "0.57"));  // jammed has its column
 }
 
+// A result with a rate, and so a value of what the campaign aims at: it ends as `jammed`, not as lost.
+TEST(JammingOfACampaign, WhatStandsStillUnderItsStressHasJammed) {
+  JammingCampaign campaign(jamming_document(fractions));
+  const TrueLaw law;
+  for (int point = 0; point < 5; ++point)
+    campaign.complete(point, law.at(fractions[static_cast<std::size_t>(point)]));
+  for (int seed = 0; seed < 4; ++seed) {
+    campaign.stored().complete_with(5, seed, 1e8 + seed, [&](Json& result) {
+      if (seed > 0) result["ending"]["cause"] = "jammed";
+    });
+  }
+  const JammingEstimate found = campaign.estimate();
+  const JammingPoint& still = found.curve.points.at(5);
+  EXPECT_EQ(still.state, FlowState::jammed);
+  EXPECT_EQ(still.ended, 4);
+  EXPECT_EQ(still.jammed, 3);
+  for (const LawPoint& fitted : found.fitted) EXPECT_NE(fitted.fraction, still.fraction);
+  EXPECT_EQ(found.curve.smallest_stuck()->fraction, still.fraction);
+  EXPECT_EQ(found.curve.largest_flowing(), 0.60);
+}
+
 TEST(JammingOfACampaign, WithoutMeanOverlapsTheLargestDecide) {
   JammingCampaign campaign(jamming_document(fractions));
   for (int point = 0; point < 2; ++point) {

@@ -46,6 +46,14 @@ TEST(Curve, HasALineForEachOfTheOthersAndADotForWhatIsNotKnown) {
             "phi=0.5  ████····████  5 to 5\n");
 }
 
+// Of all that have ended half or more: its rate of 1e-8 says nothing, and does not make the scale.
+TEST(Curve, HasACrossForWhatHasJammed) {
+  CampaignStatus status =
+      swept({{{{"/x", 1}}, 1.0}, {{{"/x", 2}}, 2.5}, {{{"/x", 3}}, 4.0}, {{{"/x", 4}}, -1e-8}});
+  status.points[3].endings = {4, 2, 0};
+  EXPECT_EQ(curve_text(status, 80), "relative_viscosity over x, 1 to 4\n▁▁▁▁▅▅▅▅████××××  1 to 4\n");
+}
+
 TEST(Curve, IsLeftOutWhereItSaysNothingOrDoesNotFit) {
   EXPECT_EQ(curve_text(swept({}), 80), "");
   EXPECT_EQ(curve_text(swept({{{{"/form", "a"}}, 1}, {{{"/form", "b"}}, 2}, {{{"/form", "c"}}, 3}}), 80), "");

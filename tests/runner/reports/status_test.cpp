@@ -109,6 +109,32 @@ TEST(Status, ACancelledPointThatHadConvergedIsASuccess) {
   EXPECT_EQ(verdict_text(status.points.at(0)), "converged, cancelled");
 }
 
+// Under a given stress what jams has a value, else it is lost: both have jammed.
+TEST(Status, SaysWhatHasJammedHoweverItEnded) {
+  StoredCampaign campaign(4, 4, 20);
+  const auto stand_still = [](Json& result) { result["ending"]["cause"] = "jammed"; };
+  for (int seed = 0; seed < 4; ++seed) campaign.complete(0, seed, 10 + 0.01 * seed);
+  for (int seed = 0; seed < 2; ++seed) campaign.complete_with(1, seed, 1e-9, stand_still);
+  for (int seed = 2; seed < 4; ++seed) campaign.complete(1, seed, 10 + 0.01 * seed);
+  campaign.blow_up(2, 0, "overlap");
+  campaign.blow_up(2, 1, "packing");
+  campaign.crash(2, 2);
+  campaign.complete_with(3, 0, 1e-9, stand_still);
+  for (int seed = 1; seed < 4; ++seed) campaign.complete(3, seed, 10 + 0.01 * seed);
+  const CampaignStatus status = read_status(campaign.database());
+  const int jammed[] = {0, 2, 2, 1}, lost[] = {0, 0, 1, 0};
+  const std::vector<std::string> marks[] = {{}, {"jammed"}, {"jammed"}, {}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Endings& endings = status.points.at(i).endings;
+    EXPECT_EQ(endings.jammed, jammed[i]) << i;
+    EXPECT_EQ(endings.lost, lost[i]) << i;
+    std::vector<std::string> found = reservations(status.points[i]);
+    std::erase_if(found, [](const std::string& mark) { return mark != "jammed"; });
+    EXPECT_EQ(found, marks[i]) << i;
+    EXPECT_EQ(status_json(status)["points"][i]["endings"]["has_jammed"], i == 1 || i == 2);
+  }
+}
+
 // Of eight values 10.25 +- 1: half-width 2.76 / sqrt(7) at 95.9 %, 10 %; the eighth to tenth change little.
 TEST(Status, ALoosenedToleranceSaysThatAnEarlierLookDecides) {
   StoredCampaign campaign(1, 8, 20);

@@ -157,6 +157,37 @@ TEST(QuantityEstimates, AValueWithoutItsControlCountsAsItIs) {
   EXPECT_EQ(pressure["mean"], 16);
 }
 
+// Stress 3 over the rates of four seeds. What has jammed has a stress and next to no rate, of either sign.
+Json under_stress(double rate, bool has_jammed, double stress = 3) {
+  const Json ratio{{"symbol", "eta"},
+                   {"unit", "1"},
+                   {"estimator", "ratio"},
+                   {"numerator", "stress"},
+                   {"denominator", "rate"}};
+  return {{"mean", {{"viscosity", {{"stress", stress}, {"rate", rate}}}}},
+          {"ending", {{"cause", has_jammed ? "jammed" : "completed"}}},
+          {"quantities", {{"viscosity", ratio}}}};
+}
+
+TEST(QuantityEstimates, OfAPointThatHasJammedHaveNoViscosity) {
+  const auto viscosity = [](int jammed, double rate, double stress) {
+    QuantityEstimates estimates;
+    for (int seed = 0; seed < 4; ++seed) {
+      estimates.add(seed < jammed ? under_stress(rate, true, stress) : under_stress(1, false));
+    }
+    return estimates.json(0.95)["viscosity"]["mean"];
+  };
+  for (const double rate : {0.0, 3e-8, -3e-8}) {
+    EXPECT_TRUE(viscosity(4, rate, 3).is_null());
+    EXPECT_TRUE(viscosity(3, rate, 3).is_null());
+    EXPECT_TRUE(viscosity(2, rate, 3).is_null());
+    EXPECT_NEAR(viscosity(1, rate, 3).get<double>(), 4 * 3.0 / 3, 1e-6);
+    EXPECT_NEAR(viscosity(0, rate, 3).get<double>(), 3, 1e-12);
+  }
+  EXPECT_NEAR(viscosity(3, 0, 0).get<double>(), 3, 1e-12);  // of those that flow
+  EXPECT_TRUE(viscosity(4, 0, 0).is_null());
+}
+
 TEST(QuantityEstimates, OfScalarsAloneLeaveListsOut) {
   QuantityEstimates estimates(QuantityEstimates::Wanted::scalars);
   estimates.add(result_of({{"pressure", 10}, {"noise", 3}, {"g", {{"counts", {1, 5}}, {"ideal", {1, 0}}}}}));

@@ -1,0 +1,109 @@
+#!/usr/bin/python3
+"""jam_test.py BIN: a point that has jammed under its stress, in tables, files, figures and on the page."""
+
+import json
+import os
+import runpy
+import subprocess
+import xml.etree.ElementTree
+
+from campaign_page import choose, rows
+from page_case import PageTest, Stage, main
+
+SVG = "{http://www.w3.org/2000/svg}"
+# No suspension flows under a stress that would need less than 1 + 2.5 phi: the first of these stands still.
+CAMPAIGN = {
+    "name": "still",
+    "scene": {
+        "particles": {"count": 20, "density": 0.001, "species": [{"radius": 1}]},
+        "volume_fraction": 0.3,
+        "fluid": {"viscosity": 1},
+        "flow": {"stress": 5},
+        "contact": {"normal_stiffness": 2e4},
+        "lubrication": {"form": "kim-karrila", "inner_gap": 0.001, "outer_gap": 0.05},
+        "duration": {"equilibration": {"stress_times": 0.5}, "production": {"stress_times": 12}},
+    },
+    "sweep": [{"set": "/flow/jammed_viscosity", "values": [1.5, 200, 1000]}],
+    "target": {"observable": "shear_rate", "absolute_tolerance": 1e9},
+    "realisations": {"minimum": 4, "maximum": 4},
+    "engine": ["peclet-engine", "serve"],
+}
+
+
+class Jams(PageTest):
+    @classmethod
+    def setUpClass(cls):
+        Stage.folder.peclet("run", Stage.folder.write(CAMPAIGN), "--quiet", allowed=(0, 3))
+        Stage.folder.report("still.json")
+
+    def draw(self, *words):
+        Stage.folder.peclet("plot", "still.json", "--output", "still.svg", *words)
+        figure = runpy.run_path(Stage.folder.file("still.py"))["FIGURE"]
+        (curve,) = figure["curves"]
+        marks = [dict(zip(figure["columns"], mark)) for mark in curve["marks"]]
+        return figure, marks, xml.etree.ElementTree.parse(Stage.folder.file("still.svg")).getroot()
+
+    def test_have_the_rate_zero_and_no_viscosity(self):
+        still, *flowing = rows(Stage.folder.peclet("export", "still.json", "--csv"))
+        self.assertEqual([row["jammed"] for row in (still, *flowing)], ["1", "0", "0"])
+        self.assertEqual((float(still["mean"]), still["apparent_viscosity"]), (0, ""))
+        for row in flowing:
+            self.assertGreater(float(row["apparent_viscosity"]), 1 + 2.5 * 0.3)
+        point = json.loads(Stage.folder.peclet("export", "still.json"))["points"][0]
+        self.assertEqual(point["endings"], {"ended": 4, "jammed": 4, "lost": 0, "has_jammed": True})
+        self.assertIsNone(point["quantities"]["apparent_viscosity"]["mean"])
+        status = json.loads(Stage.folder.peclet("status", "still.json", "--json"))["points"]
+        self.assertEqual([one["endings"]["has_jammed"] for one in status], [True, False, False])
+        self.assertIn("jammed", Stage.folder.peclet("status", "still.json").split("\n")[3])
+        self.assertIn("jammed", Stage.folder.peclet("explain", "still.json", point["label"]).split("\n")[1])
+
+    def test_stand_at_the_edge_of_a_figure(self):
+        for quantity, scale, place in (
+            ("apparent_viscosity", "none", "upper edge"),
+            ("apparent_viscosity", "y", "upper edge"),
+            ("shear_rate", "none", "at its number"),
+            ("shear_rate", "y", "lower edge"),
+        ):
+            figure, marks, root = self.draw("--quantity", quantity, "--log", scale)
+            self.assertEqual([mark["jammed"] for mark in marks], [place, None, None])
+            frame = root.findall(f".//{SVG}rect")[-1]
+            top = float(frame.get("y"))
+            edge = {"upper edge": top, "lower edge": top + float(frame.get("height"))}
+            label = marks[0]["label"]
+            (group,) = (g for g in root.iter(f"{SVG}g") if g.findtext(f"{SVG}title") == label)
+            strokes = [line for line in group.iter(f"{SVG}line") if line.get("class") == "jammed"]
+            heights = [(float(line.get("y1")) + float(line.get("y2"))) / 2 for line in strokes]
+            self.assertEqual(len(heights), 2)
+            if place in edge:
+                self.assertAlmostEqual(heights[0], edge[place], delta=0.2)
+            self.assertIn("jammed", ["".join(text.itertext()) for text in root.iter(f"{SVG}text")])
+            (guide,) = (path for path in root.iter(f"{SVG}path") if path.get("class") == "guide")
+            self.assertEqual(guide.get("d").count("L"), 1)
+            for ending in ("png", "pdf"):
+                subprocess.run(
+                    ["/usr/bin/python3", Stage.folder.file("still.py"), Stage.folder.file(f"still.{ending}")],
+                    check=True,
+                )
+                self.assertGreater(os.path.getsize(Stage.folder.file(f"still.{ending}")), 1000)
+
+    def test_stand_at_the_edge_on_the_page(self):
+        page = self.open("still.json.html")
+        choose(page, "#quantity", "apparent viscosity")
+        marks = page.evaluate("document.querySelectorAll('#sweep path.jammed').length")
+        self.assertEqual(marks, 2)  # one of the legend
+        at = page.evaluate(
+            "document.querySelector('#sweep path.jammed').getAttribute('d').match(/M[-.0-9]+ ([-.0-9]+)L[-.0-9]+ "
+            "([-.0-9]+)/).slice(1).map(Number).reduce((a, b) => a + b) / 2"
+        )
+        top = page.evaluate("Number(document.querySelector('#sweep rect.frame').getAttribute('y'))")
+        self.assertAlmostEqual(at, top, delta=0.2)
+        guide = page.evaluate("document.querySelector('#sweep path.guide').getAttribute('d')")
+        self.assertEqual(guide.count("L"), 1)
+        table = page.evaluate("document.querySelector('#results').innerText")
+        self.assertIn("jammed", table)
+        choose(page, "#quantity", "shear rate")
+        self.assertEqual(page.evaluate("document.querySelectorAll('#sweep path.jammed').length"), 2)
+
+
+if __name__ == "__main__":
+    main()
