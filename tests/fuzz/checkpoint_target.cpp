@@ -18,7 +18,7 @@ using namespace peclet::engine;
 
 namespace fs = std::filesystem;
 
-const CheckpointIdentity identity = {"a scene", 7, "a binary"};
+const CheckpointIdentity belonging = {"a scene", 7, "a binary"};
 
 const Scene& scene() {
   static const Scene read = read_scene(Json::parse(R"({
@@ -59,7 +59,7 @@ const std::vector<std::string>& written() {
     simulation.start();
     for (const std::uint64_t steps : {2U, 28U}) {
       simulation.advance(steps);
-      write_checkpoint(path(), identity, {}, simulation);
+      write_checkpoint(path(), belonging, {}, simulation);
       all.push_back(read_file(path()));
     }
     return all;
@@ -78,7 +78,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::ofstream(path(), std::ios::binary) << bytes + payload + sha256(payload);
   try {
     Simulation simulation = fresh();
-    read_checkpoint(path(), identity, simulation);
+    read_checkpoint(path(), belonging, simulation);
   } catch (const CheckpointError&) {  // refused in words
   }
   return 0;

@@ -134,7 +134,7 @@ TEST_F(Checkpoint, PayloadsWithoutPlacesAreRefused) {
   };
   const Vector3 place = simulation_.system().particles.position[5];
   const Matrix3 gradient = simulation_.system().box.displacement_gradient();
-  for (const double bad : {std::nan(""), INFINITY, 1e300, 1e9}) {
+  for (const double bad : {std::nan(""), HUGE_VAL, 1e300, 1e9}) {
     std::string bytes = payload();
     const std::string known = bytes_of(place);
     bytes.replace(bytes.find(known), known.size(), bytes_of(Vector3{place.x, bad, place.z}));
