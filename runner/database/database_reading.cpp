@@ -129,12 +129,22 @@ EventRecord read_event(const Statement& query) {
   return record;
 }
 
+// Target::observables() of the campaign, without reading its document.
+std::vector<std::string> present_observables(Connection& connection) {
+  Statement query(connection,
+                  "SELECT target_id, observable, criterion, confidence, minimum, maximum, rule FROM campaign "
+                  "JOIN target USING (target_id)");
+  if (!query.step()) throw IntegrityError(connection.path() + ": holds no campaign");
+  return read_target(query, 0).target.observables();
+}
+
 // Small quantities of the point, as its first result describes them: all of its results come from one engine.
-std::vector<Quantity> described_quantities(Connection& connection, std::int64_t point) {
+// Nothing where none is a share, which spares parsing the text.
+std::vector<Quantity> described_shares(Connection& connection, std::int64_t point) {
   Statement query(connection,
                   "SELECT quantities FROM numbers JOIN number_layout USING (layout_id) WHERE point_id = ? "
                   "ORDER BY seed LIMIT 1");
-  if (!query.bind(point).step()) return {};
+  if (!query.bind(point).step() || query.text(0).find("\"share\"") == std::string::npos) return {};
   return NumberLayout::of_text(query.text(0)).quantities();
 }
 
@@ -241,8 +251,8 @@ std::vector<std::optional<Outcome>> Database::outcomes(std::int64_t point) {
       "realisation "
       "WHERE point_id = ? AND seed < ? AND state IN ('done', 'failed', 'quarantined') ORDER BY seed");
   query.bind(point).bind(most_realisations);
-  const std::vector<std::string> observables = campaign().target.target.observables();
-  const std::vector<Quantity> described = described_quantities(*connection_, point);
+  const std::vector<std::string> observables = present_observables(*connection_);
+  const std::vector<Quantity> described = described_shares(*connection_, point);
   std::vector<std::optional<Outcome>> outcomes;
   while (query.step()) {
     outcomes.resize(static_cast<std::size_t>(query.integer(0)) + 1);

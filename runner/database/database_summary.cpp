@@ -147,7 +147,9 @@ std::vector<Estimate> estimates_so_far(const std::vector<std::optional<Outcome>>
     if (!outcome) continue;
     for (std::size_t place = 0; place < observables; ++place) {
       const Observation of = outcome->of(place);
-      if (!std::isnan(of.value)) sums[place].add(of.value + of.control);
+      if (std::isnan(of.value)) continue;
+      if (of.is_share && sums[place].estimate().count == 0) sums[place] = RunningEstimate(true);
+      sums[place].add(of.value + of.control);
     }
   }
   std::vector<Estimate> estimates(observables);
