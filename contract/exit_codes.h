@@ -19,8 +19,8 @@ struct ExitCode {
   };
 };
 
-// Whether an error is about a name that no file can have, too long or a loop of links: only a person gives such
-// names, so that it is one of usage.
+// Whether an error is about a name that no file can have, too long or a loop of links: only a person gives
+// such names, so that it is one of usage.
 bool is_impossible_name(const std::exception& error);
 
 }  // namespace peclet

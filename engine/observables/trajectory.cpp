@@ -130,8 +130,10 @@ void Trajectory::add_places(const System& system) {
   const ParticleState& particles = system.particles;
   const PeriodicCell& box = system.box;
   const CellFrame cell = box.frame();
-  const auto& [along_a, across, up] = cell.axes.column;
-  const auto turned = [&](const Vector3& v) { return Vector3{dot(along_a, v), dot(across, v), dot(up, v)}; };
+  const auto& axis = cell.axes.column;
+  const auto turned = [&](const Vector3& v) {
+    return Vector3{dot(axis[0], v), dot(axis[1], v), dot(axis[2], v)};
+  };
   std::vector<float> shape, position, velocity, spin;
   std::vector<std::int32_t> image;
   append(shape, cell.lengths);
@@ -154,7 +156,7 @@ void Trajectory::add_places(const System& system) {
   frames_.add("log/particles/angular_velocity", spin, 3);
   if (!turns_) return;
   std::vector<double> axes;
-  for (const Vector3& axis : cell.axes.column) axes.insert(axes.end(), {axis.x, axis.y, axis.z});
+  for (const Vector3& a : axis) axes.insert(axes.end(), {a.x, a.y, a.z});
   frames_.add("log/axes", axes, 3);
 }
 
