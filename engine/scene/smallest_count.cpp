@@ -1,6 +1,8 @@
 #include "engine/scene/smallest_count.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <set>
 
 namespace peclet::engine {
@@ -15,17 +17,19 @@ bool has_every_size(const Particles& particles) {
 }
 
 std::size_t smallest_count(Particles particles) {
-  const auto is_enough = [&](std::size_t count) {
-    particles.count = count;
-    return has_every_size(particles);
-  };
-  std::size_t below = 0, enough = most_particles;
-  if (!is_enough(enough)) return 0;
-  while (enough - below > 1) {
-    const std::size_t middle = below + (enough - below) / 2;
-    (is_enough(middle) ? enough : below) = middle;
+  particles.count = 1;
+  const std::vector<double> exact = exact_numbers(particles);
+  std::map<double, double> share;
+  for (std::size_t s = 0; s < exact.size(); ++s) share[particles.species[s].radius] += exact[s];
+  double least = 1;
+  for (const auto& [radius, part] : share) least = std::min(least, part);
+  // Grains of a mixture are rounded one after the other, and may want a few more.
+  for (double count = std::ceil(1 / least - 1e-9); count <= most_particles;
+       count += 1 + std::floor(count / 50)) {
+    particles.count = static_cast<std::size_t>(count);
+    if (has_every_size(particles)) return particles.count;
   }
-  return enough;
+  return 0;
 }
 
 }  // namespace peclet::engine

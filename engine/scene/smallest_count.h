@@ -13,8 +13,8 @@ constexpr std::size_t most_particles = 10'000'000;
 // Whether each radius has a sphere among the `count` of these particles.
 bool has_every_size(const Particles& particles);
 
-// Returns a count of at most `most_particles` at which each radius has a sphere and one sphere less would
-// leave some without, found by bisection; 0 if there is none.
+// Returns the number of spheres from which on the shares give each radius a whole one; 0 if it is larger than
+// `most_particles`. Rounding may give all of them one at fewer, but not at every larger count.
 std::size_t smallest_count(Particles particles);
 
 }  // namespace peclet::engine

@@ -57,8 +57,9 @@ TEST_F(SizeChoice, OfAllSizesSaysTheCountThatAScenePasses) {
   std::size_t size = 0, spheres = 0;
   std::sscanf(all.remarks.c_str() + all.remarks.find('\n'), "%zu %zu", &size, &spheres);
   EXPECT_EQ(size, 14U) << all.remarks;
-  EXPECT_EQ(fault_of(all, spheres), "");
-  const std::string fault = fault_of(all, spheres - 1);
+  for (const std::size_t count : {spheres, spheres + 1, spheres + 100, 2 * spheres})
+    EXPECT_EQ(fault_of(all, count), "");
+  const std::string fault = fault_of(all, 60);
   EXPECT_NE(fault.find(std::to_string(spheres) + " would do for all sizes"), std::string::npos) << fault;
 }
 
