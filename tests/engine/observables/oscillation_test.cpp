@@ -72,7 +72,7 @@ TEST(Moduli, HaveAsManyBlocksAsTheirCyclesFill) {
     auto made = make_observables(scene, system, {timestep, steps * cycles, system.box.lengths()});
     for (std::uint64_t k = 0; k < steps * cycles; ++k) {
       MomentumFlux flux;
-      flux.acted.xy = volume * amplitude * (1 + static_cast<double>(k / steps)) *
+      flux.by_pairs.xy = volume * amplitude * (1 + static_cast<double>(k / steps)) *
                       std::sin(frequency * timestep * (static_cast<double>(k) + 0.5));
       made.front()->take_flux(flux);
     }

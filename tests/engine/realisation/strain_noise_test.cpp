@@ -35,9 +35,8 @@ class KnownPairs : public Integrator {
   void start(System& /*system*/) override {}
   StepReport advance_open(System& system) override {
     StepReport report;
-    report.flux.acted.xy = volume * (friction * shear_.present_rate() + noise(system.step));
-    // What a step reports of noise is not what acts.
-    report.sums.of(StressTerm::lubrication).xy = 0.8 * report.flux.acted.xy;
+    report.sums.of(StressTerm::lubrication).xy = volume * friction * shear_.present_rate();
+    report.sums.of(StressTerm::brownian_lubrication).xy = volume * noise(system.step);
     ++system.step;
     return report;
   }
