@@ -26,7 +26,7 @@ struct Quantity {
   std::string symbol, unit;  // "1": a pure number
   std::vector<Axis> axes{};  // none: a scalar; otherwise lists within lists, the first axis outermost
   std::optional<RatioOfMeans> ratio{};  // absent: its values are means
-  bool is_share = false;  // a scalar that is 0 or 1 in each realisation
+  bool is_share = false;                // a scalar that is 0 or 1 in each realisation
 };
 
 Json to_json(const Quantity& quantity);

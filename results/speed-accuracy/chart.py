@@ -2,8 +2,9 @@
 """chart.py TABLE PICTURE [PANEL...]
 
 Draws the table of this study: a panel for each case (or for those that are named), relative difference of the viscosity
-from the reference over the processor time to a standard error of 2 %, and the same of the pressure where it is known. Bars are 95 %; an arrow stands for what is beyond
-the panel. lammps.csv beside this script, where there is one, has points of LAMMPS.
+from the reference over the processor time to a standard error of 2 %, and the same of the pressure where it is known.
+Bars are 95 %; an arrow stands for what is beyond the panel. lammps.csv beside this script, where there is one, has
+points of LAMMPS.
 """
 import csv
 import math

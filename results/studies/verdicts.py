@@ -5,8 +5,8 @@
     Check       of our own methods and their consistency: "ok" or "failed"; it says nothing about the publication
     Finding     a number where nothing is published, or where what is tested is a reading of ours: no answer
 
-A row answers when its whole interval of 95 % lies on one side of each bound; until then the answer is "open". The study's
-verdict follows from its statements: "does not hold" when one that is marked essential does not; "not yet" when one is
+A row answers when its whole interval of 95 % lies on one side of each bound; until then the answer is "open". The
+study's verdict follows from its statements: "does not hold" when one that is marked essential does not; "not yet" when one is
 open; "holds with a difference" when another one does not hold; "holds" when all do; "findings only" without any. Checks
 that failed are counted behind it: "holds (2 checks failed)". A statement is not essential when its bound hangs on a
 number, a definition or a word like "weakly" that is not in print.
@@ -30,7 +30,7 @@ def five_digits(x):
 
 
 def value_in_json(value):
-    """To five digits; "infinite" or "-infinite", of a viscosity that jams for example; None where it was not measured."""
+    """To five digits; "infinite" or "-infinite", as of a viscosity that jams; None where it was not measured."""
     if math.isinf(value):
         return "infinite" if value > 0 else "-infinite"
     return five_digits(value)
@@ -53,8 +53,8 @@ def with_error(value, error):
 
 
 class Row:
-    """`value` with its standard error, of so many degrees of freedom. An error of 0 is that of a number that seeds do not
-    change: a count, a time, a place on a grid, a difference in standard errors."""
+    """`value` with its standard error, of so many degrees of freedom. An error of 0 is that of a number that seeds do
+    not change: a count, a time, a place on a grid, a difference in standard errors."""
 
     kind = None
 

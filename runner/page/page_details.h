@@ -15,8 +15,8 @@ constexpr int most_detailed_seeds = 64;
 // {"seeds": how many results it is made of, "of": how many the estimate of the point is made of, "blocks",
 // null without: {"mean", "half_width"}, "profiles": [{"name", "symbol", "unit", "axis": {"name", "unit",
 // "values"}, "mean", "standard_error", "half_width"}]}: means over the first `seeds` results below the seed
-// `end`, half-widths at the level of the target. Profiles are quantities over one axis of numbers; a longer one
-// than 400 numbers is thinned.
+// `end`, half-widths at the level of the target. Profiles are quantities over one axis of numbers; a longer
+// one than 400 numbers is thinned.
 Json point_details(Database& database, std::int64_t point, int end, const TargetRecord& target, int seeds);
 
 }  // namespace peclet::runner

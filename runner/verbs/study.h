@@ -2,9 +2,9 @@
 //
 // A study is a folder with study.py, which remakes it, and study.json, what it found when it was last made
 // whole: title, verdict ("holds", "holds with a difference", "does not hold", "not yet", "findings only";
-// checks that failed are counted behind it), processor_hours, date, and statements, each of a kind: "statement", of a publication ("holds", "does not
-// hold" or "open"), "check" of our methods ("ok", "failed" or "open"), or "finding". results/studies writes
-// that file and has the rule by which the verdict follows.
+// checks that failed are counted behind it), processor_hours, date, and statements, each of a kind:
+// "statement", of a publication ("holds", "does not hold" or "open"), "check" of our methods ("ok", "failed"
+// or "open"), or "finding". results/studies writes that file and has the rule by which the verdict follows.
 #pragma once
 
 #include <filesystem>

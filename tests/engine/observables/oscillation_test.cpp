@@ -73,7 +73,7 @@ TEST(Moduli, HaveAsManyBlocksAsTheirCyclesFill) {
     for (std::uint64_t k = 0; k < steps * cycles; ++k) {
       MomentumFlux flux;
       flux.by_pairs.xy = volume * amplitude * (1 + static_cast<double>(k / steps)) *
-                      std::sin(frequency * timestep * (static_cast<double>(k) + 0.5));
+                         std::sin(frequency * timestep * (static_cast<double>(k) + 0.5));
       made.front()->take_flux(flux);
     }
     Json blocks = Json::object();
