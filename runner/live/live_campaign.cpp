@@ -140,7 +140,7 @@ std::shared_ptr<const std::string> LiveCampaign::changes_since(const std::string
   }
   if (since == revision_) return nullptr;
   // What was made up, or is older than any page that still asks, is told everything: what is kept is bounded.
-  if (since < revision_ - most_revisions || since > revision_) since = 0;
+  if (since < std::max(revision_ - most_revisions, 0) || since > revision_) since = 0;
   Text& known = changes_[since];
   if (!known) {
     std::string points;

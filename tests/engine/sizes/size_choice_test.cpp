@@ -39,6 +39,7 @@ class SizeChoice : public testing::Test {
     Json scene = small_scene();
     scene["particles"]["species"] = Json::parse("{" + answer.block + "}").at("species");
     scene["particles"]["count"] = count;
+    scene["integrator"] = {{"method", "implicit"}};  // of any sizes
     try {
       const Scene read = read_scene(scene, "scene.json");
       check_fit(read, make_schedule(read, "scene.json"), "scene.json");

@@ -41,7 +41,7 @@ TEST_F(Dispatching, ASeedThatCrashesThreeTimesIsGivenUpAndCountsAsLost) {
       if (pool_.job(worker).seed == 1) {
         pool_.say(Exited{worker, {{}, SIGSEGV}});
       } else {
-        pool_.finish(worker, steady(0));
+        pool_.finish(worker, steady(pool_.job(worker).seed));
       }
     }
   };

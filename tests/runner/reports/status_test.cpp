@@ -57,7 +57,7 @@ TEST(Status, SaysWhySeedsWereLost) {
 // Kaplan and Meier is (4 * 4 + 1200) / 5.
 TEST(Status, TheForecastKnowsOfSeedsThatRun) {
   StoredCampaign campaign(1, 8, 20);
-  for (int seed = 0; seed < 4; ++seed) campaign.complete(0, seed, 10);
+  for (int seed = 0; seed < 4; ++seed) campaign.complete(0, seed, 10 + 0.001 * seed);
   campaign.begin(0, 4);
   Connection& connection = campaign.database().connection();
   connection.execute("UPDATE attempt SET started_at = '2026-01-01T00:00:00Z' WHERE outcome = 'running'");
