@@ -315,7 +315,7 @@ std::vector<Warning> scene_warnings(const Scene& scene) {
 namespace {
 
 // Volume fraction that random packings reach: phi = 0.634 + 0.0658 d + 0.0857 S d^2, d the standard deviation
-// of the radius over its mean and S its skewness (Desmond & Weeks, Phys. Rev. E 90, 022204, 2014, eq. 4).
+// of the radius over its mean and S its skewness (Desmond & Weeks, Phys. Rev. E 90, 022204, 2014).
 double densest_random_packing(const Particles& particles) {
   const std::vector<std::size_t> number = species_numbers(particles);
   const auto moment = [&](double centre, int power) {
@@ -333,8 +333,8 @@ double densest_random_packing(const Particles& particles) {
 }  // namespace
 
 std::vector<Warning> warnings_before_run(const Scene& scene) {
-  // Below this contacts overlap by more than 0.1 % of a radius in the mean: by 0.4 % at half of it and phi =
-  // 0.40, and spheres at phi = 0.50 come to overlap by the 5 % at which a realisation ends.
+  // At phi = 0.40 contacts overlap by 0.6, 0.4 and 0.2 % of a radius in the mean at 10^3, 5 10^3 and 2 10^4;
+  // in dense suspensions some come to overlap by the 5 % at which a realisation ends.
   constexpr double stiff = 1e4;
   std::vector<Warning> warnings;
   if (const double densest = densest_random_packing(scene.particles);
