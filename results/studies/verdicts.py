@@ -6,10 +6,10 @@
     Finding     a number where nothing is published, or where what is tested is a reading of ours: no answer
 
 A row answers when its whole interval of 95 % lies on one side of each bound; until then the answer is "open". The
-study's verdict follows from its statements: "does not hold" when one that is marked essential does not; "not yet" when one is
-open; "holds with a difference" when another one does not hold; "holds" when all do; "findings only" without any. Checks
-that failed are counted behind it: "holds (2 checks failed)". A statement is not essential when its bound hangs on a
-number, a definition or a word like "weakly" that is not in print.
+study's verdict follows from its statements: "does not hold" when one that is marked essential does not; "not yet"
+when one is open; "holds with a difference" when another one does not hold; "holds" when all do; "findings only"
+without any. Checks that failed are counted behind it: "holds (2 checks failed)". A statement is not essential when
+its bound hangs on a number, a definition or a word like "weakly" that is not in print.
 """
 import math
 
