@@ -159,8 +159,8 @@ const IndexEntry* Reader::find(std::uint64_t frame, std::string_view name) const
 }
 
 std::span<const IndexEntry> Reader::chunks(std::uint64_t frame) const {
-  const auto found = std::ranges::equal_range(index_, frame, {}, &IndexEntry::frame);
-  return {found.begin(), found.end()};
+  const auto begin = std::ranges::lower_bound(index_, frame, {}, &IndexEntry::frame);
+  return {begin, std::ranges::upper_bound(begin, index_.end(), frame, {}, &IndexEntry::frame)};
 }
 
 void Reader::check(const IndexEntry& chunk, std::uint8_t type, std::uint32_t columns) const {
