@@ -15,9 +15,10 @@ std::size_t number_of(const System& system, const Pair& pair) {
 }
 
 // The term that has what bringing forces along adds.
-StressTerm carried_term(const Terms& terms) {
-  if (terms.lubrication) return StressTerm::lubrication;
-  return terms.contact ? StressTerm::contact_normal : StressTerm::repulsion;
+StressTerm carried_term(const Physics& physics) {
+  if (physics.lubrication) return StressTerm::lubrication;
+  if (physics.contact) return StressTerm::contact_normal;
+  return physics.repulsion ? StressTerm::repulsion : StressTerm::attraction;
 }
 
 }  // namespace
@@ -59,7 +60,7 @@ PairSums ActedStress::end(System& system, ForceField& field, const LinkWeights& 
       field.evaluate_change(system, weights, predicted_, change_, force_of_change_, torque_of_change_);
   add_stress(sums_, change);
   const double half = 0.5 * timestep;
-  sums_.of(carried_term(field.terms())) += sum_over_particles(system, field.threads(), [&](std::size_t i) {
+  sums_.of(carried_term(field.physics())) += sum_over_particles(system, field.threads(), [&](std::size_t i) {
     const Vector3 way = half * relative_to_flow(system, i, particles.velocity[i]);
     return -1.0 * (symmetric_dyad(way, force_at_beginning_[i]) +
                    symmetric_dyad(half * change_.velocity[i], force_ahead_[i] + force_of_change_[i]));
@@ -95,7 +96,7 @@ void ActedStress::end_pairs(System& system, ForceField& field, const LinkWeights
         own.force_ahead += force;
         const Vector3 way = peculiar(pair.second) - peculiar(pair.first),
                       change = change_.velocity[pair.second] - change_.velocity[pair.first];
-        own.sums.of(carried_term(field.terms())) +=
+        own.sums.of(carried_term(field.physics())) +=
             0.5 * timestep *
             (symmetric_dyad(way, own.force_at_beginning) + symmetric_dyad(change, own.force_ahead));
       });

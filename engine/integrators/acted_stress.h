@@ -43,13 +43,13 @@ class ActedStress {
   // Once the velocities are found and before the particles move on from x'.
   PairSums end(System& system, ForceField& field, const LinkWeights& weights, double timestep);
 
-  // The same of each pair, after the functions above: slow, for what is looked at seldom.
+  // The stress of each pair, after the functions above: slow, for what is looked at seldom.
   void begin_pairs(const System& system, ForceField& field);
   void predict_pairs(const System& system, ForceField& field);
   void end_pairs(System& system, ForceField& field, const LinkWeights& weights, double timestep);
   void show_pairs(const System& system, PairWatcher& watcher) const;
 
-  // Of the pairs on a particle, at x_n.
+  // Force of the pairs on a particle at x_n.
   Vector3 force_at_beginning(std::size_t particle) const { return force_at_beginning_[particle]; }
 
  private:

@@ -112,8 +112,10 @@ PairSums NoisyMidpoint::assemble(System& system, ForceField& field, Loads& loads
 // at any place, and a free particle carries kT whatever the step.
 SymmetricTensor NoisyMidpoint::motion(const System& system, std::size_t i) const {
   const ParticleState& particles = system.particles;
-  const Vector3 after = relative_to_flow(system, i, particles.velocity[i]),
-                before = relative_to_flow(system, i, origin_.velocity[i]), mean = 0.5 * (before + after);
+  const Vector3 flow =
+      field_.physics().flow.at(system.box).velocity(particles.position[i], particles.radius[i]);
+  const Vector3 after = particles.velocity[i] - flow, before = origin_.velocity[i] - flow,
+                mean = 0.5 * (before + after);
   const Vector3 noise = noise_.force[i] - stress_.force_at_beginning(i);
   const double dragged = inertial_ ? translational_drag(field_.physics().viscosity, particles.radius[i]) : 0;
   return -particles.mass[i] * symmetric_dyad(after, mean) + -0.5 * timestep_ * symmetric_dyad(after, noise) +

@@ -104,7 +104,8 @@ StepReport VelocityVerlet::advance_open(System& system) {
 // where the way that it resists ends; in the middle of the way it has no mean. So a free particle carries kT.
 SymmetricTensor VelocityVerlet::motion(const System& system, std::size_t i) const {
   const ParticleState& particles = system.particles;
-  const Vector3 v = relative_to_flow(system, i, particles.velocity[i]);
+  const Vector3 v = particles.velocity[i] -
+                    field_.physics().flow.at(system.box).velocity(particles.position[i], particles.radius[i]);
   const double drag = translational_drag(field_.physics().viscosity, particles.radius[i]);
   return (0.5 * timestep_ * drag - particles.mass[i]) * symmetric_dyad(v, v);
 }

@@ -26,7 +26,7 @@ class ForceField {
   // noise. Springs do not advance: of terms without friction.
   PairSums evaluate_pairs(System& system, VectorField& force, VectorField& torque);
 
-  // The same in two parts, the second one block by block: pairs that cross from one block of particles into
+  // evaluate() in two parts, the second one block by block: pairs that cross from one block of particles into
   // another act on the particle in the earlier one only after add_incoming().
   PairSums evaluate_blocks(System& system, VectorField& force, VectorField& torque);
   // The same with `set_drag` to set a block's rows, which may also do what is due before: on one thread

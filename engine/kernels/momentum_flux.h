@@ -14,7 +14,7 @@ namespace peclet::engine {
 
 struct MomentumFlux {
   SymmetricTensor by_pairs;      // sum over pairs of sym(r F_i), all terms
-  SymmetricTensor by_motion;     // -sum m sym(V V'), relative to the flow
+  SymmetricTensor by_motion;     // of the motion relative to the flow, as steps report it
   SymmetricTensor conservative;  // contact, repulsion, attraction and the motion: even in the velocities
   SymmetricTensor dissipative;   // lubrication and damping: odd
 

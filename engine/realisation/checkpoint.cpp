@@ -1,5 +1,7 @@
 #include "engine/realisation/checkpoint.h"
 
+#include <stdexcept>
+
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
 #include "contract/sha256.h"
@@ -56,6 +58,8 @@ void with_payload(const std::filesystem::path& path, std::size_t particles, cons
   } catch (const UnsuitableFile& error) {
     throw CheckpointError(error.what());
   } catch (const std::runtime_error& error) {  // also what may not be read
+    throw CheckpointError(path.string() + ": " + error.what());
+  } catch (const std::invalid_argument& error) {  // a cell that is smaller than the range of the forces
     throw CheckpointError(path.string() + ": " + error.what());
   }
 }

@@ -129,8 +129,12 @@ class Table {
     }
     const auto size = number_of(fields[of_size - 1], separator_),
                share = number_of(fields[of_share - 1], separator_);
+    constexpr double least = 1e-30, most = 1e30;  // of which cubes are numbers, too
     if (!size || !(*size > 0)) refuse(line, fmt::format("must have a size > 0 in column {}", of_size));
+    if (*size < least || *size > most)
+      refuse(line, fmt::format("must have sizes from {:g} to {:g} in column {}", least, most, of_size));
     if (!share || !(*share >= 0)) refuse(line, fmt::format("must have a share >= 0 in column {}", of_share));
+    if (*share > most) refuse(line, fmt::format("must have shares up to {:g} in column {}", most, of_share));
     return {*size, *share};
   }
 

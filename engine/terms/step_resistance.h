@@ -18,7 +18,8 @@
 //
 // xi is the shifted gap of terms/lubricated_gap.h where the form has one.
 //
-// In steps without noise the squeezing part of a pair's r F is then the change of a function of the gap.
+// With R averaged over the way (on_the_way) the squeezing part of a pair's r F is the change of a function of
+// the gap.
 #pragma once
 
 #include "engine/terms/lubrication.h"

@@ -182,10 +182,11 @@ void check_description(const Place& about) {
   if (estimator != "mean" && estimator != "ratio" && estimator != "share")
     refuse(about.pointer + "/estimator", "must be mean, ratio or share");
   if (estimator == "share") {
-    for (const char* const key : {"axes", "control"})
+    for (const char* const key : {"axes", "control"}) {
       about.with(key, [](const Place& place) {
         refuse(place.pointer, "must not be there beside the estimator share");
       });
+    }
   }
   if (estimator == "ratio") {
     for (const char* const key : {"numerator", "denominator"}) must_be_name(about.at(key));

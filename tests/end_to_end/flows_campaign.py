@@ -135,7 +135,9 @@ def every_flow(peclet, folder):
 def share_that_flows(peclet, folder):
     flows = [{"stress": 5, "jammed_viscosity": 1.5}, {"stress": 5, "jammed_viscosity": 100}]
     path = written(folder, standing_still(flows))
-    subprocess.run([peclet, "run", path, "--quiet"], check=True, stdout=subprocess.DEVNULL)
+    # Equal rates of 0 have no spread to judge by, whatever the tolerance: the point stays open at the maximum.
+    ended = subprocess.run([peclet, "run", path, "--quiet"], stdout=subprocess.DEVNULL).returncode
+    check(ended == 3, "the run ended with", ended)
     exported = json.loads(subprocess.run([peclet, "export", path], check=True, capture_output=True).stdout)
     still, flowing = exported["points"]
     for point, share in ((still, 0), (flowing, 1)):

@@ -1,6 +1,8 @@
 // Implicit steps on several threads, and on more of them than there are processors or blocks of particles.
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "engine/flow/waves.h"
 #include "engine/integrators/implicit.h"
 #include "tests/engine/available_sets.h"
@@ -82,6 +84,8 @@ TEST_P(ThreadsOf, ImplicitStepsHaveTheSameBitsWhateverTheirNumber) {
       EXPECT_TRUE(bits_of_all(many.system) == bits) << kind.name << ", " << threads << " threads";
       EXPECT_EQ(bits_of(std::to_array(many.report.sums.stress)),
                 bits_of(std::to_array(one.report.sums.stress)))
+          << kind.name << ", " << threads << " threads";
+      EXPECT_EQ(bits_of(std::array{many.report.motion}), bits_of(std::array{one.report.motion}))
           << kind.name << ", " << threads << " threads";
       EXPECT_EQ(many.report.solver_residual, one.report.solver_residual);
       EXPECT_EQ(many.report.largest_displacement, one.report.largest_displacement);

@@ -5,6 +5,7 @@
 //   V J = sum sym(x F_body) - (change of sum m sym(x V)) / dt:
 // no force of a pair is in it, and so no account of which forces acted. x is where F_body has no mean of its
 // own: x_n for the noise, the middle of its way for the drag on a velocity.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,6 +13,7 @@
 
 #include "engine/integrators/implicit.h"
 #include "engine/integrators/velocity_verlet.h"
+#include "tests/engine/available_sets.h"
 #include "tests/engine/draws.h"
 
 namespace peclet::engine {
@@ -105,26 +107,63 @@ constexpr double of_single_precision = 2e-4;
 
 // Steps in which inertia carries pairs across the outer gap, and longer ones than four times a small sphere's
 // m / drag, which is 0.22 or 0.011.
+struct NamedPhysics {
+  const char* name;
+  Physics physics;
+};
+
+std::vector<NamedPhysics> kinds_of_pairs() {
+  Physics rough = cluster_physics(), attracted = cluster_physics(), strained = cluster_physics(),
+          dry = cluster_physics();
+  rough.contact->friction = 0.5;
+  rough.contact->tangential_stiffness = 300;
+  rough.contact->rolling_stiffness = 100;
+  rough.contact->rolling_friction = 0.2;
+  rough.contact->normal_damping = 0.5;
+  attracted.attraction = AttractionParameters{.hamaker = 1e-3, .regularisation = 0.01, .cutoff = 0.5};
+  strained.lubrication = LubricationParameters{
+      .inner_gap = 1e-3, .outer_gap = 0, .form = LubricationParameters::Form::mari, .outer_distance = 0.05};
+  dry.lubrication.reset();
+  return {{"plain", cluster_physics()},
+          {"rough", rough},
+          {"attracted", attracted},
+          {"strained", strained},
+          {"dry", dry}};
+}
+
+// Returns the contacts of all steps.
+double expect_what_particles_gain(const NamedPhysics& kind, const Step& how, InstructionSet set) {
+  const double dt = how.dt;
+  const Physics& physics = kind.physics;
+  const std::string where = fmt::format("{}, step {}, set {}", kind.name, dt, static_cast<int>(set));
+  System system = cluster(physics, how.density);
+  const auto integrator = implicit_steps(physics, system.particles, dt, 1e-7, noise_seed, 1, set);
+  integrator->start(system);
+  double contacts = 0;
+  for (int step = 0; step < 20; ++step) {
+    const Motion before = motion_of(system);
+    const std::uint64_t name = system.step;
+    const StepReport report = integrator->advance(system);
+    EXPECT_FALSE(report.broke_off) << where;
+    const SymmetricTensor expected = gained(before, motion_of(system), name, how);
+    const double tolerance = of_single_precision * (1 + std::abs(expected.xx));
+    EXPECT_LT(largest_difference(acted(report), expected), tolerance) << where;
+    contacts += report.sums.contacts;
+  }
+  return contacts;
+}
+
 TEST(MomentumFlux, OfImplicitStepsIsWhatParticlesGain) {
-  for (const Step& how :
-       {Step{0.002, usual_density, true}, {0.02, usual_density, true}, {0.1, 0.005, false}}) {
-    const double dt = how.dt;
-    const Physics physics = cluster_physics();
-    System system = cluster(physics, how.density);
-    const auto integrator = implicit_steps(physics, system.particles, dt, 1e-7, noise_seed, 1);
-    integrator->start(system);
-    double contacts = 0;
-    for (int step = 0; step < 20; ++step) {
-      const Motion before = motion_of(system);
-      const std::uint64_t name = system.step;
-      const StepReport report = integrator->advance(system);
-      ASSERT_FALSE(report.broke_off);
-      const SymmetricTensor expected = gained(before, motion_of(system), name, how);
-      const double tolerance = of_single_precision * (1 + std::abs(expected.xx));
-      EXPECT_LT(largest_difference(acted(report), expected), tolerance) << dt;
-      contacts += report.sums.contacts;
+  for (const InstructionSet set : available_sets()) {
+    for (const NamedPhysics& kind : kinds_of_pairs()) {
+      double contacts = 0;
+      for (const Step& how :
+           {Step{0.002, usual_density, true}, {0.02, usual_density, true}, {0.1, 0.005, false}}) {
+        const bool is_inertial = how.inertial && kind.physics.lubrication.has_value();
+        contacts += expect_what_particles_gain(kind, {how.dt, how.density, is_inertial}, set);
+      }
+      EXPECT_GT(contacts, 60) << kind.name;
     }
-    EXPECT_GT(contacts, 20) << dt;
   }
 }
 

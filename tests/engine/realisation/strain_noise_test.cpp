@@ -35,7 +35,8 @@ class KnownPairs : public Integrator {
   void start(System& /*system*/) override {}
   StepReport advance_open(System& system) override {
     StepReport report;
-    report.sums.of(StressTerm::lubrication).xy = volume * friction * shear_.present_rate();
+    report.sums.of(StressTerm::lubrication).xy = 0.5 * volume * friction * shear_.present_rate();
+    report.motion.xy = 0.5 * volume * friction * shear_.present_rate();
     report.sums.of(StressTerm::brownian_lubrication).xy = volume * noise(system.step);
     ++system.step;
     return report;
