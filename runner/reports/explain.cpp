@@ -138,9 +138,10 @@ std::string measure_text(const std::vector<Known>& all) {
     const bool is_its_own = known.measure.observable == known.look.observable;
     const double mean = known.measure.estimate.mean;
     if (is_its_own || known.criterion.tolerance.share(known.look.half_width, mean) > 1) continue;
-    if (!(known.look.share <= 1))
+    if (!(known.look.share <= 1)) {
       return fmt::format(", because {} itself is known to {} only", known.measure.observable,
                          percent(known.measure.half_width / std::abs(mean)));
+    }
   }
   return "";
 }
@@ -217,21 +218,23 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
   switch (look.verdict) {
     case Verdict::converged:
       if (look.transient) return "a longer /scene/duration/equilibration: see transient above";
-      if (look.near_maximum)
-        return fmt::format(
-            "a larger /realisations/maximum and a smaller tolerance (`peclet set`), or nothing");
+      if (look.near_maximum) {
+        return "a larger /realisations/maximum and a smaller tolerance (`peclet set`), or nothing";
+      }
       return "nothing; a smaller tolerance (`peclet set`) reopens it";
     case Verdict::converged_with_losses:
       return fmt::format(
           "see why seeds are lost: the mean leaves them out (states in {}){}", directory.failures().string(),
           point.counts.quarantined > 0 ? "; `peclet retry` runs those again that were given up" : "");
     case Verdict::capped:
-      if (!look.repeated.empty())
+      if (!look.repeated.empty()) {
         return "find out why seeds give the same: a start list with one file twice, or an engine without "
                "noise";
-      if (!point.without_interval.empty())
+      }
+      if (!point.without_interval.empty()) {
         return fmt::format("a larger /realisations/maximum than {} (`peclet set`), or another observable",
                            target.maximum);
+      }
       return advice_when_capped(look, target.target);
     case Verdict::failed:
       return fmt::format("change the scene: states are in {}, logs in {}", directory.failures().string(),

@@ -76,6 +76,7 @@ Look look_at(std::span<const std::optional<Outcome>> cohort, StopRule& rule,
     look.estimate.values = Estimate::Values::repeated;
     for (ObservableLook& one : each) one.estimate.values = Estimate::Values::repeated;
   }
+  estimates.reserve(each.size());
   for (const ObservableLook& one : each) estimates.push_back(one.estimate);
   const StopRule::Judgement judgement = rule.judge(look.seeds, estimates);
   for (std::size_t place = 0; place < each.size(); ++place) {

@@ -89,9 +89,10 @@ class Futures {
   // `factor`, or each by a factor of its own.
   int draw(std::optional<double> factor = {}) {
     std::vector<Normal> population;
-    for (const Sample& known : known_)
+    for (const Sample& known : known_) {
       population.push_back(known.values == Estimate::Values::share ? draw_share(known)
                                                                    : draw_population(known, factor));
+    }
     std::vector<Sample> samples = known_;
     std::vector<Estimate> estimates(samples.size());
     int seeds = seeds_;
