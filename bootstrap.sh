@@ -100,7 +100,7 @@ sanitize() {
   cmake --build --preset asan-ubsan --target contract_tests runner_tests fuzz_spheres
   say "Running their tests"
   build/asan-ubsan/bin/contract_tests --gtest_brief=1
-  build/asan-ubsan/bin/fuzz_spheres --runs 20000 --findings build/asan-ubsan tests/fuzz/corpus/spheres
+  build/asan-ubsan/bin/fuzz_spheres --runs 4000 --findings build/asan-ubsan tests/fuzz/corpus/spheres
   local shards=2 shard runs=()
   for ((shard = 0; shard < shards; ++shard)); do
     GTEST_TOTAL_SHARDS=$shards GTEST_SHARD_INDEX=$shard build/asan-ubsan/bin/runner_tests --gtest_brief=1 &
