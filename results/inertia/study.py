@@ -17,7 +17,7 @@ from studies.published import DENSITY, STIFFNESS, TABLE_4_1, VISCOSITY, mari_fit
 from studies.scenes import REFERENCE_SCENE, during, merged
 from studies.tables import read_rows, write_table
 from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import counts_text, flags, pair_viscosity
+from studies.viscosities import counts_text, flags, values_by_seed
 
 import numpy as np
 
@@ -45,7 +45,7 @@ THERMAL = merged(REFERENCE_SCENE, {**SMALL, "volume_fraction": 0.45, "fluid": {"
 
 def row_of(point, curve, ratio):
     realisations = point["realisations"]
-    values = [pair_viscosity(r["mean"]) for r in realisations if r.get("mean")]
+    values = [*values_by_seed(realisations, "relative_viscosity_pair").values()]
     mean, error = estimate(values)
     return {
         "curve": curve,
