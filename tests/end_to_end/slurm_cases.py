@@ -184,6 +184,8 @@ class Drill:
         campaign.do(*campaign.hand_over())
         self.running(campaign)
         logs = os.path.join(campaign.shared, "bundles", campaign.ask("SELECT name FROM bundle"), "logs")
+        # A task is called running a moment before its log is there.
+        self.cluster.wait_until(lambda: os.path.isdir(logs) and os.listdir(logs), "the log of a task")
         printed = sorted(os.listdir(logs))
         assert printed and printed[0].startswith("task-"), (logs, printed)
         campaign.lets_go()

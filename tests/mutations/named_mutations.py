@@ -16,7 +16,7 @@ LINE = "engine_tests:NoisyStep.OfTwoSpheresOnALineIsThatOfItsEquations"
 NAMED = [
     (
         "the stiffness counts for the whole step",
-        "engine/integrators/velocity_solver.cpp",
+        "engine/integrators/velocity_solver.h",
         ".normal_time = 0.5 * timestep_}",
         ".normal_time = timestep_}",
         LINE,

@@ -40,7 +40,7 @@ class Numbers(PageTest):
         columns = [
             key for key in next(iter(exported.values())) if f"{key} standard_error" in next(iter(exported.values()))
         ]
-        self.assertGreaterEqual(len(columns), 10)
+        self.assertGreaterEqual(len(columns), 9)
         for column in columns:
             name = column.split(" [")[0]
             if name == "relative_viscosity":
@@ -103,7 +103,7 @@ class Numbers(PageTest):
     def test_provisional_numbers_are_marked(self):
         page = self.open("young.json.html")
         self.assertIn("0 of 9 points decided", page.evaluate("document.getElementById('headline').textContent"))
-        self.assertRegex(page.evaluate("document.getElementById('headline').textContent"), r"spent, .* to go \(")
+        self.assertRegex(page.evaluate("document.getElementById('headline').textContent"), r"spent · .* to go \(")
         self.assertEqual(page.evaluate("document.querySelectorAll('#sweep svg g.provisional .target').length"), 9)
         self.assertEqual(
             page.evaluate("document.querySelectorAll('#sweep svg .mark.solid').length"), 3
