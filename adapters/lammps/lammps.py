@@ -117,6 +117,8 @@ class Thermo:
                 "the script must give thermo a number of steps, and leave echo alone: these tell rows of thermo output "
                 "from other lines"
             )
+        if not self.columns["Step"]:
+            raise LammpsError("the thermo output of the script's last run has no row of plain numbers")
         first = self.columns["Step"][0]
         if self.every and (first % self.every != 0 or self.steps % self.every != 0):
             # At other steps LAMMPS shows means of fixes that are old, or that have not begun.

@@ -180,6 +180,12 @@ class ThermoOutput(unittest.TestCase):
     def test_a_missing_row_is_noticed(self):
         self.assertIn("2 rows of 3", self.refusal(OUTPUT.replace("       100   1.5", "       100   1.5 WARNING")))
 
+    def test_a_run_whose_rows_are_not_plain_numbers_is_refused(self):
+        named = OUTPUT  # as by thermo_modify format 1 "step=%d"
+        for row in ("        50   1   ", "       100   1.5", "       150   2   "):
+            named = named.replace(row, "step=" + row.strip())
+        self.assertIn("has no row of plain numbers", self.refusal(named))
+
     def test_runs_begin_and_end_with_a_row(self):
         late = OUTPUT.replace("thermo 50", "thermo 40")
         self.assertIn("100 steps from step 50, and rows of thermo output every 40", self.refusal(late))
