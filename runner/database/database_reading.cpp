@@ -354,8 +354,9 @@ std::map<std::int64_t, std::vector<Unfinished>> Database::unfinished() {
 
 int Database::last_workers() {
   return static_cast<int>(connection_->integer(
-      "SELECT coalesce(max(worker) + 1, 0) FROM attempt WHERE process = (SELECT process FROM attempt ORDER "
-      "BY attempt_id DESC LIMIT 1)"));
+      "WITH last AS (SELECT host, started_at FROM attempt ORDER BY attempt_id DESC LIMIT 1) "
+      "SELECT count(DISTINCT a.worker) FROM attempt a JOIN last l USING (host) "
+      "WHERE a.ended_at IS NULL OR a.ended_at >= l.started_at"));
 }
 
 std::vector<LookRecord> Database::looks(std::int64_t point) { return read_looks(*connection_, point); }

@@ -13,6 +13,7 @@
 #include "runner/stores/point_store.h"
 #include "runner/stores/result_store.h"
 #include "tests/runner/runner_fixture.h"
+#include "tests/runner/stored_campaign.h"
 
 namespace peclet::runner {
 namespace {
@@ -185,6 +186,25 @@ TEST_F(Databases, AReaderNeedsNoRightToWrite) {
       EXPECT_TRUE(says(error.what(), "has a log beside it")) << error.what();
     }
   });
+}
+
+// Each worker has an engine of its own, and so another process.
+TEST_F(Databases, CountsTheWorkersOfTheLastRun) {
+  StoredCampaign campaign(1, 4, 20);
+  EXPECT_EQ(campaign.database().last_workers(), 0);
+  campaign.complete(0, 0, 10);
+  campaign.begin(0, 1);
+  campaign.begin(0, 2);
+  Connection& connection = campaign.database().connection();
+  connection.execute("UPDATE attempt SET process = 4710 + attempt_id, worker = attempt_id - 1");
+  EXPECT_EQ(campaign.database().last_workers(), 3);
+  // Of an earlier run, and of another machine.
+  connection.execute(
+      "UPDATE attempt SET started_at = '2026-01-01T00:00:00Z', ended_at = '2026-01-01T00:00:09Z' WHERE "
+      "attempt_id = 1");
+  EXPECT_EQ(campaign.database().last_workers(), 2);
+  connection.execute("UPDATE attempt SET host = 'other' WHERE attempt_id = 2");
+  EXPECT_EQ(campaign.database().last_workers(), 1);
 }
 
 TEST_F(Databases, AReaderCannotWrite) {
