@@ -140,7 +140,8 @@ bool is_near_maximum(const Look& look, const Target& target, int maximum) {
 std::vector<std::string> without_interval(const Look& look, const Target& target) {
   std::vector<std::string> found;
   for (const ObservableLook& one : each_of(look, target)) {
-    if (one.estimate.count > 1 && !std::isfinite(one.half_width)) found.push_back(one.observable);
+    if (one.verdict && one.estimate.count > 1 && !std::isfinite(one.half_width))
+      found.push_back(one.observable);
   }
   return found;
 }

@@ -89,6 +89,20 @@ TEST(SeveralTargets, OneMayBeMeasuredByAnother) {
   EXPECT_NEAR(looks[0].each[1].share, 0.392 / (0.05 * (10 - 0.0785)), 2e-3);
 }
 
+TEST(SeveralTargets, WhatOnlyMeasuresNeedsNoInterval) {
+  const Target target{"N1", relative_to("viscosity", 0.05), 0.95};
+  Outcomes outcomes;
+  for (int seed = 0; seed < 10; ++seed) {
+    Outcome outcome{Outcome::Kind::value, seed % 2 == 0 ? -0.5 : 0.5};
+    outcome.further = {{10}};
+    outcomes.emplace_back(outcome);
+  }
+  const Look look = replay_looks(outcomes, target, 10, 10).at(0);
+  EXPECT_TRUE(std::isnan(look.each[1].half_width));
+  EXPECT_EQ(look.verdict, Verdict::converged);
+  EXPECT_TRUE(without_interval(look, target).empty());
+}
+
 // Measures 10 +- s with a half-width of 2.354 s / 3, 5 at s = 6.37: 5 % of what they may be at least is 0.25.
 // The other's half-width is 2.354 * 0.5 / 3 = 0.392: within 5 % of a mean of 10, and of 10 less 2.1.
 TEST(SeveralTargets, TheErrorOfTheMeasureCounts) {
