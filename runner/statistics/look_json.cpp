@@ -17,10 +17,11 @@ Estimate::Values stored_values(const Estimate& estimate, double half_width) {
   if (std::isnan(half_width)) return Estimate::Values::equal;
   const double mean = estimate.mean, ones = estimate.count * mean;
   const double variance = estimate.standard_error * estimate.standard_error * (estimate.count - 1);
-  constexpr double rounding = 1e-12;
+  // Of small values the variance must be judged against the share's own.
+  constexpr double rounding = 1e-12, same = 1e-9;
   const bool is_share = half_width > 0 && mean >= 0 && mean <= 1 &&
                         std::abs(ones - std::round(ones)) <= rounding * estimate.count &&
-                        std::abs(variance - mean * (1 - mean)) <= rounding;
+                        std::abs(variance - mean * (1 - mean)) <= same * mean * (1 - mean);
   return is_share ? Estimate::Values::share : Estimate::Values::spread;
 }
 

@@ -300,6 +300,14 @@ TEST(Cohorts, ASkewedShareIsNotMarked) {
   EXPECT_EQ(stored_values(stored, look.controlled_half_width), Estimate::Values::share);
 }
 
+// The variance of 1e-13 +- 1e-14 differs from that of a share of 1e-13 by less than rounding errors of 1.
+TEST(Cohorts, SmallNumbersAreNoShares) {
+  EXPECT_EQ(stored_values({8, 1e-13, 1e-14 / std::sqrt(7)}, 1e-14), Estimate::Values::spread);
+  EXPECT_EQ(stored_values({8, 0.25, std::sqrt(0.25 * 0.75 / 7)}, 0.4), Estimate::Values::share);
+  EXPECT_EQ(stored_values({8, 0, 0}, 0.4), Estimate::Values::share);
+  EXPECT_EQ(stored_values({8, 1, 0}, 0.4), Estimate::Values::share);
+}
+
 TEST(Cohorts, SeedsThatEndInOneStateAreNotIndependent) {
   Outcomes outcomes = alternating(12, 10, 0.1);
   for (std::size_t seed = 0; seed < outcomes.size(); ++seed) outcomes[seed]->final_state = 1 + seed % 3;
