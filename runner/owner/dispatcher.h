@@ -13,6 +13,7 @@
 #include <chrono>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -144,10 +145,10 @@ class Dispatcher {
   std::vector<WorkerEvent> news_;             // and not booked yet
   std::vector<std::pair<int, Job>> to_send_;  // after the commit
   Pause pause_;
-  bool unbooked_ = false;       // something is in the way
-  bool uncarried_ = false;      // booked, and what follows the commit is not done
-  bool request_waits_ = false;  // for something in the way
-  bool told_of_pause_ = false;
+  bool unbooked_ = false;          // something is in the way
+  bool uncarried_ = false;         // booked, and what follows the commit is not done
+  bool request_waits_ = false;     // for something in the way
+  std::set<std::string> told_of_;  // kinds of what was in the way since the campaign last went on
   Stopping stopping_ = Stopping::no;
   AwakeClock awake_;
   Time started_, reported_, leases_shown_, requests_heard_{};

@@ -106,7 +106,7 @@ bool Dispatcher::follow_up() {
   uncarried_ = false;
   for (const auto& [worker, job] : to_send_) pool_.assign(worker, job);
   to_send_.clear();
-  if (told_of_pause_ && !pause_.lasts() && !request_waits_) end_pause();
+  if (!told_of_.empty() && !pause_.lasts() && !request_waits_) end_pause();
   return true;
 }
 
@@ -129,7 +129,7 @@ std::filesystem::path Dispatcher::root() const {
 // Said once, however often it turns out that it is still in the way.
 void Dispatcher::begin_pause(const Hindrance& hindrance) {
   pause_.begin(hindrance, clock_());
-  if (std::exchange(told_of_pause_, true)) return;
+  if (!told_of_.insert(hindrance.kind()).second) return;
   listener_.happened(ShortageBegan{hindrance.text});
   listener_.warn(fmt::format(
       "{}; workers keep what they have, no further seed is given out, and the campaign goes on by "
@@ -154,7 +154,7 @@ void Dispatcher::look_whether_it_is_over() {
 }
 
 void Dispatcher::end_pause() {
-  told_of_pause_ = false;
+  told_of_.clear();
   listener_.note("nothing is in the way any more: the campaign goes on");
   listener_.happened(ShortageEnded{});
   for (Worker& worker : now_.workers) {

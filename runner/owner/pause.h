@@ -16,6 +16,9 @@ struct Hindrance {
   std::string end;                 // "when there is room"
   std::filesystem::path folder{};  // that lacks room for `bytes`; empty: it is not room that is lacking
   std::uint64_t bytes = 0;
+
+  // Tells it from another one; its text has figures that change.
+  std::string kind() const { return end + folder.string(); }
 };
 
 // Too little room for `bytes` in `folder`, for which `error` is ENOSPC or EDQUOT.

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "contract/exit_codes.h"
@@ -73,10 +74,11 @@ struct OpenedRun {
 std::unique_ptr<OpenedRun> open_when_it_is_possible(const ClaimedCampaign& claimed, const RunOptions& options,
                                                     RunListener& listener, StopSignals& signals) {
   const std::filesystem::path& root = claimed.directory.root();
-  for (bool first = true;; first = false) {
+  std::set<std::string> told;
+  while (true) {
     try {
       auto opened = std::make_unique<OpenedRun>(claimed, options, listener);
-      if (!first) listener.happened(ShortageEnded{});
+      if (!told.empty()) listener.happened(ShortageEnded{});
       return opened;
     } catch (const std::exception& error) {
       const std::optional<Hindrance> hindrance = hindrance_in(error, root);
@@ -86,7 +88,7 @@ std::unique_ptr<OpenedRun> open_when_it_is_possible(const ClaimedCampaign& claim
         listener.warn(why);
         return nullptr;
       }
-      if (first) {
+      if (told.insert(hindrance->kind()).second) {
         listener.happened(ShortageBegan{hindrance->text});
         listener.warn(fmt::format("{}; the campaign begins {}", hindrance->text, hindrance->end));
       }

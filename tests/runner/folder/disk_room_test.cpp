@@ -137,6 +137,26 @@ TEST_F(FullDatabase, LosesNothingGivesOutNothingAndGoesOn) {
   EXPECT_EQ(listener_.count<ShortageEnded>(), 1);
 }
 
+TEST_F(FullDatabase, SaysOnceWhatElseIsInTheWayMeanwhile) {
+  Connection other(directory_.database().string(), Connection::Access::read_write, 0);
+  int turns = 0;
+  pool_.script = [&, this] {
+    ++turns;
+    if (turns == 3) fill();
+    if (turns == 20) other.execute("BEGIN IMMEDIATE");
+    if (turns == 40) other.execute("ROLLBACK");
+    if (turns == 60) make_room();
+    ASSERT_LT(turns, 400) << "it does not go on";
+    finish_all();
+  };
+  EXPECT_EQ(run(), Dispatcher::Ending::finished);
+  ASSERT_EQ(listener_.warnings.size(), 2U);
+  EXPECT_TRUE(says(listener_.warnings.at(0), "is full")) << listener_.warnings.at(0);
+  EXPECT_TRUE(says(listener_.warnings.at(1), "is locked by")) << listener_.warnings.at(1);
+  EXPECT_EQ(listener_.count<ShortageBegan>(), 2);
+  EXPECT_EQ(listener_.count<ShortageEnded>(), 1);
+}
+
 TEST_F(FullDatabase, LosesNothingOfWorkersThatHaveTwoJobs) {
   pool_.takes_ahead = true;
   pool_.wall_seconds = 0.1;
