@@ -74,11 +74,12 @@ Spread spread(const Cost& ended, const std::vector<Unfinished>& running) {
 }
 
 // A point of which nothing has ended is taken to cost what its running seeds are expected to, or else what
-// the others do.
-Spread spread(const PointForecast& point, const Cost& all) {
+// the others do: `of_all`, unless seeds that run have lasted longer.
+Spread spread(const PointForecast& point, const Cost& all, const Spread& of_all) {
   const auto is_known = [](const Unfinished& one) { return one.whole.has_value(); };
   const bool has_own =
       point.cost.count() > 0 || std::any_of(point.unfinished.begin(), point.unfinished.end(), is_known);
+  if (!has_own && point.unfinished.empty()) return of_all;
   return spread(has_own ? point.cost : all, point.unfinished);
 }
 
@@ -185,6 +186,7 @@ std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, con
   }
   if (all.count() == 0) return std::nullopt;
 
+  const Spread of_all = spread(all, {});
   StopRule rule(target, minimum, maximum);
   TimeToGo chains, work;
   double above = 0, below = 0;  // squares of what the work may differ by
@@ -192,7 +194,7 @@ std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, con
   for (const PointForecast& point : points) {
     if (point.decided) continue;
     any = true;
-    const Spread cost = spread(point, all);
+    const Spread cost = spread(point, all, of_all);
     const SeedRange seeds = seeds_of(point, rule);
     // Half of what runs is done, in the mean.
     const auto to_come = [&](int stop) { return std::max(0.5, stop - point.ended - 0.5 * point.running); };
