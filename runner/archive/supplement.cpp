@@ -52,6 +52,13 @@ std::string sums(const std::vector<ArchivedFile>& files) {
   return text;
 }
 
+// Requires a number of the target; refuses it where no figure has a place for one.
+Figure figure_of(Database& database) try {
+  return make_figure(database, {});
+} catch (const InputError& error) {
+  throw InputError("", "--bundle", error.value(), error.allowed());
+}
+
 }  // namespace
 
 void check_supplement_name(const std::filesystem::path& output) {
@@ -71,7 +78,7 @@ std::vector<ArchivedFile> supplement_files(Database& database, std::optional<std
                     "explain` says why",
                     campaign.target.target.observable));
   }
-  const Figure figure = make_figure(database, {});
+  const Figure figure = figure_of(database);
   std::vector<ArchivedFile> files{{"README.md", supplement_readme(status)},
                                   {campaign.name + ".json", campaign.document.dump(2) + '\n'},
                                   {"results.csv", export_csv(database, true)},
