@@ -95,7 +95,9 @@ void Ledger::end_handed_over(SeedId id, int task, const AttemptReport& report,
   if (has_ended(id)) return;
   const SeedFate fate = judge(seeds_.history(about.id, id.seed), retries_);
   if (fate.discard_checkpoint) after_.discard(checkpoint);
-  if (is_blamed(report.outcome)) {
+  // A drain with a message is a failure that a full disk excuses.
+  const bool is_excused = report.outcome == AttemptOutcome::drained && !report.message.empty();
+  if (is_blamed(report.outcome) || is_excused) {
     after_.warn(fmt::format("{} on {}: {}{}{}; {}", name(id), report.host, to_string(report.outcome),
                             report.message.empty() ? "" : ": ", report.message,
                             fate.quarantine ? "it is given up" : "it is tried again"));
