@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdint>
 #include <filesystem>
 #include <string_view>
@@ -91,6 +92,10 @@ bool may_write(const std::filesystem::path& folder) {
   return faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) == 0;
 }
 
+bool may_read(const std::filesystem::path& file) {
+  return faccessat(AT_FDCWD, file.c_str(), R_OK, AT_EACCESS) == 0;
+}
+
 // A log of some 4 MB, and less on a small disk: a full one whose log takes most of it has no room to bring
 // the log into the database either, and nobody could ever go on.
 int pages_of_log(const std::filesystem::path& database) {
@@ -109,8 +114,9 @@ std::unique_ptr<Connection> connection_of_reader(const std::filesystem::path& pa
     auto connection = std::make_unique<Connection>(path.string(), access, busy_milliseconds);
     connection->integer("PRAGMA schema_version");  // the first read
     return connection;
-  } catch (const DatabaseError&) {
-    if (is_frozen || may_write(path.parent_path())) throw;
+  } catch (const DatabaseError& error) {
+    const bool has_own_cause = error.is_locked() || error.system_error() == EIO || !may_read(path);
+    if (is_frozen || has_own_cause || may_write(path.parent_path())) throw;
     throw InputError(
         path.string(), "", "",
         "has a log beside it (campaign.db-wal) that can be read only where the folder may be written: "
