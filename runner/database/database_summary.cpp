@@ -228,7 +228,9 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
     summary.forecast = {std::move(aggregate.cost),          {summary.so_far},
                         summary.counts.terminal(),          summary.counts.running,
                         summary.decided || point.cancelled, std::move(unfinished[point.id])};
-    if (observables > 1 && !summary.forecast.decided)
+    // Equal values may be those of a share, which only the outcomes tell.
+    const bool is_simple = observables == 1 && summary.so_far.values != Estimate::Values::equal;
+    if (!is_simple && !summary.forecast.decided)
       summary.forecast.so_far = estimates_so_far(database.outcomes(point.id), observables);
     if (any_apart) summary.kept_apart = database.kept_apart(point.hash);
     summary.point = std::move(point);

@@ -216,6 +216,9 @@ TEST(Status, ASharesIntervalIsThatOfAShare) {
   EXPECT_EQ(verdict_text(status.points.at(0)), "open, no-transient-test");
   EXPECT_NEAR(look["half_width"].get<double>(), 1 - std::pow((1 - 0.95875) / 2, 1 / 8.0), 1e-9);
   const std::string text = explain(campaign.database(), campaign.directory(), "");
+  // So that the forecast knows what more of them are worth.
+  ASSERT_EQ(status.points.at(0).forecast.so_far.size(), 1U);
+  EXPECT_EQ(status.points.at(0).forecast.so_far[0].values, Estimate::Values::share);
   EXPECT_TRUE(says(text, "interval: 0.616 .. 1 of the share (Clopper and Pearson)")) << text;
   const Json exported = Json::parse(export_json(campaign.database(), true))["points"][0];
   EXPECT_EQ(exported["quantities"]["flowing"]["estimator"], "share");
