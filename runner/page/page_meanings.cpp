@@ -12,7 +12,9 @@ std::string meaning(const std::string& mark) {
       {"converged-with-losses",
        "the interval is within the tolerance, but the mean leaves out the seeds that were lost; if they were "
        "lost because of what they would have given, it is biased"},
-      {"capped", "all seeds that are allowed have ended, and the interval is still wider than the tolerance"},
+      {"capped",
+       "all seeds that are allowed have ended, and the interval is still wider than the tolerance, or "
+       "there is none"},
       {"failed", "too many seeds were lost to give an interval"},
       {"open", "not decided yet: the numbers are provisional"},
       {"cancelled", "somebody decided that it gets no more seeds: the numbers stay provisional"},
@@ -43,9 +45,13 @@ std::string meaning(const std::string& mark) {
        "no "
        "other, and leaves out seeds that ended later"},
       {"suspect", "a seed gave two different results; no number of this point can be trusted"},
-      {"timestep", "seeds whose time step made too much energy, changes the stress or was often divided"},
-      {"solver", "seeds whose implicit steps were solved too inaccurately"},
-      {"overlap", "seeds whose contacts overlapped by more than a thousandth of a radius in the mean"}};
+      {"flagged jammed", "seeds that stood still under the given stress; their rate 0 is part of the mean"},
+      {"flagged patience", "seeds whose window is too short to tell whether they have jammed"},
+      {"flagged timestep",
+       "seeds whose time step made too much energy, changes the stress or was often divided"},
+      {"flagged solver", "seeds whose implicit steps were solved too inaccurately"},
+      {"flagged overlap",
+       "seeds whose contacts overlapped by more than a thousandth of a radius in the mean"}};
   const auto known = meanings.find(mark);
   return known == meanings.end() ? "the engine's own mark; its warning says more" : known->second;
 }
@@ -59,7 +65,8 @@ Json page_meanings(const CampaignStatus& status) {
     if (standing != to_string(Verdict::converged)) meanings[standing] = meaning(standing);
     for (const std::string& mark : reservations(point)) {
       const std::string code = mark.substr(mark.rfind(' ') + 1);
-      meanings[code == mark ? mark : "flagged " + code] = meaning(code);
+      const std::string kind = code == mark ? mark : "flagged " + code;
+      meanings[kind] = meaning(kind);
     }
   }
   return meanings;

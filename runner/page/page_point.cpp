@@ -86,8 +86,13 @@ Json scatter(const Values& found) {
   return {{"low", *low}, {"high", *high}, {"counts", counts}};
 }
 
-// The half-width that is good enough for the first criterion, around the means of a look.
+// The half-width that is good enough for a criterion, around the means of a look: what the rule allowed, or,
+// where there is no interval, what the means allow.
 Json good_enough(const Criterion& criterion, const Look& look, const Target& target) {
+  for (const ObservableLook& one : each_of(look, target)) {
+    if (one.observable == criterion.observable && one.share > 0)
+      return number_json(one.half_width / one.share);
+  }
   const std::vector<std::string> observables = target.observables();
   const std::vector<Estimate> estimates = estimates_of(look, target);
   const std::string& measure =
@@ -201,7 +206,7 @@ class PointPage {
     for (const ObservableLook& one : each_of(*look_, target)) {
       const std::size_t place = place_of(known, one.observable);
       known.estimates[place] = numbers(one.estimate, one.half_width);
-      if (one.observable == target.observable) {
+      if (one.observable == target.observable && has_control(*look_)) {
         uncontrolled[known.drawables[place].path] = numbers(look_->estimate, look_->half_width);
       }
     }

@@ -302,12 +302,16 @@ class PointView {
           sort: (row) => row.numbers[0],
         },
         { title: 'unit', text: true, cell: (row) => row.about.unit, sort: (row) => row.about.unit },
-        {
-          title: 'without control variate',
-          minor: true,
-          cell: (row) => (row.plain ? Format.withError(row.plain[0], row.plain[2]) : ''),
-          sort: (row) => (row.plain ? row.plain[0] : null),
-        },
+        ...(rows.some((row) => row.plain)
+          ? [
+              {
+                title: 'without control variate',
+                minor: true,
+                cell: (row) => (row.plain ? Format.withError(row.plain[0], row.plain[2]) : ''),
+                sort: (row) => (row.plain ? row.plain[0] : null),
+              },
+            ]
+          : []),
         { title: 'seeds', cell: (row) => String(row.numbers[3]), sort: (row) => row.numbers[3] },
       ],
       rows,

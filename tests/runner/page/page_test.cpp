@@ -155,6 +155,32 @@ TEST_F(CampaignPage, ExplainsTheMarksAndShowsWhatTheEngineWarnsOf) {
   EXPECT_EQ(page["warnings"][0]["message"], "0.02 > 0.01 & more");
 }
 
+// One of four has jammed, which is too few for the point to have.
+TEST_F(CampaignPage, TellsAFlaggedJamFromAPointThatHasJammed) {
+  campaign_.complete_with(0, 0, 10, [](Json& result) {
+    result["ending"]["cause"] = "jammed";
+    result["warnings"] = {{{"code", "jammed"}, {"message", "stands still"}}};
+  });
+  const Json warning = {{{"code", "patience"}, {"message", "too short"}}};
+  for (int seed = 1; seed < 4; ++seed) campaign_.complete(0, seed, 10 + 0.01 * seed, warning);
+  const Json meanings = data()["meanings"];
+  EXPECT_FALSE(meanings.contains("jammed"));
+  EXPECT_TRUE(says(meanings["flagged jammed"], "stood still")) << meanings;
+  EXPECT_TRUE(says(meanings["flagged patience"], "window is too short")) << meanings;
+}
+
+// The viscosity is 10.265 with a standard deviation of 0.01 sqrt(5/3); 3.182 is Student's t for 3 degrees of
+// freedom. What measures counts with its error.
+TEST_F(CampaignPage, ShowsWhatTheRuleAllowsOfAnObservableThatAnotherMeasures) {
+  Tolerance tolerance(0.05);
+  tolerance.relative_to = "relative_viscosity";
+  StoredCampaign several(1, 4, 4, {{"pressure", tolerance}});
+  for (int seed = 0; seed < 4; ++seed) several.complete(0, seed, 10 + 0.01 * seed);
+  const Json page = page_data(several.database(), std::nullopt);
+  const double half_width = 3.18244630528 * 0.01 * std::sqrt(5.0 / 3) / 2;
+  EXPECT_NEAR(page["points"][0]["good_enough"]["pressure"], 0.05 * (10.265 - half_width), 1e-9);
+}
+
 TEST_F(CampaignPage, ShowsEveryCriterionOfATarget) {
   StoredCampaign several(1, 4, 4, {{"pressure", Tolerance::absolute(0.5)}});
   for (int seed = 0; seed < 4; ++seed) several.complete(0, seed, 10 + 0.01 * seed);
