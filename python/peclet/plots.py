@@ -137,7 +137,9 @@ def plot(results, quantity=None, x=None, by=None, axes=None, label=None, log=Non
 
 def without_survivors(table):
     """At a point that has jammed a mean of fewer than half of its seeds is that of those which happened to flow."""
-    survivors = table["jammed"] & ~(2 * table["count"] > table["seeds"])
+    # Before the first look nothing says how many have ended.
+    ended = np.array([row["count" if row["provisional"] else "seeds"] for row in table], float)
+    survivors = table["jammed"] & ~(2 * table["count"] > ended)
     hidden = {name: np.where(survivors, np.nan, table[name]) for name in ("mean", "standard_error", "half_width")}
     return Table(table.columns | hidden)
 

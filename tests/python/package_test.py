@@ -16,9 +16,10 @@ sys.path.insert(0, str(ROOT / "python"))
 import matplotlib
 import numpy as np
 import peclet
-from peclet.plots import formula_of, unit_text
+from peclet.plots import formula_of, unit_text, without_survivors
 from peclet.program import cure_for
 from peclet.results import short_names
+from peclet.table import Table
 
 matplotlib.use("Agg")
 PECLET, ENGINE = (os.path.abspath(path) for path in sys.argv[1:3])
@@ -97,6 +98,15 @@ class OfWhatHasJammed(unittest.TestCase):
             for line in axes.lines:
                 if line is not cross:
                     self.assertNotIn(1.5, line.get_xdata())
+
+
+class OfAJammedPoint(unittest.TestCase):
+    def test_a_mean_of_few_survivors_is_hidden_and_one_before_the_first_look_is_not(self):
+        point = {"count": 2, "mean": 3.0, "standard_error": 1.0, "half_width": None, "jammed": True}
+        looked_at, provisional = point | {"seeds": 8, "provisional": False}, point | {"provisional": True}
+        for rows, means in (([provisional], [3]), ([looked_at, provisional], [None, 3])):
+            table = without_survivors(Table.of_rows([*point, "seeds", "provisional"], rows))
+            np.testing.assert_equal(table["mean"], np.array(means, float))
 
 
 class OfACampaign(unittest.TestCase):
