@@ -125,10 +125,11 @@ class Results:
     def estimates(self, quantity=None):
         """A row for each point: the swept parameters, label, verdict, seeds and lost ones; and `count`, `mean`,
         `standard_error` and `half_width` of the 95 % interval (of the campaign's confidence) at the point's last look,
-        with the control variate. Those of the target, by which the campaign stops, or of another single number, such as
-        pressure, stress/total/xy or transient/shear_stress/3; the half-width of such is Student's. `provisional` rows
-        have had no look yet: their mean is that of all seeds so far, and has no interval. `jammed`: half of the seeds
-        or more have jammed, as `peclet jamming` counts them; such a point has no viscosity."""
+        with the control variate where there is one. Those of the target, by which the campaign stops, or of another
+        single number, such as pressure, stress/total/xy or transient/shear_stress/3; the half-width of such is
+        Student's, or of shares Clopper and Pearson's. `provisional` rows have had no look yet: their mean is that of
+        all seeds so far, and has no interval. `jammed`: half of the seeds or more have jammed, as `peclet jamming`
+        counts them; such a point has no viscosity."""
         rows, axes = self._named(self._rows("csv"))
         for row in rows:
             row["provisional"] = row["mean"] is None

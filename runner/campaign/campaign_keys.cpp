@@ -88,7 +88,7 @@ std::vector<Key> keys() {
       absolute_floor("/target/also/*/absolute_floor"),
       {.pointer = "/target/confidence",
        .kind = KeyKind::number,
-       .meaning = "Of the two-sided interval (Student's t).",
+       .meaning = "Of the two-sided interval: Student's t, and of shares Clopper and Pearson's.",
        .default_value = 0.95,
        .minimum = 0.5,
        .maximum = 1,

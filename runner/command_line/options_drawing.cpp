@@ -45,8 +45,8 @@ void add_drawing_verbs(VerbSet& verbs) {
       "peclet plot flow-curve.json --output flow-curve.pdf",
       page(R"(
 Draws every point with its interval at the campaign's confidence, a curve for each value of what else is
-swept. Numbers are those of `export`: the target's are the ones that decide, with the control variate. Open
-marks have not converged; those with dashed bars may still change.
+swept. Numbers are those of `export`: the target's are the ones that decide, with the control variate where
+there is one. Open marks have not converged; those with dashed bars may still change. Crosses have jammed.
 
 The name of --output says the form: .svg needs no other program; .png and .pdf are drawn by matplotlib,
 through python3 of PATH. Beside the picture lies its script, of the same name and the ending .py, which holds
