@@ -24,31 +24,30 @@ NAMED = [
     (
         "with noise contacts are looked for a whole step ahead",
         NOISY,
-        "with_noise_(physics, particles, timestep, seed, threads, set, 0.5 * timestep)",
-        "with_noise_(physics, particles, timestep, seed, threads, set, timestep)",
+        "at_beginning_(field_.physics(), particles, timestep, seed, threads, set, 0.5 * timestep,",
+        "at_beginning_(field_.physics(), particles, timestep, seed, threads, set, timestep,",
         LINE,
     ),
     (
         "with noise the stress is that of the predicted middle",
-        NOISY,
-        "  if (!move_half_a_step(system)) {\n    return std::nullopt;\n  }\n  report.sums = on_the_way_",
-        "  report.sums = on_the_way_",
+        "engine/integrators/acted_stress.cpp",
+        "symmetric_dyad(half * change_.velocity[i], force_ahead_[i] + force_of_change_[i])",
+        "symmetric_dyad(0.0 * change_.velocity[i], force_ahead_[i] + force_of_change_[i])",
         LINE,
     ),
     (
         "stress of the noise at the middle of the step",
-        NOISY,
-        "report.sums.of(StressTerm::brownian_lubrication) = drawn.of(",
-        "report.sums.of(StressTerm::brownian_lubrication) = (drawn.finite ? with_noise_.evaluate(system, "
-        "loads_.force, loads_.torque) : drawn).of(",
+        "engine/integrators/acted_stress.cpp",
+        "  sums_.of(carried_term(field.physics())) +=",
+        "  sums_.of(StressTerm::brownian_lubrication) +=",
         "engine_tests:NoisyStep.HasTheStressOfItsNoiseWhereItWasDrawn",
     ),
     (
         "predictor without noise",
         NOISY,
-        "  const bool predicted = solve(system, nullptr, of_prediction, report);",
-        "  for (std::size_t i = 0; i < system.particles.count(); ++i) loads_.force.row(i) = loads_.force.row(i) - "
-        "noise_.force.row(i);\n  const bool predicted = solve(system, nullptr, of_prediction, report);",
+        "  const bool predicted = solve(system, of_prediction, report);",
+        "  const Loads drawn = noise_;\n  noise_ = Loads(system.particles.count(), 1);\n"
+        "  const bool predicted = solve(system, of_prediction, report);\n  noise_ = drawn;",
         "physics_tests:NoisyDrift.OfALubricatedPairIsTheDivergenceOfItsMobility",
     ),
     (
@@ -132,15 +131,15 @@ NAMED = [
     (
         "repulsion beside links left out",
         "engine/kernels/links/link_assembly.h",
-        "load.force += conservative_force(kind_.conservative, ahead_);",
-        ";",
+        "            sums.add_stress(part, shape_, force);\n            load.force += force;",
+        "            sums.add_stress(part, shape_, force);",
         "engine_tests:*LinkLoadsOf.AreThoseOfAnEvaluation*",
     ),
     (
         "noise of pairs for steps of half the length",
         NOISY,
-        "      with_noise_(physics, particles, timestep, seed",
-        "      with_noise_(physics, particles, 0.5 * timestep, seed",
+        "      with_noise_(lubrication_alone(physics), particles, timestep, seed",
+        "      with_noise_(lubrication_alone(physics), particles, 0.5 * timestep, seed",
         "engine_tests:NoisyStep.HasTheStressOfItsNoiseWhereItWasDrawn",
     ),
     (
@@ -235,11 +234,11 @@ NAMED = [
         "engine_tests:Result.ViscosityAndNormalStressesAreThoseOfTheTotal",
     ),
     (
-        "control variate of the pressure with the other sign",
+        "pressure with the other sign",
         STRESS,
-        "value(pressure(brownian))",
-        "value(-pressure(brownian))",
-        "engine_tests:Result.AtRestThePressureHasBlocksAndAControlVariate",
+        "return -(t.xx + t.yy + t.zz) / 3;",
+        "return (t.xx + t.yy + t.zz) / 3;",
+        "engine_tests:Result.ViscosityAndNormalStressesAreThoseOfTheTotal",
     ),
     (
         "correlations of blocks counted on one side",
@@ -334,9 +333,9 @@ NAMED = [
     ),
     (
         "gaps counted as negative overlaps",
-        "engine/kernels/pairs/pair_kernel.h",
-        "sums.overlaps += larger(Real{}, overlap);",
-        "sums.overlaps += overlap;",
+        "engine/kernels/pairs/lane_sums.h",
+        "overlaps += larger(Real{}, relative);",
+        "overlaps += relative;",
         "engine_tests:Result.MeansAreTakenOverEveryStepOfTheProductionWindow",
     ),
 ]
