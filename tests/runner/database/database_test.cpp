@@ -196,12 +196,13 @@ TEST_F(Databases, CountsTheWorkersOfTheLastRun) {
   campaign.begin(0, 1);
   campaign.begin(0, 2);
   Connection& connection = campaign.database().connection();
-  connection.execute("UPDATE attempt SET process = 4710 + attempt_id, worker = attempt_id - 1");
+  connection.execute(
+      "UPDATE attempt SET process = 4710 + attempt_id, worker = attempt_id - 1, "
+      "started_at = '2026-01-01T00:00:00Z'");
+  connection.execute("UPDATE attempt SET ended_at = '2026-01-01T00:00:09Z' WHERE attempt_id = 1");
   EXPECT_EQ(campaign.database().last_workers(), 3);
   // Of an earlier run, and of another machine.
-  connection.execute(
-      "UPDATE attempt SET started_at = '2026-01-01T00:00:00Z', ended_at = '2026-01-01T00:00:09Z' WHERE "
-      "attempt_id = 1");
+  connection.execute("UPDATE attempt SET started_at = '2026-01-02T00:00:00Z' WHERE attempt_id > 1");
   EXPECT_EQ(campaign.database().last_workers(), 2);
   connection.execute("UPDATE attempt SET host = 'other' WHERE attempt_id = 2");
   EXPECT_EQ(campaign.database().last_workers(), 1);

@@ -144,7 +144,7 @@ TEST_F(FullDatabase, SaysOnceWhatElseIsInTheWayMeanwhile) {
     ++turns;
     if (turns == 3) fill();
     if (turns == 20) other.execute("BEGIN IMMEDIATE");
-    if (turns == 40) other.execute("ROLLBACK");
+    if (turns == 28) other.execute("ROLLBACK");
     if (turns == 60) make_room();
     ASSERT_LT(turns, 400) << "it does not go on";
     finish_all();

@@ -94,7 +94,7 @@ TEST(SeveralTargets, WhatOnlyMeasuresNeedsNoInterval) {
   Outcomes outcomes;
   for (int seed = 0; seed < 10; ++seed) {
     Outcome outcome{Outcome::Kind::value, seed % 2 == 0 ? -0.5 : 0.5};
-    outcome.further = {{10}};
+    outcome.further = {{10.0}};
     outcomes.emplace_back(outcome);
   }
   const Look look = replay_looks(outcomes, target, 10, 10).at(0);
