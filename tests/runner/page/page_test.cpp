@@ -58,6 +58,8 @@ TEST_F(CampaignPage, HasTheEstimateThatDecidesAndEveryOther) {
 TEST_F(CampaignPage, OfAnOpenPointHasWhatIsKnownSoFar) {
   campaign_.complete(1, 0, 9);
   campaign_.complete(1, 2, 11);
+  campaign_.database().connection().execute(
+      "UPDATE attempt SET worker = attempt_id, started_at = '2026-01-01T00:00:00Z'");
   const Json page = data();
   const Json so_far = estimate(page, 1, "relative_viscosity");
   EXPECT_EQ(so_far[0], 10.25);
