@@ -191,7 +191,7 @@ class OfACampaign(unittest.TestCase):
         for name in ("stress/total/xy", "stress/total/3", "/stress/total/xy"):
             np.testing.assert_allclose(self.results.estimates(name)["mean"], expected, err_msg=name)
         axes = self.results.plot("stress/total/xy", x="peclet", where={"volume_fraction": 0.3})
-        self.assertEqual(axes.get_ylabel(), r"$\sigma$, xy  [viscosity * shear_rate]")
+        self.assertEqual(axes.get_ylabel(), r"$\sigma$, xy  [$\eta\dot\gamma$]")
         with self.assertRaisesRegex(
             peclet.PecletError, "is a list by component; name one element, such as stress/total/xx"
         ):
