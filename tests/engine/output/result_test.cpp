@@ -84,7 +84,7 @@ TEST(Result, TheStressOfTheMotionIsRelativeToWavesToo) {
                    {"lubrication", nullptr},
                    {"repulsion", nullptr},
                    {"flow", {{"shear_rate", 0}, {"waves", {{{"periods", 1}, {"sine", 5}}}}, {"faxen", true}}},
-                   {"integrator", {{"method", method}, {"timestep", 0.02}}},
+                   {"integrator", {{"method", method}, {"timestep", 0.0015}}},
                    {"guard", {{"largest_displacement", 10}}},
                    {"duration", {{"equilibration", {{"time", 4}}}, {"production", {{"time", 20}}}}}});
     const Json& motion = result.at("mean").at("stress").at("motion");
