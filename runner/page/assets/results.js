@@ -26,7 +26,7 @@ function resultsTable(data, sweep, host, onPick) {
     column < 0 ? { words: Format.words(path), symbol: [], unit: '' } : Format.quantity(data.quantities[column]);
   const isKnown = (point) => column >= 0 && Sweep.isKnown(point, point.estimates[column]);
   const numbers = (point) => (isKnown(point) ? point.estimates[column] : [null, null, null, 0]);
-  const plain = (point) => point.uncontrolled[path] || null;
+  const plain = (point) => point.uncontrolled[path] || numbers(point);  // the same without a control variate
   const rows = data.points.map((point, i) => ({ point, i })),
     relative = target.relative_tolerance !== undefined;
   const measure = (row) => {
@@ -109,8 +109,8 @@ function resultsTable(data, sweep, host, onPick) {
         row.point.seeds.looked_at,
         numbers(row.point)[3],
         ...numbers(row.point).slice(0, 3),
-        plain(row.point) ? plain(row.point)[0] : null,
-        plain(row.point) ? plain(row.point)[2] : null,
+        plain(row.point)[0],
+        plain(row.point)[2],
         lost(row),
         row.point.cpu_seconds,
       ]),
