@@ -9,13 +9,12 @@ struct ExitCode {
   enum : int {
     done = 0,  // of a run: every point converged
     error = 1,
-    usage = 2,  // or faulty input; nothing has been written
-    unconverged =
-        3,  // finished, but some points are capped, near the maximum, failed, cancelled or lost seeds
-    unfinished = 4,  // of a request: asked for, and not carried out yet
-    owned = 5,       // another process owns the campaign
-    integrity = 6,   // the database is damaged, or a seed gave two different results
-    stopped = 75,    // by a signal, a time limit or a budget; the same command goes on
+    usage = 2,        // or faulty input; nothing has been written
+    unconverged = 3,  // finished, but some points are capped, failed, cancelled or lost seeds
+    unfinished = 4,   // of a request: asked for, and not carried out yet
+    owned = 5,        // another process owns the campaign
+    integrity = 6,    // the database is damaged, or a seed gave two different results
+    stopped = 75,     // by a signal, a time limit or a budget; the same command goes on
   };
 };
 

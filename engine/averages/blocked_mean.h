@@ -32,7 +32,7 @@ class BlockedMean {
   // Of a number, or of a list.
   BlockedMean() : BlockedMean(1, count_of_blocks, false) {}
   explicit BlockedMean(std::size_t elements) : BlockedMean(elements, blocks_kept(elements), true) {}
-  // Of a number that has its value in fewer blocks, in equal parts of the window.
+  // The mean of a number whose window is divided into this many equal blocks, fewer than 32.
   static BlockedMean number_with_blocks(std::size_t blocks) { return {1, blocks, false}; }
 
   // `block` counts from 0 to 31.

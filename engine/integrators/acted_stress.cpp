@@ -1,5 +1,6 @@
 #include "engine/integrators/acted_stress.h"
 
+#include "engine/integrators/sum_over_particles.h"
 #include "engine/state/field_array.h"
 #include "engine/terms/drag.h"
 

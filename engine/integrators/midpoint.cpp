@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/integrators/acted_stress.h"
+#include "engine/integrators/sum_over_particles.h"
 #include "engine/state/field_array.h"
 #include "engine/threads/for_each_range.h"
 

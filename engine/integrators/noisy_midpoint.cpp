@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/integrators/sum_over_particles.h"
 #include "engine/terms/drag.h"
 #include "engine/terms/inertial_step.h"
 #include "engine/threads/for_each_range.h"

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "engine/integrators/acted_stress.h"
 #include "engine/integrators/follow_flow.h"
+#include "engine/integrators/sum_over_particles.h"
 #include "engine/stability/spectral_bound.h"
 #include "engine/stability/spurious_energy.h"
 #include "engine/terms/drag.h"

@@ -60,7 +60,7 @@ class Meter {
 Progress progress_of(const Simulation& simulation) {
   const std::uint64_t step = simulation.system().step;
   return {step < simulation.schedule().equilibration ? "equilibration" : "production", step,
-          simulation.schedule().total(), strain_made(simulation.system().box)};
+          simulation.schedule().total(), simulation.system().box.net_strain()};
 }
 
 class Job {

@@ -6,6 +6,7 @@
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {
+
 ForceField::ForceField(const Physics& physics, const ParticleState& particles, double timestep,
                        std::uint64_t seed, int threads, InstructionSet set, double approach_time,
                        StepResistance::Part part)

@@ -6,6 +6,7 @@
 #include "engine/threads/for_each_range.h"
 
 namespace peclet::engine {
+
 PairSums total_of(const std::vector<PairSums>& blocks) {
   PairSums total;
   for (const PairSums& block : blocks) {
@@ -148,6 +149,7 @@ void PairPass::each_pair(const NeighbourList& list, const ComputePair& compute, 
   // Rows of crossing pairs, which the step may still need, stay as they are.
   const std::size_t count = list.blocks().empty() ? 0 : list.blocks().back().end;
   VectorField force(count), torque(count), crossing(2 * list.crossings());
+  std::vector<PairSums> sums(2);
   for (const ParticleBlock& block : list.blocks()) {
     const std::size_t offset = 4 * std::size_t{block.begin};
     for (std::uint32_t r = block.runs_begin; r < block.runs_end; ++r) {
@@ -158,7 +160,7 @@ void PairPass::each_pair(const NeighbourList& list, const ComputePair& compute, 
         const Pair& pair = list.pairs()[p];
         const std::uint32_t own = single.first_is_away ? pair.second : pair.first;
         force.set(own, {});
-        std::vector<PairSums> sums(2);
+        std::ranges::fill(sums, PairSums{});
         compute(single,
                 {block.begin, force.data() + offset, torque.data() + offset, crossing.data(), sums.data()});
         const Vector3 on_own = force[own];

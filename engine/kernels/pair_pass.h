@@ -81,7 +81,8 @@ class PairPass {
   // sphere. Loads go nowhere; `springs` advance as in add_pairs(). Slow: for what is looked at seldom.
   using VisitPair = std::function<void(const Pair& pair, const PairSums& sums, const Vector3& force)>;
   void each_pair(const PairPassInput& input, SpringField& springs, const VisitPair& visit);
-  // Likewise what `compute` leaves of one pair, a run of length 1, in rows and sums that are zero.
+  // Calls `compute` with each pair alone, as a run of length 1, and with rows and sums that are zero; then
+  // calls `visit` with the pair and what `compute` wrote there. Slow, too.
   using ComputePair = std::function<void(const PairRun& pair, const PairKernelOutput& out)>;
   static void each_pair(const NeighbourList& list, const ComputePair& compute, const VisitPair& visit);
 

@@ -34,7 +34,7 @@ class StressProfile final : public PairWatcher {
 
   void begin(const System& system, double weight) override;
   void take(const System& system, const Pair& pair, const PairSums& sums, const Vector3& force) override;
-  // Of pairs alone.
+  // A profile has the stress of pairs only, so the stress of a particle's motion is left out.
   void take_motion(const System& /*system*/, std::size_t /*particle*/,
                    const SymmetricTensor& /*stress*/) override {}
   // Ends the step whose pairs were taken.

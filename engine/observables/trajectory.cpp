@@ -44,11 +44,6 @@ std::vector<std::int8_t> names_of_species(std::uint32_t count, std::uint32_t& co
   return names;
 }
 
-// Net strain since the beginning: of shear, or the Hencky strain of an extension along x.
-double net_strain(const PeriodicCell& box) {
-  return box.strain() + std::log1p(box.displacement_gradient().column[0].x);
-}
-
 std::vector<std::uint32_t> places_of_ids(const ParticleState& particles) {
   std::vector<std::uint32_t> place(particles.count());
   for (std::uint32_t i = 0; i < place.size(); ++i) place[particles.id[i]] = i;
@@ -102,7 +97,7 @@ void Trajectory::sample(const System& system, std::size_t /*block*/) {
   add_places(system);
   if (frames_.count() == 0) add_kinds_of_spheres(system);
   frames_.add_single("log/time", system.clock.time());
-  frames_.add_single("log/strain", net_strain(system.box));
+  frames_.add_single("log/strain", system.box.net_strain());
   add_stress(system);
   add_contacts(system);
   frames_.end_frame();

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <numeric>
 #include <vector>
@@ -14,10 +13,6 @@ namespace {
 std::string spaced(const Vector3& vector) { return fmt::format("{} {} {}", vector.x, vector.y, vector.z); }
 
 }  // namespace
-
-double strain_made(const PeriodicCell& box) {
-  return box.strain() + std::log1p(box.displacement_gradient().column[0].x);
-}
 
 std::string extended_xyz(const System& system) {
   const ParticleState& particles = system.particles;
@@ -30,7 +25,7 @@ std::string extended_xyz(const System& system) {
       "{}\nLattice=\"{} {} {}\" Properties=id:I:1:pos:R:3:radius:R:1:velo:R:3:angular_velocity:R:3 pbc=\"T T "
       "T\" Time={} Strain={} Velocity_gradient=\"{} {} {}\"\n",
       particles.count(), spaced(edges[0]), spaced(edges[1]), spaced(edges[2]), system.clock.time(),
-      strain_made(system.box), spaced(gradient[0]), spaced(gradient[1]), spaced(gradient[2]));
+      system.box.net_strain(), spaced(gradient[0]), spaced(gradient[1]), spaced(gradient[2]));
   for (const std::size_t i : order) {
     fmt::format_to(std::back_inserter(text), "{} {} {} {} {}\n", particles.id[i],
                    spaced(particles.position[i]), particles.radius[i], spaced(particles.velocity[i]),

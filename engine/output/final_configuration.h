@@ -7,10 +7,6 @@
 
 namespace peclet::engine {
 
-// Returns the strain that a cell has made since the start: D_xy of a simple shear, or the Hencky strain
-// ln(1 + D_xx) of a planar extension, D the displacement gradient. Either is 0 in the other flow.
-double strain_made(const PeriodicCell& box);
-
 // Extended XYZ: the number of spheres; a line with the three lattice vectors of the deformed cell, the
 // columns, time, strain and the columns of the velocity gradient; then of each sphere its number for life, by
 // which they are sorted, the centre, the radius, the velocity and the angular velocity, in the units of the

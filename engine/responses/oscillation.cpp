@@ -19,8 +19,9 @@ constexpr std::array<Named, 5> quantities = {{{"storage_modulus", "G'", "stress"
                                               {"third_storage_modulus", "G'_3", "stress"},
                                               {"third_loss_modulus", "G''_3", "stress"}}};
 
-// Of so many cycles: equal parts of the window, each with a cycle at least. Below four none, as the beginning
-// of a window is told by its quarters.
+// The number of equal blocks into which a window of so many cycles is divided: a power of two, and at least a
+// cycle a block. A window of fewer than four cycles has no blocks, because the test of its beginning compares
+// quarters.
 std::size_t blocks_of_cycles(std::uint64_t cycles) {
   const std::size_t blocks = std::bit_floor(std::min<std::uint64_t>(cycles, count_of_blocks));
   return blocks < count_of_quarters ? 0 : blocks;

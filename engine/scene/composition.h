@@ -7,6 +7,9 @@
 
 namespace peclet::engine {
 
+// The largest count that a scene may have.
+constexpr std::size_t most_particles = 10'000'000;
+
 struct Species {
   double radius = 0;
   double share = 0;  // of the volume or of the number, see Particles; the shares add up to 1

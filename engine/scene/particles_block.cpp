@@ -178,7 +178,7 @@ Keys particle_keys() {
        .meaning = "Number of particles.",
        .required = true,
        .minimum = 1,
-       .maximum = 10'000'000},
+       .maximum = most_particles},
       positive("/particles/density", "mass / length^3", "Mass density of the particles.", required),
       choice("/particles/density_rule",
              "equal-inertia: spheres of radius a_i have the density times (a / a_i)^2, a the radius of "

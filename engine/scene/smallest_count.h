@@ -7,9 +7,6 @@
 
 namespace peclet::engine {
 
-// The largest count that a scene may have.
-constexpr std::size_t most_particles = 10'000'000;
-
 // Whether each radius has a sphere among the `count` of these particles.
 bool has_every_size(const Particles& particles);
 

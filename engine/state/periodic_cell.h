@@ -9,6 +9,8 @@
 // carried by drag, never displaced with the cell.
 #pragma once
 
+#include <cmath>
+
 #include "engine/state/basis_change.h"
 #include "engine/state/matrix3.h"
 
@@ -67,6 +69,9 @@ class PeriodicCell {
   double tilt() const { return frame().tilt_xy; }
   // Of a simple shear, x along y, since the start.
   double strain() const { return displacement_gradient_.column[1].x; }
+  // Net strain since the start: D_xy of a simple shear, or the Hencky strain ln(1 + D_xx) of an extension
+  // along x, D the displacement gradient. Either is 0 in the other flow.
+  double net_strain() const { return strain() + std::log1p(displacement_gradient_.column[0].x); }
 
   // Deforms the cell, keeping its basis, to this displacement gradient since the start.
   void deform(const Matrix3& displacement_gradient) { deform(displacement_gradient, velocity_gradient_); }

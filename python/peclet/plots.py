@@ -136,7 +136,7 @@ def plot(results, quantity=None, x=None, by=None, axes=None, label=None, log=Non
 
 
 def without_survivors(table):
-    """At a point that has jammed a mean of fewer than half of its seeds is that of those which happened to flow."""
+    """At a point that has jammed a mean of half of its seeds or fewer is that of those which happened to flow."""
     # Before the first look nothing says how many have ended.
     ended = np.array([row["count" if row["provisional"] else "seeds"] for row in table], float)
     survivors = table["jammed"] & ~(2 * table["count"] > ended)

@@ -48,7 +48,7 @@ int seeds_with_files(const Json& document, const std::string& file) {
                    fmt::format("must be \"all\", \"none\" or an integer >= 0 and <= {}", most_realisations));
 }
 
-// What many begin with.
+// A file of a scene alone is what many begin with: says what a campaign has around it.
 void refuse_bare_scene(const Json& written, const std::string& file) {
   if (!written.is_object() || written.contains("scene") || !written.contains("particles")) return;
   throw InputError(

@@ -14,7 +14,7 @@ namespace {
 std::string checked(const std::string& name, const std::string& word, const Key& allowed) {
   double number = 0;
   const bool in_percent = allowed.maximum <= 1 && word.ends_with('%');
-  const std::size_t digits = in_percent ? word.find_last_not_of(" %") + 1 : word.size();
+  const std::size_t digits = in_percent ? word.find_last_not_of(' ', word.size() - 2) + 1 : word.size();
   const char* const end = word.data() + digits;
   const auto [stop, error] = std::from_chars(word.data(), end, number);
   if (in_percent) number /= 100;

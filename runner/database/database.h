@@ -87,7 +87,7 @@ struct TargetRecord {
   Target target;
   int minimum = 0, maximum = 0;
 
-  // Of every interval that is shown of a point.
+  // The confidence level of every interval that is shown of a point.
   double level() const { return adjusted_confidence(target.confidence, minimum, maximum); }
 };
 
@@ -127,7 +127,8 @@ struct CampaignRecord {
 bool is_campaign_database(Connection& connection);
 
 // Whether a reader reads this database without locks and without a log: there is no log, and its folder may
-// not be written, so that nobody here can write it.
+// not be written, so that a run of ours cannot write it. Its owner may: what is read while a run begins may
+// then look damaged.
 bool is_frozen_for_us(const std::filesystem::path& path);
 
 class Database {
@@ -163,7 +164,7 @@ class Database {
   void for_each_result(std::int64_t point, int end, const std::function<void(int seed, const Json&)>& visit);
   std::vector<AttemptRecord> attempts(std::int64_t point);
   std::vector<LeaseRecord> leases(std::int64_t point);
-  // Of the seeds that workers had at the time of their last news, by PointRecord::id.
+  // The seeds that workers were running when they last gave news, by PointRecord::id.
   std::map<std::int64_t, std::vector<Unfinished>> unfinished();
   // How many workers the last run had, as far as they were needed; 0 where nothing was run here.
   int last_workers();

@@ -43,6 +43,7 @@ void copy_pages(Connection& from, Connection& to) {
   // One snapshot for all steps: otherwise every commit of the owner would start the copy again.
   const Transaction snapshot(from, Transaction::Kind::snapshot);
   from.integer("SELECT count(*) FROM sqlite_schema");
+  errno = 0;  // an older one would be taken for the reason of a failure
   const std::unique_ptr<sqlite3_backup, int (*)(sqlite3_backup*)> backup(
       sqlite3_backup_init(to.handle(), "main", from.handle(), "main"), sqlite3_backup_finish);
   if (!backup) to.fail("copying " + from.path());

@@ -129,7 +129,8 @@ CountsByPoint read_flags(Connection& connection) {
                          " GROUP BY point_id, message");
 }
 
-// Of looks by the present rule for targets that the campaign had before, by point.
+// By point, the largest number of seeds at a look that was made for an earlier target of the campaign, by the
+// present rule.
 std::map<std::int64_t, int> read_largest_earlier_looks(Connection& connection) {
   Statement query(
       connection,
@@ -141,7 +142,7 @@ std::map<std::int64_t, int> read_largest_earlier_looks(Connection& connection) {
   return largest;
 }
 
-// Of the target's observables, in whatever order the seeds came.
+// The estimates of the target's observables, whatever the order in which the seeds ended.
 std::vector<Estimate> estimates_so_far(const std::vector<std::optional<Outcome>>& outcomes,
                                        std::size_t observables) {
   std::vector<RunningEstimate> sums(observables);

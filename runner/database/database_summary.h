@@ -17,9 +17,9 @@ struct Endings {
   int jammed = 0;  // is_jam(), with a result or without
   int lost = 0;    // without a value, for another reason
 
-  // Half of the seeds or more.
+  // Whether half of the seeds that have ended have jammed, or more.
   bool has_jammed() const { return jammed > 0 && 2 * jammed >= ended; }
-  // More than a tenth, less than half: means are of seeds that happened to flow.
+  // Whether more than a tenth have jammed, and less than half: means are of seeds that happened to flow.
   bool has_partly_jammed() const { return !has_jammed() && 10 * jammed > ended; }
 };
 

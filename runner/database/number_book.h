@@ -30,7 +30,7 @@ class NumberBook {
     const NumberLayout& layout;
     std::span<const double> numbers;
   };
-  // Of the seeds below `end`, in their order. Throws IntegrityError.
+  // Visits the entries of the seeds below `end`, in their order. Throws IntegrityError.
   using Visit = std::function<void(const Entry& entry)>;
   void for_each(std::int64_t point, int end, const Visit& visit);
 

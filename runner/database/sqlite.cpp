@@ -21,7 +21,7 @@
 namespace peclet::runner {
 namespace {
 
-// Of the codes behind which there is an errno, with it.
+// Whether SQLite's code comes with an errno that says why.
 bool comes_from_the_system(int code) {
   const int primary = code & 0xff;
   return primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN || primary == SQLITE_FULL;

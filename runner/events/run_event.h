@@ -49,6 +49,7 @@ struct Decided {
   Look look;
 };
 
+// Something is in the run's way: it pauses. Told again of whatever else gets in its way before ShortageEnded.
 struct ShortageBegan {
   std::string message;
 };

@@ -69,8 +69,8 @@ Standing standing_of(const Json& point) {
 
 double number_or_none(const Json& value) { return value.is_number() ? value.get<double>() : none; }
 
-// Whether the point has a number of the quantity. At one that has jammed a number of fewer than half of its
-// seeds is that of those which happened to flow.
+// Whether the point has a number of the quantity. At one that has jammed a number of half of its seeds
+// or fewer is that of those which happened to flow.
 bool has_number(const Json& point, const Json& estimate) {
   if (estimate.is_null() || !estimate[0].is_number()) return false;
   const Json& endings = point.at("endings");

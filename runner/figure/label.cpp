@@ -129,10 +129,6 @@ std::string raised(int power) {
   return text;
 }
 
-}  // namespace
-
-namespace {
-
 // A formula in words, such as "<|F_t| / (mu F_n)>": a mean, and what stands lowered behind each underscore.
 Label formula_label(std::string text) {
   if (text.starts_with('<') && text.ends_with('>')) text = "⟨" + text.substr(1, text.size() - 2) + "⟩";

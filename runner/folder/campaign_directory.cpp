@@ -32,7 +32,7 @@ constexpr std::array<std::pair<unsigned long, const char*>, 11> network_kinds{{{
                                                                                {0x5346414f, "AFS"},
                                                                                {0x6b414653, "AFS"},
                                                                                {0xaad7aaea, "PanFS"}}};
-// Those of a network or of this machine, which the number does not say.
+// File systems of which the number does not say whether they are of a network or of this machine.
 constexpr std::array<std::pair<unsigned long, const char*>, 8> doubtful_kinds{
     {{0x65735546, "FUSE (sshfs, DAOS, Gluster and others)"},
      {0x01021997, "9P (a virtual machine's host)"},

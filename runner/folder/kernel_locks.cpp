@@ -2,22 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <fstream>
 #include <limits>
 #include <sstream>
 
+#include "contract/text_lines.h"
+
 namespace peclet::runner {
-namespace {
-
-template <typename Number>
-Number number_in(const std::string& text, Number otherwise) {
-  Number number = otherwise;
-  std::from_chars(text.data(), text.data() + text.size(), number);
-  return number;
-}
-
-}  // namespace
 
 // "1: POSIX  ADVISORY  WRITE 4711 fe:01:1234 120 120", "2: FLOCK  ADVISORY  WRITE 4711 fe:01:1234 0 EOF".
 std::int64_t process_that_locks(std::uint64_t inode, const std::string& kind, std::uint64_t at) {
@@ -28,8 +19,11 @@ std::int64_t process_that_locks(std::uint64_t inode, const std::string& kind, st
     std::string count, its_kind, mode, access, process, place, first, last;
     words >> count >> its_kind >> mode >> access >> process >> place >> first >> last;
     if (its_kind != kind || access != "WRITE" || !place.ends_with(place_ends)) continue;
-    const auto end = number_in(last, std::numeric_limits<std::uint64_t>::max());  // "EOF"
-    if (number_in(first, std::uint64_t{0}) <= at && at <= end) return number_in(process, std::int64_t{0});
+    const auto end =
+        number_in<std::uint64_t>(last).value_or(std::numeric_limits<std::uint64_t>::max());  // "EOF"
+    if (number_in<std::uint64_t>(first).value_or(0) <= at && at <= end) {
+      return number_in<std::int64_t>(process).value_or(0);
+    }
   }
   return 0;
 }

@@ -162,7 +162,8 @@ void Dispatcher::end_pause() {
   }
 }
 
-// Also while somebody's deletion or move of its folders is being mended.
+// Whether a worker failed for want of room, or because folders that somebody had deleted or moved were not
+// mended yet. Begins a pause where there is no room now.
 bool Dispatcher::lacked_room(int number) {
   const Assignment& about = *at(number).assignment;
   if (about.lost_a_folder) return true;

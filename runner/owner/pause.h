@@ -35,8 +35,6 @@ class Pause {
 
   void begin(Hindrance hindrance, Time now);
   bool lasts() const { return hindrance_.has_value(); }
-  // Requires a pause that lasts.
-  const Hindrance& hindrance() const { return *hindrance_; }
 
   // Whether is_over() would look now.
   bool is_looked_at(Time now) const;

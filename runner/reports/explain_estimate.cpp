@@ -37,9 +37,7 @@ std::string interval_text(const Look& look, const std::vector<Outcome>& outcomes
   const double level = target.level();
   const std::vector<double> values = controlled(outcomes);
   if (!std::isfinite(look.controlled_half_width)) return "";
-  const bool is_share =
-      std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome& outcome) { return outcome.is_share; });
-  if (estimate(values, is_share).values == Estimate::Values::share) {
+  if (look.controlled.values == Estimate::Values::share) {
     const Interval interval = share_interval(look.controlled.count, look.controlled.mean, level);
     return fmt::format(
         "  interval: {} .. {} of the share (Clopper and Pearson); the half-width is its larger side\n",

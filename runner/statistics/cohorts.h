@@ -49,7 +49,7 @@ struct ObservableLook {
   std::string observable;
   Estimate estimate;      // of value + control
   double half_width = 0;  // the rule's
-  double share = 0;       // of the one that is allowed; NaN without a tolerance
+  double share = 0;       // half-width over the largest that is allowed; NaN without a tolerance
   double skewness = std::numeric_limits<double>::quiet_NaN();
   bool transient = false, untested = false;  // as of a look
   std::optional<Verdict> verdict;            // none where it only measures others
@@ -62,7 +62,7 @@ struct Look {
   int seeds = 0;  // n
   int lost = 0;
   Estimate estimate;                 // of the observable
-  double half_width = 0;             // as of the next, of the observable
+  double half_width = 0;             // by the same rule as that of `controlled`
   Estimate controlled;               // of value + control
   double controlled_half_width = 0;  // the rule's: see stop_rule.h; NaN where there is no interval
   double skewness = std::numeric_limits<double>::quiet_NaN();  // of value + control
@@ -108,8 +108,8 @@ std::vector<int> repeated_seeds(std::span<const std::optional<Outcome>> cohort);
 // Half-width over |mean| of the estimate that decides; NaN where there is no interval.
 double relative_width(const Look& look);
 
-// Whether there is a control variate: without one (no Brownian motion, another engine) the controlled
-// estimate only repeats the other.
+// Whether the results have a control variate, as those of earlier versions and of other engines may: without
+// one the controlled estimate only repeats the other.
 bool has_control(const Look& look);
 
 // All looks that the outcomes allow, in order, ending with the first that decides (any verdict but more).

@@ -17,7 +17,7 @@ Estimate::Values stored_values(const Estimate& estimate, double half_width) {
   if (std::isnan(half_width)) return Estimate::Values::equal;
   const double mean = estimate.mean, ones = estimate.count * mean;
   const double variance = estimate.standard_error * estimate.standard_error * (estimate.count - 1);
-  // Of small values the variance must be judged against the share's own.
+  // The variance is compared relative to that of a share, which may be small itself.
   constexpr double rounding = 1e-12, same = 1e-9;
   const bool is_share = half_width > 0 && mean >= 0 && mean <= 1 &&
                         std::abs(ones - std::round(ones)) <= rounding * estimate.count &&

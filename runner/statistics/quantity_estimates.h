@@ -41,9 +41,9 @@ class QuantityEstimates {
   // One more result, in the order of the seeds; one that has not completed adds nothing. Memory: a few
   // numbers for each element of a mean, two for each element and seed of a ratio.
   void add(const Json& result);
-  // The same of numbers that were taken from a result before, and whether its realisation has jammed;
-  // quantities that the layout leaves out stay out. A layout must outlive the last call.
-  void add(const NumberLayout& layout, std::span<const double> numbers, bool has_jammed = false);
+  // Adds numbers that were taken from a result before, with whether its realisation has jammed; quantities
+  // that the layout leaves out stay out. A layout must outlive the last call.
+  void add(const NumberLayout& layout, std::span<const double> numbers, bool has_jammed);
 
   // In the order of the names.
   std::vector<QuantityEstimate> estimates() const;

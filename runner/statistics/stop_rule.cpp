@@ -119,7 +119,7 @@ StopRule::Judgement StopRule::judge(int seeds, Estimates estimates) {
 }
 
 Verdict StopRule::verdict(int seeds, const Estimate& estimate, double share) const {
-  // Not so for an interval that does not exist, and a share of a mean of 0.
+  // False, too, where there is no interval, or the mean is 0: the share is then not a number.
   if (share <= 1) return estimate.count == seeds ? Verdict::converged : Verdict::converged_with_losses;
   // Where not one of the first seeds lives, more of them are waste.
   if (seeds == minimum_ && estimate.count == 0) return Verdict::failed;

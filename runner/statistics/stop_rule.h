@@ -74,8 +74,8 @@ class StopRule {
   struct Finding {
     std::optional<Verdict> verdict;  // none where it only measures others
     double half_width = 0;           // NaN where there is no interval
-    double share =
-        std::numeric_limits<double>::quiet_NaN();  // of the one that is allowed; NaN without a tolerance
+    // Half-width over the largest that is allowed; NaN without a tolerance.
+    double share = std::numeric_limits<double>::quiet_NaN();
   };
   struct Judgement {
     Verdict verdict = Verdict::more;

@@ -148,7 +148,7 @@ class Follower {
     const std::optional<Hindrance> hindrance = hindrance_in(error, root_);
     if (!hindrance) throw;
     ledger_.roll_back();
-    if (std::exchange(hindrance_, hindrance->text) != hindrance->text) {
+    if (std::exchange(hindrance_, hindrance->kind()) != hindrance->kind()) {
       progress_.warn(
           fmt::format("{}; jobs go on, and results are taken in {}", hindrance->text, hindrance->end));
     }

@@ -124,8 +124,10 @@ int dispatch(OpenedRun& opened, const RunOptions& options, const ClaimedCampaign
   settings.checkpoint_seconds = options.checkpoint_seconds;
   if (options.time_limit) settings.time_limit = std::chrono::duration<double>(*options.time_limit);
   settings.chore = [&backup, &watch] {
+    // First the folder: a backup must not be begun in one that has been moved.
+    const bool mended = watch.attend(steady_clock::now());
     backup.attend(steady_clock::now());
-    return watch.attend(steady_clock::now());
+    return mended;
   };
   settings.requests = [&opened] { return opened.requests.carry_out(); };
   log.record(fmt::format("{} begins: process {}, {} workers of {} threads, engine {}",

@@ -111,7 +111,7 @@ class Sweep {
     return point.standing.startsWith('converged') ? 'decided' : 'undecided';
   }
 
-  // Whether the point has a number. At one that has jammed a number of fewer than half of its seeds is that of those
+  // Whether the point has a number. At one that has jammed a number of half of its seeds or fewer is that of those
   // which happened to flow.
   static isKnown({ endings }, estimate) {
     if (!estimate || !Format.isNumber(estimate[0])) return false;
