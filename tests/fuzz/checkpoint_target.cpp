@@ -69,6 +69,8 @@ const std::vector<std::string>& written() {
 
 }  // namespace
 
+std::size_t inputs_accepted = 0;
+
 // NOLINTNEXTLINE(readability-identifier-naming)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string payload(data, data + size);
@@ -79,6 +81,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     Simulation simulation = fresh();
     read_checkpoint(path(), belonging, simulation);
+    ++inputs_accepted;
   } catch (const CheckpointError&) {  // refused in words
   }
   return 0;

@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
   const peclet::runner::FuzzReport report = peclet::runner::fuzz_live_server(
       options["--seed"], [&](const auto&) { return std::chrono::steady_clock::now() < end; });
   for (const std::string& finding : report.findings) fmt::print("{}\n", finding);
-  fmt::print("{} requests, {} kinds of answers, {} findings\n", report.requests, report.kinds,
+  fmt::print("{} requests, {} different answers, {} findings\n", report.requests, report.answers,
              report.findings.size());
   return report.findings.empty() ? 0 : 1;
 }

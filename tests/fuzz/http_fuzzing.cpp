@@ -214,7 +214,7 @@ FuzzReport fuzz_live_server(std::uint64_t seed, const std::function<bool(const F
   ServedCampaign served;
   Mutator mutator(seed);
   FuzzReport report;
-  std::set<std::string> kinds;
+  std::set<std::string> kinds, answers;
   while (report.findings.size() < most_findings && goes_on(report)) {
     const std::string made = mutator.next(), request = served.filled_in(made);
     const std::optional<std::string> answer = ask(served.port(), request, 1 + mutator.below(4));
@@ -222,6 +222,7 @@ FuzzReport fuzz_live_server(std::uint64_t seed, const std::function<bool(const F
     std::string fault = answer ? "" : "no answer and no end in time";
     const std::string kind = answer ? judge(request, *answer, fault) : "";
     // How long the request is and how many lines it has belong to its kind, too, roughly.
+    if (!kind.empty()) answers.insert(kind);
     const auto lines = std::count(request.begin(), request.end(), '\n');
     if (kinds.insert(fmt::format("{} {} {}", kind, std::min<std::ptrdiff_t>(lines, 8), request.size() / 4096))
             .second)
@@ -230,7 +231,7 @@ FuzzReport fuzz_live_server(std::uint64_t seed, const std::function<bool(const F
       report.findings.push_back(
           fmt::format("{}: {}", fault, Json(request).dump(-1, ' ', true, Json::error_handler_t::replace)));
   }
-  report.kinds = kinds.size();
+  report.answers = answers.size();
   return report;
 }
 

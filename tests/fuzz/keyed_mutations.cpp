@@ -244,6 +244,11 @@ int main(int argc, char** argv) {
   watch_for_the_end();
   std::vector<std::string> inputs = valid_inputs();
   for (const std::string& input : inputs) read(input, (options.findings / "valid").string());
+  if (inputs_accepted != inputs.size()) {
+    std::fprintf(stderr, "%zu of %zu valid inputs are refused\n", inputs.size() - inputs_accepted,
+                 inputs.size());
+    return 1;
+  }
   for (const fs::path& file : options.files) {
     inputs.push_back(content(file));
     read(inputs.back(), file.string());

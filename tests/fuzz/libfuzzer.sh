@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# libfuzzer.sh NAME SECONDS [FOLDER]      searches NAME_target.cpp for inputs that it does not stand, with clang's libFuzzer
+# libfuzzer.sh spheres SECONDS [FOLDER]   searches spheres_target.cpp for inputs that it does not stand, with clang's libFuzzer
 #
 # Needs clang-14 and libclang-rt-14-dev. FOLDER, build/fuzz/NAME unless given, keeps what has been found out for the next
 # search; findings are left in build/fuzz. Put those that were mended into tests/fuzz/corpus/NAME: tests read them.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+[ "${1-}" = spheres ] && [ $# -ge 2 ] || { sed -n '2,6s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 name=$1 seconds=$2 folder=${3:-build/fuzz/$1}
 clang=${CLANG:-clang++-14}
 declare -A sources=(

@@ -113,6 +113,8 @@ std::string trajectory() {
 
 }  // namespace
 
+std::size_t inputs_accepted = 0;
+
 // NOLINTNEXTLINE(readability-identifier-naming)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const MemoryFile memory({data, size});
@@ -123,6 +125,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       check_text(snapshot);
       if (snapshot.count() <= 20) draw(snapshot);
     }
+    ++inputs_accepted;
   } catch (const InputError&) {  // refused in words
   }
   return 0;

@@ -107,8 +107,6 @@ SymmetricTensor acted(const StepReport& report) { return total_stress(report.sum
 // Of the rows that the solver works on, and what it leaves of the equations.
 constexpr double of_single_precision = 2e-4;
 
-// Steps in which inertia carries pairs across the outer gap, and longer ones than four times a small sphere's
-// m / drag, which is 0.22 or 0.011.
 struct NamedPhysics {
   const char* name;
   Physics physics;
@@ -155,16 +153,20 @@ double expect_what_particles_gain(const NamedPhysics& kind, const Step& how, Ins
   return contacts;
 }
 
+// Two steps in which inertia carries pairs across the outer gap, and one that is longer than four times a
+// small sphere's m / drag, which is 0.22 or 0.011.
 TEST(MomentumFlux, OfImplicitStepsIsWhatParticlesGain) {
   for (const InstructionSet set : available_sets()) {
     for (const NamedPhysics& kind : kinds_of_pairs()) {
-      double contacts = 0;
       for (const Step& how :
            {Step{0.002, usual_density, true}, {0.02, usual_density, true}, {0.1, 0.005, false}}) {
         const bool is_inertial = how.inertial && kind.physics.lubrication.has_value();
-        contacts += expect_what_particles_gain(kind, {how.dt, how.density, is_inertial}, set);
+        const double contacts = expect_what_particles_gain(kind, {how.dt, how.density, is_inertial}, set);
+        // Without lubrication the spheres fly apart in long steps.
+        if (kind.physics.lubrication || how.dt < 0.01) {
+          EXPECT_GT(contacts, 20) << kind.name << ", step " << how.dt;
+        }
       }
-      EXPECT_GT(contacts, 60) << kind.name;
     }
   }
 }
@@ -203,10 +205,10 @@ TEST(MomentumFlux, HasConservativeAndDissipativeParts) {
   const auto of = [&](StressTerm term) { return report.sums.of(term).xy; };
   EXPECT_NE(of(StressTerm::lubrication), 0);
   EXPECT_EQ(flux.dissipative.xy, of(StressTerm::lubrication));
-  const double motion = flux.conservative.xy - of(StressTerm::contact_normal) - of(StressTerm::repulsion);
-  EXPECT_NEAR(flux.acted().xy,
-              motion + of(StressTerm::contact_normal) + of(StressTerm::repulsion) +
-                  of(StressTerm::lubrication) + of(StressTerm::brownian_lubrication),
+  const double even = report.motion.xy + of(StressTerm::contact_normal) + of(StressTerm::repulsion);
+  EXPECT_NE(report.motion.xy, 0);
+  EXPECT_NEAR(flux.conservative.xy, even, 1e-12);
+  EXPECT_NEAR(flux.acted().xy, even + of(StressTerm::lubrication) + of(StressTerm::brownian_lubrication),
               1e-12);
 }
 

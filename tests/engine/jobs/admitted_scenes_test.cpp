@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint64_t seed = 2;
 
 struct NamedPatch {
-  const char* name;
+  std::string name;
   Json patch;
 };
 
@@ -68,10 +68,10 @@ std::vector<NamedPatch> flows() {
 std::vector<NamedPatch> surroundings() {
   const char* const texts[][2] = {
       {"as it is", "{}"},
-      {"explicit", R"({"integrator": {"method": "explicit"}})"},
+      {"explicit", R"({"integrator": {"method": "explicit", "timestep": 0.0004}})"},
       {"without noise", R"({"fluid": {"thermal_energy": null}})"},
       {"explicit without noise",
-       R"({"integrator": {"method": "explicit"}, "fluid": {"thermal_energy": null}})"},
+       R"({"integrator": {"method": "explicit", "timestep": 0.0004}, "fluid": {"thermal_energy": null}})"},
       {"friction", R"({"contact": {"friction": 0.5, "rolling_stiffness": 70, "rolling_friction": 0.2}})"},
       {"no contact", R"({"contact": null})"},
       {"no lubrication", R"({"lubrication": null, "integrator": {"method": "explicit"}})"},
@@ -89,50 +89,9 @@ std::vector<NamedPatch> surroundings() {
   return all;
 }
 
-class AdmittedScene : public testing::Test {
- protected:
-  // Why the scene is refused; empty where it is admitted, and then it runs to its end.
-  std::string refusal(Json document, const std::string& name) {
-    const auto& list = document["observables"];
-    const auto lists = [&](const char* observable) {
-      return std::find(list.begin(), list.end(), observable) != list.end();
-    };
-    for (const char* settings : {"pair_distribution", "transient"}) {
-      if (!lists(settings)) document.erase(settings);
-    }
-    // Its window has 512 steps at least.
-    if (lists("linear_response")) document["duration"]["production"]["time"] = 1.1;
-    try {
-      const Scene scene = read_scene(document, "scene.json");
-      check_fit(scene, make_schedule(scene, "scene.json"), "scene.json");
-      if (scene.start) placed_spheres(scene, seed, "scene.json");
-    } catch (const InputError& error) {
-      EXPECT_TRUE(error.pointer().starts_with('/') || error.file() != "scene.json") << name << error.what();
-      EXPECT_NE(error.allowed(), "") << name;
-      reasons_.insert(error.what());
-      return error.what();
-    }
-    JobSpecification job;
-    job.header = {"point", seed};
-    job.scene = document;
-    job.scene_name = "scene.json";
-    job.files = (folder_ / "job.").string();
-    try {
-      const Json result = run_job(job, {}).value();
-      EXPECT_EQ(result["ending"]["cause"], "completed") << name << ": " << result["ending"];
-    } catch (const std::exception& error) {
-      ADD_FAILURE() << name << " was admitted: " << error.what();
-    }
-    return "";
-  }
-
-  TemporaryFolder folder_;
-  std::set<std::string> reasons_;
-};
-
-// What a flow measures does not depend on what is around it, but for what the reason of a refusal says.
-TEST_F(AdmittedScene, OfAnyFlowWithAnyObservableRunsToItsEnd) {
-  const std::set<std::string> refused = {
+// What cannot be measured in a flow, whatever is around it.
+const std::set<std::string>& refused() {
+  static const std::set<std::string> names = {
       // At rest alone, with noise.
       "waves + stress_correlation", "waves_alone + stress_correlation", "shear + stress_correlation",
       "across + stress_correlation", "oscillation + stress_correlation", "reversal + stress_correlation",
@@ -150,6 +109,64 @@ TEST_F(AdmittedScene, OfAnyFlowWithAnyObservableRunsToItsEnd) {
       "across + mean_squared_displacement", "extension + mean_squared_displacement",
       "stress + mean_squared_displacement", "extension + pair_distribution", "extension + profiles",
       "stress + profiles"};
+  return names;
+}
+
+// Whether a surrounding forbids what goes in the usual one.
+bool is_forbidden(const std::string& around, const std::string& flow, const std::string& observable) {
+  const bool mari = around.starts_with("mari"), quiet = around.ends_with("without noise") && flow != "peclet";
+  const bool is_linear = observable == "linear_response";
+  if (quiet && flow == "rest" && (is_linear || observable == "stress_correlation")) return true;
+  if (around == "friction" && flow == "rest" && is_linear) return true;
+  if (around == "no contact" && observable == "contact_network") return true;
+  // Strain rates of pairs have a stress that is not that of the forces alone.
+  if (mari && (observable == "oscillation" || observable == "transient")) return true;
+  if (mari && !quiet && flow == "stress") return true;
+  if (mari && flow == "rest" && is_linear) return true;
+  return around == "height" && flow == "extension";  // whose cell has to turn
+}
+
+class AdmittedScene : public testing::Test {
+ protected:
+  // Why the scene is refused; empty where it is admitted, and then it runs to its end.
+  std::string refusal(Json document, const std::string& name) {
+    const auto& list = document["observables"];
+    const auto lists = [&](const char* observable) {
+      return std::find(list.begin(), list.end(), observable) != list.end();
+    };
+    for (const char* settings : {"pair_distribution", "transient"}) {
+      if (!lists(settings)) document.erase(settings);
+    }
+    // Its window has 512 steps at least.
+    if (lists("linear_response")) document["duration"]["production"]["time"] = 12;
+    try {
+      const Scene scene = read_scene(document, "scene.json");
+      check_fit(scene, make_schedule(scene, "scene.json"), "scene.json");
+      if (scene.start) placed_spheres(scene, seed, "scene.json");
+    } catch (const InputError& error) {
+      EXPECT_TRUE(error.pointer().starts_with('/') || error.file() != "scene.json") << name << error.what();
+      EXPECT_NE(error.allowed(), "") << name;
+      return error.what();
+    }
+    JobSpecification job;
+    job.header = {"point", seed};
+    job.scene = document;
+    job.scene_name = "scene.json";
+    job.files = (folder_ / "job.").string();
+    try {
+      const Json result = run_job(job, {}).value();
+      EXPECT_EQ(result["ending"]["cause"], "completed") << name << ": " << result["ending"];
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << name << " was admitted: " << error.what();
+    }
+    return "";
+  }
+
+  TemporaryFolder folder_;
+};
+
+// What a flow measures does not depend on what is around it, but for what the reason of a refusal says.
+TEST_F(AdmittedScene, OfAnyFlowWithAnyObservableRunsToItsEnd) {
   for (const auto& [flow, of_flow] : flows()) {
     for (const ObservableEntry& entry : observable_entries()) {
       Json document = tiny_scene();
@@ -157,7 +174,7 @@ TEST_F(AdmittedScene, OfAnyFlowWithAnyObservableRunsToItsEnd) {
       document["observables"] = {"stress", entry.name};
       const std::string name = fmt::format("{} + {}", flow, entry.name);
       const std::string reason = refusal(document, name);
-      EXPECT_EQ(!reason.empty(), refused.contains(name)) << name << ' ' << reason;
+      EXPECT_EQ(!reason.empty(), refused().contains(name)) << name << ' ' << reason;
     }
   }
 }
@@ -170,11 +187,13 @@ TEST_F(AdmittedScene, OfAnyFlowAndObservableInAnySurroundingsRunsToItsEnd) {
       document.merge_patch(of_flow);
       for (const ObservableEntry& entry : observable_entries()) {
         document["observables"] = {entry.name};
-        refusal(document, fmt::format("{} + {} + {}", around, flow, entry.name));
+        const std::string name = fmt::format("{} + {}", flow, entry.name);
+        const std::string reason = refusal(document, fmt::format("{} + {}", around, name));
+        EXPECT_EQ(!reason.empty(), refused().contains(name) || is_forbidden(around, flow, entry.name))
+            << around << " + " << name << ' ' << reason;
       }
     }
   }
-  EXPECT_GT(reasons_.size(), 15u);
 }
 
 // A start that another flow has left, and one of the same.
@@ -192,7 +211,11 @@ TEST_F(AdmittedScene, OfAnyFlowThatBeginsInAFileRunsToItsEnd) {
         document.merge_patch(of_flow);
         document["observables"] = {"contact_network"};
         document["start"] = {{"file", kept}, {"sha256", sha256_of_file(kept)}};
-        refusal(document, fmt::format("{} after {} of {}", flow, file, before));
+        const std::string name = fmt::format("{} after {} of {}", flow, file, before);
+        const std::string reason = refusal(document, name);
+        // An extension begins in a box of its own, and only a box sheared along x is taken from a file.
+        const bool fits = flow != "extension" && before != "extension" && before != "across";
+        EXPECT_EQ(reason.empty(), fits) << name << ' ' << reason;
       }
     }
   }

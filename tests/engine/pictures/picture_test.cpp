@@ -89,11 +89,11 @@ TEST(Picture, OfValuesThatAreAlikeButForRoundingHasAScaleWithTicks) {
 // The first of them would be a rod without width, the second one without length, both of no colour.
 TEST(Picture, OfContactsWithoutForceOrLengthHasNoRods) {
   Snapshot snapshot = small_frame();
-  snapshot.position[1] = snapshot.position[0];
   PictureOptions options;
   options.size = "64x64";
   options.chains = true;
   for (const double force : {0.0, 1.0}) {
+    if (force > 0) snapshot.position[1] = snapshot.position[0];
     snapshot.contacts = {{0, 1, force, 0}};
     Snapshot without = snapshot;
     without.contacts->clear();

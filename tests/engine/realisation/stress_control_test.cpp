@@ -173,9 +173,6 @@ TEST(StressControl, GivesTheStrainItsShareOfTheTemperature) {
   EXPECT_NEAR(temperature, 1, 3 * std::sqrt(2 * 40.0 / steps));
 }
 
-// kT / (eta a^3), eta = 0.1, kT = 0.02.
-constexpr double thermal_rate = 0.2;
-
 // M / V = 20 dt eta_inf, which has nothing to do with the stress.
 TEST(StressControl, HasTheSameInertiaAtEveryStress) {
   const auto inertia_at = [](double stress) {
@@ -189,12 +186,15 @@ TEST(StressControl, HasTheSameInertiaAtEveryStress) {
 }
 
 // Next to no stress the rate is that of temperature, sqrt(kT / M), whatever the packing: at phi = 0.3 the
-// viscosity between pairs that do not move is 1 + 2.5 phi = 1.75 at least, and some 3 by published curves.
+// viscosity between pairs that do not move is 1 + 2.5 phi = 1.75 at least. 400 steps have the squares of some
+// 20 independent rates: an error of 32 % a seed, and of 9 % over twelve.
 TEST(StressControl, LetsTheStrainOfEveryPackingMove) {
   Json document = at_stress(1e-9 * 0.02, for_colloids);
   const Scene scene = read_scene(document, "scene.json");
   const Schedule schedule = make_schedule(scene, "scene.json");
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+  constexpr int seeds = 12;
+  double temperature = 0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     Simulation simulation(scene, schedule, seed, 1, "scene.json");
     simulation.start();
     double squares = 0;
@@ -204,14 +204,12 @@ TEST(StressControl, LetsTheStrainOfEveryPackingMove) {
       squares += std::pow(simulation.system().box.velocity_gradient().column[1].x, 2) / steps;
     }
     const double volume = simulation.system().box.volume();
-    const double relative = simulation.stress_control()->inertia() / (20 * schedule.timestep * 0.1);
-    EXPECT_GT(relative, 1.75) << "seed " << seed;
-    EXPECT_LT(relative, 10) << "seed " << seed;
-    // 400 steps have the squares of some 20 independent rates.
-    const double expected = 0.02 / (volume * 20 * schedule.timestep * 0.1 * 3);
-    EXPECT_GT(squares, expected / 10) << "seed " << seed;
-    EXPECT_LT(squares, expected * 10) << "seed " << seed;
+    const double inertia = simulation.stress_control()->inertia();
+    EXPECT_GT(inertia / (20 * schedule.timestep * 0.1), 1.75) << "seed " << seed;
+    EXPECT_LT(inertia / (20 * schedule.timestep * 0.1), 10) << "seed " << seed;
+    temperature += squares * volume * inertia / (0.02 * seeds);
   }
+  EXPECT_NEAR(temperature, 1, 0.3);
 }
 
 class ResumedAtStress : public testing::TestWithParam<bool> {

@@ -128,7 +128,8 @@ TEST(SceneWarnings, InertiaIsReportedFromTheBoundOn) {
   EXPECT_EQ(warning_codes(scene_of(0, 0)), Codes{});
 }
 
-// Of radii 1 : 1.4 in equal volumes, 1000 : 364 in number, d = 0.160 and S = 1.05: 0.634 + 0.0105 + 0.0023.
+// By Desmond & Weeks (2014) 0.634 + 0.0658 d + 0.0857 S d^2, of radii 1 : 1.4 in equal volumes, 1000 : 364 in
+// number: d = 0.160 and S = 1.05, 0.634 + 0.0105 + 0.0023.
 TEST(WarningsBeforeRun, DenserThanARandomPackingIsSaid) {
   const auto text = [](double fraction) {
     const std::vector<Warning> found =

@@ -114,7 +114,8 @@ std::vector<LawPoint> scattered(const Truth& truth, std::vector<LawPoint> points
   remove(columns[2], columns[0]);
   remove(columns[2], columns[1]);
   for (const std::vector<double>& column : columns) remove(residuals, column);
-  const double s = points[0].standard_error / points[0].value * std::sqrt(15.0 / 13);  // alike at all points
+  const double s = points[0].standard_error / points[0].value *
+                   std::sqrt(15.0 / 13);  // the deviation of Student's t of 15 degrees
   const double scale = s * std::sqrt(chi_squared / product(residuals, residuals));
   for (std::size_t i = 0; i < points.size(); ++i) points[i].value *= std::exp(scale * residuals[i]);
   return points;

@@ -57,7 +57,8 @@ def main(peclet, engine):
         end = time.monotonic() + 30
         while echoes(other_end) and time.monotonic() < end:
             time.sleep(0.05)
-        shown(terminal, 2)
+        table = shown(terminal, 2)
+        assert "night" in table and "verdict" in table, repr(table)
         os.write(terminal, b"?~|")
         after = shown(terminal, 2)
         assert not set("?~|") & set(after), repr(after)
