@@ -1,6 +1,7 @@
 #include "runner/owner/pause.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -20,6 +21,12 @@ namespace fs = std::filesystem;
 constexpr std::chrono::seconds patience{3}, vain_patience{20};
 
 }  // namespace
+
+std::string Hindrance::kind() const {
+  struct stat about {};
+  if (folder.empty() || stat(folder.c_str(), &about) != 0) return end + folder.string();
+  return fmt::format("{} on {}", end, about.st_dev);
+}
 
 Hindrance lack_of_room_in(const fs::path& folder, std::uint64_t bytes, int error) {
   return {shortage_text(folder, bytes, error), "when there is room", folder, bytes};

@@ -17,8 +17,9 @@ struct Hindrance {
   std::filesystem::path folder{};  // that lacks room for `bytes`; empty: it is not room that is lacking
   std::uint64_t bytes = 0;
 
-  // Tells it from another one; its text has figures that change.
-  std::string kind() const { return end + folder.string(); }
+  // Tells it from another one: its text has figures that change, and a full file system is full in all
+  // folders.
+  std::string kind() const;
 };
 
 // Too little room for `bytes` in `folder`, for which `error` is ENOSPC or EDQUOT.

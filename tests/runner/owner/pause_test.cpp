@@ -51,6 +51,17 @@ TEST(Hindrance, IsAFullDiskALockOrAFaultOfTheMachine) {
   EXPECT_EQ(hindrance_in(std::runtime_error("full"), folder.path()), std::nullopt);
 }
 
+TEST(Hindrance, IsOneOnOneFileSystem) {
+  const TemporaryFolder folder;
+  const fs::path spool = folder.path() / "spool", checkpoints = folder.path() / "checkpoints";
+  fs::create_directories(spool);
+  fs::create_directories(checkpoints);
+  const std::string kind = lack_of_room_in(spool, 1, ENOSPC).kind();
+  EXPECT_EQ(lack_of_room_in(checkpoints, 2, ENOSPC).kind(), kind);
+  EXPECT_NE(lack_of_room_in("/proc", 1, ENOSPC).kind(), kind);
+  EXPECT_NE(hindrance_in(DatabaseError("", SQLITE_BUSY), folder.path())->kind(), kind);
+}
+
 class LockedDatabase : public Dispatching {
  protected:
   Connection other_{directory_.database().string(), Connection::Access::read_write, 0};
