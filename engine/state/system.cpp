@@ -1,5 +1,6 @@
 #include "engine/state/system.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/state/particle_order.h"
@@ -7,21 +8,26 @@
 namespace peclet::engine {
 namespace {
 
-// Throws ArchiveError unless the cell has a volume and all spheres are so near that whole cells between them
-// can be counted: lists of neighbours take both for granted.
-void require_places(const VectorField& position, const PeriodicCell& box) {
-  constexpr double most_cells = 1e6;
+// Throws ArchiveError unless the cell has a volume, few images of it are within `range` and all spheres are
+// so near that whole cells between them can be counted: lists of neighbours take all three for granted. No
+// sphere of a run meets its own image, so its cell is about as wide as the range at least.
+void require_places(const VectorField& position, const PeriodicCell& box, double range) {
+  constexpr double most_cells = 1e6, most_images = 8;
   const CellFrame cell = box.frame();
   const auto is_length = [](double x) { return x >= 1e-100 && x <= 1e100; };
+  const Vector3 widths = cell.widths();
   const auto is_near = [](double x) { return std::abs(x) <= most_cells; };
   bool is_good = is_length(cell.lengths.x) && is_length(cell.lengths.y) && is_length(cell.lengths.z) &&
                  is_near(cell.tilt_xy / cell.lengths.x) && is_near(cell.xz / cell.lengths.x) &&
-                 is_near(cell.yz / cell.lengths.y);
+                 is_near(cell.yz / cell.lengths.y) &&
+                 range < most_images * std::min({widths.x, widths.y, widths.z});
   for (std::size_t i = 0; is_good && i < position.size(); ++i) {
     const Vector3 cells = cell.fractional(position[i]);
     is_good = is_near(cells.x) && is_near(cells.y) && is_near(cells.z);
   }
-  if (!is_good) throw ArchiveError("has a cell without volume, or a sphere that is not near it");
+  if (!is_good)
+    throw ArchiveError(
+        "has a cell without volume or too thin for its spheres, or a sphere that is not near it");
 }
 
 }  // namespace
@@ -87,14 +93,14 @@ void load(System& system, ArchiveReader& archive) {
   {
     PeriodicCell box = system.box;
     box.deform(displacement_gradient);
-    require_places(particles.position, box);
+    require_places(particles.position, box, system.list.ranges().largest());
   }
   const auto moment = [&] {
     VectorField position = archive.get_field(count);
     const auto gradient = archive.get<Matrix3>();
     PeriodicCell box = system.box;
     box.deform(gradient);
-    if (position.size() > 0) require_places(position, box);
+    if (position.size() > 0) require_places(position, box, system.list.ranges().largest());
     return ListMoment{std::move(position), gradient};
   };
   ListMoment candidates = moment(), listed = moment();

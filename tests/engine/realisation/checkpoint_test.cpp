@@ -145,6 +145,14 @@ TEST_F(Checkpoint, PayloadsWithoutPlacesAreRefused) {
                   bytes_of(Matrix3{Vector3{-1, 0, 0}, Vector3{bad, 0, 0}, Vector3{}}));
     expect_refused(with_payload(bytes), "has a cell without volume");
   }
+  // Flat, and tilted by a hundred edges: in both a hundred images are as near as one in a cube.
+  for (const Matrix3& thin : {Matrix3{Vector3{}, Vector3{0, -0.99, 0}, Vector3{}},
+                              Matrix3{Vector3{}, Vector3{100, 0, 0}, Vector3{}}}) {
+    std::string bytes = payload();
+    const std::string cell = bytes_of(gradient);
+    bytes.replace(bytes.find(cell), cell.size(), bytes_of(thin));
+    expect_refused(with_payload(bytes), "too thin for its spheres");
+  }
 }
 
 TEST_F(Checkpoint, OfAnotherRealisationIsRefusedWithWhatDiffers) {
