@@ -3,7 +3,6 @@
 #pragma once
 
 #include <limits>
-#include <memory>
 
 #include "engine/flow/deformation.h"
 
@@ -11,10 +10,23 @@ namespace peclet::engine {
 
 class ControlledShear final : public Deformation {
  public:
-  // `rate`: at the start, and an estimate of the largest one, which sets times.
-  ControlledShear(double stress, double rate) : stress_(stress), usual_rate_(rate), rate_(rate) {}
+  // `rate`: at the start, and an estimate of the largest one, which sets times. `jammed_viscosity`: relative
+  // viscosity beyond which the suspension counts as jammed.
+  ControlledShear(double stress, double rate, double viscosity, double jammed_viscosity)
+      : stress_(stress),
+        stress_time_(viscosity / stress),
+        patience_(least_strain * jammed_viscosity * viscosity / stress),
+        usual_rate_(rate),
+        rate_(rate) {}
 
-  std::optional<double> stress() const override { return stress_; }
+  const ControlledShear* at_stress() const override { return this; }
+  double stress() const { return stress_; }
+  // The unit of time, viscosity / stress.
+  double stress_time() const { return stress_time_; }
+  // A suspension that does not strain by `least_strain` within its patience has jammed,
+  //   patience = least_strain jammed_viscosity viscosity / stress  [time].
+  static constexpr double least_strain = 0.01;
+  double patience() const { return patience_; }
   double present_rate() const { return rate_; }
 
   // From this time and strain on.
@@ -34,10 +46,9 @@ class ControlledShear final : public Deformation {
   double time_of(double /*strain*/, double /*from*/) const override {
     return std::numeric_limits<double>::infinity();
   }
-  std::shared_ptr<Deformation> own_copy() const override { return std::make_shared<ControlledShear>(*this); }
 
  private:
-  double stress_, usual_rate_;
+  double stress_, stress_time_, patience_, usual_rate_;
   double time_ = 0, strain_ = 0, rate_;
 };
 

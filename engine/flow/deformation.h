@@ -17,6 +17,8 @@ struct Swing {
   double SymmetricTensor::*component = &SymmetricTensor::xy;
 };
 
+class ControlledShear;
+
 class Deformation {
  public:
   virtual ~Deformation() = default;
@@ -36,8 +38,8 @@ class Deformation {
   virtual bool jumps_between(double /*from*/, double /*to*/) const { return false; }
   // What of L is constant from this time on, but for what comes and goes; 0 where nothing is.
   virtual Matrix3 steady_gradient(double from) const = 0;
-  // The shear stress that sets its rate, if it is one.
-  virtual std::optional<double> stress() const { return std::nullopt; }
+  // The flow as one at a given stress; null if its rate is given.
+  virtual const ControlledShear* at_stress() const { return nullptr; }
   // What comes and goes.
   virtual std::optional<Swing> swing() const { return std::nullopt; }
   // The time after `from` at which the strain since then, summed over both directions, has come to this;
@@ -51,8 +53,6 @@ class Deformation {
   virtual Matrix3 edges_at_start(const Vector3& box) const {
     return {Vector3{box.x, 0, 0}, Vector3{0, box.y, 0}, Vector3{0, 0, box.z}};
   }
-  // For a realisation of its own; null where nothing of it changes.
-  virtual std::shared_ptr<Deformation> own_copy() const { return nullptr; }
 };
 
 // Simple shear (rate y, 0, 0), constant in time.

@@ -87,7 +87,7 @@ Json warnings_json(const std::vector<Warning>& warnings) {
 }
 
 Json common_part(const ResultHeader& header, const Scene& scene, const Schedule& schedule,
-                 std::uint64_t steps, const Simulation::Strains& strains, const Spent& spent) {
+                 std::uint64_t steps, const Strains& strains, const Spent& spent) {
   const double dt = schedule.timestep;
   const ImposedFlow& flow = scene.physics.flow;
   const std::uint64_t before = std::min(steps, schedule.equilibration), after = steps - before;
@@ -296,7 +296,7 @@ Json target_hints(const Scene& scene) {
     if (hints.contains(meant))
       hints[name] = fmt::format("is called {}, which {}", meant, hints[meant].get<std::string>());
   }
-  if (scene.physics.flow.deformation().stress()) {
+  if (scene.physics.flow.deformation().at_stress() != nullptr) {
     for (const char* const name : {"relative_viscosity", "eta_r", "eta", "viscosity"})
       hints[name] = "follows from the mean rate at a given stress: aim at shear_rate";
   }

@@ -115,8 +115,10 @@ ImposedFlow at_stress(const SceneDocument& scene, double volume_fraction, const 
                  "alone");
   }
   const double stress = scene.number("/flow/stress");
-  return ImposedFlow(
-      std::make_shared<ControlledShear>(stress, estimated_rate(stress, physics.viscosity, volume_fraction)));
+  constexpr double usual_jammed_viscosity = 1e4;
+  return ImposedFlow(std::make_shared<ControlledShear>(
+      stress, estimated_rate(stress, physics.viscosity, volume_fraction), physics.viscosity,
+      scene.number_or("/flow/jammed_viscosity", usual_jammed_viscosity)));
 }
 
 Keys segment_keys() {

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "engine/flow/controlled_shear.h"
 #include "engine/stability/stability.h"
 
 namespace peclet::engine {
@@ -124,7 +125,7 @@ DerivedGroups derived_groups(const Scene& scene) {
   if (physics.thermal_energy > 0) {
     groups.brownian_time = brownian_time(physics, a);
     // At a given stress the rate is what comes out.
-    if (!physics.flow.deformation().stress()) {
+    if (physics.flow.deformation().at_stress() == nullptr) {
       groups.peclet = peclet_number(physics, a);
       groups.flow_over_rest = flow_over_rest(scene, *groups.peclet);
     }
@@ -238,30 +239,22 @@ void warn_of_composition(const Scene& scene, const DerivedGroups& groups, std::v
 }
 
 void warn_of_patience(const Scene& scene, std::vector<Warning>& warnings) {
-  if (!patience(scene) || notices_jams(scene)) return;
-  const double stress_time = scene.physics.viscosity / *scene.physics.flow.deformation().stress();
+  const ControlledShear* const flow = scene.physics.flow.deformation().at_stress();
+  if (flow == nullptr || notices_jams(scene)) return;
   warnings.push_back(
       {"patience",
        fmt::format("the window of {:.4g} stress times is not longer than the {:.4g} after which a flow that "
                    "stands still counts as jammed: flowing and viscosity_of_those_flowing have no value; a "
                    "longer /duration/production or a smaller /flow/jammed_viscosity cures it",
-                   time_of(scene.production, scene) / stress_time, *patience(scene) / stress_time)});
+                   time_of(scene.production, scene) / flow->stress_time(),
+                   flow->patience() / flow->stress_time())});
 }
 
 }  // namespace
 
-std::optional<double> patience(const Scene& scene) {
-  constexpr double usual_jammed_viscosity = 1e4;
-  const std::optional<double> stress = scene.physics.flow.deformation().stress();
-  if (!stress) return std::nullopt;
-  const double viscosity =
-      scene.document.value(Json::json_pointer("/flow/jammed_viscosity"), usual_jammed_viscosity);
-  return least_strain * viscosity * scene.physics.viscosity / *stress;
-}
-
 bool notices_jams(const Scene& scene) {
-  const std::optional<double> waited = patience(scene);
-  return waited && time_of(scene.production, scene) > *waited * (1 + 1e-9);
+  const ControlledShear* const flow = scene.physics.flow.deformation().at_stress();
+  return flow != nullptr && time_of(scene.production, scene) > flow->patience() * (1 + 1e-9);
 }
 
 std::vector<Warning> scene_warnings(const Scene& scene) {

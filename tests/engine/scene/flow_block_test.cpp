@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "engine/flow/controlled_shear.h"
 #include "engine/realisation/schedule.h"
 #include "engine/stability/derived_groups.h"
 #include "tests/engine/small_scene.h"
@@ -109,7 +110,7 @@ TEST(FlowBlock, CountsTimesOfAStress) {
   EXPECT_DOUBLE_EQ(time_of(scene.equilibration, scene), 1);
   EXPECT_DOUBLE_EQ(time_of(scene.production, scene), 2);
   EXPECT_EQ(scene.physics.flow.steady_rate(), 0);
-  EXPECT_EQ(*scene.physics.flow.deformation().stress(), 3);
+  EXPECT_EQ(scene.physics.flow.deformation().at_stress()->stress(), 3);
   EXPECT_FALSE(derived_groups(scene).peclet.has_value());
   // (1 - 0.45 / 0.65)^1.6 of stress / viscosity.
   EXPECT_NEAR(scene.physics.flow.rate(), 30 * std::pow(0.2 / 0.65, 1.6), 1e-12);
