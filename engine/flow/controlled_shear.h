@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "engine/flow/deformation.h"
+#include "engine/flow/flow_kind.h"
 
 namespace peclet::engine {
 
@@ -51,5 +51,7 @@ class ControlledShear final : public Deformation {
   double stress_, stress_time_, patience_, usual_rate_;
   double time_ = 0, strain_ = 0, rate_;
 };
+
+FlowKind stress_flow();
 
 }  // namespace peclet::engine

@@ -55,26 +55,10 @@ class Deformation {
   }
 };
 
-// Simple shear (rate y, 0, 0), constant in time.
-class SteadyShear final : public Deformation {
- public:
-  explicit SteadyShear(double rate) : rate_(rate) {}
-
-  Matrix3 velocity_gradient(double time) const override;
-  Matrix3 displacement_gradient(double time) const override;
-  Matrix3 displacement_gradient(const Clock& clock) const override;
-  double largest_rate() const override { return rate_ < 0 ? -rate_ : rate_; }
-  Matrix3 steady_gradient(double /*from*/) const override { return simple_shear(rate_); }
-  double time_of(double strain, double from) const override;
-
- private:
-  double rate_;
-};
-
 // What a scene says of its flow; copies share it. A fluid at rest unless something else is said.
 class ImposedFlow {
  public:
-  ImposedFlow() : ImposedFlow(std::make_shared<SteadyShear>(0)) {}
+  ImposedFlow();
   explicit ImposedFlow(std::shared_ptr<const Deformation> deformation,
                        std::shared_ptr<const FlowVariation> variation = nullptr)
       : deformation_(std::move(deformation)), variation_(std::move(variation)) {
@@ -96,6 +80,9 @@ class ImposedFlow {
   // is sigma_xy in simple shear; that also where no flow is steady.
   double shear_part(const SymmetricTensor& stress) const;
   std::optional<double> period() const;
+  // Whether all work is that of one gradient, which is constant in the window: the work of waves cancels over
+  // the cell, that of cycles over time.
+  bool is_steady() const { return steady_rate_ > 0 && !varies() && !deformation_->swing(); }
   bool varies() const { return variation_ != nullptr; }
   // At least that of the strongest gradient anywhere in this cell.
   double largest_rate(const PeriodicCell& cell) const {
@@ -111,7 +98,5 @@ class ImposedFlow {
   double steady_rate_ = 0;
   SymmetricTensor direction_;
 };
-
-inline ImposedFlow steady_shear(double rate) { return ImposedFlow(std::make_shared<SteadyShear>(rate)); }
 
 }  // namespace peclet::engine

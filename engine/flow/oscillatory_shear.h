@@ -1,7 +1,7 @@
 // Shear to and fro, alone or across a steady one.
 #pragma once
 
-#include "engine/flow/deformation.h"
+#include "engine/flow/flow_kind.h"
 
 namespace peclet::engine {
 
@@ -42,5 +42,8 @@ class CrossShear final : public Deformation {
  private:
   double rate_, amplitude_, frequency_;
 };
+
+FlowKind oscillation_flow();
+FlowKind cross_shear_flow();
 
 }  // namespace peclet::engine

@@ -6,7 +6,7 @@
 // Strain is Hencky strain, rate times time; the invariant sqrt(2 E:E) of the rate of strain is 2 rate.
 #pragma once
 
-#include "engine/flow/deformation.h"
+#include "engine/flow/flow_kind.h"
 
 namespace peclet::engine {
 
@@ -28,5 +28,7 @@ class PlanarExtension final : public Deformation {
  private:
   double rate_;
 };
+
+FlowKind planar_extension_flow();
 
 }  // namespace peclet::engine

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/flow/deformation.h"
+#include "engine/flow/flow_kind.h"
 
 namespace peclet::engine {
 
@@ -42,5 +42,7 @@ class Segments final : public Deformation {
 
   std::vector<Part> parts_;  // the last one has no end
 };
+
+FlowKind segments_flow();
 
 }  // namespace peclet::engine

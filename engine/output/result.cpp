@@ -30,9 +30,8 @@ std::optional<double> energy_imbalance(const Scene& scene, const Simulation& sim
     work_per_step += simulation.schedule().timestep * flow.steady_rate() * flow.shear_part(stress) /
                      static_cast<double>(window.steps);
   }
-  // Where the flow varies it works on spheres one by one too, and what comes and goes works besides.
-  if (flow.varies() || flow.period() || scene.physics.thermal_energy > 0 || errors.samples == 0 ||
-      !(work_per_step > 0)) {
+  // Waves and oscillations do work that this balance leaves out.
+  if (!flow.is_steady() || scene.physics.thermal_energy > 0 || errors.samples == 0 || !(work_per_step > 0)) {
     return std::nullopt;
   }
   return errors.spurious_energy / static_cast<double>(errors.samples) / work_per_step;

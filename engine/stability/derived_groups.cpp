@@ -30,16 +30,14 @@ double mean_sphere_volume(const Particles& particles) {
   return by_volume ? 1 / sum : sum;
 }
 
-// Whose rate is known.
 bool is_steady_shear(const ImposedFlow& flow) {
-  return flow.steady_rate() > 0 && !flow.period() && flow.steady_gradient() == simple_shear(flow.rate());
+  return flow.is_steady() && flow.steady_gradient() == simple_shear(flow.rate());
 }
 
 std::optional<double> flow_over_rest(const Scene& scene, double peclet) {
   const Physics& physics = scene.physics;
   const double fraction = scene.volume_fraction, jammed = 0.587;
-  const bool refused =
-      physics.flow.varies() || !is_steady_shear(physics.flow) || !has_known_equilibrium(physics);
+  const bool refused = !is_steady_shear(physics.flow) || !has_known_equilibrium(physics);
   if (refused || !(peclet > 0) || peclet >= nearly_at_rest || fraction >= jammed) return std::nullopt;
   const double viscosity = std::pow(1 - fraction / jammed, -1.5), of_pairs = viscosity - 1 - 2.5 * fraction;
   if (!(of_pairs > 0)) return std::nullopt;

@@ -8,6 +8,7 @@
 #include "engine/flow/oscillatory_shear.h"
 #include "engine/flow/planar_extension.h"
 #include "engine/flow/segments.h"
+#include "engine/flow/steady_shear.h"
 
 namespace peclet::engine {
 namespace {
