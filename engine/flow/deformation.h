@@ -38,6 +38,8 @@ class Deformation {
   virtual bool jumps_between(double /*from*/, double /*to*/) const { return false; }
   // What of L is constant from this time on, but for what comes and goes; 0 where nothing is.
   virtual Matrix3 steady_gradient(double from) const = 0;
+  // The shortest distance between images of a point at any time, over the edge of the cube that the box is.
+  virtual double nearest_image() const { return 1; }
   // The flow as one at a given stress; null if its rate is given.
   virtual const ControlledShear* at_stress() const { return nullptr; }
   // What comes and goes.

@@ -24,6 +24,8 @@ class PlanarExtension final : public Deformation {
   Matrix3 steady_gradient(double /*from*/) const override { return velocity_gradient(0); }
   double time_of(double strain, double /*from*/) const override { return strain / rate_; }
   Matrix3 edges_at_start(const Vector3& box) const override;
+  // sqrt(2) / 5^(1/4), rounded down.
+  double nearest_image() const override { return 0.9457; }
 
  private:
   double rate_;
