@@ -2,9 +2,9 @@
 """same_bytes.py BEFORE AFTER [--jobs N]      whether two builds of peclet-engine compute the same, to the last bit
 
 Runs short scenes of every combination of terms, with explicit and with implicit steps, and some others (a fluid at
-rest, waves, other flows, other laws of pairs, four sizes, two threads, a larger system, every observable) with every instruction
-set that this processor has. Prints every field of the results that differs: in how many runs, by how much of its own
-size at most, and in which run first. What tells of the build and the machine is left out.
+rest, waves, other flows, other laws of pairs, four sizes, two threads, a larger system, every observable) with every
+instruction set that this processor has. Prints every field of the results that differs: in how many runs, by how much
+of its own size at most, and in which run first. What tells of the build and the machine is left out.
 
 The exit code is 1 where trajectories differ, which is what `final_state_sha256` and `ending` say, or where a scene does
 not do what it is here for. Other fields are means and figures over the same trajectory; that they differ by rounding
