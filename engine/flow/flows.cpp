@@ -10,13 +10,15 @@
 #include "engine/flow/planar_extension.h"
 #include "engine/flow/segments.h"
 #include "engine/flow/steady_shear.h"
+#include "engine/flow/uniaxial_extension.h"
 #include "engine/flow/waves.h"
 
 namespace peclet::engine {
 
 const std::vector<FlowKind>& flow_kinds() {
-  static const std::vector<FlowKind> all = {steady_shear_flow(),     oscillation_flow(), cross_shear_flow(),
-                                            planar_extension_flow(), segments_flow(),    stress_flow()};
+  static const std::vector<FlowKind> all = {
+      steady_shear_flow(),       oscillation_flow(), cross_shear_flow(), planar_extension_flow(),
+      uniaxial_extension_flow(), segments_flow(),    stress_flow()};
   return all;
 }
 

@@ -103,6 +103,17 @@ TEST(FlowBlock, CountsExtensionInHenckyStrains) {
   EXPECT_DOUBLE_EQ(time_of(scene.production, scene), 4);
 }
 
+// sqrt(2 E:E) of diag(1, -1/2, -1/2) is sqrt(3).
+TEST(FlowBlock, ReadsUniaxialAndBiaxialExtension) {
+  for (const double rate : {0.5, -0.5}) {
+    const Scene scene =
+        read_scene(flowing({{"uniaxial_rate", rate}}, {{"strain", 1}}, {{"strain", 2}}), "scene.json");
+    EXPECT_DOUBLE_EQ(scene.physics.flow.steady_rate(), 0.5 * std::sqrt(3.0));
+    EXPECT_DOUBLE_EQ(time_of(scene.production, scene), 4);
+    EXPECT_EQ(scene.physics.flow.rate(), 0.5);
+  }
+}
+
 // Stress 3 and viscosity 0.1: its unit of time is 1/30.
 TEST(FlowBlock, CountsTimesOfAStress) {
   const Scene scene =

@@ -33,6 +33,18 @@ const FlowFault flow_faults[] = {
      "must have a Hencky strain of at most 10 in all with /flow/extension_rate; it has 16.8"},
     {R"({"extension_rate": 1})", R"({"observables": ["profiles"]})", "/observables", R"(["profiles"])",
      "must not list profiles with /flow/extension_rate"},
+    {R"({"uniaxial_rate": 0})", "{}", "/flow/uniaxial_rate", "0", "must be a number other than 0"},
+    {R"({"uniaxial_rate": "fast"})", "{}", "/flow/uniaxial_rate", "\"fast\"", "must be a number"},
+    {R"({"extension_rate": 1, "uniaxial_rate": 1})", "{}", "/flow/uniaxial_rate", "1",
+     "must be left out together with /flow/extension_rate"},
+    {R"({"uniaxial_rate": -20})", "{}", "/duration", R"({"equilibration":{"time":0.2)",
+     "must have a Hencky strain of at most 10 in all with /flow/uniaxial_rate; it has 16.8"},
+    {R"({"uniaxial_rate": 1})", R"({"box": {"height": 9}})", "/box", R"({"height":9})",
+     "must be left out with /flow/uniaxial_rate, whose cell is a turned cube"},
+    {R"({"uniaxial_rate": 1})", R"({"observables": ["pair_distribution"]})", "/observables",
+     R"(["pair_distribution"])", "must not list pair_distribution with /flow/uniaxial_rate"},
+    {R"({"uniaxial_rate": 1})", R"({"duration": {"production": {"cycles": 2}}})",
+     "/duration/production/cycles", "2", "must be left out without /flow/oscillation or /flow/cross_shear"},
     {R"({"segments": []})", "{}", "/flow/segments", "[]", "array of 1 to 64"},
     {R"({"segments": [{"strain": 1}, {"shear_rate": 1}]})", "{}", "/flow/segments/0/shear_rate", "missing",
      "must be a number"},
@@ -97,7 +109,7 @@ TEST(FlowFaults, AreNamedWithWhatIsAllowed) {
 TEST(FlowFaults, NameTheFlowBesideWhichAnotherIsGiven) {
   const Json flows = Json::parse(R"({
       "shear_rate": 1, "oscillation": {"amplitude": 1, "frequency": 1},
-      "cross_shear": {"amplitude": 1, "frequency": 1}, "extension_rate": 1,
+      "cross_shear": {"amplitude": 1, "frequency": 1}, "extension_rate": 1, "uniaxial_rate": 1,
       "segments": [{"shear_rate": 1}], "stress": 1, "waves": [{"periods": 1, "sine": 1}]})");
   for (const FlowKind& kind : flow_kinds()) EXPECT_TRUE(flows.contains(kind.key.substr(6))) << kind.key;
   for (const auto& [first, of_first] : flows.items()) {
