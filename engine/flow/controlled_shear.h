@@ -1,5 +1,5 @@
-// Simple shear at a given stress: its rate, constant in each step, is set from step to step by what controls
-// it (realisation/stress_control.h).
+// Simple shear at a given stress. Its rate is constant in each step; realisation/stress_control.h sets it
+// from step to step.
 #pragma once
 
 #include <limits>
@@ -29,7 +29,7 @@ class ControlledShear final : public Deformation {
   double patience() const { return patience_; }
   double present_rate() const { return rate_; }
 
-  // From this time and strain on.
+  // Goes on from this time and strain at this rate.
   void go_on(double time, double strain, double rate) {
     time_ = time;
     strain_ = strain;
@@ -42,7 +42,7 @@ class ControlledShear final : public Deformation {
   }
   double largest_rate() const override { return usual_rate_; }
   Matrix3 steady_gradient(double /*from*/) const override { return {}; }
-  // No strain is known beforehand.
+  // The strain of a time to come is unknown.
   double time_of(double /*strain*/, double /*from*/) const override {
     return std::numeric_limits<double>::infinity();
   }
