@@ -1,7 +1,8 @@
 // The deformation of the periodic cell in time, and with it the uniform part of the flow: dH/dt = L(t) H.
 //
-// The system keeps the displacement gradient D of its cell and the present L; a deformation has no state.
-// Override what has a default here where a flow differs from one at a constant rate.
+// The system keeps the displacement gradient D of its cell and the present L; a deformation has no state,
+// except for the rate of one at a given stress. Override what has a default here where a flow differs from
+// one at a constant rate.
 #pragma once
 
 #include <memory>
