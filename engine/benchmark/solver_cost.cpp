@@ -159,8 +159,7 @@ SolverCost solver_cost(const Scene& scene, const System& given, double timestep)
     field.evaluate(moved, loads.force, loads.torque);
   }
   StepOrigin origin;
-  origin.velocity = particles.velocity;
-  origin.spin = particles.angular_velocity;
+  origin.mark(system, 1);
   VelocitySolver solver(scene.physics, particles, timestep, scene.solver_tolerance, 1, set);
   solver.assemble(system, field);  // with the order of rows, which later ones have already
   std::vector<double> assembly, residuals, iteration;
@@ -175,8 +174,8 @@ SolverCost solver_cost(const Scene& scene, const System& given, double timestep)
       });
     };
     const double with_iterations = correct(taken_away * residual.squared);
-    system.particles.velocity = origin.velocity;
-    system.particles.angular_velocity = origin.spin;
+    system.particles.velocity = origin.velocity();
+    system.particles.angular_velocity = origin.spin();
     const int iterations = report.solver_iterations;
     solver.set_residual(system, origin, loads, nullptr);
     const double without = correct(std::numeric_limits<double>::infinity());

@@ -1,23 +1,35 @@
-// Simple shear at a given stress: its rate, constant in each step, is set from step to step by what controls
-// it (realisation/stress_control.h).
+// Simple shear at a given stress. Its rate is constant in each step; realisation/stress_control.h sets it
+// from step to step.
 #pragma once
 
 #include <limits>
-#include <memory>
 
-#include "engine/flow/deformation.h"
+#include "engine/flow/flow_kind.h"
 
 namespace peclet::engine {
 
 class ControlledShear final : public Deformation {
  public:
-  // `rate`: at the start, and an estimate of the largest one, which sets times.
-  ControlledShear(double stress, double rate) : stress_(stress), usual_rate_(rate), rate_(rate) {}
+  // `rate`: at the start, and an estimate of the largest one, which sets times. `jammed_viscosity`: relative
+  // viscosity beyond which the suspension counts as jammed.
+  ControlledShear(double stress, double rate, double viscosity, double jammed_viscosity)
+      : stress_(stress),
+        stress_time_(viscosity / stress),
+        patience_(least_strain * jammed_viscosity * viscosity / stress),
+        usual_rate_(rate),
+        rate_(rate) {}
 
-  std::optional<double> stress() const override { return stress_; }
+  const ControlledShear* at_stress() const override { return this; }
+  double stress() const { return stress_; }
+  // The unit of time, viscosity / stress.
+  double stress_time() const { return stress_time_; }
+  // A suspension that does not strain by `least_strain` within its patience has jammed,
+  //   patience = least_strain jammed_viscosity viscosity / stress  [time].
+  static constexpr double least_strain = 0.01;
+  double patience() const { return patience_; }
   double present_rate() const { return rate_; }
 
-  // From this time and strain on.
+  // Goes on from this time and strain at this rate.
   void go_on(double time, double strain, double rate) {
     time_ = time;
     strain_ = strain;
@@ -30,15 +42,16 @@ class ControlledShear final : public Deformation {
   }
   double largest_rate() const override { return usual_rate_; }
   Matrix3 steady_gradient(double /*from*/) const override { return {}; }
-  // No strain is known beforehand.
+  // The strain of a time to come is unknown.
   double time_of(double /*strain*/, double /*from*/) const override {
     return std::numeric_limits<double>::infinity();
   }
-  std::shared_ptr<Deformation> own_copy() const override { return std::make_shared<ControlledShear>(*this); }
 
  private:
-  double stress_, usual_rate_;
+  double stress_, stress_time_, patience_, usual_rate_;
   double time_ = 0, strain_ = 0, rate_;
 };
+
+FlowKind stress_flow();
 
 }  // namespace peclet::engine

@@ -1,8 +1,9 @@
 #include "engine/flow/deformation.h"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "engine/flow/steady_shear.h"
 
 namespace peclet::engine {
 namespace {
@@ -14,17 +15,7 @@ double contracted(const SymmetricTensor& a, const SymmetricTensor& b) {
 
 }  // namespace
 
-Matrix3 SteadyShear::velocity_gradient(double /*time*/) const { return simple_shear(rate_); }
-
-Matrix3 SteadyShear::displacement_gradient(double time) const { return simple_shear(rate_ * time); }
-
-Matrix3 SteadyShear::displacement_gradient(const Clock& clock) const {
-  return simple_shear(rate_ * clock.origin + rate_ * clock.timestep * static_cast<double>(clock.steps));
-}
-
-double SteadyShear::time_of(double strain, double /*from*/) const {
-  return rate_ == 0 ? std::numeric_limits<double>::infinity() : strain / largest_rate();
-}
+ImposedFlow::ImposedFlow() : ImposedFlow(std::make_shared<SteadyShear>(0)) {}
 
 void ImposedFlow::measure_from(double time) {
   steady_gradient_ = deformation_->steady_gradient(time);

@@ -41,4 +41,45 @@ Matrix3 CrossShear::displacement_gradient(double time) const {
 
 double CrossShear::largest_rate() const { return std::hypot(rate_, amplitude_ * frequency_); }
 
+FlowKind oscillation_flow() {
+  const std::string key = "/flow/oscillation";
+  return {
+      .key = key,
+      .keys = {block(key,
+                     "Shear to and fro in the place of shear_rate: strain = amplitude sin(frequency t)."),
+               positive(key + "/amplitude", "", "Largest strain.", required),
+               positive(key + "/frequency", "1 / time", "Angular frequency, in radians per time.", required)},
+      .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {
+        return std::make_shared<OscillatoryShear>(source.scene.number("/flow/oscillation/amplitude"),
+                                                  source.scene.number("/flow/oscillation/frequency"));
+      },
+      .unit = "cycles",
+      .without_strain = "whose strain comes and goes; cycles are even",
+      .has_whole_cycles = true,
+      .refused_observables = {"transient"}};
+}
+
+FlowKind cross_shear_flow() {
+  const std::string key = "/flow/cross_shear";
+  return {
+      .key = key,
+      .keys = {block(key,
+                     "Shear to and fro across the steady one, u_z = y d/dt [amplitude sin(frequency t)]."),
+               positive(key + "/amplitude", "", "Its largest strain.", required),
+               positive(key + "/frequency", "1 / time", "Angular frequency, in radians per time.", required)},
+      .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {
+        if (!(source.shear_rate > 0)) {
+          source.scene.refuse("/flow/cross_shear",
+                              "must be left out unless the shear rate is > 0; /flow/oscillation shears to "
+                              "and fro alone");
+        }
+        return std::make_shared<CrossShear>(source.shear_rate,
+                                            source.scene.number("/flow/cross_shear/amplitude"),
+                                            source.scene.number("/flow/cross_shear/frequency"));
+      },
+      .beside = {"/flow/shear_rate", "/peclet"},
+      .unit = "cycles",
+      .refused_observables = {"mean_squared_displacement", "transient"}};
+}
+
 }  // namespace peclet::engine

@@ -1,14 +1,14 @@
-// Shear to and fro, alone or across a steady one.
+// Oscillating shear, alone or across a steady one.
 #pragma once
 
-#include "engine/flow/deformation.h"
+#include "engine/flow/flow_kind.h"
 
 namespace peclet::engine {
 
-// Simple shear gamma = g sin(w t): at rate g w through the cube, which it finds at time 0.
+// Simple shear gamma = g sin(w t), which begins at time 0 in the undeformed cell at its largest rate, g w.
 class OscillatoryShear final : public Deformation {
  public:
-  // Both above 0; the frequency w in radians per time.
+  // Amplitude g > 0 and frequency w > 0 [radians/time].
   OscillatoryShear(double amplitude, double frequency) : amplitude_(amplitude), frequency_(frequency) {}
 
   Matrix3 velocity_gradient(double time) const override;
@@ -17,15 +17,15 @@ class OscillatoryShear final : public Deformation {
   double mean_rate() const override;
   Matrix3 steady_gradient(double /*from*/) const override { return {}; }
   std::optional<Swing> swing() const override { return Swing{amplitude_, frequency_, &SymmetricTensor::xy}; }
-  // Of whole cycles before it.
+  // `from` must be the end of a cycle.
   double time_of(double strain, double from) const override;
 
  private:
   double amplitude_, frequency_;
 };
 
-// Simple shear (rate y, 0, 0) and across it u_z = g w cos(w t) y: orthogonal superposition. Strains are those
-// of the steady part.
+// Simple shear (rate y, 0, 0) and across it u_z = g w cos(w t) y: orthogonal superposition. Only the steady
+// part counts as strain.
 class CrossShear final : public Deformation {
  public:
   CrossShear(double rate, double amplitude, double frequency)
@@ -42,5 +42,8 @@ class CrossShear final : public Deformation {
  private:
   double rate_, amplitude_, frequency_;
 };
+
+FlowKind oscillation_flow();
+FlowKind cross_shear_flow();
 
 }  // namespace peclet::engine

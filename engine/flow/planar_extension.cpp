@@ -17,4 +17,18 @@ Matrix3 PlanarExtension::edges_at_start(const Vector3& box) const {
   return {box.x * Vector3{c, s, 0}, box.y * Vector3{-s, c, 0}, Vector3{0, 0, box.z}};
 }
 
+FlowKind planar_extension_flow() {
+  return {
+      .key = "/flow/extension_rate",
+      .keys = {positive("/flow/extension_rate", "1 / time",
+                        "Planar extension in the place of shear: (rate x, -rate y, 0). Strains are Hencky "
+                        "strains, at most 10 in a realisation.")},
+      .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {
+        return std::make_shared<PlanarExtension>(source.scene.number("/flow/extension_rate"));
+      },
+      .largest_strain = PlanarExtension::largest_strain,
+      .own_cell = "a turned cube",
+      .refused_observables = {"mean_squared_displacement", "pair_distribution", "profiles"}};
+}
+
 }  // namespace peclet::engine

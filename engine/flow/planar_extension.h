@@ -6,7 +6,7 @@
 // Strain is Hencky strain, rate times time; the invariant sqrt(2 E:E) of the rate of strain is 2 rate.
 #pragma once
 
-#include "engine/flow/deformation.h"
+#include "engine/flow/flow_kind.h"
 
 namespace peclet::engine {
 
@@ -24,9 +24,13 @@ class PlanarExtension final : public Deformation {
   Matrix3 steady_gradient(double /*from*/) const override { return velocity_gradient(0); }
   double time_of(double strain, double /*from*/) const override { return strain / rate_; }
   Matrix3 edges_at_start(const Vector3& box) const override;
+  // sqrt(2) / 5^(1/4), rounded down.
+  double nearest_image() const override { return 0.9457; }
 
  private:
   double rate_;
 };
+
+FlowKind planar_extension_flow();
 
 }  // namespace peclet::engine

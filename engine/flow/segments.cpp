@@ -1,5 +1,7 @@
 #include "engine/flow/segments.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -88,7 +90,7 @@ bool Segments::jumps_between(double from, double to) const {
   return false;
 }
 
-// Whoever measures from the end of a segment may come by a rounding error too early.
+// Tolerates rounding at the end of a segment.
 Matrix3 Segments::steady_gradient(double from) const {
   const Part& last = parts_.back();
   return from >= last.begin * (1 - 1e-9) ? simple_shear(last.segment.first_rate) : Matrix3{};
@@ -110,5 +112,68 @@ double Segments::time_of(double strain, double from) const {
 double Segments::strain_between(double timestep, std::uint64_t from, std::uint64_t to) const {
   return way_at(timestep * static_cast<double>(to)) - way_at(timestep * static_cast<double>(from));
 }
+
+namespace {
+
+Segment read_segment(const SceneDocument& scene, const std::string& pointer) {
+  const Json& keys = scene.at(pointer);
+  Segment segment;
+  segment.first_rate = keys.at("shear_rate").get<double>();
+  segment.last_rate = keys.value("final_rate", segment.first_rate);
+  if (keys.contains("strain") == keys.contains("time")) {
+    scene.refuse(pointer, "must have either strain or time, how long it lasts; only the last one has none");
+  }
+  if (keys.contains("time")) {
+    segment.time = keys.at("time").get<double>();
+    return segment;
+  }
+  if (segment.first_rate == 0 && segment.last_rate == 0) {
+    scene.refuse(pointer + "/strain", "must be a time instead where the shear rate is 0");
+  }
+  segment.time = time_of_segment(segment.first_rate, segment.last_rate, keys.at("strain").get<double>());
+  return segment;
+}
+
+std::shared_ptr<const Deformation> read_segments(const FlowSource& source) {
+  const SceneDocument& scene = source.scene;
+  const std::size_t last = scene.at("/flow/segments").size() - 1;
+  std::vector<Segment> all;
+  for (std::size_t k = 0; k < last; ++k)
+    all.push_back(read_segment(scene, fmt::format("/flow/segments/{}", k)));
+  const std::string pointer = fmt::format("/flow/segments/{}", last);
+  for (const char* key : {"strain", "time", "final_rate"}) {
+    if (scene.at(pointer).contains(key)) {
+      scene.refuse(pointer + '/' + key, "must be left out of the last segment, which goes on");
+    }
+  }
+  return std::make_shared<Segments>(all, scene.at(pointer).at("shear_rate").get<double>());
+}
+
+Keys segment_keys() {
+  return {
+      {.pointer = "/flow/segments",
+       .kind = KeyKind::array,
+       .meaning = "Shear in the place of shear_rate whose rate changes: a list of segments in time. "
+                  "Reversals, stops and ramps are such lists.",
+       .minimum_items = 1,
+       .maximum_items = 64},
+      block("/flow/segments/*", "One segment; the last one goes on and says its rate alone."),
+      {.pointer = "/flow/segments/*/shear_rate",
+       .kind = KeyKind::number,
+       .meaning = "Shear rate, of either sign.",
+       .unit = "1 / time",
+       .required = true},
+      {.pointer = "/flow/segments/*/final_rate",
+       .kind = KeyKind::number,
+       .meaning = "Shear rate at its end, to which it changes linearly; that of its beginning unless given.",
+       .unit = "1 / time"},
+      positive("/flow/segments/*/strain", "", "Strain that it makes, summed over both directions."),
+      positive("/flow/segments/*/time", "time", "Time that it takes, in the place of strain."),
+  };
+}
+
+}  // namespace
+
+FlowKind segments_flow() { return {.key = "/flow/segments", .keys = segment_keys(), .read = read_segments}; }
 
 }  // namespace peclet::engine

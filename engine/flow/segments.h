@@ -1,25 +1,25 @@
-// Simple shear whose rate is a list of segments in time: constant in each, or changing linearly.
+// Simple shear whose rate is constant or changes linearly in each of a list of segments in time.
 #pragma once
 
 #include <vector>
 
-#include "engine/flow/deformation.h"
+#include "engine/flow/flow_kind.h"
 
 namespace peclet::engine {
 
 struct Segment {
   double first_rate = 0, last_rate = 0;  // either sign
-  double time = 0;                       // that it takes
+  double time = 0;                       // its duration
 
   double strain() const { return 0.5 * (first_rate + last_rate) * time; }
 };
 
-// The time in which a segment of these rates strains that far, summed over both directions.
+// Returns the duration of a segment of these rates and this strain, summed over both directions.
 double time_of_segment(double first_rate, double last_rate, double strain);
 
 class Segments final : public Deformation {
  public:
-  // After them at this rate for ever.
+  // `rate`: after the last segment.
   Segments(const std::vector<Segment>& segments, double rate);
 
   Matrix3 velocity_gradient(double time) const override;
@@ -31,7 +31,7 @@ class Segments final : public Deformation {
   double strain_between(double timestep, std::uint64_t from, std::uint64_t to) const override;
 
  private:
-  // A segment without change of sign, and where it begins.
+  // A segment whose rate keeps its sign, and the time and strain at its beginning.
   struct Part {
     Segment segment;
     double begin = 0, strain = 0, way = 0;  // `way`: the strain summed over both directions
@@ -42,5 +42,7 @@ class Segments final : public Deformation {
 
   std::vector<Part> parts_;  // the last one has no end
 };
+
+FlowKind segments_flow();
 
 }  // namespace peclet::engine

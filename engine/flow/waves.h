@@ -8,10 +8,13 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <utility>
 #include <vector>
 
+#include "engine/document/keys.h"
+#include "engine/document/scene_document.h"
 #include "engine/flow/background_flow.h"
 
 namespace peclet::engine {
@@ -65,5 +68,9 @@ class Waves final : public FlowVariation {
   std::vector<Wave> waves_;
   bool faxen_;
 };
+
+Keys wave_keys();
+// Returns the waves of the scene; null without any.
+std::shared_ptr<const FlowVariation> read_waves(const SceneDocument& scene);
 
 }  // namespace peclet::engine

@@ -107,7 +107,7 @@ StepReport Implicit::advance_part(System& system) {
   const Deformation& deformation = physics_.flow.deformation();
   const double half = 0.5 * timestep_;
   follow_flow(system, deformation.velocity_gradient(system.clock.time() + half), half, field_.threads());
-  remember(system);
+  origin_.mark(system, field_.threads());
   const bool list_is_new = displacement_bound_ == 0 &&
                            system.list.listed().displacement_gradient == system.box.displacement_gradient();
   std::optional<StepReport> found = find_velocities(system);
@@ -116,7 +116,7 @@ StepReport Implicit::advance_part(System& system) {
     return_to_origin(system);
     rebuild_neighbours(system, field_.threads());
     displacement_bound_ = 0;
-    remember(system);
+    origin_.mark(system, field_.threads());
     found = find_velocities(system);
   }
   StepReport report = found.value_or(StepReport{});
@@ -157,7 +157,7 @@ bool Implicit::is_to_be_divided(const StepReport& report) const {
 }
 
 void Implicit::show_step(const System& system) {
-  field_.show_pairs(system, origin_.springs, false, weight(), *watcher());
+  field_.show_pairs(system, origin_.springs(), false, weight(), *watcher());
 }
 
 // From the origin.
@@ -202,32 +202,14 @@ void Implicit::follow_list(System& system, double way) {
   }
 }
 
-void Implicit::remember(const System& system) {
-  const ParticleState& particles = system.particles;
-  const std::size_t count = particles.count();
-  for (VectorField* field : {&origin_.position, &origin_.velocity, &origin_.spin}) {
-    if (field->size() != count) *field = VectorField(count, field_.threads());
-  }
-  for_each_range(count, field_.threads(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      origin_.position.row(i) = particles.position.row(i);
-      origin_.velocity.row(i) = particles.velocity.row(i);
-      origin_.spin.row(i) = particles.angular_velocity.row(i);
-    }
-  });
-  origin_.springs = system.springs;
-}
-
 void Implicit::return_to_origin(System& system) {
-  system.particles.velocity = origin_.velocity;
-  system.particles.angular_velocity = origin_.spin;
-  restore_springs(system);
-  move(system, 0);
+  origin_.return_to(system, field_.threads());
+  system.box.deform(physics_.flow.deformation().displacement_gradient(system.clock.time()));
 }
 
 void Implicit::restore_springs(System& system) const {
   if (system.springs.kinds() != SpringKinds::none) {
-    system.springs = origin_.springs;
+    system.springs = origin_.springs();
   }
 }
 
@@ -244,7 +226,7 @@ void Implicit::move(System& system, double time) {
   ParticleState& particles = system.particles;
   for_each_range(particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      particles.position.row(i) = origin_.position.row(i) + time * particles.velocity.row(i);
+      particles.position.row(i) = origin_.position().row(i) + time * particles.velocity.row(i);
     }
   });
   system.box.deform(physics_.flow.deformation().displacement_gradient(system.clock.time() + time));
@@ -260,7 +242,7 @@ double Implicit::displacement(const System& system) const {
   std::vector<double> squared(blocks.size());
   for_each_range(blocks.size(), field_.threads(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
-      squared[b] = largest(gradient, origin_.position, system.particles.velocity, blocks[b]);
+      squared[b] = largest(gradient, origin_.position(), system.particles.velocity, blocks[b]);
     }
   });
   // NaN is larger than any.
@@ -294,6 +276,16 @@ std::unique_ptr<Implicit> Implicit::with_timestep(double timestep, const Particl
   other->longest_way_ = longest_way_;
   other->divisions_left_ = divisions_left_;
   return other;
+}
+
+void Implicit::mark(const System& system) {
+  mark_.mark_with_list(system, field_.threads());
+  marked_bound_ = displacement_bound_;
+}
+
+void Implicit::return_to_mark(System& system) {
+  mark_.return_to(system, field_.threads());
+  displacement_bound_ = marked_bound_;
 }
 
 void Implicit::save(ArchiveWriter& archive) const { archive.put(displacement_bound_); }

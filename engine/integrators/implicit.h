@@ -26,6 +26,8 @@ class Implicit : public Integrator {
   double stability_share(const System& /*system*/) const final { return 0; }
   std::optional<double> spurious_energy(const System& /*system*/) const final { return std::nullopt; }
   HalfSteps compare_half_steps(const System& system, int steps) const final;
+  void mark(const System& system) override;
+  void return_to_mark(System& system) override;
   void save(ArchiveWriter& archive) const override;
   void load(const System& system, ArchiveReader& archive) override;
 
@@ -55,7 +57,7 @@ class Implicit : public Integrator {
   double timestep_;
   ForceField field_;  // without noise, at the distances as they are, with that part of the resistance
   VelocitySolver solver_;
-  StepOrigin origin_;
+  StepOrigin origin_;  // once velocities have gained what the flow gains in half a step
   Loads loads_;
 
  private:
@@ -65,7 +67,6 @@ class Implicit : public Integrator {
   bool meets_a_jump(const System& system) const;
   void follow_list(System& system, double way);
   std::unique_ptr<Implicit> with_timestep(double timestep, const ParticleState& particles) const;
-  void remember(const System& system);
   void return_to_origin(System& system);
   void move(System& system, double time);
   double displacement(const System& system) const;
@@ -74,6 +75,8 @@ class Implicit : public Integrator {
   std::uint64_t seed_;
   InstructionSet set_;
   double displacement_bound_ = 0;  // of all particles since the list was built
+  StepOrigin mark_;
+  double marked_bound_ = 0;
   double longest_way_ = 0;
   int divisions_left_ = 0;
   std::unique_ptr<Implicit> half_;  // makes the halves of a step; nothing in it outlives a step

@@ -74,6 +74,11 @@ class Integrator {
   };
   virtual HalfSteps compare_half_steps(const System& system, int steps) const = 0;
 
+  // Marks the state before a step, to which return_to_mark() leads back any number of times. Requires a
+  // complete step.
+  virtual void mark(const System& system) = 0;
+  virtual void return_to_mark(System& system) = 0;
+
   // What the integrator keeps between steps besides the system.
   virtual void save(ArchiveWriter& archive) const = 0;
   virtual void load(const System& system, ArchiveReader& archive) = 0;

@@ -89,7 +89,7 @@ std::optional<StepReport> Midpoint::find_velocities(System& system) {
 SymmetricTensor Midpoint::stress_of_motion(const System& system) const {
   const ParticleState& particles = system.particles;
   return sum_over_particles(system, field_.threads(), [&](std::size_t i) {
-    const Vector3 mean = 0.5 * (origin_.velocity[i] + particles.velocity[i]);
+    const Vector3 mean = 0.5 * (origin_.velocity()[i] + particles.velocity[i]);
     return -particles.mass[i] * symmetric_dyad(relative_to_flow(system, i, particles.velocity[i]),
                                                relative_to_flow(system, i, mean));
   });
@@ -99,8 +99,8 @@ void Midpoint::keep_change(const System& system) {
   const ParticleState& particles = system.particles;
   for_each_range(particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      velocity_change_.row(particles.id[i]) = particles.velocity.row(i) - origin_.velocity.row(i);
-      spin_change_.row(particles.id[i]) = particles.angular_velocity.row(i) - origin_.spin.row(i);
+      velocity_change_.row(particles.id[i]) = particles.velocity.row(i) - origin_.velocity().row(i);
+      spin_change_.row(particles.id[i]) = particles.angular_velocity.row(i) - origin_.spin().row(i);
     }
   });
 }
@@ -108,6 +108,18 @@ void Midpoint::keep_change(const System& system) {
 void Midpoint::forget_change() {
   array(velocity_change_).setZero();
   array(spin_change_).setZero();
+}
+
+void Midpoint::mark(const System& system) {
+  Implicit::mark(system);
+  marked_velocity_change_ = velocity_change_;
+  marked_spin_change_ = spin_change_;
+}
+
+void Midpoint::return_to_mark(System& system) {
+  Implicit::return_to_mark(system);
+  velocity_change_ = marked_velocity_change_;
+  spin_change_ = marked_spin_change_;
 }
 
 void Midpoint::save(ArchiveWriter& archive) const {

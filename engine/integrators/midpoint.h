@@ -19,6 +19,8 @@ class Midpoint final : public Implicit {
   Midpoint(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,
            std::uint64_t seed, int threads, InstructionSet set = chosen_instruction_set());
 
+  void mark(const System& system) override;
+  void return_to_mark(System& system) override;
   void save(ArchiveWriter& archive) const override;
   void load(const System& system, ArchiveReader& archive) override;
 
@@ -29,6 +31,7 @@ class Midpoint final : public Implicit {
   void forget_change() override;
 
   VectorField velocity_change_, spin_change_;  // of the last step, for each id
+  VectorField marked_velocity_change_, marked_spin_change_;
 };
 
 }  // namespace peclet::engine

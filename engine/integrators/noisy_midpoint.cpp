@@ -115,7 +115,7 @@ SymmetricTensor NoisyMidpoint::motion(const System& system, std::size_t i) const
   const ParticleState& particles = system.particles;
   const Vector3 flow =
       field_.physics().flow.at(system.box).velocity(particles.position[i], particles.radius[i]);
-  const Vector3 after = particles.velocity[i] - flow, before = origin_.velocity[i] - flow,
+  const Vector3 after = particles.velocity[i] - flow, before = origin_.velocity()[i] - flow,
                 mean = 0.5 * (before + after);
   const Vector3 noise = noise_.force[i] - stress_.force_at_beginning(i);
   const double dragged = inertial_ ? translational_drag(field_.physics().viscosity, particles.radius[i]) : 0;
@@ -132,8 +132,8 @@ void NoisyMidpoint::leave_half_of_the_drag(const System& system) {
       const double radius = particles.radius[i];
       const double half = 0.5 * translational_drag(viscosity, radius);
       const double half_turning = 0.5 * rotational_drag(viscosity, radius);
-      loads_.force.row(i) += half * (particles.velocity.row(i) - origin_.velocity.row(i));
-      loads_.torque.row(i) += half_turning * (particles.angular_velocity.row(i) - origin_.spin.row(i));
+      loads_.force.row(i) += half * (particles.velocity.row(i) - origin_.velocity().row(i));
+      loads_.torque.row(i) += half_turning * (particles.angular_velocity.row(i) - origin_.spin().row(i));
     }
   });
 }

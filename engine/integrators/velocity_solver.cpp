@@ -83,8 +83,8 @@ VelocitySolver::Residual VelocitySolver::set_residual(const System& system, cons
       varying_spin_.set(i, spin);
     }
   }
-  const StepRows rows = {.velocity_before = origin.velocity.data(),
-                         .spin_before = origin.spin.data(),
+  const StepRows rows = {.velocity_before = origin.velocity().data(),
+                         .spin_before = origin.spin().data(),
                          .position = particles.position.data(),
                          .velocity = particles.velocity.data(),
                          .spin = particles.angular_velocity.data(),

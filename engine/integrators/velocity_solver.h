@@ -6,15 +6,10 @@
 #pragma once
 
 #include "engine/integrators/integrator.h"
+#include "engine/integrators/step_origin.h"
 #include "engine/kernels/force_field.h"
 
 namespace peclet::engine {
-
-// What a step starts from.
-struct StepOrigin {
-  VectorField position, velocity, spin;
-  SpringField springs;
-};
 
 // Forces and torques on all particles.
 struct Loads {

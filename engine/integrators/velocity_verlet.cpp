@@ -225,6 +225,21 @@ bool VelocityVerlet::keep_list(System& system, double speed) {
   return true;
 }
 
+void VelocityVerlet::mark(const System& system) {
+  mark_.mark_with_list(system, field_.threads());
+  marked_force_ = force_;
+  marked_torque_ = torque_;
+  marked_bound_ = displacement_bound_;
+}
+
+void VelocityVerlet::return_to_mark(System& system) {
+  mark_.return_to(system, field_.threads());
+  force_ = marked_force_;
+  torque_ = marked_torque_;
+  displacement_bound_ = marked_bound_;
+  open_ = false;
+}
+
 void VelocityVerlet::save(ArchiveWriter& archive) const {
   if (open_) {
     throw std::logic_error("a step must be complete to be saved");

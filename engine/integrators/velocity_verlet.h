@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "engine/integrators/integrator.h"
+#include "engine/integrators/step_origin.h"
 #include "engine/kernels/force_field.h"
 
 namespace peclet::engine {
@@ -26,6 +27,8 @@ class VelocityVerlet final : public Integrator {
   double stability_share(const System& system) const override;
   std::optional<double> spurious_energy(const System& system) const override;
   HalfSteps compare_half_steps(const System& system, int steps) const override;
+  void mark(const System& system) override;
+  void return_to_mark(System& system) override;
   void save(ArchiveWriter& archive) const override;
   void load(const System& system, ArchiveReader& archive) override;
 
@@ -45,6 +48,10 @@ class VelocityVerlet final : public Integrator {
   // An upper bound of the displacements since the list was built, raised by every step's largest one and
   // replaced by the true value only when it reaches what the list allows.
   double displacement_bound_ = 0;
+
+  StepOrigin mark_;
+  VectorField marked_force_, marked_torque_;
+  double marked_bound_ = 0;
 };
 
 }  // namespace peclet::engine

@@ -30,9 +30,8 @@ std::optional<double> energy_imbalance(const Scene& scene, const Simulation& sim
     work_per_step += simulation.schedule().timestep * flow.steady_rate() * flow.shear_part(stress) /
                      static_cast<double>(window.steps);
   }
-  // Where the flow varies it works on spheres one by one too, and what comes and goes works besides.
-  if (flow.varies() || flow.period() || scene.physics.thermal_energy > 0 || errors.samples == 0 ||
-      !(work_per_step > 0)) {
+  // Waves and oscillations do work that this balance leaves out.
+  if (!flow.is_steady() || scene.physics.thermal_energy > 0 || errors.samples == 0 || !(work_per_step > 0)) {
     return std::nullopt;
   }
   return errors.spurious_energy / static_cast<double>(errors.samples) / work_per_step;
@@ -87,7 +86,7 @@ Json warnings_json(const std::vector<Warning>& warnings) {
 }
 
 Json common_part(const ResultHeader& header, const Scene& scene, const Schedule& schedule,
-                 std::uint64_t steps, const Simulation::Strains& strains, const Spent& spent) {
+                 std::uint64_t steps, const Strains& strains, const Spent& spent) {
   const double dt = schedule.timestep;
   const ImposedFlow& flow = scene.physics.flow;
   const std::uint64_t before = std::min(steps, schedule.equilibration), after = steps - before;
@@ -296,7 +295,7 @@ Json target_hints(const Scene& scene) {
     if (hints.contains(meant))
       hints[name] = fmt::format("is called {}, which {}", meant, hints[meant].get<std::string>());
   }
-  if (scene.physics.flow.deformation().stress()) {
+  if (scene.physics.flow.deformation().at_stress() != nullptr) {
     for (const char* const name : {"relative_viscosity", "eta_r", "eta", "viscosity"})
       hints[name] = "follows from the mean rate at a given stress: aim at shear_rate";
   }

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "engine/flow/controlled_shear.h"
 #include "engine/stability/derived_groups.h"
 #include "engine/start/packing.h"
 #include "engine/terms/drag.h"
@@ -118,7 +119,7 @@ Json StressMeans::means(const BlockSums& sums, bool has_jammed) const {
     part("stresslet", stresslet(volume_fraction_, solvent) + varying);
   } else if (physics_.flow.varies()) {
     part("stresslet", varying);
-  } else if (physics_.flow.deformation().stress()) {
+  } else if (physics_.flow.deformation().at_stress() != nullptr) {
     const double rate = sums.shear_rate / static_cast<double>(sums.steps);
     const SymmetricTensor solvent = solvent_stress(physics_.viscosity, simple_shear(rate));
     part("solvent", solvent);
@@ -151,8 +152,8 @@ Json StressMeans::means(const BlockSums& sums, bool has_jammed) const {
                 {"mean_overlap", sums.mean_overlap()},
                 {"kinetic_temperature", per_sample * sums.temperature.translational},
                 {"rotational_temperature", per_sample * sums.temperature.rotational}};
-  if (const std::optional<double> given = physics_.flow.deformation().stress()) {
-    add_flow(sums, *given, has_jammed, means);
+  if (const ControlledShear* const flow = physics_.flow.deformation().at_stress()) {
+    add_flow(sums, flow->stress(), has_jammed, means);
   }
   return means;
 }
@@ -196,7 +197,7 @@ std::vector<Quantity> stress_quantities(const Scene& scene) {
     described.scalar("relative_viscosity_pair", "eta_r^pairs", "1");
     described.stress("stress/solvent", "sigma^S");
   }
-  const bool at_stress = scene.physics.flow.deformation().stress().has_value();
+  const bool at_stress = scene.physics.flow.deformation().at_stress() != nullptr;
   if (at_stress) {
     described.scalar("shear_rate", "<rate>", "1 / time");
     described.scalar("flowing", "P(flows)", "1");

@@ -10,7 +10,7 @@ namespace peclet::engine {
 namespace {
 
 constexpr std::string_view magic = "PCLTCKPT";
-constexpr std::uint32_t version = 9;
+constexpr std::uint32_t version = 10;
 constexpr std::size_t header_size = 20;
 constexpr std::size_t checksum_size = 64;
 

@@ -44,13 +44,13 @@ std::vector<double> present_radii(const Particles& particles, const std::string&
 void check_fit(const Scene& scene, const Schedule& schedule, const std::string& file) {
   const std::vector<double> sizes = present_radii(scene.particles, file);
   const Vector3 box = box_lengths(scene, cube_edge(scene.particles, scene.volume_fraction));
-  const double edge = std::min({box.x, box.y, box.z});
+  const double nearest = scene.physics.flow.deformation().nearest_image() * std::min({box.x, box.y, box.z});
   const double range = range_table(make_pair_kinds(scene.physics, sizes), sizes.size()).largest();
-  if (!(edge > range)) {
+  if (!(nearest > range)) {
     throw InputError(file, "/particles/count", std::to_string(scene.particles.count),
                      fmt::format("must fill a box larger than the range of the forces, {:.4g}, at this "
-                                 "volume fraction (its shortest edge would be {:.4g})",
-                                 range, edge));
+                                 "volume fraction (its nearest images would be {:.4g} apart)",
+                                 range, nearest));
   }
   check_observables(scene, {schedule.timestep, schedule.production, box}, file);
 }

@@ -55,8 +55,7 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
       threads_(threads),
       production_(schedule.production),
       gate_(scene.physics, schedule) {
-  const std::shared_ptr<Deformation> own = scene.physics.flow.deformation().own_copy();
-  if (own) scene_.physics.flow = ImposedFlow(own);
+  driver_ = make_driver(scene_, schedule.timestep, seed);
   const Physics& physics = scene_.physics;
   check_fit(scene, schedule, file);
   const std::vector<double> radius = species_radii(scene.particles);
@@ -85,9 +84,6 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
         schedule.timestep);
   }
   observables_ = make_observables(scene, system_, {schedule.timestep, schedule.production, box});
-  if (const auto shear = std::dynamic_pointer_cast<ControlledShear>(own)) {
-    control_ = std::make_unique<StressControl>(scene_, shear, schedule.timestep, seed);
-  }
   const auto takes_flux = [](const auto& observable) { return observable->takes_flux(); };
   if (std::ranges::any_of(observables_, takes_flux)) integrator_->watch_motion();
 }
@@ -103,7 +99,7 @@ void Simulation::start(const std::function<void()>& made_step) {
 
 void Simulation::begin() {
   integrator_->start(system_);
-  if (control_) control_->start(system_);
+  driver_->start(system_);
 }
 
 void Simulation::start(const System& placed, bool in_motion) {
@@ -128,7 +124,7 @@ std::optional<Ending> Simulation::advance(std::uint64_t steps) {
     if (std::optional<Ending> ending = gate_.check(*integrator_, system_)) {
       return ending;
     }
-    const StepReport report = advance_step();
+    const StepReport report = driver_->advance(*integrator_, system_, watchers_of_step());
     if (std::optional<Ending> ending = ending_of(report, system_, scene_.guard, smallest_radius_)) {
       integrator_->complete(system_);
       return ending;
@@ -136,20 +132,13 @@ std::optional<Ending> Simulation::advance(std::uint64_t steps) {
     if (system_.step > schedule_.equilibration) {
       observe(report);
     }
-    if (std::optional<Ending> ending = look_for_jam()) return ending;
+    if (std::optional<Ending> ending = driver_->ending(system_, schedule_)) return ending;
   }
   integrator_->complete(system_);
   if (system_.step == schedule_.total()) {
     return Ending{Ending::Cause::completed, system_.step, "the production window is complete"};
   }
   return std::nullopt;
-}
-
-StepReport Simulation::advance_step() {
-  PairWatcher* const watchers = watchers_of_step();
-  if (control_) return control_->advance(*integrator_, system_, watchers);
-  integrator_->show_pairs_to(watchers);
-  return integrator_->advance_open(system_);
 }
 
 // Who samples the step to come; null: nobody.
@@ -162,33 +151,6 @@ PairWatcher* Simulation::watchers_of_step() {
     }
   }
   return watchers_.empty() ? nullptr : &watchers_;
-}
-
-// What jams before the window is measured in it from then on, until it is seen to stand still there too.
-std::optional<Ending> Simulation::look_for_jam() {
-  if (!control_) return std::nullopt;
-  const bool has_jammed = control_->has_jammed(system_);
-  if (system_.step < schedule_.equilibration && has_jammed) schedule_.equilibration = system_.step;
-  if (system_.step == schedule_.equilibration) {
-    strain_at_window_ = system_.box.strain();
-    control_->wait_from(system_);
-    return std::nullopt;
-  }
-  if (!has_jammed) return std::nullopt;
-  return Ending{Ending::Cause::jammed, system_.step,
-                fmt::format("the suspension stands still under its stress: jammed at a strain of {:.4g}",
-                            system_.box.strain())};
-}
-
-Simulation::Strains Simulation::strains() const {
-  const std::uint64_t begin = std::min(system_.step, schedule_.equilibration);
-  if (control_) {
-    const double before = system_.step > begin ? strain_at_window_ : system_.box.strain();
-    return {before, system_.box.strain() - before};
-  }
-  const Deformation& deformation = scene_.physics.flow.deformation();
-  return {deformation.strain_between(schedule_.timestep, 0, begin),
-          deformation.strain_between(schedule_.timestep, begin, system_.step)};
 }
 
 gsd::Frames* Simulation::frames() {
@@ -224,12 +186,9 @@ void Simulation::save(ArchiveWriter& archive) const {
   archive.put(edges_at_start_);
   engine::save(system_, archive);
   integrator_->save(archive);
-  if (control_) control_->save(archive);
+  driver_->save(archive);
   gate_.save(archive);
-  if (control_) {
-    archive.put(schedule_.equilibration);
-    archive.put(strain_at_window_);
-  }
+  archive.put(schedule_.equilibration);
   archive.put(largest_overlap_);
   production_.save(archive);
   for (const std::unique_ptr<Observable>& observable : observables_) observable->save(archive);
@@ -244,12 +203,9 @@ void Simulation::load_system(ArchiveReader& archive) {
 void Simulation::load(ArchiveReader& archive) {
   load_system(archive);
   integrator_->load(system_, archive);
-  if (control_) control_->load(system_, archive);
+  driver_->load(system_, archive);
   gate_.load(archive);
-  if (control_) {
-    schedule_.equilibration = archive.get<std::uint64_t>();
-    strain_at_window_ = archive.get<double>();
-  }
+  schedule_.equilibration = archive.get<std::uint64_t>();
   largest_overlap_ = archive.get<double>();
   production_.load(archive);
   for (const std::unique_ptr<Observable>& observable : observables_) observable->load(archive);
@@ -258,10 +214,8 @@ void Simulation::load(ArchiveReader& archive) {
 void Simulation::load_motion(ArchiveReader& archive) {
   load_system(archive);
   integrator_->load(system_, archive);
-  if (control_) {
-    control_->load(system_, archive);
-    if (system_.step >= schedule_.equilibration) strain_at_window_ = system_.box.strain();
-  }
+  driver_->load(system_, archive);
+  if (system_.step >= schedule_.equilibration) driver_->begin_window(system_);
   gate_.load_before_window(archive);
 }
 

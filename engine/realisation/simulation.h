@@ -8,8 +8,8 @@
 
 #include "engine/observables/observable.h"
 #include "engine/observables/production.h"
+#include "engine/realisation/driver.h"
 #include "engine/realisation/step_gate.h"
-#include "engine/realisation/stress_control.h"
 
 namespace peclet::engine {
 
@@ -41,14 +41,9 @@ class Simulation {
   const StepErrors& step_errors() const { return gate_.errors(); }
   double largest_overlap() const { return largest_overlap_; }  // over the smaller radius, in production
 
-  // Of the steps before the window and in it, summed over both directions; at a given stress net.
-  struct Strains {
-    double equilibration = 0, production = 0;
-  };
-  Strains strains() const;
-
-  // Null unless the flow is at a given stress.
-  const StressControl* stress_control() const { return control_.get(); }
+  // Strains are summed over both directions; at a given stress they are net.
+  Strains strains() const { return driver_->strains(system_, schedule_); }
+  const Driver& driver() const { return *driver_; }
 
   // What an observable writes beside the result; null: nothing.
   gsd::Frames* frames();
@@ -63,8 +58,6 @@ class Simulation {
   void begin();
   void load_system(ArchiveReader& archive);
   PairWatcher* watchers_of_step();
-  StepReport advance_step();
-  std::optional<Ending> look_for_jam();
   void observe(const StepReport& report);
 
   Scene scene_;
@@ -74,9 +67,8 @@ class Simulation {
   System system_;
   Matrix3 edges_at_start_;  // of the cell, from which strain counts; a start in a file may be sheared
   std::vector<PairKind> kinds_;
+  std::unique_ptr<Driver> driver_;
   std::unique_ptr<Integrator> integrator_;
-  std::unique_ptr<StressControl> control_;
-  double strain_at_window_ = 0;  // at a given stress
   Production production_;
   std::vector<std::unique_ptr<Observable>> observables_;  // that the scene asks for
   PairWatchers watchers_;                                 // of the step to come

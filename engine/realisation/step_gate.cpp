@@ -15,10 +15,7 @@ constexpr std::uint64_t comparisons = 8;
 }  // namespace
 
 StepGate::StepGate(const Physics& physics, const Schedule& schedule)
-    : production_(
-          schedule.production),  // The stress of waves cancels over the cell, that of cycles over time.
-      is_smooth_(physics.thermal_energy == 0 && physics.flow.steady_rate() > 0 && !physics.flow.varies() &&
-                 !physics.flow.period()) {}
+    : production_(schedule.production), is_smooth_(physics.thermal_energy == 0 && physics.flow.is_steady()) {}
 
 std::optional<Ending> StepGate::check(Integrator& integrator, System& system) {
   if (system.step % integrator.intervals().stability != 0) {

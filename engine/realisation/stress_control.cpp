@@ -1,12 +1,13 @@
 #include "engine/realisation/stress_control.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
 
 #include "engine/random/keyed_random.h"
-#include "engine/stability/derived_groups.h"
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {
@@ -31,31 +32,14 @@ double time_of_response(double timestep, double usual_rate) {
   return std::clamp(strain_of_response / usual_rate, shortest_response * timestep, usual_response * timestep);
 }
 
-// What a step starts from, to make it again.
-class Origin {
- public:
-  Origin(const Integrator& integrator, const System& system) : system_(system) { integrator.save(archive_); }
-
-  void restore(Integrator& integrator, System& system) const {
-    system = system_;
-    ArchiveReader reader(archive_.bytes());
-    integrator.load(system, reader);
-  }
-
- private:
-  System system_;
-  ArchiveWriter archive_;
-};
-
 }  // namespace
 
 StressControl::StressControl(const Scene& scene, std::shared_ptr<ControlledShear> shear, double timestep,
                              std::uint64_t seed)
     : shear_(std::move(shear)),
       timestep_(timestep),
-      stress_(*shear_->stress()),
+      stress_(shear_->stress()),
       thermal_energy_(scene.physics.thermal_energy),
-      patience_(*patience(scene)),
       trial_rate_(trial_rate(scene, shear_->largest_rate())),
       response_(time_of_response(timestep, shear_->largest_rate())),
       solvent_(scene.physics.viscosity * (1 + stresslet(scene.volume_fraction, {.xy = 1}).xy)),
@@ -87,7 +71,7 @@ double StressControl::stress_of_pairs(const StepReport& report, const System& sy
 }
 
 StepReport StressControl::advance_to_stress(Integrator& integrator, System& system, PairWatcher* watcher) {
-  const Origin origin(integrator, system);
+  integrator.mark(system);
   const double fastest = stress_ / solvent_, largest_miss = tolerance * stress_;
   const double aim = stress_ + std::clamp(deficit_, -largest_miss, largest_miss);
   integrator.show_pairs_to(nullptr);
@@ -97,7 +81,7 @@ StepReport StressControl::advance_to_stress(Integrator& integrator, System& syst
     const double last_rate = rate, last_stress = stress;
     if (attempt > 1) {
       rate = std::clamp(rate + (aim - stress) / slope_, -fastest, fastest);
-      origin.restore(integrator, system);
+      integrator.return_to_mark(system);
     }
     report = step(integrator, system, rate);
     if (report.broke_off || !report.sums.finite) break;
@@ -108,7 +92,7 @@ StepReport StressControl::advance_to_stress(Integrator& integrator, System& syst
     if (std::abs(aim - stress) <= largest_miss || attempt == most_attempts) break;
   }
   if (watcher != nullptr) {
-    origin.restore(integrator, system);
+    integrator.return_to_mark(system);
     integrator.show_pairs_to(watcher);
     report = step(integrator, system, rate);
   }
@@ -119,14 +103,13 @@ StepReport StressControl::advance_to_stress(Integrator& integrator, System& syst
 
 // The slope of the pairs' stress, by a step at rest and one at the trial rate with the same noise. Where one
 // of them breaks off the slope stays as it is.
-void StressControl::find_inertia(Integrator& integrator, const System& system) {
-  const Origin origin(integrator, system);
-  System trial = system;
+void StressControl::find_inertia(Integrator& integrator, System& system) {
+  integrator.mark(system);
   integrator.show_pairs_to(nullptr);
   const auto stress_at = [&](double rate) {
-    const StepReport report = step(integrator, trial, rate);
-    const double stress = stress_of_pairs(report, trial);
-    origin.restore(integrator, trial);
+    const StepReport report = step(integrator, system, rate);
+    const double stress = stress_of_pairs(report, system);
+    integrator.return_to_mark(system);
     return report.broke_off || !report.sums.finite ? std::numeric_limits<double>::quiet_NaN() : stress;
   };
   const double slope = (stress_at(trial_rate_) - stress_at(0)) / trial_rate_;
@@ -149,8 +132,8 @@ StepReport StressControl::advance_with_inertia(Integrator& integrator, System& s
 }
 
 bool StressControl::has_jammed(const System& system) {
-  if (system.box.strain() - strain_waited_from_ >= least_strain) wait_from(system);
-  return system.clock.time() - time_waited_from_ >= patience_;
+  if (system.box.strain() - strain_waited_from_ >= ControlledShear::least_strain) wait_from(system);
+  return system.clock.time() - time_waited_from_ >= shear_->patience();
 }
 
 void StressControl::wait_from(const System& system) {
@@ -158,14 +141,36 @@ void StressControl::wait_from(const System& system) {
   time_waited_from_ = system.clock.time();
 }
 
+std::optional<Ending> StressControl::ending(const System& system, Schedule& schedule) {
+  const bool jammed = has_jammed(system);
+  if (system.step < schedule.equilibration && jammed) schedule.equilibration = system.step;
+  if (system.step == schedule.equilibration) {
+    begin_window(system);
+    wait_from(system);
+    return std::nullopt;
+  }
+  if (!jammed) return std::nullopt;
+  return Ending{Ending::Cause::jammed, system.step,
+                fmt::format("the suspension stands still under its stress: jammed at a strain of {:.4g}",
+                            system.box.strain())};
+}
+
+Strains StressControl::strains(const System& system, const Schedule& schedule) const {
+  const double strain = system.box.strain();
+  const double before = system.step > schedule.equilibration ? strain_at_window_ : strain;
+  return {before, strain - before};
+}
+
 void StressControl::save(ArchiveWriter& archive) const {
-  for (const double number : {rate_, slope_, deficit_, inertia_, strain_waited_from_, time_waited_from_}) {
+  for (const double number :
+       {rate_, slope_, deficit_, inertia_, strain_waited_from_, time_waited_from_, strain_at_window_}) {
     archive.put(number);
   }
 }
 
 void StressControl::load(const System& system, ArchiveReader& archive) {
-  for (double* number : {&rate_, &slope_, &deficit_, &inertia_, &strain_waited_from_, &time_waited_from_}) {
+  for (double* number : {&rate_, &slope_, &deficit_, &inertia_, &strain_waited_from_, &time_waited_from_,
+                         &strain_at_window_}) {
     *number = archive.get<double>();
   }
   shear_->go_on(system.clock.time(), system.box.strain(), rate_);

@@ -18,44 +18,47 @@
 #include <memory>
 
 #include "engine/flow/controlled_shear.h"
-#include "engine/integrators/integrator.h"
-#include "engine/scene/scene.h"
+#include "engine/realisation/driver.h"
 
 namespace peclet::engine {
 
-class StressControl {
+class StressControl final : public Driver {
  public:
   // `shear` is that of the integrator's physics.
   StressControl(const Scene& scene, std::shared_ptr<ControlledShear> shear, double timestep,
                 std::uint64_t seed);
 
-  void start(const System& system) { wait_from(system); }
-  // One step, complete. `watcher` sees its pairs; it may be null.
-  StepReport advance(Integrator& integrator, System& system, PairWatcher* watcher);
-
-  // Whether the system has not strained by 0.01 in the time in which the viscosity that counts as jammed
-  // would have let it.
-  bool has_jammed(const System& system);
-  // From now on.
-  void wait_from(const System& system);
+  void start(const System& system) override { wait_from(system); }
+  // The step is complete.
+  StepReport advance(Integrator& integrator, System& system, PairWatcher* watcher) override;
+  // A system that jams before the window is measured in it from then on; one that stands still in the window
+  // ends there.
+  std::optional<Ending> ending(const System& system, Schedule& schedule) override;
+  void begin_window(const System& system) override { strain_at_window_ = system.box.strain(); }
+  // Net strains.
+  Strains strains(const System& system, const Schedule& schedule) const override;
 
   // M / V of the last step; 0 before the first one, and without noise.
   double inertia() const { return inertia_; }
 
-  void save(ArchiveWriter& archive) const;
-  void load(const System& system, ArchiveReader& archive);
+  void save(ArchiveWriter& archive) const override;
+  void load(const System& system, ArchiveReader& archive) override;
 
  private:
   StepReport advance_to_stress(Integrator& integrator, System& system, PairWatcher* watcher);
   StepReport advance_with_inertia(Integrator& integrator, System& system, PairWatcher* watcher);
-  void find_inertia(Integrator& integrator, const System& system);
+  void find_inertia(Integrator& integrator, System& system);
+  // Returns whether the system has not strained by `least_strain` within the patience of the flow.
+  bool has_jammed(const System& system);
+  // Begins to wait for the strain of a system that flows.
+  void wait_from(const System& system);
   // One step at this rate.
   StepReport step(Integrator& integrator, System& system, double rate);
   // The stress of a step at that rate, without solvent and stresslets.
   double stress_of_pairs(const StepReport& report, const System& system) const;
 
   std::shared_ptr<ControlledShear> shear_;
-  double timestep_, stress_, thermal_energy_, patience_;
+  double timestep_, stress_, thermal_energy_;
   double trial_rate_;  // at which a slope is measured with noise
   double response_;    // the time in which the rate follows a stress with noise
   double solvent_;     // eta (1 + 2.5 phi)
@@ -66,6 +69,7 @@ class StressControl {
   double deficit_ = 0;  // of the stress, summed over steps
   double inertia_ = 0;
   double strain_waited_from_ = 0, time_waited_from_ = 0;
+  double strain_at_window_ = 0;
 };
 
 }  // namespace peclet::engine

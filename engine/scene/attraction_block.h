@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "engine/scene/keys.h"
-#include "engine/scene/scene_document.h"
+#include "engine/document/keys.h"
+#include "engine/document/scene_document.h"
 #include "engine/terms/attraction.h"
 
 namespace peclet::engine {

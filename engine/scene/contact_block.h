@@ -1,8 +1,8 @@
 // The block contact of a scene.
 #pragma once
 
-#include "engine/scene/keys.h"
-#include "engine/scene/scene_document.h"
+#include "engine/document/keys.h"
+#include "engine/document/scene_document.h"
 #include "engine/terms/contact.h"
 
 namespace peclet::engine {

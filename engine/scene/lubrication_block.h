@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "engine/scene/keys.h"
-#include "engine/scene/scene_document.h"
+#include "engine/document/keys.h"
+#include "engine/document/scene_document.h"
 #include "engine/terms/lubrication.h"
 
 namespace peclet::engine {

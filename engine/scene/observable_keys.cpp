@@ -4,7 +4,8 @@
 
 #include <cmath>
 
-#include "engine/scene/keys.h"
+#include "engine/document/keys.h"
+#include "engine/flow/flows.h"
 #include "engine/scene/scene.h"
 
 namespace peclet::engine {
@@ -50,6 +51,21 @@ std::optional<ObservableFault> must_touch(const Scene& scene, const Json&) {
 std::optional<ObservableFault> must_have_contacts(const Scene& scene, const Json& settings) {
   if (scene.physics.contact || !settings.at("contacts").get<bool>()) return std::nullopt;
   return ObservableFault{"/trajectory/contacts", "must be false without /contact"};
+}
+
+std::optional<ObservableFault> must_be_of_forces_alone(const Scene& scene, const char* name) {
+  if (!scene.physics.lubrication || scene.physics.lubrication->form != LubricationParameters::Form::mari) {
+    return std::nullopt;
+  }
+  return ObservableFault{
+      "/observables",
+      fmt::format("must not list {} with /lubrication/form mari: its stress is not that of the forces alone",
+                  name)};
+}
+
+std::optional<ObservableFault> must_oscillate(const Scene& scene, const Json&) {
+  if (scene.physics.flow.period()) return must_be_of_forces_alone(scene, "oscillation");
+  return ObservableFault{"/observables", "must not list oscillation without " + flows_with("cycles")};
 }
 
 std::vector<ObservableEntry> entries() {
@@ -103,7 +119,7 @@ std::vector<ObservableEntry> entries() {
        "across",
        "",
        {},
-       none},
+       must_oscillate},
       {"transient",
        "shear stress, normal stress differences and pressure over the strain, or time, of the window",
        "",
@@ -113,7 +129,7 @@ std::vector<ObservableEntry> entries() {
                       .minimum = 1,
                       .maximum = most_bins},
                      50)},
-       none},
+       [](const Scene& scene, const Json&) { return must_be_of_forces_alone(scene, "transient"); }},
       {"trajectory",
        "trajectory.gsd beside the result, with places, motion and stress of each sphere in every frame",
        "a 256th of the production window",

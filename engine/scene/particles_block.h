@@ -1,9 +1,9 @@
 // The block particles of a scene, and the volume fraction that may follow from it.
 #pragma once
 
+#include "engine/document/keys.h"
+#include "engine/document/scene_document.h"
 #include "engine/scene/composition.h"
-#include "engine/scene/keys.h"
-#include "engine/scene/scene_document.h"
 
 namespace peclet::engine {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "engine/scene/keys.h"
-#include "engine/scene/scene_document.h"
+#include "engine/document/keys.h"
+#include "engine/document/scene_document.h"
 #include "engine/terms/repulsion.h"
 
 namespace peclet::engine {

@@ -8,7 +8,8 @@
 #include <cmath>
 
 #include "contract/input_error.h"
-#include "engine/flow/planar_extension.h"
+#include "engine/flow/controlled_shear.h"
+#include "engine/flow/flows.h"
 #include "engine/scene/flow_block.h"
 #include "engine/scene/law_blocks.h"
 #include "engine/scene/observable_keys.h"
@@ -44,7 +45,6 @@ Physics Reading::physics() const {
   Physics physics;
   physics.viscosity = number("/fluid/viscosity");
   physics.thermal_energy = number_or("/fluid/thermal_energy", 0);
-  physics.flow = read_flow(*this);
   for (const LawBlock& law : law_blocks) {
     if (has("/" + std::string(law.name))) law.read(*this, physics);
   }
@@ -64,13 +64,13 @@ Duration Reading::duration(const std::string& pointer, const Physics& physics) c
   const Json& limits = at(pointer);
   if (limits.empty())
     refuse(pointer, "must have at least one of strain, brownian_times, time, cycles, stress_times");
-  check_duration_of_flow(*this, pointer);
+  check_duration(*this, flow_kind_of(*this), pointer);
   Duration duration;
   if (physics.flow.rate() > 0) duration.strain = limits.value("strain", unlimited);
   if (physics.thermal_energy > 0) duration.brownian_times = limits.value("brownian_times", unlimited);
   duration.time = limits.value("time", unlimited);
   if (limits.contains("stress_times")) {
-    const double unit = physics.viscosity / number("/flow/stress");
+    const double unit = physics.flow.deformation().at_stress()->stress_time();
     duration.time = std::min(duration.time, limits.at("stress_times").get<double>() * unit);
   }
   for (const auto& [name, limit] : limits.items()) {
@@ -97,12 +97,12 @@ Duration Reading::duration(const std::string& pointer, const Physics& physics) c
 Duration Reading::phase(const std::string& pointer, const Physics& physics) const {
   Duration duration = this->duration(pointer, physics);
   const Json &list = at("/observables"), &limits = at(pointer);
-  const bool across =
-      has("/flow/cross_shear") && std::find(list.begin(), list.end(), "oscillation") != list.end();
-  if (!has("/flow/oscillation") && !across) return duration;
+  const FlowKind& flow = flow_kind_of(*this);
+  const bool has_moduli = flow.unit == "cycles" && std::count(list.begin(), list.end(), "oscillation") > 0;
+  if (!flow.has_whole_cycles && !has_moduli) return duration;
   if (const double cycles = limits.value("cycles", 0.0); cycles != std::floor(cycles)) {
     refuse(pointer + "/cycles", fmt::format("must be a whole number with {}",
-                                            across ? "the observable oscillation" : "/flow/oscillation"));
+                                            flow.has_whole_cycles ? flow.key : "the observable oscillation"));
   }
   duration.period = *physics.flow.period();
   return duration;
@@ -110,22 +110,21 @@ Duration Reading::phase(const std::string& pointer, const Physics& physics) cons
 
 void Reading::check_window(const Scene& scene, double begin) const {
   const double end = begin + time_of(scene.production, scene, begin);
+  const FlowKind& flow = flow_kind_of(*this);
   if (std::isinf(end)) {
-    refuse("/duration", "would never end: the last of /flow/segments does not make this strain");
+    refuse("/duration", fmt::format("would never end: the flow of {} does not make this strain", flow.key));
   }
-  if (!has("/flow/extension_rate")) return;
-  const double strain = end * number("/flow/extension_rate");
-  if (strain > PlanarExtension::largest_strain * (1 + 1e-9)) {
-    refuse(
-        "/duration",
-        fmt::format("must have a Hencky strain of at most {} in all with /flow/extension_rate; it has {:.4g}",
-                    PlanarExtension::largest_strain, strain));
+  const double strain = end * scene.physics.flow.deformation().mean_rate();
+  if (strain > flow.largest_strain * (1 + 1e-9)) {
+    refuse("/duration", fmt::format("must have a Hencky strain of at most {} in all with {}; it has {:.4g}",
+                                    flow.largest_strain, flow.key, strain));
   }
 }
 
 // A block of settings alone would be measured by nobody.
 void Reading::set_observables(Scene& scene) const {
   const Json& list = at("/observables");
+  const FlowKind& flow = flow_kind_of(*this);
   for (const ObservableEntry& entry : observable_entries()) {
     const std::string pointer = '/' + entry.name;
     const bool has_settings = entry.has_settings() && has(pointer);
@@ -139,8 +138,9 @@ void Reading::set_observables(Scene& scene) const {
     if (entry.has_settings()) {
       settings = has_settings ? at(pointer) : scene_keys().validate(settings, file(), pointer);
     }
-    if (const std::optional<std::string> fault = fault_of_observable(*this, entry.name)) {
-      refuse("/observables", *fault);
+    if (std::ranges::count(flow.refused_observables, entry.name) > 0) {
+      refuse("/observables",
+             fmt::format("must not list {} with {}, whose flow it does not know", entry.name, flow.key));
     }
     if (const std::optional<ObservableFault> fault = entry.fault(scene, settings)) {
       refuse(fault->pointer, fault->allowed);
@@ -251,10 +251,15 @@ Physics read_physics(const Json& document, const std::string& file, const std::s
   if (!filled.contains("fluid")) throw InputError(file, pointer + "/fluid", "missing", "must be an object");
   try {
     const Reading reading(filled, "");
-    if (reading.has("/flow/stress")) {
-      reading.refuse("/flow/stress", "must be left out: spheres that stand still have a shear rate at most");
+    Physics physics = reading.physics();
+    physics.flow = read_flow({.scene = reading,
+                              .shear_rate = reading.number_or("/flow/shear_rate", 0),
+                              .viscosity = physics.viscosity});
+    if (physics.flow.deformation().at_stress() != nullptr) {
+      reading.refuse(flow_kind_of(reading).key,
+                     "must be left out: spheres that stand still have a shear rate at most");
     }
-    return reading.physics();
+    return physics;
   } catch (const InputError& error) {
     throw error.within(file, pointer);
   }

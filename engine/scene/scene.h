@@ -13,7 +13,7 @@
 
 #include "contract/json.h"
 #include "contract/key_table.h"
-#include "engine/flow/deformation.h"
+#include "engine/flow/steady_shear.h"
 #include "engine/scene/composition.h"
 #include "engine/terms/contact.h"
 #include "engine/terms/laws.h"

@@ -1,6 +1,7 @@
 // Every key of a scene: the one list behind validation, schema/scene.schema.json and the manual's page.
 #include <utility>
 
+#include "engine/flow/flows.h"
 #include "engine/scene/flow_block.h"
 #include "engine/scene/law_blocks.h"
 #include "engine/scene/observable_keys.h"

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "engine/document/keys.h"
+#include "engine/document/scene_document.h"
 #include "engine/scene/composition.h"
-#include "engine/scene/keys.h"
-#include "engine/scene/scene_document.h"
 
 namespace peclet::engine {
 

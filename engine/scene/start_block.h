@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "engine/scene/keys.h"
+#include "engine/document/keys.h"
+#include "engine/document/scene_document.h"
 #include "engine/scene/scene.h"
-#include "engine/scene/scene_document.h"
 
 namespace peclet::engine {
 

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "engine/flow/controlled_shear.h"
 #include "engine/stability/stability.h"
 
 namespace peclet::engine {
@@ -29,16 +30,14 @@ double mean_sphere_volume(const Particles& particles) {
   return by_volume ? 1 / sum : sum;
 }
 
-// Whose rate is known.
 bool is_steady_shear(const ImposedFlow& flow) {
-  return flow.steady_rate() > 0 && !flow.period() && flow.steady_gradient() == simple_shear(flow.rate());
+  return flow.is_steady() && flow.steady_gradient() == simple_shear(flow.rate());
 }
 
 std::optional<double> flow_over_rest(const Scene& scene, double peclet) {
   const Physics& physics = scene.physics;
   const double fraction = scene.volume_fraction, jammed = 0.587;
-  const bool refused =
-      physics.flow.varies() || !is_steady_shear(physics.flow) || !has_known_equilibrium(physics);
+  const bool refused = !is_steady_shear(physics.flow) || !has_known_equilibrium(physics);
   if (refused || !(peclet > 0) || peclet >= nearly_at_rest || fraction >= jammed) return std::nullopt;
   const double viscosity = std::pow(1 - fraction / jammed, -1.5), of_pairs = viscosity - 1 - 2.5 * fraction;
   if (!(of_pairs > 0)) return std::nullopt;
@@ -124,7 +123,7 @@ DerivedGroups derived_groups(const Scene& scene) {
   if (physics.thermal_energy > 0) {
     groups.brownian_time = brownian_time(physics, a);
     // At a given stress the rate is what comes out.
-    if (!physics.flow.deformation().stress()) {
+    if (physics.flow.deformation().at_stress() == nullptr) {
       groups.peclet = peclet_number(physics, a);
       groups.flow_over_rest = flow_over_rest(scene, *groups.peclet);
     }
@@ -238,30 +237,22 @@ void warn_of_composition(const Scene& scene, const DerivedGroups& groups, std::v
 }
 
 void warn_of_patience(const Scene& scene, std::vector<Warning>& warnings) {
-  if (!patience(scene) || notices_jams(scene)) return;
-  const double stress_time = scene.physics.viscosity / *scene.physics.flow.deformation().stress();
+  const ControlledShear* const flow = scene.physics.flow.deformation().at_stress();
+  if (flow == nullptr || notices_jams(scene)) return;
   warnings.push_back(
       {"patience",
        fmt::format("the window of {:.4g} stress times is not longer than the {:.4g} after which a flow that "
                    "stands still counts as jammed: flowing and viscosity_of_those_flowing have no value; a "
                    "longer /duration/production or a smaller /flow/jammed_viscosity cures it",
-                   time_of(scene.production, scene) / stress_time, *patience(scene) / stress_time)});
+                   time_of(scene.production, scene) / flow->stress_time(),
+                   flow->patience() / flow->stress_time())});
 }
 
 }  // namespace
 
-std::optional<double> patience(const Scene& scene) {
-  constexpr double usual_jammed_viscosity = 1e4;
-  const std::optional<double> stress = scene.physics.flow.deformation().stress();
-  if (!stress) return std::nullopt;
-  const double viscosity =
-      scene.document.value(Json::json_pointer("/flow/jammed_viscosity"), usual_jammed_viscosity);
-  return least_strain * viscosity * scene.physics.viscosity / *stress;
-}
-
 bool notices_jams(const Scene& scene) {
-  const std::optional<double> waited = patience(scene);
-  return waited && time_of(scene.production, scene) > *waited * (1 + 1e-9);
+  const ControlledShear* const flow = scene.physics.flow.deformation().at_stress();
+  return flow != nullptr && time_of(scene.production, scene) > flow->patience() * (1 + 1e-9);
 }
 
 std::vector<Warning> scene_warnings(const Scene& scene) {

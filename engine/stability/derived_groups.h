@@ -46,12 +46,8 @@ struct DerivedGroups {
 // meaning or linear_response is refused.
 inline constexpr double nearly_at_rest = 0.1;
 
-// At a given stress what does not strain by `least_strain` within its patience has jammed,
-//   patience = least_strain eta_j eta / stress  [time],
-// eta_j the relative viscosity `jammed_viscosity`. No patience unless the stress is given.
-inline constexpr double least_strain = 0.01;
-std::optional<double> patience(const Scene& scene);
-// Returns whether a jam is noticed that is there when the window begins: if the window outlasts the patience.
+// Returns whether a jam is noticed that is there when the window begins: if the stress is given and the
+// window outlasts the patience of the flow.
 bool notices_jams(const Scene& scene);
 
 DerivedGroups derived_groups(const Scene& scene);

@@ -18,6 +18,7 @@ NAMES = {
     "shear_rate": r"$\dot\gamma$",
     "normal_stiffness": r"$k_n$",
     "extension_rate": r"$\dot\varepsilon$",
+    "uniaxial_rate": r"$\dot\varepsilon$",
     "stress": r"$\sigma$",
     "amplitude": r"$\gamma_0$",
     "frequency": r"$\omega$",

@@ -10,6 +10,7 @@ const KeyName* key_name(const std::string& pointer) {
       {"/volume_fraction", {"volume fraction", "phi"}},
       {"/flow/shear_rate", {"shear rate", "γ̇"}},
       {"/flow/extension_rate", {"extension rate", "ε̇"}},
+      {"/flow/uniaxial_rate", {"uniaxial extension rate", "ε̇"}},
       {"/flow/stress", {"shear stress", "sigma"}},
       {"/flow/oscillation/amplitude", {"amplitude of the strain", "gamma_0"}},
       {"/flow/oscillation/frequency", {"angular frequency", "omega"}},

@@ -43,6 +43,7 @@ POINTS = [
     ({"shear_rate": 1, "cross_shear": {"amplitude": 0.05, "frequency": 10}}, 0, ["stress", "oscillation"], CYCLES),
     ({"oscillation": {"amplitude": 0.3, "frequency": 1}}, 0.1, ["stress", "oscillation"], CYCLES),
     ({"extension_rate": 0.5}, 0, ["stress", "transient"], lasting(strain=2)),
+    ({"uniaxial_rate": -0.5}, 0, ["stress", "transient"], lasting(strain=2)),
     ({"segments": [{"shear_rate": 1, "strain": 1}, {"shear_rate": -1}]}, 0, ["stress", "transient"], lasting(strain=4)),
     (
         {"segments": [{"shear_rate": 0, "final_rate": 1, "time": 1}, {"shear_rate": 0}]},

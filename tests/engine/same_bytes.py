@@ -2,9 +2,9 @@
 """same_bytes.py BEFORE AFTER [--jobs N]      whether two builds of peclet-engine compute the same, to the last bit
 
 Runs short scenes of every combination of terms, with explicit and with implicit steps, and some others (a fluid at
-rest, waves, other laws of pairs, four sizes, two threads, a larger system, every observable) with every instruction
-set that this processor has. Prints every field of the results that differs: in how many runs, by how much of its own
-size at most, and in which run first. What tells of the build and the machine is left out.
+rest, waves, other flows, other laws of pairs, four sizes, two threads, a larger system, every observable) with every
+instruction set that this processor has. Prints every field of the results that differs: in how many runs, by how much
+of its own size at most, and in which run first. What tells of the build and the machine is left out.
 
 The exit code is 1 where trajectories differ, which is what `final_state_sha256` and `ending` say, or where a scene does
 not do what it is here for. Other fields are means and figures over the same trajectory; that they differ by rounding
@@ -41,6 +41,19 @@ REPULSION = {"repulsion": {"form": "exponential", "strength": 0.2, "relative_len
 SCREENED = {"repulsion": {"form": "screened", "force": 5, "debye_length": 0.03, "reference_radius": 1}}
 ATTRACTION = {"attraction": {"hamaker": 0.05, "regularisation": 0.01, "cutoff": 0.1}}
 WAVES = {"flow": {"waves": [{"periods": 1, "sine": 0.5}, {"periods": 2, "cosine": 0.2}], "faxen": False}}
+FLOWS = {
+    "oscillation": {"oscillation": {"amplitude": 0.1, "frequency": 20}},
+    "cross shear": {"shear_rate": 1, "cross_shear": {"amplitude": 0.1, "frequency": 20}},
+    "segments": {
+        "segments": [
+            {"shear_rate": 1, "time": 0.2},
+            {"shear_rate": -1, "final_rate": 0, "time": 0.2},
+            {"shear_rate": 1},
+        ]
+    },
+    "extension": {"extension_rate": 1},
+    "stress": {"stress": 1},
+}
 NOISE = {"fluid": {"thermal_energy": 0.02}}
 ROUGH = {"normal_stiffness": 1e3, "friction": 0.5}
 CONTACTS = {
@@ -96,6 +109,9 @@ def scenes():
         yield f"{method}, waves alone, noise", merged(
             rough, WAVES, NOISE, {"flow": {"shear_rate": 0, "faxen": True}}
         ), 1
+        for (flow, keys), noise in itertools.product(FLOWS.items(), (False, True)):
+            given = merged(rough, *[NOISE] * noise) | {"flow": keys}
+            yield f"{method}, {flow}" + ", noise" * noise, given, 1
         yield f"{method}, at rest", merged(base, LUBRICATION, NOISE, AT_REST), 1
         yield f"{method}, two threads", merged(rough, {"particles": {"count": 200}}), 2
         yield f"{method}, several blocks", merged(base, LUBRICATION, LARGE), 1

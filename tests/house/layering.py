@@ -49,6 +49,7 @@ ENGINE = [
     *(
         "engine/" + room
         for room in (
+            "document",
             "threads",
             "state",
             "averages",

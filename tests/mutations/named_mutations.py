@@ -94,7 +94,7 @@ NAMED = [
     ),
     (
         "strain of explicit steps one step late",
-        "engine/flow/deformation.cpp",
+        "engine/flow/steady_shear.cpp",
         "clock.timestep * static_cast<double>(clock.steps)",
         "clock.timestep * static_cast<double>(clock.steps - 1)",
         "engine_tests:VelocityVerlet.StrainAfterNStepsIsNTimesRateAndStep",
@@ -152,7 +152,7 @@ NAMED = [
     (
         "inertia of the prediction instead of the step's beginning",
         "engine/integrators/velocity_solver.cpp",
-        ".velocity_before = origin.velocity.data()",
+        ".velocity_before = origin.velocity().data()",
         ".velocity_before = particles.velocity.data()",
         LINE,
     ),

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "engine/realisation/simulation.h"
+#include "engine/realisation/stress_control.h"
 
 namespace {
 
@@ -38,6 +39,10 @@ Scene scene_at_stress(double volume_fraction, int count, double stress, int wind
   return read_scene(document, "scene.json");
 }
 
+double inertia_of(const Simulation& simulation) {
+  return dynamic_cast<const StressControl&>(simulation.driver()).inertia();
+}
+
 void advance(Simulation& simulation, std::uint64_t steps) {
   const auto ending = simulation.advance(steps);
   if (ending && ending->cause != Ending::Cause::completed) throw std::runtime_error(ending->message);
@@ -58,7 +63,7 @@ void study(const Scene& scene, std::uint64_t seed, int window) {
   for (int n = 0; n < steps; ++n) {
     advance(simulation, 1);
     const double rate = simulation.system().box.velocity_gradient().column[1].x;
-    const double inertia = simulation.stress_control()->inertia();
+    const double inertia = inertia_of(simulation);
     rates += rate / steps;
     energies += inertia * rate * rate / steps;
     momenta += inertia * rate / steps;

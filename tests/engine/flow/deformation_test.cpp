@@ -8,6 +8,8 @@
 #include "engine/flow/oscillatory_shear.h"
 #include "engine/flow/planar_extension.h"
 #include "engine/flow/segments.h"
+#include "engine/flow/steady_shear.h"
+#include "engine/flow/uniaxial_extension.h"
 
 namespace peclet::engine {
 namespace {
@@ -92,6 +94,12 @@ TEST(ImposedFlow, HasTheRateOfItsSteadyPart) {
   const ImposedFlow extension(std::make_shared<PlanarExtension>(0.5));
   EXPECT_DOUBLE_EQ(extension.steady_rate(), 1);
   EXPECT_DOUBLE_EQ(extension.shear_part({.xx = 3, .yy = -2, .zz = 7, .xy = 5}), 2.5);
+  // (sigma_xx - (sigma_yy + sigma_zz) / 2) / sqrt(3), and its opposite in biaxial extension.
+  const ImposedFlow uniaxial(std::make_shared<UniaxialExtension>(0.5)),
+      biaxial(std::make_shared<UniaxialExtension>(-0.5));
+  EXPECT_DOUBLE_EQ(uniaxial.steady_rate(), 0.5 * std::sqrt(3.0));
+  EXPECT_DOUBLE_EQ(uniaxial.shear_part({.xx = 3, .yy = -2, .zz = 7, .xy = 5}), 0.5 / std::sqrt(3.0));
+  EXPECT_DOUBLE_EQ(biaxial.shear_part({.xx = 3, .yy = -2, .zz = 7, .xy = 5}), -0.5 / std::sqrt(3.0));
   const ImposedFlow shear = steady_shear(0.3);
   EXPECT_EQ(shear.shear_part({.xx = 3, .yy = -2, .zz = 7, .xy = 5}), 5);
   EXPECT_EQ(ImposedFlow().shear_part({.xy = 5}), 5);
@@ -134,6 +142,68 @@ TEST(PlanarExtension, KeepsItsCellWide) {
     const Vector3 widths = cell.frame().widths();
     ASSERT_GT(std::min({widths.x, widths.y, widths.z}), 0.66) << strain;
     ASSERT_NEAR(cell.volume(), 1, 1e-6) << strain;
+  }
+}
+
+// Of a unit cube: |x y z| >= 1/7 for every point of the lattice but the origin, reached by the edges.
+TEST(UniaxialExtension, BeginsWithACubeWhoseLatticeNoDiagonalFlowMakesThin) {
+  const Matrix3 edges = UniaxialExtension(1).edges_at_start({1, 1, 1});
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) EXPECT_NEAR(dot(edges.column[i], edges.column[j]), i == j, 1e-15);
+  }
+  EXPECT_NEAR(determinant(edges), 1, 1e-15);
+  constexpr int most = 12;
+  double least = 1;
+  for (int k = -most; k <= most; ++k) {
+    for (int l = -most; l <= most; ++l) {
+      for (int m = -most; m <= most; ++m) {
+        const Vector3 x = edges * Vector3{double(k), double(l), double(m)};
+        if (k != 0 || l != 0 || m != 0) least = std::min(least, std::abs(x.x * x.y * x.z));
+      }
+    }
+  }
+  EXPECT_NEAR(least, 1.0 / 7, 1e-12);
+}
+
+// Along exp(t), across exp(-t/2): the volume stays; rates either way.
+TEST(UniaxialExtension, KeepsItsCellWideAndItsImagesApart) {
+  for (const double rate : {1.0, -1.0}) {
+    const UniaxialExtension extension(rate);
+    EXPECT_NEAR(1 + extension.displacement_gradient(2).column[0].x, std::exp(2 * rate), 1e-12);
+    EXPECT_NEAR(1 + extension.displacement_gradient(2).column[2].z, std::exp(-rate), 1e-12);
+    PeriodicCell cell = PeriodicCell::with_edges(extension.edges_at_start({1, 1, 1}), {});
+    for (double strain = 0; strain <= UniaxialExtension::largest_strain; strain += 0.01) {
+      cell.deform(extension.displacement_gradient(strain), extension.velocity_gradient(strain));
+      cell.change_basis(cell.due_change());
+      const Vector3 widths = cell.frame().widths();
+      ASSERT_GT(std::min({widths.x, widths.y, widths.z}), 0.66) << strain;
+      ASSERT_NEAR(cell.volume(), 1, 1e-8) << strain;
+      ASSERT_NEAR(cell.net_strain(), rate * strain, 1e-9);
+    }
+  }
+}
+
+// The shortest vector of a lattice is among sums of few edges of a compact cell.
+TEST(Deformation, BringsImagesOfTurnedCubesNoNearerThanItSays) {
+  const PlanarExtension planar(1);
+  const UniaxialExtension uniaxial(1), biaxial(-1);
+  EXPECT_NEAR(planar.nearest_image(), std::sqrt(2.0) / std::pow(5, 0.25), 1e-4);
+  EXPECT_NEAR(uniaxial.nearest_image(), std::sqrt(3.0) / std::cbrt(7.0), 1e-4);
+  for (const Deformation* flow :
+       {static_cast<const Deformation*>(&planar), static_cast<const Deformation*>(&uniaxial),
+        static_cast<const Deformation*>(&biaxial)}) {
+    PeriodicCell cell = PeriodicCell::with_edges(flow->edges_at_start({1, 1, 1}), {});
+    double nearest = 2;
+    for (double strain = 0; strain <= 6; strain += 0.002) {
+      cell.deform(flow->displacement_gradient(strain), flow->velocity_gradient(strain));
+      cell.change_basis(cell.due_change());
+      for (int n = 1; n < 125; ++n) {
+        const LatticeShift k{n / 25 - 2, n / 5 % 5 - 2, n % 5 - 2};
+        if (k != LatticeShift{}) nearest = std::min(nearest, norm(cell.displacement(k)));
+      }
+    }
+    EXPECT_GE(nearest, flow->nearest_image());
+    EXPECT_LT(nearest, flow->nearest_image() + 0.01);
   }
 }
 

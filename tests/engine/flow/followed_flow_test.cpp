@@ -8,6 +8,7 @@
 #include "engine/flow/oscillatory_shear.h"
 #include "engine/flow/planar_extension.h"
 #include "engine/flow/segments.h"
+#include "engine/flow/uniaxial_extension.h"
 #include "engine/integrators/implicit.h"
 #include "engine/integrators/velocity_verlet.h"
 
@@ -82,7 +83,8 @@ TEST(Deformation, OfAnyKindIsFollowedByBothMethods) {
 // m / zeta = 2/9 of a density of 1: by drag alone they would lag behind by that time and miss their way by
 // some 0.1, more the farther they are from the origin. Explicit steps follow to the first order.
 TEST(Deformation, IsFollowedByHeavySpheresWhereverTheyAre) {
-  const Flow flows[] = {oscillation(), extension(), std::make_shared<CrossShear>(0.4, 0.3, 2),
+  const Flow flows[] = {oscillation(), extension(), std::make_shared<UniaxialExtension>(-0.5),
+                        std::make_shared<CrossShear>(0.4, 0.3, 2),
                         std::make_shared<Segments>(std::vector<Segment>{{1, 1, 0.7}, {-1, 0.5, 0.6}}, 0.0)};
   for (const bool implicit : {true, false}) {
     for (const Flow& flow : flows) {

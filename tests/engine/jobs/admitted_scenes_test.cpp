@@ -52,6 +52,8 @@ std::vector<NamedPatch> flows() {
       {"ramp_and_stop",
        R"({"segments": [{"shear_rate": 0, "final_rate": 2, "time": 0.05}, {"shear_rate": 0}]})"},
       {"extension", R"({"extension_rate": 1.5})"},
+      {"uniaxial", R"({"uniaxial_rate": 1.5})"},
+      {"biaxial", R"({"uniaxial_rate": -1.5})"},
       {"stress", R"({"stress": 0.3})"}};
   std::vector<NamedPatch> all;
   for (const auto& [name, flow] : texts) {
@@ -95,21 +97,28 @@ const std::set<std::string>& refused() {
       // At rest alone, with noise.
       "waves + stress_correlation", "waves_alone + stress_correlation", "shear + stress_correlation",
       "across + stress_correlation", "oscillation + stress_correlation", "reversal + stress_correlation",
-      "ramp_and_stop + stress_correlation", "extension + stress_correlation", "stress + stress_correlation",
-      "peclet + stress_correlation", "waves + linear_response", "waves_alone + linear_response",
-      "shear + linear_response", "across + linear_response", "oscillation + linear_response",
-      "reversal + linear_response", "ramp_and_stop + linear_response", "extension + linear_response",
-      "stress + linear_response", "peclet + linear_response",
+      "ramp_and_stop + stress_correlation", "extension + stress_correlation", "uniaxial + stress_correlation",
+      "biaxial + stress_correlation", "stress + stress_correlation", "peclet + stress_correlation",
+      "waves + linear_response", "waves_alone + linear_response", "shear + linear_response",
+      "across + linear_response", "oscillation + linear_response", "reversal + linear_response",
+      "ramp_and_stop + linear_response", "extension + linear_response", "uniaxial + linear_response",
+      "biaxial + linear_response", "stress + linear_response", "peclet + linear_response",
       // Of a shear to and fro alone, and of all but that.
       "rest + oscillation", "shear + oscillation", "waves + oscillation", "waves_alone + oscillation",
       "reversal + oscillation", "ramp_and_stop + oscillation", "extension + oscillation",
-      "stress + oscillation", "peclet + oscillation", "across + transient", "oscillation + transient",
-      "stress + transient",
+      "uniaxial + oscillation", "biaxial + oscillation", "stress + oscillation", "peclet + oscillation",
+      "across + transient", "oscillation + transient", "stress + transient",
       // Made for the axes of a shear at a rate.
       "across + mean_squared_displacement", "extension + mean_squared_displacement",
+      "uniaxial + mean_squared_displacement", "biaxial + mean_squared_displacement",
       "stress + mean_squared_displacement", "extension + pair_distribution", "extension + profiles",
-      "stress + profiles"};
+      "uniaxial + pair_distribution", "uniaxial + profiles", "biaxial + pair_distribution",
+      "biaxial + profiles", "stress + profiles"};
   return names;
+}
+
+bool has_turned_cell(const std::string& flow) {
+  return flow == "extension" || flow == "uniaxial" || flow == "biaxial";
 }
 
 // Whether a surrounding forbids what goes in the usual one.
@@ -123,7 +132,7 @@ bool is_forbidden(const std::string& around, const std::string& flow, const std:
   if (mari && (observable == "oscillation" || observable == "transient")) return true;
   if (mari && !quiet && flow == "stress") return true;
   if (mari && flow == "rest" && is_linear) return true;
-  return around == "height" && flow == "extension";  // whose cell has to turn
+  return around == "height" && has_turned_cell(flow);
 }
 
 class AdmittedScene : public testing::Test {
@@ -196,7 +205,8 @@ TEST_F(AdmittedScene, OfAnyFlowAndObservableInAnySurroundingsRunsToItsEnd) {
   }
 }
 
-// A start that another flow has left, and one of the same.
+// A start that another flow has left, and one of the same. Only a box that is sheared along x is taken from a
+// file, and no turned cell begins in one.
 TEST_F(AdmittedScene, OfAnyFlowThatBeginsInAFileRunsToItsEnd) {
   for (const auto& [before, of_before] : flows()) {
     Json first = tiny_scene();
@@ -213,9 +223,33 @@ TEST_F(AdmittedScene, OfAnyFlowThatBeginsInAFileRunsToItsEnd) {
         document["start"] = {{"file", kept}, {"sha256", sha256_of_file(kept)}};
         const std::string name = fmt::format("{} after {} of {}", flow, file, before);
         const std::string reason = refusal(document, name);
-        // An extension begins in a box of its own, and only a box sheared along x is taken from a file.
-        const bool fits = flow != "extension" && before != "extension" && before != "across";
+        const bool fits = !has_turned_cell(flow) && !has_turned_cell(before) && before != "across";
         EXPECT_EQ(reason.empty(), fits) << name << ' ' << reason;
+      }
+    }
+  }
+}
+
+// What a flow measures does not depend on where its spheres begin.
+TEST_F(AdmittedScene, OfAnyFlowAndObservableAndMethodThatBeginsInAFileRunsToItsEnd) {
+  Json first = tiny_scene();
+  first["observables"] = {"trajectory"};
+  ASSERT_EQ(refusal(first, "first"), "");
+  const std::string kept = (folder_ / "start.gsd").string();
+  std::filesystem::copy_file(folder_ / "job.trajectory.gsd", kept);
+  const Json start = {{"file", kept}, {"sha256", sha256_of_file(kept)}};
+  for (const char* method : {"explicit", "implicit"}) {
+    for (const auto& [flow, of_flow] : flows()) {
+      for (const ObservableEntry& entry : observable_entries()) {
+        Json document = tiny_scene();
+        document.merge_patch(of_flow);
+        document["integrator"] = {{"method", method}, {"timestep", method[0] == 'e' ? 0.0004 : 0.002}};
+        document["observables"] = {entry.name};
+        document["start"] = start;
+        const std::string name = fmt::format("{} + {}", flow, entry.name);
+        const std::string reason = refusal(document, fmt::format("{} + {}", method, name));
+        EXPECT_EQ(!reason.empty(), refused().contains(name) || has_turned_cell(flow))
+            << name << ' ' << reason;
       }
     }
   }

@@ -201,7 +201,8 @@ TEST(Trajectory, HasPlacesAndMotionOfEverySphereInTheCell) {
 TEST(Trajectory, HasPlacesAndMotionAlongTheAxesOfATurnedCell) {
   const Json extension = Json::parse(R"({"shear_rate": null, "extension_rate": 2})");
   const Json across = Json::parse(R"({"shear_rate": 2, "cross_shear": {"amplitude": 0.3, "frequency": 10}})");
-  for (const Json& flow : {extension, across}) {
+  const Json uniaxial = Json::parse(R"({"shear_rate": null, "uniaxial_rate": 2})");
+  for (const Json& flow : {extension, uniaxial, across}) {
     Simulation simulation = started(scene_with_trajectory({{"flow", flow}, {"volume_fraction", 0.3}}));
     const Schedule schedule = simulation.schedule();
     simulation.advance(schedule.equilibration);

@@ -109,6 +109,24 @@ TEST(Result, TheViscosityOfAnExtensionIsThatOfItsNormalStresses) {
   for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(total[c], sum[c], 1e-12 * std::abs(expected));
 }
 
+// eta_E / 3 eta = (sigma_xx - (sigma_yy + sigma_zz) / 2) / (3 eta rate), in units of sqrt(3) |rate| eta, also
+// where the rate is below 0: biaxial extension.
+TEST(Result, TheViscosityOfAUniaxialExtensionIsAThirdOfTheExtensionalOne) {
+  for (const double rate : {1.0, -1.0}) {
+    const Json result = result_of({{"flow", {{"shear_rate", nullptr}, {"uniaxial_rate", rate}}},
+                                   {"integrator", {{"method", "implicit"}}},
+                                   {"duration", {{"equilibration", {{"time", 0.02}}}}}});
+    const Json &mean = result.at("mean"), &total = mean.at("stress").at("total");
+    const auto component = [&](int c) { return total[c].get<double>(); };
+    const double expected = (component(0) - (component(1) + component(2)) / 2) / std::sqrt(3.0) * rate;
+    EXPECT_NEAR(mean.at("relative_viscosity"), expected, 1e-12 * std::abs(expected));
+    // Of the solvent and the stresslets 1 + 2.5 phi.
+    const double of_pairs = mean.at("relative_viscosity_pair").get<double>();
+    EXPECT_NEAR(expected - of_pairs, 1 + 2.5 * 0.45, 1e-12 * std::abs(expected));
+    EXPECT_NEAR(result.at("strain").at("production"), 0.64, 1e-9);  // in either direction
+  }
+}
+
 // 320 steps make 32 blocks of ten, so that blocks weigh the same. They have five digits: each is wrong by at
 // most half a unit of the last one.
 void expect_average(const Json& blocks, const Json& mean, const std::string& where) {

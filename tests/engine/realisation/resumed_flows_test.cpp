@@ -22,7 +22,9 @@ const Case cases[] = {{"reversal", reversal, "transient", "explicit"},
                       {"across", across, "contact_network", "explicit"},
                       {"across_implicit", across, "contact_network", "implicit"},
                       {"extension", R"({"extension_rate": 1})", "transient", "explicit"},
-                      {"extension_implicit", R"({"extension_rate": 1})", "transient", "implicit"}};
+                      {"extension_implicit", R"({"extension_rate": 1})", "transient", "implicit"},
+                      {"uniaxial", R"({"uniaxial_rate": 1})", "transient", "explicit"},
+                      {"biaxial_implicit", R"({"uniaxial_rate": -1})", "transient", "implicit"}};
 
 class ResumedFlow : public testing::TestWithParam<Case> {
  protected:

@@ -97,6 +97,24 @@ TEST(SceneFit, ABoxNarrowerThanTheRangeOfTheForcesIsRefused) {
   EXPECT_NE(fault(0).find("/box/height"), std::string::npos);
 }
 
+// Forces of spheres of radius 1 reach 2.1. A cube with an edge of 2.15 is wide enough in shear; in extension
+// its images come as near as 0.946 or 0.905 of that.
+TEST(SceneFit, ACubeWhoseImagesExtensionBringsWithinTheRangeOfTheForcesIsRefused) {
+  const auto fault = [](const Json& flow, double edge) {
+    Json patch = with_species(1, {{{"radius", 1}}});
+    patch["volume_fraction"] = 4 * M_PI / 3 / (edge * edge * edge);
+    patch["flow"] = flow;
+    return fault_of(patch);
+  };
+  const Json planar = {{"shear_rate", nullptr}, {"extension_rate", 1}},
+             uniaxial = {{"shear_rate", nullptr}, {"uniaxial_rate", 1}};
+  EXPECT_EQ(fault({{"shear_rate", 2}}, 2.15), "");
+  EXPECT_NE(fault(planar, 2.15).find("(its nearest images would be 2.033 apart)"), std::string::npos);
+  EXPECT_EQ(fault(planar, 2.25), "");
+  EXPECT_NE(fault(uniaxial, 2.25).find("(its nearest images would be 2.037 apart)"), std::string::npos);
+  EXPECT_EQ(fault(uniaxial, 2.35), "");
+}
+
 // The edge is a part of the trajectory: to the last bit that of a box for the list of all radii.
 TEST(SceneFit, TheBoxIsThatOfAllRadii) {
   for (const std::size_t count : {2U, 7U, 60U, 12345U}) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "engine/integrators/step_origin.h"
 #include "engine/random/keyed_random.h"
 #include "engine/realisation/stress_control.h"
 #include "tests/engine/small_scene.h"
@@ -45,11 +46,14 @@ class KnownPairs : public Integrator {
   double stability_share(const System& /*system*/) const override { return 0; }
   std::optional<double> spurious_energy(const System& /*system*/) const override { return std::nullopt; }
   HalfSteps compare_half_steps(const System& /*system*/, int /*steps*/) const override { return {}; }
+  void mark(const System& system) override { mark_.mark(system, 1); }
+  void return_to_mark(System& system) override { mark_.return_to(system, 1); }
   void save(ArchiveWriter& /*archive*/) const override {}
   void load(const System& /*system*/, ArchiveReader& /*archive*/) override {}
 
  private:
   const ControlledShear& shear_;
+  StepOrigin mark_;
 };
 
 class StrainNoise : public testing::Test {
@@ -59,7 +63,8 @@ class StrainNoise : public testing::Test {
   double rate() const { return shear_->present_rate(); }
   void step() { control_.advance(pairs_, system_, nullptr); }
 
-  std::shared_ptr<ControlledShear> shear_ = std::make_shared<ControlledShear>(stress, stress / friction);
+  std::shared_ptr<ControlledShear> shear_ =
+      std::make_shared<ControlledShear>(stress, stress / friction, viscosity, 1e4);
   KnownPairs pairs_{*shear_};
   StressControl control_{
       read_scene(small_scene({{"flow", {{"shear_rate", nullptr}, {"stress", stress}}}}), "scene.json"),

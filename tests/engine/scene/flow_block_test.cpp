@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "engine/flow/controlled_shear.h"
 #include "engine/realisation/schedule.h"
 #include "engine/stability/derived_groups.h"
 #include "tests/engine/small_scene.h"
@@ -102,6 +103,17 @@ TEST(FlowBlock, CountsExtensionInHenckyStrains) {
   EXPECT_DOUBLE_EQ(time_of(scene.production, scene), 4);
 }
 
+// sqrt(2 E:E) of diag(1, -1/2, -1/2) is sqrt(3).
+TEST(FlowBlock, ReadsUniaxialAndBiaxialExtension) {
+  for (const double rate : {0.5, -0.5}) {
+    const Scene scene =
+        read_scene(flowing({{"uniaxial_rate", rate}}, {{"strain", 1}}, {{"strain", 2}}), "scene.json");
+    EXPECT_DOUBLE_EQ(scene.physics.flow.steady_rate(), 0.5 * std::sqrt(3.0));
+    EXPECT_DOUBLE_EQ(time_of(scene.production, scene), 4);
+    EXPECT_EQ(scene.physics.flow.rate(), 0.5);
+  }
+}
+
 // Stress 3 and viscosity 0.1: its unit of time is 1/30.
 TEST(FlowBlock, CountsTimesOfAStress) {
   const Scene scene =
@@ -109,7 +121,7 @@ TEST(FlowBlock, CountsTimesOfAStress) {
   EXPECT_DOUBLE_EQ(time_of(scene.equilibration, scene), 1);
   EXPECT_DOUBLE_EQ(time_of(scene.production, scene), 2);
   EXPECT_EQ(scene.physics.flow.steady_rate(), 0);
-  EXPECT_EQ(*scene.physics.flow.deformation().stress(), 3);
+  EXPECT_EQ(scene.physics.flow.deformation().at_stress()->stress(), 3);
   EXPECT_FALSE(derived_groups(scene).peclet.has_value());
   // (1 - 0.45 / 0.65)^1.6 of stress / viscosity.
   EXPECT_NEAR(scene.physics.flow.rate(), 30 * std::pow(0.2 / 0.65, 1.6), 1e-12);

@@ -67,20 +67,4 @@ inline Key must_be_given(Key key) {
 
 using Keys = std::vector<Key>;
 
-// A duration, by up to five limits made by `limit`.
-inline Keys duration_keys(const std::string& pointer, const std::string& meaning,
-                          Key (*limit)(std::string, std::string, std::string, bool),
-                          bool is_required = required) {
-  return {
-      block(pointer, meaning + " Ends with the first of its limits that is reached; one at least.",
-            is_required),
-      limit(pointer + "/strain", "", "Strain: shear rate times time.", false),
-      limit(pointer + "/brownian_times", "eta a^3 / k_B T", "Time in units of the Brownian time.", false),
-      limit(pointer + "/time", "time", "Time.", false),
-      limit(pointer + "/cycles", "", "Cycles of /flow/oscillation or /flow/cross_shear, at least.", false),
-      limit(pointer + "/stress_times", "eta / stress", "Time in units of viscosity over /flow/stress.",
-            false),
-  };
-}
-
 }  // namespace peclet::engine
