@@ -6,10 +6,11 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "engine/catalogue/catalogue.h"
 #include "engine/integrators/implicit.h"
 #include "engine/integrators/velocity_verlet.h"
 #include "engine/kernels/pairs/terms.h"
+#include "engine/observables/observable.h"
+#include "engine/observables/structure.h"
 #include "engine/random/keyed_random.h"
 #include "engine/realisation/scene_fit.h"
 #include "engine/start/packing.h"
@@ -84,7 +85,7 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
         ForceField(physics, system_.particles, schedule.timestep, seed, threads), system_.particles,
         schedule.timestep);
   }
-  observables_ = make_observables(scene, system_, {schedule.timestep, schedule.production, box});
+  observables_ = make_observables(scene, {schedule.timestep, schedule.production, box}, file);
   if (const auto shear = std::dynamic_pointer_cast<ControlledShear>(own)) {
     control_ = std::make_unique<StressControl>(scene_, shear, schedule.timestep, seed);
   }

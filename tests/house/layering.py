@@ -51,7 +51,6 @@ ENGINE = [
         for room in (
             "threads",
             "state",
-            "averages",
             "gsd",
             "snapshots",
             "pictures",
@@ -69,8 +68,6 @@ ENGINE = [
             "integrators",
             "start",
             "observables",
-            "responses",
-            "catalogue",
             "realisation",
             "output",
             "jobs",

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "engine/jobs/job.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/checkpoint.h"
 #include "tests/engine/small_scene.h"
 #include "tests/engine/temporary_folder.h"

@@ -11,6 +11,7 @@
 
 #include "contract/input_error.h"
 #include "engine/jobs/job.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/start/packing.h"
 #include "tests/engine/small_scene.h"
 

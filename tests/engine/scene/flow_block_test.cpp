@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/schedule.h"
 #include "engine/stability/derived_groups.h"
 #include "tests/engine/small_scene.h"

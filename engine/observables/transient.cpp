@@ -1,0 +1,119 @@
+// The stress over the strain of the production window: how it rises when a flow begins, falls when it is
+// reversed or stops. Where the rate of the window is not one and constant, over time.
+//
+// Each of a number of equal parts of the window has a mean of its own, and no blocks. The stress is the flux
+// of momentum that acted in each step (kernels/momentum_flux.h) and what solvent and stresslets add; in units
+// of viscosity times rate where that is constant, so that shear_stress is the relative viscosity.
+#include <fmt/format.h>
+
+#include <array>
+
+#include "contract/input_error.h"
+#include "engine/observables/observable.h"
+#include "engine/terms/drag.h"
+
+namespace peclet::engine {
+namespace {
+
+constexpr std::pair<const char*, const char*> stresses[] = {{"shear_stress", "sigma"},
+                                                            {"first_normal_difference", "N_1"},
+                                                            {"second_normal_difference", "N_2"},
+                                                            {"pressure", "P"}};
+
+// The middles of equal parts of the window. Strains are those of durations: Hencky strains of extension.
+Axis parts_of(const Window& window, const ImposedFlow& flow, std::size_t parts) {
+  const bool is_steady = flow.steady_rate() > 0;
+  const double length = window.timestep * static_cast<double>(window.steps);
+  const double whole = is_steady ? flow.rate() * length : length;
+  return axis_of(is_steady ? "strain" : "time", is_steady ? "1" : "time", parts, [&](std::size_t k) {
+    return (static_cast<double>(k) + 0.5) / static_cast<double>(parts) * whole;
+  });
+}
+
+class Transient : public Observable {
+ public:
+  Transient(const Plan& plan, std::size_t bins)
+      : Observable(plan),
+        flow_(plan.scene.physics.flow),
+        has_noise_(plan.scene.physics.thermal_energy > 0),
+        viscosity_(plan.scene.physics.viscosity),
+        volume_fraction_(plan.scene.volume_fraction),
+        volume_(PeriodicCell::with_edges(flow_.deformation().edges_at_start(plan.window.box), {}).volume()),
+        unit_(unit_of_stress(plan.scene.physics)),
+        behind_(0.5 * plan.window.timestep),
+        steps_(plan.window.steps),
+        parts_(bins) {
+    if (bins > steps_) {
+      throw InputError(plan.file, "/transient/bins", std::to_string(bins),
+                       fmt::format("must be at most {}, the steps of the production window", steps_));
+    }
+    const Axis axis = parts_of(plan.window, flow_, bins);
+    for (std::size_t q = 0; q < std::size(stresses); ++q) {
+      derive({.name = std::string("transient/") + stresses[q].first,
+              .symbol = stresses[q].second,
+              .unit = name_of_stress_unit(plan.scene.physics),
+              .axes = {axis}},
+             [this, q] { return means_of(q); });
+    }
+    keep(taken_, parts_);
+  }
+
+  bool takes_flux() const override { return true; }
+  void take_flux(const MomentumFlux& flux) override { flux_ = stress_of(flux, has_noise_); }
+
+  void sample(const System& system, std::size_t /*block*/) override {
+    const Matrix3 gradient = flow_.deformation().velocity_gradient(system.clock.time() - behind_);
+    const SymmetricTensor solvent = solvent_stress(viscosity_, gradient);
+    const SymmetricTensor stress =
+        (1 / unit_) * ((1 / volume_) * flux_ + solvent + stresslet(volume_fraction_, solvent));
+    Part& part = parts_[taken_ * parts_.size() / steps_];
+    part.sums[0] += flow_.shear_part(stress);
+    part.sums[1] += stress.xx - stress.yy;
+    part.sums[2] += stress.yy - stress.zz;
+    part.sums[3] -= (stress.xx + stress.yy + stress.zz) / 3;
+    ++part.steps;
+    ++taken_;
+  }
+
+ private:
+  struct Part {
+    std::array<double, std::size(stresses)> sums{};
+    std::uint64_t steps = 0;
+  };
+
+  Json means_of(std::size_t stress) const {
+    Json values = Json::array();
+    for (const Part& part : parts_) values.push_back(part.sums[stress] / static_cast<double>(part.steps));
+    return values;
+  }
+
+  ImposedFlow flow_;
+  bool has_noise_;
+  double viscosity_, volume_fraction_, volume_, unit_;
+  double behind_;  // half a step: the time from its middle, whose rate is the step's mean, to its end
+  std::uint64_t steps_, taken_ = 0;
+  SymmetricTensor flux_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace
+
+ObservableKind transient() {
+  constexpr double most_bins = 1000;
+  return {.name = "transient",
+          .meaning =
+              "shear stress, normal stress differences and pressure over the strain, or time, of the "
+              "window",
+          .sampling = Sampling::of_every_step,
+          .settings = {with_default({.pointer = "/transient/bins",
+                                     .kind = KeyKind::integer,
+                                     .meaning = "Equal parts of the production window.",
+                                     .minimum = 1,
+                                     .maximum = most_bins},
+                                    50)},
+          .read = [](const SceneDocument& document, const Scene&) {
+            return maker<Transient>(document.at("/transient/bins").get<std::size_t>());
+          }};
+}
+
+}  // namespace peclet::engine
