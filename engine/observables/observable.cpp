@@ -11,6 +11,7 @@ ObservableKind mean_squared_displacement();
 ObservableKind stress_correlation();
 ObservableKind pair_distribution();
 ObservableKind contact_network();
+ObservableKind fabric();
 ObservableKind profiles();
 ObservableKind linear_response();
 ObservableKind oscillation();
@@ -18,9 +19,16 @@ ObservableKind transient();
 ObservableKind trajectory();
 
 const std::vector<ObservableKind>& observable_kinds() {
-  static const std::vector<ObservableKind> all{
-      mean_squared_displacement(), stress_correlation(), pair_distribution(), contact_network(), profiles(),
-      linear_response(),           oscillation(),        transient(),         trajectory()};
+  static const std::vector<ObservableKind> all{mean_squared_displacement(),
+                                               stress_correlation(),
+                                               pair_distribution(),
+                                               contact_network(),
+                                               fabric(),
+                                               profiles(),
+                                               linear_response(),
+                                               oscillation(),
+                                               transient(),
+                                               trajectory()};
   return all;
 }
 

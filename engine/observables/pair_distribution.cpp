@@ -18,11 +18,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "contract/input_error.h"
+#include "engine/observables/near_pairs.h"
 #include "engine/observables/observable.h"
-#include "engine/state/cell_grid.h"
 
 namespace peclet::engine {
 namespace {
@@ -91,16 +90,9 @@ class PairDistribution : public Observable {
 
   void sample(const System& system, std::size_t block) override {
     const std::size_t quarter = block * count_of_quarters / count_of_blocks;
-    const LatticePlaces places = lattice_places(system.particles.position, system.box);
-    std::vector<std::uint32_t> everyone(system.particles.count());
-    std::iota(everyone.begin(), everyone.end(), 0U);
-    const CellGrid grid(places, everyone, system.box, range_);
-    for (std::uint32_t i = 0; i < everyone.size(); ++i) {
-      grid.visit_near(places.fractional[i], range_,
-                      [&](std::uint32_t j, LatticeShift, const Vector3& separation) {
-                        if (j != i) count(separation, quarter);
-                      });
-    }
+    for_each_near_pair(system, range_, [&](std::uint32_t, std::uint32_t, const Vector3& separation) {
+      count(separation, quarter);
+    });
     ++samples_;
     ++quarter_samples_[quarter];
   }

@@ -4,11 +4,16 @@
 // Each of a number of equal parts of the window has a mean of its own, and no blocks. The stress is the flux
 // of momentum that acted in each step (kernels/momentum_flux.h) and what solvent and stresslets add; in units
 // of viscosity times rate where that is constant, so that shear_stress is the relative viscosity.
+//
+// With a gap, `fabric` has the tensors of fabric.h in the same parts, of at least three samples in each.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <optional>
 
 #include "contract/input_error.h"
+#include "engine/observables/fabric.h"
 #include "engine/observables/observable.h"
 #include "engine/terms/drag.h"
 
@@ -30,9 +35,15 @@ Axis parts_of(const Window& window, const ImposedFlow& flow, std::size_t parts) 
   });
 }
 
+// Steps between samples of the fabric, which changes slowly.
+std::uint64_t fabric_interval(std::uint64_t steps, std::size_t parts) {
+  return std::max<std::uint64_t>(1, steps / std::max<std::size_t>(256, 4 * parts));
+}
+
 class Transient : public Observable {
  public:
-  Transient(const Plan& plan, std::size_t bins)
+  // `gap` is the one of near pairs; without one there is no fabric.
+  Transient(const Plan& plan, std::size_t bins, std::optional<double> gap)
       : Observable(plan),
         flow_(plan.scene.physics.flow),
         has_noise_(plan.scene.physics.thermal_energy > 0),
@@ -42,6 +53,8 @@ class Transient : public Observable {
         unit_(unit_of_stress(plan.scene.physics)),
         behind_(0.5 * plan.window.timestep),
         steps_(plan.window.steps),
+        gap_(gap),
+        interval_of_fabric_(fabric_interval(steps_, bins)),
         parts_(bins) {
     if (bins > steps_) {
       throw InputError(plan.file, "/transient/bins", std::to_string(bins),
@@ -54,6 +67,10 @@ class Transient : public Observable {
               .unit = name_of_stress_unit(plan.scene.physics),
               .axes = {axis}},
              [this, q] { return means_of(q); });
+    }
+    if (gap_) {
+      if (plan.scene.physics.contact) register_fabric("contacts", axis, &FabricSums::contacts);
+      register_fabric("near", axis, &FabricSums::near);
     }
     keep(taken_, parts_);
   }
@@ -71,6 +88,11 @@ class Transient : public Observable {
     part.sums[1] += stress.xx - stress.yy;
     part.sums[2] += stress.yy - stress.zz;
     part.sums[3] -= (stress.xx + stress.yy + stress.zz) / 3;
+    if (gap_ && taken_ % interval_of_fabric_ == 0) {
+      const FabricSums sums = fabric_of(system, *gap_);
+      part.fabric.contacts += sums.contacts;
+      part.fabric.near += sums.near;
+    }
     ++part.steps;
     ++taken_;
   }
@@ -79,7 +101,22 @@ class Transient : public Observable {
   struct Part {
     std::array<double, std::size(stresses)> sums{};
     std::uint64_t steps = 0;
+    FabricSums fabric;
   };
+
+  void register_fabric(const std::string& which, const Axis& axis, FabricSums::Pairs FabricSums::*pairs) {
+    derive(fabric_quantity("transient/fabric/" + which, {axis}), [=, this] {
+      Json rows(axis_of_components().values.size(), Json::array());
+      for (const Part& part : parts_) {
+        const FabricSums::Pairs& found = part.fabric.*pairs;
+        const std::vector<double> sums = components_of(found.sum);
+        for (std::size_t c = 0; c < sums.size(); ++c) {
+          rows[c].push_back(found.count > 0 ? Json(sums[c] / found.count) : Json());
+        }
+      }
+      return rows;
+    });
+  }
 
   Json means_of(std::size_t stress) const {
     Json values = Json::array();
@@ -93,6 +130,8 @@ class Transient : public Observable {
   double behind_;  // half a step: the time from its middle, whose rate is the step's mean, to its end
   std::uint64_t steps_, taken_ = 0;
   SymmetricTensor flux_;
+  std::optional<double> gap_;
+  std::uint64_t interval_of_fabric_;
   std::vector<Part> parts_;
 };
 
@@ -110,9 +149,14 @@ ObservableKind transient() {
                                      .meaning = "Equal parts of the production window.",
                                      .minimum = 1,
                                      .maximum = most_bins},
-                                    50)},
+                                    50),
+                       fabric_gap("/transient/fabric_gap",
+                                  "As /fabric/gap, of the fabric over the window; "
+                                  "absent: that is not measured.")},
           .read = [](const SceneDocument& document, const Scene&) {
-            return maker<Transient>(document.at("/transient/bins").get<std::size_t>());
+            std::optional<double> gap;
+            if (document.has("/transient/fabric_gap")) gap = document.number("/transient/fabric_gap");
+            return maker<Transient>(document.at("/transient/bins").get<std::size_t>(), gap);
           }};
 }
 

@@ -288,10 +288,12 @@ std::optional<std::string> fault_of_observable(const SceneDocument& scene, const
   const auto is_one_of = [&](std::initializer_list<const char*> names) {
     return std::ranges::any_of(names, [&](const char* known) { return name == known; });
   };
-  if (scene.has("/flow/stress") && !is_one_of({"pair_distribution", "contact_network", "trajectory"})) {
+  if (scene.has("/flow/stress") &&
+      !is_one_of({"pair_distribution", "contact_network", "fabric", "trajectory"})) {
     return fault("/flow/stress");
   }
-  if (scene.has("/flow/extension_rate") && !is_one_of({"contact_network", "transient", "trajectory"})) {
+  if (scene.has("/flow/extension_rate") &&
+      !is_one_of({"contact_network", "fabric", "transient", "trajectory"})) {
     return fault("/flow/extension_rate");
   }
   if (scene.has("/flow/cross_shear") && name == "mean_squared_displacement")

@@ -59,7 +59,8 @@ const Way ways[] = {
       {"fluid", {{"thermal_energy", nullptr}}}}},
     {"with_every_observable_of_a_flow",
      {{"observables",
-       {"mean_squared_displacement", "pair_distribution", "contact_network", "profiles", "trajectory"}},
+       {"mean_squared_displacement", "pair_distribution", "contact_network", "fabric", "profiles",
+        "trajectory"}},
       {"pair_distribution", {{"range", 3}}}}},
 };
 const auto name_of_way = [](const auto& way) { return std::string(way.param.name); };

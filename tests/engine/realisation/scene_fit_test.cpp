@@ -159,6 +159,7 @@ TEST(NamesOfTargets, AreThoseOfTheNumbersThatTheResultHas) {
       Json::object(),
       {{"fluid", {{"thermal_energy", nullptr}}},
        {"observables", {"mean_squared_displacement", "contact_network"}}},
+      {{"observables", {"fabric", "transient"}}, {"transient", {{"bins", 4}, {"fabric_gap", 0.1}}}},
       {{"observables", {"mean_squared_displacement", "pair_distribution", "contact_network", "profiles"}},
        {"pair_distribution", {{"range", 3}}}},
       {{"contact", {{"friction", nullptr}, {"rolling_stiffness", nullptr}, {"rolling_friction", nullptr}}},
