@@ -15,6 +15,7 @@
 #include "contract/key_table.h"
 #include "contract/provenance.h"
 #include "contract/sha256.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/output/final_configuration.h"
 #include "engine/output/growing_file.h"
 #include "engine/start/packing.h"

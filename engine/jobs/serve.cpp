@@ -18,6 +18,7 @@
 #include "contract/key_table.h"
 #include "contract/sha256.h"
 #include "engine/jobs/job.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/output/summary.h"
 #include "engine/realisation/scene_fit.h"
 #include "engine/stability/derived_groups.h"

@@ -1,52 +1,113 @@
-// What a scene asks for besides the stress: sampled during the production window.
+// An observable: a measurement besides the stress, sampled during the production window.
+//
+// An observable is one file: its class, its keys and a function that returns its ObservableKind, which the
+// list in observable.cpp names.
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
 #include <vector>
 
-#include "contract/json.h"
+#include "engine/document/keys.h"
+#include "engine/document/scene_document.h"
 #include "engine/gsd/frames.h"
 #include "engine/kernels/momentum_flux.h"
 #include "engine/kernels/pair_watcher.h"
-#include "engine/state/system.h"
+#include "engine/kernels/pairs/pair_kinds.h"
+#include "engine/observables/accumulators.h"
+#include "engine/scene/scene.h"
 
 namespace peclet::engine {
 
-class Observable {
+// The production window that is measured in.
+struct Window {
+  double timestep = 0;
+  std::uint64_t steps = 0;
+  Vector3 box{};  // its edges
+
+  double volume() const { return box.x * box.y * box.z; }
+};
+
+// The run that an observable is made for.
+struct Plan {
+  const Scene& scene;
+  const Window& window;
+  std::uint64_t interval;  // steps between samples, of which the first is at the first step of the window
+  const std::string& file;
+
+  double time_between() const { return window.timestep * static_cast<double>(interval); }
+  std::uint64_t samples() const { return (window.steps - 1) / interval + 1; }
+
+  // Throws InputError if the window has fewer samples of the observable of this name.
+  void need_samples(const char* name, std::uint64_t least) const;
+};
+
+class Observable : public Accumulators {
  public:
-  // Steps between samples, of which the first is at the first step of the window.
-  explicit Observable(std::uint64_t interval) : interval_(interval) {}
+  // Constructors register what is measured. They throw InputError if box or window are too small for it.
+  explicit Observable(const Plan& plan) : interval_(plan.interval) {}
   virtual ~Observable() = default;
 
   std::uint64_t interval() const { return interval_; }
-  // Whether it takes the flux of momentum, and what it does with that of every step of the window.
+  // Override both to take the flux of momentum of every step of the window.
   virtual bool takes_flux() const { return false; }
   virtual void take_flux(const MomentumFlux& /*flux*/) {}
-  // Who looks at the pairs of each step that is sampled, before the sample. Null: nobody.
+  // Returns who looks at the pairs of each step that is sampled, before the sample; null: nobody.
   virtual PairWatcher* watcher() { return nullptr; }
-  // Requires a complete step (integrator.h) and the system that every other sample is of. `block` counts the
-  // 32 blocks of the window from 0.
-  virtual void sample(const System& system, std::size_t block) = 0;
-  // Adds the values of its quantities to the result's means, at the paths that their names are. Requires a
-  // sample.
-  virtual void add_to(Json& mean) const = 0;
-  // The same of the blocks that it keeps. A function of lags up to the whole window has none.
-  virtual void add_blocks_to(Json& blocks) const = 0;
-
-  // What it writes beside the result; null: nothing.
+  // Requires a complete step (integrator.h). `block` counts the 32 blocks of the window from 0.
+  virtual void sample(const System& /*system*/, std::size_t /*block*/) {}
+  // Returns what it writes beside the result; null: nothing.
   virtual gsd::Frames* frames() { return nullptr; }
-
-  // Everything that samples have left, bit by bit.
-  virtual void save(ArchiveWriter& archive) const = 0;
-  virtual void load(ArchiveReader& archive) = 0;
 
  private:
   std::uint64_t interval_;
 };
 
-// Samples in a window of so many steps, one at least.
-constexpr std::uint64_t samples_in(std::uint64_t steps, std::uint64_t interval) {
-  return (steps - 1) / interval + 1;
+using MakeFromPlan = std::function<std::unique_ptr<Observable>(const Plan&)>;
+
+// Makes an observable of this class, whose constructor takes a plan and these settings.
+template <class Measured, class... Settings>
+MakeFromPlan maker(const Settings&... settings) {
+  return [=](const Plan& plan) { return std::make_unique<Measured>(plan, settings...); };
 }
+
+enum class Sampling {
+  of_every_step,  // whatever the scene says
+  often,          // one step unless the scene says otherwise
+  seldom          // a 256th of the window: it costs a walk over all pairs and changes slowly
+};
+
+struct ObservableKind {
+  std::string name;
+  std::string meaning;  // behind its name in the list of all
+  Sampling sampling = Sampling::seldom;
+  bool interval_is_a_duration = false;  // in strain, Brownian times or time; else it is a time
+  Keys settings{};                      // in the block "/NAME", besides its interval
+  std::vector<std::string> numbers{};   // of the result that are not below its name
+  // Reads the settings. Throws InputError where the scene does not go with them.
+  MakeFromPlan (*read)(const SceneDocument& document, const Scene& scene);
+
+  bool has_settings() const { return sampling != Sampling::of_every_step || !settings.empty(); }
+};
+
+const std::vector<ObservableKind>& observable_kinds();
+
+// Makes the observables that the scene lists. Throws InputError where box or window are too small for one.
+std::vector<std::unique_ptr<Observable>> make_observables(const Scene& scene, const Window& window,
+                                                          const std::string& file);
+
+// Throws InputError unless the thermal energy is > 0 and the fluid at rest.
+void require_rest(const SceneDocument& document, const Scene& scene, const char* name);
+
+// Throws InputError with lubrication of the form mari, whose stress is not that of the forces alone.
+void require_stress_of_forces(const SceneDocument& document, const Scene& scene, const char* name);
+
+// Returns the distinct radii, ascending, as the size classes of the spheres are.
+std::vector<double> radii_in(const Scene& scene);
+
+// Returns the pairs of these size classes.
+std::vector<PairKind> pair_kinds_in(const Scene& scene);
 
 }  // namespace peclet::engine

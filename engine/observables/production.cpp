@@ -13,49 +13,20 @@ Production::Production(std::uint64_t steps) : steps_(steps) {
   for (std::size_t k = 0; k < count_of_blocks; ++k) blocks_[k].planned = begin(k + 1) - begin(k);
 }
 
-void Production::add_step(std::uint64_t index, const PairSums& sums, const SymmetricTensor& motion,
-                          double shear_rate) {
-  BlockSums& block = block_of(index);
-  ++block.steps;
-  for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
-    block.stress[t] += sums.stress[t];
-  }
-  block.motion += motion;
-  block.shear_rate += shear_rate;
-  block.contacts += sums.contacts;
-  block.overlaps += sums.overlaps;
-}
-
-void Production::add_sample(std::uint64_t index, const SymmetricTensor& structural_brownian,
-                            const SymmetricTensor& varying_stresslet,
-                            const KineticTemperatures& temperature) {
-  BlockSums& block = block_of(index);
-  ++block.samples;
-  block.structural_brownian += structural_brownian;
-  block.varying_stresslet += varying_stresslet;
-  block.temperature.translational += temperature.translational;
-  block.temperature.rotational += temperature.rotational;
-}
-
-BlockSums sum_of(std::span<const BlockSums> blocks) {
-  BlockSums all;
-  for (const BlockSums& block : blocks) {
-    all.planned += block.planned;
-    all.steps += block.steps;
-    all.samples += block.samples;
-    all.shear_rate += block.shear_rate;
-    all.contacts += block.contacts;
-    all.overlaps += block.overlaps;
-    for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
-      all.stress[t] += block.stress[t];
-    }
-    all.motion += block.motion;
-    all.structural_brownian += block.structural_brownian;
-    all.varying_stresslet += block.varying_stresslet;
-    all.temperature.translational += block.temperature.translational;
-    all.temperature.rotational += block.temperature.rotational;
-  }
-  return all;
+BlockSums& BlockSums::operator+=(const BlockSums& block) {
+  planned += block.planned;
+  steps += block.steps;
+  for (std::size_t t = 0; t < count_of_stress_terms; ++t) stress[t] += block.stress[t];
+  motion += block.motion;
+  shear_rate += block.shear_rate;
+  contacts += block.contacts;
+  overlaps += block.overlaps;
+  samples += block.samples;
+  structural_brownian += block.structural_brownian;
+  varying_stresslet += block.varying_stresslet;
+  temperature.translational += block.temperature.translational;
+  temperature.rotational += block.temperature.rotational;
+  return *this;
 }
 
 double statistical_inefficiency(const std::vector<double>& series) {

@@ -4,8 +4,8 @@
 #include <array>
 #include <span>
 
-#include "engine/averages/blocked_mean.h"
 #include "engine/kernels/pair_pass.h"
+#include "engine/observables/blocked_mean.h"
 #include "engine/observables/structure.h"
 #include "engine/state/archive.h"
 
@@ -15,31 +15,47 @@ struct BlockSums {
   std::uint64_t planned = 0;  // steps that it has once it is complete
   std::uint64_t steps = 0;    // every step adds to the stress: thinning would destroy the Brownian part
   std::array<SymmetricTensor, count_of_stress_terms> stress{};  // sum over pairs of sym(r F)
-  SymmetricTensor motion;                                       // -sum m sym(v v), relative to the flow
+  SymmetricTensor motion{};                                     // -sum m sym(v v), relative to the flow
   double shear_rate = 0;                                        // of the cell, x along y
   double contacts = 0;
   double overlaps = 0;        // of these, over the smaller radius of the pair
   std::uint64_t samples = 0;  // the rest is sampled
-  SymmetricTensor structural_brownian;
-  SymmetricTensor varying_stresslet;
+  SymmetricTensor structural_brownian{};
+  SymmetricTensor varying_stresslet{};
   KineticTemperatures temperature{};
 
-  // Of contacts; 0 without any.
+  BlockSums& operator+=(const BlockSums& block);
+  // Over contacts; 0 without any.
   double mean_overlap() const { return contacts > 0 ? overlaps / contacts : 0; }
 };
 
-// Of several blocks together.
-BlockSums sum_of(std::span<const BlockSums> blocks);
+inline BlockSums sum_of(std::span<const BlockSums> blocks) {
+  BlockSums all;
+  for (const BlockSums& block : blocks) all += block;
+  return all;
+}
 
 class Production {
  public:
-  // Of a window of `steps` steps, at least one for each block.
+  // The window has `steps` steps, at least one for each block.
   explicit Production(std::uint64_t steps);
 
   // `index` counts the steps of the window from 0.
-  void add_step(std::uint64_t index, const PairSums& sums, const SymmetricTensor& motion, double shear_rate);
+  void add_step(std::uint64_t index, const PairSums& sums, const SymmetricTensor& motion, double shear_rate) {
+    block_of(index) += {.steps = 1,
+                        .stress = std::to_array(sums.stress),
+                        .motion = motion,
+                        .shear_rate = shear_rate,
+                        .contacts = sums.contacts,
+                        .overlaps = sums.overlaps};
+  }
   void add_sample(std::uint64_t index, const SymmetricTensor& structural_brownian,
-                  const SymmetricTensor& varying_stresslet, const KineticTemperatures& temperature);
+                  const SymmetricTensor& varying_stresslet, const KineticTemperatures& temperature) {
+    block_of(index) += {.samples = 1,
+                        .structural_brownian = structural_brownian,
+                        .varying_stresslet = varying_stresslet,
+                        .temperature = temperature};
+  }
 
   const std::array<BlockSums, count_of_blocks>& blocks() const { return blocks_; }
   // The block that a step of the window belongs to.

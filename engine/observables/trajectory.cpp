@@ -1,5 +1,18 @@
-#include "engine/observables/trajectory.h"
-
+// Frames of a realisation for other programs: centres, motion, stress of each sphere and, where asked for,
+// contacts, as a GSD file of the schema "hoomd" 1.4. All numbers are in the units of the scene.
+//
+// Spheres stand in the order of their ids. A centre is the image in the cell around the origin, -1/2 <=
+// fractional < 1/2, velocity is that of this image (the streaming flow there is rate y), and centre + image .
+// lattice vectors of the frame is the way that the sphere has gone, also when the basis of the cell changes.
+//
+// A frame has its first lattice vector along x and its second one in the plane of x and y. The cell of an
+// extension or a cross shear does not: places and motion are then those along the rows of log/axes, which are
+// unit vectors in the axes of the flow. Stress is in the axes of the flow.
+//
+// Positions, motion and contacts are those at the end of a step, stress is that of the step: what the means
+// of the result add up. log/particles/stress is V sigma_i, xx yy zz xy xz yz, tension positive: half of sym(r
+// F_i) of each pair of the sphere, its stresslet as if it were alone and, with noise, -m sym(v v), so that
+//   log/stress/total = solvent + (1/V) sum_i V sigma_i.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +22,8 @@
 
 #include "contract/input_error.h"
 #include "engine/kernels/pairs/terms.h"
-#include "engine/start/packing.h"
+#include "engine/observables/observable.h"
+#include "engine/observables/touching_pairs.h"
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {
@@ -24,8 +38,6 @@ constexpr std::uint64_t of_sphere = 4 * 12 + 24 + 4, of_contact = 8 + 3 * 4 + 1,
                         of_frame = 2048;
 
 enum class State : std::uint8_t { frictionless, sticking, sliding };
-
-std::vector<double> components(const SymmetricTensor& t) { return {t.xx, t.yy, t.zz, t.xy, t.xz, t.yz}; }
 
 void append(std::vector<float>& values, const Vector3& v) {
   for (const double x : {v.x, v.y, v.z}) values.push_back(static_cast<float>(x));
@@ -50,198 +62,231 @@ std::vector<std::uint32_t> places_of_ids(const ParticleState& particles) {
   return place;
 }
 
-void check_trajectory(const Scene& scene, const Window& window, const std::string& file) {
-  const std::uint64_t frames = samples_in(window.steps, interval_of(scene, trajectory(), window));
-  const bool contacts = scene.observables.at("trajectory").at("contacts").get<bool>();
+void check_frames(const Plan& plan, bool contacts) {
   const std::uint64_t bytes =
-      of_frame + scene.particles.count * (of_sphere + (contacts ? contacts_of_sphere * of_contact : 0));
+      of_frame + plan.scene.particles.count * (of_sphere + (contacts ? contacts_of_sphere * of_contact : 0));
   const std::uint64_t most = std::min(most_frames, most_bytes / bytes);
-  if (frames <= most) return;
+  if (plan.samples() <= most) return;
   throw InputError(
-      file, "/trajectory/interval", fmt::format("{} frames", frames),
+      plan.file, "/trajectory/interval", fmt::format("{} frames", plan.samples()),
       fmt::format("must leave at most {} frames of up to {} bytes in the production window of {} steps", most,
-                  bytes, window.steps));
+                  bytes, plan.window.steps));
 }
+
+class Trajectory : public Observable, private PairWatcher {
+ public:
+  Trajectory(const Plan& plan, bool with_contacts)
+      : Observable(plan),
+        particles_(plan.scene.particles),
+        physics_(plan.scene.physics),
+        kinds_(pair_kinds_in(plan.scene)),
+        with_contacts_(with_contacts),
+        turns_(!plain_flow(physics_.flow.deformation().velocity_gradient(0)).is_simple_shear) {
+    check_frames(plan, with_contacts);
+    keep(frames_);
+  }
+
+  PairWatcher* watcher() override { return this; }
+  gsd::Frames* frames() override { return &frames_; }
+
+  void sample(const System& system, std::size_t /*block*/) override {
+    frames_.add_single<std::uint64_t>("configuration/step", system.step);
+    add_places(system);
+    if (frames_.count() == 0) add_kinds_of_spheres(system);
+    frames_.add_single("log/time", system.clock.time());
+    frames_.add_single("log/strain", system.box.net_strain());
+    add_stress(system);
+    add_contacts(system);
+    frames_.end_frame();
+    sums_ = {};
+    motion_ = {};
+    std::ranges::fill(shares_, SymmetricTensor{});
+  }
+
+ private:
+  void begin(const System& system, double weight) override {
+    weight_ = weight;
+    shares_.resize(system.particles.count());
+  }
+
+  void take(const System& system, const Pair& pair, const PairSums& sums, const Vector3& /*force*/) override {
+    for (std::size_t t = 0; t < count_of_stress_terms; ++t) sums_.stress[t] += weight_ * sums.stress[t];
+    const SymmetricTensor half = (0.5 * weight_) * total_stress(sums);
+    shares_[system.particles.id[pair.first]] += half;
+    shares_[system.particles.id[pair.second]] += half;
+  }
+
+  void take_motion(const System& system, std::size_t particle, const SymmetricTensor& stress) override {
+    motion_ += weight_ * stress;
+    shares_[system.particles.id[particle]] += weight_ * stress;
+  }
+
+  void add_kinds_of_spheres(const System& system) {
+    const ParticleState& particles = system.particles;
+    const std::vector<std::size_t> number = species_numbers(particles_);
+    std::uint32_t columns = 0;
+    const std::vector<std::int8_t> names =
+        names_of_species(static_cast<std::uint32_t>(number.size()), columns);
+    std::vector<std::uint32_t> species;  // of each id
+    for (std::uint32_t s = 0; s < number.size(); ++s) species.insert(species.end(), number[s], s);
+    std::vector<float> diameter, mass;
+    for (const std::uint32_t i : places_of_ids(particles)) {
+      diameter.push_back(static_cast<float>(2 * particles.radius[i]));
+      mass.push_back(static_cast<float>(particles.mass[i]));
+    }
+    frames_.add("particles/types", names, columns);
+    frames_.add("particles/typeid", species);
+    frames_.add("particles/diameter", diameter);
+    frames_.add("particles/mass", mass);
+  }
+
+  void add_places(const System& system) {
+    const ParticleState& particles = system.particles;
+    const PeriodicCell& box = system.box;
+    const CellFrame cell = box.frame();
+    const auto& axis = cell.axes.column;
+    const auto turned = [&](const Vector3& v) {
+      return Vector3{dot(axis[0], v), dot(axis[1], v), dot(axis[2], v)};
+    };
+    std::vector<float> shape, position, velocity, spin;
+    std::vector<std::int32_t> image;
+    append(shape, cell.lengths);
+    append(shape, {cell.tilt_xy / cell.lengths.y, cell.xz / cell.lengths.z, cell.yz / cell.lengths.z});
+    for (const std::uint32_t i : places_of_ids(particles)) {
+      const Vector3 place = cell.fractional(particles.position[i]);
+      const auto cells = [](double x) { return static_cast<std::int32_t>(std::floor(x + 0.5)); };
+      const LatticeShift removed = {cells(place.x), cells(place.y), cells(place.z)};
+      const LatticeShift all = particles.image[i] + removed;
+      append(position, turned(particles.position[i] - box.displacement(removed)));
+      append(velocity, turned(particles.velocity[i] - box.velocity(removed)));
+      append(spin, turned(particles.angular_velocity[i]));
+      image.insert(image.end(), {all.x, all.y, all.z});
+    }
+    frames_.add("configuration/box", shape);
+    frames_.add_single("particles/N", static_cast<std::uint32_t>(particles.count()));
+    frames_.add("particles/position", position, 3);
+    frames_.add("particles/image", image, 3);
+    frames_.add("particles/velocity", velocity, 3);
+    frames_.add("log/particles/angular_velocity", spin, 3);
+    if (!turns_) return;
+    std::vector<double> axes;
+    for (const Vector3& a : axis) axes.insert(axes.end(), {a.x, a.y, a.z});
+    frames_.add("log/axes", axes, 3);
+  }
+
+  void add_stress(const System& system) {
+    const ParticleState& particles = system.particles;
+    const double volume = system.box.volume();
+    const BackgroundFlow flow = physics_.flow.at(system.box);
+    const SymmetricTensor uniform = strain_of(system.box.velocity_gradient());
+    const SymmetricTensor solvent = solvent_stress(physics_.viscosity, system.box.velocity_gradient());
+    SymmetricTensor alone;
+    std::vector<float> of_spheres;
+    for (const std::uint32_t i : places_of_ids(particles)) {
+      const double a = particles.radius[i];
+      const SymmetricTensor own =
+          stresslet_of_sphere(physics_.viscosity, a, uniform + flow.varying_strain(particles.position[i], a));
+      alone += own;
+      for (const double x : components_of(own + shares_[particles.id[i]])) {
+        of_spheres.push_back(static_cast<float>(x));
+      }
+    }
+    const SymmetricTensor stresslet = (1 / volume) * alone;
+    frames_.add("log/particles/stress", of_spheres, 6);
+    frames_.add("log/stress/total",
+                components_of(solvent + stresslet + (1 / volume) * (total_stress(sums_) + motion_)));
+    frames_.add("log/stress/solvent", components_of(solvent));
+    frames_.add("log/stress/stresslet", components_of(stresslet));
+    for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
+      const auto term = static_cast<StressTerm>(t);
+      if (!has_stress_term(physics_, term)) continue;
+      frames_.add(std::string("log/stress/") + name_of(term), components_of((1 / volume) * sums_.of(term)));
+    }
+    if (physics_.thermal_energy > 0) frames_.add("log/stress/motion", components_of((1 / volume) * motion_));
+  }
+
+  void add_contacts(const System& system) {
+    if (!physics_.contact) return;
+    const ContactParameters& contact = *physics_.contact;
+    const ParticleState& particles = system.particles;
+    std::vector<std::uint32_t> number(particles.count());
+    struct Bond {
+      std::array<std::uint32_t, 2> group;
+      float gap, normal, tangential;
+      State state;
+    };
+    std::vector<Bond> bonds;
+    for_each_touching_pair(system, kinds_, contact, [&](const TouchingPair& touching) {
+      const std::uint32_t i = particles.id[touching.pair.first], j = particles.id[touching.pair.second];
+      ++number[i];
+      ++number[j];
+      const PairKind& kind = kinds_[touching.pair.kind];
+      const State state = !touching.rough   ? State::frictionless
+                          : touching.slides ? State::sliding
+                                            : State::sticking;
+      bonds.push_back({{std::min(i, j), std::max(i, j)},
+                       static_cast<float>(-2 * touching.overlap / kind.sum_of_radii),
+                       static_cast<float>(contact_push(contact.normal_stiffness, touching.overlap)),
+                       static_cast<float>(touching.tangential_force),
+                       state});
+    });
+    frames_.add("log/particles/contact_number", number);
+    if (!with_contacts_) return;
+    // Two images of one sphere may be touched at once: these stay in the order of the list.
+    std::ranges::stable_sort(bonds, {}, &Bond::group);
+    std::vector<std::uint32_t> group;
+    std::vector<float> gap, normal, tangential;
+    std::vector<std::uint8_t> state;
+    for (const Bond& bond : bonds) {
+      group.insert(group.end(), bond.group.begin(), bond.group.end());
+      gap.push_back(bond.gap);
+      normal.push_back(bond.normal);
+      tangential.push_back(bond.tangential);
+      state.push_back(static_cast<std::uint8_t>(bond.state));
+    }
+    frames_.add_single("bonds/N", static_cast<std::uint32_t>(bonds.size()));
+    if (frames_.count() == 0) {
+      constexpr char name[] = "contact";
+      frames_.add("bonds/types", std::vector<std::int8_t>(std::begin(name), std::end(name)), sizeof name);
+    }
+    frames_.add("bonds/group", group, 2);
+    frames_.add("log/bonds/gap", gap);
+    frames_.add("log/bonds/normal_force", normal);
+    frames_.add("log/bonds/tangential_force", tangential);
+    frames_.add("log/bonds/state", state);
+  }
+
+  Particles particles_;
+  Physics physics_;
+  std::vector<PairKind> kinds_;
+  bool with_contacts_;
+  bool turns_;  // the cell, against the axes of the flow
+  // Sums over the step that is sampled; shares are by id.
+  double weight_ = 0;
+  PairSums sums_;
+  SymmetricTensor motion_;
+  std::vector<SymmetricTensor> shares_;
+  gsd::Frames frames_;
+};
 
 }  // namespace
 
-Trajectory::Trajectory(const Scene& scene, const System& system, const Window& window)
-    : Observable(interval_of(scene, trajectory(), window)),
-      physics_(scene.physics),
-      kinds_(make_pair_kinds(scene.physics, distinct_radii(system.particles.radius))),
-      with_contacts_(scene.observables.at("trajectory").at("contacts").get<bool>()),
-      turns_(!plain_flow(scene.physics.flow.deformation().velocity_gradient(0)).is_simple_shear),
-      count_of_species_(static_cast<std::uint32_t>(scene.particles.species.size())),
-      shares_(system.particles.count()) {
-  const std::vector<std::size_t> number = species_numbers(scene.particles);
-  for (std::uint32_t s = 0; s < count_of_species_; ++s) species_.insert(species_.end(), number[s], s);
-}
-
-void Trajectory::begin(const System& /*system*/, double weight) { weight_ = weight; }
-
-void Trajectory::take(const System& system, const Pair& pair, const PairSums& sums,
-                      const Vector3& /*force*/) {
-  for (std::size_t t = 0; t < count_of_stress_terms; ++t) sums_.stress[t] += weight_ * sums.stress[t];
-  const SymmetricTensor half = (0.5 * weight_) * total_stress(sums);
-  shares_[system.particles.id[pair.first]] += half;
-  shares_[system.particles.id[pair.second]] += half;
-}
-
-void Trajectory::take_motion(const System& system, std::size_t particle, const SymmetricTensor& stress) {
-  motion_ += weight_ * stress;
-  shares_[system.particles.id[particle]] += weight_ * stress;
-}
-
-void Trajectory::sample(const System& system, std::size_t /*block*/) {
-  frames_.add_single<std::uint64_t>("configuration/step", system.step);
-  add_places(system);
-  if (frames_.count() == 0) add_kinds_of_spheres(system);
-  frames_.add_single("log/time", system.clock.time());
-  frames_.add_single("log/strain", system.box.net_strain());
-  add_stress(system);
-  add_contacts(system);
-  frames_.end_frame();
-  sums_ = {};
-  motion_ = {};
-  std::ranges::fill(shares_, SymmetricTensor{});
-}
-
-void Trajectory::add_kinds_of_spheres(const System& system) {
-  const ParticleState& particles = system.particles;
-  std::uint32_t columns = 0;
-  const std::vector<std::int8_t> names = names_of_species(count_of_species_, columns);
-  std::vector<float> diameter, mass;
-  for (const std::uint32_t i : places_of_ids(particles)) {
-    diameter.push_back(static_cast<float>(2 * particles.radius[i]));
-    mass.push_back(static_cast<float>(particles.mass[i]));
-  }
-  frames_.add("particles/types", names, columns);
-  frames_.add("particles/typeid", species_);
-  frames_.add("particles/diameter", diameter);
-  frames_.add("particles/mass", mass);
-}
-
-void Trajectory::add_places(const System& system) {
-  const ParticleState& particles = system.particles;
-  const PeriodicCell& box = system.box;
-  const CellFrame cell = box.frame();
-  const auto& axis = cell.axes.column;
-  const auto turned = [&](const Vector3& v) {
-    return Vector3{dot(axis[0], v), dot(axis[1], v), dot(axis[2], v)};
-  };
-  std::vector<float> shape, position, velocity, spin;
-  std::vector<std::int32_t> image;
-  append(shape, cell.lengths);
-  append(shape, {cell.tilt_xy / cell.lengths.y, cell.xz / cell.lengths.z, cell.yz / cell.lengths.z});
-  for (const std::uint32_t i : places_of_ids(particles)) {
-    const Vector3 place = cell.fractional(particles.position[i]);
-    const auto cells = [](double x) { return static_cast<std::int32_t>(std::floor(x + 0.5)); };
-    const LatticeShift removed = {cells(place.x), cells(place.y), cells(place.z)};
-    const LatticeShift all = particles.image[i] + removed;
-    append(position, turned(particles.position[i] - box.displacement(removed)));
-    append(velocity, turned(particles.velocity[i] - box.velocity(removed)));
-    append(spin, turned(particles.angular_velocity[i]));
-    image.insert(image.end(), {all.x, all.y, all.z});
-  }
-  frames_.add("configuration/box", shape);
-  frames_.add_single("particles/N", static_cast<std::uint32_t>(particles.count()));
-  frames_.add("particles/position", position, 3);
-  frames_.add("particles/image", image, 3);
-  frames_.add("particles/velocity", velocity, 3);
-  frames_.add("log/particles/angular_velocity", spin, 3);
-  if (!turns_) return;
-  std::vector<double> axes;
-  for (const Vector3& a : axis) axes.insert(axes.end(), {a.x, a.y, a.z});
-  frames_.add("log/axes", axes, 3);
-}
-
-void Trajectory::add_stress(const System& system) {
-  const ParticleState& particles = system.particles;
-  const double volume = system.box.volume();
-  const BackgroundFlow flow = physics_.flow.at(system.box);
-  const SymmetricTensor uniform = strain_of(system.box.velocity_gradient());
-  const SymmetricTensor solvent = solvent_stress(physics_.viscosity, system.box.velocity_gradient());
-  SymmetricTensor alone;
-  std::vector<float> of_spheres;
-  for (const std::uint32_t i : places_of_ids(particles)) {
-    const double a = particles.radius[i];
-    const SymmetricTensor own =
-        stresslet_of_sphere(physics_.viscosity, a, uniform + flow.varying_strain(particles.position[i], a));
-    alone += own;
-    for (const double x : components(own + shares_[particles.id[i]])) {
-      of_spheres.push_back(static_cast<float>(x));
-    }
-  }
-  const SymmetricTensor stresslet = (1 / volume) * alone;
-  frames_.add("log/particles/stress", of_spheres, 6);
-  frames_.add("log/stress/total",
-              components(solvent + stresslet + (1 / volume) * (total_stress(sums_) + motion_)));
-  frames_.add("log/stress/solvent", components(solvent));
-  frames_.add("log/stress/stresslet", components(stresslet));
-  for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
-    const auto term = static_cast<StressTerm>(t);
-    if (!has_stress_term(physics_, term)) continue;
-    frames_.add(std::string("log/stress/") + name_of(term), components((1 / volume) * sums_.of(term)));
-  }
-  if (physics_.thermal_energy > 0) frames_.add("log/stress/motion", components((1 / volume) * motion_));
-}
-
-void Trajectory::add_contacts(const System& system) {
-  if (!physics_.contact) return;
-  const ContactParameters& contact = *physics_.contact;
-  const ParticleState& particles = system.particles;
-  std::vector<std::uint32_t> number(particles.count());
-  struct Bond {
-    std::array<std::uint32_t, 2> group;
-    float gap, normal, tangential;
-    State state;
-  };
-  std::vector<Bond> bonds;
-  for_each_touching_pair(system, kinds_, contact, [&](const TouchingPair& touching) {
-    const std::uint32_t i = particles.id[touching.pair.first], j = particles.id[touching.pair.second];
-    ++number[i];
-    ++number[j];
-    const PairKind& kind = kinds_[touching.pair.kind];
-    const State state = !touching.rough   ? State::frictionless
-                        : touching.slides ? State::sliding
-                                          : State::sticking;
-    bonds.push_back({{std::min(i, j), std::max(i, j)},
-                     static_cast<float>(-2 * touching.overlap / kind.sum_of_radii),
-                     static_cast<float>(contact_push(contact.normal_stiffness, touching.overlap)),
-                     static_cast<float>(touching.tangential_force),
-                     state});
-  });
-  frames_.add("log/particles/contact_number", number);
-  if (!with_contacts_) return;
-  // Two images of one sphere may be touched at once: these stay in the order of the list.
-  std::ranges::stable_sort(bonds, {}, &Bond::group);
-  std::vector<std::uint32_t> group;
-  std::vector<float> gap, normal, tangential;
-  std::vector<std::uint8_t> state;
-  for (const Bond& bond : bonds) {
-    group.insert(group.end(), bond.group.begin(), bond.group.end());
-    gap.push_back(bond.gap);
-    normal.push_back(bond.normal);
-    tangential.push_back(bond.tangential);
-    state.push_back(static_cast<std::uint8_t>(bond.state));
-  }
-  frames_.add_single("bonds/N", static_cast<std::uint32_t>(bonds.size()));
-  if (frames_.count() == 0) {
-    constexpr char name[] = "contact";
-    frames_.add("bonds/types", std::vector<std::int8_t>(std::begin(name), std::end(name)), sizeof name);
-  }
-  frames_.add("bonds/group", group, 2);
-  frames_.add("log/bonds/gap", gap);
-  frames_.add("log/bonds/normal_force", normal);
-  frames_.add("log/bonds/tangential_force", tangential);
-  frames_.add("log/bonds/state", state);
-}
-
 ObservableKind trajectory() {
-  return {"trajectory", seldom, check_trajectory,
-          [](const Scene&, const Window&) { return std::vector<Quantity>(); },
-          [](const Scene& scene, const System& system, const Window& window) -> std::unique_ptr<Observable> {
-            return std::make_unique<Trajectory>(scene, system, window);
+  return {.name = "trajectory",
+          .meaning =
+              "trajectory.gsd beside the result, with places, motion and stress of each sphere in "
+              "every frame",
+          .interval_is_a_duration = true,
+          .settings = {with_default({.pointer = "/trajectory/contacts",
+                                     .kind = KeyKind::boolean,
+                                     .meaning = "Whether frames list the contacts, with their forces."},
+                                    false)},
+          .read = [](const SceneDocument& document, const Scene& scene) {
+            const bool contacts = document.at("/trajectory/contacts").get<bool>();
+            if (contacts && !scene.physics.contact) {
+              document.refuse("/trajectory/contacts", "must be false without /contact");
+            }
+            return maker<Trajectory>(contacts);
           }};
 }
 

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "engine/averages/blocked_mean.h"
-
 namespace peclet::engine {
 namespace {
 
@@ -48,18 +46,6 @@ Json VelocityVariance::value() const {
       rows[c].push_back(degrees > 0 ? Json(components[c] / degrees) : Json());
   }
   return rows;
-}
-
-void VelocityVariance::save(ArchiveWriter& archive) const {
-  archive.put(samples_);
-  archive.put(sums_);
-  archive.put(squares_);
-}
-
-void VelocityVariance::load(ArchiveReader& archive) {
-  samples_ = archive.get_vector<double>(samples_.size());
-  sums_ = archive.get_vector<Vector3>(sums_.size());
-  squares_ = archive.get_vector<Vector3>(squares_.size());
 }
 
 }  // namespace peclet::engine

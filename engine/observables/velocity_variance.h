@@ -7,6 +7,7 @@
 // which has the right mean where samples do not know of each other.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "contract/json.h"
@@ -22,15 +23,21 @@ class VelocityVariance {
   // A list of bins for each of x, y and z; null where a bin has no slab with two samples.
   Json value() const;
 
-  void save(ArchiveWriter& archive) const;
-  void load(ArchiveReader& archive);
+  void save(ArchiveWriter& archive) const { archive.put_all(samples_, sums_, squares_); }
+  void load(ArchiveReader& archive) { archive.get_all(samples_, sums_, squares_); }
 
  private:
   double height_;
   std::size_t bins_, slabs_of_bin_;
-  // Of each slab.
+  // By slabs.
   std::vector<double> samples_;
   std::vector<Vector3> sums_, squares_;
 };
+
+// Returns which of `count` periodic bins is bin `k` of the plane.
+inline std::size_t periodic_bin(std::int64_t k, std::size_t count) {
+  const auto bins = static_cast<std::int64_t>(count);
+  return static_cast<std::size_t>((k % bins + bins) % bins);
+}
 
 }  // namespace peclet::engine

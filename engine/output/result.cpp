@@ -9,8 +9,8 @@
 
 #include "contract/provenance.h"
 #include "contract/sha256.h"
-#include "engine/catalogue/catalogue.h"
 #include "engine/kernels/instruction_set.h"
+#include "engine/observables/observable.h"
 #include "engine/output/stress_means.h"
 #include "engine/stability/derived_groups.h"
 #include "engine/stability/stability.h"
@@ -127,6 +127,15 @@ Json inefficiencies(const Json& blocks, const std::vector<Quantity>& quantities)
   return all;
 }
 
+std::vector<Quantity> quantities_of(const StressMeans& stress,
+                                    const std::vector<std::unique_ptr<Observable>>& observables) {
+  std::vector<Quantity> all = stress.quantities();
+  for (const std::unique_ptr<Observable>& observable : observables) {
+    all.insert(all.end(), observable->quantities().begin(), observable->quantities().end());
+  }
+  return all;
+}
+
 // What ended before its window has parts of which nothing is known.
 void leave_no_nans(Json& value) {
   if (value.is_number_float() && !std::isfinite(value.get<double>())) value = nullptr;
@@ -135,11 +144,13 @@ void leave_no_nans(Json& value) {
 }
 
 void add_measurements(const Scene& scene, const Simulation& simulation, const Ending& ending, Json& result) {
-  const StressMeans stress(scene, simulation.system());
-  const std::vector<Quantity> quantities = quantities_of(scene, simulation.schedule());
+  const StressMeans stress(scene);
+  const System& system = simulation.system();
+  const std::vector<Quantity> quantities = quantities_of(stress, simulation.observables());
   Json &mean = result["mean"], &blocks = result["blocks"];
-  mean = stress.means(sum_of(simulation.production().blocks()), ending.cause == Ending::Cause::jammed);
-  blocks = stress.blocks(simulation.production());
+  mean =
+      stress.means(system, sum_of(simulation.production().blocks()), ending.cause == Ending::Cause::jammed);
+  blocks = stress.blocks(system, simulation.production());
   const char* const usual = scene.physics.flow.steady_rate() > 0 ? "/relative_viscosity" : "/pressure";
   for (const std::unique_ptr<Observable>& observable : simulation.observables()) {
     observable->add_to(mean);
@@ -150,7 +161,9 @@ void add_measurements(const Scene& scene, const Simulation& simulation, const En
   result["inefficiencies"] = inefficiencies(blocks, quantities);
   std::vector<double> series;
   for (const BlockSums& block : simulation.production().blocks()) {
-    if (block.samples > 0) series.push_back(stress.means(block).at(Json::json_pointer(usual)).get<double>());
+    if (block.samples > 0) {
+      series.push_back(stress.means(system, block).at(Json::json_pointer(usual)).get<double>());
+    }
   }
   result["statistical_inefficiency"] = statistical_inefficiency(series);
   for (const Quantity& quantity : quantities) result["quantities"][quantity.name] = to_json(quantity);
@@ -235,18 +248,11 @@ Json make_unpacked_result(const ResultHeader& header, const Scene& scene, const 
   return result;
 }
 
-std::vector<Quantity> quantities_of(const Scene& scene, const Schedule& schedule) {
-  std::vector<Quantity> all = stress_quantities(scene);
-  const Vector3 box = box_lengths(scene, cube_edge(scene.particles, scene.volume_fraction));
-  for (Quantity& quantity : observed_quantities(scene, {schedule.timestep, schedule.production, box})) {
-    all.push_back(std::move(quantity));
-  }
-  return all;
-}
-
 std::vector<std::string> names_of_targets(const Scene& scene, const Schedule& schedule) {
+  const Vector3 box = box_lengths(scene, cube_edge(scene.particles, scene.volume_fraction));
+  const auto observables = make_observables(scene, {schedule.timestep, schedule.production, box}, "scene");
   std::vector<std::string> names;
-  for (const Quantity& quantity : quantities_of(scene, schedule)) {
+  for (const Quantity& quantity : quantities_of(StressMeans(scene), observables)) {
     for (std::string& name : targets_in(quantity)) names.push_back(std::move(name));
   }
   std::sort(names.begin(), names.end());
@@ -254,42 +260,26 @@ std::vector<std::string> names_of_targets(const Scene& scene, const Schedule& sc
 }
 
 Json target_hints(const Scene& scene) {
-  struct Pair {
-    const char *name, *meant;
-  };
-  // Numbers that are not named after the observable that measures them.
-  constexpr Pair measured_by[] = {{"storage_modulus", "oscillation"},
-                                  {"loss_modulus", "oscillation"},
-                                  {"dynamic_viscosity", "oscillation"},
-                                  {"third_storage_modulus", "oscillation"},
-                                  {"third_loss_modulus", "oscillation"},
-                                  {"zero_shear_viscosity", "linear_response"},
-                                  {"zero_shear_rise", "linear_response"},
-                                  {"green_kubo_viscosity", "stress_correlation"},
-                                  {"self_diffusion", "mean_squared_displacement"},
-                                  {"mobilised_friction", "contact_network"},
-                                  {"sliding_contacts", "contact_network"},
-                                  {"frictional_contacts", "contact_network"}};
-  constexpr Pair called[] = {{"eta_r", "relative_viscosity"},
-                             {"eta", "relative_viscosity"},
-                             {"viscosity", "relative_viscosity"},
-                             {"N1", "first_normal_difference"},
-                             {"N_1", "first_normal_difference"},
-                             {"N2", "second_normal_difference"},
-                             {"N_2", "second_normal_difference"},
-                             {"P", "pressure"},
-                             {"p", "pressure"},
-                             {"Z", "contacts_per_particle"},
-                             {"G'", "storage_modulus"},
-                             {"G''", "loss_modulus"},
-                             {"shear_stress", "stress/total/3"}};
+  constexpr std::pair<const char*, const char*> called[] = {{"eta_r", "relative_viscosity"},
+                                                            {"eta", "relative_viscosity"},
+                                                            {"viscosity", "relative_viscosity"},
+                                                            {"N1", "first_normal_difference"},
+                                                            {"N_1", "first_normal_difference"},
+                                                            {"N2", "second_normal_difference"},
+                                                            {"N_2", "second_normal_difference"},
+                                                            {"P", "pressure"},
+                                                            {"p", "pressure"},
+                                                            {"Z", "contacts_per_particle"},
+                                                            {"G'", "storage_modulus"},
+                                                            {"G''", "loss_modulus"},
+                                                            {"shear_stress", "stress/total/3"}};
   Json hints = Json::object();
-  const auto add = [&](const char* name, const char* kind) {
-    if (!scene.observables.contains(kind))
-      hints[name] = fmt::format("needs \"observables\": [\"{}\"] in the scene", kind);
-  };
-  for (const ObservableKind& kind : observable_kinds()) add(kind.name, kind.name);
-  for (const auto& [name, kind] : measured_by) add(name, kind);
+  for (const ObservableKind& kind : observable_kinds()) {
+    if (scene.observables.contains(kind.name)) continue;
+    const std::string hint = fmt::format("needs \"observables\": [\"{}\"] in the scene", kind.name);
+    hints[kind.name] = hint;
+    for (const std::string& number : kind.numbers) hints[number] = hint;
+  }
   for (const auto& [name, meant] : called) {
     hints[name] = fmt::format("is called {}", meant);
     if (hints.contains(meant))

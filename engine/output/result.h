@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "contract/json.h"
-#include "engine/observables/quantity.h"
 #include "engine/realisation/checkpoint.h"
 #include "engine/realisation/simulation.h"
 #include "engine/scene/scene.h"
@@ -27,11 +26,8 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
 Json make_unpacked_result(const ResultHeader& header, const Scene& scene, const Schedule& schedule,
                           const std::string& message, const Spent& spent);
 
-// What the result of a completed realisation describes under "quantities".
-std::vector<Quantity> quantities_of(const Scene& scene, const Schedule& schedule);
-
-// Names of the numbers in it at which a campaign may aim, sorted (targets_in()). One that the configuration
-// may leave undefined (friction without a contact) is among them.
+// Names of the numbers in the result of a completed realisation at which a campaign may aim, sorted
+// (targets_in()). One that the configuration may leave undefined (friction without a contact) is among them.
 std::vector<std::string> names_of_targets(const Scene& scene, const Schedule& schedule);
 
 // What to do about targets that the results do not have: by name, also for what lies below it, the rest of a

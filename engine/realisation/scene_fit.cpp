@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "contract/input_error.h"
-#include "engine/catalogue/catalogue.h"
 #include "engine/kernels/pairs/pair_kinds.h"
+#include "engine/observables/observable.h"
 #include "engine/scene/smallest_count.h"
 #include "engine/start/packing.h"
 
@@ -52,7 +52,7 @@ void check_fit(const Scene& scene, const Schedule& schedule, const std::string& 
                                  "volume fraction (its nearest images would be {:.4g} apart)",
                                  range, nearest));
   }
-  check_observables(scene, {schedule.timestep, schedule.production, box}, file);
+  make_observables(scene, {schedule.timestep, schedule.production, box}, file);
 }
 
 }  // namespace peclet::engine

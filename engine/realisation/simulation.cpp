@@ -6,10 +6,11 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "engine/catalogue/catalogue.h"
 #include "engine/integrators/implicit.h"
 #include "engine/integrators/velocity_verlet.h"
 #include "engine/kernels/pairs/terms.h"
+#include "engine/observables/observable.h"
+#include "engine/observables/structure.h"
 #include "engine/random/keyed_random.h"
 #include "engine/realisation/scene_fit.h"
 #include "engine/start/packing.h"
@@ -83,7 +84,7 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
         ForceField(physics, system_.particles, schedule.timestep, seed, threads), system_.particles,
         schedule.timestep);
   }
-  observables_ = make_observables(scene, system_, {schedule.timestep, schedule.production, box});
+  observables_ = make_observables(scene, {schedule.timestep, schedule.production, box}, file);
   const auto takes_flux = [](const auto& observable) { return observable->takes_flux(); };
   if (std::ranges::any_of(observables_, takes_flux)) integrator_->watch_motion();
 }

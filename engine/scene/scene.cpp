@@ -12,7 +12,6 @@
 #include "engine/flow/flows.h"
 #include "engine/scene/flow_block.h"
 #include "engine/scene/law_blocks.h"
-#include "engine/scene/observable_keys.h"
 #include "engine/scene/particles_block.h"
 #include "engine/scene/start_block.h"
 
@@ -26,6 +25,7 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 class Reading : public SceneDocument {
  public:
   using SceneDocument::SceneDocument;
+  explicit Reading(const SceneDocument& document) : SceneDocument(document) {}
 
   Particles particles() const { return read_particles(*this); }
   double volume_fraction(const Particles& particles) const { return read_volume_fraction(*this, particles); }
@@ -35,7 +35,6 @@ class Reading : public SceneDocument {
   Duration phase(const std::string& pointer, const Physics& physics) const;
   // That the production window, which begins then, ends, and in time.
   void check_window(const Scene& scene, double begin) const;
-  void set_observables(Scene& scene) const;
   std::optional<Start> start() const {
     return has("/start") ? std::optional<Start>(read_start(*this)) : std::nullopt;
   }
@@ -121,36 +120,6 @@ void Reading::check_window(const Scene& scene, double begin) const {
   }
 }
 
-// A block of settings alone would be measured by nobody.
-void Reading::set_observables(Scene& scene) const {
-  const Json& list = at("/observables");
-  const FlowKind& flow = flow_kind_of(*this);
-  for (const ObservableEntry& entry : observable_entries()) {
-    const std::string pointer = '/' + entry.name;
-    const bool has_settings = entry.has_settings() && has(pointer);
-    if (std::find(list.begin(), list.end(), entry.name) == list.end()) {
-      if (has_settings) refuse(pointer, "must be left out unless /observables lists it");
-      continue;
-    }
-    // The defaults of a block that is left out are no part of the scene.
-    Json& settings = scene.observables[entry.name];
-    settings = Json::object();
-    if (entry.has_settings()) {
-      settings = has_settings ? at(pointer) : scene_keys().validate(settings, file(), pointer);
-    }
-    if (std::ranges::count(flow.refused_observables, entry.name) > 0) {
-      refuse("/observables",
-             fmt::format("must not list {} with {}, whose flow it does not know", entry.name, flow.key));
-    }
-    if (const std::optional<ObservableFault> fault = entry.fault(scene, settings)) {
-      refuse(fault->pointer, fault->allowed);
-    }
-    if (entry.interval_is_a_duration && settings.contains("interval")) {
-      settings["interval"] = time_of(duration(pointer + "/interval", scene.physics), scene);
-    }
-  }
-}
-
 // The method, and the default of the guard that follows from it. Without lubrication explicit steps are bound
 // by contacts and drag alone, and cheaper.
 void fill_method_and_guard(Json& document) {
@@ -165,6 +134,19 @@ void fill_method_and_guard(Json& document) {
 }
 
 }  // namespace
+
+std::string lacking_equilibrium(const Physics& physics) {
+  if (physics.contact && physics.contact->friction > 0) {
+    return "/contact/friction > 0: friction leads to no equilibrium of known probabilities";
+  }
+  if (physics.contact && physics.contact->normal_damping > 0) {
+    return "/contact/normal_damping > 0: what it dissipates no noise gives back";
+  }
+  if (physics.lubrication && physics.lubrication->form == LubricationParameters::Form::mari) {
+    return "/lubrication/form mari: its stress is not that of the forces alone";
+  }
+  return "";
+}
 
 double time_of(const Duration& duration, const Scene& scene, double from) {
   const Physics& physics = scene.physics;
@@ -184,9 +166,13 @@ Vector3 box_lengths(const Scene& scene, double cube_edge) {
   return {width, *scene.height, width};
 }
 
-Scene read_scene(const Json& document, const std::string& file) {
+Duration read_duration(const SceneDocument& document, const std::string& pointer, const Physics& physics) {
+  return Reading(document).duration(pointer, physics);
+}
+
+Scene read_without_observables(const Json& document, const std::string& file) {
   Scene scene;
-  scene.document = scene_keys().validate(document, file);
+  scene.document = document;
   const Json& filled = scene.document;
   const Reading reading(filled, file);
   fill_method_and_guard(scene.document);
@@ -215,7 +201,6 @@ Scene read_scene(const Json& document, const std::string& file) {
   const double begin = time_of(scene.equilibration, scene);
   scene.physics.flow.measure_from(begin);
   reading.check_window(scene, begin);
-  reading.set_observables(scene);
   scene.guard = {filled["guard"]["largest_overlap"].get<double>(),
                  filled["guard"]["largest_displacement"].get<double>(),
                  filled["guard"]["energy_imbalance"].get<double>(),
@@ -235,6 +220,7 @@ std::vector<std::string> blocks_of_physics() {
 Physics read_physics(const Json& document, const std::string& file, const std::string& pointer) {
   if (!document.is_object()) throw InputError(file, pointer, shortened(document), "must be an object");
   const std::vector<std::string> blocks = blocks_of_physics();
+  static const KeyTable keys = scene_keys_with({});
   Json filled = Json::object();
   for (const auto& [name, block] : document.items()) {
     if (std::find(blocks.begin(), blocks.end(), name) == blocks.end()) {
@@ -242,7 +228,7 @@ Physics read_physics(const Json& document, const std::string& file, const std::s
                        fmt::format("allowed keys: {}", fmt::join(blocks, ", ")));
     }
     try {
-      filled[name] = scene_keys().validate(block, "", '/' + name);
+      filled[name] = keys.validate(block, "", '/' + name);
     } catch (const InputError& error) {
       throw error.within(file, pointer + '/' + name);
     }

@@ -5,8 +5,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +17,7 @@
 #include "contract/key_table.h"
 #include "engine/flow/steady_shear.h"
 #include "engine/scene/composition.h"
+#include "engine/document/scene_document.h"
 #include "engine/terms/contact.h"
 #include "engine/terms/laws.h"
 #include "engine/terms/lubrication.h"
@@ -83,6 +86,14 @@ struct Start {
   const char* pointer() const { return is_list ? "/start/list" : "/start/file"; }
 };
 
+class Observable;
+struct Scene;
+struct Window;
+// Makes an observable that a scene lists, with its settings. `file` names the scene in messages. Throws
+// InputError where box or window are too small.
+using MakeObservable = std::function<std::unique_ptr<Observable>(const Scene& scene, const Window& window,
+                                                                 const std::string& file)>;
+
 struct Scene {
   Particles particles;
   double volume_fraction = 0;
@@ -92,7 +103,7 @@ struct Scene {
   std::optional<double> timestep;             // absent: "auto"
   double solver_tolerance = usual_tolerance;  // of implicit steps
   Duration equilibration, production;
-  std::map<std::string, Json> observables;  // besides the stress: settings with defaults, intervals as times
+  std::map<std::string, MakeObservable> observables;  // besides the stress
   Guard guard;
   std::optional<Start> start;
   bool final_configuration = false, final_checkpoint = false;  // are left beside the result
@@ -105,10 +116,15 @@ Vector3 box_lengths(const Scene& scene, double cube_edge);
 // The time, from then on, after which the first of the limits is reached.
 double time_of(const Duration& duration, const Scene& scene, double from = 0);
 
-const KeyTable& scene_keys();
+// All keys of a scene; those of its observables are given.
+KeyTable scene_keys_with(const std::vector<Key>& keys_of_observables);
 
-// Reads and checks a scene. `file` names it in messages. Throws InputError.
-Scene read_scene(const Json& document, const std::string& file);
+// Reads a document whose keys are valid, all but its observables. `file` names it in messages. Throws
+// InputError.
+Scene read_without_observables(const Json& document, const std::string& file);
+
+// Reads a duration at this pointer. Throws InputError if it would never end.
+Duration read_duration(const SceneDocument& document, const std::string& pointer, const Physics& physics);
 
 // The blocks that read_physics() reads: fluid, flow and those of the laws.
 std::vector<std::string> blocks_of_physics();

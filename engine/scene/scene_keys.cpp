@@ -4,7 +4,6 @@
 #include "engine/flow/flows.h"
 #include "engine/scene/flow_block.h"
 #include "engine/scene/law_blocks.h"
-#include "engine/scene/observable_keys.h"
 #include "engine/scene/particles_block.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/start_block.h"
@@ -13,7 +12,7 @@ namespace peclet::engine {
 
 namespace {
 
-Keys run_keys() {
+Keys run_keys(const Keys& keys_of_observables) {
   Keys keys = {
       with_default(block("/integrator", "How the equations of motion are solved."), Json::object()),
       choice("/integrator/method",
@@ -50,7 +49,7 @@ Keys run_keys() {
        .default_value = Json::array({"stress"}),
        .minimum_items = 1},
   });
-  append(observable_keys());
+  append(keys_of_observables);
   append({
       block("/files", "Files that a realisation leaves beside its result; absent: none."),
       {.pointer = "/files/final_configuration",
@@ -88,18 +87,15 @@ Keys run_keys() {
 
 }  // namespace
 
-const KeyTable& scene_keys() {
-  static const KeyTable table = [] {
-    Keys keys;
-    const auto append = [&](const Keys& more) { keys.insert(keys.end(), more.begin(), more.end()); };
-    append(particle_keys());
-    append(flow_keys());
-    for (const LawBlock& law : law_blocks) append(law.keys());
-    append(start_keys());
-    append(run_keys());
-    return KeyTable("Scene of a peclet simulation", std::move(keys));
-  }();
-  return table;
+KeyTable scene_keys_with(const Keys& keys_of_observables) {
+  Keys keys;
+  const auto append = [&](const Keys& more) { keys.insert(keys.end(), more.begin(), more.end()); };
+  append(particle_keys());
+  append(flow_keys());
+  for (const LawBlock& law : law_blocks) append(law.keys());
+  append(start_keys());
+  append(run_keys(keys_of_observables));
+  return KeyTable("Scene of a peclet simulation", std::move(keys));
 }
 
 }  // namespace peclet::engine

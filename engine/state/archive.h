@@ -25,8 +25,8 @@ class ArchiveWriter {
   void put(const Value& value) { bytes_.append(reinterpret_cast<const char*>(&value), sizeof value); }
 
   template <class Value>
+  requires std::is_trivially_copyable_v<Value>
   void put(const std::vector<Value>& values) {
-    static_assert(std::is_trivially_copyable_v<Value>);
     put(static_cast<std::uint64_t>(values.size()));
     bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value));
   }
@@ -40,9 +40,26 @@ class ArchiveWriter {
     }
   }
 
+  // Plain values, objects that save themselves, and vectors of either.
+  template <class... Parts>
+  void put_all(const Parts&... parts) {
+    (put_part(parts), ...);
+  }
+
   const std::string& bytes() const { return bytes_; }
 
  private:
+  template <class Part>
+  void put_part(const Part& part) {
+    if constexpr (requires { part.save(*this); }) {
+      part.save(*this);
+    } else if constexpr (requires { put(part); }) {
+      put(part);
+    } else {
+      for (const auto& one : part) put_part(one);
+    }
+  }
+
   std::string bytes_;
 };
 
@@ -89,9 +106,28 @@ class ArchiveReader {
     return field;
   }
 
+  // Reads what put_all() has written of these parts. Vectors keep their sizes.
+  template <class... Parts>
+  void get_all(Parts&... parts) {
+    (get_part(parts), ...);
+  }
+
   bool at_end() const { return rest_.empty(); }
 
  private:
+  template <class Part>
+  void get_part(Part& part) {
+    if constexpr (requires { part.load(*this); }) {
+      part.load(*this);
+    } else if constexpr (std::is_trivially_copyable_v<Part>) {
+      part = get<Part>();
+    } else if constexpr (std::is_trivially_copyable_v<typename Part::value_type>) {
+      part = get_vector<typename Part::value_type>(part.size());
+    } else {
+      for (auto& one : part) get_part(one);
+    }
+  }
+
   const char* take(std::size_t count) {
     if (count > rest_.size()) {
       throw ArchiveError("ends too early");

@@ -31,7 +31,7 @@ FLOW = [
     ),
     (
         "stress of a reversed flow with the sign of the cell",
-        "engine/responses/transient.cpp",
+        "engine/observables/transient.cpp",
         "part.sums[0] += flow_.shear_part(stress);",
         "part.sums[0] += stress.xy;",
         "engine_tests:Transient.IsThatOfTheReversedFlow",

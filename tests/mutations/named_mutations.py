@@ -80,7 +80,7 @@ NAMED = [
     ),
     (
         "Green and Kubo by rectangles",
-        "engine/responses/stress_correlation.cpp",
+        "engine/observables/stress_correlation.cpp",
         "0.5 * (now - before) * (g + modulus_before)",
         "(now - before) * g",
         "engine_tests:StressCorrelation.IsIntegratedByTrapezia",
@@ -229,15 +229,15 @@ NAMED = [
     (
         "N1 with the other sign",
         STRESS,
-        "return t.xx - t.yy; }",
-        "return t.yy - t.xx; }",
+        "return of.total.xx - of.total.yy; }",
+        "return of.total.yy - of.total.xx; }",
         "engine_tests:Result.ViscosityAndNormalStressesAreThoseOfTheTotal",
     ),
     (
         "pressure with the other sign",
         STRESS,
-        "return -(t.xx + t.yy + t.zz) / 3;",
-        "return (t.xx + t.yy + t.zz) / 3;",
+        "return -(of.total.xx + of.total.yy + of.total.zz) / 3;",
+        "return (of.total.xx + of.total.yy + of.total.zz) / 3;",
         "engine_tests:Result.ViscosityAndNormalStressesAreThoseOfTheTotal",
     ),
     (

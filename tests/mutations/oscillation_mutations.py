@@ -3,7 +3,7 @@
 OSCILLATION = [
     (
         "moduli of implicit steps as of their end",
-        "engine/responses/oscillation.cpp",
+        "engine/observables/oscillation.cpp",
         "Method::implicit_steps ? 0.5 : 1.0",
         "Method::implicit_steps ? 1.0 : 1.0",
         "engine_tests:EitherMethod/Moduli.AreThoseOfAStressThatIsASumOfHarmonics/implicit",

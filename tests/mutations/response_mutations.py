@@ -5,14 +5,14 @@ DUMBBELL = "engine_tests:EitherMethod/LinearResponseOfADumbbell"
 RESPONSE = [
     (
         "partner of linear response with its dissipation not reversed",
-        "engine/responses/linear_response.cpp",
+        "engine/observables/linear_response.cpp",
         "last_.conservative[c] - other.dissipative[c]",
         "last_.conservative[c] + other.dissipative[c]",
         f"{DUMBBELL}.IsThatOfTheCorrelationToo/implicit",
     ),
     (
         "partner of implicit steps on the wrong side of the step",
-        "engine/responses/linear_response.cpp",
+        "engine/observables/linear_response.cpp",
         "velocities_are_found_ ? before_ : now",
         "velocities_are_found_ ? now : now",
         f"{DUMBBELL}.IsThatOfTheCorrelationToo/implicit",

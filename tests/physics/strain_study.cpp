@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/simulation.h"
 #include "engine/realisation/stress_control.h"
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "contract/input_error.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/simulation.h"
 #include "engine/stability/derived_groups.h"
 #include "engine/stability/stability.h"

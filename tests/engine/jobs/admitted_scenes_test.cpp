@@ -8,8 +8,9 @@
 #include "contract/input_error.h"
 #include "contract/sha256.h"
 #include "engine/jobs/job.h"
+#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/scene_fit.h"
-#include "engine/scene/observable_keys.h"
 #include "engine/start/placed_spheres.h"
 #include "tests/engine/temporary_folder.h"
 
@@ -177,7 +178,7 @@ class AdmittedScene : public testing::Test {
 // What a flow measures does not depend on what is around it, but for what the reason of a refusal says.
 TEST_F(AdmittedScene, OfAnyFlowWithAnyObservableRunsToItsEnd) {
   for (const auto& [flow, of_flow] : flows()) {
-    for (const ObservableEntry& entry : observable_entries()) {
+    for (const ObservableKind& entry : observable_kinds()) {
       Json document = tiny_scene();
       document.merge_patch(of_flow);
       document["observables"] = {"stress", entry.name};
@@ -194,7 +195,7 @@ TEST_F(AdmittedScene, OfAnyFlowAndObservableInAnySurroundingsRunsToItsEnd) {
       Json document = tiny_scene();
       document.merge_patch(patch);
       document.merge_patch(of_flow);
-      for (const ObservableEntry& entry : observable_entries()) {
+      for (const ObservableKind& entry : observable_kinds()) {
         document["observables"] = {entry.name};
         const std::string name = fmt::format("{} + {}", flow, entry.name);
         const std::string reason = refusal(document, fmt::format("{} + {}", around, name));

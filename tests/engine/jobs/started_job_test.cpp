@@ -7,6 +7,7 @@
 #include "contract/sha256.h"
 #include "engine/gsd/frames.h"
 #include "engine/jobs/job.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/output/final_configuration.h"
 #include "engine/start/packing.h"
 #include "engine/start/placed_spheres.h"

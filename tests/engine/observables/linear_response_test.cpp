@@ -7,8 +7,6 @@
 //   eta - background = L^2 z / (4 V) = (integral of the flux' correlation) / (2 V kT).
 // At the frequency w: with c = k + i w g, F over the affine displacement is c (i w z - w^2 mu)/(c + i w z -
 // w^2 mu).
-#include "engine/responses/linear_response.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,6 +14,7 @@
 #include <numbers>
 #include <random>
 
+#include "engine/observables/scene_reading.h"
 #include "tests/engine/observables/loose_spheres.h"
 
 namespace peclet::engine {
@@ -79,8 +78,7 @@ SymmetricTensor with_components(const std::array<double, 5>& c) {
 Json response_of_dumbbells(const Scene& scene, std::uint64_t seed, double sign_of_dissipation) {
   constexpr std::uint64_t steps = 20'000;
   constexpr double dt = 0.02;
-  auto observable =
-      std::move(make_observables(scene, loose_spheres(2), {dt, steps, {edge, edge, edge}}).front());
+  auto observable = observable_of(scene, loose_spheres(2), steps, dt);
   std::vector<Dumbbell> dumbbells;
   for (std::uint64_t c = 0; c < 5; ++c) {
     dumbbells.emplace_back(scene.method == Method::implicit_steps, dt, 5 * seed + c);
@@ -197,8 +195,7 @@ TEST(LinearResponse, CountsFiveComponentsAlike) {
   for (const SymmetricTensor& flux :
        {SymmetricTensor{.xy = 1}, SymmetricTensor{.xx = 1},
         SymmetricTensor{.xx = 1, .yy = -2, .zz = 0.5, .yz = 3}, SymmetricTensor{.xx = 4, .yy = 4, .zz = 4}}) {
-    auto observable =
-        std::move(make_observables(scene, loose_spheres(2), {timestep, 1024, {edge, edge, edge}}).front());
+    auto observable = observable_of(scene, loose_spheres(2), 1024);
     for (int step = 0; step < 1024; ++step) observable->take_flux({flux, {}, {}, {}});
     const double trace = flux.xx + flux.yy + flux.zz;
     const double square = (flux.xx * flux.xx + flux.yy * flux.yy + flux.zz * flux.zz) / 2 -

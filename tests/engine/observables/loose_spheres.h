@@ -7,7 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/catalogue/catalogue.h"
+#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/scene/scene.h"
 #include "tests/engine/draws.h"
 #include "tests/engine/small_scene.h"
@@ -37,9 +38,16 @@ inline Scene scene_with(const char* observable, const Json& settings = Json::obj
   return read_scene(document, "scene.json");
 }
 
+// The one observable of the scene, made for the spheres of `system` in a window of `steps` steps.
 inline std::unique_ptr<Observable> observable_of(const Scene& scene, const System& system,
-                                                 std::uint64_t steps) {
-  auto made = make_observables(scene, system, {timestep, steps, system.box.lengths()});
+                                                 std::uint64_t steps, double step = timestep) {
+  Scene own = scene;
+  own.particles.count = system.particles.count();
+  own.particles.species.clear();
+  const double share = 1 / static_cast<double>(system.particles.count());
+  for (const double radius : system.particles.radius) own.particles.species.push_back({radius, share});
+  own.particles.shares = Particles::Shares::number;
+  auto made = make_observables(own, {step, steps, system.box.lengths()}, "scene.json");
   EXPECT_EQ(made.size(), 1u);
   return std::move(made.front());
 }

@@ -1,11 +1,10 @@
 // Moduli of stresses that are known, and of suspensions whose viscosity is.
-#include "engine/responses/oscillation.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "engine/observables/scene_reading.h"
 #include "engine/output/stress_means.h"
 #include "engine/realisation/simulation.h"
 #include "tests/engine/observables/loose_spheres.h"
@@ -35,8 +34,7 @@ TEST_P(Moduli, AreThoseOfAStressThatIsASumOfHarmonics) {
   const Scene scene = oscillating(GetParam(), cycles);
   const System system = loose_spheres(4);
   const double timestep = 2 * std::numbers::pi / frequency / steps, volume = edge * edge * edge;
-  auto made = make_observables(scene, system, {timestep, steps * cycles, system.box.lengths()});
-  ASSERT_EQ(made.size(), 1u);
+  const auto made = observable_of(scene, system, steps * cycles, timestep);
   const double ahead = scene.method == Method::implicit_steps ? 0.5 : 1;
   for (std::uint64_t k = 0; k < steps * cycles; ++k) {
     const double phase = frequency * timestep * (static_cast<double>(k) + ahead);
@@ -44,9 +42,9 @@ TEST_P(Moduli, AreThoseOfAStressThatIsASumOfHarmonics) {
     flux.by_pairs.xy = volume * amplitude *
                        ((1 + static_cast<double>(k / steps)) * std::sin(phase) + 5 * std::cos(phase) +
                         2 * std::sin(3 * phase) + 3 * std::cos(3 * phase));
-    made.front()->take_flux(flux);
+    made->take_flux(flux);
   }
-  const Json mean = mean_of(*made.front());
+  const Json mean = mean_of(*made);
   // eta = 0.1 and phi = 0.45.
   const double background = 0.1 * frequency * (1 + 2.5 * 0.45);
   EXPECT_NEAR(mean["storage_modulus"].get<double>(), (1 + 2 + 3 + 4) / 4.0, 1e-12);
@@ -55,7 +53,7 @@ TEST_P(Moduli, AreThoseOfAStressThatIsASumOfHarmonics) {
   EXPECT_NEAR(mean["third_storage_modulus"].get<double>(), 2, 1e-12);
   EXPECT_NEAR(mean["third_loss_modulus"].get<double>(), 3, 1e-12);
   Json blocks;
-  made.front()->add_blocks_to(blocks);
+  made->add_blocks_to(blocks);
   ASSERT_EQ(blocks["storage_modulus"].size(), cycles);
   for (std::size_t block = 0; block < cycles; ++block) {
     EXPECT_NEAR(blocks["storage_modulus"][block].get<double>(), 1 + static_cast<double>(block), 1e-4);
@@ -69,15 +67,15 @@ TEST(Moduli, HaveAsManyBlocksAsTheirCyclesFill) {
   for (const std::uint64_t cycles : {3U, 4U, 7U, 12U, 31U, 32U, 50U, 100U}) {
     const Scene scene = oscillating("implicit", cycles);
     const double timestep = 2 * std::numbers::pi / frequency / steps, volume = edge * edge * edge;
-    auto made = make_observables(scene, system, {timestep, steps * cycles, system.box.lengths()});
+    const auto made = observable_of(scene, system, steps * cycles, timestep);
     for (std::uint64_t k = 0; k < steps * cycles; ++k) {
       MomentumFlux flux;
       flux.by_pairs.xy = volume * amplitude * (1 + static_cast<double>(k / steps)) *
                          std::sin(frequency * timestep * (static_cast<double>(k) + 0.5));
-      made.front()->take_flux(flux);
+      made->take_flux(flux);
     }
     Json blocks = Json::object();
-    made.front()->add_blocks_to(blocks);
+    made->add_blocks_to(blocks);
     if (cycles < 4) {
       EXPECT_TRUE(blocks.empty());
       continue;
@@ -121,14 +119,14 @@ TEST(Moduli, OfASmallOscillationAreTheViscosityOfThePacking) {
   };
   const auto [steady, sheared] =
       run(document({{"shear_rate", 1e-6}}, {{"strain", 0}}, {{"strain", 1e-6}}, {"stress"}));
-  const double viscosity = StressMeans(steady, sheared->system())
-                               .means(sum_of(sheared->production().blocks()))
+  const double viscosity = StressMeans(steady)
+                               .means(sheared->system(), sum_of(sheared->production().blocks()))
                                .at("relative_viscosity")
                                .get<double>();
   const auto [scene, oscillated] = run(document({{"oscillation", {{"amplitude", 1e-6}, {"frequency", 1}}}},
                                                 {{"cycles", 0}}, {{"cycles", 2}}, {"stress", "oscillation"}));
   const Json means =
-      StressMeans(scene, oscillated->system()).means(sum_of(oscillated->production().blocks()));
+      StressMeans(scene).means(oscillated->system(), sum_of(oscillated->production().blocks()));
   EXPECT_TRUE(means.at("relative_viscosity").is_null());  // of a stress that comes and goes
   const Json mean = mean_of(*oscillated->observables().front());
   EXPECT_GT(viscosity, 2.2);  // pairs are felt: 1 + 2.5 phi is 2

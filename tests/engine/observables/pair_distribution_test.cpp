@@ -78,7 +78,7 @@ TEST(PairDistribution, RefusesARangeWhoseImagesAreNotUnique) {
   const System system = loose_spheres(2);
   for (const auto& [shear_rate, range] : {std::pair{0.3, 6}, std::pair{0.0, 8}}) {
     const Scene scene = scene_with("pair_distribution", {{"range", range}}, shear_rate);
-    EXPECT_THROW(check_observables(scene, {timestep, 256, {edge, edge, edge}}, "scene.json"), InputError);
+    EXPECT_THROW(observable_of(scene, system, 256), InputError);
   }
 }
 

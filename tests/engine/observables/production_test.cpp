@@ -63,7 +63,7 @@ TEST(StatisticalInefficiency, OfAnAutoregressiveSeriesIsItsFormula) {
 }
 
 TEST(BlockedMean, OfOneNumberHas32BlocksOfAListFourAndOfALongOneNone) {
-  BlockedMean scalar, list(64), large(65), single(1);
+  BlockedMean scalar, list({64}), large({65}), single({1});
   for (std::size_t block = 0; block < 32; ++block) {
     const auto value = static_cast<double>(block);
     scalar.add(block, 0, 2 * value);
@@ -89,7 +89,7 @@ TEST(BlockedMean, OfOneNumberHas32BlocksOfAListFourAndOfALongOneNone) {
 }
 
 TEST(BlockedMean, OfNothingIsNull) {
-  BlockedMean mean(2);
+  BlockedMean mean({2});
   EXPECT_TRUE(mean.value().is_null());
   mean.weigh(31, 1);
   EXPECT_EQ(mean.value(), Json({0.0, 0.0}));

@@ -1,6 +1,4 @@
 // Stress and balance of momentum by y: of pairs that are set by hand, and of a whole realisation.
-#include "engine/observables/stress_profile.h"
-
 #include <gtest/gtest.h>
 
 #include <map>
@@ -14,24 +12,27 @@ namespace {
 
 constexpr std::size_t bins = 5;  // 2 wide, of the volume 200
 
-Physics quiet_physics() {
-  Physics physics;
-  physics.viscosity = 1;
-  physics.contact = ContactParameters{};
-  return physics;
+// The profiles of one step, whose pairs `take` shows; eta = 1, without noise.
+template <class Take>
+Json of_step(const System& system, double shear_rate, double weight, const Take& take) {
+  const Json document = small_scene({{"fluid", {{"viscosity", 1}, {"thermal_energy", nullptr}}},
+                                     {"flow", {{"shear_rate", shear_rate}}},
+                                     {"observables", {"profiles"}},
+                                     {"profiles", {{"bins", bins}}}});
+  const auto observable = observable_of(read_scene(document, "scene.json"), system, 256);
+  observable->watcher()->begin(system, weight);
+  take(*observable->watcher());
+  observable->sample(system, 0);
+  return mean_of(*observable).at("profiles");
 }
 
-// A profile of one step of the spheres 0 and 1, which press on each other with this force and stress.
+// The profiles of the spheres 0 and 1, which press on each other with this force and stress.
 Json of_pair(const System& system, const Vector3& force, const SymmetricTensor& stress, double weight = 1) {
-  StressProfile profile(quiet_physics(), bins);
-  PairSums sums;
-  sums.of(StressTerm::contact_normal) = stress;
-  profile.begin(system, weight);
-  profile.take(system, system.list.pairs().front(), sums, force);
-  profile.add_step(0);
-  Json found;
-  profile.add_to(found);
-  return found;
+  return of_step(system, 0, weight, [&](PairWatcher& profile) {
+    PairSums sums;
+    sums.of(StressTerm::contact_normal) = stress;
+    profile.take(system, system.list.pairs().front(), sums, force);
+  });
 }
 
 // With a list of the one pair that they are.
@@ -82,13 +83,7 @@ TEST(StressProfile, OfALineAlongABinIsInThatBin) {
 TEST(StressProfile, HasTheDragOfTheSpheresAroundABoundary) {
   System system = loose_spheres(1, 0.3 / 2.5);
   system.particles.position.set(0, {3, 2.5, 3});
-  Physics physics = quiet_physics();
-  physics.flow = steady_shear(0.3 / 2.5);
-  StressProfile profile(physics, bins);
-  profile.begin(system, 1);
-  profile.add_step(0);
-  Json found;
-  profile.add_to(found);
+  const Json found = of_step(system, 0.3 / 2.5, 1, [](PairWatcher&) {});
   const double unit = 0.3 / 2.5, drag = 6 * std::numbers::pi * 0.3 / 100 / unit;
   EXPECT_NEAR(found["drag"][0][1].get<double>(), 0.75 * drag, 1e-14);
   EXPECT_NEAR(found["drag"][0][2].get<double>(), 0.25 * drag, 1e-14);

@@ -1,6 +1,4 @@
 // Frames of a realisation against the realisation itself: places, motion, stress, contacts.
-#include "engine/observables/trajectory.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,8 @@
 #include <set>
 
 #include "contract/input_error.h"
+#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/simulation.h"
 #include "engine/terms/drag.h"
 #include "tests/engine/gsd/gsd_reader.h"
@@ -338,29 +338,29 @@ TEST(Trajectory, HasTheSameBytesOnAnyNumberOfThreads) {
 
 // Rate 2; the Brownian time eta a^3 / kT is 5.
 TEST(Trajectory, HasAnIntervalInStrainTimeOrBrownianTimes) {
-  const auto interval = [](const Json& limits) {
-    return read_scene(scene_with_trajectory(Json::object(), limits), "scene.json")
-        .observables.at("trajectory")
-        .at("interval");
+  const auto steps = [](const Json& limits) {
+    const Scene scene = read_scene(scene_with_trajectory(Json::object(), limits), "scene.json");
+    return make_observables(scene, {0.001, 1000, {8, 8, 8}}, "scene.json").front()->interval();
   };
-  EXPECT_DOUBLE_EQ(interval({{"time", 0.01}}).get<double>(), 0.01);
-  EXPECT_DOUBLE_EQ(interval({{"strain", 0.1}}).get<double>(), 0.05);
-  EXPECT_DOUBLE_EQ(interval({{"brownian_times", 0.01}}).get<double>(), 0.05);
-  EXPECT_DOUBLE_EQ(interval({{"strain", 0.1}, {"time", 0.01}}).get<double>(), 0.01)
-      << "the first that is reached";
-  EXPECT_THROW(interval(Json::object()), InputError);
+  EXPECT_EQ(steps({{"time", 0.01}}), 10u);
+  EXPECT_EQ(steps({{"strain", 0.1}}), 50u);
+  EXPECT_EQ(steps({{"brownian_times", 0.01}}), 50u);
+  EXPECT_EQ(steps({{"strain", 0.1}, {"time", 0.01}}), 10u) << "the first that is reached";
+  EXPECT_THROW(steps(Json::object()), InputError);
 }
 
 TEST(Trajectory, IsRefusedWhereNobodyCouldKeepIt) {
   const Scene scene = read_scene(scene_with_trajectory(), "scene.json");
-  const auto check = trajectory().check;
-  EXPECT_NO_THROW(check(scene, {0.002, 50'000, {8, 8, 8}}, "scene.json"));
-  EXPECT_THROW(check(scene, {0.002, 50'001, {8, 8, 8}}, "scene.json"), InputError);
+  const auto make = [](const Scene& of, std::uint64_t steps) {
+    make_observables(of, {0.002, steps, {8, 8, 8}}, "scene.json");
+  };
+  EXPECT_NO_THROW(make(scene, 50'000));
+  EXPECT_THROW(make(scene, 50'001), InputError);
   // 10^6 spheres of 76 bytes and 6 contacts of 21 each, in 4 GiB: 21 frames.
   Scene large = scene;
   large.particles.count = 1'000'000;
-  EXPECT_NO_THROW(check(large, {0.002, 21, {8, 8, 8}}, "scene.json"));
-  EXPECT_THROW(check(large, {0.002, 22, {8, 8, 8}}, "scene.json"), InputError);
+  EXPECT_NO_THROW(make(large, 21));
+  EXPECT_THROW(make(large, 22), InputError);
   EXPECT_THROW(read_scene(scene_with_trajectory({{"contact", nullptr}}), "scene.json"), InputError);
 }
 

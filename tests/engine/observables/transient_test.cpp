@@ -1,8 +1,7 @@
 // Transients of stresses that are known.
-#include "engine/responses/transient.h"
-
 #include <gtest/gtest.h>
 
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/simulation.h"
 #include "tests/engine/observables/loose_spheres.h"
 
@@ -20,28 +19,33 @@ Scene flowing(const Json& flow, const Json& equilibration) {
   return read_scene(document, "scene.json");
 }
 
+struct Measured {
+  Json transient;
+  std::vector<Quantity> quantities;
+};
+
 // Pairs of a stress that doubles in each of four parts of ten steps; the clock is at the end of each.
-Json measured(const Scene& scene, double begin) {
+Measured measured(const Scene& scene, double begin) {
   System system = loose_spheres(4);
   const double volume = edge * edge * edge;
   system.clock = {begin, 0.1, 0};
-  const auto made = make_observables(scene, system, {0.1, 40, system.box.lengths()});
+  const auto made = observable_of(scene, system, 40, 0.1);
   for (int k = 0; k < 40; ++k) {
     ++system.clock.steps;
     MomentumFlux flux;
     const double s = 1 << (k / 10);
     flux.by_pairs = {.xx = 2 * volume * s, .yy = 5 * volume * s, .zz = -volume * s, .xy = volume * s};
-    made.front()->take_flux(flux);
-    made.front()->sample(system, 0);
+    made->take_flux(flux);
+    made->sample(system, 0);
   }
-  return mean_of(*made.front()).at("transient");
+  return {mean_of(*made).at("transient"), made->quantities()};
 }
 
 // Reversed from rate 2 to -2, with 0.2 as the unit: pairs that still push the old way pull now.
 TEST(Transient, IsThatOfTheReversedFlow) {
   const Scene scene = flowing(
       Json::parse(R"({"segments": [{"shear_rate": 2, "time": 1}, {"shear_rate": -2}]})"), {{"time", 1}});
-  const Json transient = measured(scene, 1);
+  const auto [transient, all] = measured(scene, 1);
   for (int k = 0; k < 4; ++k) {
     const double s = (1 << k) / (2 * viscosity);
     EXPECT_NEAR(transient["shear_stress"][k].get<double>(), background - s, 1e-12);
@@ -49,7 +53,6 @@ TEST(Transient, IsThatOfTheReversedFlow) {
     EXPECT_NEAR(transient["second_normal_difference"][k].get<double>(), 6 * s, 1e-12);
     EXPECT_NEAR(transient["pressure"][k].get<double>(), -2 * s, 1e-12);
   }
-  const std::vector<Quantity> all = observed_quantities(scene, {0.1, 40, {edge, edge, edge}});
   ASSERT_EQ(all.size(), 4u);
   EXPECT_EQ(all.front().unit, "viscosity * shear_rate");
   EXPECT_EQ(all.front().axes.front().name, "strain");
@@ -60,9 +63,8 @@ TEST(Transient, IsThatOfTheReversedFlow) {
 TEST(Transient, IsInUnitsOfTheSceneWhereTheFlowHasStopped) {
   const Scene scene = flowing(
       Json::parse(R"({"segments": [{"shear_rate": 2, "time": 1}, {"shear_rate": 0}]})"), {{"time", 1}});
-  const Json transient = measured(scene, 1);
+  const auto [transient, all] = measured(scene, 1);
   for (int k = 0; k < 4; ++k) EXPECT_NEAR(transient["shear_stress"][k].get<double>(), 1 << k, 1e-12);
-  const std::vector<Quantity> all = observed_quantities(scene, {0.1, 40, {edge, edge, edge}});
   EXPECT_EQ(all.front().unit, "stress");
   EXPECT_EQ(all.front().axes.front().name, "time");
   EXPECT_EQ(all.front().axes.front().values, Json::array({0.5, 1.5, 2.5, 3.5}));
@@ -71,7 +73,7 @@ TEST(Transient, IsInUnitsOfTheSceneWhereTheFlowHasStopped) {
 // (sigma_xx - sigma_yy) / (4 rate) of the solvent is its viscosity, 1 in the unit 2 rate viscosity.
 TEST(Transient, OfExtensionIsTheExtensionalViscosity) {
   const Scene scene = flowing({{"extension_rate", 0.5}}, {{"time", 1}});
-  const Json transient = measured(scene, 1);
+  const auto [transient, all] = measured(scene, 1);
   for (int k = 0; k < 4; ++k) {
     EXPECT_NEAR(transient["shear_stress"][k].get<double>(),
                 background + (2.0 - 5.0) * (1 << k) / 2 / viscosity, 1e-12);

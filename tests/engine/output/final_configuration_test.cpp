@@ -10,6 +10,7 @@
 #include "contract/input_error.h"
 #include "contract/sha256.h"
 #include "engine/jobs/job.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/pictures/picture.h"
 #include "engine/realisation/simulation.h"
 #include "engine/snapshots/snapshot_file.h"

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "engine/evaluation/configuration.h"
+#include "engine/observables/scene_reading.h"
 #include "tests/engine/every_image.h"
 #include "tests/engine/output/small_result.h"
 #include "tests/engine/small_scene.h"

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "engine/jobs/job.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/checkpoint.h"
 #include "tests/engine/small_scene.h"
 #include "tests/engine/temporary_folder.h"
@@ -58,7 +59,8 @@ const Way ways[] = {
       {"fluid", {{"thermal_energy", nullptr}}}}},
     {"with_every_observable_of_a_flow",
      {{"observables",
-       {"mean_squared_displacement", "pair_distribution", "contact_network", "profiles", "trajectory"}},
+       {"mean_squared_displacement", "pair_distribution", "contact_network", "fabric", "profiles",
+        "trajectory"}},
       {"pair_distribution", {{"range", 3}}}}},
 };
 const auto name_of_way = [](const auto& way) { return std::string(way.param.name); };

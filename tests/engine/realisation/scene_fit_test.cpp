@@ -11,6 +11,7 @@
 
 #include "contract/input_error.h"
 #include "engine/jobs/job.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/start/packing.h"
 #include "tests/engine/small_scene.h"
 
@@ -176,6 +177,7 @@ TEST(NamesOfTargets, AreThoseOfTheNumbersThatTheResultHas) {
       Json::object(),
       {{"fluid", {{"thermal_energy", nullptr}}},
        {"observables", {"mean_squared_displacement", "contact_network"}}},
+      {{"observables", {"fabric", "transient"}}, {"transient", {{"bins", 4}, {"fabric_gap", 0.1}}}},
       {{"observables", {"mean_squared_displacement", "pair_distribution", "contact_network", "profiles"}},
        {"pair_distribution", {{"range", 3}}}},
       {{"contact", {{"friction", nullptr}, {"rolling_stiffness", nullptr}, {"rolling_friction", nullptr}}},

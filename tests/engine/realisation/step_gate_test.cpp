@@ -4,6 +4,7 @@
 
 #include "engine/integrators/velocity_verlet.h"
 #include "engine/jobs/job.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/stability/stability.h"
 #include "tests/engine/small_scene.h"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/integrators/step_origin.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/random/keyed_random.h"
 #include "engine/realisation/stress_control.h"
 #include "tests/engine/small_scene.h"

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "engine/observables/scene_reading.h"
 #include "engine/output/result.h"
 #include "engine/output/summary.h"
 #include "engine/realisation/simulation.h"

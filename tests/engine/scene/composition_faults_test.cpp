@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "contract/input_error.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/scene/scene.h"
 
 namespace peclet::engine {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "engine/observables/scene_reading.h"
 #include "engine/scene/scene.h"
 #include "engine/stability/derived_groups.h"
 #include "engine/start/packing.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/flow/controlled_shear.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/schedule.h"
 #include "engine/stability/derived_groups.h"
 #include "tests/engine/small_scene.h"

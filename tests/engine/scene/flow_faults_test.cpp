@@ -5,6 +5,7 @@
 
 #include "contract/input_error.h"
 #include "engine/flow/flows.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/scene/scene.h"
 #include "tests/engine/small_scene.h"
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "contract/input_error.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/scene/scene.h"
 
 namespace peclet::engine {
@@ -153,6 +154,10 @@ const Fault faults[] = {
     {R"({"contact_network": {}})", "/contact_network", "{}", "must be left out unless /observables lists it"},
     {R"({"observables": ["pair_distribution"], "pair_distribution": {"bin": 0.3}})", "/pair_distribution/bin",
      "0.3", "must divide /pair_distribution/range, which is 4"},
+    {R"({"observables": ["fabric"], "fabric": {"gap": 1.5}})", "/fabric/gap", "1.5",
+     "must be a number > 0 and <= 1"},
+    {R"({"observables": ["transient"], "transient": {"fabric_gap": 0}})", "/transient/fabric_gap", "0",
+     "must be a number > 0 and <= 1"},
     {R"({"observables": ["mean_squared_displacement"], "mean_squared_displacement": {"interval": 0}})",
      "/mean_squared_displacement/interval", "0", "must be a number > 0"},
     {R"({"observables": ["stress_correlation"]})", "/observables", R"(["stress_correlation"])",

@@ -4,6 +4,7 @@
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
 #include "engine/evaluation/configuration.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/scene/scene.h"
 
 namespace peclet::engine {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "contract/input_error.h"
+#include "engine/observables/scene_reading.h"
 
 namespace peclet::engine {
 namespace {

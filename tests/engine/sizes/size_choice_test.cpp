@@ -10,6 +10,7 @@
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
 #include "contract/json.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/scene_fit.h"
 #include "tests/engine/small_scene.h"
 #include "tests/engine/temporary_folder.h"

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "engine/flow/oscillatory_shear.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/scene/scene.h"
 #include "tests/engine/small_scene.h"
 

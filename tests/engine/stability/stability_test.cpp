@@ -7,6 +7,7 @@
 
 #include "contract/input_error.h"
 #include "engine/integrators/velocity_verlet.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/observables/structure.h"
 #include "engine/start/packing.h"
 #include "tests/engine/draws.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/kernels/pairs/terms.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/simulation.h"
 #include "engine/stability/stability.h"
 #include "engine/start/packing.h"

@@ -1,4 +1,4 @@
-#include "engine/averages/squared_sums.h"
+#include "engine/observables/squared_sums.h"
 
 #include <algorithm>
 
@@ -39,18 +39,6 @@ std::vector<std::uint64_t> SquaredSums::lengths(std::size_t levels, std::uint64_
     }
   }
   return lengths;
-}
-
-void SquaredSums::save(ArchiveWriter& archive) const {
-  archive.put(sum_);
-  archive.put(entries_);
-  archive.put(levels_);
-}
-
-void SquaredSums::load(ArchiveReader& archive) {
-  sum_ = archive.get<double>();
-  entries_ = archive.get<std::uint64_t>();
-  levels_ = archive.get_vector<Level>(levels_.size());
 }
 
 }  // namespace peclet::engine

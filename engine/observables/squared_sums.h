@@ -28,8 +28,8 @@ class SquaredSums {
   // The lengths of so many entries in so many levels, in the same order.
   static std::vector<std::uint64_t> lengths(std::size_t levels, std::uint64_t entries);
 
-  void save(ArchiveWriter& archive) const;
-  void load(ArchiveReader& archive);
+  void save(ArchiveWriter& archive) const { archive.put_all(sum_, entries_, levels_); }
+  void load(ArchiveReader& archive) { archive.get_all(sum_, entries_, levels_); }
 
  private:
   static constexpr std::size_t kept = 16;

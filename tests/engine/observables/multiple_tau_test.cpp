@@ -1,5 +1,5 @@
 // Correlations over lags of a widening grid, against plain sums.
-#include "engine/averages/multiple_tau.h"
+#include "engine/observables/multiple_tau.h"
 
 #include <gtest/gtest.h>
 

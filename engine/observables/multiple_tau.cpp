@@ -1,4 +1,4 @@
-#include "engine/averages/multiple_tau.h"
+#include "engine/observables/multiple_tau.h"
 
 #include <algorithm>
 

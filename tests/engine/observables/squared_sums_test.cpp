@@ -1,5 +1,5 @@
 // Mean squares of sums over windows of a widening grid, against plain sums.
-#include "engine/averages/squared_sums.h"
+#include "engine/observables/squared_sums.h"
 
 #include <gtest/gtest.h>
 

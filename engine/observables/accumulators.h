@@ -1,0 +1,114 @@
+// Named quantities that an observable measures, and the sums over the window that they are made of.
+//
+// A quantity is registered once, with its description and its accumulator, or with a function of others that
+// are kept. The numbers of the result, their blocks, their descriptions, the targets of campaigns, and what
+// checkpoints hold follow from the registration.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/observables/blocked_mean.h"
+#include "engine/state/vector3.h"
+
+namespace peclet::engine {
+
+struct Axis {
+  std::string name, unit;  // "1": a pure number
+  Json values;             // numbers or words, one for each entry of the list
+};
+
+// Returns the axis of the values value_at(0), value_at(1) ...
+template <class Value>
+Axis axis_of(const std::string& name, const std::string& unit, std::size_t count, const Value& value_at) {
+  Axis axis{name, unit, Json::array()};
+  for (std::size_t k = 0; k < count; ++k) axis.values.push_back(value_at(k));
+  return axis;
+}
+
+// Returns the times of lags in samples that are `between` apart.
+inline Axis axis_of_lags(const std::string& name, const std::vector<std::uint64_t>& lags, double between) {
+  return axis_of(name, "time", lags.size(),
+                 [&](std::size_t k) { return between * static_cast<double>(lags[k]); });
+}
+
+// Components of a symmetric tensor in the order of every result, and their axis.
+inline std::vector<double> components_of(const SymmetricTensor& t) {
+  return {t.xx, t.yy, t.zz, t.xy, t.xz, t.yz};
+}
+inline Axis axis_of_components() { return {"component", "1", {"xx", "yy", "zz", "xy", "xz", "yz"}}; }
+
+// A ratio of means: the quantity's object in the result has two members of these names, each a mean (or a
+// sum over the window) that is averaged over the seeds before it is divided. One of the two may be a single
+// number where the other one has axes.
+struct RatioOfMeans {
+  std::string numerator, denominator;
+};
+
+struct Quantity {
+  std::string name;          // its path in the result's "mean" (and "blocks"): "pressure", "stress/total"
+  std::string symbol, unit;  // "1": a pure number
+  std::vector<Axis> axes{};  // none: a scalar; otherwise lists within lists, the first axis outermost
+  std::optional<RatioOfMeans> ratio{};  // absent: its values are means
+  bool is_share = false;                // a scalar that is 0 or 1 in each realisation
+};
+
+Json to_json(const Quantity& quantity);
+
+// Names of the numbers of a quantity at which a campaign may aim: of a scalar its own, of others "NAME/*"
+// with a star for the index of each axis. None of a ratio: it is no mean over seeds.
+std::vector<std::string> targets_in(const Quantity& quantity);
+
+class Accumulators {
+ public:
+  using Numbers = std::function<Json()>;
+
+  Accumulators() { keep(means_); }
+  Accumulators(const Accumulators&) = delete;
+  Accumulators& operator=(const Accumulators&) = delete;
+
+  // Registers a mean of the shape of the quantity's axes, and its blocks.
+  BlockedMean& mean(const Quantity& quantity) { return mean_if(true, quantity); }
+  // A mean that the result has only if `is_reported`; with `blocks` blocks, or as many as is usual.
+  BlockedMean& mean_if(bool is_reported, const Quantity& quantity, std::optional<std::size_t> blocks = {});
+  // Registers a ratio of means: of the one that is returned, to another one of the same shape.
+  BlockedMean& ratio(const Quantity& quantity, const BlockedMean& denominator);
+  // Registers a quantity that `value` works out when the result is written, and its blocks where they are not
+  // null.
+  void derive(const Quantity& quantity, Numbers value, Numbers blocks = nullptr);
+  // Writes a value beside the quantities, without a description: the places along an axis, for example.
+  void beside(const std::string& name, const Json& value);
+  // Registers what checkpoints must have besides the means.
+  template <class... Parts>
+  void keep(Parts&... parts) {
+    saved_.emplace_back([&](ArchiveWriter& archive) { archive.put_all(parts...); });
+    loaded_.emplace_back([&](ArchiveReader& archive) { archive.get_all(parts...); });
+  }
+
+  const std::vector<Quantity>& quantities() const { return quantities_; }
+  // Adds all numbers to the result's means, at the paths that their names are. Requires a sample.
+  void add_to(Json& mean) const;
+  // Adds the blocks of those that have some. A function of lags up to the whole window has none.
+  void add_blocks_to(Json& blocks) const;
+
+  // Everything that samples have left, bit by bit.
+  void save(ArchiveWriter& archive) const;
+  void load(ArchiveReader& archive);
+
+ private:
+  struct Named {
+    std::string name;
+    Numbers numbers;
+  };
+  std::vector<Quantity> quantities_;
+  std::vector<Named> values_, blocks_;
+  std::deque<BlockedMean> means_;
+  std::vector<std::function<void(ArchiveWriter&)>> saved_;
+  std::vector<std::function<void(ArchiveReader&)>> loaded_;
+};
+
+}  // namespace peclet::engine
