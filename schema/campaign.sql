@@ -1,11 +1,11 @@
--- The database of one campaign, version 7; its views are in views.sql. One process writes it (the one that holds
+-- The database of one campaign; its views are in views.sql. One process writes it (the one that holds
 -- campaign.lock); everybody else opens it read-only. schema/README.md explains the tables and views to pandas
--- users. A version-N.sql makes version N of the one before it and leaves the same tables as this file.
+-- users. A program refuses a database of another version: changed tables need another number.
 --
 -- Times ending in _at are wall-clock times in UTC, for people to look at: no decision is made from them.
 
 PRAGMA application_id = 1346587724;  -- "PCLL" as a big-endian integer
-PRAGMA user_version = 7;
+PRAGMA user_version = 1;
 
 -- What a verdict was reached for. Old targets stay, with the looks that were made for them.
 CREATE TABLE target (
@@ -15,8 +15,7 @@ CREATE TABLE target (
   confidence         REAL    NOT NULL,
   minimum            INTEGER NOT NULL,
   maximum            INTEGER NOT NULL,
-  rule               INTEGER NOT NULL,  -- by which looks decide: 1 before version 5 of the tables
-  UNIQUE (observable, criterion, confidence, minimum, maximum, rule)
+  UNIQUE (observable, criterion, confidence, minimum, maximum)
 ) STRICT;
 
 -- The campaign as last run: exactly one row.
@@ -58,7 +57,7 @@ CREATE UNIQUE INDEX point_by_hash ON point (hash) WHERE kept_apart = 0;
 -- One seed at one point: its state and the numbers that are asked for most.
 CREATE TABLE realisation (
   point_id                 INTEGER NOT NULL REFERENCES point,
-  seed                     INTEGER NOT NULL CHECK (seed >= 0),
+  seed                     INTEGER NOT NULL CHECK (seed >= 0 AND seed < 1000000),  -- /realisations/maximum at most
   state                    TEXT    NOT NULL CHECK (state IN ('queued', 'running', 'done', 'failed', 'quarantined')),
   cause                    TEXT,     -- of its ending: completed, overlap, ..., or why it is quarantined
   value                    REAL,     -- of the target's observable; NULL without one
@@ -92,11 +91,11 @@ CREATE TABLE dictionary (
 ) STRICT;
 
 -- The whole result as the engine wrote it, apart from "engine", which is in the table of that name: deflated (zlib) with
--- the point's dictionary, if the stream asks for one; JSON text where it was stored before version 4.
+-- the point's dictionary, if the stream asks for one.
 CREATE TABLE result (
   point_id INTEGER NOT NULL,
   seed     INTEGER NOT NULL,
-  document ANY     NOT NULL CHECK (typeof(document) = 'blob' OR json_valid(document)),
+  document BLOB    NOT NULL,
   PRIMARY KEY (point_id, seed),
   FOREIGN KEY (point_id, seed) REFERENCES realisation
 ) STRICT;
@@ -185,7 +184,7 @@ CREATE TABLE look (
   uncontrolled_standard_error REAL,
   uncontrolled_half_width     REAL,
   verdict                     TEXT    NOT NULL CHECK (verdict IN ('more', 'converged', 'converged-with-losses',
-                                'converged-near-maximum', 'capped', 'failed')),
+                                'capped', 'failed')),
   made_at                     TEXT    NOT NULL,
   skewness                    REAL,     -- of the values that decide
   transient                   INTEGER NOT NULL DEFAULT 0 CHECK (transient IN (0, 1)),  -- the window is too early

@@ -1,5 +1,4 @@
--- The views: what people read. They show the points that the sweep contains. They are made anew whenever the
--- tables change their version.
+-- The views: what people read. They show the points that the sweep contains.
 
 CREATE VIEW points AS
 SELECT p.place, p.label, p.hash, p.settings, p.suspect, p.priority, p.cancelled,

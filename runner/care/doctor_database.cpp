@@ -57,40 +57,6 @@ void run_again(Database& owner, const CampaignDirectory& directory, std::int64_t
   booking.commit();
 }
 
-// Seeds that no campaign can have: an earlier peclet took results of any number.
-constexpr const char* impossible = "seed >= ?";
-
-std::int64_t impossible_seeds(Connection& connection) {
-  Statement query(connection, fmt::format("SELECT count(*) FROM realisation WHERE {}", impossible));
-  query.bind(most_realisations).step();
-  return query.integer(0);
-}
-
-// What was stored is kept for people.
-void remove_impossible_seeds(Database& owner, const CampaignDirectory& directory) {
-  Connection& connection = owner.connection();
-  Transaction booking(connection);
-  Statement stored(connection,
-                   fmt::format("SELECT document, text, point_id, seed FROM result LEFT JOIN dictionary USING "
-                               "(point_id) WHERE {}",
-                               impossible));
-  stored.bind(most_realisations);
-  while (stored.step()) {
-    write_durably(directory.rejected() /
-                      fmt::format("point-{}-seed-{}-impossible.json", stored.integer(2), stored.integer(3)),
-                  readable(stored));
-  }
-  for (const char* const table :
-       {"result", "numbers", "file", "lease", "attempt", "bundle_seed", "realisation"}) {
-    Statement(connection, fmt::format("DELETE FROM {} WHERE {}", table, impossible))
-        .bind(most_realisations)
-        .run();
-  }
-  EventLog(owner).write("repaired", std::nullopt, std::nullopt,
-                        "seeds that no campaign can have are removed; their results are in spool/rejected/");
-  booking.commit();
-}
-
 // What is wrong with the result of a seed that has ended: "" when nothing is.
 std::string fault_of(Database& database, const PointRecord& point, const RealisationRecord& record,
                      const std::vector<std::string>& observables) {
@@ -127,7 +93,7 @@ int unreadable_results(Connection& connection, std::int64_t point) {
   stored.bind(point);
   int unreadable = 0;
   while (stored.step()) {
-    if (stored.is_blob(0) && !was_deflated_with(stored.text(0), stored.text(1))) ++unreadable;
+    if (!was_deflated_with(stored.text(0), stored.text(1))) ++unreadable;
   }
   return unreadable;
 }
@@ -142,15 +108,6 @@ std::vector<PointRecord> all_points(Database& database) {
 
 void examine_results(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
   const std::vector<std::string> observables = database.campaign().target.target.observables();
-  if (const std::int64_t count = impossible_seeds(database.connection()); count > 0) {
-    findings.push_back(
-        {"seed-impossible", Severity::integrity,
-         fmt::format("{} results are of seeds from {} on, which no campaign can have; they do "
-                     "not count",
-                     count, most_realisations),
-         "`peclet doctor --repair` keeps what is stored in spool/rejected/ and removes them",
-         [directory = examined.directory](Database& owner) { remove_impossible_seeds(owner, directory); }});
-  }
   for (const PointRecord& point : all_points(database)) {
     if (const int count = unreadable_results(database.connection(), point.id); count > 0) {
       findings.push_back({"dictionary-altered", Severity::integrity,
@@ -162,7 +119,6 @@ void examine_results(Database& database, const CampaignUnderExamination& examine
     }
     for (const RealisationRecord& record : database.realisations(point.id)) {
       if (record.state != SeedState::done && record.state != SeedState::failed) continue;
-      if (record.seed < 0 || record.seed >= most_realisations) continue;  // have been found
       const std::string fault = fault_of(database, point, record, observables);
       if (fault.empty()) continue;
       Finding finding{"result-altered", Severity::integrity,
@@ -201,10 +157,6 @@ void examine_looks(Database& database, Findings& findings) {
     try {
       checked_look(database, point, target);
     } catch (const IntegrityError& error) {
-      if (target.target.rule != Target::newest_rule) {
-        findings.push_back({"look-differs", Severity::integrity, error.what(), "`peclet run` looks again"});
-        continue;
-      }
       findings.push_back(
           {"look-differs", Severity::integrity, error.what(),
            "`peclet doctor --repair` looks again at the stored results",

@@ -194,8 +194,7 @@ void examine_strays(const CampaignUnderExamination& examined, Findings& findings
   std::vector<fs::path> strays;
   for (const fs::path& file : files_in(examined.directory.root())) {
     const std::string name = file.filename().string();
-    const bool known = std::find(known_names.begin(), known_names.end(), name) != known_names.end() ||
-                       name.starts_with("campaign.db.version-");  // from before a migration
+    const bool known = std::find(known_names.begin(), known_names.end(), name) != known_names.end();
     if (!known && file.extension() != ".tmp") strays.push_back(file);
   }
   if (strays.empty()) return;

@@ -24,6 +24,9 @@ Contents examine(const std::filesystem::path& path) {
   if (!is_campaign_database(database)) {
     throw IntegrityError(path.string() + ": is no database of a peclet campaign");
   }
+  if (const std::string why = other_version(database); !why.empty()) {
+    throw IntegrityError(fmt::format("{}: {}", path.string(), why));
+  }
   if (const std::string found = damage(database); !found.empty()) {
     throw IntegrityError(fmt::format("{}: is damaged: {}", path.string(), found));
   }

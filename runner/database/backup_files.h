@@ -12,7 +12,7 @@
 
 namespace peclet::runner {
 
-// What a database holds, of whatever version its tables are.
+// What a database holds.
 struct Contents {
   std::string name, created_at;  // of the campaign
   std::string origin;            // tells campaigns apart, whatever they are called since

@@ -15,7 +15,6 @@
 #include "contract/guarded_file.h"
 #include "runner/database/campaign_sql.h"
 #include "runner/database/database_tables.h"
-#include "runner/database/migration.h"
 #include "runner/folder/being_set_up.h"
 
 namespace peclet::runner {
@@ -23,7 +22,7 @@ namespace {
 
 // As in schema/campaign.sql.
 constexpr std::int64_t our_application = 1346587724;
-constexpr std::int64_t newest_version = 7;
+constexpr std::int64_t our_version = 1;
 
 constexpr std::array<std::pair<SeedState, const char*>, 5> state_names{
     {{SeedState::queued, "queued"},
@@ -59,25 +58,14 @@ bool holds_anything(Connection& connection) {
   return connection.integer("SELECT EXISTS (SELECT 1 FROM campaign) OR EXISTS (SELECT 1 FROM point)") != 0;
 }
 
-std::int64_t version_of(Connection& connection) { return connection.integer("PRAGMA user_version"); }
-
 void check_kind(Connection& connection) {
   if (!is_campaign_database(connection)) {
     throw IntegrityError(connection.path() + ": is a database, but not one of a peclet campaign");
   }
-  const std::int64_t version = version_of(connection);
-  if (version > newest_version) {
-    throw InputError(
-        connection.path(), "", "",
-        fmt::format("was written by a newer peclet (version {} of its tables; this program knows "
-                    "versions up to {}); use that peclet or a newer one",
-                    version, newest_version));
+  if (const std::string why = other_version(connection); !why.empty()) {
+    throw InputError(connection.path(), "", "", why);
   }
-  if (version < 1) {
-    throw IntegrityError(
-        fmt::format("{}: has tables of version {}, which never existed", connection.path(), version));
-  }
-  check_tables(connection, version == newest_version);
+  check_tables(connection);
 }
 
 void create_tables(Connection& connection) {
@@ -134,6 +122,15 @@ bool is_campaign_database(Connection& connection) {
   return connection.integer("PRAGMA application_id") == our_application;
 }
 
+std::string other_version(Connection& connection) {
+  const std::int64_t version = connection.integer("PRAGMA user_version");
+  if (version == our_version) return "";
+  return fmt::format(
+      "was written by another peclet: its tables are of version {}, and this program knows version {}; use "
+      "the peclet that wrote it",
+      version, our_version);
+}
+
 const char* to_string(SeedState state) { return name_of(state_names, state); }
 
 SeedState seed_state(const std::string& text) { return value_of<SeedState>(state_names, text); }
@@ -160,8 +157,6 @@ Database Database::open_owner(const std::filesystem::path& path) {
     create_tables(connection);
   } else if (const std::string verdict = connection.text("PRAGMA quick_check(1)"); verdict != "ok") {
     throw IntegrityError(fmt::format("{}: is damaged: {}", connection.path(), verdict));
-  } else if (version_of(connection) < newest_version) {
-    migrate(connection, version_of(connection));
   }
   return database;
 }
@@ -175,11 +170,6 @@ Database Database::open_reader(const std::filesystem::path& path) {
   database.snapshot_ = std::make_unique<Transaction>(database.connection(), Transaction::Kind::snapshot);
   if (is_empty(database.connection())) throw BeingSetUp(path.string());
   check_kind(database.connection());
-  if (version_of(database.connection()) < newest_version) {
-    throw InputError(
-        path.string(), "", "",
-        "was last written by an older peclet; `peclet run` brings it up to date, after a backup");
-  }
   if (!holds_anything(database.connection())) throw BeingSetUp(path.string());
   return database;
 }

@@ -125,6 +125,9 @@ struct CampaignRecord {
 
 // Whether a file that SQLite can open is a campaign's database, of whatever version.
 bool is_campaign_database(Connection& connection);
+// Says that the tables of a campaign's database are of a version that this program does not know; ""
+// otherwise.
+std::string other_version(Connection& connection);
 
 // Whether a reader reads this database without locks and without a log: there is no log, and its folder may
 // not be written, so that a run of ours cannot write it. Its owner may: what is read while a run begins may
@@ -134,8 +137,8 @@ bool is_frozen_for_us(const std::filesystem::path& path);
 class Database {
  public:
   // Opens or creates the database for its owner. Requires the campaign's lock.
-  // Throws IntegrityError for a file that is no campaign database or is damaged, InputError for one of a
-  // newer version, and DatabaseError.
+  // Throws IntegrityError for a file that is no campaign database or is damaged, InputError for one of
+  // another version, and DatabaseError.
   static Database open_owner(const std::filesystem::path& path);
   // Opens it for reading. All that one Database reads is one snapshot, taken at the first read.
   // In a folder that may not be written, and without a log, the file is read as it is. Throws as above;

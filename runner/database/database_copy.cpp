@@ -83,7 +83,7 @@ std::string damage(Connection& connection) {
   }
   // With other tables than ours in their places, references cannot even be looked at.
   try {
-    check_tables(connection, false);
+    check_tables(connection);
   } catch (const IntegrityError& error) {
     return error.what();
   }

@@ -60,7 +60,6 @@ TargetRecord read_target(const Statement& query, int column) {
   record.target = stored_target(query.text(column + 1), query.text(column + 2), query.real(column + 3));
   record.minimum = static_cast<int>(query.integer(column + 4));
   record.maximum = static_cast<int>(query.integer(column + 5));
-  record.target.rule = static_cast<int>(query.integer(column + 6));
   return record;
 }
 
@@ -102,7 +101,7 @@ std::vector<LookRecord> read_looks(Connection& connection, std::int64_t point) {
   Statement query(
       connection,
       std::string("SELECT ") + look_columns +
-          ", made_at, target_id, observable, criterion, confidence, minimum, maximum, rule FROM look JOIN "
+          ", made_at, target_id, observable, criterion, confidence, minimum, maximum FROM look JOIN "
           "target USING (target_id) WHERE point_id = ? AND target_id = (SELECT target_id FROM campaign) "
           "ORDER BY seeds");
   query.bind(point);
@@ -132,7 +131,7 @@ EventRecord read_event(const Statement& query) {
 // Target::observables() of the campaign, without reading its document.
 std::vector<std::string> present_observables(Connection& connection) {
   Statement query(connection,
-                  "SELECT target_id, observable, criterion, confidence, minimum, maximum, rule FROM campaign "
+                  "SELECT target_id, observable, criterion, confidence, minimum, maximum FROM campaign "
                   "JOIN target USING (target_id)");
   if (!query.step()) throw IntegrityError(connection.path() + ": holds no campaign");
   return read_target(query, 0).target.observables();
@@ -156,15 +155,15 @@ constexpr const char* result_columns =
 
 CampaignRecord Database::campaign() {
   Statement query(*connection_,
-                  "SELECT target_id, observable, criterion, confidence, minimum, maximum, rule, name, "
+                  "SELECT target_id, observable, criterion, confidence, minimum, maximum, name, "
                   "document, created_at, updated_at FROM campaign JOIN target USING (target_id)");
   if (!query.step()) throw IntegrityError(connection_->path() + ": holds no campaign");
   CampaignRecord record;
   record.target = read_target(query, 0);
-  record.name = query.text(7);
-  record.document = Json::parse(query.text(8));
-  record.created_at = query.text(9);
-  record.updated_at = query.text(10);
+  record.name = query.text(6);
+  record.document = Json::parse(query.text(7));
+  record.created_at = query.text(8);
+  record.updated_at = query.text(9);
   return record;
 }
 

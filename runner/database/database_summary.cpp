@@ -129,14 +129,13 @@ CountsByPoint read_flags(Connection& connection) {
                          " GROUP BY point_id, message");
 }
 
-// By point, the largest number of seeds at a look that was made for an earlier target of the campaign, by the
-// present rule.
+// Returns, by point, the largest number of seeds at a look that was made for an earlier target of the
+// campaign.
 std::map<std::int64_t, int> read_largest_earlier_looks(Connection& connection) {
   Statement query(
       connection,
-      "SELECT point_id, max(seeds) FROM look JOIN target USING (target_id) WHERE target_id != "
-      "(SELECT target_id FROM campaign) AND rule = (SELECT t.rule FROM campaign JOIN target t USING "
-      "(target_id)) GROUP BY point_id");
+      "SELECT point_id, max(seeds) FROM look WHERE target_id != (SELECT target_id FROM campaign) GROUP BY "
+      "point_id");
   std::map<std::int64_t, int> largest;
   while (query.step()) largest[query.integer(0)] = static_cast<int>(query.integer(1));
   return largest;

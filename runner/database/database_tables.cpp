@@ -43,7 +43,7 @@ Tables make_tables() {
 
 }  // namespace
 
-void check_tables(Connection& connection, bool is_newest) {
+void check_tables(Connection& connection) {
   static const Tables ours = make_tables();
   Statement query(connection, "SELECT name, type, sql FROM sqlite_schema");
   std::set<std::string> found;
@@ -56,7 +56,6 @@ void check_tables(Connection& connection, bool is_newest) {
       found.insert(name);
     }
   }
-  if (!is_newest) return;
   for (const auto& [name, columns] : ours) {
     if (found.count(name) == 0) refuse(connection, name, "is a table that is missing");
     if (columns_of(connection, name) != columns) {

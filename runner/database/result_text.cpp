@@ -144,8 +144,7 @@ void store_result_text(Connection& connection, std::int64_t point, int seed, std
 }
 
 std::string result_text(const Statement& query, int document, int dictionary) {
-  std::string text = query.text(document);
-  if (query.is_blob(document)) text = inflated(text, query.text(dictionary));
+  std::string text = inflated(query.text(document), query.text(dictionary));
   if (const std::string excess = excess_of(text); !excess.empty()) {
     throw IntegrityError("is none that this program stores: " + excess);
   }

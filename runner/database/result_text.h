@@ -24,9 +24,8 @@ void store_result_text(Connection& connection, std::int64_t point, int seed, std
 // Whether the bytes were made with this dictionary, or with none.
 bool was_deflated_with(std::string_view bytes, std::string_view dictionary);
 
-// For a query of `document` and `dictionary` of
-// result LEFT JOIN dictionary USING (point_id), in these columns. Results from before version 4 of the tables
-// are stored as they are. Throws IntegrityError.
+// Returns the text of a result, from a query of `document` and `dictionary` of
+// result LEFT JOIN dictionary USING (point_id), in these columns. Throws IntegrityError.
 std::string result_text(const Statement& query, int document, int dictionary);
 
 }  // namespace peclet::runner

@@ -116,7 +116,6 @@ class Statement {
   void run();
 
   bool is_null(int column) const;
-  bool is_blob(int column) const;
   std::int64_t integer(int column) const;
   double real(int column) const;       // NULL is NaN
   std::string text(int column) const;  // or the bytes of a blob; NULL is empty

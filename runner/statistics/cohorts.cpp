@@ -185,7 +185,7 @@ std::vector<Look> replay_looks(const std::vector<std::optional<Outcome>>& outcom
     if (!is_closed(outcomes, seeds)) break;
     looks.push_back(
         look_at(std::span(outcomes).first(static_cast<std::size_t>(seeds)), rule, observables, target));
-    if (looks.back().verdict != Verdict::more && target.rule == Target::newest_rule) break;
+    if (looks.back().verdict != Verdict::more) break;
   }
   return looks;
 }

@@ -108,13 +108,12 @@ std::vector<int> repeated_seeds(std::span<const std::optional<Outcome>> cohort);
 // Half-width over |mean| of the estimate that decides; NaN where there is no interval.
 double relative_width(const Look& look);
 
-// Whether the results have a control variate, as those of earlier versions and of other engines may: without
-// one the controlled estimate only repeats the other.
+// Whether the results have a control variate, as those of other engines may: without one
+// the controlled estimate only repeats the other.
 bool has_control(const Look& look);
 
 // All looks that the outcomes allow, in order, ending with the first that decides (any verdict but more).
-// outcomes[s] is that of seed s. A pure function: replaying it is how a stored look is checked. For a target
-// with an earlier rule, which may have decided elsewhere, no look is the last one.
+// outcomes[s] is that of seed s. A pure function: replaying it is how a stored look is checked.
 std::vector<Look> replay_looks(const std::vector<std::optional<Outcome>>& outcomes, const Target& target,
                                int minimum, int maximum);
 

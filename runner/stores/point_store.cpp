@@ -53,10 +53,10 @@ void PointStore::take_over(const Campaign& campaign) {
 std::int64_t PointStore::adopt_target(const Campaign& campaign) {
   const Target& target = campaign.target;
   const char* const parts[] = {
-      "INSERT OR IGNORE INTO target (observable, criterion, confidence, minimum, maximum, "
-      "rule) VALUES (?, ?, ?, ?, ?, ?)",
+      "INSERT OR IGNORE INTO target (observable, criterion, confidence, minimum, maximum) "
+      "VALUES (?, ?, ?, ?, ?)",
       "SELECT target_id FROM target WHERE observable = ? AND criterion = ? AND confidence = ? AND "
-      "minimum = ? AND maximum = ? AND rule = ?"};
+      "minimum = ? AND maximum = ?"};
   std::int64_t id = 0;
   for (const char* const sql : parts) {
     Statement statement(connection_, sql);
@@ -64,8 +64,7 @@ std::int64_t PointStore::adopt_target(const Campaign& campaign) {
         .bind(canonical_json(criterion_json(target)))
         .bind(target.confidence)
         .bind(campaign.minimum_realisations)
-        .bind(campaign.maximum_realisations)
-        .bind(target.rule);
+        .bind(campaign.maximum_realisations);
     if (statement.step()) id = statement.integer(0);
   }
   return id;

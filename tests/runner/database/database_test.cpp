@@ -30,7 +30,7 @@ TEST_F(Databases, IsDurableStrictAndOurs) {
   EXPECT_EQ(connection.text("PRAGMA journal_mode"), "wal");
   EXPECT_EQ(connection.integer("PRAGMA synchronous"), 2);  // FULL
   EXPECT_EQ(connection.integer("PRAGMA foreign_keys"), 1);
-  EXPECT_EQ(connection.integer("PRAGMA user_version"), 7);
+  EXPECT_EQ(connection.integer("PRAGMA user_version"), 1);
   EXPECT_EQ(connection.integer("PRAGMA application_id"), 0x50434c4c);  // "PCLL"
   EXPECT_EQ(connection.integer("PRAGMA page_size"), 16384);
   EXPECT_EQ(connection.integer(
@@ -54,16 +54,34 @@ TEST_F(Databases, SomebodyElsesDatabaseIsLeftAlone) {
   EXPECT_THROW(Database::open_reader(path()), IntegrityError);
 }
 
-TEST_F(Databases, ANewerVersionAsksForANewerProgram) {
-  Database::open_owner(path()).connection().execute("PRAGMA user_version = 8");
-  for (const bool owner : {true, false}) {
-    try {
-      owner ? Database::open_owner(path()) : Database::open_reader(path());
-      FAIL() << "opened";
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("newer peclet (version 8"), std::string::npos) << error.what();
+TEST_F(Databases, AnotherVersionAsksForTheProgramThatWroteIt) {
+  for (const std::string version : {"0", "2", "7"}) {
+    Database::open_owner(path()).connection().execute("PRAGMA user_version = " + version);
+    for (const bool owner : {true, false}) {
+      try {
+        owner ? Database::open_owner(path()) : Database::open_reader(path());
+        FAIL() << "opened";
+      } catch (const InputError& error) {
+        const std::string text = error.what();
+        EXPECT_NE(text.find(path().string()), std::string::npos) << text;
+        EXPECT_NE(text.find("of version " + version + ", and this program knows version 1"),
+                  std::string::npos)
+            << text;
+      }
     }
+    for (const char* const suffix : {"", "-wal", "-shm"}) std::filesystem::remove(path().string() + suffix);
   }
+}
+
+TEST_F(Databases, HoldNoSeedThatACampaignCannotHave) {
+  Database database = Database::open_owner(path());
+  database.connection().execute(
+      "INSERT INTO point (point_id, hash, scene, settings, label) VALUES (1, 'a', '{}', '{}', 'a')");
+  const std::string insert = "INSERT INTO realisation (point_id, seed, state) VALUES (1, ";
+  for (const int seed : {0, most_realisations - 1})
+    database.connection().execute(insert + std::to_string(seed) + ", 'queued')");
+  for (const int seed : {-1, most_realisations})
+    EXPECT_THROW(database.connection().execute(insert + std::to_string(seed) + ", 'queued')"), DatabaseError);
 }
 
 TEST_F(Databases, DamageIsFoundWhenTheOwnerOpens) {

@@ -130,10 +130,5 @@ TEST_F(StoredTexts, OfTooManyValuesAreNotRead) {
   EXPECT_THROW(text_of(0), IntegrityError);
 }
 
-TEST_F(StoredTexts, OfEarlierVersionsAreReadAsTheyAre) {
-  database_.connection().execute(R"(INSERT INTO result VALUES (1, 0, '{"seed": 0}'))");
-  EXPECT_EQ(text_of(0), R"({"seed": 0})");
-}
-
 }  // namespace
 }  // namespace peclet::runner

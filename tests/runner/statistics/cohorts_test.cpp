@@ -322,13 +322,6 @@ TEST(Cohorts, SeedsThatEndInOneStateAreNotIndependent) {
   EXPECT_TRUE(replay_looks(outcomes, five_percent, 12, 12).at(0).repeated.empty());
 }
 
-// It may have stopped later.
-TEST(Cohorts, ForAnEarlierRuleNoLookIsTheLastOne) {
-  Target target = five_percent;
-  target.rule = Target::first_rule;
-  EXPECT_EQ(replay_looks(alternating(13, 10, 0.6), target, 10, 20).size(), 2U);
-}
-
 TEST(Cohorts, IntervalsAreWidenedForRepeatedLooksOnly) {
   EXPECT_DOUBLE_EQ(adjusted_confidence(0.95, 10, 100), 0.957);
   EXPECT_DOUBLE_EQ(adjusted_confidence(0.90, 14, 100), 0.91);
