@@ -7,7 +7,6 @@
 #include "contract/integrity_error.h"
 #include "runner/care/doctor.h"
 #include "runner/database/checked_look.h"
-#include "runner/database/further_values.h"
 #include "runner/database/number_book.h"
 #include "runner/database/result_text.h"
 #include "runner/folder/realisation_result.h"
@@ -44,12 +43,12 @@ void run_again(Database& owner, const CampaignDirectory& directory, std::int64_t
     stored.step();
   }
   Transaction booking(connection);
-  for (const char* const sql : {"DELETE FROM result WHERE point_id = ? AND seed = ?",
-                                "DELETE FROM numbers WHERE point_id = ? AND seed = ?",
-                                "DELETE FROM file WHERE point_id = ? AND seed = ?",
-                                "UPDATE realisation SET state = 'queued', cause = NULL, value = NULL, "
-                                "control = NULL, content_sha256 = NULL, "
-                                "final_state_sha256 = NULL WHERE point_id = ? AND seed = ?"}) {
+  for (const char* const sql :
+       {"DELETE FROM result WHERE point_id = ? AND seed = ?",
+        "DELETE FROM numbers WHERE point_id = ? AND seed = ?",
+        "DELETE FROM file WHERE point_id = ? AND seed = ?",
+        "UPDATE realisation SET state = 'queued', cause = NULL, content_sha256 = NULL, "
+        "final_state_sha256 = NULL WHERE point_id = ? AND seed = ?"}) {
     Statement(connection, sql).bind(point).bind(seed).run();
   }
   EventLog(owner).write("repaired", point, seed,
@@ -61,20 +60,13 @@ void run_again(Database& owner, const CampaignDirectory& directory, std::int64_t
 std::string fault_of(Database& database, const PointRecord& point, const RealisationRecord& record,
                      const std::vector<std::string>& observables) {
   try {
-    const std::optional<Json> document = database.result(point.id, record.seed);
-    if (!document) return "has ended, but there is no result of it";
-    const RealisationResult result = parse_result(document->dump());
+    const std::optional<std::string> text = database.result_text(point.id, record.seed);
+    if (!text) return "has ended, but there is no result of it";
+    const RealisationResult result = parse_result(*text);
     if (result.point != point.hash || result.seed != record.seed) return "has the result of another seed";
     if (result.content_sha256 != record.content_sha256) return "has a result that does not have its hash";
     if (result.engine != point.engine_identity) return "has a result of another engine";
-    const std::vector<Observed> all = observe(result.document, observables);
-    const Observed& observed = all.front();
-    const std::string further = further_values_text(observables, all).value_or("");
-    if (result.completed() &&
-        (observed.value != record.value || observed.control != record.control || further != record.further)) {
-      return "has another value than its result";
-    }
-    if (!NumberBook(database.connection()).agrees(point.id, record.seed, result.document))
+    if (!NumberBook(database.connection()).agrees(point.id, record.seed, result.document, observables))
       return "has other numbers than its result";
     return "";
   } catch (const ResultError& error) {
@@ -144,17 +136,18 @@ void examine_looks(Database& database, Findings& findings) {
            point.label + ": a seed gave two different results; the other one is in spool/rejected/",
            "find out why the engine does not repeat itself, and run in another --directory"});
     }
-    if (const std::vector<int> repeated = repeated_seeds(database.outcomes(point.id)); !repeated.empty()) {
-      findings.push_back(
-          {"seeds-repeated", Severity::warning,
-           fmt::format(
-               "{}: seed {} ended in the same state as an earlier one, and {} in all did: such values "
-               "are not independent, and the point gets no interval",
-               point.label, repeated.front(), counted(repeated.size(), "seed")),
-           "find out why seeds repeat each other (a start list with equal files, an engine that ignores the "
-           "seed), and run in another --directory"});
-    }
     try {
+      if (const std::vector<int> repeated = repeated_seeds(database.outcomes(point.id)); !repeated.empty()) {
+        findings.push_back(
+            {"seeds-repeated", Severity::warning,
+             fmt::format(
+                 "{}: seed {} ended in the same state as an earlier one, and {} in all did: such values "
+                 "are not independent, and the point gets no interval",
+                 point.label, repeated.front(), counted(repeated.size(), "seed")),
+             "find out why seeds repeat each other (a start list with equal files, an engine that ignores "
+             "the "
+             "seed), and run in another --directory"});
+      }
       checked_look(database, point, target);
     } catch (const IntegrityError& error) {
       findings.push_back(

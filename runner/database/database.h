@@ -45,10 +45,7 @@ struct PointRecord {
 struct RealisationRecord {
   int seed = 0;
   SeedState state = SeedState::queued;
-  std::string cause;              // "completed", "overlap", ..., "crashed"; empty while queued or running
-  std::optional<double> value;    // of the target's observable
-  std::optional<double> control;  // of the control variate
-  std::string further;            // of the target's other observables: further_values.h
+  std::string cause;  // "completed", "overlap", ..., "crashed"; empty while queued or running
   std::optional<double> statistical_inefficiency, largest_overlap, cpu_seconds, wall_seconds;
   std::string final_state_sha256, content_sha256;
   std::optional<std::int64_t> engine;
@@ -159,9 +156,11 @@ class Database {
   StateCounts counts(std::int64_t point);
   std::vector<RealisationRecord> realisations(std::int64_t point);
   // Index is the seed; as long as the largest seed asks for that a campaign can have. The input of
-  // replay_looks().
+  // replay_looks(). Throws IntegrityError if the numbers are not as their layout says.
   std::vector<std::optional<Outcome>> outcomes(std::int64_t point);
-  // The whole result with its "engine"; nothing for a seed without one.
+  // The text of a result as the engine wrote it; nothing for a seed without one. Throws IntegrityError.
+  std::optional<std::string> result_text(std::int64_t point, int seed);
+  // The same, read.
   std::optional<Json> result(std::int64_t point, int seed);
   // The results of the seeds below `end`, one at a time.
   void for_each_result(std::int64_t point, int end, const std::function<void(int seed, const Json&)>& visit);

@@ -6,10 +6,9 @@
 #include <utility>
 
 #include "runner/database/database.h"
-#include "runner/database/further_values.h"
+#include "runner/database/number_book.h"
 #include "runner/database/result_text.h"
 #include "runner/statistics/look_json.h"
-#include "runner/statistics/number_layout.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {
@@ -111,11 +110,9 @@ std::vector<LookRecord> read_looks(Connection& connection, std::int64_t point) {
 }
 
 // Of a query of result_columns.
-Json read_result(const Statement& query) {
+std::string read_text(const Statement& query) {
   try {
-    Json result = Json::parse(result_text(query, 1, 2));
-    result["engine"] = Json::parse(query.text(3));
-    return result;
+    return result_text(query, 1, 2);
   } catch (const IntegrityError& error) {
     throw IntegrityError(
         fmt::format("the stored result of seed {} {}; see `peclet doctor`", query.integer(0), error.what()));
@@ -128,28 +125,8 @@ EventRecord read_event(const Statement& query) {
   return record;
 }
 
-// Target::observables() of the campaign, without reading its document.
-std::vector<std::string> present_observables(Connection& connection) {
-  Statement query(connection,
-                  "SELECT target_id, observable, criterion, confidence, minimum, maximum FROM campaign "
-                  "JOIN target USING (target_id)");
-  if (!query.step()) throw IntegrityError(connection.path() + ": holds no campaign");
-  return read_target(query, 0).target.observables();
-}
-
-// Small quantities of the point, as its first result describes them: all of its results come from one engine.
-// Nothing where none is a share, which spares parsing the text.
-std::vector<Quantity> described_shares(Connection& connection, std::int64_t point) {
-  Statement query(connection,
-                  "SELECT quantities FROM numbers JOIN number_layout USING (layout_id) WHERE point_id = ? "
-                  "ORDER BY seed LIMIT 1");
-  if (!query.bind(point).step() || query.text(0).find("\"share\"") == std::string::npos) return {};
-  return NumberLayout::of_text(query.text(0)).quantities();
-}
-
 constexpr const char* result_columns =
-    "SELECT seed, document, text, provenance FROM result JOIN realisation USING (point_id, seed) JOIN engine "
-    "USING (engine_id) LEFT JOIN dictionary USING (point_id) WHERE point_id = ? ";
+    "SELECT seed, document, text FROM result LEFT JOIN dictionary USING (point_id) WHERE point_id = ? ";
 
 }  // namespace
 
@@ -217,10 +194,8 @@ StateCounts Database::counts(std::int64_t point) {
 std::vector<RealisationRecord> Database::realisations(std::int64_t point) {
   Statement query(
       *connection_,
-      "SELECT seed, state, cause, value, control, statistical_inefficiency, largest_overlap, cpu_seconds,"
-      " wall_seconds, final_state_sha256, content_sha256, engine_id, further FROM realisation WHERE point_id "
-      "= ? "
-      "ORDER BY seed");
+      "SELECT seed, state, cause, statistical_inefficiency, largest_overlap, cpu_seconds, wall_seconds, "
+      "final_state_sha256, content_sha256, engine_id FROM realisation WHERE point_id = ? ORDER BY seed");
   query.bind(point);
   std::vector<RealisationRecord> realisations;
   while (query.step()) {
@@ -228,64 +203,40 @@ std::vector<RealisationRecord> Database::realisations(std::int64_t point) {
     record.seed = static_cast<int>(query.integer(0));
     record.state = seed_state(query.text(1));
     record.cause = query.text(2);
-    record.value = query.optional_real(3);
-    record.control = query.optional_real(4);
-    record.statistical_inefficiency = query.optional_real(5);
-    record.largest_overlap = query.optional_real(6);
-    record.cpu_seconds = query.optional_real(7);
-    record.wall_seconds = query.optional_real(8);
-    record.final_state_sha256 = query.text(9);
-    record.content_sha256 = query.text(10);
-    record.engine = query.optional_integer(11);
-    record.further = query.text(12);
+    record.statistical_inefficiency = query.optional_real(3);
+    record.largest_overlap = query.optional_real(4);
+    record.cpu_seconds = query.optional_real(5);
+    record.wall_seconds = query.optional_real(6);
+    record.final_state_sha256 = query.text(7);
+    record.content_sha256 = query.text(8);
+    record.engine = query.optional_integer(9);
     realisations.push_back(std::move(record));
   }
   return realisations;
 }
 
 std::vector<std::optional<Outcome>> Database::outcomes(std::int64_t point) {
-  Statement query(
-      *connection_,
-      "SELECT seed, state, value, control, first_quarter, first_half, further, final_state_sha256 FROM "
-      "realisation "
-      "WHERE point_id = ? AND seed < ? AND state IN ('done', 'failed', 'quarantined') ORDER BY seed");
-  query.bind(point).bind(most_realisations);
-  const std::vector<std::string> observables = present_observables(*connection_);
-  const std::vector<Quantity> described = described_shares(*connection_, point);
-  std::vector<std::optional<Outcome>> outcomes;
-  while (query.step()) {
-    outcomes.resize(static_cast<std::size_t>(query.integer(0)) + 1);
-    outcomes.back() = Outcome{};  // lost, unless there is a value
-    const std::optional<double> value = query.optional_real(2);
-    if (!value) continue;
-    Outcome outcome{Outcome::Kind::value, *value, query.optional_real(3).value_or(0), query.real(4),
-                    query.real(5)};
-    outcome.is_share = is_share(described, observables.front());
-    outcome.final_state = leading_digits(query.text(7));
-    if (!query.is_null(6)) {
-      outcome.further = further_values(query.text(6), observables);
-      for (std::size_t place = 1; place < observables.size(); ++place)
-        outcome.further[place - 1].is_share = is_share(described, observables[place]);
-    }
-    outcomes.back() = std::move(outcome);
-  }
-  return outcomes;
+  return NumberBook(*connection_).outcomes(point);
 }
 
-std::optional<Json> Database::result(std::int64_t point, int seed) {
+std::optional<std::string> Database::result_text(std::int64_t point, int seed) {
   Statement query(*connection_, std::string(result_columns) + "AND seed = ?");
   query.bind(point).bind(seed);
   if (!query.step()) return std::nullopt;
-  return read_result(query);
+  return read_text(query);
+}
+
+std::optional<Json> Database::result(std::int64_t point, int seed) {
+  const std::optional<std::string> text = result_text(point, seed);
+  if (!text) return std::nullopt;
+  return Json::parse(*text);
 }
 
 void Database::for_each_result(std::int64_t point, int end,
                                const std::function<void(int seed, const Json&)>& visit) {
   Statement query(*connection_, std::string(result_columns) + "AND seed < ? ORDER BY seed");
   query.bind(point).bind(end);
-  while (query.step()) {
-    visit(static_cast<int>(query.integer(0)), read_result(query));
-  }
+  while (query.step()) visit(static_cast<int>(query.integer(0)), Json::parse(read_text(query)));
 }
 
 std::vector<AttemptRecord> Database::attempts(std::int64_t point) {

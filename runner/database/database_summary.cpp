@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "contract/endings.h"
+#include "runner/database/number_book.h"
 #include "runner/statistics/transient.h"
 
 namespace peclet::runner {
@@ -73,18 +74,19 @@ struct Aggregate {
 // time.
 std::map<std::int64_t, Aggregate> read_aggregates(Connection& connection) {
   Statement query(connection,
-                  "SELECT point_id, seed, state, value + coalesce(control, 0), cpu_seconds, first_half, "
-                  "wall_seconds, cause FROM realisation "
-                  "ORDER BY point_id, seed");
+                  "SELECT point_id, seed, state, numbers, cpu_seconds, wall_seconds, cause FROM realisation "
+                  "LEFT JOIN numbers USING (point_id, seed) ORDER BY point_id, seed");
   std::map<std::int64_t, Aggregate> aggregates;
   while (query.step()) {
     Aggregate& aggregate = aggregates[query.integer(0)];
     const int seed = static_cast<int>(query.integer(1));
-    aggregate.count(seed_state(query.text(2)), seed, query.text(7), query.optional_real(4).value_or(0));
-    if (const std::optional<double> seconds = query.optional_real(6)) aggregate.cost.add(*seconds);
-    if (query.is_null(3)) continue;
-    aggregate.so_far.add(query.real(3));
-    if (!query.is_null(5) && aggregate.tested.size() < fewest_contrasts) aggregate.tested.push_back(seed);
+    aggregate.count(seed_state(query.text(2)), seed, query.text(6), query.optional_real(4).value_or(0));
+    if (const std::optional<double> seconds = query.optional_real(5)) aggregate.cost.add(*seconds);
+    const Observation observed = leading_observation(query.text(3));
+    if (std::isnan(observed.value)) continue;
+    aggregate.so_far.add(observed.value + observed.control);
+    if (!std::isnan(observed.first_half) && aggregate.tested.size() < fewest_contrasts)
+      aggregate.tested.push_back(seed);
   }
   return aggregates;
 }

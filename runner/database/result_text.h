@@ -1,4 +1,4 @@
-// The texts of results as the database keeps them: deflated (zlib, RFC 1950) against an earlier result of
+// The texts of results as engines wrote them, deflated (zlib, RFC 1950) against an earlier result of
 // their point, of which they repeat every name and most of what does not fluctuate.
 #pragma once
 

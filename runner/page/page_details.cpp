@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "runner/folder/realisation_result.h"
 #include "runner/statistics/look_json.h"
+#include "runner/statistics/observation.h"
 #include "runner/statistics/quantity_estimates.h"
 #include "runner/statistics/stop_rule.h"
 

@@ -36,7 +36,7 @@ Values values_of(const std::vector<std::optional<Outcome>>& outcomes, int end) {
   for (const std::optional<Outcome>& outcome : outcomes) {
     if (!outcome || found.closed == end) break;
     ++found.closed;
-    if (outcome->kind == Outcome::Kind::lost) continue;
+    if (outcome->is_lost()) continue;
     found.values.push_back(outcome->value + outcome->control);
     found.seeds.push_back(found.closed);
     found.is_share = outcome->is_share;

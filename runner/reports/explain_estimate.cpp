@@ -20,7 +20,7 @@ std::vector<Outcome> completed(Database& database, const PointSummary& point) {
   const auto seeds = std::min(outcomes.size(), static_cast<std::size_t>(point.looks.back().seeds));
   std::vector<Outcome> found;
   for (std::size_t seed = 0; seed < seeds; ++seed) {
-    if (outcomes[seed] && outcomes[seed]->kind == Outcome::Kind::value) found.push_back(*outcomes[seed]);
+    if (outcomes[seed] && !outcomes[seed]->is_lost()) found.push_back(*outcomes[seed]);
   }
   return found;
 }

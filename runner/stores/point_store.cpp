@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include "contract/input_error.h"
-#include "runner/database/further_values.h"
+#include "runner/database/number_book.h"
 #include "runner/database/result_text.h"
-#include "runner/folder/realisation_result.h"
+#include "runner/statistics/observation.h"
 #include "runner/statistics/quantities.h"
+#include "runner/stores/result_store.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {
@@ -87,7 +88,7 @@ void PointStore::adopt_points(const Campaign& campaign) {
   }
 }
 
-// Another observable: its value is taken from the results that are there.
+// Another observable: its numbers are taken from the results that are there.
 void PointStore::observe_again(const Campaign& campaign) {
   Statement done(
       connection_,
@@ -96,25 +97,19 @@ void PointStore::observe_again(const Campaign& campaign) {
       "= ?");
   done.bind(no_value);
   Statement change(connection_,
-                   "UPDATE realisation SET state = ?, cause = ?, value = ?, control = ?, first_quarter = ?, "
-                   "first_half = ?, further = ? WHERE point_id = ? AND seed = ?");
+                   "UPDATE realisation SET state = ?, cause = ? WHERE point_id = ? AND seed = ?");
   const std::vector<std::string> observables = campaign.target.observables();
   while (done.step()) {
     const Json document = Json::parse(result_text(done, 2, 3));
-    const std::vector<Observed> all = observe(document, observables);
-    const Observed& observed = all.front();
     if (const std::string lacking = lacking_in(document, observables); !done.is_null(4) && !lacking.empty()) {
       throw InputError(
           campaign.name, pointer_of(campaign.target, lacking), lacking,
           "must be a number that the results have: " + plain(names_of_targets(document), longest_list));
     }
-    change.bind(to_string(observed.value ? SeedState::done : SeedState::failed))
-        .bind(observed.value ? document.at("/ending/cause"_json_pointer).get<std::string>() : no_value)
-        .bind(observed.value)
-        .bind(observed.control)
-        .bind(observed.first_quarter)
-        .bind(observed.first_half)
-        .bind(further_values_text(observables, all))
+    const ResultNumbers numbers = numbers_of(document, observables);
+    store_numbers(connection_, done.integer(0), static_cast<int>(done.integer(1)), numbers);
+    change.bind(state_of(numbers.outcome))
+        .bind(cause_of(document.at("/ending/cause"_json_pointer), numbers.outcome))
         .bind(done.integer(0))
         .bind(done.integer(1))
         .run();

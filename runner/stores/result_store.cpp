@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "runner/database/further_values.h"
 #include "runner/database/number_book.h"
 #include "runner/database/result_text.h"
 #include "runner/statistics/look_json.h"
@@ -18,18 +17,6 @@ std::optional<Number> number_at(const Json& document, const char* pointer) {
   const Json::json_pointer where(pointer);
   if (!document.contains(where) || !document.at(where).is_number()) return std::nullopt;
   return document.at(where).get<Number>();
-}
-
-// The engine has a row of its own. A result may be large, so it is not copied to leave that out.
-std::string text_without_engine(const Json& document) {
-  std::string text = "{";
-  for (const auto& [key, value] : document.items()) {
-    if (key == "engine") continue;
-    if (text.size() > 1) text += ',';
-    text += Json(key).dump() + ':';
-    text += value.dump();
-  }
-  return text + '}';
 }
 
 }  // namespace
@@ -61,12 +48,13 @@ StoredResult ResultStore::store(const RealisationResult& result, const Target& t
   }
   if (known.text(3) == "quarantined")
     events_.write("late-result", point, result.seed, "a quarantined seed has a result");
-  const std::vector<std::string> observables = target.observables();
-  StoredResult stored{apart ? Stored::stored_apart : Stored::stored, observe(result.document, observables),
-                      "", point, true};
-  stored.cause = cause_of(result, stored.observed.front());
-  store_numbers(point, result, stored, observables);
-  if (!stored.observed.front().value) {
+  const ResultNumbers numbers = numbers_of(result.document, target.observables());
+  StoredResult stored{apart ? Stored::stored_apart : Stored::stored, numbers.outcome,
+                      cause_of(result.cause, numbers.outcome), point, true};
+  store_columns(point, result, stored);
+  store_result_text(connection_, point, result.seed, result.text, result.completed());
+  store_numbers(connection_, point, result.seed, numbers);
+  if (stored.outcome.is_lost()) {
     stored.reason = plain(result.document.at("ending").value("message", ""));
     if (!stored.reason.empty()) events_.write("lost", point, result.seed, stored.reason);
   }
@@ -78,24 +66,20 @@ StoredResult ResultStore::store(const RealisationResult& result, const Target& t
   return stored;
 }
 
-void ResultStore::store_numbers(std::int64_t point, const RealisationResult& result,
-                                const StoredResult& stored, const std::vector<std::string>& observables) {
+void ResultStore::store_columns(std::int64_t point, const RealisationResult& result,
+                                const StoredResult& stored) {
   const Json& document = result.document;
-  const Observed& observed = stored.observed.front();
-  const std::optional<std::string> further = further_values_text(observables, stored.observed);
   const Json& final_state = document.at("final_state_sha256");
   Statement(
       connection_,
-      "INSERT OR REPLACE INTO realisation (point_id, seed, state, cause, value, control, timestep, "
-      "equilibration_steps, production_steps, production_strain, statistical_inefficiency, largest_overlap, "
-      "cpu_seconds, wall_seconds, final_state_sha256, content_sha256, engine_id, first_quarter, first_half, "
-      "further) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+      "INSERT OR REPLACE INTO realisation (point_id, seed, state, cause, timestep, equilibration_steps, "
+      "production_steps, production_strain, statistical_inefficiency, largest_overlap, cpu_seconds, "
+      "wall_seconds, final_state_sha256, content_sha256, engine_id) VALUES (?, ?, ?, ?, ?, ?, ?, ?, "
+      "?, ?, ?, ?, ?, ?, ?)")
       .bind(point)
       .bind(result.seed)
-      .bind(to_string(observed.value ? SeedState::done : SeedState::failed))
+      .bind(state_of(stored.outcome))
       .bind(stored.cause)
-      .bind(observed.value)
-      .bind(observed.control)
       .bind(number_at<double>(document, "/timestep"))
       .bind(number_at<std::int64_t>(document, "/steps/equilibration"))
       .bind(number_at<std::int64_t>(document, "/steps/production"))
@@ -107,12 +91,7 @@ void ResultStore::store_numbers(std::int64_t point, const RealisationResult& res
       .bind(final_state.is_string() ? std::optional(final_state.get<std::string>()) : std::nullopt)
       .bind(result.content_sha256)
       .bind(engine_row(database_, document.at("engine")))
-      .bind(observed.first_quarter)
-      .bind(observed.first_half)
-      .bind(further)
       .run();
-  store_result_text(connection_, point, result.seed, text_without_engine(document), result.completed());
-  runner::store_numbers(connection_, point, result.seed, document);
 }
 
 void ResultStore::store_looks(std::int64_t point, const std::vector<Look>& looks) {

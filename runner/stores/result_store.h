@@ -25,12 +25,24 @@ enum class Stored {
 // The same, and what the result counts for; of a result that is stored only.
 struct StoredResult {
   Stored what;
-  std::vector<Observed> observed{};  // of Target::observables()
-  std::string cause{};               // see cause_of()
-  std::int64_t point = 0;            // the row of its point, where it has one
-  bool is_new = false;               // not known before
-  std::string reason{};              // of a loss, in the engine's words
+  Outcome outcome{};
+  std::string cause{};     // see cause_of()
+  std::int64_t point = 0;  // the row of its point, where it has one
+  bool is_new = false;     // not known before
+  std::string reason{};    // of a loss, in the engine's words
 };
+
+// The cause of a completed realisation that has no number for the campaign's observable: it is lost to its
+// point as one that blew up is.
+inline constexpr const char* no_value = "no-value";
+
+// Returns how a realisation with this ending counts for a campaign that has seen this outcome in it.
+inline std::string cause_of(const std::string& ending, const Outcome& outcome) {
+  return has_results(ending) && outcome.is_lost() ? no_value : ending;
+}
+inline const char* state_of(const Outcome& outcome) {
+  return to_string(outcome.is_lost() ? SeedState::failed : SeedState::done);
+}
 
 class ResultStore {
  public:
@@ -45,8 +57,7 @@ class ResultStore {
   void store_looks(std::int64_t point, const std::vector<Look>& looks);
 
  private:
-  void store_numbers(std::int64_t point, const RealisationResult& result, const StoredResult& stored,
-                     const std::vector<std::string>& observables);
+  void store_columns(std::int64_t point, const RealisationResult& result, const StoredResult& stored);
 
   Database& database_;
   Connection& connection_;

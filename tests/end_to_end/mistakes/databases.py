@@ -130,9 +130,7 @@ def another_program(night):
     database.execute("PRAGMA user_version = 99")
     database.close()
     night.remarks("Here the database says that its tables are of version 99.")
-    night.types(
-        "peclet run night.json", 2, ["written by another peclet", "version 99", "use the peclet that wrote it"]
-    )
+    night.types("peclet run night.json", 2, ["written by another peclet", "version 99", "use the peclet that wrote it"])
     night.types("peclet status night.json", 2, ["written by another peclet"])
     night.lost_nothing()
 

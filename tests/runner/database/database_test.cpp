@@ -103,7 +103,7 @@ TEST_F(Databases, TablesThatThisProgramDidNotMakeAreNotRead) {
       R"(ALTER TABLE point RENAME TO real_point;
          CREATE VIEW point AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n)
          SELECT i AS point_id, i AS place FROM n)",
-      "CREATE TRIGGER more AFTER INSERT ON event BEGIN UPDATE realisation SET value = 1; END",
+      "CREATE TRIGGER more AFTER INSERT ON event BEGIN UPDATE realisation SET cause = 'x'; END",
       "ALTER TABLE look ADD COLUMN more INTEGER",
       "ALTER TABLE look ADD COLUMN more BLOB AS (zeroblob(1000000000))",
       "DROP VIEW estimates; DROP TABLE look",

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "contract/integrity_error.h"
 #include "runner/statistics/quantity_estimates.h"
@@ -87,24 +89,77 @@ TEST_F(Numbers, OfAResultAreComparedBitByBit) {
   complete(0, 1);
   NumberBook book(connection());
   Json result = campaign_.database().result(1, 0).value();
-  EXPECT_TRUE(book.agrees(1, 0, result));
-  EXPECT_FALSE(book.agrees(1, 1, result));
+  const std::vector<std::string> observables{"relative_viscosity"};
+  EXPECT_TRUE(book.agrees(1, 0, result, observables));
+  EXPECT_FALSE(book.agrees(1, 1, result, observables));
+  EXPECT_FALSE(book.agrees(1, 0, result, {"pressure"}));
   result["mean"]["pressure"] = std::nextafter(1.0, 2.0);
-  EXPECT_FALSE(book.agrees(1, 0, result));
+  EXPECT_FALSE(book.agrees(1, 0, result, observables));
   result["mean"] = nullptr;
-  EXPECT_FALSE(book.agrees(1, 0, result));
+  EXPECT_FALSE(book.agrees(1, 0, result, observables));
 }
 
-TEST_F(Numbers, ThatAreTooFewAreRefused) {
+// Each of 10^-9 to 10^9, of either sign, and what a double can hold at most.
+TEST_F(Numbers, ComeBackBitByBit) {
+  const std::vector<double> all{0.1 + 0.2, -1.0 / 3,           5e-324, 1e100,
+                                -0.0,      9007199254740993.0, 1e-9,   123456789.125};
+  for (int seed = 0; seed < static_cast<int>(all.size()); ++seed) {
+    const double pressure = all[static_cast<std::size_t>(seed)];
+    campaign_.complete_with(0, seed, 10, [&](Json& result) { result["mean"]["pressure"] = pressure; });
+  }
+  NumberBook book(connection());
+  book.for_each(1, 40, [&](const NumberBook::Entry& seed) {
+    const Quantity& pressure = seed.layout.quantities().at(1);
+    EXPECT_EQ(pressure.name, "pressure");
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(seed.layout.of_quantity(1, seed.numbers)[0]),
+              std::bit_cast<std::uint64_t>(all[static_cast<std::size_t>(seed.seed)]));
+  });
+}
+
+TEST_F(Numbers, OfAnObservableStandOnceAndBeforeTheOthers) {
   complete(0, 1);
-  connection().execute("UPDATE numbers SET numbers = substr(numbers, 9)");
+  // value, control, first quarter and first half of the viscosity; then g, noise, pressure and its control,
+  // stress
+  EXPECT_EQ(connection().text("SELECT numbers FROM numbers"),
+            "[10,null,10,10,1,2,2,4,0.5,1,0.25,1,2,null,4,5,6]");
+}
+
+TEST_F(Numbers, OfAnElementThatIsTooSmallAPartOfItsListStandBeforeTheOthers) {
+  Target target = campaign_.database().campaign().target.target;
+  complete(0, 1);
+  target.observable = "profile/3";
+  target.also = {{"/pressure", 0.1}};
+  campaign_.set_target(target);
+  EXPECT_EQ(connection().text("SELECT numbers FROM numbers"),
+            "[1,null,null,null,1,0.25,null,null,1,2,2,4,0.5,1,2,null,4,5,6]");
+  EXPECT_EQ(campaign_.database().outcomes(1).at(0)->further.at(0).control, 0.25);
+  EXPECT_EQ(estimates(1).at(2).estimates[0].mean, 1.25);
+}
+
+TEST_F(Numbers, ThatAreNotAsTheirLayoutSaysAreRefused) {
+  complete(0, 1);
+  const std::string whole = connection().text("SELECT numbers FROM numbers");
+  for (const std::string& text :
+       std::vector<std::string>{"[1,2]", "[]", "{}", "12", "[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,true]"}) {
+    connection().execute("UPDATE numbers SET numbers = '" + text + "'");
+    EXPECT_THROW(estimates(1), IntegrityError) << text;
+    EXPECT_THROW(campaign_.database().outcomes(1), IntegrityError) << text;
+  }
+  for (const std::string& text : std::vector<std::string>{"[1,2]", "[]", "{}", "[\"1\",2,3,4]"})
+    EXPECT_THROW(leading_observation(text), IntegrityError);
+  connection().execute("UPDATE numbers SET numbers = '" + whole.substr(0, whole.size() - 1) + ",1]'");
   EXPECT_THROW(estimates(1), IntegrityError);
+  connection().execute("UPDATE numbers SET numbers = '" + whole + "'");
+  EXPECT_EQ(estimates(1).size(), 4U);
 }
 
 TEST_F(Numbers, WithALayoutThatIsNoneAreRefused) {
   complete(0, 1);
-  connection().execute("UPDATE number_layout SET quantities = '{\"pressure\":1}'");
-  EXPECT_THROW(estimates(1), IntegrityError);
+  for (const std::string& text :
+       std::vector<std::string>{"{\"pressure\":1}", "[]", "{\"observables\":[1],\"quantities\":{}}"}) {
+    connection().execute("UPDATE number_layout SET layout = '" + text + "'");
+    EXPECT_THROW(estimates(1), IntegrityError) << text;
+  }
 }
 
 }  // namespace

@@ -177,8 +177,9 @@ TEST(RealisationResult, AnotherEngineHasItsOwnEndingsAndLacksOthersNumbers) {
     plain[key] = nullptr;
   plain["strain"] = {{"equilibration", nullptr}, {"production", nullptr}};
   EXPECT_TRUE(parse_result(plain.dump()).completed());
-  EXPECT_EQ(observe(plain, "relative_viscosity").value, 12.5);
-  EXPECT_EQ(observe(plain, "relative_viscosity").control, std::nullopt);
+  const NumberLayout layout(plain, {"relative_viscosity"});
+  EXPECT_EQ(layout.observation(0, layout.numbers(plain)).value, 12.5);
+  EXPECT_TRUE(std::isnan(layout.numbers(plain).at(1)));  // no control variate
 }
 
 TEST(RealisationResult, RefusesTextThatIsNotJsonOrNotFinite) {

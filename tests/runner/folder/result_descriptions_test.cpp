@@ -1,25 +1,33 @@
 // What results say of their numbers, and what is read of a number by it.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "contract/sha256.h"
 #include "runner/folder/realisation_result.h"
+#include "runner/statistics/number_layout.h"
 #include "runner/statistics/quantities.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {
 namespace {
 
+Observation observe(const Json& result, const std::string& path) {
+  const NumberLayout layout(result, {path});
+  return layout.observation(0, layout.numbers(result));
+}
+
 TEST(RealisationResult, OnlyRelativeViscositiesHaveAControlVariate) {
   const Json result = plain_result(sha256("point"), 3, 12.5);
   EXPECT_EQ(observe(result, "relative_viscosity").value, 12.5);
   EXPECT_EQ(observe(result, "relative_viscosity").control, 0.25);
   EXPECT_EQ(observe(result, "pressure").value, 25);
-  EXPECT_EQ(observe(result, "pressure").control, std::nullopt);
-  EXPECT_EQ(observe(result, "temperature").value, std::nullopt);
+  EXPECT_EQ(observe(result, "pressure").control, 0);
+  EXPECT_EQ(control_of(result, "pressure"), std::nullopt);
+  EXPECT_TRUE(std::isnan(observe(result, "temperature").value));
 }
 
 // A profile of three bins with a control variate of mean 0.5, in quarters; a scalar without blocks; a ratio.
@@ -48,14 +56,14 @@ Json described_result() {
 TEST(RealisationResult, AnElementHasTheControlVariateAndTheBlocksOfItsList) {
   const Json result = parse_result(described_result().dump()).document;
   for (const char* path : {"profile/velocity/1", "/profile/velocity/1"}) {
-    const Observed observed = observe(result, path);
+    const Observation observed = observe(result, path);
     EXPECT_EQ(observed.value, 2);
     EXPECT_EQ(observed.control, 0.25);  // 0.75 less its known mean
     EXPECT_EQ(observed.first_quarter, 1 + 0.5 - 0.5);
     EXPECT_EQ(observed.first_half, 1.5 + 0.75 - 0.5);
   }
-  EXPECT_EQ(observe(result, "profile/velocity").value, std::nullopt);  // a list is no number
-  EXPECT_EQ(observe(result, "profile/velocity/3").value, std::nullopt);
+  EXPECT_TRUE(std::isnan(observe(result, "profile/velocity").value));  // a list is no number
+  EXPECT_TRUE(std::isnan(observe(result, "profile/velocity/3").value));
   EXPECT_EQ(observe(result, "g/counts/1").value, 4);
   EXPECT_EQ(names_of_targets(result), "alone, noise/*, profile/velocity/*");
 }
@@ -65,17 +73,17 @@ TEST(RealisationResult, TheBeginningOfEightBlocksIsThatOfTwoAndOfFour) {
   Json result = plain_result(sha256("point"), 3, 12.5);
   result["mean"]["loss_modulus"] = 4.5;
   result["blocks"]["loss_modulus"] = {1, 2, 3, 4, 5, 6, 7, 8};
-  const Observed observed = observe(result, "loss_modulus");
+  const Observation observed = observe(result, "loss_modulus");
   EXPECT_EQ(observed.value, 4.5);
   EXPECT_EQ(observed.first_quarter, 1.5);
   EXPECT_EQ(observed.first_half, 2.5);
 }
 
 TEST(RealisationResult, WithoutBlocksTheBeginningOfTheWindowIsNotKnown) {
-  const Observed observed = observe(described_result(), "alone");
+  const Observation observed = observe(described_result(), "alone");
   EXPECT_EQ(observed.value, 7);
-  EXPECT_EQ(observed.first_quarter, std::nullopt);
-  EXPECT_EQ(observed.first_half, std::nullopt);
+  EXPECT_TRUE(std::isnan(observed.first_quarter));
+  EXPECT_TRUE(std::isnan(observed.first_half));
 }
 
 TEST(RealisationResult, ItsDescriptionsAreThoseOfItsNumbers) {
@@ -118,7 +126,7 @@ TEST(RealisationResult, ItsDescriptionsAreThoseOfItsNumbers) {
   }
   Json empty = described_result();
   empty["mean"]["profile"]["velocity"] = nullptr;  // nothing was there to measure
-  EXPECT_EQ(observe(parse_result(empty.dump()).document, "profile/velocity/1").value, std::nullopt);
+  EXPECT_TRUE(std::isnan(observe(parse_result(empty.dump()).document, "profile/velocity/1").value));
 }
 
 // 64 axes of two values each are 2^64 numbers, which a product of 64 bits takes for none.

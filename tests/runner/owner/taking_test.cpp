@@ -209,7 +209,7 @@ TEST_F(Dispatching, AResultWithAWarningThatIsNoneDoesNotCount) {
       finish_all();
     };
     EXPECT_EQ(run(), Dispatcher::Ending::finished) << warnings;
-    EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM realisation WHERE value > 11"), 0);
+    EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM realisations WHERE value > 11"), 0);
     EXPECT_EQ(database_.looks(1).back().look.verdict, Verdict::converged);
     database_.connection().execute(
         "DELETE FROM attempt; DELETE FROM look; DELETE FROM numbers; DELETE FROM result; DELETE FROM "

@@ -18,8 +18,8 @@ using Outcomes = std::vector<std::optional<Outcome>>;
 
 const Target five_percent{"relative_viscosity", 0.05, 0.95};
 
-Outcome value(double number, double control = 0) { return {Outcome::Kind::value, number, control}; }
-Outcome lost() { return {Outcome::Kind::lost, 0, 0}; }
+Outcome value(double number, double control = 0) { return {{number, control}}; }
+Outcome lost() { return {}; }
 
 // Alternating mean - spread, mean + spread: the standard error of an even number n is spread / sqrt(n - 1).
 Outcomes alternating(int count, double mean, double spread) {
