@@ -51,7 +51,7 @@ Bundles::Bundles(Database& database, Ledger& ledger, const Campaign& campaign, C
       listener_(listener),
       book_(database.connection()),
       seeds_(database),
-      events_(database) {}
+      events_(database.connection()) {}
 
 std::string Bundles::hand_over(const BundleSettings& settings) {
   // What is not mounted now must not be made anew below it.

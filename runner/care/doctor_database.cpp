@@ -7,8 +7,8 @@
 #include "contract/integrity_error.h"
 #include "runner/care/doctor.h"
 #include "runner/database/checked_look.h"
+#include "runner/database/database_audit.h"
 #include "runner/database/number_book.h"
-#include "runner/database/result_text.h"
 #include "runner/folder/realisation_result.h"
 #include "runner/statistics/cohorts.h"
 #include "runner/stores/event_log.h"
@@ -19,40 +19,16 @@
 namespace peclet::runner {
 namespace {
 
-// The text of a stored result, or its bytes where they have none.
-std::string readable(const Statement& stored) {
-  try {
-    return result_text(stored, 0, 1);
-  } catch (const IntegrityError&) {
-    return stored.text(0);
-  }
-}
-
 // The seed runs again, and gives the same result if its engine is the same; what was stored is kept for
 // people.
 void run_again(Database& owner, const CampaignDirectory& directory, std::int64_t point, int seed) {
-  Connection& connection = owner.connection();
-  Statement stored(
-      connection,
-      "SELECT document, text FROM result LEFT JOIN dictionary USING (point_id) WHERE point_id = ? "
-      "AND seed = ?");
-  stored.bind(point).bind(seed);
-  if (stored.step()) {
-    write_durably(directory.rejected() / fmt::format("point-{}-seed-{}-altered.json", point, seed),
-                  readable(stored));
-    stored.step();
+  if (const std::string stored = readable_result(owner, point, seed); !stored.empty()) {
+    write_durably(directory.rejected() / fmt::format("point-{}-seed-{}-altered.json", point, seed), stored);
   }
-  Transaction booking(connection);
-  for (const char* const sql :
-       {"DELETE FROM result WHERE point_id = ? AND seed = ?",
-        "DELETE FROM numbers WHERE point_id = ? AND seed = ?",
-        "DELETE FROM file WHERE point_id = ? AND seed = ?",
-        "UPDATE realisation SET state = 'queued', cause = NULL, content_sha256 = NULL, "
-        "final_state_sha256 = NULL WHERE point_id = ? AND seed = ?"}) {
-    Statement(connection, sql).bind(point).bind(seed).run();
-  }
-  EventLog(owner).write("repaired", point, seed,
-                        "its stored result was not what its hash says: it is run again");
+  Transaction booking(owner.connection());
+  ResultStore(owner).withdraw(point, seed);
+  EventLog(owner.connection())
+      .write("repaired", point, seed, "its stored result was not what its hash says: it is run again");
   booking.commit();
 }
 
@@ -76,20 +52,6 @@ std::string fault_of(Database& database, const PointRecord& point, const Realisa
   }
 }
 
-// Results of the point that were deflated with another dictionary than the one that is there: nobody can read
-// them.
-int unreadable_results(Connection& connection, std::int64_t point) {
-  Statement stored(
-      connection,
-      "SELECT document, text FROM result LEFT JOIN dictionary USING (point_id) WHERE point_id = ?");
-  stored.bind(point);
-  int unreadable = 0;
-  while (stored.step()) {
-    if (!was_deflated_with(stored.text(0), stored.text(1))) ++unreadable;
-  }
-  return unreadable;
-}
-
 std::vector<PointRecord> all_points(Database& database) {
   std::vector<PointRecord> points = database.points();
   for (PointRecord& point : database.inactive_points()) points.push_back(std::move(point));
@@ -101,7 +63,7 @@ std::vector<PointRecord> all_points(Database& database) {
 void examine_results(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
   const std::vector<std::string> observables = database.campaign().target.target.observables();
   for (const PointRecord& point : all_points(database)) {
-    if (const int count = unreadable_results(database.connection(), point.id); count > 0) {
+    if (const int count = unreadable_results(database, point.id); count > 0) {
       findings.push_back({"dictionary-altered", Severity::integrity,
                           fmt::format("{}: {} results cannot be read: the dictionary that they were deflated "
                                       "with is not there",
@@ -150,47 +112,38 @@ void examine_looks(Database& database, Findings& findings) {
       }
       checked_look(database, point, target);
     } catch (const IntegrityError& error) {
-      findings.push_back(
-          {"look-differs", Severity::integrity, error.what(),
-           "`peclet doctor --repair` looks again at the stored results",
-           [id = point.id, target](Database& owner) {
-             const std::vector<Look> looks =
-                 replay_looks(owner.outcomes(id), target.target, target.minimum, target.maximum);
-             Transaction booking(owner.connection());
-             ResultStore(owner).store_looks(id, looks);
-             EventLog(owner).write("repaired", id, std::nullopt, "looked again at the stored results");
-             booking.commit();
-           }});
+      findings.push_back({"look-differs", Severity::integrity, error.what(),
+                          "`peclet doctor --repair` looks again at the stored results",
+                          [id = point.id, target](Database& owner) {
+                            const std::vector<Look> looks = replay_looks(owner.outcomes(id), target.target,
+                                                                         target.minimum, target.maximum);
+                            Transaction booking(owner.connection());
+                            ResultStore(owner).store_looks(id, looks);
+                            EventLog(owner.connection())
+                                .write("repaired", id, std::nullopt, "looked again at the stored results");
+                            booking.commit();
+                          }});
     }
   }
 }
 
 void examine_states(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
-  Connection& connection = database.connection();
-  const std::int64_t unclaimed = connection.integer(
-      "SELECT count(*) FROM result JOIN realisation USING (point_id, seed) WHERE state NOT IN ('done', "
-      "'failed')");
-  if (unclaimed > 0) {
+  const StateFaults faults = state_faults(database);
+  if (faults.unclaimed > 0) {
     findings.push_back({"result-unclaimed", Severity::integrity,
-                        fmt::format("{} seeds have a result but have not ended", unclaimed),
+                        fmt::format("{} seeds have a result but have not ended", faults.unclaimed),
                         "put a backup back with `peclet restore`"});
   }
-  const std::int64_t adrift = connection.integer(
-      "SELECT (SELECT count(*) FROM lease LEFT JOIN realisation USING (point_id, seed) WHERE state IS NOT "
-      "'running') + "
-      "(SELECT count(*) FROM realisation LEFT JOIN lease USING (point_id, seed) WHERE state = 'running' AND "
-      "attempt_id IS NULL)");
-  const std::int64_t running = connection.integer("SELECT count(*) FROM realisation WHERE state = 'running'");
   const auto recover = [](Database& owner) { SeedStore(owner).recover(); };
-  if (adrift > 0) {
+  if (faults.adrift > 0) {
     Finding finding{"lease-adrift", Severity::integrity,
-                    fmt::format("{} leases and running seeds do not belong together", adrift),
+                    fmt::format("{} leases and running seeds do not belong together", faults.adrift),
                     "`peclet run` and `peclet doctor --repair` queue them again"};
     if (!examined.owner) finding.repair = recover;
     findings.push_back(std::move(finding));
-  } else if (running > 0 && !examined.owner) {
+  } else if (faults.running > 0 && !examined.owner) {
     findings.push_back({"left-running", Severity::note,
-                        fmt::format("{} seeds are left running by an owner that died", running),
+                        fmt::format("{} seeds are left running by an owner that died", faults.running),
                         "`peclet run` and `peclet doctor --repair` queue them again, without blame",
                         recover});
   }

@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "runner/care/doctor.h"
+#include "runner/database/backup_files.h"
+#include "runner/database/database_audit.h"
 #include "runner/engines/usable_cores.h"
 #include "runner/text/plain_text.h"
 
@@ -73,8 +75,7 @@ struct Expected {
 // What the seeds that may still be wanted will need: their rows, two backups and a third that is being made,
 // and a checkpoint and a result in flight for each that runs at a time.
 Expected still_needed(Database& database, const CampaignDirectory& directory) {
-  Connection& connection = database.connection();
-  const std::int64_t results = connection.integer("SELECT count(*) FROM result");
+  const std::int64_t results = extent_of(database.connection()).results;
   const std::uintmax_t size = fs::file_size(directory.database());
   const std::uintmax_t each = results > 0 ? size / static_cast<std::uintmax_t>(results) : 1 << 14;
   const TargetRecord target = database.campaign().target;
@@ -121,15 +122,7 @@ void examine_processes(const CampaignUnderExamination& examined, Findings& findi
 }
 
 void examine_clock(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
-  Connection& connection = database.connection();
-  const std::int64_t backwards = connection.integer(
-      "SELECT count(*) FROM event a JOIN event b ON b.event_id = a.event_id + 1 WHERE b.at < a.at");
-  const std::int64_t negative =
-      connection.integer("SELECT count(*) FROM attempt WHERE ended_at < started_at");
-  const std::int64_t future = connection.integer(fmt::format(
-      "SELECT (SELECT count(*) FROM event WHERE at > '{0}') + (SELECT count(*) FROM attempt WHERE "
-      "started_at > '{0}')",
-      examined.now));
+  const auto [backwards, negative, future] = clock_faults(database, examined.now);
   const std::string harmless =
       "no decision is made from wall-clock times; set the clock (NTP) for the sake of readers";
   if (backwards + negative > 0) {

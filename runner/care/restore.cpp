@@ -136,7 +136,8 @@ Place place_of(const RestoreOptions& options) {
 void record(const CampaignDirectory& directory, const Source& source) {
   Database database = Database::open_owner(directory.database());
   Transaction booking(database.connection());
-  EventLog(database).write("restored", std::nullopt, std::nullopt, "from " + source.file.string());
+  EventLog(database.connection())
+      .write("restored", std::nullopt, std::nullopt, "from " + source.file.string());
   booking.commit();
 }
 

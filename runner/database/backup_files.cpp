@@ -14,9 +14,32 @@ namespace peclet::runner {
 
 namespace fs = std::filesystem;
 
-std::string origin_of(Connection& database) {
-  return database.text(
+namespace {
+
+// When the campaign was set up, and the first point that it ever had, never change.
+void read_identity(Connection& database, Contents& contents) {
+  contents.name = database.text("SELECT name FROM campaign");
+  contents.created_at = database.text("SELECT created_at FROM campaign");
+  contents.origin = database.text(
       "SELECT created_at || ' ' || (SELECT hash FROM point ORDER BY point_id LIMIT 1) FROM campaign");
+}
+
+}  // namespace
+
+Extent extent_of(Connection& database) {
+  return {database.integer("SELECT count(*) FROM result"),
+          database.integer("SELECT coalesce(max(attempt_id), 0) FROM attempt")};
+}
+
+Contents campaign_in(const fs::path& path) {
+  try {
+    Contents contents;
+    Connection database(path.string(), Connection::Access::read_only, 10'000);
+    read_identity(database, contents);
+    return contents;
+  } catch (const IntegrityError&) {
+    return {};
+  }
 }
 
 Contents examine(const std::filesystem::path& path) {
@@ -34,12 +57,9 @@ Contents examine(const std::filesystem::path& path) {
     throw IntegrityError(path.string() + ": no campaign has been set up in it");
   }
   Contents contents;
-  contents.name = database.text("SELECT name FROM campaign");
-  contents.created_at = database.text("SELECT created_at FROM campaign");
-  contents.origin = origin_of(database);
+  read_identity(database, contents);
   contents.document = Json::parse(database.text("SELECT document FROM campaign"));
-  contents.results = database.integer("SELECT count(*) FROM result");
-  contents.attempts = database.integer("SELECT coalesce(max(attempt_id), 0) FROM attempt");
+  static_cast<Extent&>(contents) = extent_of(database);
   contents.backed_up_at = database.text(
       "SELECT at FROM event WHERE event_id = (SELECT max(event_id) FROM event) AND kind = 'backup'");
   return contents;

@@ -12,19 +12,24 @@
 
 namespace peclet::runner {
 
+// How far a campaign had come: stored results, and the number of its last attempt. Attempts are never
+// forgotten.
+struct Extent {
+  std::int64_t results = 0, attempts = 0;
+};
+Extent extent_of(Connection& database);
+
 // What a database holds.
-struct Contents {
+struct Contents : Extent {
   std::string name, created_at;  // of the campaign
   std::string origin;            // tells campaigns apart, whatever they are called since
   Json document;
-  std::int64_t results = 0, attempts = 0;
   std::string backed_up_at;  // of a backup; empty otherwise
   bool same_campaign(const Contents& other) const { return origin == other.origin; }
 };
 
-// Tells campaigns apart, whatever they are called since: when it was set up, and the first point that it ever
-// had, which never change.
-std::string origin_of(Connection& database);
+// Returns the same without extent, document and check; nothing of a damaged database.
+Contents campaign_in(const std::filesystem::path& database);
 
 // Checks a whole database and says what it holds. Throws IntegrityError, DatabaseError.
 Contents examine(const std::filesystem::path& database);

@@ -70,6 +70,17 @@ struct AttemptRecord {
   std::string message;
 };
 
+// From when to when an attempt lasted. One that runs has no end but when it was last heard of.
+struct AttemptSpan {
+  std::int64_t point = 0;
+  int seed = 0, worker = 0;
+  std::string host, began, ended, outcome;
+};
+
+struct MeanSteps {
+  double equilibration = 0, production = 0;
+};
+
 struct LeaseRecord {
   int seed = 0;
   int worker = 0;
@@ -165,6 +176,18 @@ class Database {
   // The results of the seeds below `end`, one at a time.
   void for_each_result(std::int64_t point, int end, const std::function<void(int seed, const Json&)>& visit);
   std::vector<AttemptRecord> attempts(std::int64_t point);
+  // The process that makes, or has made, an attempt; nothing for an attempt that never was.
+  std::optional<std::int64_t> process_of(std::int64_t attempt);
+  // The most recent attempts at all points, at most `limit`, in the order in which they began.
+  std::vector<AttemptSpan> last_attempts(int limit);
+  // Machines that have made attempts, by name.
+  std::vector<std::string> hosts();
+  // When a seed last ended; before the first one "".
+  std::string last_end();
+  // The seeds below `end` that have completed.
+  std::vector<int> completed(std::int64_t point, int end);
+  // Mean steps of the seeds that are done; NaN without one.
+  MeanSteps mean_steps(std::int64_t point);
   std::vector<LeaseRecord> leases(std::int64_t point);
   // The seeds that workers were running when they last gave news, by PointRecord::id.
   std::map<std::int64_t, std::vector<Unfinished>> unfinished();

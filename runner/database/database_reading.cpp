@@ -266,6 +266,57 @@ std::vector<AttemptRecord> Database::attempts(std::int64_t point) {
   return attempts;
 }
 
+std::optional<std::int64_t> Database::process_of(std::int64_t attempt) {
+  Statement query(*connection_, "SELECT process FROM attempt WHERE attempt_id = ?");
+  if (!query.bind(attempt).step()) return std::nullopt;
+  return query.integer(0);
+}
+
+std::vector<AttemptSpan> Database::last_attempts(int limit) {
+  Statement query(
+      *connection_,
+      "SELECT a.point_id, a.seed, a.worker, a.host, a.started_at, coalesce(a.ended_at, l.renewed_at, "
+      "a.started_at), a.outcome FROM attempt a LEFT JOIN lease l USING (attempt_id) ORDER BY a.attempt_id "
+      "DESC "
+      "LIMIT ?");
+  query.bind(limit);
+  std::vector<AttemptSpan> spans;
+  while (query.step()) {
+    spans.push_back({query.integer(0), static_cast<int>(query.integer(1)), static_cast<int>(query.integer(2)),
+                     query.text(3), query.text(4), query.text(5), query.text(6)});
+  }
+  std::reverse(spans.begin(), spans.end());
+  return spans;
+}
+
+std::vector<std::string> Database::hosts() {
+  Statement query(*connection_, "SELECT DISTINCT host FROM attempt WHERE host != '' ORDER BY host");
+  std::vector<std::string> hosts;
+  while (query.step()) hosts.push_back(query.text(0));
+  return hosts;
+}
+
+std::string Database::last_end() {
+  return connection_->text("SELECT coalesce(max(ended_at), '') FROM attempt");
+}
+
+std::vector<int> Database::completed(std::int64_t point, int end) {
+  Statement query(*connection_, "SELECT seed FROM numbers WHERE point_id = ? AND seed < ? ORDER BY seed");
+  query.bind(point).bind(end);
+  std::vector<int> seeds;
+  while (query.step()) seeds.push_back(static_cast<int>(query.integer(0)));
+  return seeds;
+}
+
+MeanSteps Database::mean_steps(std::int64_t point) {
+  Statement query(
+      *connection_,
+      "SELECT avg(equilibration_steps), avg(production_steps) FROM realisation WHERE point_id = ? "
+      "AND state = 'done'");
+  query.bind(point).step();
+  return {query.real(0), query.real(1)};
+}
+
 std::vector<LeaseRecord> Database::leases(std::int64_t point) {
   Statement query(*connection_,
                   "SELECT seed, worker, phase, step, steps, strain, renewed_at FROM lease "

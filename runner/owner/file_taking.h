@@ -23,6 +23,6 @@ void take_files(Connection& connection, const CampaignDirectory& directory, cons
                 AfterCommit& after);
 
 // Removes files in the spool of attempts that gave no result and whose processes no longer run.
-void remove_files_of_the_dead(Connection& connection, const CampaignDirectory& directory);
+void remove_files_of_the_dead(Database& database, const CampaignDirectory& directory);
 
 }  // namespace peclet::runner

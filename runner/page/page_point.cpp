@@ -142,9 +142,9 @@ std::vector<Drawable> drawables_of(const Quantity& quantity) {
 
 // The first seed with a result that has completed.
 FirstResult first_result(Database& database, const PointRecord& point) {
-  Statement first(database.connection(), "SELECT seed FROM numbers WHERE point_id = ? ORDER BY seed LIMIT 1");
-  if (!first.bind(point.id).step()) return {nullptr, Json::array()};
-  const std::optional<Json> result = database.result(point.id, static_cast<int>(first.integer(0)));
+  const std::vector<int> completed = database.completed(point.id, most_realisations);
+  if (completed.empty()) return {nullptr, Json::array()};
+  const std::optional<Json> result = database.result(point.id, completed.front());
   if (!result) return {nullptr, Json::array()};
   return {result->value("derived", Json()), result->value("warnings", Json::array())};
 }

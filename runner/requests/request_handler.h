@@ -23,7 +23,7 @@ class RequestHandler {
       : database_(database),
         seeds_(database),
         rows_(database),
-        events_(database),
+        events_(database.connection()),
         ledger_(ledger),
         directory_(std::move(directory)),
         listener_(listener) {}

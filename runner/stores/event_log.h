@@ -5,15 +5,15 @@
 #include <optional>
 #include <string>
 
-#include "runner/database/database.h"
+#include "runner/database/sqlite.h"
 
 namespace peclet::runner {
 
 class EventLog {
  public:
-  // Requires a Database of open_owner, which must outlive it. write() is for use inside a Transaction of the
-  // caller.
-  explicit EventLog(Database& database) : connection_(database.connection()) {}
+  // Requires a connection that may write, which must outlive it. write() is for use inside a Transaction of
+  // the caller.
+  explicit EventLog(Connection& connection) : connection_(connection) {}
 
   // `request`: the name of the request that caused it, "" when none did.
   void write(const std::string& kind, std::optional<std::int64_t> point, std::optional<int> seed,

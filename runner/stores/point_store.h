@@ -15,7 +15,7 @@ class PointStore {
   // Requires a Database of open_owner, which must outlive it. adopt() commits by itself; the others are for
   // use inside a Transaction of the caller.
   explicit PointStore(Database& database)
-      : database_(database), connection_(database.connection()), events_(database) {}
+      : database_(database), connection_(database.connection()), events_(connection_) {}
 
   // Makes the database that of `campaign`: its points in their order, its target. Points that are no longer
   // in the sweep stay, inactive. Throws InputError, with nothing written, when finished realisations lack the

@@ -94,6 +94,17 @@ void ResultStore::store_columns(std::int64_t point, const RealisationResult& res
       .run();
 }
 
+void ResultStore::withdraw(std::int64_t point, int seed) {
+  for (const char* const sql :
+       {"DELETE FROM result WHERE point_id = ? AND seed = ?",
+        "DELETE FROM numbers WHERE point_id = ? AND seed = ?",
+        "DELETE FROM file WHERE point_id = ? AND seed = ?",
+        "UPDATE realisation SET state = 'queued', cause = NULL, content_sha256 = NULL, "
+        "final_state_sha256 = NULL WHERE point_id = ? AND seed = ?"}) {
+    Statement(connection_, sql).bind(point).bind(seed).run();
+  }
+}
+
 void ResultStore::store_looks(std::int64_t point, const std::vector<Look>& looks) {
   // Looks only ever grow, except when a late result replaces a quarantined seed: then they are made again.
   Statement(connection_,

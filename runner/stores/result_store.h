@@ -49,10 +49,12 @@ class ResultStore {
   // Requires a Database of open_owner, which must outlive it. All is for use inside a Transaction of the
   // caller.
   explicit ResultStore(Database& database)
-      : database_(database), connection_(database.connection()), events_(database) {}
+      : database_(database), connection_(database.connection()), events_(connection_) {}
 
   // One without a number for the leading observable is lost with the cause no_value.
   StoredResult store(const RealisationResult& result, const Target& target);
+  // The seed of a stored result is queued again; nothing of the result stays.
+  void withdraw(std::int64_t point, int seed);
   // The looks at a point for the present target, in place of those that are stored.
   void store_looks(std::int64_t point, const std::vector<Look>& looks);
 

@@ -26,7 +26,7 @@ class SeedStore {
   // Requires a Database of open_owner, which must outlive it. recover() commits by itself; the others are for
   // use inside one Transaction of the caller, who so decides what becomes durable together.
   explicit SeedStore(Database& database)
-      : database_(database), connection_(database.connection()), events_(database) {}
+      : database_(database), connection_(database.connection()), events_(connection_) {}
 
   // Puts the seeds that a dead owner left running back, without blame. Returns how many.
   int recover();
