@@ -9,7 +9,7 @@
 #include "contract/guarded_file.h"
 #include "contract/sha256.h"
 #include "runner/batch/bundles.h"
-#include "runner/folder/spool.h"
+#include "runner/store/spool.h"
 #include "runner/text/host_name.h"
 
 namespace peclet::runner {

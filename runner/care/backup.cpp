@@ -10,12 +10,11 @@
 #include "contract/guarded_file.h"
 #include "contract/integrity_error.h"
 #include "runner/care/file_copies.h"
-#include "runner/database/backup_files.h"
-#include "runner/database/database_copy.h"
-#include "runner/folder/folder_lock.h"
-#include "runner/folder/spool.h"
 #include "runner/owner/open_campaign.h"
-#include "runner/stores/event_log.h"
+#include "runner/store/backups.h"
+#include "runner/store/event_store.h"
+#include "runner/store/locks.h"
+#include "runner/store/spool.h"
 #include "runner/text/quoting.h"
 
 namespace peclet::runner {
@@ -136,8 +135,8 @@ Backup make_backup(const CampaignDirectory& directory, const fs::path& folder, b
   std::vector<FileRecord> files;
   copy_database(directory.database(), next, [&](Connection& copy) {
     // Whoever restores the copy can say when and where it was made.
-    EventLog(copy).write("backup", std::nullopt, std::nullopt,
-                         "copied from " + directory.database().string());
+    EventStore(copy).write("backup", std::nullopt, std::nullopt,
+                           "copied from " + directory.database().string());
     files = files_in(copy);
     backup.results = extent_of(copy).results;
   });

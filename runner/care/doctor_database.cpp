@@ -6,14 +6,14 @@
 #include "contract/durable_file.h"
 #include "contract/integrity_error.h"
 #include "runner/care/doctor.h"
-#include "runner/database/checked_look.h"
-#include "runner/database/database_audit.h"
-#include "runner/database/number_book.h"
-#include "runner/folder/realisation_result.h"
 #include "runner/statistics/cohorts.h"
-#include "runner/stores/event_log.h"
-#include "runner/stores/result_store.h"
-#include "runner/stores/seed_store.h"
+#include "runner/store/database_audit.h"
+#include "runner/store/database_summary.h"
+#include "runner/store/event_store.h"
+#include "runner/store/number_store.h"
+#include "runner/store/realisation_result.h"
+#include "runner/store/result_store.h"
+#include "runner/store/seed_store.h"
 #include "runner/text/number_text.h"
 
 namespace peclet::runner {
@@ -27,7 +27,7 @@ void run_again(Database& owner, const CampaignDirectory& directory, std::int64_t
   }
   Transaction booking(owner.connection());
   ResultStore(owner).withdraw(point, seed);
-  EventLog(owner.connection())
+  EventStore(owner.connection())
       .write("repaired", point, seed, "its stored result was not what its hash says: it is run again");
   booking.commit();
 }
@@ -42,7 +42,7 @@ std::string fault_of(Database& database, const PointRecord& point, const Realisa
     if (result.point != point.hash || result.seed != record.seed) return "has the result of another seed";
     if (result.content_sha256 != record.content_sha256) return "has a result that does not have its hash";
     if (result.engine != point.engine_identity) return "has a result of another engine";
-    if (!NumberBook(database.connection()).agrees(point.id, record.seed, result.document, observables))
+    if (!NumberStore(database.connection()).agrees(point.id, record.seed, result.document, observables))
       return "has other numbers than its result";
     return "";
   } catch (const ResultError& error) {
@@ -119,7 +119,7 @@ void examine_looks(Database& database, Findings& findings) {
                                                                          target.minimum, target.maximum);
                             Transaction booking(owner.connection());
                             ResultStore(owner).store_looks(id, looks);
-                            EventLog(owner.connection())
+                            EventStore(owner.connection())
                                 .write("repaired", id, std::nullopt, "looked again at the stored results");
                             booking.commit();
                           }});

@@ -9,9 +9,9 @@
 #include "contract/guarded_file.h"
 #include "runner/care/backup.h"
 #include "runner/care/doctor.h"
-#include "runner/database/backup_files.h"
-#include "runner/folder/spool.h"
 #include "runner/requests/request.h"
+#include "runner/store/backups.h"
+#include "runner/store/spool.h"
 #include "runner/text/plain_text.h"
 #include "runner/text/utc_time.h"
 

@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "runner/care/doctor.h"
-#include "runner/database/backup_files.h"
-#include "runner/database/database_audit.h"
 #include "runner/engines/usable_cores.h"
+#include "runner/store/backups.h"
+#include "runner/store/database_audit.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {
@@ -68,13 +68,13 @@ std::vector<std::string> readers_of(const fs::path& database, const std::string&
   return readers;
 }
 
-struct Expected {
+struct RoomNeeded {
   std::uintmax_t bytes = 0, files = 0;
 };
 
 // What the seeds that may still be wanted will need: their rows, two backups and a third that is being made,
 // and a checkpoint and a result in flight for each that runs at a time.
-Expected still_needed(Database& database, const CampaignDirectory& directory) {
+RoomNeeded still_needed(Database& database, const CampaignDirectory& directory) {
   const std::int64_t results = extent_of(database.connection()).results;
   const std::uintmax_t size = fs::file_size(directory.database());
   const std::uintmax_t each = results > 0 ? size / static_cast<std::uintmax_t>(results) : 1 << 14;
@@ -175,7 +175,7 @@ void examine_disk(Database& database, const CampaignUnderExamination& examined, 
   struct statvfs about {};
   if (statvfs(root.c_str(), &about) != 0) return;
   const std::uintmax_t free = std::uintmax_t{about.f_bavail} * about.f_frsize;
-  const Expected expected = still_needed(database, examined.directory);
+  const RoomNeeded expected = still_needed(database, examined.directory);
   if (free < expected.bytes) {
     findings.push_back(
         {"disk-short", Severity::warning,

@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "contract/durable_file.h"
-#include "runner/folder/campaign_directory.h"
-#include "runner/folder/intruders.h"
-#include "runner/folder/spool.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/intruders.h"
+#include "runner/store/spool.h"
 
 namespace peclet::runner {
 

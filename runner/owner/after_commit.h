@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "runner/events/run_listener.h"
-#include "runner/folder/file_removal.h"
+#include "runner/store/file_removal.h"
 
 namespace peclet::runner {
 

@@ -14,9 +14,9 @@
 #include "contract/descriptor.h"
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
-#include "runner/database/file_book.h"
-#include "runner/folder/intruders.h"
-#include "runner/folder/spool.h"
+#include "runner/store/file_store.h"
+#include "runner/store/intruders.h"
+#include "runner/store/spool.h"
 
 namespace peclet::runner {
 namespace {

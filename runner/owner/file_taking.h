@@ -7,11 +7,11 @@
 
 #include <filesystem>
 
-#include "runner/database/sqlite.h"
-#include "runner/folder/campaign_directory.h"
-#include "runner/folder/realisation_result.h"
 #include "runner/owner/after_commit.h"
-#include "runner/stores/result_store.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/realisation_result.h"
+#include "runner/store/result_store.h"
+#include "runner/store/sqlite.h"
 
 namespace peclet::runner {
 

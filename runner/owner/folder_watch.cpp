@@ -9,9 +9,8 @@
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
 #include "contract/integrity_error.h"
-#include "runner/database/backup_files.h"
-#include "runner/database/database_copy.h"
-#include "runner/folder/owner_lock.h"
+#include "runner/store/backups.h"
+#include "runner/store/locks.h"
 #include "runner/text/quoting.h"
 
 namespace peclet::runner {

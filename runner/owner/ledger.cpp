@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "contract/input_error.h"
-#include "runner/folder/intruders.h"
-#include "runner/folder/spool.h"
 #include "runner/owner/file_taking.h"
-#include "runner/stores/engine_row.h"
+#include "runner/store/intruders.h"
+#include "runner/store/result_store.h"
+#include "runner/store/spool.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {

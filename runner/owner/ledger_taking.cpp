@@ -10,11 +10,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "runner/folder/spool.h"
 #include "runner/owner/file_taking.h"
 #include "runner/owner/ledger.h"
 #include "runner/statistics/observation.h"
 #include "runner/statistics/quantities.h"
+#include "runner/store/spool.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {

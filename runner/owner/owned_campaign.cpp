@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "contract/guarded_file.h"
-#include "runner/database/backup_files.h"
-#include "runner/folder/realisation_result.h"
-#include "runner/folder/spool.h"
 #include "runner/owner/renamed_file.h"
-#include "runner/stores/point_store.h"
+#include "runner/store/backups.h"
+#include "runner/store/point_store.h"
+#include "runner/store/realisation_result.h"
+#include "runner/store/spool.h"
 #include "runner/text/quoting.h"
 
 namespace peclet::runner {

@@ -2,7 +2,7 @@
 """layering.py [--picture FILE.svg]      may every folder include what it includes?
 
 A folder may include those before it in its list below, and itself. An include that runs upward is an error; so are a
-folder of the lists that has no file, a file of more than 600 lines and a folder of more than 40 files, which hide a
+folder of the lists that has no file, a file of more than 600 lines and a folder of more than 60 files, which hide a
 second subject. Lines and files count in tests, too, in Python as in C++. --picture draws the folders and their includes
 (needs graphviz).
 """
@@ -24,10 +24,8 @@ RUNNER = [
             "text",
             "campaign",
             "statistics",
-            "folder",
+            "store",
             "engines",
-            "database",
-            "stores",
             "events",
             "owner",
             "requests",
@@ -81,7 +79,7 @@ ENGINE = [
     "engine",
 ]
 LAYERS = {"engine": ENGINE, "runner": RUNNER}
-MOST_LINES, MOST_FILES = 600, 40
+MOST_LINES, MOST_FILES = 600, 60
 CXX, WRITTEN_BY_HAND = (".h", ".cpp", ".in"), (".h", ".cpp", ".in", ".py")
 INCLUDE = re.compile(r'\s*#\s*include\s+"((?:contract|engine|runner)/[^"]+)"')
 

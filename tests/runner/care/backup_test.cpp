@@ -11,10 +11,10 @@
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
 #include "runner/care/restore.h"
-#include "runner/database/backup_files.h"
-#include "runner/folder/owner_lock.h"
-#include "runner/folder/spool.h"
 #include "runner/reports/export.h"
+#include "runner/store/backups.h"
+#include "runner/store/locks.h"
+#include "runner/store/spool.h"
 #include "tests/runner/campaign_process.h"
 #include "tests/runner/stored_campaign.h"
 

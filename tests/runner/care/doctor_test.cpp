@@ -12,11 +12,11 @@
 
 #include "contract/durable_file.h"
 #include "runner/care/backup.h"
-#include "runner/database/backup_files.h"
-#include "runner/database/result_text.h"
 #include "runner/engines/engine_process.h"
-#include "runner/folder/owner_lock.h"
 #include "runner/reports/export.h"
+#include "runner/store/backups.h"
+#include "runner/store/locks.h"
+#include "runner/store/result_text.h"
 #include "tests/runner/campaign_process.h"
 
 namespace peclet::runner {

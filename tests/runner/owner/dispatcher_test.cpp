@@ -4,9 +4,9 @@
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
 #include "runner/engines/engine_error.h"
-#include "runner/folder/spool.h"
-#include "runner/stores/point_store.h"
-#include "runner/stores/result_store.h"
+#include "runner/store/point_store.h"
+#include "runner/store/result_store.h"
+#include "runner/store/spool.h"
 #include "tests/runner/owner/dispatcher_fixture.h"
 
 namespace peclet::runner {

@@ -7,8 +7,8 @@
 
 #include "contract/durable_file.h"
 #include "contract/sha256.h"
-#include "runner/folder/result_files.h"
-#include "runner/folder/spool.h"
+#include "runner/store/result_files.h"
+#include "runner/store/spool.h"
 #include "tests/runner/owner/dispatcher_fixture.h"
 
 namespace peclet::runner {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <random>
 
-#include "runner/database/database_summary.h"
+#include "runner/store/database_summary.h"
 #include "runner/text/duration_text.h"
 #include "tests/runner/campaign_process.h"
 

@@ -1,0 +1,65 @@
+#include "runner/store/realisation_result.h"
+
+#include <utility>
+
+#include "contract/input_error.h"
+#include "contract/sha256.h"
+
+namespace peclet::runner {
+namespace {
+
+// Time is no part of the physics; the machine, and where it keeps the state of a blow-up, is none either. Nor
+// are the files beside the result: a log among them has times in it.
+std::string content_hash(Json& document) {
+  // A result may be large, so these parts are laid aside, not the others copied.
+  const auto take = [](Json& object, const char* key) {
+    Json part = std::move(object[key]);
+    object.erase(key);
+    return part;
+  };
+  Json& ending = document["ending"];
+  const bool has_state = ending.contains("state"), has_files = document.contains("files");
+  Json cost = take(document, "cost"), engine = take(document, "engine"), state = take(ending, "state");
+  Json files = take(document, "files");
+  const std::string hash = sha256(canonical_json(document));
+  document["cost"] = std::move(cost);
+  document["engine"] = std::move(engine);
+  if (has_files) document["files"] = std::move(files);
+  if (has_state) ending["state"] = std::move(state);
+  return hash;
+}
+
+}  // namespace
+
+RealisationResult parse_result(std::string text) {
+  if (const std::string excess = excess_of(text); !excess.empty()) throw ResultError(excess);
+  RealisationResult result;
+  result.text = std::move(text);
+  try {
+    result.document = parse_json(result.text, "result");
+  } catch (const InputError& error) {
+    throw ResultError(error.what());
+  }
+  result.engine = check_shape(result.document);
+  result.point = result.document["point"].get<std::string>();
+  result.seed = result.document["seed"].get<int>();
+  result.cause = result.document["ending"]["cause"].get<std::string>();
+  try {
+    result.content_sha256 = content_hash(result.document);
+  } catch (const std::invalid_argument& error) {
+    throw ResultError(error.what());
+  }
+  return result;
+}
+
+std::set<std::string> flags_of(const RealisationResult& result) {
+  std::set<std::string> codes;
+  if (!result.completed()) return codes;
+  for (const Json& warning : result.document.value("warnings", Json::array())) {
+    const std::string& code = warning.at("code").get_ref<const std::string&>();
+    if (!code.starts_with("inertia-")) codes.insert(code);
+  }
+  return codes;
+}
+
+}  // namespace peclet::runner
