@@ -143,7 +143,8 @@ class Follower {
     return call_back(signals);
   }
 
-  // What a turn could not book is found again by the next one. Throws what does not pass.
+  // What a turn could not book is found again by the next one; what follows a commit is done by it. Throws
+  // what does not pass.
   void wait_out(const std::exception& error) {
     const std::optional<Hindrance> hindrance = hindrance_in(error, root_);
     if (!hindrance) throw;
