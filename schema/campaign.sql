@@ -85,7 +85,8 @@ CREATE TABLE dictionary (
   text     TEXT NOT NULL CHECK (json_valid(text))
 ) STRICT;
 
--- The whole result as the engine wrote it: deflated (zlib) with the point's dictionary, if the stream asks for one.
+-- The whole result as the engine wrote it, without the white space between its parts: deflated (zlib) with the point's
+-- dictionary, if the stream asks for one.
 CREATE TABLE result (
   point_id INTEGER NOT NULL,
   seed     INTEGER NOT NULL,

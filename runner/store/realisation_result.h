@@ -11,7 +11,7 @@
 namespace peclet::runner {
 
 struct RealisationResult {
-  std::string text;  // as the engine wrote it
+  std::string text;  // as the engine wrote it, but for white space
   Json document;     // the same, read
   std::string point;
   int seed = 0;

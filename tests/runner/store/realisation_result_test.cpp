@@ -182,6 +182,17 @@ TEST(RealisationResult, AnotherEngineHasItsOwnEndingsAndLacksOthersNumbers) {
   EXPECT_TRUE(std::isnan(layout.numbers(plain).at(1)));  // no control variate
 }
 
+TEST(RealisationResult, IsKeptAsItIsWrittenButForWhiteSpace) {
+  Json result = plain_result(point, 3, 12.5);
+  result["method"] = R"(a \ " and a \" , : [)";
+  const std::string compact = result.dump();
+  for (const int indent : {0, 1, 8})
+    EXPECT_EQ(parse_result(result.dump(indent) + "\r\n\t").text, compact) << indent;
+  std::string other = compact;
+  other.replace(other.find("12.5"), 4, "125.0E-1");
+  EXPECT_EQ(parse_result(other).text, other);
+}
+
 TEST(RealisationResult, RefusesTextThatIsNotJsonOrNotFinite) {
   const std::string whole = plain_result(point, 3, 12.5).dump();
   std::string infinite = whole;
