@@ -1,4 +1,4 @@
-# What is installed beside the programs: what they look for relative to themselves (runner/folder/own_files.h), and what people
+# What is installed beside the programs: what they look for relative to themselves (runner/store/own_files.h), and what people
 # read. Below share/peclet everything lies as it does in the source, so that links between the texts hold.
 
 set(own ${CMAKE_INSTALL_DATADIR}/peclet)

@@ -1,11 +1,11 @@
--- The database of one campaign, version 7; its views are in views.sql. One process writes it (the one that holds
+-- The database of one campaign; its views are in views.sql. One process writes it (the one that holds
 -- campaign.lock); everybody else opens it read-only. schema/README.md explains the tables and views to pandas
--- users. A version-N.sql makes version N of the one before it and leaves the same tables as this file.
+-- users. A program refuses a database of another version: changed tables need another number.
 --
 -- Times ending in _at are wall-clock times in UTC, for people to look at: no decision is made from them.
 
 PRAGMA application_id = 1346587724;  -- "PCLL" as a big-endian integer
-PRAGMA user_version = 7;
+PRAGMA user_version = 1;
 
 -- What a verdict was reached for. Old targets stay, with the looks that were made for them.
 CREATE TABLE target (
@@ -15,8 +15,7 @@ CREATE TABLE target (
   confidence         REAL    NOT NULL,
   minimum            INTEGER NOT NULL,
   maximum            INTEGER NOT NULL,
-  rule               INTEGER NOT NULL,  -- by which looks decide: 1 before version 5 of the tables
-  UNIQUE (observable, criterion, confidence, minimum, maximum, rule)
+  UNIQUE (observable, criterion, confidence, minimum, maximum)
 ) STRICT;
 
 -- The campaign as last run: exactly one row.
@@ -55,14 +54,12 @@ CREATE TABLE point (
 
 CREATE UNIQUE INDEX point_by_hash ON point (hash) WHERE kept_apart = 0;
 
--- One seed at one point: its state and the numbers that are asked for most.
+-- One seed at one point: its state, and what belongs to it apart from the numbers that it has measured.
 CREATE TABLE realisation (
   point_id                 INTEGER NOT NULL REFERENCES point,
-  seed                     INTEGER NOT NULL CHECK (seed >= 0),
+  seed                     INTEGER NOT NULL CHECK (seed >= 0 AND seed < 1000000),  -- /realisations/maximum at most
   state                    TEXT    NOT NULL CHECK (state IN ('queued', 'running', 'done', 'failed', 'quarantined')),
   cause                    TEXT,     -- of its ending: completed, overlap, ..., or why it is quarantined
-  value                    REAL,     -- of the target's observable; NULL without one
-  control                  REAL,     -- of the control variate; NULL without one
   timestep                 REAL,
   equilibration_steps      INTEGER,
   production_steps         INTEGER,
@@ -74,9 +71,6 @@ CREATE TABLE realisation (
   final_state_sha256       TEXT,
   content_sha256           TEXT,     -- of the canonical result without its cost: what repetitions must share
   engine_id                INTEGER REFERENCES engine,
-  first_quarter            REAL,     -- value + control over this part of the window; NULL without blocks
-  first_half               REAL,
-  further                  TEXT CHECK (further IS NULL OR json_valid(further)),  -- of the target's other observables
   PRIMARY KEY (point_id, seed),
   CHECK ((state IN ('done', 'failed')) = (content_sha256 IS NOT NULL)),
   CHECK ((state IN ('done', 'failed', 'quarantined')) = (cause IS NOT NULL))
@@ -91,30 +85,34 @@ CREATE TABLE dictionary (
   text     TEXT NOT NULL CHECK (json_valid(text))
 ) STRICT;
 
--- The whole result as the engine wrote it, apart from "engine", which is in the table of that name: deflated (zlib) with
--- the point's dictionary, if the stream asks for one; JSON text where it was stored before version 4.
+-- The whole result as the engine wrote it, without the white space between its parts: deflated (zlib) with the point's
+-- dictionary, if the stream asks for one.
 CREATE TABLE result (
   point_id INTEGER NOT NULL,
   seed     INTEGER NOT NULL,
-  document ANY     NOT NULL CHECK (typeof(document) = 'blob' OR json_valid(document)),
+  document BLOB    NOT NULL,
   PRIMARY KEY (point_id, seed),
   FOREIGN KEY (point_id, seed) REFERENCES realisation
 ) STRICT;
 
--- The quantities of a result that are no larger than a tensor, described as results describe their "quantities".
+-- Which numbers of results are in the table `numbers`, and in which order: {"observables": ["relative_viscosity"],
+-- "quantities": {...}}. First stand four numbers for each of the target's observables, the leading one first: value,
+-- control variate of mean zero, value + control over the first quarter of the window and over its first half. Then come
+-- the other quantities that are no larger than a tensor, described as results describe their "quantities", in the order
+-- of their names: of a mean its elements, then those of its control variate of mean zero; of a ratio its numerators,
+-- then its denominators. A quantity that is one of the observables is not repeated.
 CREATE TABLE number_layout (
-  layout_id  INTEGER PRIMARY KEY,
-  quantities TEXT NOT NULL UNIQUE CHECK (json_valid(quantities))
+  layout_id INTEGER PRIMARY KEY,
+  layout    TEXT NOT NULL UNIQUE CHECK (json_valid(layout))
 ) STRICT;
 
--- Their numbers in each completed result, as little-endian doubles (NaN: null): quantity by quantity in the order of
--- their names, of a mean its elements and then those of its control variate, of a ratio its numerators and then its
--- denominators. So the means of a point are made without inflating results.
+-- The numbers of each completed result as a JSON array, null for what does not exist. So looks, and the means of a
+-- point, are made without inflating results.
 CREATE TABLE numbers (
   point_id  INTEGER NOT NULL,
   seed      INTEGER NOT NULL,
   layout_id INTEGER NOT NULL REFERENCES number_layout,
-  numbers   BLOB    NOT NULL,
+  numbers   TEXT    NOT NULL CHECK (json_valid(numbers)),
   PRIMARY KEY (point_id, seed),
   FOREIGN KEY (point_id, seed) REFERENCES realisation
 ) STRICT, WITHOUT ROWID;
@@ -185,7 +183,7 @@ CREATE TABLE look (
   uncontrolled_standard_error REAL,
   uncontrolled_half_width     REAL,
   verdict                     TEXT    NOT NULL CHECK (verdict IN ('more', 'converged', 'converged-with-losses',
-                                'converged-near-maximum', 'capped', 'failed')),
+                                'capped', 'failed')),
   made_at                     TEXT    NOT NULL,
   skewness                    REAL,     -- of the values that decide
   transient                   INTEGER NOT NULL DEFAULT 0 CHECK (transient IN (0, 1)),  -- the window is too early

@@ -1,5 +1,4 @@
--- The views: what people read. They show the points that the sweep contains. They are made anew whenever the
--- tables change their version.
+-- The views: what people read. They show the points that the sweep contains.
 
 CREATE VIEW points AS
 SELECT p.place, p.label, p.hash, p.settings, p.suspect, p.priority, p.cancelled,
@@ -11,14 +10,17 @@ SELECT p.place, p.label, p.hash, p.settings, p.suspect, p.priority, p.cancelled,
 FROM point p WHERE p.place IS NOT NULL ORDER BY p.place;
 
 CREATE VIEW realisations AS
-SELECT p.place, p.label, p.hash, r.seed, r.state, r.cause, r.value, r.control, r.timestep, r.equilibration_steps,
-       r.production_steps, r.production_strain, r.statistical_inefficiency, r.largest_overlap, r.first_quarter,
-       r.first_half, r.cpu_seconds, r.wall_seconds, r.final_state_sha256, e.identity AS engine, d.document AS result,
+SELECT p.place, p.label, p.hash, r.seed, r.state, r.cause, CAST(json_extract(n.numbers, '$[0]') AS REAL) AS value,
+       CAST(json_extract(n.numbers, '$[1]') AS REAL) AS control, r.timestep, r.equilibration_steps, r.production_steps,
+       r.production_strain, r.statistical_inefficiency, r.largest_overlap,
+       CAST(json_extract(n.numbers, '$[2]') AS REAL) AS first_quarter,
+       CAST(json_extract(n.numbers, '$[3]') AS REAL) AS first_half, r.cpu_seconds, r.wall_seconds, r.final_state_sha256, e.identity AS engine, d.document AS result,
        t.text AS dictionary
 FROM realisation r
 JOIN point p USING (point_id)
 LEFT JOIN engine e USING (engine_id)
 LEFT JOIN result d USING (point_id, seed)
+LEFT JOIN numbers n USING (point_id, seed)
 LEFT JOIN dictionary t USING (point_id)
 WHERE p.place IS NOT NULL ORDER BY p.place, r.seed;
 

@@ -13,23 +13,22 @@
 #include "runner/page/page_html.h"
 #include "runner/reports/export.h"
 #include "runner/reports/status.h"
+#include "runner/text/utc_time.h"
 
 namespace peclet::runner {
 namespace {
 
 // When a seed last ended; before the first one, when the campaign was last taken up.
-constexpr const char* last_change =
-    "SELECT coalesce((SELECT max(ended_at) FROM attempt WHERE ended_at != ''), "
-    "(SELECT updated_at FROM campaign))";
+std::string last_change(Database& database, const CampaignRecord& campaign) {
+  const std::string last_end = database.last_end();
+  return last_end.empty() ? campaign.updated_at : last_end;
+}
 
 Json provenance_json(Database& database, const CampaignRecord& campaign) {
   Json engines = Json::array();
   for (const EngineRecord& engine : database.engines()) {
     engines.push_back({{"identity", engine.identity}, {"provenance", engine.provenance}});
   }
-  Json hosts = Json::array();
-  Statement query(database.connection(), "SELECT DISTINCT host FROM attempt WHERE host != '' ORDER BY host");
-  while (query.step()) hosts.push_back(query.text(0));
   const Json& own = provenance();
   return {{"schema_version", 1},
           {"campaign", campaign.name},
@@ -40,10 +39,10 @@ Json provenance_json(Database& database, const CampaignRecord& campaign) {
             {"git_commit", own.value("git_commit", Json())},
             {"git_dirty", own.value("git_dirty", Json())}}},
           {"engines", engines},
-          {"machines", hosts},
+          {"machines", database.hosts()},
           {"begun_at", campaign.created_at},
           {"taken_up_at", campaign.updated_at},
-          {"last_change_at", database.connection().text(last_change)}};
+          {"last_change_at", last_change(database, campaign)}};
 }
 
 std::string sums(const std::vector<ArchivedFile>& files) {
@@ -94,9 +93,8 @@ std::vector<ArchivedFile> supplement_files(Database& database, std::optional<std
 
 std::string supplement(Database& database, std::optional<std::int64_t> owner) {
   const std::vector<ArchivedFile> files = supplement_files(database, owner);
-  Statement seconds(database.connection(), fmt::format("SELECT strftime('%s', ({}))", last_change));
-  const bool known = seconds.step();
-  return gzip(tar(database.campaign().name, files, known ? seconds.integer(0) : 0));
+  const CampaignRecord campaign = database.campaign();
+  return gzip(tar(campaign.name, files, seconds_of_utc(last_change(database, campaign))));
 }
 
 }  // namespace peclet::runner

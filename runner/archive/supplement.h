@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "runner/archive/tar_gz.h"
-#include "runner/database/database.h"
+#include "runner/store/database.h"
 
 namespace peclet::runner {
 

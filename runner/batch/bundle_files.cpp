@@ -8,9 +8,9 @@
 
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
-#include "runner/engines/attempt_report.h"
-#include "runner/folder/result_files.h"
-#include "runner/folder/spool.h"
+#include "runner/store/blame.h"
+#include "runner/store/result_files.h"
+#include "runner/store/spool.h"
 
 namespace peclet::runner {
 namespace {

@@ -22,9 +22,9 @@
 #include <vector>
 
 #include "contract/json.h"
-#include "runner/engines/attempt_report.h"
-#include "runner/folder/campaign_directory.h"
-#include "runner/stores/bundle_book.h"
+#include "runner/store/blame.h"
+#include "runner/store/bundle_store.h"
+#include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {
 

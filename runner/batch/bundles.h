@@ -16,9 +16,9 @@
 #include "runner/batch/batch_system.h"
 #include "runner/batch/bundle_files.h"
 #include "runner/owner/ledger.h"
-#include "runner/stores/bundle_book.h"
-#include "runner/stores/event_log.h"
-#include "runner/stores/seed_store.h"
+#include "runner/store/bundle_store.h"
+#include "runner/store/event_store.h"
+#include "runner/store/seed_store.h"
 
 namespace peclet::runner {
 
@@ -108,9 +108,9 @@ class Bundles {
   const Campaign& campaign_;
   CampaignDirectory directory_;
   RunListener& listener_;
-  BundleBook book_;
+  BundleStore book_;
   SeedStore seeds_;
-  EventLog events_;
+  EventStore events_;
   std::map<std::string, std::string>
       told_;  // the last complaint about each bundle: the same is not made twice
 };

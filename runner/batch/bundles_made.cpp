@@ -9,7 +9,7 @@
 #include "contract/guarded_file.h"
 #include "contract/sha256.h"
 #include "runner/batch/bundles.h"
-#include "runner/folder/spool.h"
+#include "runner/store/spool.h"
 #include "runner/text/host_name.h"
 
 namespace peclet::runner {
@@ -51,7 +51,7 @@ Bundles::Bundles(Database& database, Ledger& ledger, const Campaign& campaign, C
       listener_(listener),
       book_(database.connection()),
       seeds_(database),
-      events_(database) {}
+      events_(database.connection()) {}
 
 std::string Bundles::hand_over(const BundleSettings& settings) {
   // What is not mounted now must not be made anew below it.

@@ -5,7 +5,7 @@
 
 #include "contract/input_error.h"
 #include "runner/batch/bundles.h"
-#include "runner/engines/attempt_report.h"
+#include "runner/store/blame.h"
 
 namespace peclet::runner {
 namespace {

@@ -32,11 +32,6 @@ struct Target {
   Tolerance tolerance;
   double confidence;  // of each two-sided interval
 
-  // Number of the rule by which looks decide. The second one widened intervals near the tolerance. Looks that
-  // an earlier rule made are shown as they were made, until the campaign is run again.
-  static constexpr int first_rule = 1, newest_rule = 3;
-  int rule = newest_rule;
-
   std::vector<Criterion> also{};  // must be met, too
 
   // What is taken from each result: the observable, those of `also`, then whatever else a tolerance is a

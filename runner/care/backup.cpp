@@ -10,31 +10,17 @@
 #include "contract/guarded_file.h"
 #include "contract/integrity_error.h"
 #include "runner/care/file_copies.h"
-#include "runner/database/backup_files.h"
-#include "runner/database/database_copy.h"
-#include "runner/folder/folder_lock.h"
-#include "runner/folder/spool.h"
 #include "runner/owner/open_campaign.h"
+#include "runner/store/backups.h"
+#include "runner/store/event_store.h"
+#include "runner/store/locks.h"
+#include "runner/store/spool.h"
 #include "runner/text/quoting.h"
 
 namespace peclet::runner {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Which campaign a database is of, to be compared and to be read; both "" when it cannot tell any more.
-struct Owner {
-  std::string origin, name;
-};
-
-Owner campaign_in(const fs::path& path) {
-  try {
-    Connection database(path.string(), Connection::Access::read_only, 10'000);
-    return {origin_of(database), database.text("SELECT name || ', created at ' || created_at FROM campaign")};
-  } catch (const IntegrityError&) {
-    return {};
-  }
-}
 
 void refuse_unsuitable_folder(const CampaignDirectory& directory, const fs::path& folder) {
   // A path that leads through a disk that is not mounted would be made on the one above it, unnoticed.
@@ -53,10 +39,10 @@ void refuse_unsuitable_folder(const CampaignDirectory& directory, const fs::path
   }
   if (kind_of(newest_backup(folder)).empty()) return;
   // Damage is found when the copy is made; here only those are told apart that can still be read.
-  const Owner here = campaign_in(directory.database());
-  const Owner there = campaign_in(newest_backup(folder));
-  if (here.origin.empty() || there.origin.empty() || there.origin == here.origin) return;
-  throw InputError(folder.string(), "", there.name,
+  const Contents here = campaign_in(directory.database());
+  const Contents there = campaign_in(newest_backup(folder));
+  if (here.origin.empty() || there.origin.empty() || there.same_campaign(here)) return;
+  throw InputError(folder.string(), "", fmt::format("{}, created at {}", there.name, there.created_at),
                    "holds backups of another campaign; choose another folder");
 }
 
@@ -80,14 +66,6 @@ int copy_files(const fs::path& from, const fs::path& to) {
     if (copy_file_that_may_go(file, to) && !is_growing(file)) ++copied;
   }
   return copied;
-}
-
-// So that whoever restores the copy can say when and where it was made.
-void sign(Connection& copy, const CampaignDirectory& directory) {
-  Statement(copy,
-            "INSERT INTO event (at, kind, message) VALUES (strftime('%Y-%m-%dT%H:%M:%SZ'), 'backup', ?)")
-      .bind("copied from " + directory.database().string())
-      .run();
 }
 
 dev_t device_of(const fs::path& path) {
@@ -156,9 +134,11 @@ Backup make_backup(const CampaignDirectory& directory, const fs::path& folder, b
   const fs::path next = folder / "backup.next.db";
   std::vector<FileRecord> files;
   copy_database(directory.database(), next, [&](Connection& copy) {
-    sign(copy, directory);
+    // Whoever restores the copy can say when and where it was made.
+    EventStore(copy).write("backup", std::nullopt, std::nullopt,
+                           "copied from " + directory.database().string());
     files = files_in(copy);
-    backup.results = copy.integer("SELECT count(*) FROM result");
+    backup.results = extent_of(copy).results;
   });
   backup.files = copy_files_of(files, directory, folder);  // before the generation that refers to them
   backup.file = newest_backup(folder);

@@ -11,8 +11,8 @@
 
 #include "contract/json.h"
 #include "runner/care/file_copies.h"
-#include "runner/database/backup_files.h"
-#include "runner/folder/campaign_directory.h"
+#include "runner/store/backups.h"
+#include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {
 

@@ -10,10 +10,9 @@
 #include "contract/exit_codes.h"
 #include "contract/guarded_file.h"
 #include "runner/care/restore.h"
-#include "runner/database/backup_files.h"
-#include "runner/database/database_copy.h"
-#include "runner/folder/owner_lock.h"
 #include "runner/owner/open_campaign.h"
+#include "runner/store/backups.h"
+#include "runner/store/locks.h"
 #include "runner/text/number_text.h"
 
 namespace peclet::runner {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "runner/database/database.h"
-#include "runner/folder/campaign_directory.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/database.h"
 
 namespace peclet::runner {
 

@@ -6,88 +6,29 @@
 #include "contract/durable_file.h"
 #include "contract/integrity_error.h"
 #include "runner/care/doctor.h"
-#include "runner/database/checked_look.h"
-#include "runner/database/further_values.h"
-#include "runner/database/number_book.h"
-#include "runner/database/result_text.h"
-#include "runner/folder/realisation_result.h"
 #include "runner/statistics/cohorts.h"
-#include "runner/stores/event_log.h"
-#include "runner/stores/result_store.h"
-#include "runner/stores/seed_store.h"
+#include "runner/store/database_audit.h"
+#include "runner/store/database_summary.h"
+#include "runner/store/event_store.h"
+#include "runner/store/number_store.h"
+#include "runner/store/realisation_result.h"
+#include "runner/store/result_store.h"
+#include "runner/store/seed_store.h"
 #include "runner/text/number_text.h"
 
 namespace peclet::runner {
 namespace {
 
-// The text of a stored result, or its bytes where they have none.
-std::string readable(const Statement& stored) {
-  try {
-    return result_text(stored, 0, 1);
-  } catch (const IntegrityError&) {
-    return stored.text(0);
-  }
-}
-
 // The seed runs again, and gives the same result if its engine is the same; what was stored is kept for
 // people.
 void run_again(Database& owner, const CampaignDirectory& directory, std::int64_t point, int seed) {
-  Connection& connection = owner.connection();
-  Statement stored(
-      connection,
-      "SELECT document, text FROM result LEFT JOIN dictionary USING (point_id) WHERE point_id = ? "
-      "AND seed = ?");
-  stored.bind(point).bind(seed);
-  if (stored.step()) {
-    write_durably(directory.rejected() / fmt::format("point-{}-seed-{}-altered.json", point, seed),
-                  readable(stored));
-    stored.step();
+  if (const std::string stored = readable_result(owner, point, seed); !stored.empty()) {
+    write_durably(directory.rejected() / fmt::format("point-{}-seed-{}-altered.json", point, seed), stored);
   }
-  Transaction booking(connection);
-  for (const char* const sql : {"DELETE FROM result WHERE point_id = ? AND seed = ?",
-                                "DELETE FROM numbers WHERE point_id = ? AND seed = ?",
-                                "DELETE FROM file WHERE point_id = ? AND seed = ?",
-                                "UPDATE realisation SET state = 'queued', cause = NULL, value = NULL, "
-                                "control = NULL, content_sha256 = NULL, "
-                                "final_state_sha256 = NULL WHERE point_id = ? AND seed = ?"}) {
-    Statement(connection, sql).bind(point).bind(seed).run();
-  }
-  EventLog(owner).write("repaired", point, seed,
-                        "its stored result was not what its hash says: it is run again");
-  booking.commit();
-}
-
-// Seeds that no campaign can have: an earlier peclet took results of any number.
-constexpr const char* impossible = "seed >= ?";
-
-std::int64_t impossible_seeds(Connection& connection) {
-  Statement query(connection, fmt::format("SELECT count(*) FROM realisation WHERE {}", impossible));
-  query.bind(most_realisations).step();
-  return query.integer(0);
-}
-
-// What was stored is kept for people.
-void remove_impossible_seeds(Database& owner, const CampaignDirectory& directory) {
-  Connection& connection = owner.connection();
-  Transaction booking(connection);
-  Statement stored(connection,
-                   fmt::format("SELECT document, text, point_id, seed FROM result LEFT JOIN dictionary USING "
-                               "(point_id) WHERE {}",
-                               impossible));
-  stored.bind(most_realisations);
-  while (stored.step()) {
-    write_durably(directory.rejected() /
-                      fmt::format("point-{}-seed-{}-impossible.json", stored.integer(2), stored.integer(3)),
-                  readable(stored));
-  }
-  for (const char* const table :
-       {"result", "numbers", "file", "lease", "attempt", "bundle_seed", "realisation"}) {
-    Statement(connection, fmt::format("DELETE FROM {} WHERE {}", table, impossible))
-        .bind(most_realisations)
-        .run();
-  }
-  EventLog(owner).write("repaired", std::nullopt, std::nullopt,
-                        "seeds that no campaign can have are removed; their results are in spool/rejected/");
+  Transaction booking(owner.connection());
+  ResultStore(owner).withdraw(point, seed);
+  EventStore(owner.connection())
+      .write("repaired", point, seed, "its stored result was not what its hash says: it is run again");
   booking.commit();
 }
 
@@ -95,20 +36,13 @@ void remove_impossible_seeds(Database& owner, const CampaignDirectory& directory
 std::string fault_of(Database& database, const PointRecord& point, const RealisationRecord& record,
                      const std::vector<std::string>& observables) {
   try {
-    const std::optional<Json> document = database.result(point.id, record.seed);
-    if (!document) return "has ended, but there is no result of it";
-    const RealisationResult result = parse_result(document->dump());
+    const std::optional<std::string> text = database.result_text(point.id, record.seed);
+    if (!text) return "has ended, but there is no result of it";
+    const RealisationResult result = parse_result(*text);
     if (result.point != point.hash || result.seed != record.seed) return "has the result of another seed";
     if (result.content_sha256 != record.content_sha256) return "has a result that does not have its hash";
     if (result.engine != point.engine_identity) return "has a result of another engine";
-    const std::vector<Observed> all = observe(result.document, observables);
-    const Observed& observed = all.front();
-    const std::string further = further_values_text(observables, all).value_or("");
-    if (result.completed() &&
-        (observed.value != record.value || observed.control != record.control || further != record.further)) {
-      return "has another value than its result";
-    }
-    if (!NumberBook(database.connection()).agrees(point.id, record.seed, result.document))
+    if (!NumberStore(database.connection()).agrees(point.id, record.seed, result.document, observables))
       return "has other numbers than its result";
     return "";
   } catch (const ResultError& error) {
@@ -116,20 +50,6 @@ std::string fault_of(Database& database, const PointRecord& point, const Realisa
   } catch (const IntegrityError& error) {
     return fmt::format("has a result that cannot be read: {}", error.what());
   }
-}
-
-// Results of the point that were deflated with another dictionary than the one that is there: nobody can read
-// them.
-int unreadable_results(Connection& connection, std::int64_t point) {
-  Statement stored(
-      connection,
-      "SELECT document, text FROM result LEFT JOIN dictionary USING (point_id) WHERE point_id = ?");
-  stored.bind(point);
-  int unreadable = 0;
-  while (stored.step()) {
-    if (stored.is_blob(0) && !was_deflated_with(stored.text(0), stored.text(1))) ++unreadable;
-  }
-  return unreadable;
 }
 
 std::vector<PointRecord> all_points(Database& database) {
@@ -142,17 +62,8 @@ std::vector<PointRecord> all_points(Database& database) {
 
 void examine_results(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
   const std::vector<std::string> observables = database.campaign().target.target.observables();
-  if (const std::int64_t count = impossible_seeds(database.connection()); count > 0) {
-    findings.push_back(
-        {"seed-impossible", Severity::integrity,
-         fmt::format("{} results are of seeds from {} on, which no campaign can have; they do "
-                     "not count",
-                     count, most_realisations),
-         "`peclet doctor --repair` keeps what is stored in spool/rejected/ and removes them",
-         [directory = examined.directory](Database& owner) { remove_impossible_seeds(owner, directory); }});
-  }
   for (const PointRecord& point : all_points(database)) {
-    if (const int count = unreadable_results(database.connection(), point.id); count > 0) {
+    if (const int count = unreadable_results(database, point.id); count > 0) {
       findings.push_back({"dictionary-altered", Severity::integrity,
                           fmt::format("{}: {} results cannot be read: the dictionary that they were deflated "
                                       "with is not there",
@@ -162,7 +73,6 @@ void examine_results(Database& database, const CampaignUnderExamination& examine
     }
     for (const RealisationRecord& record : database.realisations(point.id)) {
       if (record.state != SeedState::done && record.state != SeedState::failed) continue;
-      if (record.seed < 0 || record.seed >= most_realisations) continue;  // have been found
       const std::string fault = fault_of(database, point, record, observables);
       if (fault.empty()) continue;
       Finding finding{"result-altered", Severity::integrity,
@@ -188,64 +98,52 @@ void examine_looks(Database& database, Findings& findings) {
            point.label + ": a seed gave two different results; the other one is in spool/rejected/",
            "find out why the engine does not repeat itself, and run in another --directory"});
     }
-    if (const std::vector<int> repeated = repeated_seeds(database.outcomes(point.id)); !repeated.empty()) {
-      findings.push_back(
-          {"seeds-repeated", Severity::warning,
-           fmt::format(
-               "{}: seed {} ended in the same state as an earlier one, and {} in all did: such values "
-               "are not independent, and the point gets no interval",
-               point.label, repeated.front(), counted(repeated.size(), "seed")),
-           "find out why seeds repeat each other (a start list with equal files, an engine that ignores the "
-           "seed), and run in another --directory"});
-    }
     try {
+      if (const std::vector<int> repeated = repeated_seeds(database.outcomes(point.id)); !repeated.empty()) {
+        findings.push_back(
+            {"seeds-repeated", Severity::warning,
+             fmt::format(
+                 "{}: seed {} ended in the same state as an earlier one, and {} in all did: such values "
+                 "are not independent, and the point gets no interval",
+                 point.label, repeated.front(), counted(repeated.size(), "seed")),
+             "find out why seeds repeat each other (a start list with equal files, an engine that ignores "
+             "the "
+             "seed), and run in another --directory"});
+      }
       checked_look(database, point, target);
     } catch (const IntegrityError& error) {
-      if (target.target.rule != Target::newest_rule) {
-        findings.push_back({"look-differs", Severity::integrity, error.what(), "`peclet run` looks again"});
-        continue;
-      }
-      findings.push_back(
-          {"look-differs", Severity::integrity, error.what(),
-           "`peclet doctor --repair` looks again at the stored results",
-           [id = point.id, target](Database& owner) {
-             const std::vector<Look> looks =
-                 replay_looks(owner.outcomes(id), target.target, target.minimum, target.maximum);
-             Transaction booking(owner.connection());
-             ResultStore(owner).store_looks(id, looks);
-             EventLog(owner).write("repaired", id, std::nullopt, "looked again at the stored results");
-             booking.commit();
-           }});
+      findings.push_back({"look-differs", Severity::integrity, error.what(),
+                          "`peclet doctor --repair` looks again at the stored results",
+                          [id = point.id, target](Database& owner) {
+                            const std::vector<Look> looks = replay_looks(owner.outcomes(id), target.target,
+                                                                         target.minimum, target.maximum);
+                            Transaction booking(owner.connection());
+                            ResultStore(owner).store_looks(id, looks);
+                            EventStore(owner.connection())
+                                .write("repaired", id, std::nullopt, "looked again at the stored results");
+                            booking.commit();
+                          }});
     }
   }
 }
 
 void examine_states(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
-  Connection& connection = database.connection();
-  const std::int64_t unclaimed = connection.integer(
-      "SELECT count(*) FROM result JOIN realisation USING (point_id, seed) WHERE state NOT IN ('done', "
-      "'failed')");
-  if (unclaimed > 0) {
+  const StateFaults faults = state_faults(database);
+  if (faults.unclaimed > 0) {
     findings.push_back({"result-unclaimed", Severity::integrity,
-                        fmt::format("{} seeds have a result but have not ended", unclaimed),
+                        fmt::format("{} seeds have a result but have not ended", faults.unclaimed),
                         "put a backup back with `peclet restore`"});
   }
-  const std::int64_t adrift = connection.integer(
-      "SELECT (SELECT count(*) FROM lease LEFT JOIN realisation USING (point_id, seed) WHERE state IS NOT "
-      "'running') + "
-      "(SELECT count(*) FROM realisation LEFT JOIN lease USING (point_id, seed) WHERE state = 'running' AND "
-      "attempt_id IS NULL)");
-  const std::int64_t running = connection.integer("SELECT count(*) FROM realisation WHERE state = 'running'");
   const auto recover = [](Database& owner) { SeedStore(owner).recover(); };
-  if (adrift > 0) {
+  if (faults.adrift > 0) {
     Finding finding{"lease-adrift", Severity::integrity,
-                    fmt::format("{} leases and running seeds do not belong together", adrift),
+                    fmt::format("{} leases and running seeds do not belong together", faults.adrift),
                     "`peclet run` and `peclet doctor --repair` queue them again"};
     if (!examined.owner) finding.repair = recover;
     findings.push_back(std::move(finding));
-  } else if (running > 0 && !examined.owner) {
+  } else if (faults.running > 0 && !examined.owner) {
     findings.push_back({"left-running", Severity::note,
-                        fmt::format("{} seeds are left running by an owner that died", running),
+                        fmt::format("{} seeds are left running by an owner that died", faults.running),
                         "`peclet run` and `peclet doctor --repair` queue them again, without blame",
                         recover});
   }

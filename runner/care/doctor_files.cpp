@@ -9,10 +9,11 @@
 #include "contract/guarded_file.h"
 #include "runner/care/backup.h"
 #include "runner/care/doctor.h"
-#include "runner/database/backup_files.h"
-#include "runner/folder/spool.h"
 #include "runner/requests/request.h"
+#include "runner/store/backups.h"
+#include "runner/store/spool.h"
 #include "runner/text/plain_text.h"
+#include "runner/text/utc_time.h"
 
 namespace peclet::runner {
 namespace {
@@ -194,8 +195,7 @@ void examine_strays(const CampaignUnderExamination& examined, Findings& findings
   std::vector<fs::path> strays;
   for (const fs::path& file : files_in(examined.directory.root())) {
     const std::string name = file.filename().string();
-    const bool known = std::find(known_names.begin(), known_names.end(), name) != known_names.end() ||
-                       name.starts_with("campaign.db.version-");  // from before a migration
+    const bool known = std::find(known_names.begin(), known_names.end(), name) != known_names.end();
     if (!known && file.extension() != ".tmp") strays.push_back(file);
   }
   if (strays.empty()) return;
@@ -214,7 +214,7 @@ void examine_files(Database& database, const CampaignUnderExamination& examined,
 }
 
 void examine_backups(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
-  const std::int64_t results = database.connection().integer("SELECT count(*) FROM result");
+  const std::int64_t results = extent_of(database.connection()).results;
   if (results == 0) return;
   const fs::path newest = newest_backup(examined.directory.backup());
   const auto find = [&](const std::string& code, const std::string& message) {
@@ -226,9 +226,8 @@ void examine_backups(Database& database, const CampaignUnderExamination& examine
     return find("no-backup", fmt::format("there is no backup of {} results", results));
   try {
     const Contents contents = examine(newest);
-    Statement age(database.connection(), "SELECT (julianday(?) - julianday(?)) * 24");
-    age.bind(examined.now).bind(contents.backed_up_at).step();
-    const double hours = age.real(0);
+    const double hours =
+        static_cast<double>(seconds_of_utc(examined.now) - seconds_of_utc(contents.backed_up_at)) / 3600;
     if (contents.results < results && hours > old_backup_hours) {
       find("old-backup", fmt::format("the last backup is {:.0f} hours old and lacks {} results", hours,
                                      results - contents.results));

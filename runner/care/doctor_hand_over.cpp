@@ -3,12 +3,12 @@
 
 #include "runner/batch/bundle_files.h"
 #include "runner/care/doctor.h"
-#include "runner/stores/bundle_book.h"
+#include "runner/store/bundle_store.h"
 
 namespace peclet::runner {
 
 void examine_hand_over(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
-  for (const HandedOver& bundle : BundleBook(database.connection()).handed_over()) {
+  for (const HandedOver& bundle : BundleStore(database.connection()).handed_over()) {
     std::string why;
     if (!is_there(BundleFolder(bundle.shared, bundle.bundle), why)) {
       findings.push_back(

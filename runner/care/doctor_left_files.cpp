@@ -7,8 +7,8 @@
 #include "contract/guarded_file.h"
 #include "runner/care/doctor.h"
 #include "runner/care/file_copies.h"
-#include "runner/database/file_book.h"
-#include "runner/folder/spool.h"
+#include "runner/store/file_store.h"
+#include "runner/store/spool.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {

@@ -12,6 +12,8 @@
 
 #include "runner/care/doctor.h"
 #include "runner/engines/usable_cores.h"
+#include "runner/store/backups.h"
+#include "runner/store/database_audit.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {
@@ -66,15 +68,14 @@ std::vector<std::string> readers_of(const fs::path& database, const std::string&
   return readers;
 }
 
-struct Expected {
+struct RoomNeeded {
   std::uintmax_t bytes = 0, files = 0;
 };
 
 // What the seeds that may still be wanted will need: their rows, two backups and a third that is being made,
 // and a checkpoint and a result in flight for each that runs at a time.
-Expected still_needed(Database& database, const CampaignDirectory& directory) {
-  Connection& connection = database.connection();
-  const std::int64_t results = connection.integer("SELECT count(*) FROM result");
+RoomNeeded still_needed(Database& database, const CampaignDirectory& directory) {
+  const std::int64_t results = extent_of(database.connection()).results;
   const std::uintmax_t size = fs::file_size(directory.database());
   const std::uintmax_t each = results > 0 ? size / static_cast<std::uintmax_t>(results) : 1 << 14;
   const TargetRecord target = database.campaign().target;
@@ -121,15 +122,7 @@ void examine_processes(const CampaignUnderExamination& examined, Findings& findi
 }
 
 void examine_clock(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
-  Connection& connection = database.connection();
-  const std::int64_t backwards = connection.integer(
-      "SELECT count(*) FROM event a JOIN event b ON b.event_id = a.event_id + 1 WHERE b.at < a.at");
-  const std::int64_t negative =
-      connection.integer("SELECT count(*) FROM attempt WHERE ended_at < started_at");
-  const std::int64_t future = connection.integer(fmt::format(
-      "SELECT (SELECT count(*) FROM event WHERE at > '{0}') + (SELECT count(*) FROM attempt WHERE "
-      "started_at > '{0}')",
-      examined.now));
+  const auto [backwards, negative, future] = clock_faults(database, examined.now);
   const std::string harmless =
       "no decision is made from wall-clock times; set the clock (NTP) for the sake of readers";
   if (backwards + negative > 0) {
@@ -182,7 +175,7 @@ void examine_disk(Database& database, const CampaignUnderExamination& examined, 
   struct statvfs about {};
   if (statvfs(root.c_str(), &about) != 0) return;
   const std::uintmax_t free = std::uintmax_t{about.f_bavail} * about.f_frsize;
-  const Expected expected = still_needed(database, examined.directory);
+  const RoomNeeded expected = still_needed(database, examined.directory);
   if (free < expected.bytes) {
     findings.push_back(
         {"disk-short", Severity::warning,

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "runner/database/file_book.h"
-#include "runner/folder/campaign_directory.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/file_store.h"
 
 namespace peclet::runner {
 

@@ -12,11 +12,10 @@
 #include "runner/campaign/campaign_file.h"
 #include "runner/care/backup.h"
 #include "runner/care/file_copies.h"
-#include "runner/database/backup_files.h"
-#include "runner/database/database_copy.h"
-#include "runner/folder/owner_lock.h"
-#include "runner/folder/spool.h"
-#include "runner/stores/event_log.h"
+#include "runner/store/backups.h"
+#include "runner/store/event_store.h"
+#include "runner/store/locks.h"
+#include "runner/store/spool.h"
 #include "runner/text/quoting.h"
 
 namespace peclet::runner {
@@ -136,7 +135,8 @@ Place place_of(const RestoreOptions& options) {
 void record(const CampaignDirectory& directory, const Source& source) {
   Database database = Database::open_owner(directory.database());
   Transaction booking(database.connection());
-  EventLog(database).write("restored", std::nullopt, std::nullopt, "from " + source.file.string());
+  EventStore(database.connection())
+      .write("restored", std::nullopt, std::nullopt, "from " + source.file.string());
   booking.commit();
 }
 

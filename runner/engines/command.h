@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/engines/exit_status.h"
+#include "runner/store/blame.h"
 
 namespace peclet::runner {
 

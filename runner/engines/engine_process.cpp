@@ -20,7 +20,7 @@
 #include "contract/input_error.h"
 #include "runner/campaign/campaign_file.h"
 #include "runner/engines/system_call.h"
-#include "runner/folder/own_files.h"
+#include "runner/store/own_files.h"
 
 namespace peclet::runner {
 namespace {
@@ -141,21 +141,6 @@ EngineCommand resolve_engine(const Campaign& campaign, const fs::path& campaign_
   }
   throw InputError(campaign_file.string(), "/engine/0", name,
                    "must be a program beside peclet, on PATH, or one of peclet's adapters");
-}
-
-ExitStatus exit_status(int wait_status) {
-  ExitStatus ending;
-  if (WIFSIGNALED(wait_status)) {
-    ending.signal = WTERMSIG(wait_status);
-  } else {
-    ending.status = WEXITSTATUS(wait_status);
-  }
-  return ending;
-}
-
-std::string to_string(const ExitStatus& ending) {
-  if (ending.signal) return fmt::format("signal {} ({})", *ending.signal, strsignal(*ending.signal));
-  return fmt::format("exit status {}", ending.status.value_or(-1));
 }
 
 EngineProcess::EngineProcess(const EngineCommand& command) {

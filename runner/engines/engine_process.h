@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "runner/campaign/campaign.h"
-#include "runner/engines/exit_status.h"
+#include "runner/store/blame.h"
 
 namespace peclet::runner {
 

@@ -1,7 +1,7 @@
 #include "runner/engines/job_folders.h"
 
-#include "runner/folder/disk_room.h"
-#include "runner/folder/result_files.h"
+#include "runner/store/disk_room.h"
+#include "runner/store/result_files.h"
 
 namespace peclet::runner {
 

@@ -20,9 +20,9 @@
 #include "contract/input_error.h"
 #include "contract/nearest_name.h"
 #include "contract/printable.h"
-#include "runner/engines/blame.h"
-#include "runner/folder/result_shape.h"
 #include "runner/statistics/quantities.h"
+#include "runner/store/blame.h"
+#include "runner/store/result_shape.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {

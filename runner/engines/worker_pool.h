@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "contract/json.h"
-#include "runner/engines/exit_status.h"
+#include "runner/store/blame.h"
 
 namespace peclet::runner {
 

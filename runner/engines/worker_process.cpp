@@ -15,8 +15,8 @@
 #include <utility>
 
 #include "contract/input_error.h"
-#include "runner/folder/result_files.h"
-#include "runner/folder/result_shape.h"
+#include "runner/store/result_files.h"
+#include "runner/store/result_shape.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {

@@ -11,8 +11,8 @@
 #include "runner/engines/engine_process.h"
 #include "runner/engines/stop_signals.h"
 #include "runner/engines/worker_pool.h"
-#include "runner/folder/campaign_directory.h"
-#include "runner/folder/rotating_file.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/rotating_file.h"
 
 namespace peclet::runner {
 

@@ -10,8 +10,8 @@
 #include <optional>
 #include <string>
 
-#include "runner/engines/blame.h"
 #include "runner/engines/worker_pool.h"
+#include "runner/store/blame.h"
 
 namespace peclet::runner {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <variant>
 
-#include "runner/engines/blame.h"
 #include "runner/statistics/cohorts.h"
+#include "runner/store/blame.h"
 
 namespace peclet::runner {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "runner/events/progress.h"
-#include "runner/folder/rotating_file.h"
+#include "runner/store/rotating_file.h"
 
 namespace peclet::runner {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "runner/database/database.h"
 #include "runner/figure/axis.h"
 #include "runner/figure/label.h"
+#include "runner/store/database.h"
 
 namespace peclet::runner {
 

@@ -18,9 +18,9 @@
 #include <vector>
 
 #include "contract/json.h"
-#include "runner/database/database.h"
 #include "runner/jamming/law.h"
 #include "runner/statistics/statistics.h"
+#include "runner/store/database.h"
 
 namespace peclet::runner {
 

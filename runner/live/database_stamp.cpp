@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "runner/folder/owner_lock.h"
+#include "runner/store/locks.h"
 
 namespace peclet::runner {
 namespace {

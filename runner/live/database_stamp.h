@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "runner/folder/campaign_directory.h"
+#include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {
 

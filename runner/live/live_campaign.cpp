@@ -10,10 +10,10 @@
 #include "contract/printable.h"
 #include "runner/campaign/campaign.h"
 #include "runner/campaign/campaign_file.h"
-#include "runner/folder/being_set_up.h"
-#include "runner/folder/owner_lock.h"
 #include "runner/owner/open_campaign.h"
 #include "runner/page/page_html.h"
+#include "runner/store/database.h"
+#include "runner/store/locks.h"
 
 namespace peclet::runner {
 namespace {

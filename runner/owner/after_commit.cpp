@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "contract/durable_file.h"
-#include "runner/folder/campaign_directory.h"
-#include "runner/folder/intruders.h"
-#include "runner/folder/spool.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/intruders.h"
+#include "runner/store/spool.h"
 
 namespace peclet::runner {
 
@@ -22,6 +22,7 @@ void AfterCommit::back_to(const Mark& mark) {
 }
 
 void AfterCommit::carry_out(RunListener& listener) {
+  committed_ = mark();
   const auto make_way_for_file = [&listener](const std::filesystem::path& path) {
     if (const std::string text = make_way(path, "a regular file"); !text.empty()) listener.warn(text);
   };
@@ -43,6 +44,7 @@ void AfterCommit::carry_out(RunListener& listener) {
   to_discard_.clear();
   to_remove_.clear();
   to_reject_.clear();
+  committed_ = {};
   for (const auto& told : std::exchange(to_tell_, {})) {
     if (const auto* const note = std::get_if<Note>(&told)) listener.note(note->text);
     if (const auto* const warning = std::get_if<Warning>(&told)) listener.warn(warning->text);

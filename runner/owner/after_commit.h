@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "runner/events/run_listener.h"
-#include "runner/folder/file_removal.h"
+#include "runner/store/file_removal.h"
 
 namespace peclet::runner {
 
@@ -37,11 +37,12 @@ class AfterCommit {
   };
   Mark mark() const;
   void back_to(const Mark& mark);
-  // The transaction failed: nothing of it happens.
-  void forget() { back_to({}); }
+  // The transaction failed: nothing of it happens. What earlier ones have left to do stays.
+  void forget() { back_to(committed_); }
 
-  // Does all of it, once. Throws std::filesystem::filesystem_error, and std::system_error for a file that
-  // could not be moved, or one of an earlier call that could not be removed.
+  // Does all of it, once. Requires that the transaction is committed. Throws
+  // std::filesystem::filesystem_error, and std::system_error for a file that could not be moved, or one of an
+  // earlier call that could not be removed; all is then left to the next call.
   void carry_out(RunListener& listener);
   // Returns when the files of earlier calls are removed. Throws std::system_error.
   void finish_removals() { removal_.finish(); }
@@ -57,6 +58,7 @@ class AfterCommit {
   std::vector<std::pair<std::filesystem::path, std::filesystem::path>> to_keep_;
   std::vector<std::filesystem::path> to_discard_, to_remove_, to_reject_;
   std::vector<std::variant<RunEvent, Note, Warning>> to_tell_;
+  Mark committed_;  // what a call that threw has left to do
   FileRemoval removal_;
 };
 

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "runner/campaign/campaign.h"
-#include "runner/database/database.h"
 #include "runner/owner/bounds.h"
 #include "runner/statistics/forecast.h"
 #include "runner/statistics/scheduler.h"
+#include "runner/store/database.h"
 
 namespace peclet::runner {
 

@@ -9,8 +9,8 @@
 #include <variant>
 
 #include "runner/engines/engine_error.h"
-#include "runner/folder/disk_room.h"
-#include "runner/folder/result_files.h"
+#include "runner/store/disk_room.h"
+#include "runner/store/result_files.h"
 
 namespace peclet::runner {
 namespace {

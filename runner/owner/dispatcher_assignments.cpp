@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "runner/folder/spool.h"
 #include "runner/owner/dispatcher.h"
+#include "runner/store/spool.h"
 
 namespace peclet::runner {
 namespace {

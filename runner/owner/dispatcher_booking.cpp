@@ -8,8 +8,8 @@
 #include <variant>
 
 #include "runner/engines/job_folders.h"
-#include "runner/folder/disk_room.h"
 #include "runner/owner/dispatcher.h"
+#include "runner/store/disk_room.h"
 
 namespace peclet::runner {
 namespace {

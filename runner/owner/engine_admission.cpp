@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "runner/folder/realisation_result.h"
+#include "runner/store/realisation_result.h"
 
 namespace peclet::runner {
 namespace {

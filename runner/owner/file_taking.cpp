@@ -14,9 +14,9 @@
 #include "contract/descriptor.h"
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
-#include "runner/database/file_book.h"
-#include "runner/folder/intruders.h"
-#include "runner/folder/spool.h"
+#include "runner/store/file_store.h"
+#include "runner/store/intruders.h"
+#include "runner/store/spool.h"
 
 namespace peclet::runner {
 namespace {
@@ -70,12 +70,10 @@ std::optional<std::int64_t> attempt_of(const std::string& stem) {
   return attempt;
 }
 
-bool is_at_work(Connection& connection, const std::string& stem) {
+bool is_at_work(Database& database, const std::string& stem) {
   const std::optional<std::int64_t> attempt = attempt_of(stem);
-  if (!attempt) return false;
-  Statement known(connection, "SELECT process FROM attempt WHERE attempt_id = ?");
-  known.bind(*attempt);
-  return known.step() && (kill(static_cast<pid_t>(known.integer(0)), 0) == 0 || errno != ESRCH);
+  const std::optional<std::int64_t> process = attempt ? database.process_of(*attempt) : std::nullopt;
+  return process && (kill(static_cast<pid_t>(*process), 0) == 0 || errno != ESRCH);
 }
 
 }  // namespace
@@ -99,14 +97,14 @@ void take_files(Connection& connection, const CampaignDirectory& directory, cons
   for (const fs::path& file : left_files_of(spool)) after.remove(file);
 }
 
-void remove_files_of_the_dead(Connection& connection, const CampaignDirectory& directory) {
+void remove_files_of_the_dead(Database& database, const CampaignDirectory& directory) {
   for (const fs::path& file : whole_files(directory.left())) {
     const std::string name = file.filename().string();
     const std::size_t end = name.rfind('@');
     if (end == std::string::npos) continue;  // not ours
     const std::string stem = name.substr(0, end);
     // In this order: what a process that is gone has written is there by now.
-    if (is_at_work(connection, stem) || is_there(directory.spool() / (stem + ".json"))) continue;
+    if (is_at_work(database, stem) || is_there(directory.spool() / (stem + ".json"))) continue;
     std::error_code replaced;  // by a folder meanwhile, which the next start moves aside
     fs::remove(file, replaced);
   }

@@ -7,11 +7,11 @@
 
 #include <filesystem>
 
-#include "runner/database/sqlite.h"
-#include "runner/folder/campaign_directory.h"
-#include "runner/folder/realisation_result.h"
 #include "runner/owner/after_commit.h"
-#include "runner/stores/result_store.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/realisation_result.h"
+#include "runner/store/result_store.h"
+#include "runner/store/sqlite.h"
 
 namespace peclet::runner {
 
@@ -23,6 +23,6 @@ void take_files(Connection& connection, const CampaignDirectory& directory, cons
                 AfterCommit& after);
 
 // Removes files in the spool of attempts that gave no result and whose processes no longer run.
-void remove_files_of_the_dead(Connection& connection, const CampaignDirectory& directory);
+void remove_files_of_the_dead(Database& database, const CampaignDirectory& directory);
 
 }  // namespace peclet::runner

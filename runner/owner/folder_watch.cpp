@@ -9,8 +9,8 @@
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
 #include "contract/integrity_error.h"
-#include "runner/database/database_copy.h"
-#include "runner/folder/owner_lock.h"
+#include "runner/store/backups.h"
+#include "runner/store/locks.h"
 #include "runner/text/quoting.h"
 
 namespace peclet::runner {
@@ -54,8 +54,8 @@ void FolderWatch::refuse_deletion() const {
       "{}: was deleted while the campaign ran, which stops here; all {} results in it were saved in {}: put "
       "them "
       "back with `peclet restore {} {}`",
-      directory_.database().string(), database_.connection().integer("SELECT count(*) FROM result"),
-      saved.string(), shell_word(saved.string()), shell_word(directory_.root().string())));
+      directory_.database().string(), extent_of(database_.connection()).results, saved.string(),
+      shell_word(saved.string()), shell_word(directory_.root().string())));
 }
 
 bool FolderWatch::mend_folders() const {

@@ -5,10 +5,10 @@
 #include <chrono>
 #include <filesystem>
 
-#include "runner/database/database.h"
 #include "runner/events/run_listener.h"
-#include "runner/folder/campaign_directory.h"
-#include "runner/folder/owner_lock.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/database.h"
+#include "runner/store/locks.h"
 
 namespace peclet::runner {
 

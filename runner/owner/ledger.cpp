@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "contract/input_error.h"
-#include "runner/folder/intruders.h"
-#include "runner/folder/spool.h"
 #include "runner/owner/file_taking.h"
-#include "runner/stores/engine_row.h"
+#include "runner/store/intruders.h"
+#include "runner/store/result_store.h"
+#include "runner/store/spool.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {
@@ -30,7 +30,7 @@ Ledger::Ledger(Database& database, const Campaign& campaign, CampaignDirectory d
       seeds_(database),
       results_(database),
       rows_(database),
-      events_(database),
+      events_(database.connection()),
       campaign_(campaign),
       directory_(std::move(directory)),
       listener_(listener),
@@ -41,7 +41,7 @@ Ledger::Ledger(Database& database, const Campaign& campaign, CampaignDirectory d
   if (const int recovered = seeds_.recover(); recovered > 0) {
     listener_.note(fmt::format("{} seeds that an earlier run left unfinished go on", recovered));
   }
-  remove_files_of_the_dead(database_.connection(), directory_);
+  remove_files_of_the_dead(database_, directory_);
   load();
 }
 

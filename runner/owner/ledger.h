@@ -15,13 +15,13 @@
 
 #include "runner/engines/worker_watch.h"
 #include "runner/events/run_listener.h"
-#include "runner/folder/campaign_directory.h"
 #include "runner/owner/after_commit.h"
 #include "runner/owner/board.h"
 #include "runner/owner/engine_admission.h"
-#include "runner/stores/point_store.h"
-#include "runner/stores/result_store.h"
-#include "runner/stores/seed_store.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/point_store.h"
+#include "runner/store/result_store.h"
+#include "runner/store/seed_store.h"
 
 namespace peclet::runner {
 
@@ -142,7 +142,7 @@ class Ledger {
   SeedStore seeds_;
   ResultStore results_;
   PointStore rows_;
-  EventLog events_;
+  EventStore events_;
   Campaign campaign_;
   std::optional<Campaign> former_;  // until the transaction that changed it is committed
   CampaignDirectory directory_;

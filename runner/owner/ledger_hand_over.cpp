@@ -6,9 +6,9 @@
 #include <map>
 #include <system_error>
 
-#include "runner/engines/attempt_report.h"
 #include "runner/owner/ledger.h"
-#include "runner/stores/bundle_book.h"
+#include "runner/store/blame.h"
+#include "runner/store/bundle_store.h"
 
 namespace peclet::runner {
 
@@ -35,7 +35,7 @@ std::string listed(const std::vector<std::string>& names) {
 void Ledger::ingest_spool() {
   after_.finish_removals();  // of what has been taken already
   ingest_spool_of(directory_);
-  const BundleBook book(database_.connection());
+  const BundleStore book(database_.connection());
   std::map<std::string, Out> shared;
   for (const BundleRecord& bundle : book.open_bundles()) {
     Out& out = shared[bundle.shared];
@@ -63,7 +63,7 @@ void Ledger::ingest_spool() {
 }
 
 void Ledger::leave_to_batch_system(int place) {
-  const BundleBook book(database_.connection());
+  const BundleStore book(database_.connection());
   for (const int seed : book.seeds_out_of_point(point(place).id)) {
     // A seed beyond the maximum (it was larger once) has no part in the looks.
     if (seed < campaign_.maximum_realisations && !has_ended({place, seed}))

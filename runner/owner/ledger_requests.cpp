@@ -5,7 +5,7 @@
 #include <set>
 
 #include "runner/owner/ledger.h"
-#include "runner/stores/bundle_book.h"
+#include "runner/store/bundle_store.h"
 
 namespace peclet::runner {
 
@@ -33,7 +33,7 @@ bool Ledger::keep_running(GivenSeed& given_seed) {
 int Ledger::accept_engine(const std::string& identity) {
   int points = 0;
   std::set<std::string> folders{directory_.root().string()};
-  const BundleBook book(database_.connection());
+  const BundleStore book(database_.connection());
   if (const std::string shared = book.last_shared(); !shared.empty()) folders.insert(shared);
   for (const BundleRecord& bundle : book.open_bundles()) folders.insert(bundle.shared);
   Transaction booking(database_.connection());

@@ -10,11 +10,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "runner/database/further_values.h"
-#include "runner/folder/spool.h"
 #include "runner/owner/file_taking.h"
 #include "runner/owner/ledger.h"
+#include "runner/statistics/observation.h"
 #include "runner/statistics/quantities.h"
+#include "runner/store/spool.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {
@@ -24,18 +24,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t files_at_a_time = 64;
 constexpr int most_told = 10;
-
-Outcome outcome_of(const std::vector<Observed>& observed, const Json& final_state) {
-  if (!observed.front().value) return {};
-  const auto [value, control, first_quarter, first_half, is_share] = observation_of(observed.front());
-  Outcome outcome{Outcome::Kind::value, value, control, first_quarter, first_half};
-  outcome.is_share = is_share;
-  outcome.final_state = leading_digits(final_state.is_string() ? final_state.get<std::string>() : "");
-  for (std::size_t place = 1; place < observed.size(); ++place) {
-    outcome.further.push_back(observation_of(observed[place]));
-  }
-  return outcome;
-}
 
 std::optional<double> cost_of(const RealisationResult& result, const char* which) {
   const Json& seconds = result.document.at("cost").at(which);
@@ -141,16 +129,17 @@ void Ledger::take(const RealisationResult& result, const fs::path& spool) {
   const std::optional<int> place = board_.place_of(result.point);
   if (stored.what == Stored::duplicate || !place) return;
   if (result.completed()) note_lacking(result);
-  const std::optional<double> value = stored.observed.front().value;
+  const bool is_lost = stored.outcome.is_lost();
+  const std::optional<double> value = is_lost ? std::nullopt : std::optional(stored.outcome.value);
   const std::optional<double> cpu_seconds = cost_of(result, "cpu_seconds");
   after_.tell(SeedEnded{point_name(*place), result.seed, stored.cause, value, cpu_seconds});
   if (!board_.has_seeds()) return;  // load() finds it
   board_.add_cost(*place, cost_of(result, "wall_seconds"), cpu_seconds);
-  if (!value) {
+  if (is_lost) {
     after_.note(fmt::format("{}: ended with {}{}{}", name({*place, result.seed}), stored.cause,
                             stored.reason.empty() ? "" : ": ", stored.reason));
   }
-  book_outcome({*place, result.seed}, outcome_of(stored.observed, result.document.at("final_state_sha256")));
+  book_outcome({*place, result.seed}, stored.outcome);
 }
 
 void Ledger::note_lacking(const RealisationResult& result) {

@@ -4,11 +4,11 @@
 
 #include "contract/guarded_file.h"
 #include "runner/campaign/campaign_file.h"
-#include "runner/database/backup_files.h"
-#include "runner/folder/being_set_up.h"
-#include "runner/folder/disk_room.h"
-#include "runner/folder/owner_lock.h"
 #include "runner/owner/renamed_file.h"
+#include "runner/store/backups.h"
+#include "runner/store/database.h"
+#include "runner/store/disk_room.h"
+#include "runner/store/locks.h"
 
 namespace peclet::runner {
 namespace {

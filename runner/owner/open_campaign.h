@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "runner/database/database.h"
-#include "runner/folder/campaign_directory.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/database.h"
 
 namespace peclet::runner {
 

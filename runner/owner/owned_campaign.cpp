@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "contract/guarded_file.h"
-#include "runner/database/backup_files.h"
-#include "runner/folder/realisation_result.h"
-#include "runner/folder/spool.h"
 #include "runner/owner/renamed_file.h"
-#include "runner/stores/point_store.h"
+#include "runner/store/backups.h"
+#include "runner/store/point_store.h"
+#include "runner/store/realisation_result.h"
+#include "runner/store/spool.h"
 #include "runner/text/quoting.h"
 
 namespace peclet::runner {
@@ -60,33 +60,26 @@ const CampaignDirectory& created(const CampaignDirectory& directory, bool force)
   return directory;
 }
 
-std::int64_t attempts_in(Connection& connection) {
-  return connection.integer("SELECT coalesce(max(attempt_id), 0) FROM attempt");
-}
-
-// Attempts are never forgotten: a database that knows of fewer than its backup is an older copy.
+// A database that knows of fewer attempts than its backup is an older copy.
 void refuse_older_copy(const CampaignDirectory& directory, Database& database) {
   const std::filesystem::path backup = newest_backup(directory.backup());
   if (kind_of(backup).empty()) return;
   Connection saved(backup.string(), Connection::Access::read_only, 10'000);
-  const std::int64_t here = attempts_in(database.connection());
-  std::int64_t there = 0;
+  const Extent here = extent_of(database.connection());
+  Extent there;
   try {
-    there = attempts_in(saved);
+    there = extent_of(saved);
   } catch (const IntegrityError&) {  // a damaged backup is for `peclet doctor` to find
     return;
   }
-  if (here >= there) return;
-  const auto results = [](Connection& connection) {
-    return connection.integer("SELECT count(*) FROM result");
-  };
+  if (here.attempts >= there.attempts) return;
   throw IntegrityError(fmt::format(
       "{}: is older than its own backup: {} results of {} attempts, and {} of {} in {}; has an old copy "
       "taken its "
       "place? Put the newer one back with `peclet restore {} {}`, or keep what is here with `peclet backup "
       "{}`; "
       "then run again",
-      directory.database().string(), results(database.connection()), here, results(saved), there,
+      directory.database().string(), here.results, here.attempts, there.results, there.attempts,
       backup.string(), shell_word(directory.backup().string()), shell_word(directory.root().string()),
       shell_word(directory.root().string())));
 }

@@ -5,14 +5,14 @@
 #include <functional>
 #include <string>
 
-#include "runner/database/database.h"
 #include "runner/engines/engine_process.h"
 #include "runner/engines/scene_check.h"
 #include "runner/events/run_listener.h"
-#include "runner/folder/campaign_directory.h"
-#include "runner/folder/owner_lock.h"
 #include "runner/owner/ledger.h"
 #include "runner/statistics/scheduler.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/database.h"
+#include "runner/store/locks.h"
 
 namespace peclet::runner {
 

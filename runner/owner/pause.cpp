@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "contract/durable_file.h"
-#include "runner/database/sqlite.h"
-#include "runner/folder/disk_room.h"
+#include "runner/store/disk_room.h"
+#include "runner/store/sqlite.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {

@@ -8,7 +8,7 @@
 
 #include "contract/input_error.h"
 #include "contract/integrity_error.h"
-#include "runner/database/database.h"
+#include "runner/store/database.h"
 #include "runner/text/quoting.h"
 
 namespace peclet::runner {

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "runner/campaign/campaign.h"
-#include "runner/folder/campaign_directory.h"
+#include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {
 

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "contract/json.h"
-#include "runner/database/database.h"
 #include "runner/page/page_parts.h"
+#include "runner/store/database.h"
 
 namespace peclet::runner {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "runner/folder/realisation_result.h"
 #include "runner/statistics/look_json.h"
+#include "runner/statistics/observation.h"
 #include "runner/statistics/quantity_estimates.h"
 #include "runner/statistics/stop_rule.h"
 
@@ -61,28 +61,17 @@ class Blocks {
   std::vector<RunningEstimate> sums_;
 };
 
-int completed_below(Connection& connection, std::int64_t point, int end) {
-  Statement query(connection, "SELECT count(*) FROM numbers WHERE point_id = ? AND seed < ?");
-  query.bind(point).bind(end).step();
-  return static_cast<int>(query.integer(0));
-}
-
-// The seed after the first `seeds` that have completed.
-int end_of_first(Connection& connection, std::int64_t point, int end, int seeds) {
-  Statement query(connection,
-                  "SELECT seed FROM numbers WHERE point_id = ? AND seed < ? ORDER BY seed LIMIT 1 OFFSET ?");
-  return query.bind(point).bind(end).bind(seeds - 1).step() ? static_cast<int>(query.integer(0)) + 1 : end;
-}
-
 }  // namespace
 
 Json point_details(Database& database, std::int64_t point, int end, const TargetRecord& target, int seeds) {
-  Connection& connection = database.connection();
-  const int completed = completed_below(connection, point, end);
+  const std::vector<int> completed = database.completed(point, end);
+  // The seed after the first `seeds` that have completed.
+  const int beyond =
+      static_cast<int>(completed.size()) < seeds ? end : completed[static_cast<std::size_t>(seeds) - 1] + 1;
   QuantityEstimates sums;
   Blocks blocks;
   int read = 0;
-  database.for_each_result(point, end_of_first(connection, point, end, seeds), [&](int, const Json& result) {
+  database.for_each_result(point, beyond, [&](int, const Json& result) {
     if (!result.at("mean").is_object()) return;
     ++read;
     sums.add(result);
@@ -92,8 +81,10 @@ Json point_details(Database& database, std::int64_t point, int end, const Target
   for (const QuantityEstimate& found : sums.estimates()) {
     if (is_profile(found.quantity)) profiles.push_back(profile_json(found, target.level()));
   }
-  return {
-      {"seeds", read}, {"of", completed}, {"blocks", blocks.json(target.level())}, {"profiles", profiles}};
+  return {{"seeds", read},
+          {"of", completed.size()},
+          {"blocks", blocks.json(target.level())},
+          {"profiles", profiles}};
 }
 
 }  // namespace peclet::runner

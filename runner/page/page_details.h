@@ -3,8 +3,8 @@
 #pragma once
 
 #include "contract/json.h"
-#include "runner/database/database.h"
 #include "runner/statistics/cohorts.h"
+#include "runner/store/database.h"
 
 namespace peclet::runner {
 

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "contract/json.h"
-#include "runner/database/database.h"
+#include "runner/store/database.h"
 
 namespace peclet::runner {
 

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "contract/json.h"
-#include "runner/database/database.h"
-#include "runner/database/number_book.h"
 #include "runner/reports/status.h"
 #include "runner/statistics/quantity_estimates.h"
+#include "runner/store/database.h"
+#include "runner/store/number_store.h"
 
 namespace peclet::runner {
 
@@ -43,7 +43,7 @@ using KnownPoints = std::map<std::int64_t, KnownPoint>;  // by PointRecord::id
 // Seeds that have ended, their values and the looks, in a few words.
 std::string key_of(const PointSummary& point, const TargetRecord& target);
 // Throws IntegrityError when stored looks are not what the stored results say.
-KnownPoint read_point(Database& database, NumberBook& book, const TargetRecord& target,
+KnownPoint read_point(Database& database, NumberStore& book, const TargetRecord& target,
                       const PointSummary& point);
 
 // The points with their estimates of every drawable, in step with `drawables`. What is not known yet, or has

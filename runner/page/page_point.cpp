@@ -8,10 +8,10 @@
 #include <map>
 #include <utility>
 
-#include "runner/database/checked_look.h"
-#include "runner/database/number_book.h"
 #include "runner/page/page_parts.h"
 #include "runner/statistics/look_json.h"
+#include "runner/store/database_summary.h"
+#include "runner/store/number_store.h"
 
 namespace peclet::runner {
 namespace {
@@ -36,7 +36,7 @@ Values values_of(const std::vector<std::optional<Outcome>>& outcomes, int end) {
   for (const std::optional<Outcome>& outcome : outcomes) {
     if (!outcome || found.closed == end) break;
     ++found.closed;
-    if (outcome->kind == Outcome::Kind::lost) continue;
+    if (outcome->is_lost()) continue;
     found.values.push_back(outcome->value + outcome->control);
     found.seeds.push_back(found.closed);
     found.is_share = outcome->is_share;
@@ -142,16 +142,16 @@ std::vector<Drawable> drawables_of(const Quantity& quantity) {
 
 // The first seed with a result that has completed.
 FirstResult first_result(Database& database, const PointRecord& point) {
-  Statement first(database.connection(), "SELECT seed FROM numbers WHERE point_id = ? ORDER BY seed LIMIT 1");
-  if (!first.bind(point.id).step()) return {nullptr, Json::array()};
-  const std::optional<Json> result = database.result(point.id, static_cast<int>(first.integer(0)));
+  const std::vector<int> completed = database.completed(point.id, most_realisations);
+  if (completed.empty()) return {nullptr, Json::array()};
+  const std::optional<Json> result = database.result(point.id, completed.front());
   if (!result) return {nullptr, Json::array()};
   return {result->value("derived", Json()), result->value("warnings", Json::array())};
 }
 
 class PointPage {
  public:
-  PointPage(Database& database, NumberBook& book, const TargetRecord& target, const PointSummary& point)
+  PointPage(Database& database, NumberStore& book, const TargetRecord& target, const PointSummary& point)
       : database_(database),
         book_(book),
         target_(target),
@@ -181,7 +181,7 @@ class PointPage {
   void add_estimates(KnownPoint& known) {
     const double level = target_.level();
     QuantityEstimates sums;
-    book_.for_each(point_.point.id, end(), [&](const NumberBook::Entry& seed) {
+    book_.for_each(point_.point.id, end(), [&](const NumberStore::Entry& seed) {
       sums.add(seed.layout, seed.numbers, seed.has_jammed);
     });
     Json uncontrolled = Json::object(), allowed = Json::object();
@@ -229,7 +229,7 @@ class PointPage {
   }
 
   Database& database_;
-  NumberBook& book_;
+  NumberStore& book_;
   const TargetRecord& target_;
   const PointSummary& point_;
   std::optional<Look> look_;
@@ -245,7 +245,7 @@ std::string key_of(const PointSummary& point, const TargetRecord& target) {
                      point.looks.empty() ? 0 : point.looks.back().seeds);
 }
 
-KnownPoint read_point(Database& database, NumberBook& book, const TargetRecord& target,
+KnownPoint read_point(Database& database, NumberStore& book, const TargetRecord& target,
                       const PointSummary& point) {
   return PointPage(database, book, target, point).read();
 }

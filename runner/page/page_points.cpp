@@ -61,7 +61,7 @@ std::optional<int> seeds_looked_at(const PointSummary& point) {
 }  // namespace
 
 PagePoints page_points(Database& database, const CampaignStatus& status, KnownPoints& known) {
-  NumberBook book(database.connection());
+  NumberStore book(database.connection());
   Columns columns;
   PagePoints page;
   for (const PointSummary& point : status.points) {

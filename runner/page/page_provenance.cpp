@@ -1,5 +1,6 @@
 // Where the numbers come from, and how to make them again.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -40,17 +41,13 @@ class Items {
 }  // namespace
 
 Json page_provenance(Database& database, const CampaignStatus& status, const std::string& results_sha256) {
-  Connection& connection = database.connection();
   const CampaignRecord& campaign = status.campaign;
-  std::string hosts;
-  Statement query(connection, "SELECT DISTINCT host FROM attempt WHERE host != '' ORDER BY host");
-  while (query.step()) hosts += (hosts.empty() ? "" : ", ") + query.text(0);
   Items items;
   for (const EngineRecord& engine : database.engines()) items.add_engine(engine.provenance);
-  items.add("machines", hosts);
+  items.add("machines", fmt::format("{}", fmt::join(database.hosts(), ", ")));
   items.add("campaign begun", campaign.created_at);
   items.add("file last taken up", campaign.updated_at);
-  items.add("last seed ended", connection.text("SELECT coalesce(max(ended_at), '') FROM attempt"));
+  items.add("last seed ended", database.last_end());
   items.add("campaign SHA-256", sha256(canonical_json(campaign.document)));
   if (!results_sha256.empty()) items.add("results SHA-256", results_sha256 + " (of the canonical table)");
   return items.json();

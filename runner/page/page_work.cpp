@@ -1,6 +1,4 @@
 // Who works on what, and who did last.
-#include <algorithm>
-
 #include "runner/page/page_parts.h"
 
 namespace peclet::runner {
@@ -17,27 +15,19 @@ Places places_of(const CampaignStatus& status) {
   return places;
 }
 
-// The last attempts in the order in which they began. One that runs has no end but when it was last heard of.
-Json attempts_json(Connection& connection, const Places& places) {
-  Statement query(
-      connection,
-      "SELECT a.point_id, a.seed, a.worker, a.host, a.started_at, coalesce(a.ended_at, "
-      "l.renewed_at, a.started_at), a.outcome FROM attempt a LEFT JOIN lease l USING (attempt_id) "
-      "ORDER BY a.attempt_id DESC LIMIT ?");
-  query.bind(most_attempts);
+Json attempts_json(Database& database, const Places& places) {
   Json list = Json::array();
-  while (query.step()) {
-    const auto place = places.find(query.integer(0));
+  for (const AttemptSpan& span : database.last_attempts(most_attempts)) {
+    const auto place = places.find(span.point);
     if (place == places.end()) continue;
     list.push_back({{"point", place->second},
-                    {"seed", query.integer(1)},
-                    {"worker", query.integer(2)},
-                    {"host", query.text(3)},
-                    {"began", query.text(4)},
-                    {"ended", query.text(5)},
-                    {"outcome", query.text(6)}});
+                    {"seed", span.seed},
+                    {"worker", span.worker},
+                    {"host", span.host},
+                    {"began", span.began},
+                    {"ended", span.ended},
+                    {"outcome", span.outcome}});
   }
-  std::reverse(list.begin(), list.end());
   return list;
 }
 
@@ -61,8 +51,7 @@ Json workers_json(const CampaignStatus& status) {
 }  // namespace
 
 Json page_work(Database& database, const CampaignStatus& status) {
-  return {{"now", workers_json(status)},
-          {"attempts", attempts_json(database.connection(), places_of(status))}};
+  return {{"now", workers_json(status)}, {"attempts", attempts_json(database, places_of(status))}};
 }
 
 }  // namespace peclet::runner

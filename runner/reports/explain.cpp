@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 
-#include "runner/database/file_book.h"
 #include "runner/reports/explain_attempts.h"
 #include "runner/reports/explain_estimate.h"
 #include "runner/reports/prediction_text.h"
@@ -15,6 +14,7 @@
 #include "runner/requests/point_name.h"
 #include "runner/statistics/forecast.h"
 #include "runner/statistics/look_json.h"
+#include "runner/store/file_store.h"
 #include "runner/text/number_text.h"
 #include "runner/text/text_table.h"
 

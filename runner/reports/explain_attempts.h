@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "runner/database/database_summary.h"
+#include "runner/store/database_summary.h"
 
 namespace peclet::runner {
 

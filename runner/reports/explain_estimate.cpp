@@ -20,7 +20,7 @@ std::vector<Outcome> completed(Database& database, const PointSummary& point) {
   const auto seeds = std::min(outcomes.size(), static_cast<std::size_t>(point.looks.back().seeds));
   std::vector<Outcome> found;
   for (std::size_t seed = 0; seed < seeds; ++seed) {
-    if (outcomes[seed] && outcomes[seed]->kind == Outcome::Kind::value) found.push_back(*outcomes[seed]);
+    if (outcomes[seed] && !outcomes[seed]->is_lost()) found.push_back(*outcomes[seed]);
   }
   return found;
 }
@@ -115,25 +115,13 @@ std::string control_text(const std::vector<Outcome>& outcomes) {
       rough((vv + 2 * vc + cc) / vv), with_error(best, error));
 }
 
-struct Costs {
-  double equilibration = 0, production = 0;
-};
-
-Costs steps(Database& database, const PointSummary& point) {
-  Statement query(database.connection(),
-                  "SELECT avg(equilibration_steps), avg(production_steps) FROM "
-                  "realisation WHERE point_id = ? AND state = 'done'");
-  query.bind(point.point.id).step();
-  return {query.real(0), query.real(1)};
-}
-
 std::string window_text(Database& database, const PointSummary& point, const std::vector<Outcome>& outcomes) {
   std::vector<WindowHalves> halves;
   for (const Outcome& outcome : outcomes) {
     if (!std::isfinite(outcome.first_half)) continue;
     halves.push_back({outcome.first_half, 2 * (outcome.value + outcome.control) - outcome.first_half});
   }
-  const Costs cost = steps(database, point);
+  const MeanSteps cost = database.mean_steps(point.point.id);
   const std::optional<WindowAdvice> advice = advise_window(halves, cost.equilibration, cost.production);
   if (!advice) return "";
   // What is advised must be true at the end of the correlation's interval that speaks most against it.

@@ -6,11 +6,10 @@
 #include <limits>
 #include <map>
 
-#include "runner/database/checked_look.h"
-#include "runner/database/database_summary.h"
-#include "runner/database/file_book.h"
 #include "runner/statistics/look_json.h"
 #include "runner/statistics/quantity_estimates.h"
+#include "runner/store/database_summary.h"
+#include "runner/store/file_store.h"
 
 namespace peclet::runner {
 namespace {

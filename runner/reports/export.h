@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/database/database.h"
+#include "runner/store/database.h"
 
 namespace peclet::runner {
 

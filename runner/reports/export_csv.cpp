@@ -5,10 +5,9 @@
 #include <map>
 #include <utility>
 
-#include "runner/database/checked_look.h"
-#include "runner/database/database_summary.h"
 #include "runner/reports/export.h"
 #include "runner/reports/point_estimates.h"
+#include "runner/store/database_summary.h"
 #include "runner/text/csv_line.h"
 
 namespace peclet::runner {
@@ -101,7 +100,7 @@ std::string export_csv(Database& database, bool canonical) {
   }
   std::vector<std::vector<std::string>> rows;
   ScalarColumns scalars;
-  NumberBook numbers(database.connection());
+  NumberStore numbers(database.connection());
   for (const PointSummary& point : points) {
     std::vector<std::string> fields{csv_text(point.point.label), point.point.hash};
     append(fields, settings.fields(point.point));

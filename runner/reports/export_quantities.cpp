@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "runner/database/checked_look.h"
 #include "runner/reports/export.h"
 #include "runner/reports/point_estimates.h"
+#include "runner/store/database_summary.h"
 #include "runner/text/csv_line.h"
 
 namespace peclet::runner {

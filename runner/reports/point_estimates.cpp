@@ -13,11 +13,11 @@ std::vector<QuantityEstimate> point_estimates(Database& database, const PointRec
   return estimates.estimates();
 }
 
-std::vector<QuantityEstimate> scalar_estimates(NumberBook& numbers, const PointRecord& point,
+std::vector<QuantityEstimate> scalar_estimates(NumberStore& numbers, const PointRecord& point,
                                                const std::optional<Look>& look) {
   QuantityEstimates estimates(QuantityEstimates::Wanted::scalars);
   if (look) {
-    numbers.for_each(point.id, look->seeds, [&](const NumberBook::Entry& seed) {
+    numbers.for_each(point.id, look->seeds, [&](const NumberStore::Entry& seed) {
       estimates.add(seed.layout, seed.numbers, seed.has_jammed);
     });
   }

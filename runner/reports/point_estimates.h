@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "runner/database/database_summary.h"
-#include "runner/database/number_book.h"
 #include "runner/statistics/quantity_estimates.h"
+#include "runner/store/database_summary.h"
+#include "runner/store/number_store.h"
 
 namespace peclet::runner {
 
@@ -16,7 +16,7 @@ namespace peclet::runner {
 std::vector<QuantityEstimate> point_estimates(Database& database, const PointRecord& point,
                                               const std::optional<Look>& look);
 // The same of scalars alone, for which no result is read.
-std::vector<QuantityEstimate> scalar_estimates(NumberBook& numbers, const PointRecord& point,
+std::vector<QuantityEstimate> scalar_estimates(NumberStore& numbers, const PointRecord& point,
                                                const std::optional<Look>& look);
 
 // One column for each pointer that the sweep has set at any point.

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "runner/database/database.h"
+#include "runner/store/database.h"
 
 namespace peclet::runner {
 

@@ -70,7 +70,7 @@ CampaignStatus read_status(Database& database) {
   CampaignStatus status;
   status.campaign = database.campaign();
   status.points = summarise_points(database, status.campaign.target);
-  status.handed_over = BundleBook(database.connection()).handed_over();
+  status.handed_over = BundleStore(database.connection()).handed_over();
   if (status.handed_over.empty()) {
     const TargetRecord& target = status.campaign.target;
     std::vector<PointForecast> forecasts;

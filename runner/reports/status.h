@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "contract/json.h"
-#include "runner/database/database_summary.h"
-#include "runner/stores/bundle_book.h"
+#include "runner/store/bundle_store.h"
+#include "runner/store/database_summary.h"
 #include "runner/text/folded_text.h"
 
 namespace peclet::runner {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "runner/database/database.h"
+#include "runner/store/database.h"
 
 namespace peclet::runner {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "contract/json.h"
-#include "runner/folder/campaign_directory.h"
+#include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {
 

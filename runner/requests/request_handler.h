@@ -7,12 +7,12 @@
 #include <string>
 
 #include "runner/events/run_listener.h"
-#include "runner/folder/campaign_directory.h"
 #include "runner/owner/ledger.h"
 #include "runner/requests/request.h"
-#include "runner/stores/event_log.h"
-#include "runner/stores/point_store.h"
-#include "runner/stores/seed_store.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/event_store.h"
+#include "runner/store/point_store.h"
+#include "runner/store/seed_store.h"
 
 namespace peclet::runner {
 
@@ -23,7 +23,7 @@ class RequestHandler {
       : database_(database),
         seeds_(database),
         rows_(database),
-        events_(database),
+        events_(database.connection()),
         ledger_(ledger),
         directory_(std::move(directory)),
         listener_(listener) {}
@@ -52,7 +52,7 @@ class RequestHandler {
   Database& database_;
   SeedStore seeds_;
   PointStore rows_;
-  EventLog events_;
+  EventStore events_;
   Ledger& ledger_;
   CampaignDirectory directory_;
   RunListener& listener_;

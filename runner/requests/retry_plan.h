@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/database/database.h"
+#include "runner/store/database.h"
 
 namespace peclet::runner {
 

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
+#include <charconv>
 #include <cmath>
 #include <set>
 #include <utility>
 
+#include "runner/statistics/number_layout.h"
 #include "runner/statistics/transient.h"
 
 namespace peclet::runner {
@@ -100,9 +102,22 @@ Look look_at(std::span<const std::optional<Outcome>> cohort, StopRule& rule,
 
 }  // namespace
 
+Outcome outcome_of(const NumberLayout& layout, std::span<const double> numbers,
+                   const std::string& final_state_sha256) {
+  constexpr std::size_t digits = 16;
+  Outcome outcome{layout.observation(0, numbers)};
+  if (outcome.is_lost()) return outcome;
+  for (std::size_t place = 1; place < layout.observables().size(); ++place)
+    outcome.further.push_back(layout.observation(place, numbers));
+  std::from_chars(final_state_sha256.data(),
+                  final_state_sha256.data() + std::min(digits, final_state_sha256.size()),
+                  outcome.final_state, 16);
+  return outcome;
+}
+
 Observation Outcome::of(std::size_t place) const {
-  if (kind == Kind::lost) return {};
-  if (place == 0) return {value, control, first_quarter, first_half, is_share};
+  if (is_lost()) return {};
+  if (place == 0) return *this;
   return place <= further.size() ? further[place - 1] : Observation{};
 }
 
@@ -151,7 +166,7 @@ std::vector<int> repeated_seeds(std::span<const std::optional<Outcome>> cohort) 
   std::set<std::uint64_t> seen;
   for (std::size_t seed = 0; seed < cohort.size(); ++seed) {
     const std::optional<Outcome>& outcome = cohort[seed];
-    if (!outcome || outcome->kind == Outcome::Kind::lost || outcome->final_state == 0) continue;
+    if (!outcome || outcome->is_lost() || outcome->final_state == 0) continue;
     if (!seen.insert(outcome->final_state).second) repeated.push_back(static_cast<int>(seed));
   }
   return repeated;
@@ -185,7 +200,7 @@ std::vector<Look> replay_looks(const std::vector<std::optional<Outcome>>& outcom
     if (!is_closed(outcomes, seeds)) break;
     looks.push_back(
         look_at(std::span(outcomes).first(static_cast<std::size_t>(seeds)), rule, observables, target));
-    if (looks.back().verdict != Verdict::more && target.rule == Target::newest_rule) break;
+    if (looks.back().verdict != Verdict::more) break;
   }
   return looks;
 }

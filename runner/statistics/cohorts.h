@@ -5,6 +5,7 @@
 // and resumed or not, give the same looks, the same deciding look and the same mean.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -12,37 +13,28 @@
 #include <string>
 #include <vector>
 
+#include "runner/statistics/observation.h"
 #include "runner/statistics/stop_rule.h"
 
 namespace peclet::runner {
 
-// What a seed says of one observable.
-struct Observation {
-  double value = std::numeric_limits<double>::quiet_NaN();  // NaN where it has none
-  double control = 0;  // control variate of mean zero; 0 where there is none
-  // value + control over the first quarter and the first half of the window; NaN where they are not known
-  double first_quarter = std::numeric_limits<double>::quiet_NaN();
-  double first_half = std::numeric_limits<double>::quiet_NaN();
-  bool is_share = false;  // the value is 0 or 1 by its nature
-};
+class NumberLayout;
 
-// How a seed ended; a seed that is queued or runs has no outcome yet. The numbers are of the target's leading
-// observable: a seed without it is lost.
-struct Outcome {
-  enum class Kind { value, lost };  // lost: the engine's verdict (blow-up, jam), or quarantined after crashes
-  Kind kind = Kind::lost;
-  double value = 0;
-  double control = 0;  // control variate of mean zero; 0 where there is none
-  // value + control over the first quarter and the first half of the window; NaN where they are not known
-  double first_quarter = std::numeric_limits<double>::quiet_NaN();
-  double first_half = std::numeric_limits<double>::quiet_NaN();
+// How a seed ended; a seed that is queued or runs has no outcome yet. The observation is of the target's
+// leading observable: a seed without its value is lost (the engine's verdict, or quarantined after crashes).
+struct Outcome : Observation {
   std::vector<Observation> further{};  // of the other ones of Target::observables(), in that order
-  bool is_share = false;               // the value is 0 or 1 by its nature
   std::uint64_t final_state = 0;       // first digits of its hash; 0 where it is not known
 
-  // Of the observable at that place of Target::observables(); without a value of a seed that is lost.
+  bool is_lost() const { return std::isnan(value); }
+  // The observation at that place of Target::observables(); without a value of a seed that is lost.
   Observation of(std::size_t place) const;
 };
+
+// Returns the outcome of a realisation with these numbers, which ended in the state of that hash ("": not
+// known).
+Outcome outcome_of(const NumberLayout& layout, std::span<const double> numbers,
+                   const std::string& final_state_sha256);
 
 // What a look says of one of several observables.
 struct ObservableLook {
@@ -108,13 +100,12 @@ std::vector<int> repeated_seeds(std::span<const std::optional<Outcome>> cohort);
 // Half-width over |mean| of the estimate that decides; NaN where there is no interval.
 double relative_width(const Look& look);
 
-// Whether the results have a control variate, as those of earlier versions and of other engines may: without
-// one the controlled estimate only repeats the other.
+// Whether the results have a control variate, as those of other engines may: without one
+// the controlled estimate only repeats the other.
 bool has_control(const Look& look);
 
 // All looks that the outcomes allow, in order, ending with the first that decides (any verdict but more).
-// outcomes[s] is that of seed s. A pure function: replaying it is how a stored look is checked. For a target
-// with an earlier rule, which may have decided elsewhere, no look is the last one.
+// outcomes[s] is that of seed s. A pure function: replaying it is how a stored look is checked.
 std::vector<Look> replay_looks(const std::vector<std::optional<Outcome>>& outcomes, const Target& target,
                                int minimum, int maximum);
 

@@ -1,6 +1,9 @@
 #include "runner/statistics/number_layout.h"
 
+#include <algorithm>
 #include <limits>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include "contract/integrity_error.h"
@@ -38,6 +41,18 @@ std::vector<Quantity> small_ones(const std::vector<Quantity>& quantities) {
   return small;
 }
 
+// Where the observation of the quantity, a single number, stands among the observables, if it does.
+std::optional<std::size_t> place_among(const std::vector<std::string>& observables,
+                                       const Quantity& quantity) {
+  if (!quantity.axes.empty() || quantity.ratio) return std::nullopt;
+  const auto found = std::find_if(observables.begin(), observables.end(), [&](std::string_view path) {
+    if (path.starts_with('/')) path.remove_prefix(1);
+    return path == quantity.name;
+  });
+  if (found == observables.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - observables.begin());
+}
+
 Json description(const Quantity& quantity) {
   Json about{{"symbol", quantity.symbol}, {"unit", quantity.unit}, {"estimator", estimator_of(quantity)}};
   for (const QuantityAxis& axis : quantity.axes)
@@ -65,18 +80,35 @@ void append_numbers(const Quantity& quantity, const Json& mean, std::vector<doub
     return;
   }
   append_at(mean, quantity.name, elements, numbers);
-  if (quantity.control) append_at(mean, quantity.control->quantity, elements, numbers);
+  if (!quantity.control) return;
+  append_at(mean, quantity.control->quantity, elements, numbers);
+  for (auto control = numbers.end() - static_cast<std::ptrdiff_t>(elements); control != numbers.end();
+       ++control)
+    *control -= quantity.control->mean;
 }
 
-NumberLayout::NumberLayout(std::vector<Quantity> quantities) : quantities_(std::move(quantities)) {
-  for (const Quantity& quantity : quantities_) count_ += numbers_needed(quantity);
+NumberLayout::NumberLayout(std::vector<Quantity> quantities, std::vector<std::string> observables)
+    : observables_(std::move(observables)),
+      quantities_(std::move(quantities)),
+      count_(numbers_of_observation * observables_.size()) {
+  for (const Quantity& quantity : quantities_) {
+    if (const std::optional<std::size_t> place = place_among(observables_, quantity)) {
+      begins_.push_back(numbers_of_observation * *place);
+    } else {
+      begins_.push_back(count_);
+      count_ += numbers_needed(quantity);
+    }
+  }
 }
 
-NumberLayout::NumberLayout(const Json& result) : NumberLayout(small_ones(quantities_of(result))) {}
+NumberLayout::NumberLayout(const Json& result, std::vector<std::string> observables)
+    : NumberLayout(small_ones(quantities_of(result)), std::move(observables)) {}
 
 NumberLayout NumberLayout::of_text(const std::string& text) {
   try {
-    return NumberLayout(quantities_of({{"quantities", Json::parse(text)}, {"mean", nullptr}}));
+    const Json layout = Json::parse(text);
+    return NumberLayout(quantities_of({{"quantities", layout.at("quantities")}, {"mean", nullptr}}),
+                        layout.at("observables").get<std::vector<std::string>>());
   } catch (const Json::exception&) {
     throw IntegrityError("the database holds a layout of numbers that is none: " + text.substr(0, 100));
   }
@@ -87,14 +119,22 @@ std::vector<double> NumberLayout::numbers(const Json& result) const {
   const Json& mean = result.at("mean");
   if (!mean.is_object()) return numbers;
   numbers.reserve(count_);
-  for (const Quantity& quantity : quantities_) append_numbers(quantity, mean, numbers);
+  for (const std::string& observable : observables_) append_observation(result, observable, numbers);
+  for (const Quantity& quantity : quantities_) {
+    if (!place_among(observables_, quantity)) append_numbers(quantity, mean, numbers);
+  }
   return numbers;
+}
+
+Observation NumberLayout::observation(std::size_t place, std::span<const double> numbers) const {
+  return observation_of(numbers.subspan(numbers_of_observation * place, numbers_of_observation),
+                        is_share(quantities_, observables_[place]));
 }
 
 std::string NumberLayout::text() const {
   Json about = Json::object();
   for (const Quantity& quantity : quantities_) about[quantity.name] = description(quantity);
-  return about.dump();
+  return Json{{"observables", observables_}, {"quantities", about}}.dump();
 }
 
 }  // namespace peclet::runner

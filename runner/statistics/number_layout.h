@@ -3,45 +3,59 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "contract/json.h"
+#include "runner/statistics/observation.h"
 #include "runner/statistics/quantities.h"
 
 namespace peclet::runner {
 
-// Quantities whose numbers stand one after another, in the order of their names: of a mean its elements, then
-// those of its control variate, if it has one; of a ratio its numerators, then its denominators.
+// Returns how many numbers of each result a quantity needs.
+std::size_t numbers_needed(const Quantity& quantity);
+// Appends the numbers of a quantity of a completed result's "mean".
+void append_numbers(const Quantity& quantity, const Json& mean, std::vector<double>& numbers);
+
+// The order of these numbers. First stand the observations of the target's observables, the leading one first
+// (numbers_of_observation each). Then follow the quantities in the order of their names: of a mean its
+// elements, then those of its control variate of mean zero, if it has one; of a ratio its numerators, then
+// its denominators. A quantity that is one of the observables is not repeated: its numbers are those of the
+// observation.
 class NumberLayout {
  public:
   // A tensor's components fit in; a distribution does not.
   static constexpr std::size_t most_elements = 9;
 
-  // Of the quantities of a result that are small enough.
-  explicit NumberLayout(const Json& result);
-  // Of text(). Throws IntegrityError for what is none.
+  // Takes the quantities of a result that are small enough.
+  NumberLayout(const Json& result, std::vector<std::string> observables);
+  // Reads text(). Throws IntegrityError if it is no layout.
   static NumberLayout of_text(const std::string& text);
 
-  // Those of a result with this layout; NaN for what it does not have. None of one that has not completed.
+  // Returns the numbers of a result with this layout, NaN for what it does not have; none of a result that
+  // has not completed.
   std::vector<double> numbers(const Json& result) const;
 
+  const std::vector<std::string>& observables() const { return observables_; }
+  // Returns what the numbers say of observables()[place].
+  Observation observation(std::size_t place, std::span<const double> numbers) const;
   const std::vector<Quantity>& quantities() const { return quantities_; }
-  // How many there are.
+  // Returns the numbers of quantities()[place].
+  std::span<const double> of_quantity(std::size_t place, std::span<const double> numbers) const {
+    return numbers.subspan(begins_[place], numbers_needed(quantities_[place]));
+  }
   std::size_t count() const { return count_; }
-  // As a result describes its "quantities": equal for equal layouts.
+  // {"observables": [...], "quantities": as a result describes them}; equal for equal layouts.
   std::string text() const;
 
  private:
-  explicit NumberLayout(std::vector<Quantity> quantities);
+  NumberLayout(std::vector<Quantity> quantities, std::vector<std::string> observables);
 
+  std::vector<std::string> observables_;
   std::vector<Quantity> quantities_;
+  std::vector<std::size_t> begins_;  // of each quantity, among the numbers
   std::size_t count_ = 0;
 };
-
-// How many numbers of each result a quantity needs.
-std::size_t numbers_needed(const Quantity& quantity);
-// Puts those of a completed result's "mean" behind the others.
-void append_numbers(const Quantity& quantity, const Json& mean, std::vector<double>& numbers);
 
 }  // namespace peclet::runner

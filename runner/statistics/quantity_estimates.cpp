@@ -101,8 +101,7 @@ void QuantityEstimates::add_numbers(Sums& sums, std::span<const double> numbers,
   if (!quantity.control) return;
   // As in a look: a value without its control counts as it is.
   for (std::size_t k = 0; k < elements; ++k) {
-    add_number(sums.controlled[k],
-               values[k] + (std::isnan(second[k]) ? 0 : second[k] - quantity.control->mean));
+    add_number(sums.controlled[k], values[k] + (std::isnan(second[k]) ? 0 : second[k]));
   }
 }
 
@@ -141,15 +140,14 @@ void QuantityEstimates::add(const Json& result) {
 }
 
 void QuantityEstimates::add(const NumberLayout& layout, std::span<const double> numbers, bool has_jammed) {
-  for (const Quantity& quantity : layout.quantities()) {
-    const std::span<const double> its = numbers.first(numbers_needed(quantity));
-    numbers = numbers.subspan(its.size());
+  for (std::size_t place = 0; place < layout.quantities().size(); ++place) {
+    const Quantity& quantity = layout.quantities()[place];
     if (!is_wanted(quantity)) continue;
     Sums& sums = sums_of(quantity);
     // To compare every axis for every seed would take longer than all else.
     if (sums.followed != &layout && is_like(sums.quantity, quantity)) sums.followed = &layout;
     if (sums.followed == &layout) {
-      add_numbers(sums, its, has_jammed);
+      add_numbers(sums, layout.of_quantity(place, numbers), has_jammed);
     } else {
       ++sums.unlike;
     }

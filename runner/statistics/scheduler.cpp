@@ -256,7 +256,7 @@ bool Scheduler::end(SeedId id, const Outcome& outcome) {
   std::optional<Outcome>& known = point.outcomes[static_cast<std::size_t>(id.seed)];
   const bool again = known.has_value();
   // A late result comes in place of a seed that was lost.
-  const bool had_value = again && known->kind == Outcome::Kind::value;
+  const bool had_value = again && !known->is_lost();
   if (!had_value) count_in(point, outcome);
   point.all_ended += again ? 0 : 1;
   known = outcome;

@@ -28,7 +28,6 @@ std::optional<Verdict> verdict_of(std::string_view word) {
   for (const auto& [known, name] : verdict_names) {
     if (name == word) return known;
   }
-  if (word == "converged-near-maximum") return Verdict::capped;
   return std::nullopt;
 }
 

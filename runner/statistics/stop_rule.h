@@ -41,8 +41,7 @@ enum class Verdict {
 
 // "converged-with-losses"
 const char* to_string(Verdict verdict);
-// Nothing for a word that is no verdict. "converged-near-maximum", which an earlier rule gave to looks with
-// intervals wider than the tolerance, is `capped`.
+// Returns nothing for a word that is no verdict.
 std::optional<Verdict> verdict_of(std::string_view word);
 
 // With losses or without.

@@ -11,7 +11,7 @@
 
 #include <span>
 
-#include "runner/statistics/cohorts.h"
+#include "runner/statistics/observation.h"
 
 namespace peclet::runner {
 

@@ -9,13 +9,13 @@
 #include "contract/exit_codes.h"
 #include "contract/input_error.h"
 #include "runner/care/restore.h"
-#include "runner/database/backup_files.h"
 #include "runner/events/progress.h"
-#include "runner/folder/owner_lock.h"
 #include "runner/owner/open_campaign.h"
 #include "runner/owner/owned_campaign.h"
 #include "runner/reports/status.h"
 #include "runner/requests/request_handler.h"
+#include "runner/store/backups.h"
+#include "runner/store/locks.h"
 
 namespace peclet::runner {
 namespace {

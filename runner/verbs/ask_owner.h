@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "runner/folder/campaign_directory.h"
 #include "runner/requests/request.h"
+#include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {
 

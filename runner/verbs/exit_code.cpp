@@ -6,8 +6,8 @@
 #include "contract/input_error.h"
 #include "contract/integrity_error.h"
 #include "contract/printable.h"
-#include "runner/folder/campaign_directory.h"
-#include "runner/folder/owner_lock.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/locks.h"
 
 namespace peclet::runner {
 int exit_code_of(const std::exception& error) {

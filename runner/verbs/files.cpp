@@ -4,8 +4,8 @@
 
 #include <utility>
 
-#include "runner/database/file_book.h"
 #include "runner/requests/point_name.h"
+#include "runner/store/file_store.h"
 #include "runner/text/text_table.h"
 
 namespace peclet::runner {

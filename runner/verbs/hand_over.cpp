@@ -54,7 +54,7 @@ void check(const HandOverOptions& options) {
 
 fs::path shared_folder(const HandOverOptions& options, Database& database) {
   if (!options.shared.empty()) return chosen_folder(options);
-  const std::string last = BundleBook(database.connection()).last_shared();
+  const std::string last = BundleStore(database.connection()).last_shared();
   if (last.empty()) {
     throw InputError(
         "", "", "--shared",
@@ -67,7 +67,7 @@ fs::path shared_folder(const HandOverOptions& options, Database& database) {
 // Made anew below a file system that is not mounted, it would hide what comes back with it.
 void refuse_lost_folder(const fs::path& shared, Database& database) {
   std::error_code error;
-  if (fs::is_directory(shared, error) || !BundleBook(database.connection()).are_out_in(shared.string()))
+  if (fs::is_directory(shared, error) || !BundleStore(database.connection()).are_out_in(shared.string()))
     return;
   throw InputError(
       "", "", shared.string(),
@@ -143,7 +143,8 @@ class Follower {
     return call_back(signals);
   }
 
-  // What a turn could not book is found again by the next one. Throws what does not pass.
+  // What a turn could not book is found again by the next one; what follows a commit is done by it. Throws
+  // what does not pass.
   void wait_out(const std::exception& error) {
     const std::optional<Hindrance> hindrance = hindrance_in(error, root_);
     if (!hindrance) throw;
@@ -241,7 +242,7 @@ void admit(Ledger& ledger, const OwnedCampaign& owned, const HandOverOptions& op
 // Of a bundle that has been settled meanwhile there is nothing to forget; a name that never was one is a
 // mistake.
 void check_names(const std::vector<std::string>& names, Database& database) {
-  const BundleBook book(database.connection());
+  const BundleStore book(database.connection());
   for (const std::string& name : names) {
     if (book.has(name)) continue;
     std::string out;
@@ -254,7 +255,7 @@ void check_names(const std::vector<std::string>& names, Database& database) {
 
 std::string standing_text(Database& database) {
   std::string text;
-  for (const HandedOver& bundle : BundleBook(database.connection()).handed_over()) {
+  for (const HandedOver& bundle : BundleStore(database.connection()).handed_over()) {
     text += fmt::format("{}: {} seeds are out, job {}\n", bundle.bundle, bundle.seeds,
                         bundle.job.empty() ? "not confirmed" : bundle.job);
   }
@@ -262,7 +263,7 @@ std::string standing_text(Database& database) {
 }
 
 std::string advice(Database& database, const IngestOptions& options) {
-  const std::vector<HandedOver> bundles = BundleBook(database.connection()).handed_over();
+  const std::vector<HandedOver> bundles = BundleStore(database.connection()).handed_over();
   return handed_over_advice(bundles, words_for(options.campaign, options.directory));
 }
 

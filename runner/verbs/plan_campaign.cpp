@@ -14,12 +14,11 @@
 
 #include "contract/input_error.h"
 #include "runner/campaign/campaign_file.h"
-#include "runner/database/database.h"
-#include "runner/database/prediction_book.h"
 #include "runner/engines/cost_trial.h"
 #include "runner/engines/scene_check.h"
-#include "runner/folder/campaign_directory.h"
 #include "runner/reports/plan.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/point_store.h"
 
 namespace peclet::runner {
 namespace {
@@ -68,7 +67,7 @@ void store_predictions(const Plan& plan, Database& database) {
   for (std::size_t place = 0; place < points.size(); ++place) {
     const PointPlan& point = plan.points.at(place);
     if (!point.is_predicted()) continue;
-    store_prediction(database.connection(), points[place].id, point.prediction, point.cost.cpu_seconds);
+    PointStore(database).store_prediction(points[place].id, point.prediction, point.cost.cpu_seconds);
   }
   booking.commit();
 }

@@ -14,8 +14,8 @@
 #include "runner/campaign/document_edit.h"
 #include "runner/engines/engine_process.h"
 #include "runner/engines/scene_check.h"
-#include "runner/folder/folder_lock.h"
 #include "runner/owner/open_campaign.h"
+#include "runner/store/locks.h"
 
 namespace peclet::runner {
 namespace {

@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "contract/input_error.h"
-#include "runner/folder/own_files.h"
+#include "runner/store/own_files.h"
 #include "runner/text/text_table.h"
 
 namespace peclet::runner {

@@ -14,11 +14,11 @@
 #include "contract/exit_codes.h"
 #include "runner/campaign/campaign_file.h"
 #include "runner/engines/stop_signals.h"
-#include "runner/folder/being_set_up.h"
-#include "runner/folder/owner_lock.h"
 #include "runner/owner/open_campaign.h"
 #include "runner/reports/curve.h"
 #include "runner/reports/status.h"
+#include "runner/store/database.h"
+#include "runner/store/locks.h"
 #include "runner/text/folded_text.h"
 
 namespace peclet::runner {

@@ -21,7 +21,6 @@ import tempfile
 import time
 import zlib
 
-import numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "pages"))
 from browser import Browser  # noqa: E402
@@ -63,23 +62,23 @@ def deflated(text, dictionary):
 def copies(database, point, seeds, columns):
     """Rows of seeds that the point lacks, each a copy of its first one with other numbers."""
     row = dict(database.execute("SELECT * FROM realisation WHERE point_id = ? AND seed = 0", (point,)).fetchone())
-    layout, blob = database.execute(
+    layout, stored = database.execute(
         "SELECT layout_id, numbers FROM numbers WHERE point_id = ? AND seed = 0", (point,)
     ).fetchone()
     (text,) = database.execute("SELECT text FROM dictionary WHERE point_id = ?", (point,)).fetchone()
-    dictionary, values = text.encode(), numpy.frombuffer(blob)
+    dictionary, numbers = text.encode(), json.loads(stored)
     known = {seed for (seed,) in database.execute("SELECT seed FROM result WHERE point_id = ?", (point,))}
     for seed in range(seeds):
         if seed in known:
             continue
         factor = 1 + 0.1 * random.gauss(0, 1)
-        row.update(seed=seed, state="done", cause="completed", value=factor * 5, control=0.05 * random.gauss(0, 1))
+        row.update(seed=seed, state="done", cause="completed")
         result = json.loads(text)
         result["seed"] = seed
         yield (
             [row[column] for column in columns],
             (point, seed, deflated(json.dumps(result, separators=(",", ":")).encode(), dictionary)),
-            (point, seed, layout, (values * factor).tobytes()),
+            (point, seed, layout, json.dumps([number and number * factor for number in numbers])),
         )
 
 

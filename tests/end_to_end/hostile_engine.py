@@ -93,7 +93,12 @@ class Campaign:
         return done.stdout
 
     def values(self):
-        return dict(self.query("SELECT seed, value FROM realisation WHERE content_sha256 IS NOT NULL"))
+        return dict(
+            self.query(
+                "SELECT seed, json_extract(numbers, '$[0]') FROM realisation LEFT JOIN numbers USING (point_id, seed) "
+                "WHERE content_sha256 IS NOT NULL"
+            )
+        )
 
 
 def memory_of(process):

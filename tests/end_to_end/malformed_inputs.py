@@ -270,7 +270,7 @@ class Trial:
                 ("that is none", b"once upon a time " * 500, 6),
                 ("cut off", good[: len(good) // 2], 6),
                 ("of another program", changed("PRAGMA application_id = 1"), 6),
-                ("of a later version", changed("PRAGMA user_version = 99"), 2),
+                ("of another version", changed("PRAGMA user_version = 99"), 2),
             ]:
                 for verb in ("status", "export", "run"):
                     for suffix in ("-wal", "-shm"):

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "contract/json.h"
-#include "runner/database/database.h"
+#include "runner/store/database.h"
 #include "runner/verbs/run.h"
 #include "tests/runner/runner_fixture.h"
 

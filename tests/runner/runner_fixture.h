@@ -11,7 +11,7 @@
 #include "contract/json.h"
 #include "runner/campaign/campaign.h"
 #include "runner/events/run_listener.h"
-#include "runner/folder/campaign_directory.h"
+#include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {
 

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
-#include "runner/stores/engine_row.h"
-#include "runner/stores/point_store.h"
-#include "runner/stores/result_store.h"
-#include "runner/stores/seed_store.h"
+#include "runner/store/point_store.h"
+#include "runner/store/result_store.h"
+#include "runner/store/seed_store.h"
 
 namespace peclet::runner {
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "runner/database/database.h"
+#include "runner/store/database.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {

@@ -123,17 +123,15 @@ def restored_over_newer(night):
     night.lost_nothing()
 
 
-def newer_program(night):
-    """A database of a newer peclet"""
+def another_program(night):
+    """A database of another peclet"""
     finished(night)
     database = sqlite3.connect(night.path("night.peclet", "campaign.db"))
     database.execute("PRAGMA user_version = 99")
     database.close()
     night.remarks("Here the database says that its tables are of version 99.")
-    night.types(
-        "peclet run night.json", 2, ["written by a newer peclet", "version 99", "use that peclet or a newer one"]
-    )
-    night.types("peclet status night.json", 2, ["written by a newer peclet"])
+    night.types("peclet run night.json", 2, ["written by another peclet", "version 99", "use the peclet that wrote it"])
+    night.types("peclet status night.json", 2, ["written by another peclet"])
     night.lost_nothing()
 
 
@@ -145,6 +143,6 @@ CASES = [
     log_deleted,
     copied_without_log,
     restored_over_newer,
-    newer_program,
+    another_program,
 ]
 SLOW = [deleted_while_it_runs, restored_over_newer, log_deleted]

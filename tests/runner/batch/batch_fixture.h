@@ -6,7 +6,7 @@
 #include <string>
 
 #include "contract/json.h"
-#include "runner/database/database.h"
+#include "runner/store/database.h"
 #include "runner/verbs/hand_over.h"
 #include "tests/runner/runner_fixture.h"
 

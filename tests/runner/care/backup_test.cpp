@@ -11,10 +11,10 @@
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
 #include "runner/care/restore.h"
-#include "runner/database/backup_files.h"
-#include "runner/folder/owner_lock.h"
-#include "runner/folder/spool.h"
 #include "runner/reports/export.h"
+#include "runner/store/backups.h"
+#include "runner/store/locks.h"
+#include "runner/store/spool.h"
 #include "tests/runner/campaign_process.h"
 #include "tests/runner/stored_campaign.h"
 
@@ -304,13 +304,13 @@ TEST(Restoring, TakesTheGenerationBeforeADamagedOne) {
   EXPECT_THROW(restore_campaign({elsewhere.path(), elsewhere.path() / "nothing", {}}), InputError);
 }
 
-TEST(Restoring, IsNotTheCureForADatabaseOfANewerProgram) {
+TEST(Restoring, IsNotTheCureForADatabaseOfAnotherVersion) {
   CampaignOnDisk campaign;
   ASSERT_EQ(campaign.run(), 0) << campaign.log();
   Connection(campaign.directory().database().string(), Connection::Access::read_write, 0)
       .execute("PRAGMA user_version = 1000");
   EXPECT_EQ(campaign.run(), 2);
-  EXPECT_NE(campaign.log().find("newer peclet"), std::string::npos);
+  EXPECT_NE(campaign.log().find("another peclet"), std::string::npos);
   EXPECT_EQ(campaign.log().find("peclet restore"), std::string::npos) << campaign.log();
 }
 

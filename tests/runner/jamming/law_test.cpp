@@ -185,7 +185,6 @@ Estimate until_known(double mean, std::mt19937_64& random) {
   std::vector<std::optional<Outcome>> outcomes(64);
   for (auto& outcome : outcomes) {
     outcome.emplace();
-    outcome->kind = Outcome::Kind::value;
     outcome->value = mean * (1 + 0.06 * normal(random));
   }
   return replay_looks(outcomes, {"relative_viscosity", 0.03, 0.95}, 8, 64).back().controlled;

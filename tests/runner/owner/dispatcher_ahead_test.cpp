@@ -5,8 +5,8 @@
 
 #include "contract/sha256.h"
 #include "runner/requests/request_handler.h"
-#include "runner/stores/point_store.h"
-#include "runner/stores/result_store.h"
+#include "runner/store/point_store.h"
+#include "runner/store/result_store.h"
 #include "tests/runner/owner/dispatcher_fixture.h"
 
 namespace peclet::runner {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "runner/owner/dispatcher.h"
-#include "runner/stores/point_store.h"
+#include "runner/store/point_store.h"
 #include "tests/runner/owner/scripted_pool.h"
 #include "tests/runner/runner_fixture.h"
 

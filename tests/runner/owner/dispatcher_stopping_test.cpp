@@ -1,7 +1,7 @@
 // How runs end: by signals, by the time limit, and when everything is decided.
 #include <chrono>
 
-#include "runner/stores/point_store.h"
+#include "runner/store/point_store.h"
 #include "tests/runner/owner/dispatcher_fixture.h"
 
 namespace peclet::runner {

@@ -4,9 +4,9 @@
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
 #include "runner/engines/engine_error.h"
-#include "runner/folder/spool.h"
-#include "runner/stores/point_store.h"
-#include "runner/stores/result_store.h"
+#include "runner/store/point_store.h"
+#include "runner/store/result_store.h"
+#include "runner/store/spool.h"
 #include "tests/runner/owner/dispatcher_fixture.h"
 
 namespace peclet::runner {
@@ -95,7 +95,7 @@ TEST_F(Dispatching, AResultWhoseHashIsWrongIsKeptAsideAndTheSeedRunAgain) {
   };
   EXPECT_EQ(run(), Dispatcher::Ending::finished);
   EXPECT_EQ(attempts_of(0).at(0).outcome, "garbled");
-  EXPECT_EQ(database_.realisations(1).at(0).value, 10);
+  EXPECT_EQ(database_.outcomes(1).at(0)->value, 10);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(directory_.rejected()), {}), 1);
   EXPECT_TRUE(was_warned_of("is not taken"));
 }
@@ -213,7 +213,7 @@ TEST_F(Dispatching, ASpoolFileThatIsNamedForAnotherSeedIsSetAside) {
   pool_.script = [this] { finish_all(); };
   EXPECT_EQ(run(), Dispatcher::Ending::finished);
   EXPECT_EQ(pool_.assigned.at(0).seed, 1);
-  EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM realisation WHERE value = 99"), 0);
+  EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM realisations WHERE value = 99"), 0);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(directory_.rejected()), {}), 2);
 }
 

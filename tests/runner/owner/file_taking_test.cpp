@@ -14,8 +14,8 @@
 #include "contract/durable_file.h"
 #include "contract/integrity_error.h"
 #include "contract/sha256.h"
-#include "runner/database/file_book.h"
-#include "runner/folder/spool.h"
+#include "runner/store/file_store.h"
+#include "runner/store/spool.h"
 #include "tests/runner/owner/dispatcher_fixture.h"
 
 namespace peclet::runner {

@@ -8,8 +8,8 @@
 
 #include "runner/care/backup.h"
 #include "runner/care/restore.h"
-#include "runner/database/backup_files.h"
-#include "runner/folder/owner_lock.h"
+#include "runner/store/backups.h"
+#include "runner/store/locks.h"
 #include "tests/runner/campaign_process.h"
 #include "tests/runner/stored_campaign.h"
 

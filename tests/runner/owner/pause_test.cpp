@@ -1,4 +1,4 @@
-// What is in the owner's way and passes. Full disks: tests/runner/folder/disk_room_test.cpp.
+// What is in the owner's way and passes. Full disks: tests/runner/store/disk_room_test.cpp.
 #include "runner/owner/pause.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include <system_error>
 
 #include "contract/durable_file.h"
-#include "runner/folder/spool.h"
+#include "runner/store/spool.h"
 #include "tests/runner/owner/dispatcher_fixture.h"
 
 namespace peclet::runner {

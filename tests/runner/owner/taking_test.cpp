@@ -7,8 +7,8 @@
 
 #include "contract/durable_file.h"
 #include "contract/sha256.h"
-#include "runner/folder/result_files.h"
-#include "runner/folder/spool.h"
+#include "runner/store/result_files.h"
+#include "runner/store/spool.h"
 #include "tests/runner/owner/dispatcher_fixture.h"
 
 namespace peclet::runner {
@@ -209,7 +209,7 @@ TEST_F(Dispatching, AResultWithAWarningThatIsNoneDoesNotCount) {
       finish_all();
     };
     EXPECT_EQ(run(), Dispatcher::Ending::finished) << warnings;
-    EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM realisation WHERE value > 11"), 0);
+    EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM realisations WHERE value > 11"), 0);
     EXPECT_EQ(database_.looks(1).back().look.verdict, Verdict::converged);
     database_.connection().execute(
         "DELETE FROM attempt; DELETE FROM look; DELETE FROM numbers; DELETE FROM result; DELETE FROM "

@@ -121,7 +121,8 @@ TEST(Export, APointBeforeItsFirstLookHasNoEstimates) {
 TEST(Export, AChangedNumberInTheDatabaseIsAnIntegrityFault) {
   StoredCampaign campaign(1, 4, 20);
   fill(campaign, 0, {0, 1, 2, 3});
-  campaign.database().connection().execute("UPDATE realisation SET value = 10.5 WHERE seed = 2");
+  campaign.database().connection().execute(
+      "UPDATE numbers SET numbers = json_replace(numbers, '$[0]', 10.5) WHERE seed = 2");
   EXPECT_THROW(export_json(campaign.database(), true), IntegrityError);
   EXPECT_THROW(export_csv(campaign.database(), true), IntegrityError);
 }

@@ -66,8 +66,7 @@ TEST(Plan, APointWithoutASeedCostsWhatTheOthersDoForEachParticleStep) {
 // Values so near each other that the minimum of 10 is enough, whatever comes.
 PointHistory four_equal_seeds(double cpu_seconds, double wall_seconds) {
   PointHistory history{{4, cpu_seconds, wall_seconds}, {}};
-  for (const double value : {10.0, 10.001, 9.999, 10.0})
-    history.outcomes.emplace_back(Outcome{Outcome::Kind::value, value});
+  for (const double value : {10.0, 10.001, 9.999, 10.0}) history.outcomes.emplace_back(Outcome{{value}});
   return history;
 }
 

@@ -40,7 +40,7 @@ class Source {
 
   Outcome draw() {
     const double z = normal_(random_);
-    return {Outcome::Kind::value, lognormal_ ? lognormal_of(z, spread_) : 1 + spread_ * z};
+    return {{lognormal_ ? lognormal_of(z, spread_) : 1 + spread_ * z}};
   }
 
  private:

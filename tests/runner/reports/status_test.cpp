@@ -8,7 +8,7 @@
 
 #include "runner/reports/explain.h"
 #include "runner/reports/export.h"
-#include "runner/stores/point_store.h"
+#include "runner/store/point_store.h"
 #include "tests/runner/stored_campaign.h"
 
 namespace peclet::runner {
@@ -313,9 +313,13 @@ TEST(Status, OfSixteenThousandRealisationsTakesBelowAThirdOfASecond) {
   StoredCampaign campaign(20, 10, 800);
   campaign.database().connection().execute(
       "WITH RECURSIVE seeds(seed) AS (SELECT 0 UNION ALL SELECT seed + 1 FROM seeds WHERE seed < 799) "
-      "INSERT INTO realisation (point_id, seed, state, cause, value, cpu_seconds, final_state_sha256, "
-      "content_sha256) SELECT point_id, seed, 'done', 'completed', 10 + seed % 7, 1, hash, hash FROM seeds, "
-      "point");
+      "INSERT INTO realisation (point_id, seed, state, cause, cpu_seconds, final_state_sha256, "
+      "content_sha256) "
+      "SELECT point_id, seed, 'done', 'completed', 1, hash, hash FROM seeds, point;"
+      "INSERT INTO number_layout VALUES (1, '{}');"
+      // The observable, and 40 numbers of other quantities.
+      "INSERT INTO numbers SELECT point_id, seed, 1, '[' || (10 + seed % 7) || ',null,null,null' || "
+      "replace(hex(zeroblob(40)), '00', ',1.2345678901234567') || ']' FROM realisation");
   const std::clock_t start = std::clock();  // processor time: of what else the machine does this says nothing
   const std::string table = status_table(read_status(campaign.database()));
   const std::clock_t spent = std::clock() - start;

@@ -10,10 +10,9 @@
 #include "contract/durable_file.h"
 #include "contract/sha256.h"
 #include "runner/requests/request_handler.h"
-#include "runner/stores/engine_row.h"
-#include "runner/stores/point_store.h"
-#include "runner/stores/result_store.h"
-#include "runner/stores/seed_store.h"
+#include "runner/store/point_store.h"
+#include "runner/store/result_store.h"
+#include "runner/store/seed_store.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {

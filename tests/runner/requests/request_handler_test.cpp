@@ -9,7 +9,7 @@
 
 #include "contract/durable_file.h"
 #include "contract/sha256.h"
-#include "runner/stores/seed_store.h"
+#include "runner/store/seed_store.h"
 #include "tests/runner/requests/carrying_out.h"
 
 namespace peclet::runner {

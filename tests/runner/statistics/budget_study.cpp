@@ -164,7 +164,7 @@ class Trial {
     costs.sum += ended.seconds;
     ++costs.count;
     scheduler_.set_cost(ended.id.point, costs.sum / costs.count);
-    scheduler_.end(ended.id, {Outcome::Kind::value, 1 + populations_[point].spread * normal_(random_)});
+    scheduler_.end(ended.id, {{1 + populations_[point].spread * normal_(random_)}});
   }
 
   struct Costs {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <random>
 
-#include "runner/database/database_summary.h"
+#include "runner/store/database_summary.h"
 #include "runner/text/duration_text.h"
 #include "tests/runner/campaign_process.h"
 
@@ -87,7 +87,7 @@ TEST(Budget, SaysWhatItBought) {
   EXPECT_EQ(before.unknown, 2);
   for (int seed = 0; seed < 4; ++seed) {
     scheduler.begin({0, seed});
-    scheduler.end({0, seed}, {Outcome::Kind::value, seed % 2 == 0 ? 9.9 : 10.1});
+    scheduler.end({0, seed}, {{seed % 2 == 0 ? 9.9 : 10.1}});
   }
   const SummedError after = summed_error(scheduler);
   EXPECT_NEAR(after.sum, 1.0218, 1e-4);
@@ -110,9 +110,8 @@ TEST(Budget, SumsNoRelativeErrorsWhereTheToleranceIsAbsolute) {
 // known: it is worth more, although the tolerance is far from 20 %.
 TEST(Budget, AMeanWithoutAnIntervalComesBeforeOneThatIsPoorlyKnown) {
   std::vector<std::optional<Outcome>> poor, unknown(4, Outcome{});
-  for (int seed = 0; seed < 4; ++seed)
-    poor.emplace_back(Outcome{Outcome::Kind::value, seed % 2 == 0 ? 9.0 : 11});
-  unknown[0] = unknown[1] = Outcome{Outcome::Kind::value, 1};
+  for (int seed = 0; seed < 4; ++seed) poor.emplace_back(Outcome{{seed % 2 == 0 ? 9.0 : 11}});
+  unknown[0] = unknown[1] = Outcome{{1}};
   unknown[1]->value = -1;
   Scheduler scheduler({poor, unknown}, {"relative_viscosity", 0.05, 0.95}, 4, 4000);
   scheduler.set_allocation(Allocation::steepest_first);
@@ -133,7 +132,7 @@ double error_bought(Allocation allocation, double budget, unsigned start) {
   while (const std::optional<SeedId> next = scheduler.next_within(budget)) {
     const auto point = static_cast<std::size_t>(next->point);
     scheduler.begin(*next);
-    scheduler.end(*next, {Outcome::Kind::value, std::normal_distribution<double>(1, spreads[point])(random)});
+    scheduler.end(*next, {{std::normal_distribution<double>(1, spreads[point])(random)}});
     budget -= seconds[point];
   }
   return summed_error(scheduler).sum;

@@ -18,8 +18,8 @@ using Outcomes = std::vector<std::optional<Outcome>>;
 
 const Target five_percent{"relative_viscosity", 0.05, 0.95};
 
-Outcome value(double number, double control = 0) { return {Outcome::Kind::value, number, control}; }
-Outcome lost() { return {Outcome::Kind::lost, 0, 0}; }
+Outcome value(double number, double control = 0) { return {{number, control}}; }
+Outcome lost() { return {}; }
 
 // Alternating mean - spread, mean + spread: the standard error of an even number n is spread / sqrt(n - 1).
 Outcomes alternating(int count, double mean, double spread) {
@@ -320,13 +320,6 @@ TEST(Cohorts, SeedsThatEndInOneStateAreNotIndependent) {
   EXPECT_EQ(replay_looks(outcomes, five_percent, 12, 12).at(0).verdict, Verdict::converged);
   for (std::optional<Outcome>& outcome : outcomes) outcome->final_state = 0;  // not known
   EXPECT_TRUE(replay_looks(outcomes, five_percent, 12, 12).at(0).repeated.empty());
-}
-
-// It may have stopped later.
-TEST(Cohorts, ForAnEarlierRuleNoLookIsTheLastOne) {
-  Target target = five_percent;
-  target.rule = Target::first_rule;
-  EXPECT_EQ(replay_looks(alternating(13, 10, 0.6), target, 10, 20).size(), 2U);
 }
 
 TEST(Cohorts, IntervalsAreWidenedForRepeatedLooksOnly) {

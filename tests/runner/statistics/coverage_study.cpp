@@ -118,7 +118,7 @@ void simulate_campaign(const Case& about, Source& source, Tally& tally) {
     const Running ended = clock.top();
     clock.pop();
     now = ended.end;
-    scheduler.end(ended.id, {Outcome::Kind::value, ended.value});
+    scheduler.end(ended.id, {{ended.value}});
   }
   for (int point = 0; point < points_at_a_time; ++point) {
     const Look& last = scheduler.looks(point).back();

@@ -31,7 +31,7 @@ Coverage simulate(int replications, Distribution seeds, double tolerance, unsign
     for (const int seeds_wanted : look_schedule(10, 400)) {
       while (std::ssize(outcomes) < seeds_wanted) {
         const double control = hidden > 0 ? hidden * noise(random) : 0;
-        outcomes.emplace_back(Outcome{Outcome::Kind::value, seeds(random) - control, control});
+        outcomes.emplace_back(Outcome{{seeds(random) - control, control}});
       }
       looks = replay_looks(outcomes, target, 10, 400);
       if (looks.back().verdict != Verdict::more) break;
@@ -114,8 +114,7 @@ Verdicts simulate_near_maximum(int replications, double needed, int maximum, uns
   Verdicts verdicts;
   for (int replication = 0; replication < replications; ++replication) {
     std::vector<std::optional<Outcome>> outcomes(static_cast<std::size_t>(maximum));
-    for (std::optional<Outcome>& outcome : outcomes)
-      outcome = Outcome{Outcome::Kind::value, seeds(random), 0};
+    for (std::optional<Outcome>& outcome : outcomes) outcome = Outcome{{seeds(random), 0}};
     const Look last = replay_looks(outcomes, target, 8, maximum).back();
     for (OfVerdict* of : {&verdicts.all, last.verdict == Verdict::capped ? &verdicts.capped
                                          : last.near_maximum             ? &verdicts.near_maximum

@@ -100,7 +100,7 @@ History run(const Case& about, double expected_time, unsigned start) {
     const Running ended = clock.back();
     clock.pop_back();
     now = ended.end;
-    scheduler.end(ended.id, {Outcome::Kind::value, ended.value});
+    scheduler.end(ended.id, {{ended.value}});
     const auto place = static_cast<std::size_t>(ended.id.point);
     costs[place].add(ended.took);
     scheduler.set_cost(ended.id.point, costs[place].mean());

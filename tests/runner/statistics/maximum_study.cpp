@@ -30,7 +30,7 @@ struct Case {
   Tolerance tolerance;
 };
 
-Outcome outcome_of(double value, double control = 0) { return {Outcome::Kind::value, value, control}; }
+Outcome outcome_of(double value, double control = 0) { return {{value, control}}; }
 
 // Normal values of mean 1 that need so many seeds.
 Population normal(double needed, double tolerance) {

@@ -19,7 +19,7 @@ Outcomes values(int count, double deviation) {
   const double step = deviation * std::sqrt((count - 1.0) / count);
   Outcomes outcomes;
   for (int seed = 0; seed < count; ++seed) {
-    outcomes.emplace_back(Outcome{Outcome::Kind::value, seed % 2 == 0 ? 1 + step : 1 - step});
+    outcomes.emplace_back(Outcome{{seed % 2 == 0 ? 1 + step : 1 - step}});
   }
   return outcomes;
 }
@@ -39,8 +39,7 @@ Record judge(int campaigns, int pilot, double spread, double tolerance, unsigned
   while (std::ssize(ratios) < campaigns) {
     Outcomes outcomes;
     const auto looks_at = [&](int seeds) {
-      while (std::ssize(outcomes) < seeds)
-        outcomes.emplace_back(Outcome{Outcome::Kind::value, value(random)});
+      while (std::ssize(outcomes) < seeds) outcomes.emplace_back(Outcome{{value(random)}});
       return replay_looks(outcomes, target(tolerance), minimum, maximum);
     };
     const std::vector<Look> first = looks_at(pilot);

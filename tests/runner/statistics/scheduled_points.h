@@ -11,7 +11,7 @@ namespace peclet::runner {
 
 using Outcomes = std::vector<std::vector<std::optional<Outcome>>>;
 
-inline Outcome value(double number) { return {Outcome::Kind::value, number, 0}; }
+inline Outcome value(double number) { return {{number, 0}}; }
 
 // Two values so far apart, or so near, that no reasonable interval could decide otherwise at 5 %.
 inline Outcome scattered(int seed) { return value(seed % 2 == 0 ? 1 : 19); }

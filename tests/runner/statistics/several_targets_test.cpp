@@ -33,7 +33,7 @@ Outcomes both_alternating(int count, double mean, double spread) {
   Outcomes outcomes;
   for (int seed = 0; seed < count; ++seed) {
     const double sign = seed % 2 == 0 ? -1 : 1;
-    Outcome outcome{Outcome::Kind::value, 10 + 0.1 * sign};
+    Outcome outcome{{10 + 0.1 * sign}};
     outcome.further = {{mean + spread * sign}};
     outcomes.emplace_back(outcome);
   }
@@ -93,7 +93,7 @@ TEST(SeveralTargets, WhatOnlyMeasuresNeedsNoInterval) {
   const Target target{"N1", relative_to("viscosity", 0.05), 0.95};
   Outcomes outcomes;
   for (int seed = 0; seed < 10; ++seed) {
-    Outcome outcome{Outcome::Kind::value, seed % 2 == 0 ? -0.5 : 0.5};
+    Outcome outcome{{seed % 2 == 0 ? -0.5 : 0.5}};
     outcome.further = {{10.0}};
     outcomes.emplace_back(outcome);
   }
@@ -111,7 +111,7 @@ TEST(SeveralTargets, TheErrorOfTheMeasureCounts) {
     Outcomes outcomes;
     for (int seed = 0; seed < 10; ++seed) {
       const double sign = seed % 2 == 0 ? -1 : 1;
-      Outcome outcome{Outcome::Kind::value, 0.5 * sign};
+      Outcome outcome{{0.5 * sign}};
       outcome.further = {{10 + spread * sign}};
       outcomes.emplace_back(outcome);
     }
@@ -155,7 +155,7 @@ TEST(SeveralTargets, AMeasureNeedsNoPrecision) {
   Target target{"N1", relative_to("viscosity", 0.05), 0.95};
   Outcomes outcomes;
   for (const std::optional<Outcome>& other : both_alternating(10, 10, 3)) {
-    Outcome outcome{Outcome::Kind::value, other->value - 10};
+    Outcome outcome{{other->value - 10}};
     outcome.further = other->further;
     outcomes.emplace_back(outcome);
   }
@@ -251,7 +251,7 @@ TEST(SeveralTargets, EachIntervalIsHonest) {
     Look last;
     for (const int wanted : look_schedule(10, 1000)) {
       while (std::ssize(outcomes) < wanted) {
-        Outcome outcome{Outcome::Kind::value, viscosities(random)};
+        Outcome outcome{{viscosities(random)}};
         outcome.further = {{others(random)}};
         outcomes.emplace_back(outcome);
       }

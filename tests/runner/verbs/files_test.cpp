@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "contract/input_error.h"
-#include "runner/database/file_book.h"
+#include "runner/store/file_store.h"
 #include "tests/runner/stored_campaign.h"
 
 namespace peclet::runner {

@@ -13,7 +13,7 @@
 #include "contract/input_error.h"
 #include "runner/batch/bundle_files.h"
 #include "runner/engines/engine_error.h"
-#include "runner/folder/owner_lock.h"
+#include "runner/store/locks.h"
 #include "runner/verbs/cancel.h"
 #include "tests/runner/batch/batch_fixture.h"
 

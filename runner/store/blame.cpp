@@ -1,0 +1,95 @@
+#include "runner/store/blame.h"
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <utility>
+
+#include "contract/integrity_error.h"
+
+namespace peclet::runner {
+namespace {
+
+constexpr int most_kills_in_a_row = 20;
+
+constexpr std::array<std::pair<AttemptOutcome, const char*>, 9> names{
+    {{AttemptOutcome::running, "running"},
+     {AttemptOutcome::result, "result"},
+     {AttemptOutcome::crashed, "crashed"},
+     {AttemptOutcome::hung, "hung"},
+     {AttemptOutcome::garbled, "garbled"},
+     {AttemptOutcome::refused, "refused"},
+     {AttemptOutcome::drained, "drained"},
+     {AttemptOutcome::killed, "killed"},
+     {AttemptOutcome::abandoned, "abandoned"}}};
+
+// Kills since the seed last came further than it had ever been.
+int kills_without_progress(std::span<const PastAttempt> attempts) {
+  int kills = 0;
+  std::int64_t furthest = -1;
+  for (const PastAttempt& attempt : attempts) {
+    if (attempt.step > furthest) {
+      kills = 0;
+      furthest = attempt.step;
+    }
+    if (attempt.outcome == AttemptOutcome::killed) ++kills;
+  }
+  return kills;
+}
+
+}  // namespace
+
+const char* to_string(AttemptOutcome outcome) {
+  for (const auto& [known, name] : names) {
+    if (known == outcome) return name;
+  }
+  return "?";
+}
+
+AttemptOutcome attempt_outcome(const std::string& text) {
+  for (const auto& [known, name] : names) {
+    if (name == text) return known;
+  }
+  throw IntegrityError("the database holds an unknown outcome of an attempt: " + text);
+}
+
+bool is_blamed(AttemptOutcome outcome) {
+  return outcome == AttemptOutcome::crashed || outcome == AttemptOutcome::hung ||
+         outcome == AttemptOutcome::garbled || outcome == AttemptOutcome::refused;
+}
+
+AttemptOutcome outcome_of(const ExitStatus& ending) {
+  const bool from_outside = ending.signal && (*ending.signal == SIGKILL || *ending.signal == SIGTERM ||
+                                              *ending.signal == SIGINT || *ending.signal == SIGHUP);
+  return from_outside ? AttemptOutcome::killed : AttemptOutcome::crashed;
+}
+
+SeedFate judge(std::span<const PastAttempt> attempts, int retries) {
+  if (attempts.empty()) return {};
+  const auto blamed = std::count_if(attempts.begin(), attempts.end(),
+                                    [](const PastAttempt& past) { return is_blamed(past.outcome); });
+  const AttemptOutcome last = attempts.back().outcome;
+  if (is_blamed(last) && blamed > retries) return {true, to_string(last), true};
+  if (last == AttemptOutcome::killed && kills_without_progress(attempts) >= most_kills_in_a_row) {
+    return {true, "killed repeatedly", true};
+  }
+  const bool in_doubt = is_blamed(last) && (blamed > 1 || last == AttemptOutcome::refused);
+  return {false, "", in_doubt};
+}
+
+ExitStatus exit_status(int wait_status) {
+  ExitStatus ending;
+  if (WIFSIGNALED(wait_status)) {
+    ending.signal = WTERMSIG(wait_status);
+  } else {
+    ending.status = WEXITSTATUS(wait_status);
+  }
+  return ending;
+}
+
+std::string to_string(const ExitStatus& ending) {
+  if (ending.signal) return fmt::format("signal {} ({})", *ending.signal, strsignal(*ending.signal));
+  return fmt::format("exit status {}", ending.status.value_or(-1));
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,289 @@
+#include "runner/store/database_summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "contract/endings.h"
+#include "runner/statistics/transient.h"
+#include "runner/store/number_store.h"
+
+namespace peclet::runner {
+namespace {
+
+struct Aggregate {
+  StateCounts counts;
+  RunningEstimate so_far;
+  std::vector<int> ended;         // seeds, in order
+  std::vector<int> tested;        // the first few seeds with blocks, as many as a test for transients needs
+  std::vector<double> seconds;    // of processor time that each of these took
+  std::vector<int> jammed, lost;  // those of these that have jammed, or have no value for another reason
+  Cost cost;                      // time on the wall
+
+  void count(SeedState state, int seed, const std::string& cause, double cpu_seconds) {
+    switch (state) {
+      case SeedState::queued:
+        ++counts.queued;
+        return;
+      case SeedState::running:
+        ++counts.running;
+        return;
+      case SeedState::done:
+        ++counts.done;
+        break;
+      case SeedState::failed:
+        ++counts.failed;
+        break;
+      case SeedState::quarantined:
+        ++counts.quarantined;
+        break;
+    }
+    if (is_jam(cause)) {
+      jammed.push_back(seed);
+    } else if (state != SeedState::done) {
+      lost.push_back(seed);
+    }
+    ended.push_back(seed);
+    seconds.push_back(cpu_seconds);
+    counts.cpu_seconds += cpu_seconds;
+  }
+  double seconds_of_first(int count) const {
+    return std::accumulate(seconds.begin(), seconds.begin() + count, 0.0);
+  }
+  int ended_below(int seed) const { return below(ended, seed); }
+  Endings endings_below(int seed) const {
+    return {below(ended, seed), below(jammed, seed), below(lost, seed)};
+  }
+  // Whether the look could not be tested for transients.
+  bool lacks_blocks_of(const Look& look) const {
+    return lacks_blocks(look.estimate.count, below(tested, look.seeds));
+  }
+
+ private:
+  static int below(const std::vector<int>& seeds, int seed) {
+    return static_cast<int>(std::lower_bound(seeds.begin(), seeds.end(), seed) - seeds.begin());
+  }
+};
+
+// One pass over the seeds in the order in which they are stored: of a large campaign it is what takes the
+// time.
+std::map<std::int64_t, Aggregate> read_aggregates(Connection& connection) {
+  Statement query(connection,
+                  "SELECT point_id, seed, state, numbers, cpu_seconds, wall_seconds, cause FROM realisation "
+                  "LEFT JOIN numbers USING (point_id, seed) ORDER BY point_id, seed");
+  std::map<std::int64_t, Aggregate> aggregates;
+  while (query.step()) {
+    Aggregate& aggregate = aggregates[query.integer(0)];
+    const int seed = static_cast<int>(query.integer(1));
+    aggregate.count(seed_state(query.text(2)), seed, query.text(6), query.optional_real(4).value_or(0));
+    if (const std::optional<double> seconds = query.optional_real(5)) aggregate.cost.add(*seconds);
+    const Observation observed = leading_observation(query.text(3));
+    if (std::isnan(observed.value)) continue;
+    aggregate.so_far.add(observed.value + observed.control);
+    if (!std::isnan(observed.first_half) && aggregate.tested.size() < fewest_contrasts)
+      aggregate.tested.push_back(seed);
+  }
+  return aggregates;
+}
+
+using CountsByPoint = std::map<std::int64_t, std::map<std::string, int>>;
+
+// Of rows of point, name and count.
+CountsByPoint counts_by_point(Connection& connection, const char* sql) {
+  Statement query(connection, sql);
+  CountsByPoint counts;
+  while (query.step()) counts[query.integer(0)][query.text(1)] = static_cast<int>(query.integer(2));
+  return counts;
+}
+
+CountsByPoint read_losses(Connection& connection) {
+  return counts_by_point(connection,
+                         "SELECT point_id, cause, count(*) FROM realisation WHERE state IN ('failed',"
+                         " 'quarantined') GROUP BY point_id, cause");
+}
+
+// What engines said of results without a value, and the last attempts of seeds that were given up.
+std::map<std::int64_t, std::map<std::string, std::string>> read_loss_reasons(Connection& connection) {
+  Statement query(
+      connection,
+      "SELECT e.point_id, r.cause, e.seed, e.event_id, e.message FROM event e JOIN realisation r USING "
+      "(point_id, seed) WHERE e.kind = 'lost' AND r.state = 'failed' UNION ALL "
+      "SELECT a.point_id, r.cause, a.seed, -a.attempt_id, a.message FROM attempt a JOIN realisation r USING "
+      "(point_id, seed) WHERE a.blamed = 1 AND a.pardoned = 0 AND r.state = 'quarantined' AND a.message != "
+      "'' "
+      "ORDER BY 1, 3, 4");
+  std::map<std::int64_t, std::map<std::string, std::string>> reasons;
+  while (query.step()) {
+    reasons[query.integer(0)].emplace(query.text(1),
+                                      fmt::format("{} (seed {})", query.text(4), query.integer(2)));
+  }
+  return reasons;
+}
+
+CountsByPoint read_flags(Connection& connection) {
+  return counts_by_point(connection,
+                         "SELECT point_id, message, count(DISTINCT seed) FROM event WHERE kind = 'flag'"
+                         " GROUP BY point_id, message");
+}
+
+// Returns, by point, the largest number of seeds at a look that was made for an earlier target of the
+// campaign.
+std::map<std::int64_t, int> read_largest_earlier_looks(Connection& connection) {
+  Statement query(
+      connection,
+      "SELECT point_id, max(seeds) FROM look WHERE target_id != (SELECT target_id FROM campaign) GROUP BY "
+      "point_id");
+  std::map<std::int64_t, int> largest;
+  while (query.step()) largest[query.integer(0)] = static_cast<int>(query.integer(1));
+  return largest;
+}
+
+// The estimates of the target's observables, whatever the order in which the seeds ended.
+std::vector<Estimate> estimates_so_far(const std::vector<std::optional<Outcome>>& outcomes,
+                                       std::size_t observables) {
+  std::vector<RunningEstimate> sums(observables);
+  for (const std::optional<Outcome>& outcome : outcomes) {
+    if (!outcome) continue;
+    for (std::size_t place = 0; place < observables; ++place) {
+      const Observation of = outcome->of(place);
+      if (std::isnan(of.value)) continue;
+      if (of.is_share && sums[place].estimate().count == 0) sums[place] = RunningEstimate(true);
+      sums[place].add(of.value + of.control);
+    }
+  }
+  std::vector<Estimate> estimates(observables);
+  std::transform(sums.begin(), sums.end(), estimates.begin(),
+                 [](const RunningEstimate& sum) { return sum.estimate(); });
+  return estimates;
+}
+
+// What is not stored of a look. Outcomes are read only where it has no interval, which is rare.
+void make_again(Database& database, const PointRecord& point, const TargetRecord& target,
+                PointSummary& summary) {
+  if (summary.looks.empty()) return;
+  Look& look = summary.looks.back();
+  look.near_maximum = is_near_maximum(look, target.target, target.maximum);
+  summary.without_interval = without_interval(look, target.target);
+  if (summary.without_interval.empty()) return;
+  const std::vector<std::optional<Outcome>> outcomes = database.outcomes(point.id);
+  look.repeated = repeated_seeds(
+      std::span(outcomes).first(std::min(outcomes.size(), static_cast<std::size_t>(look.seeds))));
+}
+
+}  // namespace
+
+Json to_json(const Endings& endings) {
+  return {{"ended", endings.ended},
+          {"jammed", endings.jammed},
+          {"lost", endings.lost},
+          {"has_jammed", endings.has_jammed()}};
+}
+
+std::vector<PointSummary> summarise_points(Database& database, const TargetRecord& target) {
+  Connection& connection = database.connection();
+  std::map<std::int64_t, Aggregate> aggregates = read_aggregates(connection);
+  std::map<std::int64_t, std::vector<Look>> looks = database.looks_by_point();
+  CountsByPoint losses = read_losses(connection);
+  std::map<std::int64_t, std::map<std::string, std::string>> reasons = read_loss_reasons(connection);
+  CountsByPoint flags = read_flags(connection);
+  const bool any_apart = connection.integer("SELECT count(*) FROM point WHERE kept_apart = 1") > 0;
+  std::map<std::int64_t, std::vector<Unfinished>> unfinished = database.unfinished();
+  const std::size_t observables = target.target.observables().size();
+  std::map<std::int64_t, int> earlier = read_largest_earlier_looks(connection);
+  const std::map<std::int64_t, StoredPrediction> predictions = database.predictions();
+  const std::vector<int> schedule = look_schedule(target.minimum, target.maximum);
+
+  std::vector<PointSummary> summaries;
+  for (PointRecord& point : database.points()) {
+    PointSummary summary;
+    Aggregate& aggregate = aggregates[point.id];
+    summary.confidence = target.target.confidence;
+    summary.counts = aggregate.counts;
+    summary.so_far = aggregate.so_far.estimate();
+    summary.losses = std::move(losses[point.id]);
+    summary.loss_reasons = std::move(reasons[point.id]);
+    summary.flags = std::move(flags[point.id]);
+    if (const auto known = looks.find(point.id); known != looks.end())
+      summary.looks = std::move(known->second);
+    if (!summary.looks.empty() && summary.looks.back().each.empty()) {
+      summary.looks.back().untested = aggregate.lacks_blocks_of(summary.looks.back());
+    }
+    make_again(database, point, target, summary);
+    const int last_look =
+        summary.looks.empty() ? std::numeric_limits<int>::max() : summary.looks.back().seeds;
+    summary.endings = aggregate.endings_below(last_look);
+    summary.decided = !summary.looks.empty() && summary.looks.back().verdict != Verdict::more;
+    const int seen = summary.looks.empty() ? 0 : summary.looks.back().seeds;
+    if (summary.decided && earlier[point.id] > seen) summary.earlier_look = earlier[point.id];
+    summary.wanted = summary.decided ? seen : *std::upper_bound(schedule.begin(), schedule.end() - 1, seen);
+    if (const auto known = predictions.find(point.id); known != predictions.end()) {
+      summary.prediction = known->second;
+    }
+    summary.wanted_ended = aggregate.ended_below(summary.wanted);
+    summary.wanted_cpu_seconds = aggregate.seconds_of_first(summary.wanted_ended);
+    if (summary.counts.running > 0) summary.leases = database.leases(point.id);
+    summary.forecast = {std::move(aggregate.cost),          {summary.so_far},
+                        summary.counts.terminal(),          summary.counts.running,
+                        summary.decided || point.cancelled, std::move(unfinished[point.id])};
+    // Equal values may be those of a share, which only the outcomes tell.
+    const bool is_simple = observables == 1 && summary.so_far.values != Estimate::Values::equal;
+    if (!is_simple && !summary.forecast.decided)
+      summary.forecast.so_far = estimates_so_far(database.outcomes(point.id), observables);
+    if (any_apart) summary.kept_apart = database.kept_apart(point.hash);
+    summary.point = std::move(point);
+    summaries.push_back(std::move(summary));
+  }
+  return summaries;
+}
+
+namespace {
+
+// NaN: does not exist, or is beyond what a number can be.
+bool is_same(double one, double other) { return one == other || (std::isnan(one) && std::isnan(other)); }
+
+bool agree(const std::vector<ObservableLook>& stored, const std::vector<ObservableLook>& replayed) {
+  return std::equal(stored.begin(), stored.end(), replayed.begin(), replayed.end(),
+                    [](const ObservableLook& one, const ObservableLook& other) {
+                      return one.observable == other.observable && one.verdict == other.verdict &&
+                             one.estimate.count == other.estimate.count &&
+                             is_same(one.estimate.mean, other.estimate.mean);
+                    });
+}
+
+bool agrees(const Look& stored, const Look& replayed) {
+  return agree(stored.each, replayed.each) && stored.seeds == replayed.seeds &&
+         stored.lost == replayed.lost && stored.verdict == replayed.verdict &&
+         stored.estimate.count == replayed.estimate.count &&
+         (stored.estimate.count == 0 || (is_same(stored.estimate.mean, replayed.estimate.mean) &&
+                                         is_same(stored.controlled.mean, replayed.controlled.mean)));
+}
+
+}  // namespace
+
+std::optional<Look> checked_look(Database& database, const PointRecord& point, const TargetRecord& target) {
+  const std::vector<LookRecord> stored = database.looks(point.id);
+  const std::vector<Look> replayed =
+      replay_looks(database.outcomes(point.id), target.target, target.minimum, target.maximum);
+  // An owner that was killed between a result and its look leaves fewer looks than there could be.
+  for (std::size_t i = 0; i < stored.size(); ++i) {
+    if (i < replayed.size() && agrees(stored[i].look, replayed[i])) continue;
+    throw IntegrityError(
+        fmt::format("{}: the stored look at {} seeds of {} is not what the stored results say; "
+                    "see `peclet doctor`",
+                    database.connection().path(), stored[i].look.seeds, point.label));
+  }
+  if (stored.empty()) return std::nullopt;
+  Look look = stored.back().look;
+  const Look& made_again = replayed[stored.size() - 1];
+  look.untested = made_again.untested;
+  look.near_maximum = made_again.near_maximum && is_converged(look.verdict);
+  look.repeated = made_again.repeated;
+  return look;
+}
+
+}  // namespace peclet::runner

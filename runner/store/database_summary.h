@@ -1,0 +1,66 @@
+// All that `status` shows of a point, from aggregates: no result is read, however many there are.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/store/database.h"
+
+namespace peclet::runner {
+
+// How the seeds that a point is judged by have ended: those of its last look; before the first one, all that
+// have ended. Whether a point has jammed is said here and nowhere else.
+struct Endings {
+  int ended = 0;
+  int jammed = 0;  // is_jam(), with a result or without
+  int lost = 0;    // without a value, for another reason
+
+  // Whether half of the seeds that have ended have jammed, or more.
+  bool has_jammed() const { return jammed > 0 && 2 * jammed >= ended; }
+  // Whether more than a tenth have jammed, and less than half: means are of seeds that happened to flow.
+  bool has_partly_jammed() const { return !has_jammed() && 10 * jammed > ended; }
+};
+
+struct PointSummary {
+  PointRecord point;
+  StateCounts counts;
+  Endings endings;
+  // Of value + control, over all seeds that have ended with a value, in whatever order they came.
+  Estimate so_far;
+  std::map<std::string, int> losses;  // seeds by cause
+  // Why, in words, by cause: of the first seed of which it is known.
+  std::map<std::string, std::string> loss_reasons{};
+  std::map<std::string, int> flags;  // completed seeds by what they say against themselves
+  std::vector<Look> looks;           // for the present target
+  int earlier_look = 0;  // seeds of the largest look for an earlier target, if it is beyond the deciding one
+  double confidence = 0.95;                     // that was asked for
+  std::vector<std::string> without_interval{};  // observables of the last look
+  bool decided = false;
+  std::vector<KeptApart> kept_apart{};  // results of other engines
+  int wanted = 0;                 // seeds of the next look; of a decided point those of the deciding one
+  int wanted_ended = 0;           // of these, how many have ended
+  double wanted_cpu_seconds = 0;  // that these took
+  std::optional<StoredPrediction> prediction{};
+  std::vector<LeaseRecord> leases;
+  PointForecast forecast{};
+
+  // Neither decided nor cancelled.
+  bool open() const { return !decided && !point.cancelled; }
+  int lost() const { return counts.failed + counts.quarantined; }
+  // Seeds of a decided point that have ended beyond the deciding look.
+  int surplus() const { return decided ? counts.terminal() - wanted_ended : 0; }
+};
+
+// {"ended", "jammed", "lost", "has_jammed"}
+Json to_json(const Endings& endings);
+
+// The points of the sweep, in its order.
+std::vector<PointSummary> summarise_points(Database& database, const TargetRecord& target);
+
+// The last look at a point for the present target, checked by replaying it; nothing before the first. Throws
+// IntegrityError when stored looks are not what the stored results say.
+std::optional<Look> checked_look(Database& database, const PointRecord& point, const TargetRecord& target);
+
+}  // namespace peclet::runner

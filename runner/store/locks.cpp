@@ -1,0 +1,208 @@
+#include "runner/store/locks.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "contract/descriptor.h"
+#include "contract/durable_file.h"
+#include "contract/guarded_file.h"
+#include "contract/text_lines.h"
+#include "runner/text/quoting.h"
+
+namespace peclet::runner {
+// "1: POSIX  ADVISORY  WRITE 4711 fe:01:1234 120 120", "2: FLOCK  ADVISORY  WRITE 4711 fe:01:1234 0 EOF".
+std::int64_t process_that_locks(std::uint64_t inode, const std::string& kind, std::uint64_t at) {
+  const std::string place_ends = fmt::format(":{}", inode);
+  std::ifstream locks("/proc/locks");
+  for (std::string line; std::getline(locks, line);) {
+    std::istringstream words(line);
+    std::string count, its_kind, mode, access, process, place, first, last;
+    words >> count >> its_kind >> mode >> access >> process >> place >> first >> last;
+    if (its_kind != kind || access != "WRITE" || !place.ends_with(place_ends)) continue;
+    const auto end =
+        number_in<std::uint64_t>(last).value_or(std::numeric_limits<std::uint64_t>::max());  // "EOF"
+    if (number_in<std::uint64_t>(first).value_or(0) <= at && at <= end) {
+      return number_in<std::int64_t>(process).value_or(0);
+    }
+  }
+  return 0;
+}
+
+namespace {
+
+// A descriptor that holds the lock.
+int locked(const std::filesystem::path& path, int flags) {
+  int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | flags);
+  while (descriptor >= 0 && flock(descriptor, LOCK_EX) != 0) {
+    if (errno == EINTR) continue;
+    const int error = errno;
+    close(descriptor);
+    descriptor = -1;
+    errno = error;
+  }
+  if (descriptor < 0) throw std::system_error(errno, std::generic_category(), path.string());
+  return descriptor;
+}
+
+// False: it was replaced while we waited, and there is nothing to hold any more.
+bool is_there(int descriptor, const std::filesystem::path& file) {
+  struct stat held {
+  }, named{};
+  return fstat(descriptor, &held) == 0 && stat(file.c_str(), &named) == 0 && held.st_dev == named.st_dev &&
+         held.st_ino == named.st_ino;
+}
+
+}  // namespace
+
+FolderLock::FolderLock(const std::filesystem::path& folder) : descriptor_(locked(folder, O_DIRECTORY)) {}
+
+FolderLock::~FolderLock() { close(descriptor_); }
+
+FileLock::FileLock(const std::filesystem::path& file) : descriptor_(locked(file, 0)) {
+  while (!is_there(descriptor_, file)) {
+    close(descriptor_);
+    descriptor_ = locked(file, 0);
+  }
+}
+
+FileLock::~FileLock() { close(descriptor_); }
+
+namespace {
+
+namespace fs = std::filesystem;
+
+int open_folder(const CampaignDirectory& directory) {
+  return open(directory.root().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+}
+
+std::int64_t number_in(std::string_view text) {
+  std::int64_t number = 0;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
+// Below 0: it is not there, or not ours to read.
+Descriptor open_to_look(const fs::path& file) {
+  require_regular(file);
+  return open_file(file, O_RDONLY | O_NOFOLLOW | O_NONBLOCK);
+}
+
+std::int64_t written_owner(const CampaignDirectory& directory) {
+  const Descriptor file = open_to_look(directory.lock());
+  std::array<char, 32> text{};
+  const ssize_t count = pread(file.number(), text.data(), text.size(), 0);
+  return count > 0 ? number_in({text.data(), static_cast<std::size_t>(count)}) : 0;
+}
+
+// Who has locked the folder, by the kernel's list: for an owner whose campaign.lock was deleted. 0: the list
+// does not say.
+std::int64_t listed_owner(int folder) {
+  struct stat about {};
+  return fstat(folder, &about) == 0 ? process_that_locks(about.st_ino, "FLOCK") : 0;
+}
+
+std::int64_t owner_of(const CampaignDirectory& directory, int folder) {
+  const std::int64_t listed = listed_owner(folder);
+  return listed > 0 ? listed : written_owner(directory);
+}
+
+enum class Attempt { locked, owned, impossible };
+
+// Readers that ask current_owner() hold the lock for an instant; an owner holds it for longer than this.
+Attempt lock_patiently(int descriptor) {
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) return Attempt::locked;
+    if (errno != EWOULDBLOCK && errno != EINTR) return Attempt::impossible;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return Attempt::owned;
+}
+
+[[noreturn]] void refuse_owned(const CampaignDirectory& directory, int folder) {
+  const std::int64_t owner = owner_of(directory, folder);
+  const std::string who = owner > 0 ? fmt::format("process {}", owner) : "another process";
+  const std::string stop =
+      owner > 0 ? fmt::format("`kill {}` lets it save and stop", owner) : "stop it first";
+  throw OwnedByAnother(fmt::format("{}: {} owns this campaign; look at it with `peclet status {}`; {}",
+                                   directory.root().string(), who, shell_word(directory.root().string()),
+                                   stop));
+}
+
+// A campaign that was run as root is not its author's to go on with.
+[[noreturn]] void fail(const fs::path& path, int error) {
+  struct stat about {};
+  const bool foreign =
+      error == EACCES && stat(path.parent_path().c_str(), &about) == 0 && about.st_uid != geteuid();
+  if (!foreign) throw std::system_error(error, std::generic_category(), path.string());
+  throw std::runtime_error(fmt::format(
+      "{}: belongs to the user {}, and may not be written by you: run it as that user, or make it yours with "
+      "`sudo chown -R {} {}`",
+      path.parent_path().string(), user_name(about.st_uid), user_name(geteuid()),
+      path.parent_path().string()));
+}
+
+}  // namespace
+
+OwnerLock::OwnerLock(const CampaignDirectory& directory) {
+  const std::string path = directory.lock().string();
+  require_own_folders(directory);
+  Descriptor folder(open_folder(directory));
+  if (folder.number() < 0) fail(path, errno);
+  // Some network file systems, where a campaign is at its user's own risk, lock no folders.
+  if (lock_patiently(folder.number()) == Attempt::owned) refuse_owned(directory, folder.number());
+  require_regular(directory.lock());
+  Descriptor file = open_file(path, O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK, 0644);
+  if (file.number() < 0) fail(path, errno);
+  const Attempt attempt = lock_patiently(file.number());
+  if (attempt == Attempt::owned) refuse_owned(directory, folder.number());
+  if (attempt == Attempt::impossible) fail(path, errno);
+  const std::string process = fmt::format("{}\n", getpid());
+  const bool written =
+      ftruncate(file.number(), 0) == 0 &&
+      pwrite(file.number(), process.data(), process.size(), 0) == static_cast<ssize_t>(process.size());
+  // On a full disk the lock is worth as much without the number.
+  if (!written && !peclet::means_no_room(errno)) fail(path, errno);
+  folder_ = folder.take();
+  file_ = file.take();
+}
+
+OwnerLock::~OwnerLock() {
+  close(file_);
+  close(folder_);
+}
+
+std::optional<fs::path> OwnerLock::folder() const {
+  struct stat about {};
+  if (fstat(folder_, &about) != 0)
+    throw std::system_error(errno, std::generic_category(), "campaign's folder");
+  if (about.st_nlink == 0) return std::nullopt;
+  return fs::read_symlink(fmt::format("/proc/self/fd/{}", folder_));
+}
+
+std::optional<std::int64_t> current_owner(const CampaignDirectory& directory) {
+  const Descriptor folder(open_folder(directory));
+  const Descriptor file = open_to_look(directory.lock());
+  // Shared locks, held for an instant: they fail while there is an owner.
+  for (const int descriptor : {folder.number(), file.number()}) {
+    if (descriptor < 0 || flock(descriptor, LOCK_SH | LOCK_NB) == 0 || errno != EWOULDBLOCK) continue;
+    return owner_of(directory, folder.number());
+  }
+  return std::nullopt;
+}
+
+}  // namespace peclet::runner

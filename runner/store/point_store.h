@@ -1,0 +1,47 @@
+// The campaign and its points: what a campaign file means for a database that may have seen earlier versions
+// of it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "runner/store/database.h"
+#include "runner/store/event_store.h"
+
+namespace peclet::runner {
+
+struct Prediction;
+
+class PointStore {
+ public:
+  // Requires a Database of open_owner, which must outlive it. adopt() commits by itself; the others are for
+  // use inside a Transaction of the caller.
+  explicit PointStore(Database& database)
+      : database_(database), connection_(database.connection()), events_(connection_) {}
+
+  // Makes the database that of `campaign`: its points in their order, its target. Points that are no longer
+  // in the sweep stay, inactive. Throws InputError, with nothing written, when finished realisations lack the
+  // observable.
+  void adopt(const Campaign& campaign);
+  // The same within the caller's transaction, which is to be rolled back when it throws.
+  void take_over(const Campaign& campaign);
+  void set_priority(std::int64_t point, int priority);
+  void set_cancelled(std::int64_t point, bool cancelled);
+  // Keeps the first prediction of a point for the present target: one that knows more is no test of the
+  // first. Requires a prediction without an obstacle.
+  void store_prediction(std::int64_t point, const Prediction& prediction, double cpu_seconds);
+  // The point's results stay as they are, but no longer are the campaign's: a row of its own takes its place
+  // in the sweep, that of `engine` when there has been one.
+  void keep_apart(const PointRecord& point, const std::string& engine);
+
+ private:
+  std::int64_t adopt_target(const Campaign& campaign);
+  void adopt_points(const Campaign& campaign);
+  void observe_again(const Campaign& campaign);
+
+  Database& database_;
+  Connection& connection_;
+  EventStore events_;
+};
+
+}  // namespace peclet::runner

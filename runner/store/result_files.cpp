@@ -1,0 +1,143 @@
+#include "runner/store/result_files.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <set>
+#include <system_error>
+
+#include "contract/durable_file.h"
+#include "contract/guarded_file.h"
+#include "contract/sha256.h"
+#include "runner/store/result_shape.h"
+#include "runner/store/spool.h"
+#include "runner/text/plain_text.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* letters_and_digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
+
+// Neither hidden nor an option, no path, and not how unfinished files are called.
+bool is_plain_file_name(const std::string& name) {
+  const std::string allowed = std::string(letters_and_digits) + "._-";
+  return !name.empty() && name.size() <= longest_left_name &&
+         name.find_first_not_of(allowed) == std::string::npos &&
+         std::string_view(letters_and_digits).find(name.front()) != std::string_view::npos &&
+         name.find("..") == std::string::npos && !name.ends_with(".tmp");
+}
+
+[[noreturn]] void refuse(std::size_t place, const char* key, const std::string& allowed) {
+  throw ResultError(fmt::format("/files/{}{}: {}", place, key, allowed));
+}
+
+const Json& member(const Json& file, std::size_t place, const char* key) {
+  if (!file.is_object()) refuse(place, "", "must be an object");
+  const auto found = file.find(key);
+  if (found == file.end()) refuse(place, fmt::format("/{}", key).c_str(), "is missing");
+  return *found;
+}
+
+}  // namespace
+
+void check_left_files(const Json& files) {
+  if (!files.is_array() || files.size() > most_left_files) {
+    throw ResultError(fmt::format("/files: must be a list of at most {}", most_left_files));
+  }
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const Json& name = member(files[i], i, "name");
+    if (!name.is_string() || !is_plain_file_name(name.get_ref<const std::string&>())) {
+      refuse(
+          i, "/name",
+          fmt::format("must be a name of 1 to {} letters, digits, dots, underscores and hyphens that begins "
+                      "with a letter or digit, has no two dots in a row and does not end in .tmp",
+                      longest_left_name));
+    }
+    if (!names.insert(name.get<std::string>()).second) refuse(i, "/name", "must not be there twice");
+    const Json& bytes = member(files[i], i, "bytes");
+    if (!bytes.is_number_integer() || bytes < 0 || bytes > largest_left_file) {
+      refuse(i, "/bytes", fmt::format("must be a whole number from 0 to {}", largest_left_file));
+    }
+    const Json& hash = member(files[i], i, "sha256");
+    const bool is_hash =
+        hash.is_string() && hash.get_ref<const std::string&>().size() == 64 &&
+        hash.get_ref<const std::string&>().find_first_not_of("0123456789abcdef") == std::string::npos;
+    if (!is_hash) refuse(i, "/sha256", "must be a SHA-256 in lower-case hexadecimal");
+  }
+}
+
+std::vector<LeftFile> left_files(const Json& result) {
+  std::vector<LeftFile> files;
+  for (const Json& file : result.value("files", Json::array())) {
+    files.push_back({file.at("name"), file.at("bytes"), file.at("sha256")});
+  }
+  return files;
+}
+
+fs::path left_folder(const fs::path& spool) { return spool.parent_path() / "files"; }
+
+std::string left_stem(const fs::path& spool) { return spool.stem().string() + '@'; }
+
+fs::path left_file(const fs::path& spool, const std::string& name) {
+  return left_folder(spool) / (left_stem(spool) + name);
+}
+
+std::vector<fs::path> left_files_of(const fs::path& spool) {
+  if (kind_of(left_folder(spool)) != "a folder") return {};
+  std::vector<fs::path> files = whole_files(left_folder(spool));
+  std::erase_if(files, [stem = left_stem(spool)](const fs::path& file) {
+    return !file.filename().string().starts_with(stem);
+  });
+  return files;
+}
+
+Descriptor open_left_file(const fs::path& path, std::uint64_t bytes, const std::string& sha256) {
+  if (!is_there(path)) throw ResultError("is missing");
+  try {
+    Descriptor file = open_regular(path, O_RDONLY);
+    struct stat about {};
+    if (fstat(file.number(), &about) != 0) fail_to("cannot examine", path);
+    if (static_cast<std::uint64_t>(about.st_size) != bytes) {
+      throw ResultError(fmt::format("has {} bytes instead of {}", about.st_size, bytes));
+    }
+    if (sha256_of_open(file.number(), path) != sha256) throw ResultError("does not have its hash");
+    if (::fsync(file.number()) != 0) fail_to("cannot synchronise", path);
+    return file;
+  } catch (const UnsuitableFile& error) {
+    throw ResultError(error.value());
+  } catch (const std::system_error& error) {
+    if (means_machine_fault(error.code().value())) throw;
+    throw ResultError(plain(error.what()));
+  }
+}
+
+std::string fault_of_file(const fs::path& path, std::uint64_t bytes, const std::string& sha256) {
+  try {
+    open_left_file(path, bytes, sha256);
+    return "";
+  } catch (const ResultError& error) {
+    return error.what();
+  } catch (const std::system_error& error) {
+    return plain(error.what());
+  }
+}
+
+std::vector<Descriptor> open_files_in_spool(const Json& result, const fs::path& spool) {
+  std::vector<Descriptor> opened;
+  for (const LeftFile& file : left_files(result)) {
+    try {
+      opened.push_back(open_left_file(left_file(spool, file.name), file.bytes, file.sha256));
+    } catch (const ResultError& error) {
+      throw ResultError(fmt::format("its file {} {}", file.name, error.what()));
+    }
+  }
+  return opened;
+}
+
+}  // namespace peclet::runner

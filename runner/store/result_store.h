@@ -1,0 +1,73 @@
+// Results, and the looks at them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "runner/store/database.h"
+#include "runner/store/event_store.h"
+#include "runner/store/realisation_result.h"
+
+namespace peclet::runner {
+
+// What became of a result that was offered.
+enum class Stored {
+  stored,
+  stored_apart,  // in the row of an engine that another one has replaced, now or before: no part of the
+                 // campaign
+  duplicate,     // the seed has this very content already
+  conflict,      // the seed has another content: the point is now suspect
+  mixed_engine,  // the point has results of another engine
+  unknown_point
+};
+
+// The same, and what the result counts for; of a result that is stored only.
+struct StoredResult {
+  Stored what;
+  Outcome outcome{};
+  std::string cause{};     // see cause_of()
+  std::int64_t point = 0;  // the row of its point, where it has one
+  bool is_new = false;     // not known before
+  std::string reason{};    // of a loss, in the engine's words
+};
+
+// The cause of a completed realisation that has no number for the campaign's observable: it is lost to its
+// point as one that blew up is.
+inline constexpr const char* no_value = "no-value";
+
+// Returns how a realisation with this ending counts for a campaign that has seen this outcome in it.
+inline std::string cause_of(const std::string& ending, const Outcome& outcome) {
+  return has_results(ending) && outcome.is_lost() ? no_value : ending;
+}
+inline const char* state_of(const Outcome& outcome) {
+  return to_string(outcome.is_lost() ? SeedState::failed : SeedState::done);
+}
+
+// The engine's row, new when it was never seen before; inside a Transaction of the caller. Throws ResultError
+// when the provenance does not say what the engine is.
+std::int64_t engine_row(Database& database, const Json& provenance);
+
+class ResultStore {
+ public:
+  // Requires a Database of open_owner, which must outlive it. All is for use inside a Transaction of the
+  // caller.
+  explicit ResultStore(Database& database)
+      : database_(database), connection_(database.connection()), events_(connection_) {}
+
+  // One without a number for the leading observable is lost with the cause no_value.
+  StoredResult store(const RealisationResult& result, const Target& target);
+  // The seed of a stored result is queued again; nothing of the result stays.
+  void withdraw(std::int64_t point, int seed);
+  // The looks at a point for the present target, in place of those that are stored.
+  void store_looks(std::int64_t point, const std::vector<Look>& looks);
+
+ private:
+  void store_columns(std::int64_t point, const RealisationResult& result, const StoredResult& stored);
+
+  Database& database_;
+  Connection& connection_;
+  EventStore events_;
+};
+
+}  // namespace peclet::runner

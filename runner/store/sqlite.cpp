@@ -1,0 +1,355 @@
+#include "runner/store/sqlite.h"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <new>
+#include <system_error>
+
+#include "contract/durable_file.h"
+#include "contract/guarded_file.h"
+#include "contract/integrity_error.h"
+#include "runner/store/locks.h"
+#include "runner/text/plain_text.h"
+
+namespace peclet::runner {
+namespace {
+
+// Whether SQLite's code comes with an errno that says why.
+bool comes_from_the_system(int code) {
+  const int primary = code & 0xff;
+  return primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN || primary == SQLITE_FULL;
+}
+
+// `error` is the errno after the call, which began with 0: what SQLite remembers by itself may be older, and
+// after COMMIT it remembers nothing.
+[[noreturn]] void complain(const std::string& path, sqlite3* handle, int code, std::string_view doing,
+                           int error) {
+  if ((code & 0xff) == SQLITE_BUSY) throw DatabaseError(lock_text(path), code);
+  const bool is_said = handle != nullptr && sqlite3_extended_errcode(handle) == code;
+  std::string said = is_said ? sqlite3_errmsg(handle) : sqlite3_errstr(code);
+  if (!comes_from_the_system(code)) error = 0;
+  if (error != 0) said += ": " + std::generic_category().message(error);
+  const std::string message = fmt::format("{}: {} (SQLite code {}) while: {}", path, said, code, doing);
+  const int primary = code & 0xff;
+  if (primary == SQLITE_CORRUPT) {
+    throw IntegrityError(
+        fmt::format("{}: is damaged: {} (SQLite code {}) while: {}", path, said, code, doing));
+  }
+  if (primary == SQLITE_NOTADB) throw IntegrityError(message);
+  throw DatabaseError(message, code, error);
+}
+
+int flags_of(Connection::Access access) {
+  switch (access) {
+    case Connection::Access::create:
+      return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+    case Connection::Access::read_write:
+      return SQLITE_OPEN_READWRITE;
+    case Connection::Access::read_only:
+      break;
+    case Connection::Access::frozen:
+      return SQLITE_OPEN_READONLY | SQLITE_OPEN_URI;
+  }
+  return SQLITE_OPEN_READONLY;
+}
+
+// What has a meaning in a URI (https://sqlite.org/uri.html) is escaped.
+std::string uri_of_frozen(const std::string& path) {
+  std::string uri = "file:";
+  for (const char c : path) {
+    if (c == '%' || c == '?' || c == '#') {
+      uri += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    } else {
+      uri += c;
+    }
+  }
+  return uri + "?immutable=1";
+}
+
+// SQLITE_OPEN_NOFOLLOW minds links anywhere in the path; the folder is where its user wanted it to be.
+std::string without_links_above(const std::filesystem::path& path) {
+  if (path == Connection::in_memory) return path.string();  // no file at all
+  std::error_code absent;                                   // then SQLite says so
+  const std::filesystem::path folder =
+      std::filesystem::canonical(path.has_parent_path() ? path.parent_path() : ".", absent);
+  return absent ? path.string() : (folder / path.filename()).string();
+}
+
+}  // namespace
+
+bool DatabaseError::no_room() const {
+  const int primary = code_ & 0xff;
+  if (primary == SQLITE_FULL) return true;
+  return (primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN) && peclet::means_no_room(system_error_);
+}
+
+bool DatabaseError::is_locked() const { return (code_ & 0xff) == SQLITE_BUSY; }
+
+// In WAL mode the writer locks byte 120 of the -shm file; in other modes, and to the exclusion of readers,
+// bytes of the database from 0x40000000 on (SQLite's os_unix.c and wal.c).
+std::string lock_text(const std::string& database) {
+  constexpr std::uint64_t write_lock = 120, pending = 0x40000000;
+  const auto holder = [](const std::string& file, std::uint64_t byte) -> std::int64_t {
+    struct stat about {};
+    return stat(file.c_str(), &about) == 0 ? process_that_locks(about.st_ino, "POSIX", byte) : 0;
+  };
+  std::int64_t process = holder(database + "-shm", write_lock);
+  for (std::uint64_t byte = pending; process == 0 && byte < pending + 3; ++byte)
+    process = holder(database, byte);
+  if (process <= 0) {
+    return fmt::format(
+        "{0}: is locked by another program, which writes to it: let that end its transaction or close the "
+        "database (`fuser -v {0}` names it)",
+        database);
+  }
+  std::string name;
+  std::getline(std::ifstream(fmt::format("/proc/{}/comm", process)), name);
+  return fmt::format(
+      "{}: is locked by {} (process {}), which writes to it: let it end its transaction (COMMIT or "
+      "ROLLBACK) or close the database",
+      database, name.empty() ? "another program" : plain(name), process);
+}
+
+bool means_no_room(const std::exception& error) {
+  if (const auto* database = dynamic_cast<const DatabaseError*>(&error)) return database->no_room();
+  const auto* system = dynamic_cast<const std::system_error*>(&error);
+  return system != nullptr && peclet::means_no_room(system->code().value());
+}
+
+bool DatabaseError::refuses_values() const {
+  const int primary = code_ & 0xff;
+  return primary == SQLITE_CONSTRAINT || primary == SQLITE_MISMATCH || primary == SQLITE_TOOBIG;
+}
+
+Connection::Connection(const std::string& path, Access access, int busy_milliseconds)
+    : path_(path), busy_milliseconds_(busy_milliseconds) {
+  // Looked at beforehand, because SQLite would wait for a FIFO; that it never follows a link is its own rule.
+  for (const char* const suffix : {"", "-wal", "-shm", "-journal"}) require_regular(path + suffix);
+  const std::string place = without_links_above(path);
+  const int code = sqlite3_open_v2(
+      (access == Access::frozen ? uri_of_frozen(place) : place).c_str(), &handle_,
+      flags_of(access) | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE | SQLITE_OPEN_NOFOLLOW, nullptr);
+  if (code != SQLITE_OK) {
+    sqlite3* const broken = handle_;
+    handle_ = nullptr;
+    const std::string said = broken != nullptr ? sqlite3_errmsg(broken) : sqlite3_errstr(code);
+    const int system_error = broken != nullptr ? sqlite3_system_errno(broken) : 0;
+    sqlite3_close_v2(broken);
+    const std::string why = system_error != 0 ? ": " + std::generic_category().message(system_error) : "";
+    throw DatabaseError(fmt::format("{}: {}{} (SQLite code {}) while opening it", path, said, why, code),
+                        code, system_error);
+  }
+  sqlite3_busy_timeout(handle_, busy_milliseconds);
+}
+
+Connection::~Connection() {
+  for (const auto& [sql, statement] : idle_) sqlite3_finalize(statement);
+  sqlite3_close_v2(handle_);
+}
+
+sqlite3_stmt* Connection::take(std::string_view sql) {
+  if (const auto known = idle_.find(std::string(sql)); known != idle_.end()) {
+    sqlite3_stmt* const statement = known->second;
+    idle_.erase(known);
+    return statement;
+  }
+  sqlite3_stmt* statement = nullptr;
+  errno = 0;
+  const int code = sqlite3_prepare_v3(handle_, sql.data(), static_cast<int>(sql.size()),
+                                      SQLITE_PREPARE_PERSISTENT, &statement, nullptr);
+  if (code != SQLITE_OK) complain(path_, handle_, code, sql, errno);
+  return statement;
+}
+
+// Some pragmas act when they are compiled, so those are never kept.
+void Connection::put_back(sqlite3_stmt* statement) noexcept {
+  const char* const sql = sqlite3_sql(statement);
+  const bool is_pragma = sql == nullptr || std::string_view(sql).starts_with("PRAGMA");
+  sqlite3_reset(statement);  // the code is that of the last step, which has been dealt with
+  sqlite3_clear_bindings(statement);
+  try {
+    if (!is_pragma) {
+      idle_.emplace(sql, statement);
+      return;
+    }
+  } catch (const std::bad_alloc&) {  // then it is compiled again
+  }
+  sqlite3_finalize(statement);
+}
+
+void Connection::execute(const std::string& sql) {
+  errno = 0;
+  const int code = sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr);
+  if (code != SQLITE_OK) complain(path_, handle_, code, sql, errno);
+}
+
+std::int64_t Connection::integer(const std::string& sql) {
+  Statement query(*this, sql);
+  query.step();
+  return query.integer(0);
+}
+
+std::string Connection::text(const std::string& sql) {
+  Statement query(*this, sql);
+  query.step();
+  return query.text(0);
+}
+
+std::int64_t Connection::last_insert_id() const { return sqlite3_last_insert_rowid(handle_); }
+
+// Without waiting for a reader: it is only tried.
+void Connection::empty_log() {
+  sqlite3_busy_timeout(handle_, 0);
+  errno = 0;
+  const int code = sqlite3_wal_checkpoint_v2(handle_, nullptr, SQLITE_CHECKPOINT_TRUNCATE, nullptr, nullptr);
+  const int system_error = errno;
+  sqlite3_busy_timeout(handle_, busy_milliseconds_);
+  const int primary = code & 0xff;
+  if (primary == SQLITE_OK || primary == SQLITE_BUSY || primary == SQLITE_LOCKED) return;
+  const DatabaseError error(fmt::format("{}: cannot empty its write-ahead log", path_), code, system_error);
+  if (!error.no_room()) throw error;
+}
+
+int Connection::changes() const { return sqlite3_changes(handle_); }
+
+void Connection::fail(const std::string& doing, int code) const {
+  const int system_error = errno;
+  complain(path_, handle_, code != 0 ? code : sqlite3_extended_errcode(handle_), doing, system_error);
+}
+
+void Connection::wait_for_locks(int busy_milliseconds) {
+  busy_milliseconds_ = busy_milliseconds;
+  sqlite3_busy_timeout(handle_, busy_milliseconds);
+}
+
+Statement::Statement(Connection& connection, std::string_view sql)
+    : connection_(connection), statement_(connection.take(sql)) {}
+
+Statement::~Statement() { connection_.put_back(statement_); }
+
+void Statement::check(int code) const {
+  if (code == SQLITE_OK) return;
+  complain(connection_.path(), connection_.handle(), code, sqlite3_sql(statement_), errno);
+}
+
+Statement& Statement::bind(std::int64_t value) {
+  check(sqlite3_bind_int64(statement_, next_parameter_++, value));
+  return *this;
+}
+
+Statement& Statement::bind(double value) {
+  if (std::isnan(value)) return bind(nullptr);
+  check(sqlite3_bind_double(statement_, next_parameter_++, value));
+  return *this;
+}
+
+Statement& Statement::bind(std::string_view value) {
+  check(sqlite3_bind_text64(statement_, next_parameter_++, value.data(), value.size(), SQLITE_TRANSIENT,
+                            SQLITE_UTF8));
+  return *this;
+}
+
+Statement& Statement::bind_blob(std::string_view bytes) {
+  check(sqlite3_bind_blob64(statement_, next_parameter_++, bytes.data(), bytes.size(), SQLITE_TRANSIENT));
+  return *this;
+}
+
+Statement& Statement::bind(std::nullptr_t) {
+  check(sqlite3_bind_null(statement_, next_parameter_++));
+  return *this;
+}
+
+bool Statement::step() {
+  errno = 0;
+  const int code = sqlite3_step(statement_);
+  if (code == SQLITE_ROW) return true;
+  if (code != SQLITE_DONE) {
+    const int system_error = errno;
+    const std::string sql = sqlite3_sql(statement_);
+    // Read the message before the statement is reset.
+    try {
+      complain(connection_.path(), connection_.handle(), code, sql, system_error);
+    } catch (...) {
+      sqlite3_reset(statement_);
+      throw;
+    }
+  }
+  check(sqlite3_reset(statement_));
+  next_parameter_ = 1;
+  return false;
+}
+
+void Statement::run() {
+  while (step()) {
+  }
+}
+
+bool Statement::is_null(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_NULL; }
+
+std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(statement_, column); }
+
+double Statement::real(int column) const {
+  return is_null(column) ? std::numeric_limits<double>::quiet_NaN()
+                         : sqlite3_column_double(statement_, column);
+}
+
+std::string Statement::text(int column) const {
+  const void* const bytes = sqlite3_column_blob(statement_, column);
+  if (bytes == nullptr) return {};
+  return {static_cast<const char*>(bytes),
+          static_cast<std::size_t>(sqlite3_column_bytes(statement_, column))};
+}
+
+std::optional<double> Statement::optional_real(int column) const {
+  if (is_null(column)) return std::nullopt;
+  return real(column);
+}
+
+std::optional<std::int64_t> Statement::optional_integer(int column) const {
+  if (is_null(column)) return std::nullopt;
+  return integer(column);
+}
+
+Transaction::Transaction(Connection& connection, Kind kind) : connection_(connection) {
+  connection_.execute(kind == Kind::write ? "BEGIN IMMEDIATE" : "BEGIN");
+}
+
+Transaction::~Transaction() {
+  // Also after a failed commit; SQLite may have rolled back by itself, and then there is nothing to undo.
+  if (open_ && sqlite3_get_autocommit(connection_.handle()) == 0) {
+    sqlite3_exec(connection_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
+  }
+}
+
+void Transaction::commit() {
+  connection_.execute("COMMIT");
+  open_ = false;
+}
+
+Savepoint::Savepoint(Connection& connection) : connection_(connection) {
+  connection_.execute("SAVEPOINT part");
+}
+
+Savepoint::~Savepoint() {
+  // Where SQLite has rolled the whole transaction back by itself, or cannot do it, the caller's Transaction
+  // does: nothing is ever committed of what could not be taken back.
+  if (!open_ || sqlite3_get_autocommit(connection_.handle()) != 0) return;
+  if (sqlite3_exec(connection_.handle(), "ROLLBACK TO part; RELEASE part", nullptr, nullptr, nullptr) !=
+      SQLITE_OK) {
+    sqlite3_exec(connection_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
+  }
+}
+
+void Savepoint::keep() {
+  connection_.execute("RELEASE part");
+  open_ = false;
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,162 @@
+// SQLite with every return code checked: a connection, a prepared statement, a transaction.
+//
+// Not thread-safe: a connection and its statements belong to one thread.
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace peclet::runner {
+
+// What SQLite said, where, its extended result code, and the errno behind it (0: none). Nothing is retried or
+// swallowed; a file that is damaged or no database at all is an IntegrityError instead.
+class DatabaseError : public std::runtime_error {
+ public:
+  DatabaseError(const std::string& message, int code, int system_error = 0)
+      : std::runtime_error(message), code_(code), system_error_(system_error) {}
+  int code() const { return code_; }
+  // The errno behind it, if there is one.
+  int system_error() const { return system_error_; }
+  // The file system, or the user's quota of it, is full: nothing was changed, and it may be tried again.
+  bool no_room() const;
+  // Another program has locked the database: nothing was changed, and it may be tried again.
+  bool is_locked() const;
+  // What was to be written is not what the tables hold: the statement changed nothing, and never will.
+  bool refuses_values() const;
+
+ private:
+  int code_, system_error_;
+};
+
+// Whether an exception says that there was no room to write something.
+bool means_no_room(const std::exception& error);
+
+// Says who has locked a database: "campaign.db: is locked by sqlite3 (process 4711), which writes to it:
+// ...".
+std::string lock_text(const std::string& database);
+
+class Connection {
+ public:
+  // `frozen`: reads a file that nobody writes meanwhile, without its log and without locks.
+  enum class Access { create, read_write, read_only, frozen };
+  // The name of a database that is no file and ends with its connection.
+  static constexpr const char* in_memory = ":memory:";
+
+  // Waits up to `busy_milliseconds` for other connections' locks. Throws DatabaseError, and UnsuitableFile
+  // when the database or a file of SQLite's beside it is no regular file.
+  Connection(const std::string& path, Access access, int busy_milliseconds);
+  ~Connection();
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  // Waits so long for other connections' locks from now on.
+  void wait_for_locks(int busy_milliseconds);
+
+  // Runs any number of statements and ignores their rows.
+  void execute(const std::string& sql);
+  // The single integer (text) that a query gives.
+  std::int64_t integer(const std::string& sql);
+  std::string text(const std::string& sql);
+  std::int64_t last_insert_id() const;
+  // Rows changed by the last statement.
+  int changes() const;
+  // Brings what is in the write-ahead log into the database and gives its room back, unless a reader or a
+  // full disk stands in the way. Outside of transactions. Throws DatabaseError.
+  void empty_log();
+  // Throws what SQLite says about its last call, which gave `code` (0: as it remembers), while doing `doing`.
+  [[noreturn]] void fail(const std::string& doing, int code = 0) const;
+
+  sqlite3* handle() const { return handle_; }
+  const std::string& path() const { return path_; }
+
+  // A compiled statement of this text. put_back() keeps it for the next call with the same text, so that the
+  // statements of every result are compiled once. Throws DatabaseError.
+  sqlite3_stmt* take(std::string_view sql);
+  void put_back(sqlite3_stmt* statement) noexcept;
+
+ private:
+  std::string path_;
+  int busy_milliseconds_;
+  sqlite3* handle_ = nullptr;
+  std::unordered_multimap<std::string, sqlite3_stmt*> idle_;  // reset and without values
+};
+
+// A compiled statement: bind in order of the question marks, step, read columns from 0.
+class Statement {
+ public:
+  Statement(Connection& connection, std::string_view sql);
+  ~Statement();
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+
+  Statement& bind(std::int64_t value);
+  Statement& bind(int value) { return bind(std::int64_t{value}); }
+  Statement& bind(bool value) { return bind(std::int64_t{value}); }
+  Statement& bind(double value);  // NaN is NULL
+  Statement& bind(std::string_view value);
+  Statement& bind(const char* value) { return bind(std::string_view(value)); }
+  Statement& bind_blob(std::string_view bytes);
+  Statement& bind(std::nullptr_t);
+  template <typename T>
+  Statement& bind(const std::optional<T>& value) {
+    return value ? bind(*value) : bind(nullptr);
+  }
+
+  // True when there is a row to read. After the last row the statement is ready to be bound again.
+  bool step();
+  // Runs a statement that gives no rows.
+  void run();
+
+  bool is_null(int column) const;
+  std::int64_t integer(int column) const;
+  double real(int column) const;       // NULL is NaN
+  std::string text(int column) const;  // or the bytes of a blob; NULL is empty
+  std::optional<double> optional_real(int column) const;
+  std::optional<std::int64_t> optional_integer(int column) const;
+
+ private:
+  void check(int code) const;
+
+  Connection& connection_;
+  sqlite3_stmt* statement_ = nullptr;
+  int next_parameter_ = 1;
+};
+
+// BEGIN IMMEDIATE for a writer, BEGIN for a reader's snapshot; rolled back unless committed.
+class Transaction {
+ public:
+  enum class Kind { write, snapshot };
+  explicit Transaction(Connection& connection, Kind kind = Kind::write);
+  ~Transaction();
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+  void commit();
+
+ private:
+  Connection& connection_;
+  bool open_ = true;
+};
+
+// A part of a transaction that is taken back unless it is kept. Not more than one at a time.
+class Savepoint {
+ public:
+  explicit Savepoint(Connection& connection);
+  ~Savepoint();
+  Savepoint(const Savepoint&) = delete;
+  Savepoint& operator=(const Savepoint&) = delete;
+  void keep();
+
+ private:
+  Connection& connection_;
+  bool open_ = true;
+};
+
+}  // namespace peclet::runner
