@@ -103,10 +103,12 @@ class Program:
         return [results for _, results in read_results(os.path.join(self.folder, name + ".peclet"))]
 
     def asked(self, command, name, *options):
-        """What a command of `peclet` says, as JSON, of a campaign that write() or run() made."""
+        """What a command of `peclet` says, as JSON, of a campaign that write() or run() made. One that needs Python
+        finds this one."""
         path = os.path.join(self.folder, name + ".json")
-        done = subprocess.run([self.peclet, command, path, "--json", *options], check=True, capture_output=True)
-        return json.loads(done.stdout)
+        here = {**os.environ, "PATH": f"{os.path.dirname(sys.executable)}:{os.environ['PATH']}"}
+        words = [self.peclet, command, path, "--json", *options]
+        return json.loads(subprocess.run(words, check=True, stdout=subprocess.PIPE, env=here).stdout)
 
     def derived(self, scene, observable="relative_viscosity"):
         """What `peclet validate` says of one scene: its time step, groups and warnings. `observable` only has to be a

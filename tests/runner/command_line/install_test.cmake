@@ -9,6 +9,7 @@ foreach(file
     bin/peclet
     bin/peclet-engine
     lib/python3/dist-packages/peclet/__init__.py
+    lib/python3/dist-packages/peclet/jamming_report.py
     share/doc/peclet/LICENSE
     share/man/man1/peclet.1
     share/man/man1/peclet-run.1
