@@ -51,8 +51,8 @@ def read_arguments(folder, title, from_table):
     if not arguments.quick and not os.access(folder, os.W_OK):
         # Said before hours of work, not after them.
         parser.error(
-            f"{folder}: a whole study writes its table there, and may not; copy the folder above it, and name the "
-            "copy: peclet study --results COPY"
+            f"{folder}: a whole study writes its table there, and may not; copy the folder above it, and run "
+            f"COPY/{os.path.basename(folder)}/study.py"
         )
     return arguments
 
