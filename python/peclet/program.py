@@ -34,8 +34,11 @@ def find_program(program=None):
 
 
 def ask(program, *arguments, allowed=(0,)):
-    """What `peclet ARGUMENTS` prints, as text. PecletError has what it says on standard error."""
-    done = subprocess.run([find_program(program), *arguments], capture_output=True, text=True, encoding="utf-8")
+    """What `peclet ARGUMENTS` prints, as text. PecletError has what it says on standard error. Verbs that need Python
+    find this one."""
+    path = os.pathsep.join([os.path.dirname(sys.executable), os.environ.get("PATH", os.defpath)])
+    how = {"capture_output": True, "text": True, "encoding": "utf-8", "env": {**os.environ, "PATH": path}}
+    done = subprocess.run([find_program(program), *arguments], **how)
     if done.returncode not in allowed:
         said = done.stderr.strip() or f"peclet {arguments[0]} ended with {done.returncode}"
         raise PecletError(said)

@@ -219,6 +219,11 @@ class Results:
             raise PecletError(f"seed {seed} of {point or wanted or 'all points'}: {what}; there are: {there}")
         return gsd.hoomd.open(found[0], "rb")
 
+    def jamming(self, *options):
+        """What `peclet jamming --json` says: where the curves of viscosity over volume fraction jam; `options` are more
+        of its options, such as "--by=law". The fits alone are in peclet.jamming."""
+        return json.loads(self._ask("jamming", "--json", *options))
+
     def plot(self, quantity=None, **how):
         """Draws estimates() over what was swept; see peclet.plots.plot."""
         from peclet.plots import plot

@@ -11,7 +11,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.at_rest import SLOWEST, slow_rows
 from studies.command_line import main
-from studies.estimates import difference, estimate, quotient
+from studies.estimates import difference, estimate, over, quotient
 from studies.figure import BLUE, GREEN, RED, Figure, shade
 from studies.prices import ERROR, flow_over_rest, price, seconds_of_window
 from studies.published import JAMMED_AT_REST, diverging
@@ -62,63 +62,46 @@ def scene_at(fraction, patch=None):
     return merged(merged(SCENE, {"volume_fraction": fraction, **window}), patch or {})
 
 
-def realisations_of(program, name, scene, seeds):
-    """Those that ended well."""
-    points = program.run(name, scene, [{"/volume_fraction": scene["volume_fraction"]}], seeds, TARGET)
-    return [r for r in points[0]["realisations"] if r.get("mean")]
+def point_of(program, name, scene, seeds):
+    return program.run(name, scene, [{"/volume_fraction": scene["volume_fraction"]}], seeds, TARGET)[0]
 
 
-def means_of(*arguments):
-    return [r["mean"] for r in realisations_of(*arguments)]
-
-
-def by_correlation(means):
+def by_correlation(point):
     """Up to the first lag beyond TIMES_OF_CORRELATION times the viscosity."""
-    viscosity = estimate([m["zero_shear_viscosity"] for m in means])[0]
-    lag = np.array(means[0]["linear_response"]["lag"]) / BROWNIAN_TIME
+    viscosity, _ = point.measured(TARGET)
+    lag = np.array(point.means[0]["linear_response"]["lag"]) / BROWNIAN_TIME
     place = int(np.searchsorted(lag, TIMES_OF_CORRELATION * viscosity))
-    return estimate([m["linear_response"]["correlation"][place] for m in means])
+    return point.measured("linear_response/correlation", place)
 
 
-def rows_of(fraction, count, step, means):
-    head = {"fraction": fraction, "count": count, "step": step, "seeds": len(means)}
-    rise = entries("rise", estimate([m["zero_shear_rise"] for m in means]))
-    yield {
-        **head,
-        "by": "momentum",
-        **entries("viscosity", estimate([m["zero_shear_viscosity"] for m in means])),
-        **rise,
-    }
-    yield {**head, "by": "correlation", **entries("viscosity", by_correlation(means))}
+def rows_of(fraction, count, step, point):
+    head = {"fraction": fraction, "count": count, "step": step, "seeds": len(point.results)}
+    rise = entries("rise", point.measured("zero_shear_rise"))
+    yield {**head, "by": "momentum", **entries("viscosity", point.measured(TARGET)), **rise}
+    yield {**head, "by": "correlation", **entries("viscosity", by_correlation(point))}
 
 
-def curve_rows(fraction, means):
+def curve_rows(fraction, point):
     """eta(t), and the moduli, with their standard errors over seeds."""
     for axis, name in (("time", "viscosity"), ("frequency", "storage"), ("frequency", "loss")):
-        places = means[0]["linear_response"][axis]
-        values = np.array([m["linear_response"][name] for m in means])
         scale = BROWNIAN_TIME if axis == "frequency" else 1 / BROWNIAN_TIME
         modulus = THERMAL_ENERGY if axis == "frequency" else 1  # in units of kT / a^3
-        for k, place in enumerate(places):
-            yield {
-                "fraction": fraction,
-                "curve": name,
-                "at": place * scale,
-                **entries("value", estimate(values[:, k] / modulus)),
-            }
+        for k, place in enumerate(point.means[0]["linear_response"][axis]):
+            value = over(point.measured(f"linear_response/{name}", k), modulus)
+            yield {"fraction": fraction, "curve": name, "at": place * scale, **entries("value", value)}
 
 
-def price_row(fraction, peclet, realisations, windows, value_of, viscosity, foretold=1.0, count=100):
+def price_row(fraction, peclet, point, windows, quantity, viscosity, foretold=1.0, count=100):
     """`foretold`: the price over that at rest, as peclet plan guesses it."""
-    values = [value_of(r["mean"]) for r in realisations]
-    seconds = [seconds_of_window(r, *windows) for r in realisations]
+    values = [*point.by_seed(quantity).values()]
+    seconds = [seconds_of_window(result, *windows) for result in point.results]
     row = {"fraction": fraction, "peclet": peclet, "count": count, "seeds": len(values), "foretold": foretold}
-    return row | entries("viscosity", estimate(values)) | entries("seconds", price(values, seconds, viscosity))
+    return row | entries("viscosity", point.measured(quantity)) | entries("seconds", price(values, seconds, viscosity))
 
 
 def price_at_rest(fraction, at_rest, viscosity, count=100):
     windows = EQUILIBRATION, WINDOWS[fraction][0]
-    return price_row(fraction, 0, at_rest, windows, lambda mean: mean[TARGET], viscosity, count=count)
+    return price_row(fraction, 0, at_rest, windows, TARGET, viscosity, count=count)
 
 
 def price_rows(program, fraction, viscosity):
@@ -130,32 +113,30 @@ def price_rows(program, fraction, viscosity):
         scene = merged(merged(SCENE, {"fluid": {"thermal_energy": None}}), patch)
         settings = [{"/volume_fraction": fraction}]
         (point,) = program.run(f"price-{fraction:g}-{peclet:g}", scene, settings, PRICE_SEEDS)
-        found = [r for r in point["realisations"] if r.get("mean")]
         foretold = flow_over_rest(peclet, fraction, SCENE["particles"]["species"])
-        yield price_row(fraction, peclet, found, windows, lambda mean: mean["relative_viscosity"], viscosity, foretold)
+        yield price_row(fraction, peclet, point, windows, "relative_viscosity", viscosity, foretold)
 
 
 def measure(program):
     rows, curves, prices = [], [], []
     for fraction, (_, seeds) in WINDOWS.items():
-        at_rest = realisations_of(program, f"rest-{fraction:g}", scene_at(fraction), seeds)
-        means = [r["mean"] for r in at_rest]
-        rows += rows_of(fraction, 100, "automatic", means)
-        curves += curve_rows(fraction, means)
-        viscosity = estimate([m[TARGET] for m in means])[0]
+        at_rest = point_of(program, f"rest-{fraction:g}", scene_at(fraction), seeds)
+        rows += rows_of(fraction, 100, "automatic", at_rest)
+        curves += curve_rows(fraction, at_rest)
+        viscosity, _ = at_rest.measured(TARGET)
         if fraction in PRICED:
             prices.append(price_at_rest(fraction, at_rest, viscosity))
             prices += price_rows(program, fraction, viscosity)
         for count, other_seeds in OTHERS.get(fraction, ()):
             scene = scene_at(fraction, {"particles": {"count": count}})
-            others = realisations_of(program, f"rest-{fraction:g}-{count}", scene, other_seeds)
-            rows += rows_of(fraction, count, "automatic", [r["mean"] for r in others])
+            others = point_of(program, f"rest-{fraction:g}-{count}", scene, other_seeds)
+            rows += rows_of(fraction, count, "automatic", others)
             if count < 100:
                 prices.append(price_at_rest(fraction, others, viscosity, count))
     half = 0.5 * program.derived(scene_at(MIDDLE), TARGET)["timestep"]
     patch = {"integrator": {"method": "implicit", "timestep": half}}
-    means = means_of(program, "halved", scene_at(MIDDLE, patch), HALVED_SEEDS)
-    rows += rows_of(MIDDLE, 100, "half of it", means)
+    halved = point_of(program, "halved", scene_at(MIDDLE, patch), HALVED_SEEDS)
+    rows += rows_of(MIDDLE, 100, "half of it", halved)
     columns = ["fraction", "count", "step", "by", "seeds", "viscosity", "viscosity_error", "rise", "rise_error"]
     write_table(HERE / "table.csv", columns, rows, 5)
     write_table(HERE / "curves.csv", ["fraction", "curve", "at", "value", "value_error"], curves, 5)
@@ -312,8 +293,7 @@ def draw():
 
 def quick_measure(program):
     scene = merged(SCENE, {"volume_fraction": 0.3, **during({"brownian_times": 10}, {"brownian_times": 60})})
-    means = means_of(program, "quick", merged(scene, {"particles": {"count": 60}}), 12)
-    momentum = estimate([m["zero_shear_viscosity"] for m in means])
+    momentum = point_of(program, "quick", merged(scene, {"particles": {"count": 60}}), 12).measured(TARGET)
     # Einstein's and Batchelor's 1 + 2.5 phi + 5.9 phi^2 below, slow shear (2.3) within 20 % above.
     return [Check("φ = 0.3: η_r at rest", "1 + 2.5 φ + 5.9 φ² (Batchelor 1977), ± 20 %", *momentum, 1.82, 2.9, 11)]
 

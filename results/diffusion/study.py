@@ -130,9 +130,8 @@ def diffusion(program, ratios, fractions, seeds, patch=None, name="crowded"):
     points = program.run(name, merged(CROWDED, patch or {}), settings, seeds, "self_diffusion")
     table = []
     for (ratio, fraction), point in zip(cases, points):
-        values = [r["mean"]["self_diffusion"] for r in point["realisations"] if r.get("mean")]
-        mean, error = estimate(values)
-        row = {"ratio": ratio, "fraction": fraction, "seeds": len(values)}
+        mean, error = point.measured("self_diffusion")
+        row = {"ratio": ratio, "fraction": fraction, "seeds": len(point.results)}
         table.append({**row, "diffusion": mean, "standard_error": error})
     return table
 
@@ -152,7 +151,7 @@ def short_times(program):
     settings = [{"/volume_fraction": f} for f in BALLISTIC_FRACTIONS]
     points = program.run("ballistic", scene, settings, BALLISTIC_SEEDS, "kinetic_temperature")
     for fraction, point in zip(BALLISTIC_FRACTIONS, points):
-        found = [r["mean"]["mean_squared_displacement"] for r in point["realisations"] if r.get("mean")]
+        found = [mean["mean_squared_displacement"] for mean in point.means]
         times = np.array(found[0]["time"])
         free = energy * times**2 / (4 / 3 * math.pi * 0.1)
         small = [np.mean([d["species"][0][axis] for axis in "xyz"], axis=0) / free for d in found]

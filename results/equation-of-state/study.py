@@ -10,7 +10,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
-from studies.estimates import estimate, over
+from studies.estimates import over
 from studies.figure import BLUE, RED, Figure
 from studies.scenes import REFERENCE_SCENE, during, merged
 from studies.tables import entries, number, read_rows, write_table
@@ -76,11 +76,10 @@ def row_of(program, sizes, fraction, step, seeds, patch):
         scene["integrator"] = {"timestep": step * program.derived(scene, "pressure")["timestep"]}
     name = f"{'one' if len(radii) == 1 else 'two'}-{fraction:g}-{step:g}"
     (point,) = program.run(name, scene, [{"/volume_fraction": fraction}], seeds, "pressure")
-    pressures = [r["mean"]["pressure"] for r in point["realisations"] if r.get("mean")]
     expected = number_density(fraction, radii) * THERMAL_ENERGY * hard_pressure(fraction, radii, softness())
-    row = {"sizes": sizes, "fraction": fraction, "step": step, "seeds": len(pressures)}
+    row = {"sizes": sizes, "fraction": fraction, "step": step, "seeds": len(point.results)}
     row |= {"hard": hard_pressure(fraction, radii), "soft": hard_pressure(fraction, radii, softness())}
-    return row | entries("ratio", over(estimate(pressures), expected))
+    return row | entries("ratio", over(point.measured("pressure"), expected))
 
 
 def measure(program):

@@ -19,7 +19,7 @@ from studies.published import JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, diverging
 from studies.scenes import TABLE_SCENE, during, merged
 from studies.tables import columns_of, entries, number, read_rows, write_table
 from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import completed, term, viscosity_row
+from studies.viscosities import term, viscosity_row
 
 import numpy as np
 
@@ -59,7 +59,7 @@ def rows_of(program, name, cases, seeds, patch=None):
     settings = [{"/volume_fraction": f, "/contact/normal_stiffness": k, "/peclet": p} for f, k, p in cases]
     rows = []
     for case, point in zip(cases, program.run(name, merged(TABLE_SCENE, patch or {}), settings, seeds)):
-        means = completed(point)
+        means = point.means
         row = dict(zip(("fraction", "stiffness", "peclet"), case)) | viscosity_row(point)
         row |= entries("controlled_contact", estimate([controlled_contact(m) for m in means]))
         row |= entries("structural_over_contact", structural_over(means, controlled_contact))

@@ -10,14 +10,14 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
-from studies.estimates import estimate, over, quotient, weighted_mean
+from studies.estimates import over, quotient, weighted_mean
 from studies.figure import BLUE, GREEN, ORANGE, PURPLE, RED, Figure
 from studies.fits import line_through
 from studies.published import DENSITY, STIFFNESS, TABLE_4_1, VISCOSITY, mari_fit
 from studies.scenes import REFERENCE_SCENE, during, merged
 from studies.tables import read_rows, write_table
 from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import counts_text, flags, values_by_seed
+from studies.viscosities import counts_text, flags
 
 import numpy as np
 
@@ -44,15 +44,13 @@ THERMAL = merged(REFERENCE_SCENE, {**SMALL, "volume_fraction": 0.45, "fluid": {"
 
 
 def row_of(point, curve, ratio):
-    realisations = point["realisations"]
-    values = [*values_by_seed(realisations, "relative_viscosity_pair").values()]
-    mean, error = estimate(values)
+    mean, error = point.measured("relative_viscosity_pair")
     return {
         "curve": curve,
         "ratio": ratio,
-        "seeds": len(values),
-        "lost": len(realisations) - len(values),
-        "flags": counts_text(flags(realisations)),
+        "seeds": len(point.results),
+        "lost": point.lost,
+        "flags": counts_text(flags(point)),
         "viscosity": mean,
         "standard_error": error,
     }

@@ -17,7 +17,7 @@ from studies.published import JAMMED_AT_REST, mari_fit
 from studies.scenes import REFERENCE_SCENE, TABLE_SCENE, during, merged
 from studies.tables import columns_of, entries, number, read_rows, write_table
 from studies.verdicts import Finding, Statement
-from studies.viscosities import completed, viscosity_row
+from studies.viscosities import viscosity_row
 
 import numpy as np
 
@@ -71,7 +71,7 @@ def rows_of(program, name, scene, settings, keys, seeds):
     for case, point in zip(settings, program.run(name, scene, settings, seeds)):
         friction = int(scene["contact"]["friction"])
         row = {"friction": friction} | dict(zip(keys, case.values())) | viscosity_row(point)
-        found = np.array([carried(m, friction) for m in completed(point)])
+        found = np.array([carried(m, friction) for m in point.means])
         for column, quantity in enumerate(("contacts", "rattlers")):
             row |= entries(quantity, estimate(found[:, column]) if len(found) else (float("nan"), float("nan")))
         rows.append(row)

@@ -57,7 +57,7 @@ class Structure:
     and gradient."""
 
     def __init__(self, point):
-        found = [r["mean"]["pair_distribution"] for r in point["realisations"] if r.get("mean")]
+        found = [mean["pair_distribution"] for mean in point.means]
         self.seeds = len(found)
         radial, slices = [f["radial"] for f in found], [f["slice"] for f in found]
         self.distance = np.array(radial[0]["r"])

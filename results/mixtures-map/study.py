@@ -11,8 +11,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
-from studies.compositions import MIXTURE_SCENE, grains_among, mean_peclet, packing_models, windows
-from studies.estimates import difference, over, propagated, quotient
+from studies.compositions import ALIKE, ALIKE_NOISE, DENSITY, MIXTURE_SCENE, NOISE, STIFFNESS, THERMAL_ENERGY
+from studies.compositions import composition_row, mean_peclet, packing_models, setting_of, windows
+from studies.estimates import difference, over, place_of_largest, propagated, quotient
 from studies.figure import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
 from studies.hours import Hours
 from studies.scenes import merged
@@ -23,10 +24,7 @@ from studies.viscosities import viscosity_row
 import numpy as np
 
 TITLE = "The jamming map of colloids and grains"
-SCENE = merged(MIXTURE_SCENE, {"guard": {"largest_overlap": 0.5}})
-THERMAL_ENERGY = 0.085
-NOISY = merged(SCENE, {"flow": None, "peclet": 1, "limits": {"shear_rate": 0.045, "thermal_energy": THERMAL_ENERGY}})
-STIFFNESS, DENSITY = SCENE["contact"]["normal_stiffness"], SCENE["particles"]["density"]
+SCENE, NOISY = MIXTURE_SCENE, merged(MIXTURE_SCENE, NOISE)
 # Times as stiff with friction, by the share of the grains: where these carry the stress, contacts of colloids would
 # soften long before the jam.
 STIFFER = {0.7: 2, 0.8: 4, 0.9: 10}
@@ -52,19 +50,13 @@ SOFTEST = 0.003  # mean overlap of what counts as jammed; noise alone makes 0.00
 
 
 def setting(alpha, fraction, row):
-    """Grains alone are colloids in other units: as hard, with as little inertia, and with the steps of their noise."""
+    """Grains alone are as hard as colloids alone in other units."""
     alike, peclet = alpha == 1, colloids_peclet(row, alpha)
-    noise = {"/limits/thermal_energy": THERMAL_ENERGY * (125 if alike else 1), "/peclet": peclet}
     stiffer = 5 if alike else 1 if row == SMOOTH else STIFFER.get(alpha, 1)
-    return {
-        "/particles/mixture/alpha": alpha,
-        "/particles/count": COUNTS[alpha],
-        "/particles/density": DENSITY / (25 if alike else 1),
-        "/contact/normal_stiffness": STIFFNESS * stiffer,
-        "/volume_fraction": fraction,
-        **windows(alpha, peclet),
-        **(noise if math.isfinite(peclet) else {}),
-    }
+    besides = {"/particles/density": DENSITY, **(ALIKE if alike else {}), **windows(alpha, peclet)}
+    if math.isfinite(peclet):
+        besides |= {"/limits/thermal_energy": THERMAL_ENERGY, **(ALIKE_NOISE if alike else {})}
+    return setting_of(alpha, COUNTS[alpha], fraction, STIFFNESS * stiffer, peclet, besides)
 
 
 def colloids_peclet(row, alpha):
@@ -145,11 +137,8 @@ def rows_of(row, cases, points, curves):
     return [
         {
             "row": row,
-            "alpha": alpha,
-            "fraction": fraction,
+            **composition_row(setting(alpha, fraction, row)),
             "peclet": colloids_peclet(row, alpha),
-            "count": COUNTS[alpha],
-            "grains": round(grains_among(alpha, COUNTS[alpha])),
             "state": states[alpha, fraction],
             **viscosity_row(point, "mean_overlap", "contacts_per_particle"),
         }
@@ -279,7 +268,7 @@ def rows_of_branches(jams):
         yield Statement(text, "L5.4b", *distance, high=0.015, essential=False)
     for row, name in ((SMOOTH, "μ = 0, no noise"), (ROUGH, "no noise"), (100, "Pe_cg = 100"), (10, "Pe_cg = 10")):
         shares = jams.shares(row)
-        best = propagated([jams.jammed(row, a) for a in shares], lambda v, of=shares: float(of[int(np.argmax(v))]))
+        best = place_of_largest(shares, [jams.jammed(row, a) for a in shares])
         yield Statement(
             f"{name}: share α of grains, of those measured, at which φ_m is largest", "L5.3", *best, 0.6, 0.8
         )

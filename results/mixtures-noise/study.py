@@ -11,8 +11,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
-from studies.compositions import MIXTURE_SCENE, colloids_added, grains_added, grains_among, mean_peclet, windows
-from studies.estimates import estimate, logarithm, over, propagated, quotient
+from studies.compositions import ALIKE, ALIKE_NOISE, MIXTURE_SCENE, NOISE, STIFFNESS, THERMAL_ENERGY
+from studies.compositions import colloids_added, composition_row, grains_added, mean_peclet, setting_of, windows
+from studies.estimates import estimate, logarithm, over, place_of_largest, propagated, quotient
 from studies.figure import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
 from studies.fits import log_minimum, log_of_rise, log_of_share, thickening_decades
 from studies.scenes import merged
@@ -23,10 +24,8 @@ from studies.viscosities import viscosity_row
 import numpy as np
 
 TITLE = "Colloids and grains with noise"
-SCENE = merged(MIXTURE_SCENE, {"contact": {"friction": 1}, "guard": {"largest_overlap": 0.5}})
-THERMAL_ENERGY = 0.085
-NOISY = merged(SCENE, {"flow": None, "peclet": 1, "limits": {"shear_rate": 0.045, "thermal_energy": THERMAL_ENERGY}})
-STIFFNESS = SCENE["contact"]["normal_stiffness"]
+SCENE = merged(MIXTURE_SCENE, {"contact": {"friction": 1}})
+NOISY = merged(SCENE, NOISE)
 SOFTER = STIFFNESS / 4
 # Share of the grains in the volume of all spheres, and how many spheres that takes for some thirty grains, where they
 # are the more; 20 and 13 at 0.4 and 0.3.
@@ -45,30 +44,19 @@ JAMMED, FLOWING = 0.5, 0.2
 
 def rows_of(program, part, cases, stiffness=STIFFNESS, count_times=1, besides=None):
     """Rows of (share of grains, volume fraction, Peclet number of the colloids)."""
-    settings = [
-        {
-            "/particles/mixture/alpha": alpha,
-            "/particles/count": round(count_times * COUNTS[alpha]),
-            "/volume_fraction": round(fraction, 4),
-            "/contact/normal_stiffness": stiffness,
-            **({"/peclet": peclet} if math.isfinite(peclet) else {}),
-            **(besides or {}),
-            **windows(alpha, peclet),
-        }
-        for alpha, fraction, peclet in cases
-    ]
+    settings = []
+    for alpha, fraction, peclet in cases:
+        more, count = {**(besides or {}), **windows(alpha, peclet)}, round(count_times * COUNTS[alpha])
+        settings.append(setting_of(alpha, count, round(fraction, 4), stiffness, peclet, more))
     scene = NOISY if math.isfinite(cases[0][2]) else SCENE
     for case, setting, point in zip(cases, settings, program.run(part, scene, settings, SEEDS)):
-        count = setting["/particles/count"]
         yield {
             "part": part,
+            **composition_row(setting),
             **dict(zip(("alpha", "fraction", "peclet"), case)),
             "mean peclet": mean_peclet(case[0], case[2]),
-            "count": count,
-            "grains": round(grains_among(case[0], count)),
-            "stiffness": stiffness,
             **viscosity_row(point, "contacts_per_particle"),
-            "overlap": max((r["largest_overlap"] for r in point["realisations"] if r.get("mean")), default=math.nan),
+            "overlap": max((r["largest_overlap"] for r in point.results), default=math.nan),
         }
 
 
@@ -84,7 +72,7 @@ def parts(program):
         yield from rows_of(program, name, line(DENSE, (1, 100)), stiffness)
     yield from rows_of(program, "no-noise", line(BASE, (math.inf,)))
     # Grains alone, which are colloids in other units: as hard, with as little inertia.
-    alike = {"/particles/density": SCENE["particles"]["density"] / 25, "/limits/thermal_energy": 125 * THERMAL_ENERGY}
+    alike = ALIKE | ALIKE_NOISE
     alone = [(1, BASE, peclet / 125) for peclet in (*NUMBERS, 1e4)]
     yield from rows_of(program, "grains-alone", alone, 5 * STIFFNESS, besides=alike)
     alone = [(1, FRACTION, peclet / 125) for peclet in (*SLOW_MEANS, *MEANS, 125)]
@@ -201,10 +189,6 @@ class Table:
 
 
 DEGREES = SEEDS - 1
-
-
-def place_of_largest(places, numbers):
-    return propagated(numbers, lambda values: float(places[int(np.argmax(values))]))
 
 
 def drops(table, peclet, part="colloids-added"):

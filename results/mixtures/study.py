@@ -11,8 +11,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.command_line import main
-from studies.compositions import COLLOIDS, GRAINS, MIXTURE_SCENE, colloids_added, grains_among, packing_models
-from studies.estimates import difference, estimate, over, propagated, quotient
+from studies.compositions import COLLOIDS, GRAINS, MIXTURE_SCENE, colloids_added, packing_models
+from studies.compositions import composition_row, setting_of
+from studies.estimates import difference, estimate, over, place_of_largest, propagated, quotient
 from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
 from studies.scenes import during, merged
 from studies.tables import columns_of, entries, number, read_rows, write_table
@@ -22,7 +23,7 @@ from studies.viscosities import viscosity_row
 import numpy as np
 
 TITLE = "Colloids and grains without noise"
-SCENE = merged(MIXTURE_SCENE, {"guard": {"largest_overlap": 0.5}, **during({"strain": 1}, {"strain": 2})})
+SCENE = merged(MIXTURE_SCENE, during({"strain": 1}, {"strain": 2}))
 # Share of the grains in the volume of all spheres, and how many spheres that takes for some thirty grains.
 COUNTS = {0: 1000, 0.4: 5000, 0.5: 4000, 0.6: 3000, 0.7: 2000, 0.75: 2000, 0.8: 1500, 0.85: 1500, 0.9: 1000, 1: 1000}
 ALONE = {0: 0.64, 1: 0.57}  # in print: where one group alone jams, by friction
@@ -57,27 +58,14 @@ def below(friction, alpha, distance):
 def rows_of(program, part, friction, cases, seeds=SEEDS, stiffer=1, density=SCENE["particles"]["density"]):
     """Rows of (share of grains, number of spheres, volume fraction)."""
     scene = merged(SCENE, {"contact": {"friction": friction}, "particles": {"density": density}})
-    settings = [
-        {
-            "/particles/mixture/alpha": alpha,
-            "/particles/count": count,
-            "/volume_fraction": fraction,
-            "/contact/normal_stiffness": stiffer * stiffness_of(friction, alpha),
-        }
-        for alpha, count, fraction in cases
-    ]
-    points = program.run(f"{part}-{friction}", scene, settings, seeds)
-    for (alpha, count, fraction), setting, point in zip(cases, settings, points):
+    settings = [setting_of(*case, stiffer * stiffness_of(friction, case[0])) for case in cases]
+    for setting, point in zip(settings, program.run(f"{part}-{friction}", scene, settings, seeds)):
         yield {
             "part": part,
             "friction": friction,
-            "alpha": alpha,
-            "count": count,
-            "grains": round(grains_among(alpha, count)),
-            "fraction": fraction,
-            "stiffness": setting["/contact/normal_stiffness"],
+            **composition_row(setting),
             **viscosity_row(point, "mean_overlap"),
-            "overlap": max((r["largest_overlap"] for r in point["realisations"] if r.get("mean")), default=math.nan),
+            "overlap": max((r["largest_overlap"] for r in point.results), default=math.nan),
         }
 
 
@@ -176,8 +164,7 @@ def jammed_at(points, friction):
 def optimum(of_alpha):
     """The share of grains at which phi_m is largest, among those that were measured."""
     alphas = list(of_alpha)
-    numbers = [number(of_alpha[alpha], "jammed") for alpha in alphas]
-    return propagated(numbers, lambda values: float(alphas[int(np.argmax(values))]))
+    return place_of_largest(alphas, [number(of_alpha[alpha], "jammed") for alpha in alphas])
 
 
 def modelled(alpha, friction):

@@ -28,7 +28,7 @@ from studies.published import mari_fit
 from studies.scenes import during, merged
 from studies.tables import columns_of, number, read_numbers, read_table, write_numbers, write_table
 from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import completed, flags, values_by_seed, viscosity_row
+from studies.viscosities import flags, viscosity_row
 
 TITLE = "Silica with two concentrations of salt"
 FRACTION, FRICTION = 0.46, 0.5
@@ -73,9 +73,9 @@ def row_of(case, point):
     row["rate_of_difference"] = rate * (ratio + 1) / (ratio - 1) if ratio > 1 else math.nan
     row["rate_of_drag"] = rate * DRAG
     row |= viscosity_row(point, "contacts_per_particle")
-    attraction = [m["stress"]["attraction"][3] for m in completed(point)]
+    attraction = [m["stress"]["attraction"][3] for m in point.means]
     row["attraction"] = sum(attraction) / len(attraction) if attraction else math.nan
-    row["soft"] = flags(point["realisations"])["overlap"]
+    row["soft"] = flags(point)["overlap"]
     return row
 
 
@@ -123,7 +123,7 @@ def change(program, name, case, patch=None, **others):
         length, rate = case
         scene = merged(merged(SCENE, patch_of(rate, length, TABLE_RATIO, **more)), merged(SHORT, block))
         points += program.run(name + kind, scene, [{"/volume_fraction": FRACTION}], CHECK_SEEDS)
-    reference, changed = (values_by_seed(p["realisations"]) for p in points)
+    reference, changed = (point.by_seed() for point in points)
     return relative_difference(changed, reference, paired=True)
 
 

@@ -20,7 +20,7 @@ from studies.published import MARI_FITS, diverging, mari_fit
 from studies.scenes import during, merged
 from studies.tables import columns_of, entries, number, read_numbers, read_rows, write_numbers, write_table
 from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import flags, values_by_seed, viscosity_row
+from studies.viscosities import flags, viscosity_row
 
 import numpy as np
 
@@ -63,7 +63,7 @@ def row_of(case, point):
     friction, fraction, gap = case
     row = {"system": NAMES[friction], "fraction": fraction, "gap": gap, "fit": mari_fit(fraction, friction)}
     row |= viscosity_row(point, "first_normal_difference", "second_normal_difference", "pressure")
-    row["soft"] = flags(point["realisations"])["overlap"]
+    row["soft"] = flags(point)["overlap"]
     pairs = number(row, "pairs")
     row |= entries("double", (1 + 2.5 * fraction + 2 * pairs[0], 2 * pairs[1]))
     for of in ("viscosity", "double"):
@@ -139,10 +139,10 @@ def unit_numbers(program):
     for key, units in (("first", (1, 1, 1)), ("binary", (0.25, 0.5, 2)), ("other", (0.1, 0.045, 1.7))):
         scene = in_units(base, *units)
         (points[key],) = program.run(f"units-{key}", scene, [{"/volume_fraction": 0.5}], 8)
-    first, binary = (values_by_seed(points[k]["realisations"]) for k in ("first", "binary"))
+    first, binary = (points[k].by_seed() for k in ("first", "binary"))
     largest = max(abs(binary[s] / first[s] - 1) for s in first)
     yield f"{name}: largest relative difference of η_r in units of η/4, rate/2, 2 a", (largest, 0.0, len(first) - 1)
-    other = values_by_seed(points["other"]["realisations"])
+    other = points["other"].by_seed()
     text = f"{name}: relative difference of η_r in units of 0.1 η, 0.045 rate, 1.7 a, paired by seeds"
     yield text, relative_difference(other, first, paired=True)
 

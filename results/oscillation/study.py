@@ -54,10 +54,9 @@ def row_of(program, frequency, amplitude, seeds):
     """Moduli in units of kT / a^3, a = 1."""
     name = f"{frequency:g}-{amplitude:g}"
     (point,) = program.run(name, SCENE, [settings_of(frequency, amplitude)], seeds, "loss_modulus")
-    means = [r["mean"] for r in point["realisations"] if r.get("mean")]
-    row = {"frequency": frequency, "amplitude": amplitude, "seeds": len(means)}
+    row = {"frequency": frequency, "amplitude": amplitude, "seeds": len(point.results)}
     for name in NAMES:
-        row |= entries(name, estimate([m[f"{name}_modulus"] / THERMAL_ENERGY for m in means]))
+        row |= entries(name, over(point.measured(f"{name}_modulus"), THERMAL_ENERGY))
     return row
 
 
@@ -139,10 +138,9 @@ def quick_measure(program):
         "/duration/production": {"cycles": 1},
     }
     (point,) = program.run("quick", scene, [settings], 4, "loss_modulus")
-    means = [r["mean"] for r in point["realisations"]]
-    dynamic = estimate([m["dynamic_viscosity"] for m in means])
+    dynamic = point.measured("dynamic_viscosity")
     yield Check("φ = 0.05: η′/η", "1 + 2.5 φ and pairs", *dynamic, 1.124, 1.2, 3)
-    storage = estimate([m["storage_modulus"] / m["loss_modulus"] for m in means])
+    storage = estimate([m["storage_modulus"] / m["loss_modulus"] for m in point.means])
     yield Check("φ = 0.05: G′ over G″", "inertia", *storage, -0.01, 0.01, 3)
 
 

@@ -38,7 +38,7 @@ SHAKES = (
 
 def point_of(program, name, patch, seeds, settings, observable="relative_viscosity"):
     (point,) = program.run(name, merged(SCENE, patch), [settings], seeds, observable)
-    return [r["mean"] for r in point["realisations"] if r.get("mean")]
+    return point
 
 
 def reversal_rows(program, levels):
@@ -49,14 +49,15 @@ def reversal_rows(program, levels):
         for flow, segments in (("reversed", turned), ("steady", [{"shear_rate": RATE}])):
             patch = merged(contact, {"volume_fraction": REVERSED, **during({"strain": BEFORE}, {"strain": AFTER})})
             patch |= {"observables": ["stress", "transient"], "transient": {"bins": BINS}}
-            means = point_of(program, f"{flow}-{name}", patch, REVERSAL_SEEDS, {"/flow/segments": segments})
+            point = point_of(program, f"{flow}-{name}", patch, REVERSAL_SEEDS, {"/flow/segments": segments})
+            means = point.means
             for part, begin in (("whole", 0), ("end", BINS - BINS // 5)):
                 values = [sum(m["transient"]["shear_stress"][begin:]) / (BINS - begin) for m in means]
                 levels[f"{flow}-{name}-{part}"] = (*estimate(values), len(values) - 1)
             for k in range(BINS):
                 row = {"contacts": name, "flow": flow, "strain": (k + 0.5) / BINS * AFTER, "seeds": len(means)}
                 for quantity, path in (("viscosity", "shear_stress"), ("normal", "first_normal_difference")):
-                    row |= entries(quantity, estimate([m["transient"][path][k] for m in means]))
+                    row |= entries(quantity, point.measured(f"transient/{path}", k))
                 yield row
 
 
@@ -68,10 +69,10 @@ def extension_rows(program):
         # Hencky strains, so that the invariants of both strains are the same.
         patch |= during({"strain": 0.5}, {"strain": 3})
         extension = point_of(program, f"extension-{fraction:g}", patch, seeds, {"/flow/extension_rate": RATE / 2})
-        row = {"fraction": fraction, "seeds": min(len(shear), len(extension))}
-        for name, means in (("shear", shear), ("extension", extension)):
-            row |= entries(name, estimate([m["relative_viscosity"] for m in means]))
-        yield row | entries("second", estimate([m["second_normal_difference"] for m in extension]))
+        row = {"fraction": fraction, "seeds": min(len(shear.results), len(extension.results))}
+        for name, point in (("shear", shear), ("extension", extension)):
+            row |= entries(name, point.measured("relative_viscosity"))
+        yield row | entries("second", extension.measured("second_normal_difference"))
 
 
 def shaken_rows(program):
@@ -79,8 +80,8 @@ def shaken_rows(program):
     patch = merged(FRICTION, {"contact": {"normal_stiffness": 1e6}, "volume_fraction": SHAKEN})
     patch |= during({"strain": 2}, {"strain": 8})
     still = point_of(program, "still", patch, SHAKEN_SEEDS, {"/flow/shear_rate": RATE})
-    alone = {"amplitude": 0, "frequency": 0, "seeds": len(still)}
-    viscosity = estimate([m["relative_viscosity"] for m in still])
+    alone = {"amplitude": 0, "frequency": 0, "seeds": len(still.results)}
+    viscosity = still.measured("relative_viscosity")
     yield alone | entries("viscosity", viscosity) | entries("dissipation", viscosity)
     for amplitude, frequency in SHAKES:
         cycles = math.ceil(8 * frequency / (2 * math.pi))
@@ -88,9 +89,10 @@ def shaken_rows(program):
         patch |= {"observables": ["stress", "oscillation"]}
         cross = {"amplitude": amplitude, "frequency": frequency * RATE}
         settings = {"/flow/shear_rate": RATE, "/flow/cross_shear": cross}
-        means = point_of(program, f"shaken-{amplitude:g}-{frequency:g}", patch, SHAKEN_SEEDS, settings)
+        point = point_of(program, f"shaken-{amplitude:g}-{frequency:g}", patch, SHAKEN_SEEDS, settings)
+        means = point.means
         row = {"amplitude": amplitude, "frequency": frequency, "seeds": len(means)}
-        row |= entries("viscosity", estimate([m["relative_viscosity"] for m in means]))
+        row |= entries("viscosity", point.measured("relative_viscosity"))
         # <sigma_yz rate across> = g^2 w G'' / 2.
         across = [amplitude**2 * frequency * RATE * m["loss_modulus"] / 2 for m in means]
         total = [m["relative_viscosity"] + a / RATE**2 for m, a in zip(means, across)]
@@ -187,8 +189,7 @@ def quick_measure(program):
     """Extension of a dilute suspension has the viscosity of shear; both are of one invariant."""
     patch = {"volume_fraction": 0.05, "particles": {"count": 50}, **during({"strain": 0.1}, {"strain": 1})}
     for name, settings in (("shear", {"/flow/shear_rate": 1}), ("extension", {"/flow/extension_rate": 0.5})):
-        means = point_of(program, name, patch, 4, settings)
-        value = estimate([m["relative_viscosity"] for m in means])
+        value = point_of(program, name, patch, 4, settings).measured("relative_viscosity")
         yield Check(f"φ = 0.05: η of {name}", "1 + 2.5 φ and pairs", *value, 1.124, 1.2, 3)
 
 

@@ -21,7 +21,6 @@ from studies.campaigns import Program
 from studies.estimates import estimate, relative_difference, student_quantile
 from studies.scenes import REFERENCE_SCENE, during, merged
 from studies.tables import write_table
-from studies.viscosities import values_by_seed
 from studies.speed_accuracy import COLUMNS
 
 STRAIN = 2
@@ -40,9 +39,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         program = Program(arguments.binaries, folder)
         step = program.derived(merged(scene, {"integrator": {"method": "explicit"}}))["timestep"]
-        ours = values_by_seed(
-            program.run("ours", scene, [{"/integrator": {"method": "implicit"}}], SEEDS)[0]["realisations"]
-        )
+        ours = program.run("ours", scene, [{"/integrator": {"method": "implicit"}}], SEEDS)[0].by_seed()
 
         def sheared(packing):
             own = os.path.join(folder, f"packing-{packing}")

@@ -52,10 +52,9 @@ def rate_row(program, kind, scene, rate, seeds):
     (point,) = program.run(
         f"{kind}-rate-{rate:g}", merged(scene, during({"strain": 3}, {"strain": STRAIN})), [settings], seeds
     )
-    means = [r["mean"] for r in point["realisations"] if r.get("mean")]
-    viscosity = estimate([m["relative_viscosity"] for m in means])
-    row = {"kind": kind, "fraction": scene["volume_fraction"], "control": "rate", "at": rate, "seeds": len(means)}
-    return row | entries("viscosity", viscosity) | {"flowing": 1.0}
+    seeds = len(point.results)
+    row = {"kind": kind, "fraction": scene["volume_fraction"], "control": "rate", "at": rate, "seeds": seeds}
+    return row | entries("viscosity", point.measured("relative_viscosity")) | {"flowing": 1.0}
 
 
 def stress_row(program, kind, scene, stress, times, seeds):
@@ -63,8 +62,7 @@ def stress_row(program, kind, scene, stress, times, seeds):
     name = f"{kind}-stress-{scene['volume_fraction']:g}-{stress:g}"
     scene = merged(scene, during({"stress_times": 0.3 * times}, {"stress_times": times}))
     (point,) = program.run(name, scene, [{"/flow/stress": stress}], seeds, "shear_rate")
-    means = [r["mean"] for r in point["realisations"] if r.get("mean")]
-    rate = estimate([m["shear_rate"] for m in means])
+    means, rate = point.means, point.measured("shear_rate")
     row = {"kind": kind, "fraction": scene["volume_fraction"], "control": "stress", "at": stress, "seeds": len(means)}
     row |= entries("viscosity", quotient((stress, 0), rate) if rate[0] > 0 else (math.inf, math.inf))
     flowing = [math.nan if m["flowing"] is None else m["flowing"] for m in means]  # of long windows only

@@ -17,11 +17,10 @@
     verdicts       statements, checks and findings, and the verdict of a study
     pages          these on the page of a study
     command_line   the command lines of the drivers
-    overnight      all studies, one after another
 
 A study is a folder beside this one with study.py, README.md, table.csv, a picture, and study.json: what was found,
-which `peclet study --list` shows. What only the seeds tell is in numbers.csv, so that rows can be judged again from the
-tables alone.
+which run.py beside this folder lists. What only the seeds tell is in numbers.csv, so that rows can be judged again from
+the tables alone.
 """
 import sys
 

@@ -1,5 +1,8 @@
 """Campaigns, made, run and read by the program."""
+import functools
 import json
+import math
+import operator
 import os
 import sqlite3
 import subprocess
@@ -26,6 +29,33 @@ def read_results(folder):
         points.setdefault(place, (json.loads(settings), []))[1].append(json.loads(inflated(result, dictionary)))
     database.close()
     return list(points.values())
+
+
+class Point(dict):
+    """A point of an export, by its keys, and what its realisations that ended well have."""
+
+    @property
+    def results(self):
+        return [result for result in self["realisations"] if result.get("mean")]
+
+    @property
+    def means(self):
+        return [result["mean"] for result in self.results]
+
+    @property
+    def lost(self):
+        return len(self["realisations"]) - len(self.results)
+
+    def by_seed(self, quantity="relative_viscosity"):
+        return {result["seed"]: result["mean"][quantity] for result in self.results}
+
+    def measured(self, quantity, *element):
+        """The export's mean over the seeds and its standard error, of an element where the quantity is a list."""
+        found = self["quantities"].get(quantity, {"mean": None, "standard_error": None})
+        mean, error = (found[key] for key in ("mean", "standard_error"))
+        if mean is not None:
+            mean, error = (functools.reduce(operator.getitem, element, of) for of in (mean, error))
+        return math.nan if mean is None else mean, math.inf if error is None else error
 
 
 class Program:
@@ -61,7 +91,7 @@ class Program:
 
     def run(self, name, scene, settings, seeds, observable="relative_viscosity", options=()):
         """Runs `seeds` realisations, times `times`, with each of `settings` (objects of pointers and values) and
-        returns the points of the export. `observable` only has to be a number that the results have; `options` are for
+        returns the Points of the export. `observable` only has to be a number that the results have; `options` are for
         `peclet run`."""
         path = self.write(name, scene, settings, seeds, observable)
         # Points that are not within the tolerance after all seeds, or lost some, are what studies are made of: code 3.
@@ -77,7 +107,7 @@ class Program:
         # A campaign that runs again, with more points, has the realisations of before.
         self.processor_seconds += seconds - self._seconds.get(name, 0.0)
         self._seconds[name] = seconds
-        return export["points"]
+        return [Point(point) for point in export["points"]]
 
     def run_alone(self, name, scene, threads, seed=0):
         """Runs a seed of a scene without a campaign and returns its whole result, with blocks; files NAME.… beside it
@@ -103,10 +133,12 @@ class Program:
         return [results for _, results in read_results(os.path.join(self.folder, name + ".peclet"))]
 
     def asked(self, command, name, *options):
-        """What a command of `peclet` says, as JSON, of a campaign that write() or run() made."""
+        """What a command of `peclet` says, as JSON, of a campaign that write() or run() made. One that needs Python
+        finds this one."""
         path = os.path.join(self.folder, name + ".json")
-        done = subprocess.run([self.peclet, command, path, "--json", *options], check=True, capture_output=True)
-        return json.loads(done.stdout)
+        here = {**os.environ, "PATH": f"{os.path.dirname(sys.executable)}:{os.environ['PATH']}"}
+        words = [self.peclet, command, path, "--json", *options]
+        return json.loads(subprocess.run(words, check=True, stdout=subprocess.PIPE, env=here).stdout)
 
     def derived(self, scene, observable="relative_viscosity"):
         """What `peclet validate` says of one scene: its time step, groups and warnings. `observable` only has to be a

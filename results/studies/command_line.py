@@ -51,8 +51,8 @@ def read_arguments(folder, title, from_table):
     if not arguments.quick and not os.access(folder, os.W_OK):
         # Said before hours of work, not after them.
         parser.error(
-            f"{folder}: a whole study writes its table there, and may not; copy the folder above it, and name the "
-            "copy: peclet study --results COPY"
+            f"{folder}: a whole study writes its table there, and may not; copy the folder above it, and run "
+            f"COPY/{os.path.basename(folder)}/study.py"
         )
     return arguments
 
@@ -119,15 +119,3 @@ def main(folder, title, measure, quick_measure, judge=None, draw=None):
     print(tables_of(rows))
     print(f"\n{title}: {verdict(rows)}")
     write_study(folder, title, rows, of_runs)
-
-
-def drive(description, panels, remake):
-    """Reads the command line of a study that is a table of panels, and calls remake(arguments, folder)."""
-    parser = argparse.ArgumentParser(description=description)
-    parser.add_argument("binaries")
-    parser.add_argument("folder", nargs="?", help="of the campaigns; a temporary one unless given")
-    parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--panel", choices=panels, help="this one alone, into the folder")
-    arguments = parser.parse_args()
-    with tempfile.TemporaryDirectory() as temporary:
-        remake(arguments, arguments.folder or temporary)

@@ -24,8 +24,39 @@ MIXTURE_SCENE = merged(
             "mixture": {"colloids": equal_volumes(COLLOIDS), "grains": equal_volumes(GRAINS), "alpha": 0},
         },
         "contact": {"normal_stiffness": 1e5},  # grains press on colloids with the square of their radii
+        "guard": {"largest_overlap": 0.5},
     },
 )
+STIFFNESS, DENSITY = MIXTURE_SCENE["contact"]["normal_stiffness"], MIXTURE_SCENE["particles"]["density"]
+THERMAL_ENERGY = 0.085
+NOISE = {"flow": None, "peclet": 1, "limits": {"shear_rate": 0.045, "thermal_energy": THERMAL_ENERGY}}
+# Grains alone are colloids in other units: with as little inertia, and with the steps of their noise.
+ALIKE = {"/particles/density": DENSITY / 25}
+ALIKE_NOISE = {"/limits/thermal_energy": 125 * THERMAL_ENERGY}
+
+
+def setting_of(alpha, count, fraction, stiffness, peclet=math.inf, besides=None):
+    """Of a composition, with the Peclet number of the colloids where there is noise."""
+    return {
+        "/particles/mixture/alpha": alpha,
+        "/particles/count": count,
+        "/volume_fraction": fraction,
+        "/contact/normal_stiffness": stiffness,
+        **({"/peclet": peclet} if math.isfinite(peclet) else {}),
+        **(besides or {}),
+    }
+
+
+def composition_row(setting):
+    """What a row of a table has of a composition."""
+    alpha, count = setting["/particles/mixture/alpha"], setting["/particles/count"]
+    return {
+        "alpha": alpha,
+        "fraction": setting["/volume_fraction"],
+        "count": count,
+        "grains": round(grains_among(alpha, count)),
+        "stiffness": setting["/contact/normal_stiffness"],
+    }
 
 
 def radii_and_shares(alpha):

@@ -76,6 +76,11 @@ def jackknife(function, count):
     return function(everything), errors.tolist()
 
 
+def place_of_largest(places, numbers):
+    """The place whose number is largest, and its standard error by drawing the numbers again."""
+    return propagated(numbers, lambda values: float(places[int(np.argmax(values))]))
+
+
 def propagated(numbers, function, draws=400):
     """function([value, ...]) of independent numbers, and its standard error by drawing them again, normally
     distributed. Of a function that returns several numbers, both are lists."""

@@ -20,7 +20,7 @@ def table_at_rest():
 
 def curve(point, unit):
     """Lags in this unit of time and, a row for each seed, the viscosity up to them."""
-    correlations = [r["mean"]["stress_correlation"] for r in point["realisations"] if r.get("mean")]
+    correlations = [mean["stress_correlation"] for mean in point.means]
     return np.array(correlations[0]["time"]) / unit, np.array([c["viscosity"] for c in correlations])
 
 

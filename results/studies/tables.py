@@ -14,8 +14,13 @@ def write_table(path, columns, rows, digits):
 
 def read_table(path):
     """Rows of a table whose columns are all numbers."""
+    return [{name: float(value) for name, value in row.items()} for row in read_texts(path)]
+
+
+def read_texts(path):
+    """Rows of a table as they are written."""
     with open(path, newline="") as f:
-        return [{name: float(value) for name, value in row.items()} for row in csv.DictReader(f)]
+        return list(csv.DictReader(f))
 
 
 def read_rows(path):
@@ -27,8 +32,7 @@ def read_rows(path):
         except ValueError:
             return text
 
-    with open(path, newline="") as f:
-        return [{name: value(text) for name, text in row.items()} for row in csv.DictReader(f)]
+    return [{name: value(text) for name, text in row.items()} for row in read_texts(path)]
 
 
 def write_numbers(path, numbers):

@@ -18,13 +18,12 @@ void add_law_options(CLI::App* verb, JammingOptions& options) {
   verb->add_option("--by", options.by, "Definition of the jamming point; both unless given")
       ->type_name("DEFINITION")
       ->check(CLI::IsMember({"law", "steepest"}));
-  add_number(verb, "--exponent", options.estimate.form.exponent, number_above(0),
+  add_number(verb, "--exponent", options.exponent, number_above(0),
              "Exponent of the law; fitted unless given");
-  verb->add_flag("--common-exponent", options.estimate.common_exponent,
-                 "One exponent, fitted, for all curves");
-  verb->add_flag("--unit-prefactor", options.estimate.form.unit_prefactor,
+  verb->add_flag("--common-exponent", options.common_exponent, "One exponent, fitted, for all curves");
+  verb->add_flag("--unit-prefactor", options.unit_prefactor,
                  "A law that is 1 without particles, (1 - phi / phi_m)^-exponent");
-  add_number(verb, "--above", options.estimate.above, number_from(0),
+  add_number(verb, "--above", options.above, number_from(0),
              "The law is of the points whose viscosity is above")
       ->capture_default_str();
   add_number(verb, "--softest", options.curves.softest, number_above(0),
@@ -64,6 +63,9 @@ results without that mean, when the largest overlap is above ten times as much.
 --propose says which fraction would tell most: the one that lessens the error of the law, or where there is no
 law yet the one half-way between what flows and what is jammed. Fractions go into the sweep, for all curves.
 Points are known by their scenes: what has been run is not run again.
+
+The fits are made by python3 of PATH with NumPy, and by the package peclet that is installed with this program.
+Without one of them the verb ends with 1, and says what is missing and what it would have run.
 )",
           {{"peclet jamming friction.json --unit-prefactor --above 1", "the law that holds at all fractions"},
            {"peclet jamming friction.json --by law --exponent 2 --json", "for programs; schema/README.md"},

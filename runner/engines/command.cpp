@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -50,7 +51,30 @@ class Pipe {
   std::array<int, 2> ends_{-1, -1};
 };
 
-pid_t start(const std::vector<std::string>& words, const Pipe& output, const Pipe& errors) {
+// A file in memory that holds the text, to be read from its beginning. A pipe might fill up before the
+// program reads.
+class TextFile {
+ public:
+  explicit TextFile(const std::string& text) : file_(memfd_create("input", MFD_CLOEXEC)) {
+    if (file_ < 0) check(errno, "memfd_create");
+    for (std::size_t at = 0; at < text.size();) {
+      const ssize_t count = pwrite(file_, text.data() + at, text.size() - at, static_cast<off_t>(at));
+      if (count < 0) check(errno, "memfd_create");
+      at += static_cast<std::size_t>(count);
+    }
+  }
+  ~TextFile() { close(file_); }
+  TextFile(const TextFile&) = delete;
+  TextFile& operator=(const TextFile&) = delete;
+
+  int reading() const { return file_; }
+
+ private:
+  int file_;
+};
+
+pid_t start(const std::vector<std::string>& words, const TextFile& input, const Pipe& output,
+            const Pipe& errors) {
   posix_spawn_file_actions_t actions;
   posix_spawnattr_t attributes;
   check(posix_spawn_file_actions_init(&actions), "posix_spawn");
@@ -58,7 +82,7 @@ pid_t start(const std::vector<std::string>& words, const Pipe& output, const Pip
   sigset_t none, all;
   sigemptyset(&none);
   sigfillset(&all);
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, input.reading(), 0);
   posix_spawn_file_actions_adddup2(&actions, output.writing(), 1);
   posix_spawn_file_actions_adddup2(&actions, errors.writing(), 2);
   posix_spawnattr_setsigmask(&attributes, &none);
@@ -112,9 +136,11 @@ std::string CommandAnswer::complaint() const {
   return said.empty() ? how : fmt::format("{}: {}", how, said);
 }
 
-CommandAnswer run_command(const std::vector<std::string>& words, std::chrono::seconds patience) {
+CommandAnswer run_command(const std::vector<std::string>& words, std::chrono::seconds patience,
+                          const std::string& input) {
+  const TextFile text(input);
   Pipe output, errors;
-  const pid_t process = start(words, output, errors);
+  const pid_t process = start(words, text, output, errors);
   output.close_end(1);
   errors.close_end(1);
   CommandAnswer answer;

@@ -19,7 +19,9 @@ struct CommandAnswer {
 };
 
 // Runs a program (found on PATH) in a process group of its own, so that a Ctrl-C at the terminal does not cut
-// it off between doing something and saying so. Throws std::system_error when it cannot be started.
-CommandAnswer run_command(const std::vector<std::string>& words, std::chrono::seconds patience);
+// it off between doing something and saying so. Its standard input is `input`. Throws std::system_error if
+// the program cannot be started.
+CommandAnswer run_command(const std::vector<std::string>& words, std::chrono::seconds patience,
+                          const std::string& input = "");
 
 }  // namespace peclet::runner

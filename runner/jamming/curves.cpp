@@ -24,7 +24,7 @@ bool is_soft(const JammingPoint& point, double softest) {
   return point.largest_overlap && *point.largest_overlap > largest_over_mean * softest;
 }
 
-// What the seeds of the look, or all that have ended, say.
+// Sets the state, and what the seeds of the look, or all that have ended, say.
 void judge(JammingPoint& made, Database& database, const PointSummary& point, double softest) {
   const int end = point.looks.empty() ? std::numeric_limits<int>::max() : point.looks.back().seeds;
   RunningEstimate overlaps;
@@ -38,17 +38,17 @@ void judge(JammingPoint& made, Database& database, const PointSummary& point, do
   made.ended = endings.ended;
   made.jammed = endings.jammed;
   if (point.point.suspect) {
-    made.state = FlowState::suspect;
+    made.state = "suspect";
   } else if (made.ended == 0) {
-    made.state = FlowState::open;
+    made.state = "open";
   } else if (endings.has_jammed()) {
-    made.state = FlowState::jammed;
+    made.state = "jammed";
   } else if (2 * endings.lost >= endings.ended) {
-    made.state = FlowState::lost;
+    made.state = "lost";
   } else if (endings.has_partly_jammed()) {
-    made.state = FlowState::partly_jammed;
+    made.state = "partly jammed";
   } else {
-    made.state = is_soft(made, softest) ? FlowState::soft : FlowState::flowing;
+    made.state = is_soft(made, softest) ? "soft" : "flowing";
   }
 }
 
@@ -98,51 +98,6 @@ void name_curve(JammingCurve& curve, const std::vector<const Swept*>& by, const 
 }
 
 }  // namespace
-
-const char* to_string(FlowState state) {
-  switch (state) {
-    case FlowState::flowing:
-      return "flowing";
-    case FlowState::soft:
-      return "soft";
-    case FlowState::partly_jammed:
-      return "partly jammed";
-    case FlowState::jammed:
-      return "jammed";
-    case FlowState::lost:
-      return "lost";
-    case FlowState::suspect:
-      return "suspect";
-    case FlowState::open:
-      return "open";
-  }
-  return "";
-}
-
-bool JammingPoint::has_error() const {
-  return estimate.count >= fewest_seeds && estimate.mean > 0 && estimate.standard_error > 0;
-}
-
-LawPoint JammingPoint::law_point() const {
-  return {fraction, estimate.mean, estimate.standard_error, estimate.count};
-}
-
-std::optional<double> JammingCurve::largest_flowing() const {
-  std::optional<double> found;
-  for (const JammingPoint& point : points) {
-    if (point.state == FlowState::flowing) found = point.fraction;
-  }
-  return found;
-}
-
-const JammingPoint* JammingCurve::smallest_stuck() const {
-  const double flowing = largest_flowing().value_or(0);
-  for (const JammingPoint& point : points) {
-    const bool is_stuck = point.state == FlowState::jammed || point.state == FlowState::soft;
-    if (is_stuck && point.fraction > flowing) return &point;
-  }
-  return nullptr;
-}
 
 JammingCurves read_curves(Database& database, const CurveChoice& choice) {
   const CampaignStatus status = read_status(database);

@@ -2,15 +2,17 @@
 // whether it flows.
 //
 // A point is judged by the seeds of its last look, before the first one by all that have ended:
-//   suspect  a seed gave two different results
-//   jammed   half of the seeds or more have jammed (contract/endings.h)
-//   lost     half or more ended without a value for other reasons
-//   partly   more than a tenth have: the mean is of those that happened to flow
-//   soft     contacts overlap by more than the limit in the mean: spheres that are not hard flow beyond their
-//            jamming point. Where results have no mean overlap, the largest of a seed, mean over the seeds,
-//            is above ten times the limit
-//   flowing  all others
-//   open     no seed has ended
+// clang-format off
+//   suspect        a seed gave two different results
+//   open           no seed has ended
+//   jammed         half of the seeds or more have jammed, as of Endings
+//   lost           half or more ended without a value for other reasons
+//   partly jammed  more than a tenth have jammed, as of Endings: the mean is of those that happened to flow
+//   soft           contacts overlap by more than the limit in the mean: spheres that are not hard flow beyond
+//                  their jamming point. Where results have no mean overlap, the largest of a seed, mean over
+//                  the seeds, is above ten times the limit
+//   flowing        all others
+// clang-format on
 #pragma once
 
 #include <optional>
@@ -18,39 +20,26 @@
 #include <vector>
 
 #include "contract/json.h"
-#include "runner/jamming/law.h"
 #include "runner/statistics/statistics.h"
 #include "runner/store/database.h"
 
 namespace peclet::runner {
 
-enum class FlowState { flowing, soft, partly_jammed, jammed, lost, suspect, open };
-// "partly jammed"
-const char* to_string(FlowState state);
-
 struct JammingPoint {
   std::string label;
   double fraction = 0;
   Estimate estimate{};  // of the viscosity, the one that decides; NaN without
-  FlowState state = FlowState::open;
+  std::string state;
   int ended = 0, jammed = 0;  // seeds
   // In radii of the smaller sphere, means over the seeds: of contacts, and the largest.
   std::optional<double> overlap{}, largest_overlap{};
   double cpu_seconds = 0;  // of all its seeds
-
-  // Of the estimate: whether it can enter a fit.
-  bool has_error() const;
-  LawPoint law_point() const;
 };
 
 struct JammingCurve {
   std::string name;                  // "friction = 0.5"; "" of the only one
   Json settings;                     // of what is swept besides, by pointer
   std::vector<JammingPoint> points;  // in ascending order
-
-  std::optional<double> largest_flowing() const;
-  // The smallest fraction above it, or of all where none flows, at which it is jammed or soft.
-  const JammingPoint* smallest_stuck() const;
 };
 
 struct JammingCurves {

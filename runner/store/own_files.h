@@ -1,4 +1,4 @@
-// What belongs to the program and lies beside it: the studies, the adapters of other engines.
+// What belongs to the program and lies beside it: adapters of other engines, the fits of the jamming point.
 #pragma once
 
 #include <filesystem>

@@ -25,7 +25,6 @@ VERBS = (
     "set",
     "cancel",
     "retry",
-    "study",
     "backup",
     "restore",
     "doctor",
@@ -169,12 +168,7 @@ def file_faults():
 
 
 def option_faults(peclet):
-    positional = {
-        "task": ["manifest.json"],
-        "hand-over": ["slurm", "input.json"],
-        "cancel": ["input.json", "p"],
-        "study": ["diffusion"],
-    }
+    positional = {"task": ["manifest.json"], "hand-over": ["slurm", "input.json"], "cancel": ["input.json", "p"]}
     for verb in VERBS:
         start = [verb, *positional.get(verb, ["input.json"])]
         if verb in ("completion", "manual"):
@@ -228,7 +222,6 @@ def option_faults(peclet):
         ["validate", "input.json", "more.json"],
         ["completion", "tcsh"],
         ["export", "input.json", "--csv", "--json"],
-        ["study", "--quick"],
         ["run", "input.json", "--workers", "1", "--workers", "2"],
         ["run", "input.json", "--workers"],
         ["set", "input.json", "--tolerance", "5"],

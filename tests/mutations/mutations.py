@@ -137,10 +137,9 @@ def who_notices(folder):
     binaries = os.path.join(folder, "build/release/bin")
     noticed = []
     for study in STUDIES:
-        driver = next(d for d in ("study.py", "remake.py") if os.path.exists(os.path.join(folder, "results", study, d)))
         try:
             done = subprocess.run(
-                ["/usr/bin/python3", os.path.join(folder, "results", study, driver), binaries, "--quick"],
+                ["/usr/bin/python3", os.path.join(folder, "results", study, "study.py"), binaries, "--quick"],
                 capture_output=True,
                 timeout=1800,
             )

@@ -222,6 +222,12 @@ class OfACampaign(unittest.TestCase):
         frame = self.results.estimates().to_pandas()
         self.assertEqual(list(frame["label"]), [p["label"] for p in self.export["points"]])
 
+    def test_jamming_points_are_asked_of_the_program_by_this_python(self):
+        found = self.results.jamming("--by=law")
+        self.assertEqual(found["over"], "/volume_fraction")
+        self.assertEqual([curve["settings"] for curve in found["curves"]], [{"/peclet": 10}, {"/peclet": 1000}])
+        self.assertRegex(found["curves"][0]["law"]["obstacle"], "^0 of the 4 flowing points")
+
     def test_what_is_not_there_is_said(self):
         with self.assertRaisesRegex(peclet.PecletError, "viscosty: not measured; there are .*relative_viscosity"):
             self.results.profile("viscosty")

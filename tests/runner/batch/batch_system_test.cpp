@@ -27,6 +27,13 @@ TEST(Command, SaysWhatItPrintedAndHowItLeft) {
   EXPECT_EQ(bad.complaint(), "exit status 3: why");
 }
 
+// Longer than the 64 KiB that a pipe holds.
+TEST(Command, ReadsItsInputToTheEnd) {
+  const std::string input(100000, 'x');
+  EXPECT_EQ(run_command({"cat"}, std::chrono::seconds(10), input).output, input);
+  EXPECT_EQ(run_command({"cat"}, std::chrono::seconds(10)).output, "");
+}
+
 TEST(Command, ThatDoesNotEndIsKilledWithItsChildren) {
   const auto start = std::chrono::steady_clock::now();
   const CommandAnswer answer = run_command({"sh", "-c", "sleep 100 & sleep 100"}, std::chrono::seconds(1));

@@ -189,7 +189,6 @@ TEST_F(CommandLine, FaultsOfUsageAreOneLineThatNamesTheVerb) {
        "peclet: run: --lease: must have one value; `peclet run --help` says more\n"},
       {"export small.json --csv --json",
        "peclet: export: --json: cannot stand beside --csv; `peclet export --help` says more\n"},
-      {"study --quick", "peclet: study: --quick: needs study; `peclet study --help` says more\n"},
       {"validate small.json more.json",
        "peclet: validate: more.json: is one word too many; `peclet validate --help` says more\n"},
       {"help nonsense", "peclet: nonsense: there is no such verb; `peclet --help` lists them\n"}};

@@ -9,6 +9,7 @@ foreach(file
     bin/peclet
     bin/peclet-engine
     lib/python3/dist-packages/peclet/__init__.py
+    lib/python3/dist-packages/peclet/jamming_report.py
     share/doc/peclet/LICENSE
     share/man/man1/peclet.1
     share/man/man1/peclet-run.1
@@ -18,6 +19,7 @@ foreach(file
     share/peclet/adapters/lammps/README.md
     share/peclet/adapters/lammps/lammps_engine.py
     share/peclet/results/demo/campaign.json
+    share/peclet/results/run.py
     share/peclet/schema/result.schema.json
     share/systemd/user/peclet@.service)
   if(NOT EXISTS ${prefix}/${file})
@@ -36,11 +38,13 @@ endif()
 execute_process(COMMAND ${prefix}/bin/peclet init ${prefix}/campaign.json OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${prefix}/bin/peclet validate ${prefix}/campaign.json OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 
-# So are the studies that were installed, not those of the source.
+# The studies that were installed find the programs that were installed with them.
+set(run ${prefix}/share/peclet/results/run.py)
 file(MAKE_DIRECTORY ${prefix}/share/peclet/results/only-installed)
-file(WRITE ${prefix}/share/peclet/results/only-installed/study.py "raise SystemExit(3)\n")
-execute_process(COMMAND ${prefix}/bin/peclet study --list OUTPUT_VARIABLE list COMMAND_ERROR_IS_FATAL ANY)
-execute_process(COMMAND ${prefix}/bin/peclet study only-installed RESULT_VARIABLE code)
+file(WRITE ${prefix}/share/peclet/results/only-installed/study.py
+  "import sys\nsys.exit(3 if sys.argv[1:] == ['${prefix}/bin', '--quick'] else 4)\n")
+execute_process(COMMAND ${run} OUTPUT_VARIABLE list COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${run} only-installed --quick RESULT_VARIABLE code)
 if(NOT list MATCHES "only-installed +not yet" OR NOT list MATCHES "zero-shear" OR NOT code EQUAL 3)
   message(SEND_ERROR "the installed studies are not found: ${code}\n${list}")
 endif()

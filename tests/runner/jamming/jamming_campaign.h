@@ -2,12 +2,10 @@
 #pragma once
 
 #include <cmath>
-#include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "runner/jamming/estimate.h"
+#include "runner/jamming/curves.h"
 #include "tests/runner/stored_campaign.h"
 
 namespace peclet::runner {
@@ -32,8 +30,8 @@ class JammingCampaign {
   explicit JammingCampaign(const Json& document)
       : campaign_(parse_campaign(document, "jam.json")), stored_(campaign_) {}
 
-  // Eight seeds whose mean is exactly this, of deviation `relative` (n - 1), and of this mean overlap; their
-  // largest one is fifty times that.
+  // Eight seeds whose mean is exactly `viscosity`, of relative deviation `relative` (n - 1), and of this mean
+  // overlap; their largest one is fifty times that.
   void complete(int point, double viscosity, double relative = 0.01, double overlap = 1e-4) {
     for (int seed = 0; seed < 8; ++seed) {
       const double away = (seed % 2 == 0 ? 1 : -1) * relative * std::sqrt(7.0 / 8);
@@ -50,9 +48,7 @@ class JammingCampaign {
 
   StoredCampaign& stored() { return stored_; }
   JammingCurves curves(const CurveChoice& choice = {}) { return read_curves(stored_.database(), choice); }
-  JammingEstimate estimate(const EstimateChoice& choice = {}) {
-    return estimate_jamming(curves().curves.at(0), choice);
-  }
+  std::vector<JammingPoint> points() { return curves().curves.at(0).points; }
 
  private:
   Campaign campaign_;

@@ -1,24 +1,24 @@
 #!/usr/bin/python3
-"""remake.py BIN [FOLDER] [--quick] [--panel NAME]
+"""Where each method fails, and how: a row for each case, a column for each step of each method.
 
-Runs the cells of the stability map with the programs in BIN, keeps their campaigns in FOLDER (a second call goes on
-with what is there), and writes table.csv and map.png beside this script; with --quick or --panel into FOLDER. Fails
-where a cell is biased and no realisation says so; chance makes one of a thousand cells so.
+study.py BIN [FOLDER] [--quick] [--from-table]
 """
 import collections
-import subprocess
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.campaigns import Program
-from studies.command_line import drive
+from studies.campaigns import Point
+from studies.command_line import main
 from studies.estimates import relative_difference, student_quantile
+from studies.figure import Figure
 from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
-from studies.tables import write_table
-from studies.viscosities import counts_text, flags, values_by_seed
+from studies.tables import read_texts, write_table
+from studies.verdicts import Check
+from studies.viscosities import counts_text, flags
 
+TITLE = "Where each method fails, and how"
 BASE = merged(REFERENCE_SCENE, {"particles": {"count": 100}, **during({"strain": 0.5}, {"strain": 0.75})})
 # Steps of each column: explicit ones over the largest stable step of the scene, implicit ones over the automatic one.
 EXPLICIT, IMPLICIT = (0.5, 0.999, 2), (0.25, 1, 2, 3.99, 8)
@@ -147,20 +147,20 @@ def cells_of(name, case, scene, program):
     of_block = {}
     for point in program.run(identifier, scene, settings, seeds):
         block = point["settings"]["/integrator"]
-        of_block[block["method"], block["timestep"]] = point["realisations"]
+        of_block[block["method"], block["timestep"]] = point
     for method, factor, block, refused in columns:
-        realisations = [] if refused else of_block[method, block["timestep"]]
+        point = Point(realisations=[]) if refused else of_block[method, block["timestep"]]
         yield {
             "panel": name,
             "case": label,
             "method": method,
             "step": factor,
             "timestep": block["timestep"],
-            "seeds": len(realisations),
-            "values": values_by_seed(realisations),
+            "seeds": len(point["realisations"]),
+            "values": point.by_seed(),
             "commit": " ".join(sorted(program.commits)),
-            "lost": collections.Counter(r["ending"]["cause"] for r in realisations if not r.get("mean")),
-            "flags": counts_text(flags(realisations)),
+            "lost": collections.Counter(r["ending"]["cause"] for r in point["realisations"] if not r.get("mean")),
+            "flags": counts_text(flags(point)),
             "refused": refused,
         }
 
@@ -186,26 +186,132 @@ def rows_of(name, case, program):
         yield row
 
 
-def remake(arguments, folder):
-    program = Program(arguments.binaries, folder)
-    rows = []
-    for name, cases in PANELS.items():
-        if arguments.quick:
-            cases = cases[: QUICK.get(name, 0)]
-        if arguments.panel not in (None, name):
-            continue
+def rows_of_panels(program, cases_of):
+    for name, cases in cases_of.items():
         for case in cases:
-            rows += rows_of(name, case, program)
+            yield from rows_of(name, case, program)
             print(f"{name}: {case[0]}", file=sys.stderr, flush=True)
-    target = Path(folder) if arguments.quick or arguments.panel else HERE
-    table = target / "table.csv"
-    write_table(table, COLUMNS, rows, digits=4)
+
+
+def checks(rows):
     silent = [r for r in rows if r["verdict"] == "biased" and not r["flags"]]
     for row in silent:
-        cell = f"{row['panel']}, {row['case']}, {row['method']} {row['step']:g}"
-        print(f"wrong without a flag: {cell}: {row['bias_percent']:.1f} %", file=sys.stderr)
-    subprocess.run([sys.executable, HERE / "map.py", table, target / "map.png"], check=True)
-    sys.exit(1 if silent else 0)
+        print(f"wrong without a flag: {row['panel']}, {row['case']}, {row['method']} {row['step']}", file=sys.stderr)
+    yield Check("cells that are biased, and none of whose results says so", "warnings", len(silent), 0, high=0)
 
 
-drive(__doc__.splitlines()[0], list(PANELS), remake)
+def measure(program):
+    write_table(HERE / "table.csv", COLUMNS, list(rows_of_panels(program, PANELS)), digits=4)
+
+
+def judge():
+    return checks(read_texts(HERE / "table.csv"))
+
+
+COLOURS = {
+    "ok": "#b8dcae",
+    "undecided": "#e9efb4",
+    "biased": "#e88a30",
+    "losses": "#dcb0d8",
+    "blown up": "#d06058",
+    "jammed": "#8fb4dc",
+    "refused": "#d9d9d9",
+    "no reference": "#ffffff",
+}
+WIDTH, HEIGHT = 92, 22  # of a cell, in pixels
+LABEL = 250  # of the names of the cases
+LEGEND = (
+    "!: flagged;  numbers: difference of the viscosity from the reference and half of its 95 % interval, in percent"
+)
+
+
+def text_of(row):
+    verdict = row["verdict"]
+    flag = " !" if row["flags"] else ""
+    if verdict in ("ok", "biased", "undecided"):
+        bias, half_width = float(row["bias_percent"]), float(row["bias_half_width_percent"])
+        if bias == half_width == 0:
+            return "reference" + flag
+        digits = 1 if abs(bias) < 9.95 and half_width < 9.95 else 0
+        return f"{bias:+.{digits}f}({half_width:.{digits}f})" + flag
+    if verdict == "losses":
+        return row["causes"].replace("displacement", "displ.").replace(":", " ") + flag
+    if verdict in ("blown up", "jammed"):
+        return row["causes"].split(":")[0].replace("displacement", "displ.") + flag
+    return {"refused": "refused", "no reference": "?"}[verdict] + flag
+
+
+def lines_of(rows):
+    """From the top: the name of a panel and None, or that of a case and its cells by method and step."""
+    lines = {}
+    for row in rows:
+        lines.setdefault((row["panel"], None), None)
+        lines.setdefault((row["panel"], row["case"]), {})[row["method"], row["step"]] = row
+    return [(case or panel, cells) for (panel, case), cells in lines.items()]
+
+
+def halves(lines):
+    """Two parts that stand side by side, the second one beginning with a panel; one part if there is little."""
+    if len(lines) <= 30:
+        return [lines]
+    half = next(k for k in range(len(lines) // 2, len(lines)) if lines[k][1] is None)
+    return [lines[:half], lines[half:]]
+
+
+def write(panel, text, x, y, side="left", font="Sans,10"):
+    panel.text(text, x, y, side, f"font '{font}' noenhanced front")
+
+
+def draw_part(panel, left, columns, lines):
+    for column, (method, step) in enumerate(columns):
+        middle = left + LABEL + WIDTH * (column + 0.5)
+        write(panel, method, middle, HEIGHT * 0.8, "center")
+        write(panel, f"{float(step):.3g} x", middle, HEIGHT * 1.6, "center")
+    for k, (name, cells) in enumerate(lines):
+        top = HEIGHT * (k + 2.2)
+        if cells is None:
+            write(panel, name, left, top + HEIGHT / 2, font="Sans Bold,11")
+            continue
+        write(panel, name, left + 14, top + HEIGHT / 2)
+        for column, key in enumerate(columns):
+            x = left + LABEL + WIDTH * column
+            panel.box(x, x + WIDTH, top, top + HEIGHT, COLOURS[cells[key]["verdict"]], border="white")
+            write(panel, text_of(cells[key]), x + WIDTH / 2, top + HEIGHT / 2, "center")
+
+
+def draw_legend(panel, top):
+    x = 10
+    for verdict, colour in COLOURS.items():
+        panel.box(x, x + 30, top, top + HEIGHT * 0.8, colour, border="#888888")
+        write(panel, verdict, x + 36, top + HEIGHT * 0.4)
+        x += 105
+    write(panel, LEGEND, x + 15, top + HEIGHT * 0.4)
+
+
+def draw():
+    draw_map(read_texts(HERE / "table.csv"), HERE / "map.png")
+
+
+def draw_map(rows, picture):
+    columns = list(dict.fromkeys((r["method"], r["step"]) for r in rows))
+    parts = halves(lines_of(rows))
+    width = LABEL + WIDTH * len(columns) + 20
+    size = width * len(parts), HEIGHT * (max(map(len, parts)) + 5)
+    figure = Figure(picture, columns=1, size=size, font="Sans,10")
+    panel = figure.blank((0, size[0]), (size[1], 0), place=(0, 1, 0, 1))
+    for k, part in enumerate(parts):
+        draw_part(panel, k * width + 10, columns, part)
+    draw_legend(panel, size[1] - HEIGHT * 1.6)
+    figure.draw()
+
+
+def quick_measure(program):
+    """Six cases, whose map is drawn as well."""
+    path = Path(program.folder) / "table.csv"
+    cases = {name: PANELS[name][:count] for name, count in QUICK.items()}
+    write_table(path, COLUMNS, list(rows_of_panels(program, cases)), digits=4)
+    draw_map(read_texts(path), path.with_name("map.png"))
+    return checks(read_texts(path))
+
+
+main(HERE, TITLE, measure, quick_measure, judge, draw)
