@@ -75,7 +75,6 @@ ENGINE = [
             "output",
             "jobs",
             "evaluation",
-            "benchmark",
         )
     ),
     "engine",
