@@ -16,6 +16,7 @@ to_build=(
   nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev                 # both programs
   librandom123-dev libsodium-dev libsqlite3-dev zlib1g-dev libboost-dev libeigen3-dev
 )
+to_package=(help2man)  # manual pages
 to_test=(
   libgtest-dev python3 python3-jsonschema sqlite3 libfaketime
   groff-base systemd                                                      # read manual pages and the unit
@@ -124,12 +125,12 @@ lint() {
 
 case "${1:-}" in
   demo) deps "${to_build[@]}" && demo ;;
-  package) deps "${to_build[@]}" && package ;;
-  test) deps "${to_build[@]}" "${to_test[@]}" && run_tests ;;
+  package) deps "${to_build[@]}" "${to_package[@]}" && package ;;
+  test) deps "${to_build[@]}" "${to_package[@]}" "${to_test[@]}" && run_tests ;;
   sanitize) deps "${to_build[@]}" "${to_test[@]}" && sanitize ;;
   tidy) deps "${to_build[@]}" "${to_test[@]}" "${to_lint[@]}" && tidy "${@:2}" ;;
   lint) deps "${to_build[@]}" "${to_test[@]}" "${to_lint[@]}" && lint ;;
-  deps) deps "${to_build[@]}" "${to_test[@]}" "${to_lint[@]}" ;;
+  deps) deps "${to_build[@]}" "${to_package[@]}" "${to_test[@]}" "${to_lint[@]}" ;;
   *)
     sed -n '2,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
     exit 2

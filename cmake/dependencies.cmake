@@ -29,7 +29,7 @@ package(OpenMP g++ COMPONENTS CXX)
 package(spdlog libspdlog-dev)
 package(SQLite3 libsqlite3-dev)
 package(Threads libc6-dev)
-package(Boost libboost-dev)  # headers only: Student's t
+package(Boost libboost-dev)  # headers only: Student's t, Asio and Beast
 package(ZLIB zlib1g-dev)
 package(PkgConfig pkg-config)
 if(PkgConfig_FOUND)

@@ -1,4 +1,4 @@
-// peclet-engine: one realisation, a worker, a single evaluation, or a benchmark.
+// peclet-engine: one realisation, a worker or a single evaluation.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <omp.h>
@@ -19,7 +19,6 @@
 #include "contract/output_file.h"
 #include "contract/provenance.h"
 #include "contract/usage_fault.h"
-#include "engine/benchmark/benchmark.h"
 #include "engine/evaluation/configuration.h"
 #include "engine/jobs/job.h"
 #include "engine/jobs/serve.h"
@@ -225,9 +224,6 @@ int main(int argc, char** argv) {
       ->add_option("--count", sizes.count,
                    "Spheres of the scene: thin sizes are merged until each has one of them")
       ->check(whole_number(1, most_particles));
-  std::vector<std::string> cases;
-  CLI::App* bench_command = app.add_subcommand("bench", "Processor time per particle and step");
-  bench_command->add_option("case", cases, "Names of cases; all of them when none is given");
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   if (words == std::vector<std::string>{"version"}) words.front() = "--version";
   try {
@@ -259,9 +255,6 @@ int main(int argc, char** argv) {
       fmt::print(stderr, "{}", answer.remarks);
       fmt::print("{}", answer.block);
       return ExitCode::done;
-    }
-    if (*bench_command) {
-      return run_benchmarks(cases);
     }
   } catch (const InputError& error) {
     fmt::print(stderr, "peclet-engine: {}\n", error.what());

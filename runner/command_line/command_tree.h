@@ -1,11 +1,9 @@
-// What the command line is made of: read off the parser's own verbs and options, so that completion and
-// manual pages cannot say anything else.
+// What the command line is made of: read off the parser's own verbs and options, so that completion cannot
+// say anything else.
 #pragma once
 
 #include <string>
 #include <vector>
-
-#include "runner/command_line/verb_page.h"
 
 namespace peclet::runner {
 
@@ -18,30 +16,24 @@ constexpr const char* folder = "FOLDER";
 }  // namespace value_name
 
 struct CommandOption {
-  std::string name;        // "--workers"; of a positional one "campaign"
-  std::string short_name;  // "-h", or ""
-  std::string value;       // "NUMBER", "FOLDER"; "" for a flag
+  std::string name;   // "--workers"; of a positional one "campaign"
+  std::string value;  // "NUMBER", "FOLDER"; "" for a flag
   std::vector<std::string> choices;
-  std::string meaning;
   std::string default_value;  // "" where there is none, or none to be shown
-  bool positional = false, required = false, repeatable = false;
+  bool positional = false, repeatable = false;
 
   bool takes_value() const { return !value.empty(); }
 };
 
 struct CommandVerb {
   std::string name;
-  std::string summary;  // one line
-  std::string example;
   std::vector<CommandOption> options;
-  VerbPage page;
 
   std::vector<CommandOption> positionals() const;
   std::vector<CommandOption> named() const;
 };
 
 struct CommandTree {
-  std::string summary;
   std::vector<CommandOption> options;  // before any verb
   std::vector<CommandVerb> verbs;
 };

@@ -1,141 +1,119 @@
-// Completion for zsh and fish, whose own functions do most of the work; bash is in completion_bash.cpp.
+// One function of bash finds the verb, the option that waits for a value, or the place of the word among
+// those that are no options.
 #include "runner/command_line/completion.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <cassert>
 
 namespace peclet::runner {
 namespace {
 
-// Backslashes before each of `characters`.
-std::string with_backslashes(const std::string& text, const std::string& characters) {
-  std::string safe;
-  for (const char c : text) {
-    if (characters.find(c) != std::string::npos) safe += '\\';
-    safe += c;
-  }
-  return safe;
-}
+// {0} the options, {1} the verbs, {2} per verb its options and the ones with a value, {3} what follows an
+// option, {4} what stands at a place.
+constexpr const char* script =
+    R"script(# Completion of peclet for bash. Use it with: eval "$(peclet completion bash)"
+_peclet_words() {{ mapfile -t COMPREPLY < <(compgen -W "$1" -- "$word"); }}
+_peclet_folders() {{
+  compopt -o filenames 2>/dev/null
+  mapfile -t COMPREPLY < <(compgen -d -- "$word")
+}}
+_peclet_files() {{
+  compopt -o filenames 2>/dev/null
+  mapfile -t COMPREPLY < <(compgen -f -- "$word")
+}}
+# Campaign files, and folders on the way to them.
+_peclet_campaign_files() {{
+  compopt -o filenames 2>/dev/null
+  mapfile -t COMPREPLY < <(compgen -d -X '*.peclet' -- "$word"; compgen -f -X '!*.json' -- "$word")
+}}
+_peclet_campaigns() {{
+  compopt -o filenames 2>/dev/null
+  mapfile -t COMPREPLY < <(compgen -d -- "$word"; compgen -f -X '!*.json' -- "$word")
+}}
+_peclet() {{
+  local word=${{COMP_WORDS[COMP_CWORD]}} verb='' options='' valued='' previous='' place=0 i
+  COMPREPLY=()
+  for ((i = 1; i < COMP_CWORD; ++i)); do
+    local this=${{COMP_WORDS[i]}}
+    if [[ $this == '=' ]]; then
+      previous=${{previous:-=}}
+    elif [[ -n $previous ]]; then
+      previous=''
+    elif [[ $this == -* ]]; then
+      [[ " $valued " == *" $this "* ]] && previous=$this
+    elif [[ -z $verb ]]; then
+      verb=$this
+      case $verb in
+{2}      esac
+    else
+      ((++place))
+    fi
+  done
+  [[ $word == '=' ]] && word=''
+  if [[ -n $previous ]]; then
+    case $verb:$previous in
+{3}    esac
+  elif [[ -z $verb && $word != -* ]]; then
+    _peclet_words '{1}'
+  elif [[ -z $verb ]]; then
+    _peclet_words '{0}'
+  elif [[ $word == -* ]]; then
+    _peclet_words "$options"
+  else
+    case $verb:$place in
+{4}    esac
+  fi
+}}
+complete -F _peclet peclet
+)script";
 
-// A word between single quotes, for zsh: these have no escapes inside.
-std::string zsh_quoted(const std::string& text) {
-  std::string safe = "'";
-  for (const char c : text) safe += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return safe + "'";
-}
-
-std::string fish_quoted(const std::string& text) { return "'" + with_backslashes(text, "\\'") + "'"; }
-
-std::string listed(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, " ")); }
-
-std::string zsh_action(const CommandOption& option) {
-  if (!option.choices.empty()) return "(" + listed(option.choices) + ")";
-  if (option.value == value_name::campaign_file) return "_files -g \"*.json\"";
-  if (option.value == value_name::campaign) return "_files -g \"(*.json|*.peclet(/))\"";
-  if (option.value == value_name::file) return "_files";
-  if (option.value == value_name::folder) return "_files -/";
-  return " ";
-}
-
-// "'--workers[Engine processes]:NUMBER: '", "'1:campaign:_files'"
-std::string zsh_argument(const CommandOption& option, std::size_t place) {
+std::string joined(const std::vector<std::string>& words) {
   std::string text;
-  if (option.positional) {
-    text = fmt::format("{}:{}:{}", place, with_backslashes(option.name, ":"), zsh_action(option));
-  } else {
-    text = fmt::format("{}{}[{}]", option.repeatable ? "*" : "", option.name,
-                       with_backslashes(option.meaning, "[]\\:"));
-    if (option.takes_value()) text += ":" + with_backslashes(option.value, ":") + ":" + zsh_action(option);
-  }
-  return zsh_quoted(text);
-}
-
-std::string zsh_arguments(const std::vector<CommandOption>& options) {
-  std::string text;
-  std::size_t place = 0;
-  for (const CommandOption& option : options) {
-    text += " \\\n        " + zsh_argument(option, option.positional ? ++place : 0);
-  }
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
   return text;
 }
 
-// {0} the options, {1} the verbs, {2} per verb its arguments.
-constexpr const char* zsh_script = R"script(#compdef peclet
-# Completion of peclet for zsh. Use it with: eval "$(peclet completion zsh)"
-_peclet() {{
-  local context state state_descr line
-  typeset -A opt_args
-  _arguments -C{0} \
-        '1:verb:->verb' '*::argument:->argument'
-  case $state in
-    verb)
-      local -a verbs=({1})
-      _describe verb verbs
-      ;;
-    argument)
-      case $words[1] in
-{2}      esac
-      ;;
-  esac
-}}
-if [[ $funcstack[1] == _peclet ]]; then _peclet "$@"; else compdef _peclet peclet; fi
-)script";
-
-// How fish completes a value: -x takes nothing but what follows, -r a file as well.
-std::string fish_value(const CommandOption& option) {
-  if (!option.choices.empty()) return " -x -a " + fish_quoted(listed(option.choices));
-  if (option.value == value_name::campaign_file || option.value == value_name::campaign) {
-    return " -x -a '(__fish_complete_suffix .json)'";
+std::vector<std::string> names(const std::vector<CommandOption>& options, bool valued_only) {
+  std::vector<std::string> found;
+  for (const CommandOption& option : options) {
+    if (!valued_only || option.takes_value()) found.push_back(option.name);
   }
-  if (option.value == value_name::file) return " -r -F";
-  if (option.value == value_name::folder) return " -x -a '(__fish_complete_directories)'";
-  return option.takes_value() ? " -x" : "";
+  return found;
+}
+
+// "" for a value that only its user knows.
+std::string offer(const CommandOption& option) {
+  if (!option.choices.empty()) return "_peclet_words '" + joined(option.choices) + "'";
+  if (option.value == value_name::campaign_file) return "_peclet_campaign_files";
+  if (option.value == value_name::campaign) return "_peclet_campaigns";
+  if (option.value == value_name::file) return "_peclet_files";
+  if (option.value == value_name::folder) return "_peclet_folders";
+  return "";
+}
+
+std::string branch(const std::string& pattern, const std::string& action) {
+  return action.empty() ? "" : fmt::format("      {}) {} ;;\n", pattern, action);
 }
 
 }  // namespace
 
-std::string zsh_completion(const CommandTree& tree) {
-  std::string verbs, arguments;
+std::string bash_completion(const CommandTree& tree) {
+  std::vector<std::string> verbs;
+  std::string options, after_option, at_place;
   for (const CommandVerb& verb : tree.verbs) {
-    verbs += "\n        " + zsh_quoted(verb.name + ":" + verb.summary);
-    arguments += fmt::format("        {}) _arguments{} ;;\n", verb.name, zsh_arguments(verb.options));
-  }
-  return fmt::format(fmt::runtime(zsh_script), zsh_arguments(tree.options), verbs, arguments);
-}
-
-std::string fish_completion(const CommandTree& tree) {
-  std::string text =
-      "# Completion of peclet for fish. Use it with: peclet completion fish | source\n"
-      "complete -c peclet -f\n";
-  for (const CommandOption& option : tree.options) {
-    text += fmt::format("complete -c peclet -n __fish_use_subcommand -l {} -d {}\n", option.name.substr(2),
-                        fish_quoted(option.meaning));
-  }
-  for (const CommandVerb& verb : tree.verbs) {
-    text += fmt::format("complete -c peclet -n __fish_use_subcommand -a {} -d {}\n", verb.name,
-                        fish_quoted(verb.summary));
-    const std::string where = fish_quoted("__fish_seen_subcommand_from " + verb.name);
-    for (const CommandOption& option : verb.options) {
-      const std::string value = fish_value(option);
-      if (!option.positional) {
-        text += fmt::format("complete -c peclet -n {} -l {}{} -d {}\n", where, option.name.substr(2), value,
-                            fish_quoted(option.meaning));
-      } else if (value != " -x") {
-        // Words without a name are completed wherever they stand.
-        text += fmt::format("complete -c peclet -n {}{}\n", where, value);
-      }
+    verbs.push_back(verb.name);
+    const std::vector<CommandOption> named = verb.named();
+    options += fmt::format("        {}) options='{}' valued='{}' ;;\n", verb.name,
+                           joined(names(named, false)), joined(names(named, true)));
+    for (const CommandOption& option : named) {
+      after_option += branch(verb.name + ':' + option.name, offer(option));
+    }
+    const std::vector<CommandOption> positionals = verb.positionals();
+    for (std::size_t place = 0; place < positionals.size(); ++place) {
+      at_place += branch(fmt::format("{}:{}", verb.name, place), offer(positionals[place]));
     }
   }
-  return text;
-}
-
-std::string completion(const CommandTree& tree, const std::string& shell) {
-  if (shell == "bash") return bash_completion(tree);
-  if (shell == "zsh") return zsh_completion(tree);
-  assert(shell == "fish");
-  return fish_completion(tree);
+  return fmt::format(fmt::runtime(script), joined(names(tree.options, false)), joined(verbs), options,
+                     after_option, at_place);
 }
 
 }  // namespace peclet::runner

@@ -1,4 +1,4 @@
-// The verb `peclet completion`: what shells need to complete command lines of peclet.
+// The verb `peclet completion`: what bash needs to complete command lines of peclet.
 #pragma once
 
 #include <filesystem>
@@ -9,17 +9,13 @@
 namespace peclet::runner {
 
 struct CompletionOptions {
-  std::string shell;             // bash, zsh or fish
+  std::string shell;             // bash
   std::filesystem::path output;  // "": standard output
   bool quiet = false;            // does not say where it is
 };
 
-// A script for `eval`, or for a file in the shell's own folder of completions. Verbs, options, choices, and
-// files where an option takes some: campaign files (*.json), .peclet folders, any file, any folder.
+// A script for `eval`, or for a file in bash's own folder of completions. Verbs, options, choices, and files
+// where an option takes some: campaign files (*.json), .peclet folders, any file, any folder.
 std::string bash_completion(const CommandTree& tree);
-std::string zsh_completion(const CommandTree& tree);
-std::string fish_completion(const CommandTree& tree);
-
-std::string completion(const CommandTree& tree, const std::string& shell);
 
 }  // namespace peclet::runner

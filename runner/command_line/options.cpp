@@ -25,11 +25,7 @@ std::string version_text() {
                      origin.value("git_dirty", Json()) == true ? ", with changes" : "");
 }
 
-std::string exit_code_lines() {
-  std::string text = "Exit codes:\n";
-  for (const auto& [code, meaning] : exit_codes()) text += fmt::format("  {:>2}  {}\n", code, meaning);
-  return text + "`peclet help VERB` says more about a verb, `peclet manual VERB | man -l -` all there is.";
-}
+std::string footer() { return exit_code_lines({}) + "`peclet help VERB` says more about a verb."; }
 
 // The command line as it was typed, and what to say where it has a fault.
 class Reader {
@@ -38,7 +34,7 @@ class Reader {
     CLI::App& app = verbs_.app();
     app.require_subcommand(1);
     app.set_version_flag("--version", std::function<std::string()>(version_text));  // reads the program file
-    app.footer(exit_code_lines());
+    app.footer(footer());
     app.formatter(std::make_shared<HelpFormatter>());
     add_running_verbs(verbs_);
     add_looking_verbs(verbs_);
@@ -65,7 +61,7 @@ class Reader {
     return {verbs_.action(), 0};
   }
 
-  CommandTree tree() const { return describe(verbs_.app(), verbs_.texts()); }
+  CommandTree tree() const { return describe(verbs_.app()); }
 
  private:
   static CommandLine complain(const std::string& fault) {

@@ -26,25 +26,20 @@ CommandOption describe(const CLI::Option& option) {
   CommandOption described;
   described.positional = option.get_positional();
   described.name = described.positional ? option.get_name(true) : "--" + option.get_lnames().front();
-  if (!option.get_snames().empty()) described.short_name = "-" + option.get_snames().front();
   described.value = value_of(option);
   described.choices = choices_of(option);
-  described.meaning = option.get_description();
   described.default_value = option.get_default_str();
-  described.required = option.get_required();
   described.repeatable = option.get_expected_max() > 1;
   return described;
 }
 
 }  // namespace
 
-CommandTree describe(const CLI::App& app, const std::map<std::string, VerbText>& texts) {
+CommandTree describe(const CLI::App& app) {
   CommandTree tree;
-  tree.summary = app.get_description();
   for (const CLI::Option* option : app.get_options()) tree.options.push_back(describe(*option));
   for (const CLI::App* verb : app.get_subcommands(std::function<bool(const CLI::App*)>())) {
-    const auto& [example, page] = texts.at(verb->get_name());
-    CommandVerb described{verb->get_name(), verb->get_description(), example, {}, page};
+    CommandVerb described{verb->get_name(), {}};
     for (const CLI::Option* option : verb->get_options()) described.options.push_back(describe(*option));
     tree.verbs.push_back(std::move(described));
   }

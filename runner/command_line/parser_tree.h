@@ -2,15 +2,13 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <map>
 #include <string>
 
 #include "runner/command_line/command_tree.h"
 
 namespace peclet::runner {
 
-// `texts` by verb.
-CommandTree describe(const CLI::App& app, const std::map<std::string, VerbText>& texts);
+CommandTree describe(const CLI::App& app);
 
 // Prints values without the parser's own words for their checks: "--threads NUMBER=1".
 class HelpFormatter : public CLI::Formatter {

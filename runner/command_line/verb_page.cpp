@@ -1,5 +1,9 @@
 #include "runner/command_line/verb_page.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
 #include <sstream>
 #include <utility>
 
@@ -38,8 +42,8 @@ VerbPage page(const std::string& prose, std::vector<VerbExample> examples, std::
   return made;
 }
 
-const std::map<int, std::string>& exit_codes() {
-  static const std::map<int, std::string> codes{
+std::string exit_code_lines(const std::vector<int>& codes) {
+  static const std::map<int, std::string> meanings{
       {ExitCode::done, "done; of a run: every point converged"},
       {ExitCode::error, "error"},
       {ExitCode::usage, "usage, or faulty input; nothing has been written"},
@@ -50,12 +54,18 @@ const std::map<int, std::string>& exit_codes() {
       {ExitCode::integrity, "integrity: the database is damaged, or a seed gave two different results"},
       {ExitCode::stopped,
        "stopped by a signal or a time limit, or at the end of its budget; the same command goes on"}};
-  return codes;
+  std::string text = "Exit codes:\n";
+  for (const auto& [code, meaning] : meanings) {
+    if (codes.empty() || std::count(codes.begin(), codes.end(), code) > 0)
+      text += fmt::format("  {:>2}  {}\n", code, meaning);
+  }
+  return text;
 }
 
 std::string help_footer(const VerbPage& page, const std::string& example) {
   std::string text;
   for (const std::string& paragraph : page.paragraphs) text += wrapped(paragraph) + '\n';
+  text += exit_code_lines(page.exit_codes) + '\n';
   text += page.examples.empty() ? "Example:\n" : "Examples:\n";
   text += "  " + example + '\n';
   for (const VerbExample& more : page.examples) {

@@ -1,7 +1,6 @@
-// What is to be said of verbs beyond the one line that the list of verbs has: for --help and the manual.
+// What --help, and so the manual, says of verbs beyond the one line that the list of verbs has.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -18,15 +17,11 @@ struct VerbPage {
   std::vector<int> exit_codes;        // that it can leave with; empty: any
 };
 
-struct VerbText {
-  std::string example;
-  VerbPage page;
-};
-
 // Paragraphs of `prose` are separated by empty lines; where its lines end means nothing.
 VerbPage page(const std::string& prose, std::vector<VerbExample> examples, std::vector<int> exit_codes);
 
-const std::map<int, std::string>& exit_codes();
+// A line for each of these exit codes, below a heading; for all of them if there are none.
+std::string exit_code_lines(const std::vector<int>& codes);
 
 // What follows the options in --help.
 std::string help_footer(const VerbPage& page, const std::string& example);

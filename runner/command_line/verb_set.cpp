@@ -41,7 +41,6 @@ std::string named_file(const std::string& word) {
 CLI::App* VerbSet::add(const char* name, const char* description, const char* example, const VerbPage& page) {
   CLI::App* const verb = app_.add_subcommand(name, description);
   verb->footer(help_footer(page, example));
-  texts_[name] = {example, page};
   return verb;
 }
 

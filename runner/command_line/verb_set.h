@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -25,7 +24,6 @@ class VerbSet {
 
   CLI::App& app() { return app_; }
   const CLI::App& app() const { return app_; }
-  const std::map<std::string, VerbText>& texts() const { return texts_; }  // by verb
   // What the verb that was named does; it gives an exit code. Nothing before the parser has parsed.
   const std::function<int()>& action() const { return action_; }
 
@@ -50,7 +48,6 @@ class VerbSet {
  private:
   CLI::App app_{"Campaigns of dense-suspension simulations: from a scene to converged averages", "peclet"};
   std::function<int()> action_;
-  std::map<std::string, VerbText> texts_;
 };
 
 // One function a verb, in the file of its group. In the order in which help lists them.

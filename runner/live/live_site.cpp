@@ -1,39 +1,27 @@
 #include "runner/live/live_site.h"
 
+#include <algorithm>
+#include <cctype>
 #include <exception>
+#include <string>
+#include <utility>
 
 #include "runner/page/page_html.h"
 
 namespace peclet::runner {
 namespace {
 
-HttpAnswer with(std::shared_ptr<const std::string> body, const char* type) {
-  HttpAnswer answer;
-  answer.type = type;
-  answer.body = std::move(body);
-  return answer;
-}
-
-HttpAnswer nothing_new() {
-  HttpAnswer answer;
-  answer.status = 204;
-  return answer;
-}
-
-std::string value_of(const HttpRequest& request, const char* name) {
-  const auto found = request.query.find(name);
-  return found == request.query.end() ? "" : found->second;
-}
+HttpAnswer nothing_new() { return {.status = 204}; }
 
 HttpAnswer page(LiveCampaign& campaign) {
   campaign.look();
-  HttpAnswer answer = with(campaign.page(), "text/html; charset=utf-8");
-  answer.policy = page_policy(true) + "; frame-ancestors 'none'";
-  return answer;
+  return {.type = "text/html; charset=utf-8",
+          .body = campaign.page(),
+          .policy = page_policy(true) + "; frame-ancestors 'none'"};
 }
 
 HttpAnswer json_or(std::shared_ptr<const std::string> text, HttpAnswer otherwise) {
-  return text ? with(std::move(text), "application/json") : std::move(otherwise);
+  return text ? HttpAnswer{.type = "application/json", .body = std::move(text)} : std::move(otherwise);
 }
 
 }  // namespace
@@ -41,18 +29,38 @@ HttpAnswer json_or(std::shared_ptr<const std::string> text, HttpAnswer otherwise
 HttpAnswer answer(LiveCampaign& campaign, const HttpRequest& request) {
   if (!is_loopback_name(request.host)) return refusal(403);
   if (request.method != "GET" && request.method != "HEAD") return refusal(405);
+  const std::size_t mark = std::min(request.target.find('?'), request.target.size());
+  const std::string path = request.target.substr(0, mark);
+  // The page asks with one name. Tokens and hashes have no characters that are percent-encoded.
+  const auto value_of = [&](const std::string& start) {
+    return request.target.compare(mark, start.size(), start) == 0 ? request.target.substr(mark + start.size())
+                                                                  : "";
+  };
   try {
-    if (request.path == "/") return page(campaign);
-    if (request.path == "/state") {
+    if (path == "/") return page(campaign);
+    if (path == "/state") {
       campaign.look();
-      return json_or(campaign.changes_since(value_of(request, "since")), nothing_new());
+      return json_or(campaign.changes_since(value_of("?since=")), nothing_new());
     }
-    if (request.path == "/point") return json_or(campaign.details(value_of(request, "hash")), refusal(404));
+    if (path == "/point") return json_or(campaign.details(value_of("?hash=")), refusal(404));
   } catch (const std::exception&) {
     return refusal(500);
   }
   // Browsers ask for an icon, and complain where there is none.
-  return request.path == "/favicon.ico" ? nothing_new() : refusal(404);
+  return path == "/favicon.ico" ? nothing_new() : refusal(404);
+}
+
+bool is_loopback_name(std::string_view host) {
+  const std::size_t colon = host.rfind(':');
+  if (colon != std::string_view::npos && host.find(']', colon) == std::string_view::npos) {
+    const std::string_view port = host.substr(colon + 1);
+    if (!std::all_of(port.begin(), port.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
+      return false;
+    host = host.substr(0, colon);
+  }
+  std::string name(host);
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return name == "127.0.0.1" || name == "localhost" || name == "[::1]";
 }
 
 }  // namespace peclet::runner

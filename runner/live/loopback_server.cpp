@@ -1,178 +1,216 @@
+// The only file that includes Boost.Asio and Boost.Beast, which take seconds to compile.
 #include "runner/live/loopback_server.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
-#include <netinet/in.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/beast/core/flat_static_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/serializer.hpp>
+#include <boost/beast/http/span_body.hpp>
+#include <boost/beast/http/write.hpp>
 #include <cerrno>
 #include <chrono>
+#include <cstdint>
+#include <limits>
 #include <list>
+#include <optional>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
-#include <vector>
-
-#include "contract/descriptor.h"
 
 namespace peclet::runner {
 namespace {
 
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+using asio::ip::tcp;
+using beast::error_code;
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::seconds patience{10};  // for the next bytes, either way
+
+constexpr std::chrono::seconds patience{10};  // for a whole head, and for each part of the answer
 constexpr std::size_t most_connections = 64;
+constexpr std::size_t longest_head = 8192;
 
-[[noreturn]] void fail(const char* doing) { throw std::system_error(errno, std::generic_category(), doing); }
+// Returns the status that refuses what was read; nothing if the other side is gone or too slow.
+std::optional<int> refused_by(const error_code& error) {
+  if (error == http::error::end_of_stream || error == http::error::partial_message) return std::nullopt;
+  if (error == http::error::header_limit || error == http::error::buffer_overflow) return 431;
+  if (error == http::error::bad_version) return 505;
+  if (error.category() == make_error_code(http::error::bad_method).category()) return 400;
+  return std::nullopt;
+}
 
-bool is_only_delayed() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
-
-// A connection reads one request, writes one answer, and waits for the other side to hang up: whoever closes
-// with bytes unread takes back what was sent.
-class Exchange {
+// Connection that reads the head of one request, writes one answer and waits for the other side to hang up:
+// closing a socket with unread bytes takes back what was sent.
+class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  explicit Exchange(int socket) : socket_(socket) {}
+  Connection(tcp::socket socket, const LoopbackServer::Handler& handler)
+      : stream_(std::move(socket)), handler_(handler) {
+    parser_.header_limit(longest_head);
+    parser_.body_limit(std::numeric_limits<std::uint64_t>::max());  // the body is never read
+  }
 
-  int socket() const { return socket_.number(); }
-  short awaits() const { return state_ == State::writing ? POLLOUT : POLLIN; }
-  bool is_over(Clock::time_point now) const { return state_ == State::over || now > deadline_; }
   Clock::time_point deadline() const { return deadline_; }
+  void close() { stream_.close(); }
 
-  // To be called when the socket is ready.
-  void go_on(const LoopbackServer::Handler& handler) {
-    if (state_ == State::writing) {
-      write();
-    } else {
-      read(handler);
-    }
+  void start() {
+    expire_after(patience);  // the whole head, so that bytes one by one gain nothing
+    http::async_read_header(stream_, buffer_, parser_, [self = shared_from_this()](error_code error, auto) {
+      if (!error) {
+        self->answer(self->answer_to(self->parser_.get()));
+      } else if (const std::optional<int> status = refused_by(error)) {
+        self->answer(refusal(*status));
+      }
+    });
   }
 
  private:
-  enum class State { reading, writing, draining, over };
+  using Body = http::span_body<const char>;
 
-  void read(const LoopbackServer::Handler& handler) {
-    std::array<char, 4096> bytes{};
-    const ssize_t got = recv(socket(), bytes.data(), bytes.size(), 0);
-    if (got < 0 && is_only_delayed()) return;
-    if (got <= 0) {
-      state_ = State::over;
-      return;
-    }
-    if (state_ == State::draining) return;  // whatever a body says; the deadline stays
-    head_.append(bytes.data(), static_cast<std::size_t>(got));
-    const std::size_t end = end_of_head(head_);
-    if (end == std::string::npos && head_.size() <= longest_head) return;
-    const bool whole = end <= longest_head;  // npos is not
-    answer(whole ? answer_to(head_.substr(0, end), handler) : refusal(431));
+  HttpAnswer answer_to(const http::request<http::empty_body>& request) const {
+    if (request.count(http::field::host) != 1 || !request.target().starts_with('/')) return refusal(400);
+    return handler_({request.method_string().to_string(), request.target().to_string(),
+                     request[http::field::host].to_string()});
   }
 
-  HttpAnswer answer_to(const std::string& head, const LoopbackServer::Handler& handler) {
-    const std::variant<HttpRequest, int> request = read_head(head);
-    if (const int* const status = std::get_if<int>(&request)) return refusal(*status);
-    without_body_ = std::get<HttpRequest>(request).method == "HEAD";
-    return handler(std::get<HttpRequest>(request));
-  }
-
+  // Nothing is kept by a cache, shown in a frame, guessed at, or told to another site.
   void answer(const HttpAnswer& answer) {
-    head_ = head_text(answer);
-    if (!without_body_) body_ = answer.body;
-    state_ = State::writing;
-    deadline_ = Clock::now() + patience;
+    response_.result(static_cast<unsigned>(answer.status));
+    response_.keep_alive(false);
+    response_.set(http::field::cache_control, "no-store");
+    response_.set("Content-Security-Policy", answer.policy);
+    response_.set("Cross-Origin-Opener-Policy", "same-origin");
+    response_.set("Cross-Origin-Resource-Policy", "same-origin");
+    response_.set("Referrer-Policy", "no-referrer");
+    response_.set("X-Content-Type-Options", "nosniff");
+    response_.set("X-Frame-Options", "DENY");
+    if (answer.status == 405) response_.set(http::field::allow, "GET, HEAD");
+    body_ = answer.body;
+    if (body_) {
+      response_.set(http::field::content_type, answer.type);
+      response_.content_length(body_->size());
+      response_.body() = {body_->data(), body_->size()};
+    }
+    serializer_.split(is_head());
     write();
   }
 
+  bool is_head() const { return parser_.get().method() == http::verb::head; }
+
   void write() {
-    const std::size_t whole = head_.size() + (body_ ? body_->size() : 0);
-    while (sent_ < whole) {
-      const bool in_head = sent_ < head_.size();
-      const std::string& part = in_head ? head_ : *body_;
-      const std::size_t from = in_head ? sent_ : sent_ - head_.size();
-      const ssize_t took = send(socket(), part.data() + from, part.size() - from, MSG_NOSIGNAL);
-      if (took < 0 && is_only_delayed()) return;
-      if (took <= 0) {
-        state_ = State::over;
-        return;
-      }
-      sent_ += static_cast<std::size_t>(took);
-      deadline_ = Clock::now() + patience;
-    }
-    shutdown(socket(), SHUT_WR);
-    state_ = State::draining;
-    deadline_ = Clock::now() + std::chrono::seconds(1);
+    expire_after(patience);
+    http::async_write_some(stream_, serializer_, [self = shared_from_this()](error_code error, auto) {
+      if (error) return;
+      const bool is_over = self->is_head() ? self->serializer_.is_header_done() : self->serializer_.is_done();
+      if (!is_over) return self->write();
+      self->stream_.socket().shutdown(tcp::socket::shutdown_send, error);
+      self->expire_after(std::chrono::seconds(1));
+      self->drain();
+    });
   }
 
-  Descriptor socket_;
-  State state_ = State::reading;
-  Clock::time_point deadline_ =
-      Clock::now() + patience;  // of a whole head, so that bytes one by one gain nothing
-  std::string head_;            // of the request, then of the answer
+  void drain() {
+    stream_.async_read_some(asio::buffer(drained_), [self = shared_from_this()](error_code error, auto) {
+      if (!error) self->drain();
+    });
+  }
+
+  void expire_after(Clock::duration time) {
+    deadline_ = Clock::now() + time;
+    stream_.expires_after(time);
+  }
+
+  beast::tcp_stream stream_;
+  const LoopbackServer::Handler& handler_;
+  Clock::time_point deadline_;
+  beast::flat_static_buffer<longest_head> buffer_;
+  http::request_parser<http::empty_body> parser_;
   std::shared_ptr<const std::string> body_;
-  std::size_t sent_ = 0;
-  bool without_body_ = false;
+  http::response<Body> response_;
+  http::response_serializer<Body> serializer_{response_};
+  std::array<char, 4096> drained_{};
 };
-
-std::list<Exchange>::const_iterator soonest_to_end(const std::list<Exchange>& exchanges) {
-  return std::min_element(exchanges.begin(), exchanges.end(),
-                          [](const Exchange& a, const Exchange& b) { return a.deadline() < b.deadline(); });
-}
-
-// Until the next deadline; without connections as long as it takes.
-int wait_milliseconds(const std::list<Exchange>& exchanges) {
-  if (exchanges.empty()) return -1;
-  const auto left =
-      std::chrono::ceil<std::chrono::milliseconds>(soonest_to_end(exchanges)->deadline() - Clock::now());
-  return static_cast<int>(std::max<std::chrono::milliseconds::rep>(left.count() + 1, 0));
-}
 
 }  // namespace
 
-LoopbackServer::LoopbackServer(int port) {
-  Descriptor listener(socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  if (listener.number() < 0) fail("socket");
-  const int yes = 1;
-  if (setsockopt(listener.number(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes)) != 0) fail("setsockopt");
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  socklen_t size = sizeof(address);
-  auto* const general = reinterpret_cast<sockaddr*>(&address);
-  if (bind(listener.number(), general, size) != 0 || listen(listener.number(), SOMAXCONN) != 0) {
-    if (errno != EADDRINUSE && errno != EACCES) fail("bind");
-    throw std::runtime_error(fmt::format("port {} {}; `--port 0` takes one that is free", port,
-                                         errno == EACCES ? "may not be used by you" : "is in use"));
-  }
-  if (getsockname(listener.number(), general, &size) != 0) fail("getsockname");
-  port_ = ntohs(address.sin_port);
-  listener_ = listener.take();
+HttpAnswer refusal(int status) {
+  const auto reason = http::obsolete_reason(http::int_to_status(static_cast<unsigned>(status)));
+  HttpAnswer answer;
+  answer.status = status;
+  answer.body = std::make_shared<const std::string>(fmt::format("{} {}\n", status, reason.to_string()));
+  return answer;
 }
 
-LoopbackServer::~LoopbackServer() { close(listener_); }
+class LoopbackServer::Listener {
+ public:
+  explicit Listener(int port) {
+    const tcp::endpoint here(asio::ip::address_v4::loopback(), static_cast<std::uint16_t>(port));
+    acceptor_.open(here.protocol());
+    acceptor_.set_option(tcp::acceptor::reuse_address(true));
+    error_code error;
+    acceptor_.bind(here, error);
+    if (!error) acceptor_.listen(tcp::acceptor::max_listen_connections, error);
+    const bool is_denied = error == asio::error::access_denied;
+    if (is_denied || error == asio::error::address_in_use)
+      throw std::runtime_error(fmt::format("port {} {}; `--port 0` takes one that is free", port,
+                                           is_denied ? "may not be used by you" : "is in use"));
+    if (error) throw std::system_error(error, "bind");
+  }
 
-void LoopbackServer::serve(int stop, const Handler& handler) {
-  std::list<Exchange> exchanges;
-  std::vector<pollfd> watched;
-  for (;;) {
-    watched = {{stop, POLLIN, 0}, {listener_, POLLIN, 0}};
-    for (const Exchange& one : exchanges) watched.push_back({one.socket(), one.awaits(), 0});
-    if (poll(watched.data(), watched.size(), wait_milliseconds(exchanges)) < 0 && errno != EINTR)
-      fail("poll");
-    if (watched[0].revents != 0) return;
-    std::size_t place = 2;
-    for (Exchange& one : exchanges) {
-      if (watched[place++].revents != 0) one.go_on(handler);
+  int port() const { return acceptor_.local_endpoint().port(); }
+
+  void serve(int stop, const Handler& handler) {
+    const int duplicate = fcntl(stop, F_DUPFD_CLOEXEC, 0);
+    if (duplicate < 0) throw std::system_error(errno, std::generic_category(), "fcntl");
+    asio::posix::stream_descriptor stopping(context_, duplicate);
+    stopping.async_wait(asio::posix::stream_descriptor::wait_read, [this](error_code) { context_.stop(); });
+    accept(handler);
+    context_.run();
+  }
+
+ private:
+  void accept(const Handler& handler) {
+    acceptor_.async_accept([this, &handler](error_code error, tcp::socket socket) {
+      if (!error) admit(std::make_shared<Connection>(std::move(socket), handler));
+      accept(handler);
+    });
+  }
+
+  // Slow connections keep no other waiting: the one whose time ends first makes room.
+  void admit(const std::shared_ptr<Connection>& connection) {
+    connections_.remove_if([](const auto& one) { return one.expired(); });
+    if (connections_.size() >= most_connections) {
+      const auto soonest = std::min_element(
+          connections_.begin(), connections_.end(),
+          [](const auto& a, const auto& b) { return a.lock()->deadline() < b.lock()->deadline(); });
+      soonest->lock()->close();
+      connections_.erase(soonest);
     }
-    const Clock::time_point now = Clock::now();
-    exchanges.remove_if([&](const Exchange& one) { return one.is_over(now); });
-    if (watched[1].revents == 0) continue;
-    const int socket = accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
-    if (socket < 0) continue;
-    // Slow connections make no other wait: the one that has got on least makes room.
-    if (exchanges.size() >= most_connections) exchanges.erase(soonest_to_end(exchanges));
-    exchanges.emplace_back(socket);
+    connections_.push_back(connection);
+    connection->start();
   }
-}
+
+  asio::io_context context_{1};  // for one thread
+  tcp::acceptor acceptor_{context_};
+  std::list<std::weak_ptr<Connection>> connections_;
+};
+
+LoopbackServer::LoopbackServer(int port) : listener_(std::make_unique<Listener>(port)) {}
+
+LoopbackServer::~LoopbackServer() = default;
+
+int LoopbackServer::port() const { return listener_->port(); }
+
+void LoopbackServer::serve(int stop, const Handler& handler) { listener_->serve(stop, handler); }
 
 }  // namespace peclet::runner

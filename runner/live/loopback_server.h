@@ -1,31 +1,49 @@
-// A small HTTP server that only this machine can reach: one thread, one request a connection.
+// HTTP server that only this machine can reach: one thread, one request per connection.
 #pragma once
 
 #include <functional>
-
-#include "runner/live/http_answer.h"
-#include "runner/live/http_request.h"
+#include <memory>
+#include <string>
 
 namespace peclet::runner {
 
+struct HttpRequest {
+  std::string method;  // "GET"
+  std::string target;  // path and query as sent: "/state?since=2"
+  std::string host;    // the browser's name for this server, with its port
+};
+
+struct HttpAnswer {
+  int status = 200;
+  std::string type = "text/plain; charset=utf-8";
+  std::shared_ptr<const std::string> body = nullptr;  // shared by all connections that get it; null if none
+  // What a page may do. Any other answer may do nothing.
+  std::string policy = "default-src 'none'; frame-ancestors 'none'";
+};
+
+// Returns an answer whose body is one line: the status and its reason.
+HttpAnswer refusal(int status);
+
 class LoopbackServer {
  public:
-  // Listens on 127.0.0.1; port 0 is any that is free. Throws std::system_error, and std::runtime_error with a
-  // cure for a port that is in use.
+  // Listens on 127.0.0.1; port 0 takes any free one. Throws std::system_error, and std::runtime_error with a
+  // cure if the port is in use or not allowed.
   explicit LoopbackServer(int port);
   ~LoopbackServer();
   LoopbackServer(const LoopbackServer&) = delete;
   LoopbackServer& operator=(const LoopbackServer&) = delete;
 
-  int port() const { return port_; }
+  int port() const;
 
   using Handler = std::function<HttpAnswer(const HttpRequest&)>;
-  // Answers until `stop` can be read from. Of a request with HEAD the body is not sent. A connection that
-  // does not get on for some seconds is closed; what the handler throws is the server's end.
+  // Answers until `stop` is readable. A request by HEAD gets no body. A malformed request is refused by
+  // status 400, 431 (head of more than 8192 bytes) or 505. A connection without progress for 10 s is closed;
+  // so is the slowest of 64 connections when another one comes. An exception of the handler ends the server.
   void serve(int stop, const Handler& handler);
 
  private:
-  int listener_ = -1, port_ = 0;
+  class Listener;
+  std::unique_ptr<Listener> listener_;
 };
 
 }  // namespace peclet::runner

@@ -30,7 +30,7 @@ STEPS_BETWEEN_SAMPLES = 20
 SKIN = 0.05  # the fastest
 OURS = "peclet-engine"  # the contestant to whom ratios are taken
 
-# Cases of `peclet-engine bench`, with what drives each of them.
+# Cases of engine_bench, with what drives each of them.
 DRIVES = {
     "frictionless": {"flow": {"shear_rate": 0.045}},
     "brownian": {"peclet": 10, "limits": {"shear_rate": 0.045, "thermal_energy": 1.0}},
@@ -120,6 +120,12 @@ class Lammps:
         return 1e9 * seconds / particle_steps
 
 
+def bench(engine):
+    """The command that times cases: engine_bench beside the engine; older engines have a verb for it."""
+    beside = os.path.join(os.path.dirname(engine), "engine_bench")
+    return [beside] if os.path.exists(beside) else [engine, "bench"]
+
+
 def compare(case, arguments, folder):
     engines = {OURS: arguments.engine}
     if arguments.before:
@@ -131,7 +137,7 @@ def compare(case, arguments, folder):
     peer = Lammps(arguments.lammps, folder, rate, thermal_energy, step, arguments.strain)
 
     contestants = {
-        label: lambda engine=engine: bench_median(output_of(engine, "bench", case), case)
+        label: lambda engine=engine: bench_median(output_of(*bench(engine), case), case)
         for label, engine in engines.items()
     }
     states = {

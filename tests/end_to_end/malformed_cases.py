@@ -29,7 +29,6 @@ VERBS = (
     "restore",
     "doctor",
     "completion",
-    "manual",
 )
 
 
@@ -171,7 +170,7 @@ def option_faults(peclet):
     positional = {"task": ["manifest.json"], "hand-over": ["slurm", "input.json"], "cancel": ["input.json", "p"]}
     for verb in VERBS:
         start = [verb, *positional.get(verb, ["input.json"])]
-        if verb in ("completion", "manual"):
+        if verb == "completion":
             start = [verb]
         page = subprocess.run([peclet, verb, "--help"], capture_output=True, text=True, check=True).stdout
         names = re.findall(r"^ +(--[a-z-]+)(?: (NUMBER|SECONDS))?", page, re.MULTILINE)

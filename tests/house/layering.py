@@ -71,7 +71,6 @@ ENGINE = [
             "output",
             "jobs",
             "evaluation",
-            "benchmark",
         )
     ),
     "engine",

@@ -149,7 +149,7 @@ def who_notices(folder):
         if done.returncode != 0:
             noticed.append(f"study {study}")
     for program, arguments in (
-        ("engine_tests", ["--gtest_filter=-Benchmark*"]),
+        ("engine_tests", []),
         ("physics_tests", ["--gtest_filter=-PairDensity*"]),
     ):
         names = failed_tests(folder, program, arguments)

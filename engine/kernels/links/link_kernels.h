@@ -26,7 +26,7 @@
 
 namespace peclet::engine {
 
-#ifndef PECLET_FLOATS  // benchmark/counted_links.cpp has numbers that count
+#ifndef PECLET_FLOATS  // tests/bench/engine/counted_links.cpp has numbers that count
 typedef float Floats __attribute__((vector_size(32)));
 #endif
 

@@ -1,4 +1,4 @@
-#include "engine/benchmark/operations.h"
+#include "tests/bench/engine/operations.h"
 
 #include "engine/kernels/pairs/pair_kernel.h"
 #include "engine/kernels/pairs/terms.h"

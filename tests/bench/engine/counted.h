@@ -2,8 +2,8 @@
 // operations a pair takes.
 #pragma once
 
-#include "engine/benchmark/operation_counts.h"
 #include "engine/kernels/lanes/single_access.h"
+#include "tests/bench/engine/operation_counts.h"
 
 namespace peclet::engine {
 

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "engine/benchmark/counted.h"
 #include "engine/kernels/force_field.h"
+#include "tests/bench/engine/counted.h"
 
 namespace peclet::engine {
 

@@ -3,7 +3,7 @@
 // Their rows and links are then other types. So they, and all headers that they stand on, have a namespace of
 // their own here, and nothing of the engine's may be included but what says counts, and
 // teams, which have no numbers.
-#include "engine/benchmark/counted_links.h"
+#include "tests/bench/engine/counted_links.h"
 
 #include <array>
 #include <atomic>

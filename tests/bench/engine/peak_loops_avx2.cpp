@@ -1,5 +1,5 @@
-#include "engine/benchmark/peak_loops.h"
 #include "engine/kernels/lanes/lane_access.h"
+#include "tests/bench/engine/peak_loops.h"
 
 namespace peclet::engine {
 

@@ -1,7 +1,7 @@
 // What the solver of implicit steps does, counted by its own kernels.
 #pragma once
 
-#include "engine/benchmark/operation_counts.h"
+#include "tests/bench/engine/operation_counts.h"
 
 namespace peclet::engine {
 

@@ -1,4 +1,4 @@
-#include "engine/benchmark/peak_loops.h"
+#include "tests/bench/engine/peak_loops.h"
 
 namespace peclet::engine {
 

@@ -1,11 +1,11 @@
-#include "engine/benchmark/machine.h"
+#include "tests/bench/engine/machine.h"
 
 #include <algorithm>
 #include <chrono>
 #include <limits>
 #include <vector>
 
-#include "engine/benchmark/peak_loops.h"
+#include "tests/bench/engine/peak_loops.h"
 
 namespace peclet::engine {
 namespace {

@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "contract/input_error.h"
-#include "engine/benchmark/catalogue.h"
-#include "engine/benchmark/operations.h"
-#include "engine/benchmark/tiling.h"
+#include "tests/bench/engine/catalogue.h"
+#include "tests/bench/engine/operations.h"
+#include "tests/bench/engine/tiling.h"
 #include "tests/engine/dense_suspension.h"
 #include "tests/engine/every_image.h"
 #include "tests/engine/pair_evaluation.h"

@@ -1,4 +1,4 @@
-#include "engine/benchmark/solver_cost.h"
+#include "tests/bench/engine/solver_cost.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <limits>
 #include <span>
 
-#include "engine/benchmark/counted_links.h"
 #include "engine/integrators/velocity_solver.h"
+#include "tests/bench/engine/counted_links.h"
 
 namespace peclet::engine {
 namespace {

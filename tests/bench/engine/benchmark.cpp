@@ -1,4 +1,4 @@
-#include "engine/benchmark/benchmark.h"
+#include "tests/bench/engine/benchmark.h"
 
 #include <fmt/format.h>
 
@@ -9,12 +9,12 @@
 #include <stdexcept>
 
 #include "contract/provenance.h"
-#include "engine/benchmark/catalogue.h"
-#include "engine/benchmark/machine.h"
-#include "engine/benchmark/operations.h"
-#include "engine/benchmark/solver_cost.h"
-#include "engine/benchmark/tiling.h"
 #include "engine/realisation/simulation.h"
+#include "tests/bench/engine/catalogue.h"
+#include "tests/bench/engine/machine.h"
+#include "tests/bench/engine/operations.h"
+#include "tests/bench/engine/solver_cost.h"
+#include "tests/bench/engine/tiling.h"
 
 namespace peclet::engine {
 namespace {
@@ -285,12 +285,12 @@ void run(const Group& group, const Machine& machine) {
 
 }  // namespace
 
-int run_benchmarks(const std::vector<std::string>& names) {
+void run_benchmarks(const std::vector<std::string>& names) {
   const std::vector<Group> groups = chosen_groups(names);
   const InstructionSet set = chosen_instruction_set();
   const Machine machine = measure_machine(set);
   const Json& build = provenance();
-  fmt::print("peclet-engine {}  commit {}{}  {}  {}\n", version(), build.at("git_commit").get<std::string>(),
+  fmt::print("engine {}  commit {}{}  {}  {}\n", version(), build.at("git_commit").get<std::string>(),
              build.at("git_dirty").get<bool>() ? " with changes" : "", build.at("cpu").get<std::string>(),
              name_of(set));
   fmt::print(
@@ -304,7 +304,6 @@ int run_benchmarks(const std::vector<std::string>& names) {
   for (const Group& group : groups) {
     run(group, machine);
   }
-  return 0;
 }
 
 }  // namespace peclet::engine

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "engine/benchmark/machine.h"
-#include "engine/benchmark/operation_counts.h"
-#include "engine/benchmark/spread.h"
 #include "engine/scene/scene.h"
 #include "engine/state/system.h"
+#include "tests/bench/engine/machine.h"
+#include "tests/bench/engine/operation_counts.h"
+#include "tests/bench/engine/spread.h"
 
 namespace peclet::engine {
 

@@ -1,4 +1,4 @@
-#include "engine/benchmark/catalogue.h"
+#include "tests/bench/engine/catalogue.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,4 @@
-#include "engine/benchmark/tiling.h"
+#include "tests/bench/engine/tiling.h"
 
 namespace peclet::engine {
 

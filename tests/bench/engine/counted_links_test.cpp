@@ -1,10 +1,10 @@
 // The kernels of the implicit system, compiled with numbers that count.
-#include "engine/benchmark/counted_links.h"
+#include "tests/bench/engine/counted_links.h"
 
 #include <gtest/gtest.h>
 
-#include "engine/benchmark/catalogue.h"
-#include "engine/benchmark/solver_cost.h"
+#include "tests/bench/engine/catalogue.h"
+#include "tests/bench/engine/solver_cost.h"
 #include "tests/engine/every_image.h"
 #include "tests/engine/kernels/linked_suspension.h"
 
