@@ -52,7 +52,7 @@ std::optional<Look> checked_look(Database& database, const PointRecord& point, c
   Look look = stored.back().look;
   const Look& made_again = replayed[stored.size() - 1];
   look.untested = made_again.untested;
-  look.near_maximum = made_again.near_maximum && is_converged(look.verdict);
+  look.near_maximum = made_again.near_maximum && is_reached(look.verdict);
   look.repeated = made_again.repeated;
   return look;
 }
