@@ -7,7 +7,7 @@ namespace peclet {
 
 struct ExitCode {
   enum : int {
-    done = 0,  // of a run: every point converged
+    done = 0,  // of a run: every point converged, or has all its seeds
     error = 1,
     usage = 2,        // or faulty input; nothing has been written
     unconverged = 3,  // finished, but some points are capped, failed, cancelled or lost seeds

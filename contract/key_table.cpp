@@ -63,6 +63,9 @@ bool is_allowed(const Key& key, const Json& value) {
     case KeyKind::choice:
       return value.is_string() &&
              std::count(key.choices.begin(), key.choices.end(), value.get<std::string>()) > 0;
+    case KeyKind::integer_or_object:
+      if (value.is_object()) return true;
+      [[fallthrough]];
     case KeyKind::integer:
       return is_whole(value) && in_range(key, value.get<double>());
     case KeyKind::number_or_auto:
@@ -92,9 +95,13 @@ class Validation {
     if (!is_allowed(key, value)) {
       throw InputError(file_, pointer, shortened(value), allowed_values(key) + hint_at_percent(key, value));
     }
-    if (key.kind == KeyKind::object) check_object(value, key.pointer, pointer);
+    const bool is_either = key.kind == KeyKind::integer_or_object;
     if (key.kind == KeyKind::array) check_array(value, key.pointer, pointer);
-    if (key.kind == KeyKind::integer) value = static_cast<long long>(value.get<double>());
+    if (key.kind == KeyKind::object || (is_either && value.is_object())) {
+      check_object(value, key.pointer, pointer);
+    } else if (key.kind == KeyKind::integer || is_either) {
+      value = static_cast<long long>(value.get<double>());
+    }
   }
 
   void check_object(Json& object, const std::string& pattern, const std::string& pointer) const {

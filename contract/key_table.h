@@ -11,7 +11,18 @@
 
 namespace peclet {
 
-enum class KeyKind { object, array, number, integer, boolean, string, choice, number_or_auto, any };
+enum class KeyKind {
+  object,
+  array,
+  number,
+  integer,
+  boolean,
+  string,
+  choice,
+  number_or_auto,
+  integer_or_object,  // the range is that of the integer
+  any
+};
 
 // One key of a document. `pointer` uses * for every element of an array: "/particles/species/*/radius".
 // An object or array with no key below it in the table may hold anything.

@@ -90,6 +90,13 @@ Json schema_of(const KeyTable& table, const Key& key) {
       schema["anyOf"] = Json::array({{{"const", "auto"}}, number});
       break;
     }
+    case KeyKind::integer_or_object: {
+      Json integer = {{"type", "integer"}}, object = Json::object();
+      add_range(key, integer);
+      add_members(table, key.pointer, object);
+      schema["anyOf"] = Json::array({integer, object});
+      break;
+    }
   }
   if (!key.meaning.empty()) {
     schema["description"] = key.unit.empty() ? key.meaning : fmt::format("{} [{}]", key.meaning, key.unit);
@@ -146,6 +153,8 @@ std::string allowed_values(const Key& key) {
       return "must be a number" + range_in_words(key);
     case KeyKind::number_or_auto:
       return "must be a number" + range_in_words(key) + " or \"auto\"";
+    case KeyKind::integer_or_object:
+      return "must be an integer" + range_in_words(key) + ", or an object";
   }
   return "";
 }

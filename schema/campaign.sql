@@ -183,7 +183,7 @@ CREATE TABLE look (
   uncontrolled_standard_error REAL,
   uncontrolled_half_width     REAL,
   verdict                     TEXT    NOT NULL CHECK (verdict IN ('more', 'converged', 'converged-with-losses',
-                                'capped', 'failed')),
+                                'capped', 'failed', 'complete', 'complete-with-losses')),
   made_at                     TEXT    NOT NULL,
   skewness                    REAL,     -- of the values that decide
   transient                   INTEGER NOT NULL DEFAULT 0 CHECK (transient IN (0, 1)),  -- the window is too early

@@ -5,7 +5,8 @@ import os
 from peclet.program import PecletError, ask, run_shown
 from peclet.results import open_results
 
-# Codes of `peclet run` that are no error: all converged; finished, but not all; stopped, and goes on when run again.
+# Codes of `peclet run` that are no error: all converged or complete; finished, but not so; stopped, and goes on when
+# run again.
 ENDED, STOPPED = (0, 3), 75
 
 
@@ -20,6 +21,7 @@ class Campaign:
                 entries that a campaign file has
     observable, tolerance, confidence    of the target, the tolerance relative to the mean
     minimum, maximum                     seeds of a point
+    realisations                         seeds of every point, in the place of tolerance, confidence and these two
     more        other keys of a campaign file, such as engine or keep_files
 
     `document` is what the file has; nothing is checked before validate() or run().
@@ -36,6 +38,7 @@ class Campaign:
         confidence=0.95,
         minimum=8,
         maximum=400,
+        realisations=None,
         **more,
     ):
         self._scene_file = None if isinstance(scene, dict) else os.fspath(scene)
@@ -56,6 +59,9 @@ class Campaign:
             "realisations": {"minimum": minimum, "maximum": maximum},
             **more,
         }
+        if realisations is not None:
+            del self.document["target"]
+            self.document.update({"show": [observable], **more, "realisations": realisations})
 
     def write(self, path=None):
         """Writes the campaign file, NAME.json unless told otherwise, and returns its path. A file that is there already
@@ -80,7 +86,7 @@ class Campaign:
             with open(path, encoding="utf-8-sig") as file:
                 earlier = json.load(file)
             if self._scene_file is None or not os.path.samefile(path, self._scene_file):
-                if {"scene", "target"} <= set(earlier) and earlier["name"] == self.document["name"]:
+                if {"scene", "realisations"} <= set(earlier) and earlier["name"] == self.document["name"]:
                     return
         except (OSError, ValueError, TypeError, KeyError):
             pass

@@ -166,5 +166,5 @@ def draw_series(axes, rows, x, colour, mark, label):
     bars = np.nan_to_num(rows["half_width"])
     axes.errorbar(rows[x], rows["mean"], bars, color=colour, capsize=2, linewidth=1, marker="none")
     axes.plot(rows[x], rows["mean"], mark, color=colour, markersize=4.5, label=label)
-    still = rows["verdict"] != "converged"
+    still = ~np.isin(rows["verdict"], ("converged", "complete"))
     axes.plot(rows[x][still], rows["mean"][still], mark, color=colour, markersize=4.5, markerfacecolor="white")

@@ -36,6 +36,39 @@ std::vector<Criterion> also_of(const Json& target, const std::string& leading, c
   return also;
 }
 
+// What a campaign of a fixed number of realisations shows.
+Target shown(const Json& document, const std::string& file) {
+  if (document.contains("target")) {
+    throw InputError(file, "/target", shortened(document["target"]),
+                     "must not be given beside a fixed number of realisations; with a target these are { "
+                     "\"minimum\": ..., \"maximum\": ... }");
+  }
+  const std::vector<std::string> names = document.value("show", std::vector<std::string>{usual_observable});
+  Target target{names.front(), Tolerance::none(), usual_confidence};
+  for (std::size_t place = 1; place < names.size(); ++place) {
+    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(place), names[place]) !=
+        names.begin() + static_cast<std::ptrdiff_t>(place)) {
+      throw InputError(file, fmt::format("/show/{}", place), names[place],
+                       "must be another one than those before it");
+    }
+    target.also.push_back({names[place], Tolerance::none()});
+  }
+  return target;
+}
+
+Target aimed_at(const Json& document, const std::string& file) {
+  if (!document.contains("target")) {
+    throw InputError(file, "/target", "missing",
+                     "must be an object, or /realisations the number of seeds of every point");
+  }
+  if (document.contains("show")) {
+    throw InputError(file, "/show", shortened(document["show"]),
+                     "must not be given beside a target, whose observables are shown");
+  }
+  const Json& target = document["target"];
+  return target_of(target["observable"].get<std::string>(), target, target["confidence"].get<double>(), file);
+}
+
 // Of how many first seeds of each point files are kept.
 int seeds_with_files(const Json& document, const std::string& file) {
   const Json rule = document.value("keep_files", Json("all"));
@@ -83,8 +116,8 @@ std::string to_string(const Target& target) { return to_string(target.criteria()
 std::string to_string(const std::vector<Criterion>& criteria) {
   std::string text;
   for (const Criterion& criterion : criteria) {
-    text += fmt::format("{}{} to {}", text.empty() ? "" : ", ", criterion.observable,
-                        to_string(criterion.tolerance));
+    text += (text.empty() ? "" : ", ") + criterion.observable;
+    if (criterion.tolerance.kind != Tolerance::Kind::none) text += " to " + to_string(criterion.tolerance);
   }
   return text;
 }
@@ -95,6 +128,7 @@ std::string pointer_of(const Target& target, const std::string& observable) {
     for (std::size_t place = 0; place < criteria.size(); ++place) {
       const Criterion& criterion = criteria[place];
       if (observable != (as_measure ? criterion.tolerance.relative_to : criterion.observable)) continue;
+      if (!target.has_tolerance()) return fmt::format("/show/{}", place);
       return fmt::format("/target/{}{}", place == 0 ? "" : fmt::format("also/{}/", place - 1),
                          as_measure ? "relative_to" : "observable");
     }
@@ -147,11 +181,11 @@ Campaign parse_campaign(const Json& written, const std::string& file) {
   campaign.name = document["name"].get<std::string>();
   check_campaign_name(campaign.name, file);
 
-  const Json& target = document["target"];
-  campaign.target =
-      target_of(target["observable"].get<std::string>(), target, target["confidence"].get<double>(), file);
-  campaign.minimum_realisations = document["realisations"]["minimum"].get<int>();
-  campaign.maximum_realisations = document["realisations"]["maximum"].get<int>();
+  const Json& realisations = document["realisations"];
+  const bool is_fixed = realisations.is_number();
+  campaign.target = is_fixed ? shown(document, file) : aimed_at(document, file);
+  campaign.minimum_realisations = (is_fixed ? realisations : realisations["minimum"]).get<int>();
+  campaign.maximum_realisations = (is_fixed ? realisations : realisations["maximum"]).get<int>();
   if (campaign.maximum_realisations < campaign.minimum_realisations) {
     throw InputError(file, "/realisations/maximum", fmt::format("{}", campaign.maximum_realisations),
                      fmt::format("must be an integer >= minimum, {}", campaign.minimum_realisations));

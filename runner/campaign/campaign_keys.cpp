@@ -5,6 +5,7 @@ namespace peclet::runner {
 namespace {
 
 constexpr std::size_t most_further_targets = 100;
+constexpr std::size_t most_shown = 1 + most_further_targets;
 
 Key relative_tolerance(const char* pointer) {
   return {.pointer = pointer,
@@ -62,11 +63,13 @@ std::vector<Key> keys() {
        .meaning = "One per point; with several pointers each is an array with a value for every pointer.",
        .required = true,
        .minimum_items = 1},
-      {.pointer = "/target", .kind = KeyKind::object, .meaning = "When a point is done.", .required = true},
+      {.pointer = "/target",
+       .kind = KeyKind::object,
+       .meaning = "When a point is done. Required, unless the number of realisations is fixed."},
       {.pointer = "/target/observable",
        .kind = KeyKind::string,
        .meaning = "A number in the result's mean.",
-       .default_value = "relative_viscosity"},
+       .default_value = usual_observable},
       relative_tolerance("/target/relative_tolerance"),
       absolute_tolerance("/target/absolute_tolerance"),
       {.pointer = "/target/relative_to",
@@ -89,15 +92,17 @@ std::vector<Key> keys() {
       {.pointer = "/target/confidence",
        .kind = KeyKind::number,
        .meaning = "Of the two-sided interval: Student's t, and of shares Clopper and Pearson's.",
-       .default_value = 0.95,
+       .default_value = usual_confidence,
        .minimum = 0.5,
        .maximum = 1,
        .above_minimum = true,
        .below_maximum = true},
       {.pointer = "/realisations",
-       .kind = KeyKind::object,
-       .meaning = "How many seeds a point may take.",
-       .required = true},
+       .kind = KeyKind::integer_or_object,
+       .meaning = "How many seeds a point may take; a number without a target: how many every point gets.",
+       .required = true,
+       .minimum = 1,
+       .maximum = most_realisations},
       {.pointer = "/realisations/minimum",
        .kind = KeyKind::integer,
        .meaning =
@@ -112,6 +117,13 @@ std::vector<Key> keys() {
        .required = true,
        .minimum = 2,
        .maximum = most_realisations},
+      {.pointer = "/show",
+       .kind = KeyKind::array,
+       .meaning = "Where the number of realisations is fixed: numbers in the result's mean that tables show, "
+                  "the first one also charts; relative_viscosity unless given.",
+       .minimum_items = 1,
+       .maximum_items = most_shown},
+      {.pointer = "/show/*", .kind = KeyKind::string, .meaning = "One of them."},
       {.pointer = "/keep_files",
        .kind = KeyKind::any,
        .meaning = "Which of the files are kept that realisations leave beside their results: \"all\" (unless "

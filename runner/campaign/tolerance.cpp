@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "contract/input_error.h"
 #include "contract/key_table.h"
@@ -29,6 +30,12 @@ Tolerance Tolerance::absolute(double value) {
   return tolerance;
 }
 
+Tolerance Tolerance::none() {
+  Tolerance tolerance(std::numeric_limits<double>::infinity());
+  tolerance.kind = Kind::none;
+  return tolerance;
+}
+
 bool Tolerance::is_share_of(double mean) const { return is_relative() && value * std::abs(mean) >= floor; }
 
 double Tolerance::half_width(double mean) const {
@@ -36,10 +43,12 @@ double Tolerance::half_width(double mean) const {
 }
 
 double Tolerance::share(double half_width, double mean) const {
+  if (kind == Kind::none) return std::numeric_limits<double>::quiet_NaN();
   return is_share_of(mean) ? half_width / std::abs(mean) / value : half_width / this->half_width(mean);
 }
 
 std::string to_string(const Tolerance& tolerance) {
+  if (tolerance.kind == Tolerance::Kind::none) return "none";
   if (!tolerance.is_relative()) return fmt::format("{:g}", tolerance.value);
   return fmt::format("{:g} %{}{}{}", 100 * tolerance.value, tolerance.relative_to.empty() ? "" : " of ",
                      tolerance.relative_to,
@@ -55,6 +64,7 @@ const char* key_of(const Tolerance& tolerance) {
 }
 
 Json to_json(const Tolerance& tolerance) {
+  if (tolerance.kind == Tolerance::Kind::none) return Json::object();
   Json json = {{key_of(tolerance), tolerance.value}};
   if (!tolerance.relative_to.empty()) json[measure_key] = tolerance.relative_to;
   if (tolerance.floor > 0) json[floor_key] = tolerance.floor;
@@ -62,6 +72,7 @@ Json to_json(const Tolerance& tolerance) {
 }
 
 Tolerance tolerance_of(const Json& target, const std::string& file, const std::string& pointer) {
+  if (!target.contains(relative_key) && !target.contains(absolute_key)) return Tolerance::none();
   if (has_number(target, relative_key)) {
     Tolerance tolerance(target[relative_key].get<double>());
     tolerance.relative_to = target.value(measure_key, "");

@@ -50,6 +50,8 @@ verb waits for it; points of a finished one that are no longer decided go on wit
              "/realisations/minimum: seeds before the first look");
   add_number(verb, "--maximum", options->maximum, *campaign_keys().find("/realisations/maximum"),
              "/realisations/maximum: seeds after which a point is capped");
+  add_number(verb, "--realisations", options->realisations, whole_number(1, most_realisations),
+             "/realisations, where their number is fixed: seeds of every point");
   verb->add_option("--keep-files", options->keep_files,
                    "/keep_files: all, none, or of how many first seeds of each point files are kept");
   verb->add_option("--point", options->points, "Point that is to have the priority; may be repeated")

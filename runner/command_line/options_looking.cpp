@@ -48,7 +48,7 @@ and the verdict of every point. It only reads, and may be used at any time.
   verb->add_flag("--json", options->json, "For programs");
   verb->add_flag(
       "--check", options->check,
-      "Leave with 0 (every point converged), 3 (decided, but not all converged), 4 (not finished) or "
+      "Leave with 0 (every point converged or complete), 3 (decided, but not so), 4 (not finished) or "
       "6 (suspect)");
   verbs.choose(verb, options, show_status);
 }

@@ -44,7 +44,7 @@ VerbPage page(const std::string& prose, std::vector<VerbExample> examples, std::
 
 std::string exit_code_lines(const std::vector<int>& codes) {
   static const std::map<int, std::string> meanings{
-      {ExitCode::done, "done; of a run: every point converged"},
+      {ExitCode::done, "done; of a run: every point converged, or has all its seeds"},
       {ExitCode::error, "error"},
       {ExitCode::usage, "usage, or faulty input; nothing has been written"},
       {ExitCode::unconverged, "finished, but some points are capped, failed, cancelled or lost seeds"},

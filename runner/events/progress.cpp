@@ -38,7 +38,8 @@ std::size_t terminal_width() {
 }  // namespace
 
 std::string progress_line(const RunReport& report) {
-  std::string line = fmt::format("points {}/{} converged", report.converged, report.points);
+  std::string line = fmt::format("points {}/{} {}", report.converged, report.points,
+                                 report.has_target ? "converged" : "complete");
   if (report.decided > report.converged) line += fmt::format(", {} not", report.decided - report.converged);
   if (report.cancelled > 0) line += fmt::format(", {} cancelled", report.cancelled);
   line += fmt::format(" | seeds {}/{}", report.seeds_ended, report.seeds_wanted);

@@ -10,9 +10,10 @@
 namespace peclet::runner {
 
 struct RunReport {
-  int points = 0, decided = 0, converged = 0;  // converged: also with losses
-  int cancelled = 0;                           // before they were decided
-  int seeds_ended = 0, seeds_wanted = 0;       // of the looks that are next or have decided
+  int points = 0, decided = 0, converged = 0;  // converged, or complete: also with losses
+  bool has_target = true;
+  int cancelled = 0;                      // before they were decided
+  int seeds_ended = 0, seeds_wanted = 0;  // of the looks that are next or have decided
   int workers = 0, busy = 0;
   int results = 0;     // of this run
   double elapsed = 0;  // seconds of this run

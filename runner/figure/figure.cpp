@@ -56,15 +56,15 @@ std::size_t chosen_column(const std::vector<Drawable>& drawables, const std::str
 
 void require_tolerance(const Target& target, const std::string& path) {
   for (const Criterion& criterion : target.criteria()) {
-    if (bare(criterion.observable) == path) return;
+    if (target.has_tolerance() && bare(criterion.observable) == path) return;
   }
   throw InputError("", "--band", path, "has no tolerance: the campaign does not aim at it");
 }
 
 Standing standing_of(const Json& point) {
   if (!point.at("decided").get<bool>()) return Standing::provisional;
-  return point.at("standing").get<std::string>().starts_with("converged") ? Standing::converged
-                                                                          : Standing::undecided;
+  const std::optional<Verdict> verdict = verdict_of(point.at("standing").get<std::string>());
+  return verdict && is_reached(*verdict) ? Standing::converged : Standing::undecided;
 }
 
 double number_or_none(const Json& value) { return value.is_number() ? value.get<double>() : none; }

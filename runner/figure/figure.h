@@ -21,7 +21,8 @@ struct FigureChoice {
   bool tolerance = false;            // a band around each mean as wide as the target asks
 };
 
-// How sure a number is: of a point that has converged, of one that has ended otherwise, of one still open.
+// How sure a number is: of a point that has converged or is complete, of one that has ended otherwise, of one
+// still open.
 enum class Standing { converged, undecided, provisional };
 
 // Where the mark of a point that has jammed stands: at its number; where it has none, at the upper edge of

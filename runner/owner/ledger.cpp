@@ -191,13 +191,14 @@ void Ledger::after_commit() {
 RunReport Ledger::report(int workers) const {
   RunReport report;
   report.points = board_.size();
+  report.has_target = campaign_.target.has_tolerance();
   for (int place = 0; place < report.points; ++place) {
     const std::vector<Look>& looks = scheduler().looks(place);
     const bool decided = scheduler().decided(place);
     const bool is_left_alone = !decided && scheduler().cancelled(place);
     report.cancelled += is_left_alone ? 1 : 0;
     report.decided += decided ? 1 : 0;
-    report.converged += decided && is_converged(looks.back().verdict) ? 1 : 0;
+    report.converged += decided && is_reached(looks.back().verdict) ? 1 : 0;
     report.seeds_ended += scheduler().ended(place);
     report.seeds_wanted += is_left_alone ? scheduler().ended(place) : scheduler().wanted(place);
   }

@@ -15,6 +15,9 @@ std::string meaning(const std::string& mark) {
       {"capped",
        "all seeds that are allowed have ended, and the interval is still wider than the tolerance, or "
        "there is none"},
+      {"complete-with-losses",
+       "all seeds that were asked for have ended, and the mean leaves out those that were lost; if they were "
+       "lost because of what they would have given, it is biased"},
       {"failed", "too many seeds were lost to give an interval"},
       {"open", "not decided yet: the numbers are provisional"},
       {"cancelled", "somebody decided that it gets no more seeds: the numbers stay provisional"},
@@ -62,7 +65,9 @@ Json page_meanings(const CampaignStatus& status) {
   Json meanings = Json::object();
   for (const PointSummary& point : status.points) {
     const std::string standing = standing_word(point);
-    if (standing != to_string(Verdict::converged)) meanings[standing] = meaning(standing);
+    const bool explains_itself =
+        standing == to_string(Verdict::converged) || standing == to_string(Verdict::complete);
+    if (!explains_itself) meanings[standing] = meaning(standing);
     for (const std::string& mark : reservations(point)) {
       const std::string code = mark.substr(mark.rfind(' ') + 1);
       const std::string kind = code == mark ? mark : "flagged " + code;

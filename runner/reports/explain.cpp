@@ -165,7 +165,8 @@ std::string reason(const PointSummary& point, const Target& target) {
   if (!point.decided) {
     const std::string missing = missing_interval_text(point);
     return fmt::format(
-        "{} of the {} seeds of the next look have ended, {}{}", point.wanted_ended, point.wanted,
+        "{} of the {} seeds{} have ended, {}{}", point.wanted_ended, point.wanted,
+        target.has_tolerance() ? " of the next look" : "",
         point.point.cancelled ? "and it gets no more" : fmt::format("{} run", point.counts.running),
         missing.empty() ? "" : "; " + missing);
   }
@@ -189,6 +190,16 @@ std::string reason(const PointSummary& point, const Target& target) {
       return fmt::format("{} of {} seeds are lost{}", look.seeds - failed->look.estimate.count, look.seeds,
                          all.size() == 1 ? "" : " to " + failed->look.observable);
     }
+    case Verdict::complete:
+      return fmt::format("all {} seeds have ended", look.seeds);
+    case Verdict::complete_with_losses: {
+      const auto fewest = std::min_element(all.begin(), all.end(), [](const Known& one, const Known& other) {
+        return one.look.estimate.count < other.look.estimate.count;
+      });
+      return fmt::format("all {} seeds have ended, and {} of them are lost{}", look.seeds,
+                         look.seeds - fewest->look.estimate.count,
+                         all.size() == 1 ? "" : " to " + fewest->look.observable);
+    }
     case Verdict::more:
       break;
   }
@@ -202,6 +213,7 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
   }
   if (point.point.cancelled && !point.decided) return "nothing; `peclet cancel --undo` takes it up again";
   if (!point.decided) {
+    if (!target.target.has_tolerance()) return fmt::format("the other seeds of {}", point.wanted);
     if (point.looks.empty()) return fmt::format("the first look, at {} seeds", point.wanted);
     if (!point.without_interval.empty()) {
       return fmt::format("the look at {} seeds; how many will be enough cannot be told without an interval",
@@ -216,13 +228,17 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
   }
   const Look& look = point.looks.back();
   switch (look.verdict) {
+    case Verdict::complete:
     case Verdict::converged:
       if (look.transient) return "a longer /scene/duration/equilibration: see transient above";
+      if (look.verdict == Verdict::complete)
+        return "nothing; more realisations (`peclet set --realisations`) reopen it";
       if (look.near_maximum) {
         return "a larger /realisations/maximum and a smaller tolerance (`peclet set`), or nothing";
       }
       return "nothing; a smaller tolerance (`peclet set`) reopens it";
     case Verdict::converged_with_losses:
+    case Verdict::complete_with_losses:
       return fmt::format(
           "see why seeds are lost: the mean leaves them out (states in {}){}", directory.failures().string(),
           point.counts.quarantined > 0 ? "; `peclet retry` runs those again that were given up" : "");
@@ -249,16 +265,20 @@ std::string looks_table(const std::vector<Look>& looks, const Target& target) {
   if (looks.empty()) return "  no look yet\n";
   const bool with_control = std::any_of(looks.begin(), looks.end(), has_control);
   TextTable table;
-  for (const char* const title : {"seeds", "lost", "mean ± half-width",
-                                  target.tolerance.is_relative() ? "relative" : "half-width", "tolerance"}) {
-    table.add_column(title);
+  for (const char* const title : {"seeds", "lost", "mean ± half-width"}) table.add_column(title);
+  if (target.has_tolerance()) {
+    table.add_column(target.tolerance.is_relative() ? "relative" : "half-width");
+    table.add_column("tolerance");
   }
   if (with_control) table.add_column("uncontrolled");
   table.add_column("verdict", TextTable::Align::left);
   for (const Look& look : looks) {
     std::vector<std::string> row{fmt::format("{}", look.seeds), fmt::format("{}", look.lost),
-                                 with_error(look.controlled.mean, look.controlled_half_width),
-                                 width_text(known_of(look, target).front()), to_string(target.tolerance)};
+                                 with_error(look.controlled.mean, look.controlled_half_width)};
+    if (target.has_tolerance()) {
+      row.push_back(width_text(known_of(look, target).front()));
+      row.push_back(to_string(target.tolerance));
+    }
     if (with_control) row.push_back(with_error(look.estimate.mean, look.half_width));
     row.emplace_back(to_string(look.verdict));
     table.add_row(std::move(row));
@@ -271,13 +291,21 @@ std::string observables_table(const std::vector<Look>& looks, const Target& targ
   if (looks.empty() || looks.back().each.empty()) return "";
   TextTable table;
   table.add_column("at the last look", TextTable::Align::left);
-  for (const char* const title : {"values", "mean ± half-width", "half-width", "tolerance"})
-    table.add_column(title);
+  for (const char* const title : {"values", "mean ± half-width"}) table.add_column(title);
+  if (target.has_tolerance()) {
+    table.add_column("half-width");
+    table.add_column("tolerance");
+  }
   table.add_column("verdict", TextTable::Align::left);
   for (const Known& known : known_of(looks.back(), target)) {
-    table.add_row({known.look.observable, fmt::format("{}", known.look.estimate.count),
-                   with_error(known.look.estimate.mean, known.look.half_width), width_text(known),
-                   to_string(known.criterion.tolerance), to_string(*known.look.verdict)});
+    std::vector<std::string> row{known.look.observable, fmt::format("{}", known.look.estimate.count),
+                                 with_error(known.look.estimate.mean, known.look.half_width)};
+    if (target.has_tolerance()) {
+      row.push_back(width_text(known));
+      row.push_back(to_string(known.criterion.tolerance));
+    }
+    row.emplace_back(to_string(*known.look.verdict));
+    table.add_row(std::move(row));
   }
   return table.text("  ");
 }

@@ -54,8 +54,9 @@ std::string interval_text(const Look& look, const std::vector<Outcome>& outcomes
     text +=
         "  skewed: some values are far from the rest on one side, and Student's interval holds the mean less "
         "often\n"
-        "    than it says; trust the bootstrap interval more, and ask for a smaller tolerance or a larger "
-        "minimum\n";
+        "    than it says; trust the bootstrap interval more, and ask for ";
+    text +=
+        target.target.has_tolerance() ? "a smaller tolerance or a larger minimum\n" : "more realisations\n";
   }
   return text;
 }

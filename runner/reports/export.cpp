@@ -178,9 +178,11 @@ std::string export_json(Database& database, bool canonical) {
       continue;
     }
     const char* separator = "[\n";
-    for (const PointSummary& summary : summarise_points(database, campaign.target)) {
-      Json point = PointExport(database, summary.point, campaign.target, canonical).json();
-      if (!canonical) point["endings"] = to_json(summary.endings);
+    std::vector<PointSummary> summaries;
+    if (!canonical) summaries = summarise_points(database, campaign.target);
+    for (const PointRecord& record : database.points()) {
+      Json point = PointExport(database, record, campaign.target, canonical).json();
+      if (!canonical) point["endings"] = to_json(summaries[static_cast<std::size_t>(*record.place)].endings);
       text += separator + canonical_json(point);
       separator = ",\n";
     }

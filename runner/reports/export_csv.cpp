@@ -88,7 +88,9 @@ class ScalarColumns {
 
 std::string export_csv(Database& database, bool canonical) {
   const TargetRecord target = database.campaign().target;
-  const std::vector<PointSummary> points = summarise_points(database, target);
+  const std::vector<PointRecord> points = database.points();
+  std::vector<PointSummary> summaries;
+  if (!canonical) summaries = summarise_points(database, target);
   const SettingColumns settings(points);
   std::vector<std::string> titles{"label", "hash"};
   append(titles, settings.titles());
@@ -101,13 +103,13 @@ std::string export_csv(Database& database, bool canonical) {
   std::vector<std::vector<std::string>> rows;
   ScalarColumns scalars;
   NumberStore numbers(database.connection());
-  for (const PointSummary& point : points) {
-    std::vector<std::string> fields{csv_text(point.point.label), point.point.hash};
-    append(fields, settings.fields(point.point));
-    const std::optional<Look> look = checked_look(database, point.point, target);
+  for (const PointRecord& point : points) {
+    std::vector<std::string> fields{csv_text(point.label), point.hash};
+    append(fields, settings.fields(point));
+    const std::optional<Look> look = checked_look(database, point, target);
     append(fields, look_fields(look));
-    if (!canonical) append(fields, full_fields(point));
-    scalars.add(rows.size(), scalar_estimates(numbers, point.point, look));
+    if (!canonical) append(fields, full_fields(summaries[rows.size()]));
+    scalars.add(rows.size(), scalar_estimates(numbers, point, look));
     rows.push_back(std::move(fields));
   }
   append(titles, scalars.titles(titles));

@@ -60,15 +60,15 @@ std::string row(const Fields& which, const Fields& quantity, const Fields& place
 
 std::string export_long_csv(Database& database) {
   const TargetRecord target = database.campaign().target;
-  const std::vector<PointSummary> summaries = summarise_points(database, target);
-  const SettingColumns settings(summaries);
+  const std::vector<PointRecord> records = database.points();
+  const SettingColumns settings(records);
   std::vector<Point> points;
   std::size_t most_axes = 1;
-  for (const PointSummary& summary : summaries) {
-    Point point{{csv_text(summary.point.label), summary.point.hash}, {}};
-    const Fields set = settings.fields(summary.point);
+  for (const PointRecord& record : records) {
+    Point point{{csv_text(record.label), record.hash}, {}};
+    const Fields set = settings.fields(record);
     point.which.insert(point.which.end(), set.begin(), set.end());
-    point.estimates = point_estimates(database, summary.point, checked_look(database, summary.point, target));
+    point.estimates = point_estimates(database, record, checked_look(database, record, target));
     for (const QuantityEstimate& found : point.estimates) {
       most_axes = std::max(most_axes, found.quantity.axes.size());
     }

@@ -204,8 +204,8 @@ Json totals_json(const Plan& plan) {
 
 std::string plan_text(const Plan& plan) {
   const bool predicted = has_values(plan);
-  return fmt::format("{}: {}, {} to {} seeds each\n\n{}\n{}{}{}", plan.campaign,
-                     counted(plan.points.size(), "point"), plan.minimum, plan.maximum,
+  return fmt::format("{}: {}, {} seeds each\n\n{}\n{}{}{}", plan.campaign,
+                     counted(plan.points.size(), "point"), range_text(plan.minimum, plan.maximum),
                      table_text(plan, predicted), legend(plan, predicted),
                      predicted ? '\n' + ending_text(plan) : "", rest_text(plan));
 }

@@ -24,9 +24,9 @@ std::vector<QuantityEstimate> scalar_estimates(NumberStore& numbers, const Point
   return estimates.estimates();
 }
 
-SettingColumns::SettingColumns(const std::vector<PointSummary>& points) {
-  for (const PointSummary& point : points) {
-    for (const auto& [pointer, value] : point.point.settings.items()) pointers_.insert(pointer);
+SettingColumns::SettingColumns(const std::vector<PointRecord>& points) {
+  for (const PointRecord& point : points) {
+    for (const auto& [pointer, value] : point.settings.items()) pointers_.insert(pointer);
   }
 }
 

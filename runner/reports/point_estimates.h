@@ -22,7 +22,7 @@ std::vector<QuantityEstimate> scalar_estimates(NumberStore& numbers, const Point
 // One column for each pointer that the sweep has set at any point.
 class SettingColumns {
  public:
-  explicit SettingColumns(const std::vector<PointSummary>& points);
+  explicit SettingColumns(const std::vector<PointRecord>& points);
 
   std::vector<std::string> titles() const { return {pointers_.begin(), pointers_.end()}; }
   std::vector<std::string> fields(const PointRecord& point) const;

@@ -86,11 +86,13 @@ int standing(const CampaignStatus& status) {
   if (any([](const PointSummary& point) { return point.point.suspect; })) return ExitCode::integrity;
   if (any([](const PointSummary& point) { return point.open(); })) return ExitCode::unfinished;
   // A point that was cancelled early may have no look.
-  const auto converged = [](const PointSummary& point) {
-    return point.decided && point.looks.back().verdict == Verdict::converged;
+  const auto is_whole = [](const PointSummary& point) {
+    if (!point.decided) return false;
+    const Verdict verdict = point.looks.back().verdict;
+    return is_reached(verdict) && !has_losses(verdict);
   };
-  return std::all_of(status.points.begin(), status.points.end(), converged) ? ExitCode::done
-                                                                            : ExitCode::unconverged;
+  return std::all_of(status.points.begin(), status.points.end(), is_whole) ? ExitCode::done
+                                                                           : ExitCode::unconverged;
 }
 
 int ending(const CampaignStatus& status, bool finished) {
@@ -107,7 +109,7 @@ std::string standing_word(const PointSummary& point) {
 
 std::string verdict_text(const PointSummary& point) {
   std::string text = standing_word(point);
-  if (point.decided && point.looks.back().verdict == Verdict::converged_with_losses) {
+  if (point.decided && has_losses(point.looks.back().verdict)) {
     text += fmt::format("({})", point.looks.back().lost);
   } else if (point.lost() > 0) {
     text += fmt::format(", {} lost", point.lost());

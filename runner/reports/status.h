@@ -32,8 +32,8 @@ struct CampaignStatus {
 
 CampaignStatus read_status(Database& database);
 
-// 0 every point converged; 3 decided, but some capped, failed, cancelled or with losses; 4 not finished; 6
-// some point is suspect: a seed gave two different results.
+// 0 every point converged or complete; 3 decided, but some capped, failed, cancelled or with losses; 4 not
+// finished; 6 some point is suspect: a seed gave two different results.
 int standing(const CampaignStatus& status);
 // The exit code of a process that has run it: standing(), or 75 when it did not finish what it was to do.
 int ending(const CampaignStatus& status, bool finished);
@@ -44,8 +44,8 @@ std::string point_totals(const CampaignStatus& status);
 // The verdict in a word; "open" or "cancelled" without one.
 std::string standing_word(const PointSummary& point);
 
-// "converged", "converged-with-losses(2)", "capped, 2 lost", "failed, 10 lost", "open"; "open, suspect";
-// "cancelled".
+// "converged", "converged-with-losses(2)", "complete", "capped, 2 lost", "failed, 10 lost", "open"; "open,
+// suspect"; "cancelled".
 std::string verdict_text(const PointSummary& point);
 // What speaks against its estimate: "jammed", "transient", "no-transient-test", "skewed", "near-maximum",
 // "equal-values", "repeated-seeds", "2 flagged timestep", "suspect"; and "earlier-look" where a target that

@@ -33,7 +33,23 @@ std::string farthest(const Look& look) {
   return fmt::format("{} {} x", found->observable, rough(found->share));
 }
 
+// Of a fixed number of realisations: each observable that is shown, over the seeds of the look or those so
+// far.
+std::vector<std::string> shown_cells(const PointSummary& point, const Target& target) {
+  std::vector<std::string> cells{fmt::format("{}/{}", point.wanted_ended, point.wanted)};
+  if (point.looks.empty()) {
+    for (const Estimate& one : point.forecast.so_far)
+      cells.push_back(with_error(one.mean, half_width(one, target.confidence)));
+  } else {
+    for (const ObservableLook& one : each_of(point.looks.back(), target))
+      cells.push_back(with_error(one.estimate.mean, one.half_width));
+  }
+  cells.push_back(verdict_text(point));
+  return cells;
+}
+
 std::vector<std::string> cells(const PointSummary& point, const Target& target) {
+  if (!target.has_tolerance()) return shown_cells(point, target);
   const bool with_others = target.observables().size() > 1;
   std::vector<std::string> cells{fmt::format("{}/{}", point.wanted_ended, point.wanted),
                                  with_error(point.so_far.mean, point.so_far.standard_error)};
@@ -51,9 +67,11 @@ std::vector<std::string> cells(const PointSummary& point, const Target& target) 
 
 std::string heading(const CampaignStatus& status) {
   const TargetRecord& target = status.campaign.target;
-  return fmt::format("{}: {} at {:g} % confidence, {} to {} seeds a point\n\n", status.campaign.name,
-                     to_string(target.target), 100 * target.target.confidence, target.minimum,
-                     target.maximum);
+  const std::string confidence = target.target.has_tolerance()
+                                     ? fmt::format(" at {:g} % confidence", 100 * target.target.confidence)
+                                     : "";
+  return fmt::format("{}: {}{}, {} seeds a point\n\n", status.campaign.name, to_string(target.target),
+                     confidence, range_text(target.minimum, target.maximum));
 }
 
 // Columns as a narrow terminal does without them; which point and which verdict are always there.
@@ -70,13 +88,19 @@ std::string legend(const CampaignStatus& status, const std::vector<std::string>&
     return std::find(left_out.begin(), left_out.end(), title) == left_out.end();
   };
   std::vector<std::string> parts;
-  if (shows("so far")) parts.emplace_back("so far: mean ± standard error of all seeds that have ended");
-  if (shows("look")) {
-    parts.push_back(fmt::format("look: mean ± half-width of the{}{:g} % interval at the last look", blank,
-                                100 * status.campaign.target.target.confidence));
-  }
-  if (shows("farthest") && status.campaign.target.target.observables().size() > 1) {
-    parts.emplace_back("farthest: the largest half-width, as a multiple of its tolerance");
+  const Target& target = status.campaign.target.target;
+  if (!target.has_tolerance()) {
+    parts.push_back(fmt::format("mean ± half-width of the {:g} % interval of the seeds that have ended",
+                                100 * target.confidence));
+  } else {
+    if (shows("so far")) parts.emplace_back("so far: mean ± standard error of all seeds that have ended");
+    if (shows("look")) {
+      parts.push_back(fmt::format("look: mean ± half-width of the{}{:g} % interval at the last look", blank,
+                                  100 * target.confidence));
+    }
+    if (shows("farthest") && target.observables().size() > 1) {
+      parts.emplace_back("farthest: the largest half-width, as a multiple of its tolerance");
+    }
   }
   std::string text = fmt::format("{}\n", fmt::join(parts, "; "));
   if (!left_out.empty()) text += fmt::format("too narrow for: {}\n", fmt::join(left_out, ", "));
@@ -185,14 +209,21 @@ std::string status_table(const CampaignStatus& status, std::size_t width) {
   TextTable table;
   points.add_to(table);
   table.add_column("seeds", TextTable::Align::right, importance::seeds);
-  table.add_column("so far", TextTable::Align::right, importance::so_far);
-  table.add_column("look", TextTable::Align::right, importance::look);
-  if (status.campaign.target.target.observables().size() > 1)
-    table.add_column("farthest", TextTable::Align::left, importance::farthest);
+  const Target& target = status.campaign.target.target;
+  const std::vector<std::string> observables = target.observables();
+  if (target.has_tolerance()) {
+    table.add_column("so far", TextTable::Align::right, importance::so_far);
+    table.add_column("look", TextTable::Align::right, importance::look);
+    if (observables.size() > 1) table.add_column("farthest", TextTable::Align::left, importance::farthest);
+  } else {
+    for (const std::string& name : observables)
+      table.add_column(name, TextTable::Align::right,
+                       name == target.observable ? importance::look : importance::so_far);
+  }
   table.add_column("verdict", TextTable::Align::left);
   for (std::size_t i = 0; i < labels.size(); ++i) {
     std::vector<std::string> row = points.cells(i);
-    const std::vector<std::string> rest = cells(status.points[i], status.campaign.target.target);
+    const std::vector<std::string> rest = cells(status.points[i], target);
     row.insert(row.end(), rest.begin(), rest.end());
     table.add_row(std::move(row));
   }

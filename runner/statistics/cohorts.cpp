@@ -145,7 +145,7 @@ std::vector<Estimate> estimates_of(const Look& look, const Target& target) {
 }
 
 bool is_near_maximum(const Look& look, const Target& target, int maximum) {
-  if (!is_converged(look.verdict)) return false;
+  if (!is_reached(look.verdict)) return false;
   const std::vector<ObservableLook> each = each_of(look, target);
   return std::any_of(each.begin(), each.end(), [&](const ObservableLook& one) {
     return one.verdict && is_near_maximum(look.seeds, one.estimate.count, one.share, maximum);

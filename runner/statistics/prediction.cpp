@@ -105,7 +105,7 @@ class Futures {
         estimates[i] = samples[i].estimate();
       }
       seeds = schedule[place];
-      if (is_converged(rule_.judge(seeds, estimates).verdict)) return static_cast<int>(place);
+      if (is_reached(rule_.judge(seeds, estimates).verdict)) return static_cast<int>(place);
     }
     return static_cast<int>(schedule.size());
   }

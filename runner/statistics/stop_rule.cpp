@@ -8,12 +8,14 @@
 namespace peclet::runner {
 namespace {
 
-constexpr std::array<std::pair<Verdict, const char*>, 5> verdict_names{
+constexpr std::array<std::pair<Verdict, const char*>, 7> verdict_names{
     {{Verdict::more, "more"},
      {Verdict::converged, "converged"},
      {Verdict::converged_with_losses, "converged-with-losses"},
      {Verdict::capped, "capped"},
-     {Verdict::failed, "failed"}}};
+     {Verdict::failed, "failed"},
+     {Verdict::complete, "complete"},
+     {Verdict::complete_with_losses, "complete-with-losses"}}};
 
 }  // namespace
 
@@ -31,13 +33,22 @@ std::optional<Verdict> verdict_of(std::string_view word) {
   return std::nullopt;
 }
 
-bool is_converged(Verdict verdict) {
-  return verdict == Verdict::converged || verdict == Verdict::converged_with_losses;
+bool is_reached(Verdict verdict) {
+  return verdict == Verdict::converged || verdict == Verdict::complete || has_losses(verdict);
+}
+
+bool has_losses(Verdict verdict) {
+  return verdict == Verdict::converged_with_losses || verdict == Verdict::complete_with_losses;
 }
 
 Verdict less_favourable(Verdict one, Verdict other) {
-  constexpr std::array order{Verdict::converged, Verdict::converged_with_losses, Verdict::capped,
-                             Verdict::more, Verdict::failed};
+  constexpr std::array order{Verdict::converged,
+                             Verdict::complete,
+                             Verdict::converged_with_losses,
+                             Verdict::complete_with_losses,
+                             Verdict::capped,
+                             Verdict::more,
+                             Verdict::failed};
   const auto rank = [&](Verdict verdict) { return std::find(order.begin(), order.end(), verdict); };
   return std::max(rank(one), rank(other)) == rank(one) ? one : other;
 }
@@ -57,6 +68,7 @@ std::vector<int> look_schedule(int minimum, int maximum) {
 StopRule::StopRule(const Target& target, int minimum, int maximum)
     : minimum_(minimum),
       maximum_(maximum),
+      has_tolerance_(target.has_tolerance()),
       confidence_(adjusted_confidence(target.confidence, minimum, maximum)),
       schedule_(look_schedule(minimum, maximum)) {
   const std::vector<std::string> observables = target.observables();
@@ -123,6 +135,7 @@ Verdict StopRule::verdict(int seeds, const Estimate& estimate, double share) con
   // Where not one of the first seeds lives, more of them are waste.
   if (seeds == minimum_ && estimate.count == 0) return Verdict::failed;
   if (seeds < maximum_) return Verdict::more;
+  if (!has_tolerance_) return estimate.count == seeds ? Verdict::complete : Verdict::complete_with_losses;
   return estimate.count < 2 ? Verdict::failed : Verdict::capped;
 }
 

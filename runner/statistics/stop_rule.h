@@ -15,6 +15,8 @@
 // ones off, and then what has converged is a selection whose intervals hold the mean less often
 // (results/coverage). is_near_maximum() tells of such a point.
 //
+// Without a tolerance there is one look, at the fixed number of realisations, and Student's interval.
+//
 // A target of several criteria is met at the first look at which each of them is by its own rule. What is
 // said of the point is the least favourable of what is said of them.
 #pragma once
@@ -36,7 +38,10 @@ enum class Verdict {
   converged,              // within the tolerance
   converged_with_losses,  // within the tolerance, but seeds of the cohort were lost
   capped,                 // the maximum is reached without convergence
-  failed                  // fewer than two values at the maximum or every seed of the first cohort lost
+  failed,                 // fewer than two values at the maximum or every seed of the first cohort lost
+  // Of a fixed number of realisations; `failed` where none of them has a value.
+  complete,
+  complete_with_losses
 };
 
 // "converged-with-losses"
@@ -44,8 +49,10 @@ const char* to_string(Verdict verdict);
 // Returns nothing for a word that is no verdict.
 std::optional<Verdict> verdict_of(std::string_view word);
 
-// With losses or without.
-bool is_converged(Verdict verdict);
+// Within the tolerance, or complete; with losses or without.
+bool is_reached(Verdict verdict);
+// Converged or complete, but seeds were lost.
+bool has_losses(Verdict verdict);
 
 // Of two verdicts that the same look gave of two criteria, the one that counts for both.
 Verdict less_favourable(Verdict one, Verdict other);
@@ -104,6 +111,7 @@ class StopRule {
   std::vector<Part> parts_;
   std::size_t observables_;
   int minimum_, maximum_;
+  bool has_tolerance_;
   double confidence_;
   std::vector<int> schedule_;
   std::map<int, double> student_;  // by number of values, each computed once

@@ -219,7 +219,8 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
     summary.endings = aggregate.endings_below(last_look);
     summary.decided = !summary.looks.empty() && summary.looks.back().verdict != Verdict::more;
     const int seen = summary.looks.empty() ? 0 : summary.looks.back().seeds;
-    if (summary.decided && earlier[point.id] > seen) summary.earlier_look = earlier[point.id];
+    if (target.target.has_tolerance() && summary.decided && earlier[point.id] > seen)
+      summary.earlier_look = earlier[point.id];
     summary.wanted = summary.decided ? seen : *std::upper_bound(schedule.begin(), schedule.end() - 1, seen);
     if (const auto known = predictions.find(point.id); known != predictions.end()) {
       summary.prediction = known->second;
@@ -281,7 +282,7 @@ std::optional<Look> checked_look(Database& database, const PointRecord& point, c
   Look look = stored.back().look;
   const Look& made_again = replayed[stored.size() - 1];
   look.untested = made_again.untested;
-  look.near_maximum = made_again.near_maximum && is_converged(look.verdict);
+  look.near_maximum = made_again.near_maximum && is_reached(look.verdict);
   look.repeated = made_again.repeated;
   return look;
 }

@@ -9,6 +9,7 @@
 #include "runner/store/number_store.h"
 #include "runner/store/result_store.h"
 #include "runner/store/result_text.h"
+#include "runner/text/number_text.h"
 #include "runner/text/plain_text.h"
 
 namespace peclet::runner {
@@ -17,9 +18,9 @@ namespace {
 constexpr std::size_t longest_list = 350;
 
 std::string describe(const Campaign& campaign) {
-  return fmt::format("{}: {} points, {} at {:g} confidence, {} to {} seeds", campaign.name,
-                     campaign.points.size(), to_string(campaign.target), campaign.target.confidence,
-                     campaign.minimum_realisations, campaign.maximum_realisations);
+  return fmt::format("{}: {} points, {} at {:g} confidence, {} seeds", campaign.name, campaign.points.size(),
+                     to_string(campaign.target), campaign.target.confidence,
+                     range_text(campaign.minimum_realisations, campaign.maximum_realisations));
 }
 
 }  // namespace

@@ -40,6 +40,10 @@ std::string counted(std::size_t number, const char* noun) {
   return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
 }
 
+std::string range_text(int least, int most) {
+  return least == most ? fmt::format("{}", least) : fmt::format("{} to {}", least, most);
+}
+
 std::string percent(double fraction) {
   if (!std::isfinite(fraction)) return "-";
   return fmt::format("{:.{}f} %", 100 * fraction, fraction < 0.0995 ? 1 : 0);

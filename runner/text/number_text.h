@@ -16,6 +16,9 @@ std::string percent(double fraction);
 // "1 seed", "3 seeds".
 std::string counted(std::size_t number, const char* noun);
 
+// "8 to 100"; "16" for equal ones.
+std::string range_text(int least, int most);
+
 // Three significant digits at most: "0.017", "1.2e+06".
 std::string rough(double number);
 

@@ -132,8 +132,9 @@ int plan_campaign(const PlanOptions& options) {
   const Campaign campaign = read_campaign(file);
   if (options.pilot && (*options.pilot < 2 || *options.pilot > campaign.minimum_realisations)) {
     throw InputError("--pilot", "", fmt::format("{}", *options.pilot),
-                     fmt::format("must be an integer from 2 to /realisations/minimum of {}, {}",
-                                 file.string(), campaign.minimum_realisations));
+                     fmt::format("must be an integer from 2 to /realisations{} of {}, {}",
+                                 campaign.target.has_tolerance() ? "/minimum" : "", file.string(),
+                                 campaign.minimum_realisations));
   }
   if (options.pilot) {
     return run_pilot(options.run, *options.pilot, [&](const ClaimedCampaign& claimed, Database& database) {

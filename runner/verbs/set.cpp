@@ -43,6 +43,7 @@ std::vector<Edit> edits_of(const SetOptions& options) {
   if (options.confidence) edits.push_back({"target", "confidence", *options.confidence});
   if (options.minimum) edits.push_back({"realisations", "minimum", *options.minimum});
   if (options.maximum) edits.push_back({"realisations", "maximum", *options.maximum});
+  if (options.realisations) edits.push_back({"", "realisations", *options.realisations});
   if (options.keep_files) edits.push_back({"", "keep_files", word_or_number(*options.keep_files)});
   return edits;
 }
@@ -59,8 +60,23 @@ void check_usage(const SetOptions& options) {
   }
 }
 
-// Refuses the tolerance of the kind that the campaign does not have: both are not allowed beside each other.
+// Refuses what the campaign does not have: a tolerance of the other kind, the number of seeds of a campaign
+// with a target, and target and bounds where that number is fixed.
 void check_kind(const Json& document, const SetOptions& options) {
+  const Json realisations = document.is_object() ? document.value("realisations", Json()) : Json();
+  if (realisations.is_null()) return;  // a missing one is refused with the file
+  const bool is_fixed = realisations.is_number();
+  const bool wants_target = options.tolerance || options.absolute_tolerance || options.confidence ||
+                            options.minimum || options.maximum;
+  if (is_fixed ? wants_target : options.realisations.has_value()) {
+    throw InputError(options.campaign.string(), "/realisations", shortened(realisations),
+                     is_fixed
+                         ? "is a fixed number, changed by --realisations; a target in its place is written "
+                           "into the file, which `peclet set` without options takes over"
+                         : "belongs to a target, and is changed by --minimum and --maximum; a fixed number "
+                           "in its place is written into the file, without the target, which `peclet set` "
+                           "without options takes over");
+  }
   const auto must_not_have = [&](const std::optional<double>& given, const char* option, const char* other,
                                  const char* other_option) {
     const Json::json_pointer there(other);

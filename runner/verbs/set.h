@@ -15,6 +15,7 @@ struct SetOptions {
   std::filesystem::path directory;
   std::optional<double> tolerance, absolute_tolerance, confidence;  // of /target
   std::optional<int> minimum, maximum;                              // of /realisations
+  std::optional<int> realisations;                                  // /realisations, where it is a number
   std::optional<std::string> keep_files;                            // /keep_files, as a word
   std::vector<std::string> points;                                  // whose priority is set
   std::optional<int> priority;

@@ -117,10 +117,10 @@ std::string validate_campaign(const ValidateOptions& options) {
   const std::vector<SceneAnswer> answers =
       check_scenes(campaign, options.campaign, resolve_engine(campaign, options.campaign));
   if (options.json) return answers_json(campaign, answers).dump(2) + '\n';
-  return fmt::format("{}: valid; {}, {} to {} seeds each\n\n{}\ntimes in the scene's own units\n{}",
-                     campaign.name, counted(campaign.points.size(), "point"), campaign.minimum_realisations,
-                     campaign.maximum_realisations, points_table(campaign, answers),
-                     warnings_text(campaign, answers));
+  return fmt::format("{}: valid; {}, {} seeds each\n\n{}\ntimes in the scene's own units\n{}", campaign.name,
+                     counted(campaign.points.size(), "point"),
+                     range_text(campaign.minimum_realisations, campaign.maximum_realisations),
+                     points_table(campaign, answers), warnings_text(campaign, answers));
 }
 
 }  // namespace peclet::runner

@@ -254,6 +254,11 @@ class Files(unittest.TestCase):
         self.addCleanup(scratch.cleanup)
         self.path = os.path.join(scratch.name, "flow.json")
 
+    def test_a_fixed_number_of_realisations_is_in_the_place_of_the_target(self):
+        document = peclet.Campaign("flow", SCENE, SWEEP, observable="pressure", realisations=16).document
+        self.assertEqual((document["realisations"], document["show"]), (16, ["pressure"]))
+        self.assertNotIn("target", document)
+
     def test_only_a_campaign_of_the_same_name_is_overwritten(self):
         peclet.Campaign("flow", SCENE).write(self.path)
         written = Path(self.path).read_bytes()

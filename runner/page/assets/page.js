@@ -91,7 +91,7 @@ const Page = {
 // One line that says how the campaign stands.
 function headline({ progress }) {
   const parts = [`${progress.decided} of ${Format.counted(progress.points, 'point')} decided`];
-  const others = Object.entries(progress.standings).filter(([name]) => name !== 'converged' && name !== 'open');
+  const others = Object.entries(progress.standings).filter(([name]) => !['converged', 'complete', 'open'].includes(name));
   if (others.length) parts[0] += ` (${others.map(([name, count]) => `${count} ${name}`).join(', ')})`;
   const ahead = progress.seconds_to_go;
   parts.push(`${Format.duration(progress.cpu_seconds)} of processor time spent`);
@@ -104,8 +104,10 @@ function headline({ progress }) {
 }
 
 function question({ target }) {
+  const { minimum, maximum } = target,
+    seeds = minimum === maximum ? maximum : `${minimum} to ${maximum}`;
   return (
     `${Format.words(target.text)} at ${Format.rough(100 * target.confidence)} % confidence, ` +
-    `with ${target.minimum} to ${target.maximum} independent realisations (seeds) of every point.`
+    `with ${seeds} independent realisations (seeds) of every point.`
   );
 }

@@ -52,7 +52,7 @@ class PointView {
         half: half(look),
         point: 0,
         small: true,
-        kind: look.verdict.startsWith('converged') && i === point.looks.length - 1 ? 'decided' : 'undecided',
+        kind: /^(converged|complete)/.test(look.verdict) && i === point.looks.length - 1 ? 'decided' : 'undecided',
         text: [
           `look at ${Format.counted(look.seeds, 'seed')}`,
           Format.withError(look.mean, look.half_width),

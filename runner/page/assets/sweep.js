@@ -108,7 +108,7 @@ class Sweep {
   static kind(point) {
     if (point.endings.has_jammed) return 'jammed';
     if (!point.decided) return 'provisional';
-    return point.standing.startsWith('converged') ? 'decided' : 'undecided';
+    return /^(converged|complete)/.test(point.standing) ? 'decided' : 'undecided';
   }
 
   // Whether the point has a number. At one that has jammed a number of half of its seeds or fewer is that of those

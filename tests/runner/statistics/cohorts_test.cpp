@@ -388,5 +388,58 @@ TEST(Cohorts, AnswerDoesNotDependOnTheOrderOfArrival) {
   }
 }
 
+// Of a campaign of a fixed number of realisations.
+const Target no_tolerance{"relative_viscosity", Tolerance::none(), 0.95};
+
+// scipy.stats.t.ppf(0.975, 4) = 2.776445; the values 1 to 5 have the variance 5/2.
+TEST(FixedNumber, HasOneLookWithStudentsInterval) {
+  Outcomes outcomes;
+  for (int seed = 0; seed < 5; ++seed) {
+    EXPECT_TRUE(replay_looks(outcomes, no_tolerance, 5, 5).empty());
+    outcomes.emplace_back(value(seed + 1));
+  }
+  const std::vector<Look> looks = replay_looks(outcomes, no_tolerance, 5, 5);
+  ASSERT_EQ(looks.size(), 1U);
+  EXPECT_EQ(looks[0].verdict, Verdict::complete);
+  EXPECT_DOUBLE_EQ(looks[0].controlled.mean, 3);
+  EXPECT_NEAR(looks[0].controlled_half_width, 2.776445 * std::sqrt(2.5 / 5), 1e-6);
+  EXPECT_FALSE(looks[0].near_maximum);
+  EXPECT_EQ(replay_looks(alternating(9, 10, 3), no_tolerance, 5, 5).size(), 1U) << "later seeds do not count";
+}
+
+// scipy.stats.t.ppf(0.975, 3) = 3.182446; 1, 2, 4 and 5 have the variance 10/3.
+TEST(FixedNumber, LeavesOutLostSeedsAndSaysSo) {
+  Outcomes outcomes{value(1), value(2), lost(), value(4), value(5)};
+  const Look look = replay_looks(outcomes, no_tolerance, 5, 5).at(0);
+  EXPECT_EQ(look.verdict, Verdict::complete_with_losses);
+  EXPECT_EQ(look.lost, 1);
+  EXPECT_NEAR(look.controlled_half_width, 3.182446 * std::sqrt(10.0 / 3 / 4), 1e-6);
+  EXPECT_EQ(replay_looks(all_lost(5), no_tolerance, 5, 5).at(0).verdict, Verdict::failed);
+}
+
+TEST(FixedNumber, OfOneHasAMeanWithoutAnInterval) {
+  const Look look = replay_looks({value(7)}, no_tolerance, 1, 1).at(0);
+  EXPECT_EQ(look.verdict, Verdict::complete);
+  EXPECT_EQ(look.controlled.mean, 7);
+  EXPECT_FALSE(std::isfinite(look.controlled_half_width));
+}
+
+TEST(FixedNumber, GivesEachObservableThatIsShownItsInterval) {
+  Target both = no_tolerance;
+  both.also = {{"pressure", Tolerance::none()}};
+  Outcomes outcomes;
+  for (int seed = 0; seed < 5; ++seed) {
+    outcomes.emplace_back(value(seed + 1));
+    outcomes.back()->further = {{seed == 2 ? std::nan("") : 10.0 * (seed + 1)}};
+  }
+  const Look look = replay_looks(outcomes, both, 5, 5).at(0);
+  ASSERT_EQ(look.each.size(), 2U);
+  EXPECT_EQ(look.each[0].verdict, Verdict::complete);
+  EXPECT_NEAR(look.each[0].half_width, 2.776445 * std::sqrt(2.5 / 5), 1e-6);
+  EXPECT_EQ(look.each[1].verdict, Verdict::complete_with_losses);
+  EXPECT_NEAR(look.each[1].half_width, 31.82446 * std::sqrt(10.0 / 3 / 4), 1e-5);
+  EXPECT_EQ(look.verdict, Verdict::complete_with_losses);
+}
+
 }  // namespace
 }  // namespace peclet::runner

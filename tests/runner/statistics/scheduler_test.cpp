@@ -39,6 +39,22 @@ TEST(Scheduler, UnderACeilingOnlyTheFirstSeedsGo) {
   EXPECT_FALSE(scheduler.decided(0));
 }
 
+// A campaign of a fixed number of realisations: no seed is surplus, and losses are not made up for.
+TEST(Scheduler, GivesEveryPointTheFixedNumberOfSeeds) {
+  const Target target{"relative_viscosity", Tolerance::none(), 0.95};
+  Scheduler scheduler(Outcomes(2), target, 6, 6);
+  for (int seed = 0; seed < 12; ++seed) take(scheduler);
+  EXPECT_EQ(scheduler.next(), std::nullopt);
+  for (int seed = 0; seed < 6; ++seed) {
+    EXPECT_FALSE(scheduler.finished());
+    scheduler.end({0, seed}, scattered(seed));
+    scheduler.end({1, seed}, seed == 3 ? Outcome{} : steady_outcome(seed));
+  }
+  EXPECT_TRUE(scheduler.finished());
+  EXPECT_EQ(scheduler.looks(0).back().verdict, Verdict::complete);
+  EXPECT_EQ(scheduler.looks(1).back().verdict, Verdict::complete_with_losses);
+}
+
 TEST(Scheduler, PriorityGoesBeforeCost) {
   Scheduler scheduler = fresh(2);
   scheduler.set_cost(0, 1);
