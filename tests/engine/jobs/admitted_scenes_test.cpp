@@ -241,7 +241,7 @@ TEST_F(AdmittedScene, OfAnyFlowAndObservableAndMethodThatBeginsInAFileRunsToItsE
   const Json start = {{"file", kept}, {"sha256", sha256_of_file(kept)}};
   for (const char* method : {"explicit", "implicit"}) {
     for (const auto& [flow, of_flow] : flows()) {
-      for (const ObservableEntry& entry : observable_entries()) {
+      for (const ObservableKind& entry : observable_kinds()) {
         Json document = tiny_scene();
         document.merge_patch(of_flow);
         document["integrator"] = {{"method", method}, {"timestep", method[0] == 'e' ? 0.0004 : 0.002}};
