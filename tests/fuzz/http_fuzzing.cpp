@@ -221,8 +221,8 @@ FuzzReport fuzz_live_server(std::uint64_t seed, const std::function<bool(const F
     ++report.requests;
     std::string fault = answer ? "" : "no answer and no end in time";
     const std::string kind = answer ? judge(request, *answer, fault) : "";
-    // How long the request is and how many lines it has belong to its kind, too, roughly.
     if (!kind.empty()) answers.insert(kind);
+    // How long the request is and how many lines it has belong to its kind, too, roughly.
     const auto lines = std::count(request.begin(), request.end(), '\n');
     if (kinds.insert(fmt::format("{} {} {}", kind, std::min<std::ptrdiff_t>(lines, 8), request.size() / 4096))
             .second)

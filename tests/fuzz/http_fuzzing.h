@@ -14,7 +14,7 @@ namespace peclet::runner {
 
 struct FuzzReport {
   std::int64_t requests = 0;
-  std::size_t answers = 0;            // different ones, by status, type and method
+  std::size_t answers = 0;            // different answers, by status, type and method
   std::vector<std::string> findings;  // what an answer was not, with the request in JSON's spelling
 };
 
