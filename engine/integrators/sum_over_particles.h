@@ -1,4 +1,4 @@
-// Stresses that particles carry.
+// Sums of stresses over particles, and velocities relative to the uniform flow.
 #pragma once
 
 #include <vector>

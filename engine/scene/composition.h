@@ -7,7 +7,7 @@
 
 namespace peclet::engine {
 
-// The largest count that a scene may have.
+// The largest number of particles that a scene may have.
 constexpr std::size_t most_particles = 10'000'000;
 
 struct Species {

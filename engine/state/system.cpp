@@ -25,9 +25,9 @@ void require_places(const VectorField& position, const PeriodicCell& box, double
     const Vector3 cells = cell.fractional(position[i]);
     is_good = is_near(cells.x) && is_near(cells.y) && is_near(cells.z);
   }
-  if (!is_good)
-    throw ArchiveError(
-        "has a cell without volume or too thin for its spheres, or a sphere that is not near it");
+  if (is_good) return;
+  throw ArchiveError(
+      "has a cell without volume or too thin for its spheres, or a sphere that is not near it");
 }
 
 }  // namespace

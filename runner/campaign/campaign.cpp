@@ -81,7 +81,7 @@ int seeds_with_files(const Json& document, const std::string& file) {
                    fmt::format("must be \"all\", \"none\" or an integer >= 0 and <= {}", most_realisations));
 }
 
-// A file of a scene alone is what many begin with: says what a campaign has around it.
+// Throws InputError for a file that has a scene alone, as many begin with, and says what belongs around it.
 void refuse_bare_scene(const Json& written, const std::string& file) {
   if (!written.is_object() || written.contains("scene") || !written.contains("particles")) return;
   throw InputError(

@@ -17,8 +17,8 @@ struct Hindrance {
   std::filesystem::path folder{};  // that lacks room for `bytes`; empty: it is not room that is lacking
   std::uint64_t bytes = 0;
 
-  // Tells it from another one: its text has figures that change, and a full file system is full in all
-  // folders.
+  // Returns what is in the way, the same text for as long as it is: `text` has figures that change. A full
+  // file system is one hindrance, whichever of its folders is named.
   std::string kind() const;
 };
 

@@ -124,7 +124,7 @@ int dispatch(OpenedRun& opened, const RunOptions& options, const ClaimedCampaign
   settings.checkpoint_seconds = options.checkpoint_seconds;
   if (options.time_limit) settings.time_limit = std::chrono::duration<double>(*options.time_limit);
   settings.chore = [&backup, &watch] {
-    // First the folder: a backup must not be begun in one that has been moved.
+    // The folder is looked at before the backup, which must not begin in a folder that has been moved.
     const bool mended = watch.attend(steady_clock::now());
     backup.attend(steady_clock::now());
     return mended;

@@ -13,7 +13,7 @@
 // or an endless loop is a finding. Returns 0. NOLINTNEXTLINE(readability-identifier-naming)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
-// How many inputs have been read as a whole since the beginning. The target counts them.
+// The number of inputs that were read as a whole. The target counts them.
 extern std::size_t inputs_accepted;
 
 // Returns inputs that are read as a whole, from which mutations begin.

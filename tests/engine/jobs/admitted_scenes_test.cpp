@@ -95,7 +95,7 @@ std::vector<NamedPatch> surroundings() {
 // What cannot be measured in a flow, whatever is around it.
 const std::set<std::string>& refused() {
   static const std::set<std::string> names = {
-      // At rest alone, with noise.
+      // stress_correlation and linear_response need a fluid at rest, with noise.
       "waves + stress_correlation", "waves_alone + stress_correlation", "shear + stress_correlation",
       "across + stress_correlation", "oscillation + stress_correlation", "reversal + stress_correlation",
       "ramp_and_stop + stress_correlation", "extension + stress_correlation", "uniaxial + stress_correlation",
@@ -104,12 +104,13 @@ const std::set<std::string>& refused() {
       "across + linear_response", "oscillation + linear_response", "reversal + linear_response",
       "ramp_and_stop + linear_response", "extension + linear_response", "uniaxial + linear_response",
       "biaxial + linear_response", "stress + linear_response", "peclet + linear_response",
-      // Of a shear to and fro alone, and of all but that.
+      // oscillation needs an oscillating flow; transient needs one that neither oscillates nor has a given
+      // stress.
       "rest + oscillation", "shear + oscillation", "waves + oscillation", "waves_alone + oscillation",
       "reversal + oscillation", "ramp_and_stop + oscillation", "extension + oscillation",
       "uniaxial + oscillation", "biaxial + oscillation", "stress + oscillation", "peclet + oscillation",
       "across + transient", "oscillation + transient", "stress + transient",
-      // Made for the axes of a shear at a rate.
+      // Displacements, g(r) and profiles are kept along the axes of a steady shear.
       "across + mean_squared_displacement", "extension + mean_squared_displacement",
       "uniaxial + mean_squared_displacement", "biaxial + mean_squared_displacement",
       "stress + mean_squared_displacement", "extension + pair_distribution", "extension + profiles",

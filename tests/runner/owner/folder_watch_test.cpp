@@ -94,11 +94,14 @@ TEST(FolderWatchedOfFiles, FoldersOfFilesAreMadeAnewAndNobodyIsBlamed) {
   CampaignOnDisk campaign;
   campaign.start(campaign.held_from(7, {{"PECLET_FAKE_STEP_MS", "10"}, {"PECLET_FAKE_FILES", "2"}}));
   campaign.wait_for_results(3);
-  fs::remove_all(campaign.directory().left());
-  fs::remove_all(campaign.directory().rejected());
-  campaign.wait_until("what the watch says", [&] {
-    return campaign.log().find("somebody deleted spool/rejected/, spool/files/") != std::string::npos;
-  });
+  const auto delete_and_wait = [&](const fs::path& folder, const std::string& name) {
+    fs::remove_all(folder);
+    campaign.wait_until("what the watch says",
+                        [&] { return campaign.log().find("somebody deleted " + name) != std::string::npos; });
+  };
+  // One after the other: a result whose files are gone is rejected, which makes the folder for rejected ones.
+  delete_and_wait(campaign.directory().rejected(), "spool/rejected/");
+  delete_and_wait(campaign.directory().left(), "spool/files/");
   campaign.release();
   EXPECT_EQ(campaign.finish(), 0) << campaign.log();
   EXPECT_EQ(campaign.count("SELECT total(blamed) FROM attempt"), 0) << campaign.log();
