@@ -15,9 +15,9 @@
 
 #include "contract/json.h"
 #include "contract/key_table.h"
+#include "engine/document/scene_document.h"
 #include "engine/flow/steady_shear.h"
 #include "engine/scene/composition.h"
-#include "engine/document/scene_document.h"
 #include "engine/terms/contact.h"
 #include "engine/terms/laws.h"
 #include "engine/terms/lubrication.h"

@@ -72,7 +72,8 @@ Json to_json(const Tolerance& tolerance) {
 }
 
 Tolerance tolerance_of(const Json& target, const std::string& file, const std::string& pointer) {
-  // A file of a campaign with a target must have one of the two; what is stored for a fixed number has neither.
+  // A file of a campaign with a target must have one of the two; what is stored for a fixed number has
+  // neither.
   if (!target.contains(relative_key) && !target.contains(absolute_key)) return Tolerance::none();
   if (has_number(target, relative_key)) {
     Tolerance tolerance(target[relative_key].get<double>());

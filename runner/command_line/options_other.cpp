@@ -34,8 +34,6 @@ Put the line of the example into ~/.bashrc. `cmake --install` puts the script wh
 
 }  // namespace
 
-void add_other_verbs(VerbSet& verbs) {
-  add_completion(verbs);
-}
+void add_other_verbs(VerbSet& verbs) { add_completion(verbs); }
 
 }  // namespace peclet::runner

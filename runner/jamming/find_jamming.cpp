@@ -14,9 +14,9 @@
 #include "runner/campaign/campaign_file.h"
 #include "runner/campaign/document_edit.h"
 #include "runner/engines/command.h"
-#include "runner/store/own_files.h"
 #include "runner/owner/open_campaign.h"
 #include "runner/statistics/look_json.h"
+#include "runner/store/own_files.h"
 #include "runner/text/quoting.h"
 
 namespace peclet::runner {

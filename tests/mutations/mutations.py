@@ -148,10 +148,7 @@ def who_notices(folder):
             continue
         if done.returncode != 0:
             noticed.append(f"study {study}")
-    for program, arguments in (
-        ("engine_tests", []),
-        ("physics_tests", ["--gtest_filter=-PairDensity*"]),
-    ):
+    for program, arguments in (("engine_tests", []), ("physics_tests", ["--gtest_filter=-PairDensity*"])):
         names = failed_tests(folder, program, arguments)
         if names:
             more = f" and {len(names) - 3} more" if len(names) > 3 else ""
