@@ -29,12 +29,12 @@ struct Target {
   mode_t mode = 0;
 };
 
-[[noreturn]] void refuse(const fs::path& path, const std::string& why) {
+[[noreturn]] void refuse_output(const fs::path& path, const std::string& why) {
   throw InputError(path.string(), "", "", why);
 }
 
-[[noreturn]] void refuse(const fs::path& path, int error) {
-  refuse(path, fmt::format("cannot be written: {}", std::generic_category().message(error)));
+[[noreturn]] void refuse_output(const fs::path& path, int error) {
+  refuse_output(path, fmt::format("cannot be written: {}", std::generic_category().message(error)));
 }
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
@@ -60,36 +60,37 @@ Target follow(const fs::path& given) {
     if (target.descriptor) return target;
     struct stat about {};
     target.exists = lstat(target.path.c_str(), &about) == 0;
-    if (!target.exists && errno != ENOENT) refuse(given, errno);
+    if (!target.exists && errno != ENOENT) refuse_output(given, errno);
     target.mode = about.st_mode;
     if (!target.exists || !S_ISLNK(about.st_mode)) return target;
     std::error_code error;
     const fs::path next = fs::read_symlink(target.path, error);
-    if (error) refuse(given, error.value());
+    if (error) refuse_output(given, error.value());
     target.path = next.is_absolute() ? next : folder_of(target.path) / next;
   }
-  refuse(given, ELOOP);
+  refuse_output(given, ELOOP);
 }
 
 void check(const fs::path& given, const Target& target) {
   if (target.descriptor) {
     const int status = fcntl(*target.descriptor, F_GETFL);
-    if (status < 0 || (status & O_ACCMODE) == O_RDONLY) refuse(given, EBADF);
+    if (status < 0 || (status & O_ACCMODE) == O_RDONLY) refuse_output(given, EBADF);
     return;
   }
-  if (!target.path.has_filename()) refuse(given, "must be the name of a file, and is that of a folder");
+  if (!target.path.has_filename())
+    refuse_output(given, "must be the name of a file, and is that of a folder");
   if (!target.exists || S_ISREG(target.mode)) {
     const fs::path folder = folder_of(target.path);
     struct stat about {};
     if (stat(folder.c_str(), &about) != 0) {
-      refuse(given, fmt::format("cannot be written: the folder {} is not there", folder.string()));
+      refuse_output(given, fmt::format("cannot be written: the folder {} is not there", folder.string()));
     }
-    if (access(folder.c_str(), W_OK | X_OK) != 0) refuse(given, errno);
+    if (access(folder.c_str(), W_OK | X_OK) != 0) refuse_output(given, errno);
     return;
   }
-  if (S_ISDIR(target.mode)) refuse(given, "is a folder: must be the name of a file");
-  if (S_ISSOCK(target.mode)) refuse(given, "is a socket: must be the name of a file");
-  if (access(target.path.c_str(), W_OK) != 0) refuse(given, errno);
+  if (S_ISDIR(target.mode)) refuse_output(given, "is a folder: must be the name of a file");
+  if (S_ISSOCK(target.mode)) refuse_output(given, "is a socket: must be the name of a file");
+  if (access(target.path.c_str(), W_OK) != 0) refuse_output(given, errno);
 }
 
 // `replace` makes a regular file anew, `write_to` writes to what is open.

@@ -9,9 +9,9 @@ namespace peclet::engine {
 namespace {
 
 // Numbers as the file had them: the shortest text that is read back as the same float, or double.
-class Row {
+class RowText {
  public:
-  Row(std::string& text, bool single) : text_(text), single_(single) {}
+  RowText(std::string& text, bool single) : text_(text), single_(single) {}
 
   void add(double x) {
     const auto out = std::back_inserter(text_);
@@ -65,7 +65,7 @@ std::string lammps_frame(const Snapshot& snapshot) {
       snapshot.spin.empty() ? "" : " omegax omegay omegaz",
       snapshot.stress.empty() ? "" : " stress_xx stress_yy stress_zz stress_xy stress_xz stress_yz",
       snapshot.contact_number.empty() ? "" : " contacts");
-  Row row(text, snapshot.single);
+  RowText row(text, snapshot.single);
   for (std::size_t i = 0; i < snapshot.count(); ++i) {
     fmt::format_to(std::back_inserter(text), "{} {}", i + 1, snapshot.species[i] + 1);
     row.add(snapshot.position[i]);
@@ -103,7 +103,7 @@ std::string xyz_frame(const Snapshot& snapshot) {
   }
   text += '\n';
   const std::vector<std::string> types = words_of_species(snapshot);
-  Row row(text, snapshot.single);
+  RowText row(text, snapshot.single);
   for (std::size_t i = 0; i < snapshot.count(); ++i) {
     fmt::format_to(std::back_inserter(text), "{} {}", i, types[snapshot.species[i]]);
     row.add(snapshot.position[i]);
