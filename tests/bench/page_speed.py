@@ -78,7 +78,12 @@ def copies(database, point, seeds, columns):
         yield (
             [row[column] for column in columns],
             (point, seed, deflated(json.dumps(result, separators=(",", ":")).encode(), dictionary)),
-            (point, seed, layout, json.dumps([number and number * factor for number in numbers])),
+            (
+                point,
+                seed,
+                layout,
+                json.dumps([number and number * factor for number in numbers], separators=(",", ":")),
+            ),
         )
 
 
