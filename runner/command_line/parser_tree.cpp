@@ -22,7 +22,7 @@ std::vector<std::string> choices_of(const CLI::Option& option) {
   return choices;
 }
 
-CommandOption describe(const CLI::Option& option) {
+CommandOption option_of(const CLI::Option& option) {
   CommandOption described;
   described.positional = option.get_positional();
   described.name = described.positional ? option.get_name(true) : "--" + option.get_lnames().front();
@@ -37,17 +37,17 @@ CommandOption describe(const CLI::Option& option) {
 
 CommandTree describe(const CLI::App& app) {
   CommandTree tree;
-  for (const CLI::Option* option : app.get_options()) tree.options.push_back(describe(*option));
+  for (const CLI::Option* option : app.get_options()) tree.options.push_back(option_of(*option));
   for (const CLI::App* verb : app.get_subcommands(std::function<bool(const CLI::App*)>())) {
     CommandVerb described{verb->get_name(), {}};
-    for (const CLI::Option* option : verb->get_options()) described.options.push_back(describe(*option));
+    for (const CLI::Option* option : verb->get_options()) described.options.push_back(option_of(*option));
     tree.verbs.push_back(std::move(described));
   }
   return tree;
 }
 
 std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {
-  const CommandOption about = describe(*option);
+  const CommandOption about = option_of(*option);
   std::string text = about.takes_value() ? " " + about.value : "";
   if (!about.default_value.empty()) text += "=" + about.default_value;
   return about.repeatable ? text + " ..." : text;

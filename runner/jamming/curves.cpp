@@ -16,7 +16,7 @@
 namespace peclet::runner {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 bool is_soft(const JammingPoint& point, double softest) {
   constexpr double largest_over_mean = 10;
@@ -72,9 +72,9 @@ std::optional<std::size_t> column_of(const std::vector<Drawable>& drawables, con
 
 Estimate estimate_of(const Json& point, const std::optional<std::size_t>& column) {
   const Json numbers = column ? point.at("estimates").at(*column) : Json();
-  if (numbers.is_null()) return {0, none, none};
+  if (numbers.is_null()) return {0, not_known, not_known};
   const auto number = [&](std::size_t place) {
-    return numbers[place].is_number() ? numbers[place].get<double>() : none;
+    return numbers[place].is_number() ? numbers[place].get<double>() : not_known;
   };
   return {numbers[3].get<int>(), number(0), number(1)};
 }

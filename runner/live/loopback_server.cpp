@@ -50,11 +50,11 @@ std::optional<int> refused_by(const error_code& error) {
   return std::nullopt;
 }
 
-// Connection that reads the head of one request, writes one answer and waits for the other side to hang up:
-// closing a socket with unread bytes takes back what was sent.
-class Connection : public std::enable_shared_from_this<Connection> {
+// An HTTP connection: reads the head of one request, writes one answer and waits for the other side to hang
+// up: closing a socket with unread bytes takes back what was sent.
+class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
  public:
-  Connection(tcp::socket socket, const LoopbackServer::Handler& handler)
+  HttpConnection(tcp::socket socket, const LoopbackServer::Handler& handler)
       : stream_(std::move(socket)), handler_(handler) {
     parser_.header_limit(longest_head);
     parser_.body_limit(std::numeric_limits<std::uint64_t>::max());  // the body is never read
@@ -181,13 +181,13 @@ class LoopbackServer::Listener {
  private:
   void accept(const Handler& handler) {
     acceptor_.async_accept([this, &handler](error_code error, tcp::socket socket) {
-      if (!error) admit(std::make_shared<Connection>(std::move(socket), handler));
+      if (!error) admit(std::make_shared<HttpConnection>(std::move(socket), handler));
       accept(handler);
     });
   }
 
   // Slow connections keep no other waiting: the one whose time ends first makes room.
-  void admit(const std::shared_ptr<Connection>& connection) {
+  void admit(const std::shared_ptr<HttpConnection>& connection) {
     connections_.remove_if([](const auto& one) { return one.expired(); });
     if (connections_.size() >= most_connections) {
       const auto soonest = std::min_element(
@@ -202,7 +202,7 @@ class LoopbackServer::Listener {
 
   asio::io_context context_{1};  // for one thread
   tcp::acceptor acceptor_{context_};
-  std::list<std::weak_ptr<Connection>> connections_;
+  std::list<std::weak_ptr<HttpConnection>> connections_;
 };
 
 LoopbackServer::LoopbackServer(int port) : listener_(std::make_unique<Listener>(port)) {}

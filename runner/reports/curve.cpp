@@ -65,7 +65,7 @@ class Scale {
 };
 
 // Means over the axis; NaN where there is none, infinite where the point has jammed.
-using Curve = std::map<double, double>;
+using Points = std::map<double, double>;
 constexpr double jammed = std::numeric_limits<double>::infinity();
 
 const char* sign(double mean, const Scale& scale) {
@@ -75,7 +75,7 @@ const char* sign(double mean, const Scale& scale) {
   return bars[static_cast<std::size_t>(std::lround(7 * scale.height(mean)))];
 }
 
-std::string drawn(const Curve& curve, const Scale& scale, std::size_t columns_each) {
+std::string drawn(const Points& curve, const Scale& scale, std::size_t columns_each) {
   std::string line;
   for (const auto& [x, mean] : curve) {
     for (std::size_t i = 0; i < columns_each; ++i) line += sign(mean, scale);
@@ -84,7 +84,7 @@ std::string drawn(const Curve& curve, const Scale& scale, std::size_t columns_ea
 }
 
 // "5.39 to 8.52", of the first and the last mean.
-std::string ends(const Curve& curve) {
+std::string ends(const Points& curve) {
   std::vector<double> means;
   for (const auto& [x, mean] : curve) {
     if (std::isfinite(mean)) means.push_back(mean);
@@ -99,7 +99,7 @@ std::string curve_text(const CampaignStatus& status, std::size_t width) {
   constexpr std::size_t fewest = 3, widest = 48;
   if (status.points.empty()) return "";
   const std::string axis = swept_most(status);
-  std::map<std::string, Curve> curves;
+  std::map<std::string, Points> curves;
   std::vector<double> means;
   for (const PointSummary& point : status.points) {
     if (axis.empty()) break;
@@ -116,7 +116,7 @@ std::string curve_text(const CampaignStatus& status, std::size_t width) {
   if (means.size() < fewest || values < fewest) return "";
   const Scale scale(means);
   const std::size_t each = std::clamp<std::size_t>(widest / values, 1, 4);
-  const Curve& first = curves.begin()->second;
+  const Points& first = curves.begin()->second;
   std::string text = fmt::format("{} over {}, {} to {}\n", status.campaign.target.target.observable,
                                  last_step(axis), rough(first.begin()->first), rough(first.rbegin()->first));
   std::size_t longest = text.size() - 1;
