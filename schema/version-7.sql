@@ -15,4 +15,9 @@ CREATE TABLE numbers (
   FOREIGN KEY (point_id, seed) REFERENCES realisation
 ) STRICT, WITHOUT ROWID;
 
+-- What the engine that ran last calls the keys of scenes and the numbers that follow from them: one row at most.
+CREATE TABLE vocabulary (
+  document TEXT NOT NULL CHECK (json_valid(document))
+) STRICT;
+
 PRAGMA user_version = 7;

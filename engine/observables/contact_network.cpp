@@ -18,13 +18,13 @@ std::vector<Quantity> network_quantities(const Scene& scene, const Window&) {
       {.name = "contact_network/contacts", .symbol = "P(Z)", .unit = "1", .axes = {contacts}}};
   if (!(scene.physics.contact->friction > 0)) return all;
   all.push_back({.name = "contact_network/mobilisation",
-                 .symbol = "P(|F_t| / (mu F_n))",
+                 .symbol = "P(|F_t| / (μ F_n))",
                  .unit = "1",
                  .axes = {mobilisation}});
-  all.push_back({.name = "mobilised_friction", .symbol = "<|F_t| / (mu F_n)>", .unit = "1"});
+  all.push_back({.name = "mobilised_friction", .symbol = "⟨|F_t| / (μ F_n)⟩", .unit = "1"});
   const bool remembered = remembers_sliding(*scene.physics.contact);
   all.push_back({.name = "sliding_contacts",
-                 .symbol = remembered ? "P(slides)" : "P(|F_t| > 0.99 mu F_n)",
+                 .symbol = remembered ? "P(slides)" : "P(|F_t| > 0.99 μ F_n)",
                  .unit = "1"});
   if (scene.physics.contact->critical_load > 0) {
     all.push_back({.name = "frictional_contacts", .symbol = "P(F_n > F_CL)", .unit = "1"});

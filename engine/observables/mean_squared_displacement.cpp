@@ -53,7 +53,7 @@ std::vector<Quantity> displacement_quantities(const Scene& scene, const Window& 
     for (const char* axis : {"x", "y", "z"}) {
       if (*axis == 'x' && (scene.physics.flow.rate() > 0 || scene.physics.flow.varies())) continue;
       all.push_back({.name = fmt::format("mean_squared_displacement/{}/{}", group, axis),
-                     .symbol = fmt::format("<{}_{}^2>", symbol, axis),
+                     .symbol = fmt::format("⟨{}_{}^2⟩", symbol, axis),
                      .unit = "length^2",
                      .axes = {time}});
     }

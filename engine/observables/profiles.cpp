@@ -137,9 +137,9 @@ void add_stress_quantities(const Scene& scene, const Axis& centres, const Axis& 
                    .axes = {{"component", "1", components}, y}});
   };
   const Json& stress = StressProfile::stress_components();
-  add("stress/pairs", "sigma(y)", stress, centres);
+  add("stress/pairs", "σ(y)", stress, centres);
   for (const StressTerm term : StressProfile::terms(physics))
-    add(std::string("stress/") + name_of(term), "sigma(y)", stress, centres);
+    add(std::string("stress/") + name_of(term), "σ(y)", stress, centres);
   if (!StressProfile::has_balance(physics)) return;
   const Json& flux = StressProfile::flux_components();
   add("momentum_flux", "r_y F(y)", flux, centres);
@@ -152,15 +152,15 @@ std::vector<Quantity> profile_quantities(const Scene& scene, const Window& windo
   const Axis y = along_y(window, bins, 0.5);
   const Axis radius{"radius", "length", radii_in(scene)};
   std::vector<Quantity> all = {
-      {.name = "profiles/volume_fraction", .symbol = "phi(y)", .unit = "1", .axes = {y}},
-      {.name = "profiles/volume_fraction_by_radius", .symbol = "phi_a(y)", .unit = "1", .axes = {radius, y}},
+      {.name = "profiles/volume_fraction", .symbol = "φ(y)", .unit = "1", .axes = {y}},
+      {.name = "profiles/volume_fraction_by_radius", .symbol = "φ_a(y)", .unit = "1", .axes = {radius, y}},
       {.name = "profiles/velocity",
        .symbol = "u_x(y) - U(y)",
        .unit = "length / time",
        .axes = {y},
        .ratio = RatioOfMeans{"flux", "volume_fraction"}},
       {.name = "profiles/velocity_variance",
-       .symbol = "<(u - u*)^2>",
+       .symbol = "⟨(u - u*)^2⟩",
        .unit = "length^2 / time^2",
        .axes = {{"component", "1", {"x", "y", "z"}}, y}}};
   add_stress_quantities(scene, y, along_y(window, bins, 0), all);

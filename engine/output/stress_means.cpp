@@ -1,5 +1,6 @@
 #include "engine/output/stress_means.h"
 
+#include <algorithm>
 #include <span>
 #include <string>
 
@@ -192,35 +193,37 @@ std::vector<Quantity> stress_quantities(const Scene& scene) {
   Described described(scene);
   const char* const unit = described.unit();
   if (sheared) {
-    described.scalar("relative_viscosity", "eta_r", "1");
-    described.scalar("relative_viscosity_pair", "eta_r^pairs", "1");
-    described.stress("stress/solvent", "sigma^S");
+    described.scalar("relative_viscosity", "η_r", "1");
+    described.scalar("relative_viscosity_pair", "η_r^pairs", "1");
+    described.stress("stress/solvent", "σ^S");
   }
   const bool at_stress = scene.physics.flow.deformation().stress().has_value();
   if (at_stress) {
-    described.scalar("shear_rate", "<rate>", "1 / time");
+    described.scalar("shear_rate", "⟨γ̇⟩", "1 / time");
     described.scalar("flowing", "P(flows)", "1");
     described.as_share();
-    described.viscosity("apparent_viscosity", "eta_r");
-    described.viscosity("viscosity_of_those_flowing", "eta_r^flowing");
-    described.stress("stress/solvent", "sigma^S");
+    described.viscosity("apparent_viscosity", "η_r");
+    described.viscosity("viscosity_of_those_flowing", "η_r^flowing");
+    described.stress("stress/solvent", "σ^S");
   }
-  if (sheared || at_stress || scene.physics.flow.varies()) described.stress("stress/stresslet", "sigma^E");
+  if (sheared || at_stress || scene.physics.flow.varies()) described.stress("stress/stresslet", "σ^E");
   described.scalar("first_normal_difference", "N_1", unit);
   described.scalar("second_normal_difference", "N_2", unit);
   described.scalar("pressure", "P", unit);
   for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
     const auto term = static_cast<StressTerm>(t);
     if (!has_stress_term(scene.physics, term)) continue;
-    described.stress(std::string("stress/") + name_of(term), std::string("sigma^") + name_of(term));
+    std::string words = name_of(term);
+    std::replace(words.begin(), words.end(), '_', ' ');
+    described.stress(std::string("stress/") + name_of(term), "σ^{" + words + '}');
   }
   if (scene.physics.thermal_energy > 0) {
-    described.stress(std::string("stress/") + stress_of_motion_name, "sigma^motion");
+    described.stress(std::string("stress/") + stress_of_motion_name, "σ^motion");
   }
-  described.stress("stress/total", "sigma");
-  described.stress("brownian_structural", "sigma^B");
+  described.stress("stress/total", "σ");
+  described.stress("brownian_structural", "σ^B");
   described.scalar("contacts_per_particle", "Z", "1");
-  described.scalar("mean_overlap", "<delta/a>", "1");
+  described.scalar("mean_overlap", "⟨δ/a⟩", "1");
   described.scalar("kinetic_temperature", "k_B T", "energy");
   described.scalar("rotational_temperature", "k_B T_rot", "energy");
   return described.take();

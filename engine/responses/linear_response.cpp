@@ -62,10 +62,10 @@ std::vector<Quantity> response_quantities(const Scene&, const Window& window) {
               times_of(SquaredSums::lengths(levels_to_half_of(window.steps), window.steps), window.timestep));
   const Axis lag = axis_of("lag", "time", times_of(correlation_lags(window.steps), window.timestep));
   const Axis frequency = axis_of("frequency", "1 / time", frequencies(window));
-  return {{.name = "zero_shear_viscosity", .symbol = "eta_r(0)", .unit = "1"},
-          {.name = "zero_shear_rise", .symbol = "rise of eta_r(0)", .unit = "1"},
-          {.name = "linear_response/viscosity", .symbol = "eta(t) / eta", .unit = "1", .axes = {time}},
-          {.name = "linear_response/correlation", .symbol = "eta_GK(t) / eta", .unit = "1", .axes = {lag}},
+  return {{.name = "zero_shear_viscosity", .symbol = "η_r(0)", .unit = "1"},
+          {.name = "zero_shear_rise", .symbol = "rise of η_r(0)", .unit = "1"},
+          {.name = "linear_response/viscosity", .symbol = "η(t) / η", .unit = "1", .axes = {time}},
+          {.name = "linear_response/correlation", .symbol = "η_GK(t) / η", .unit = "1", .axes = {lag}},
           {.name = "linear_response/modulus", .symbol = "G(t)", .unit = "stress", .axes = {lag}},
           {.name = "linear_response/storage", .symbol = "G'", .unit = "stress", .axes = {frequency}},
           {.name = "linear_response/loss", .symbol = "G''", .unit = "stress", .axes = {frequency}}};

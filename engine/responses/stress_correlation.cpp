@@ -23,8 +23,8 @@ std::vector<Quantity> correlation_quantities(const Scene& scene, const Window& w
     time.values.push_back(between * static_cast<double>(lag));
   }
   return {{.name = "stress_correlation/modulus", .symbol = "G(t)", .unit = "stress", .axes = {time}},
-          {.name = "stress_correlation/viscosity", .symbol = "eta_B(t) / eta", .unit = "1", .axes = {time}},
-          {.name = "green_kubo_viscosity", .symbol = "eta_B / eta", .unit = "1"}};
+          {.name = "stress_correlation/viscosity", .symbol = "η_B(t) / η", .unit = "1", .axes = {time}},
+          {.name = "green_kubo_viscosity", .symbol = "η_B / η", .unit = "1"}};
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 struct NamedStress {
   const char *name, *symbol;
 };
-constexpr std::array<NamedStress, 4> stresses = {{{"shear_stress", "sigma"},
+constexpr std::array<NamedStress, 4> stresses = {{{"shear_stress", "σ"},
                                                   {"first_normal_difference", "N_1"},
                                                   {"second_normal_difference", "N_2"},
                                                   {"pressure", "P"}}};

@@ -1,4 +1,7 @@
 // Every key of a scene: the one list behind validation, schema/scene.schema.json and the manual's page.
+#include <algorithm>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "engine/scene/flow_block.h"
@@ -85,6 +88,50 @@ Keys run_keys() {
   return keys;
 }
 
+struct KeyName {
+  const char *pointer, *words, *symbol;
+};
+
+// What people call keys: all who show a scene take it from its schema.
+constexpr KeyName key_names[] = {
+    {"/peclet", "Péclet number", "Pe"},
+    {"/volume_fraction", "volume fraction", "φ"},
+    {"/addition/base_volume_fraction", "volume fraction before the addition", "φ_0"},
+    {"/particles/count", "number of particles", "N"},
+    {"/particles/density", "density of the particles", "ρ"},
+    {"/particles/mixture/alpha", "share of grains in the solid volume", "α"},
+    {"/fluid/viscosity", "viscosity of the fluid", "η"},
+    {"/fluid/thermal_energy", "thermal energy", "k_B T"},
+    {"/flow/shear_rate", "shear rate", "γ̇"},
+    {"/flow/extension_rate", "extension rate", "ε̇"},
+    {"/flow/stress", "shear stress", "σ"},
+    {"/flow/oscillation/amplitude", "amplitude of the strain", "γ_0"},
+    {"/flow/oscillation/frequency", "angular frequency", "ω"},
+    {"/flow/cross_shear/amplitude", "amplitude of the strain across", "γ_0"},
+    {"/flow/cross_shear/frequency", "angular frequency across", "ω"},
+    {"/contact/normal_stiffness", "normal stiffness", "k_n"},
+    {"/contact/friction", "coefficient of friction", "μ"},
+    {"/contact/kinetic_friction", "coefficient of kinetic friction", "μ_k"},
+    {"/contact/rolling_friction", "coefficient of rolling friction", "μ_r"},
+    {"/lubrication/form", "form of the lubrication", ""},
+    {"/lubrication/inner_gap", "inner gap of the lubrication", ""},
+    {"/lubrication/outer_gap", "outer gap of the lubrication", ""},
+    {"/repulsion/form", "form of the repulsion", ""},
+    {"/repulsion/strength", "strength of the repulsion", ""},
+    {"/repulsion/force", "largest force of the repulsion", ""},
+    {"/repulsion/debye_length", "Debye length", "κ^{-1}"},
+    {"/attraction/hamaker", "Hamaker constant", "A_H"}};
+
+void name_keys(Keys& keys) {
+  for (const auto& [pointer, words, symbol] : key_names) {
+    const auto key = std::find_if(keys.begin(), keys.end(),
+                                  [&, at = pointer](const Key& one) { return one.pointer == at; });
+    if (key == keys.end()) throw std::logic_error(std::string("no key of a scene: ") + pointer);
+    key->words = words;
+    key->symbol = symbol;
+  }
+}
+
 }  // namespace
 
 const KeyTable& scene_keys() {
@@ -96,6 +143,7 @@ const KeyTable& scene_keys() {
     for (const LawBlock& law : law_blocks) append(law.keys());
     append(start_keys());
     append(run_keys());
+    name_keys(keys);
     return KeyTable("Scene of a peclet simulation", std::move(keys));
   }();
   return table;

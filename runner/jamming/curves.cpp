@@ -12,6 +12,7 @@
 #include "runner/figure/swept.h"
 #include "runner/page/page_parts.h"
 #include "runner/reports/status.h"
+#include "runner/stores/vocabulary_store.h"
 
 namespace peclet::runner {
 namespace {
@@ -91,8 +92,7 @@ void name_curve(JammingCurve& curve, const std::vector<const Swept*>& by, const 
                 std::size_t place) {
   curve.settings = Json::object();
   for (const Swept* const one : by) {
-    curve.name +=
-        fmt::format("{}{} = {}", curve.name.empty() ? "" : ", ", text_of(one->name), one->words[place]);
+    curve.name += fmt::format("{}{} = {}", curve.name.empty() ? "" : ", ", one->name, one->words[place]);
     curve.settings[one->pointer] = point.at("settings").value(one->pointer, Json());
   }
 }
@@ -148,7 +148,8 @@ JammingCurves read_curves(Database& database, const CurveChoice& choice) {
   const CampaignStatus status = read_status(database);
   KnownPoints known;
   const PagePoints page = page_points(database, status, known);
-  const std::vector<Swept> swept = swept_parameters(page_parameters(status), page.points);
+  const std::vector<Swept> swept =
+      swept_parameters(page_parameters(status, kept_vocabulary(database)), page.points);
   const Swept& axis = chosen_axis(swept, choice.over, "--over");
   require_fractions(axis, choice.over);
   const std::vector<const Swept*> by = curves_by(swept, axis);

@@ -51,7 +51,7 @@ TEST(Transient, IsThatOfTheReversedFlow) {
   }
   const std::vector<Quantity> all = observed_quantities(scene, {0.1, 40, {edge, edge, edge}});
   ASSERT_EQ(all.size(), 4u);
-  EXPECT_EQ(all.front().unit, "viscosity * shear_rate");
+  EXPECT_EQ(all.front().unit, "η γ̇");
   EXPECT_EQ(all.front().axes.front().name, "strain");
   EXPECT_EQ(all.front().axes.front().values, Json::array({1, 3, 5, 7}));  // of 8
 }
