@@ -21,9 +21,9 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 # No `Depends`: the programs are linked statically.
-# The studies and the adapter of LAMMPS are Python; the runner and the engine need none.
+# The studies, the adapter of LAMMPS and what draws pictures are Python; the runner and the engine need none.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS python3)
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "gnuplot-nox, lammps, python3-numpy, python3-scipy")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "lammps, python3-matplotlib, python3-numpy, python3-scipy")
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/as_debian_wants.cmake)
 
 if(PECLET_STATIC)
