@@ -85,7 +85,7 @@ def main():
         with open(path, "w", encoding="utf-8") as file:
             json.dump(CAMPAIGN, file)
         derived_agree(json.loads(output_of(peclet, "validate", path, "--json"))["points"], PUBLISHED, "validate")
-        check("phi" in output_of(peclet, "validate", path), "validate has no column phi")
+        check("φ" in output_of(peclet, "validate", path), "validate has no column φ")
         run_small(peclet, folder)
 
 
