@@ -280,8 +280,8 @@ def draw_legend(panel, top):
     for verdict, colour in COLOURS.items():
         panel.box(x, x + 30, top, top + HEIGHT * 0.8, colour, border="#888888")
         panel.text(verdict, x + 36, top + HEIGHT * 0.4)
-        x += 105
-    panel.text(LEGEND, x + 15, top + HEIGHT * 0.4)
+        x += 122
+    panel.text(LEGEND, 10, top + HEIGHT * 1.5)
 
 
 def draw():
@@ -297,7 +297,7 @@ def draw_map(rows, picture):
     panel = figure.blank((0, size[0]), (size[1], 0), place=(0, 1, 0, 1))
     for k, part in enumerate(parts):
         draw_part(panel, k * width + 10, columns, part)
-    draw_legend(panel, size[1] - HEIGHT * 1.6)
+    draw_legend(panel, size[1] - HEIGHT * 2.2)
     figure.draw()
 
 
