@@ -69,7 +69,8 @@ class Panel:
         axes.set_yscale("log" if "y" in log else "linear")
         axes.set_axisbelow(True)
         axes.tick_params(which="both", direction="in", top=True, right=True)
-        axes.grid(grid, color=LIGHT_GREY, linewidth=0.6)
+        if grid:
+            axes.grid(color=LIGHT_GREY, linewidth=0.6)
         self._ranges, self._step, self._titled = {"x": x_range, "y": y_range}, y_step, []
 
     def points(self, rows, title, colour, mark=7, size=1.0, joined=False, width=1.0):
@@ -152,7 +153,8 @@ class Panel:
         drawn = self.axes.pcolormesh(x, y, values, cmap=scale, vmin=low, vmax=high, rasterized=True)
         self.axes.set_aspect("equal")
         if label:
-            self.axes.figure.colorbar(drawn, ax=self.axes, label=formatted(label))
+            beside = self.axes.inset_axes((1.05, 0, 0.05, 1))
+            self.axes.figure.colorbar(drawn, cax=beside, label=formatted(label))
 
     def finish(self):
         """Numbers at the axes, and the titles of what is drawn."""
