@@ -23,9 +23,9 @@ to_test=(
   lammps openmpi-bin                                                      # another engine, which tests run, also with MPI
   slurm-wlm munge                                                         # a Slurm to be tested with
   chromium                                                                # opens the page of a report
-  python3-numpy python3-scipy gnuplot-nox                                 # numbers and pictures of the studies
+  python3-numpy python3-scipy python3-matplotlib                          # numbers and pictures of the studies
   python3-xgboost python3-sklearn                                         # maps between local quantities
-  python3-matplotlib python3-pandas python3-pip python3-setuptools python3-wheel  # the Python package
+  python3-pandas python3-pip python3-setuptools python3-wheel             # the Python package
   python3-gsd python3-pil                                                 # other readers of trajectories and of pictures
   clang-format black flake8                                               # the form of the sources
 )

@@ -21,9 +21,9 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 # No `Depends`: the programs are linked statically.
-# The fits of `peclet jamming`, the studies and the adapter of LAMMPS are Python; all else needs none.
+# The fits of `peclet jamming`, the studies, the adapter of LAMMPS and what draws pictures are Python; all else needs none.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3, python3-numpy")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "gnuplot-nox, lammps, python3-scipy")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "lammps, python3-matplotlib, python3-scipy")
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/as_debian_wants.cmake)
 
 if(PECLET_STATIC)

@@ -31,6 +31,8 @@ struct Key {
   KeyKind kind = KeyKind::object;
   std::string meaning;
   std::string unit = {};        // "" where the key has none
+  std::string words = {};       // what people call it: "coefficient of friction"; "" where its name says it
+  std::string symbol = {};      // "μ_r", as symbols are written (schema/README.md, symbols)
   bool required = false;        // whenever the object that holds it is present
   std::string instead_of = {};  // the name of a required key of the same object: exactly one of both is given
   Json default_value = nullptr;  // null: no default, the key stays absent

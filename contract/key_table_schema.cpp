@@ -98,8 +98,11 @@ Json schema_of(const KeyTable& table, const Key& key) {
       break;
     }
   }
-  if (!key.meaning.empty()) {
-    schema["description"] = key.unit.empty() ? key.meaning : fmt::format("{} [{}]", key.meaning, key.unit);
+  for (const auto& [name, text] : {std::pair{"title", &key.words},
+                                   {"symbol", &key.symbol},
+                                   {"description", &key.meaning},
+                                   {"unit", &key.unit}}) {
+    if (!text->empty()) schema[name] = *text;
   }
   if (!key.default_value.is_null()) schema["default"] = key.default_value;
   return schema;

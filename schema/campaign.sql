@@ -35,6 +35,11 @@ CREATE TABLE engine (
   provenance TEXT    NOT NULL UNIQUE CHECK (json_valid(provenance))
 ) STRICT;
 
+-- What the engine that ran last calls the keys of scenes and the numbers that follow from them: one row at most.
+CREATE TABLE vocabulary (
+  document TEXT NOT NULL CHECK (json_valid(document))
+) STRICT;
+
 CREATE TABLE point (
   point_id        INTEGER PRIMARY KEY,
   hash            TEXT    NOT NULL,         -- SHA-256 of the canonical scene

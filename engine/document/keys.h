@@ -60,6 +60,13 @@ inline Key with_default(Key key, Json value) {
   return key;
 }
 
+// A key with what people call it: words, and a symbol if it has one.
+inline Key named(Key key, std::string words, std::string symbol = "") {
+  key.words = std::move(words);
+  key.symbol = std::move(symbol);
+  return key;
+}
+
 inline Key must_be_given(Key key) {
   key.required = true;
   return key;

@@ -33,9 +33,10 @@ std::shared_ptr<const Deformation> read_stress(const FlowSource& source) {
 FlowKind stress_flow() {
   return {
       .key = "/flow/stress",
-      .keys = {positive("/flow/stress", "stress",
-                        "Shear stress that is held in the place of a rate: its mean rate is what is "
-                        "measured."),
+      .keys = {named(positive("/flow/stress", "stress",
+                              "Shear stress that is held in the place of a rate: its mean rate is what is "
+                              "measured."),
+                     "shear stress", "σ"),
                positive("/flow/jammed_viscosity", "",
                         "Relative viscosity beyond which a realisation under a stress has jammed; 10000 "
                         "unless given.")},

@@ -43,20 +43,22 @@ double CrossShear::largest_rate() const { return std::hypot(rate_, amplitude_ * 
 
 FlowKind oscillation_flow() {
   const std::string key = "/flow/oscillation";
-  return {
-      .key = key,
-      .keys = {block(key,
-                     "Shear to and fro in the place of shear_rate: strain = amplitude sin(frequency t)."),
-               positive(key + "/amplitude", "", "Largest strain.", required),
-               positive(key + "/frequency", "1 / time", "Angular frequency, in radians per time.", required)},
-      .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {
-        return std::make_shared<OscillatoryShear>(source.scene.number("/flow/oscillation/amplitude"),
-                                                  source.scene.number("/flow/oscillation/frequency"));
-      },
-      .unit = "cycles",
-      .without_strain = "whose strain comes and goes; cycles are even",
-      .has_whole_cycles = true,
-      .refused_observables = {"transient"}};
+  return {.key = key,
+          .keys = {block(key,
+                         "Shear to and fro in the place of shear_rate: strain = amplitude sin(frequency t)."),
+                   named(positive(key + "/amplitude", "", "Largest strain.", required),
+                         "amplitude of the strain", "γ_0"),
+                   named(positive(key + "/frequency", "1 / time", "Angular frequency, in radians per time.",
+                                  required),
+                         "angular frequency", "ω")},
+          .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {
+            return std::make_shared<OscillatoryShear>(source.scene.number("/flow/oscillation/amplitude"),
+                                                      source.scene.number("/flow/oscillation/frequency"));
+          },
+          .unit = "cycles",
+          .without_strain = "whose strain comes and goes; cycles are even",
+          .has_whole_cycles = true,
+          .refused_observables = {"transient"}};
 }
 
 FlowKind cross_shear_flow() {
@@ -65,8 +67,11 @@ FlowKind cross_shear_flow() {
       .key = key,
       .keys = {block(key,
                      "Shear to and fro across the steady one, u_z = y d/dt [amplitude sin(frequency t)]."),
-               positive(key + "/amplitude", "", "Its largest strain.", required),
-               positive(key + "/frequency", "1 / time", "Angular frequency, in radians per time.", required)},
+               named(positive(key + "/amplitude", "", "Its largest strain.", required),
+                     "amplitude of the strain across", "γ_0"),
+               named(positive(key + "/frequency", "1 / time", "Angular frequency, in radians per time.",
+                              required),
+                     "angular frequency across", "ω")},
       .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {
         if (!(source.shear_rate > 0)) {
           source.scene.refuse("/flow/cross_shear",

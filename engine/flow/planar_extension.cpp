@@ -18,17 +18,18 @@ Matrix3 PlanarExtension::edges_at_start(const Vector3& box) const {
 }
 
 FlowKind planar_extension_flow() {
-  return {
-      .key = "/flow/extension_rate",
-      .keys = {positive("/flow/extension_rate", "1 / time",
-                        "Planar extension in the place of shear: (rate x, -rate y, 0). Strains are Hencky "
-                        "strains, at most 10 in a realisation.")},
-      .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {
-        return std::make_shared<PlanarExtension>(source.scene.number("/flow/extension_rate"));
-      },
-      .largest_strain = PlanarExtension::largest_strain,
-      .own_cell = "a turned cube",
-      .refused_observables = {"mean_squared_displacement", "pair_distribution", "profiles"}};
+  return {.key = "/flow/extension_rate",
+          .keys = {named(
+              positive("/flow/extension_rate", "1 / time",
+                       "Planar extension in the place of shear: (rate x, -rate y, 0). Strains are Hencky "
+                       "strains, at most 10 in a realisation."),
+              "extension rate", "ε̇")},
+          .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {
+            return std::make_shared<PlanarExtension>(source.scene.number("/flow/extension_rate"));
+          },
+          .largest_strain = PlanarExtension::largest_strain,
+          .own_cell = "a turned cube",
+          .refused_observables = {"mean_squared_displacement", "pair_distribution", "profiles"}};
 }
 
 }  // namespace peclet::engine

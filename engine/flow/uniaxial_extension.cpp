@@ -30,7 +30,9 @@ FlowKind uniaxial_extension_flow() {
                     "Uniaxial extension in the place of shear: (rate x, -rate y / 2, -rate z / 2); biaxial "
                     "extension along y and z where it is below 0. Strains are Hencky strains along x, at "
                     "most 10 in a realisation.",
-                .unit = "1 / time"}},
+                .unit = "1 / time",
+                .words = "uniaxial extension rate",
+                .symbol = "ε̇"}},
       .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {
         const double rate = source.scene.number("/flow/uniaxial_rate");
         if (rate == 0) source.scene.refuse("/flow/uniaxial_rate", "must be a number other than 0");

@@ -51,7 +51,9 @@ class Worker {
                    {"protocol", 1},
                    {"program", "peclet-engine"},
                    {"engine", engine_identity()},
-                   {"ahead", true}});
+                   {"ahead", true},
+                   {"scene_schema", scene_keys().json_schema("scene.schema.json")},
+                   {"derived", names_of_groups()}});
     Json message;
     while (!leave_) {
       if (waiting_job_) {

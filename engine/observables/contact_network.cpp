@@ -60,15 +60,15 @@ class ContactNetwork : public Observable {
             .axes = {axis_of("contacts", "1", counts_of_contacts, [](std::size_t k) { return k; })}});
   BlockedMean& mobilisation_ =
       if_rough({.name = "contact_network/mobilisation",
-                .symbol = "P(|F_t| / (mu F_n))",
+                .symbol = "P(|F_t| / (μ F_n))",
                 .unit = "1",
                 .axes = {axis_of("mobilisation", "1", parts_of_mobilisation, [](std::size_t k) {
                   return (static_cast<double>(k) + 0.5) / parts_of_mobilisation;
                 })}});
-  BlockedMean& mobilised_ = if_rough({.name = mobilised_name, .symbol = "<|F_t| / (mu F_n)>", .unit = "1"});
+  BlockedMean& mobilised_ = if_rough({.name = mobilised_name, .symbol = "⟨|F_t| / (μ F_n)⟩", .unit = "1"});
   BlockedMean& sliding_ =
       if_rough({.name = sliding_name,
-                .symbol = remembers_sliding(contact_) ? "P(slides)" : "P(|F_t| > 0.99 mu F_n)",
+                .symbol = remembers_sliding(contact_) ? "P(slides)" : "P(|F_t| > 0.99 μ F_n)",
                 .unit = "1"});
   BlockedMean& frictional_ = mean_if(contact_.friction > 0 && contact_.critical_load > 0,
                                      {.name = frictional_name, .symbol = "P(F_n > F_CL)", .unit = "1"});

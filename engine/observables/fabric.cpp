@@ -51,7 +51,7 @@ FabricSums fabric_of(const System& system, double gap) {
 }
 
 Quantity fabric_quantity(const std::string& name, const std::vector<Axis>& further) {
-  Quantity quantity{.name = name, .symbol = "<n n>", .unit = "1", .axes = {axis_of_components()}};
+  Quantity quantity{.name = name, .symbol = "⟨n n⟩", .unit = "1", .axes = {axis_of_components()}};
   quantity.axes.insert(quantity.axes.end(), further.begin(), further.end());
   return quantity;
 }

@@ -96,9 +96,9 @@ class LinearResponse : public Observable {
                        fmt::format("must have at least {} steps for linear_response", least_steps));
     }
     keep(sums_, correlators_, squares_, taken_, last_, before_);
-    derive({.name = at_rest_name, .symbol = "eta_r(0)", .unit = "1"},
+    derive({.name = at_rest_name, .symbol = "η_r(0)", .unit = "1"},
            [this] { return background_ + slope(moments(), plateau_time()); });
-    derive({.name = rise_name, .symbol = "rise of eta_r(0)", .unit = "1"}, [this] {
+    derive({.name = rise_name, .symbol = "rise of η_r(0)", .unit = "1"}, [this] {
       const Curve curve = moments();
       return slope(curve, plateau_time()) - slope(curve, 0.5 * plateau_time());
     });
@@ -154,8 +154,8 @@ class LinearResponse : public Observable {
       derive({.name = std::string("linear_response/") + name, .symbol = symbol, .unit = unit, .axes = {axis}},
              value);
     };
-    curve("viscosity", "eta(t) / eta", "1", time, [this] { return step_response(); });
-    curve("correlation", "eta_GK(t) / eta", "1", lag, [this] { return correlation().viscosity; });
+    curve("viscosity", "η(t) / η", "1", time, [this] { return step_response(); });
+    curve("correlation", "η_GK(t) / η", "1", lag, [this] { return correlation().viscosity; });
     curve("modulus", "G(t)", "stress", lag, [this] { return correlation().modulus; });
     curve("storage", "G'", "stress", frequency,
           [=, this] { return moduli(frequency, [](const std::complex<double>& g) { return g.real(); }); });

@@ -153,7 +153,7 @@ class MeanSquaredDisplacement : public Observable {
         continue;
       }
       derive({.name = name,
-              .symbol = fmt::format("<{}_{}^2>", symbol, axis),
+              .symbol = fmt::format("⟨{}_{}^2⟩", symbol, axis),
               .unit = "length^2",
               .axes = {time}},
              [=, this, component = component] {

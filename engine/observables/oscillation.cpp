@@ -23,7 +23,7 @@ namespace {
 
 const Quantity moduli[] = {{"storage_modulus", "G'", "stress"},
                            {"loss_modulus", "G''", "stress"},
-                           {"dynamic_viscosity", "eta' / eta", "1"},
+                           {"dynamic_viscosity", "η' / η", "1"},
                            {"third_storage_modulus", "G'_3", "stress"},
                            {"third_loss_modulus", "G''_3", "stress"}};
 

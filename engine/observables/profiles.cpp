@@ -77,7 +77,7 @@ Quantity profile(const std::string& name, const char* symbol, const Physics& phy
           .axes = {{"component", "1", components}, y}};
 }
 Quantity stress_profile(const std::string& name, const Physics& physics, const Axis& y) {
-  return profile("stress/" + name, "sigma(y)", physics, {"xx", "yy", "zz", "xy"}, y);
+  return profile("stress/" + name, "σ(y)", physics, {"xx", "yy", "zz", "xy"}, y);
 }
 Quantity vector_profile(const char* name, const char* symbol, const Physics& physics, const Axis& y) {
   return profile(name, symbol, physics, {"xy", "yy", "zy"}, y);
@@ -210,13 +210,13 @@ class Profiles : public Observable {
         bins_(bins),
         y_(along_y(plan.window, bins, 0.5)),
         of_radius_(mean({.name = "profiles/volume_fraction_by_radius",
-                         .symbol = "phi_a(y)",
+                         .symbol = "φ_a(y)",
                          .unit = "1",
                          .axes = {{"radius", "length", radii_in(plan.scene)}, y_}})),
         stress_(*this, plan.scene.physics, y_, along_y(plan.window, bins, 0)),
         variance_(plan.window.box.y, plan.scene.particles.reference_radius, bins) {
     derive({.name = "profiles/velocity_variance",
-            .symbol = "<(u - u*)^2>",
+            .symbol = "⟨(u - u*)^2⟩",
             .unit = "length^2 / time^2",
             .axes = {{"component", "1", {"x", "y", "z"}}, y_}},
            [this] { return variance_.value(); });
@@ -255,7 +255,7 @@ class Profiles : public Observable {
   std::size_t bins_;
   Axis y_;
   BlockedMean& volume_fraction_ =
-      mean({.name = "profiles/volume_fraction", .symbol = "phi(y)", .unit = "1", .axes = {y_}});
+      mean({.name = "profiles/volume_fraction", .symbol = "φ(y)", .unit = "1", .axes = {y_}});
   BlockedMean& flux_ = ratio({.name = "profiles/velocity",
                               .symbol = "u_x(y) - U(y)",
                               .unit = "length / time",

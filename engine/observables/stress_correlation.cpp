@@ -46,9 +46,9 @@ class StressCorrelation : public Observable {
     beside("stress_correlation/time", time.values);
     derive({.name = "stress_correlation/modulus", .symbol = "G(t)", .unit = "stress", .axes = {time}},
            [this] { return curves().modulus; });
-    derive({.name = "stress_correlation/viscosity", .symbol = "eta_B(t) / eta", .unit = "1", .axes = {time}},
+    derive({.name = "stress_correlation/viscosity", .symbol = "η_B(t) / η", .unit = "1", .axes = {time}},
            [this] { return curves().viscosity; });
-    derive({.name = green_kubo_name, .symbol = "eta_B / eta", .unit = "1"},
+    derive({.name = green_kubo_name, .symbol = "η_B / η", .unit = "1"},
            [this] { return curves().viscosity.back(); });
     keep(correlators_);
   }

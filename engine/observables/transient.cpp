@@ -20,7 +20,7 @@
 namespace peclet::engine {
 namespace {
 
-constexpr std::pair<const char*, const char*> stresses[] = {{"shear_stress", "sigma"},
+constexpr std::pair<const char*, const char*> stresses[] = {{"shear_stress", "σ"},
                                                             {"first_normal_difference", "N_1"},
                                                             {"second_normal_difference", "N_2"},
                                                             {"pressure", "P"}};

@@ -1,6 +1,8 @@
 #include "engine/output/stress_means.h"
 
+#include <algorithm>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "engine/flow/controlled_shear.h"
@@ -23,17 +25,19 @@ StressMeans::StressMeans(const Scene& scene) : physics_(scene.physics), unit_(un
   for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
     const auto term = static_cast<StressTerm>(t);
     if (!has_stress_term(physics_, term)) continue;
-    parts_.push_back({name_of(term), std::string("sigma^") + name_of(term),
+    std::string words = name_of(term);
+    std::ranges::replace(words, '_', ' ');
+    parts_.push_back({name_of(term), "σ^{" + words + '}',
                       [=](const Measured& of) { return per_step(of) * of.sums.stress[t]; }});
   }
   // The stress that the motion of the particles carries, -sum m sym(v v) / V.
   if (physics_.thermal_energy > 0) {
     parts_.push_back(
-        {"motion", "sigma^motion", [=](const Measured& of) { return per_step(of) * of.sums.motion; }});
+        {"motion", "σ^motion", [=](const Measured& of) { return per_step(of) * of.sums.motion; }});
   }
   others_.push_back(
-      {tensor("stress/total", "sigma"), [](const Measured& of) { return components_of(of.total); }});
-  others_.push_back({tensor("brownian_structural", "sigma^B"), [unit = unit_](const Measured& of) {
+      {tensor("stress/total", "σ"), [](const Measured& of) { return components_of(of.total); }});
+  others_.push_back({tensor("brownian_structural", "σ^B"), [unit = unit_](const Measured& of) {
                        const double per_sample = 1 / static_cast<double>(of.sums.samples);
                        return components_of((per_sample / unit) * of.sums.structural_brownian);
                      }});
@@ -65,8 +69,8 @@ void StressMeans::add_background() {
     const SymmetricTensor uniform = stresslet(of.volume_fraction, solvent(of));
     return is_steady ? uniform + varying(of) : uniform;
   };
-  if (has_solvent) parts_.push_back({"solvent", "sigma^S", solvent, true, false});
-  if (has_solvent || varies) parts_.push_back({"stresslet", "sigma^E", stresslets, !varies, false});
+  if (has_solvent) parts_.push_back({"solvent", "σ^S", solvent, true, false});
+  if (has_solvent || varies) parts_.push_back({"stresslet", "σ^E", stresslets, !varies, false});
 }
 
 void StressMeans::add_scalars() {
@@ -81,8 +85,8 @@ void StressMeans::add_scalars() {
     });
     others_.back().is_described = is_sheared;
   };
-  viscosity("relative_viscosity", "eta_r", &Measured::total);
-  viscosity("relative_viscosity_pair", "eta_r^pairs", &Measured::pairs);
+  viscosity("relative_viscosity", "η_r", &Measured::total);
+  viscosity("relative_viscosity_pair", "η_r^pairs", &Measured::pairs);
   add("first_normal_difference", "N_1", unit, [](const Measured& of) { return of.total.xx - of.total.yy; });
   add("second_normal_difference", "N_2", unit, [](const Measured& of) { return of.total.yy - of.total.zz; });
   add("pressure", "P", unit,
@@ -90,7 +94,7 @@ void StressMeans::add_scalars() {
   add("contacts_per_particle", "Z", "1", [](const Measured& of) {
     return 2 * of.sums.contacts / (static_cast<double>(of.sums.steps) * of.particles);
   });
-  add("mean_overlap", "<delta/a>", "1", [](const Measured& of) { return of.sums.mean_overlap(); });
+  add("mean_overlap", "⟨δ/a⟩", "1", [](const Measured& of) { return of.sums.mean_overlap(); });
   const auto per_sample = [](const Measured& of) { return 1 / static_cast<double>(of.sums.samples); };
   add("kinetic_temperature", "k_B T", "energy",
       [=](const Measured& of) { return per_sample(of) * of.sums.temperature.translational; });
@@ -109,17 +113,17 @@ void StressMeans::add_flow(double stress, bool notices_jams) {
     return !of.has_jammed && of.sums.steps == of.sums.planned ? 1.0 : 0.0;
   };
   const auto known = [=](double number) { return notices_jams ? Json(number) : Json(); };
-  others_.push_back({{.name = "shear_rate", .symbol = "<rate>", .unit = "1 / time"}, rate});
+  others_.push_back({{.name = "shear_rate", .symbol = "⟨γ̇⟩", .unit = "1 / time"}, rate});
   others_.push_back({{.name = "flowing", .symbol = "P(flows)", .unit = "1", .is_share = true},
                      [=](const Measured& of) { return known(flows(of)); }});
   const auto viscosity = [&](const char* name, const char* symbol, auto value) {
     others_.push_back(
         {{.name = name, .symbol = symbol, .unit = "1", .ratio = {{"stress", "viscous_stress"}}}, value});
   };
-  viscosity("apparent_viscosity", "eta_r", [=, this](const Measured& of) {
+  viscosity("apparent_viscosity", "η_r", [=, this](const Measured& of) {
     return Json{{"stress", stress}, {"viscous_stress", physics_.viscosity * rate(of)}};
   });
-  viscosity("viscosity_of_those_flowing", "eta_r^flowing", [=, this](const Measured& of) {
+  viscosity("viscosity_of_those_flowing", "η_r^flowing", [=, this](const Measured& of) {
     return Json{{"stress", known(flows(of) * stress)},
                 {"viscous_stress", known(flows(of) * (physics_.viscosity * rate(of)))}};
   });

@@ -14,7 +14,8 @@ inline Keys attraction_keys() {
       block("/attraction",
             "Van der Waals attraction of the surfaces, at distance h: force A_H a / (12 (h^2 + eps^2)), in "
             "overlap as at h = 0, with a = 2 a_i a_j / (a_i + a_j); absent: none."),
-      not_negative("/attraction/hamaker", "energy", "Hamaker constant A_H.", required),
+      named(not_negative("/attraction/hamaker", "energy", "Hamaker constant A_H.", required),
+            "Hamaker constant", "A_H"),
       with_default(positive("/attraction/regularisation", "", "eps / a."), 0.01),
       positive("/attraction/cutoff", "length", "Distance h beyond which there is none.", required),
   };

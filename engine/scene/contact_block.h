@@ -10,13 +10,17 @@ namespace peclet::engine {
 inline Keys contact_keys() {
   return {
       block("/contact", "Forces between overlapping spheres; absent: none."),
-      positive("/contact/normal_stiffness", "force / length", "Normal stiffness k_n.", required),
+      named(positive("/contact/normal_stiffness", "force / length", "Normal stiffness k_n.", required),
+            "normal stiffness", "k_n"),
       with_default(not_negative("/contact/normal_damping", "force time / length", "Normal damping."), 0),
-      not_negative("/contact/friction", "", "Coefficient of sliding friction; absent (or 0): frictionless."),
-      not_negative(
-          "/contact/kinetic_friction", "",
-          "Coefficient of kinetic friction, while a contact slides; at most that of friction, and with "
-          "it only; absent: the same."),
+      named(not_negative("/contact/friction", "",
+                         "Coefficient of sliding friction; absent (or 0): frictionless."),
+            "coefficient of friction", "μ"),
+      named(not_negative(
+                "/contact/kinetic_friction", "",
+                "Coefficient of kinetic friction, while a contact slides; at most that of friction, and with "
+                "it only; absent: the same."),
+            "coefficient of kinetic friction", "μ_k"),
       not_negative("/contact/critical_load", "force",
                    "Normal force F_CL below which a contact has no friction, which goes by what exceeds it; "
                    "with friction only; absent (or 0): none."),
@@ -27,10 +31,12 @@ inline Keys contact_keys() {
       not_negative(
           "/contact/rolling_stiffness", "force / length",
           "Stiffness against rolling; absent (or 0): free rolling. Above 0 it needs friction above 0."),
-      not_negative(
-          "/contact/rolling_friction", "",
-          "Coefficient that caps rolling resistance, with rolling_stiffness only; that of sliding unless "
-          "given."),
+      named(
+          not_negative(
+              "/contact/rolling_friction", "",
+              "Coefficient that caps rolling resistance, with rolling_stiffness only; that of sliding unless "
+              "given."),
+          "coefficient of rolling friction", "μ_r"),
   };
 }
 

@@ -53,9 +53,11 @@ double rate_from_peclet(const SceneDocument& scene, double radius, Physics& phys
 Keys flow_keys() {
   Keys keys = {
       block("/fluid", "The solvent.", required),
-      positive("/fluid/viscosity", "mass / (length time)", "Viscosity eta of the solvent.", required),
-      not_negative("/fluid/thermal_energy", "energy",
-                   "k_B T; absent (or 0): no Brownian motion. Not together with peclet."),
+      named(positive("/fluid/viscosity", "mass / (length time)", "Viscosity eta of the solvent.", required),
+            "viscosity of the fluid", "η"),
+      named(not_negative("/fluid/thermal_energy", "energy",
+                         "k_B T; absent (or 0): no Brownian motion. Not together with peclet."),
+            "thermal energy", "k_B T"),
       block("/flow", fmt::format("The streaming flow (rate y, 0, 0), and waves in it. A scene has "
                                  "flow.shear_rate, flow.{} or peclet.",
                                  fmt::join(flows_without_rate(std::string("/flow/").size()), ", flow."))),
@@ -64,8 +66,10 @@ Keys flow_keys() {
   for (const FlowKind& kind : flow_kinds()) append(kind.keys);
   append(wave_keys());
   append({
-      positive("/peclet", "",
-               "Pe = 6 pi eta a^3 rate / k_B T, in place of shear_rate and thermal_energy; needs limits."),
+      named(positive(
+                "/peclet", "",
+                "Pe = 6 pi eta a^3 rate / k_B T, in place of shear_rate and thermal_energy; needs limits."),
+            "Péclet number", "Pe"),
       block("/limits",
             "Of the scene with a given peclet: the largest rate and temperature that Pe allows are used."),
       positive("/limits/shear_rate", "1 / time", "Shear rate that is not exceeded.", required),

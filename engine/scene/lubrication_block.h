@@ -15,20 +15,25 @@ namespace peclet::engine {
 inline Keys lubrication_keys() {
   return {
       block("/lubrication", "Squeeze, shear and pump modes between near spheres; absent: none."),
-      must_be_given(choice(
-          "/lubrication/form",
-          "kim-karrila: resistances of the gap xi = 2 (r - a_i - a_j) / (a_i + a_j), of the velocities. "
-          "mari: of max(xi, 0) + regularisation, of the velocities relative to the flow and of its rate "
-          "of strain.",
-          {"kim-karrila", "mari"})),
+      must_be_given(named(
+          choice(
+              "/lubrication/form",
+              "kim-karrila: resistances of the gap xi = 2 (r - a_i - a_j) / (a_i + a_j), of the velocities. "
+              "mari: of max(xi, 0) + regularisation, of the velocities relative to the flow and of its rate "
+              "of strain.",
+              {"kim-karrila", "mari"}),
+          "form of the lubrication")),
       fraction(
-          positive("/lubrication/inner_gap", "",
-                   "Of the form kim-karrila: gap below which the resistance stays constant; 0.001 unless "
-                   "given."),
+          named(
+              positive("/lubrication/inner_gap", "",
+                       "Of the form kim-karrila: gap below which the resistance stays constant; 0.001 unless "
+                       "given."),
+              "inner gap of the lubrication"),
           1),
-      fraction(positive("/lubrication/outer_gap", "",
-                        "Of the form kim-karrila: gap beyond which there is none; must be larger than "
-                        "inner_gap; 0.05 unless given."),
+      fraction(named(positive("/lubrication/outer_gap", "",
+                              "Of the form kim-karrila: gap beyond which there is none; must be larger than "
+                              "inner_gap; 0.05 unless given."),
+                     "outer gap of the lubrication"),
                1),
       fraction(positive("/lubrication/regularisation", "",
                         "Of the form mari: what is added to the gap; 0.001 unless given."),

@@ -130,9 +130,11 @@ Keys mixture_keys() {
   append(species_keys(colloids_at));
   keys.push_back(group(grains_at, "Sizes of the grains, likewise."));
   append(species_keys(grains_at));
-  Key alpha = not_negative(
-      alpha_at, "", "Volume of the grains over that of all spheres: 0 leaves colloids only, 1 grains only.",
-      required);
+  Key alpha = named(
+      not_negative(alpha_at, "",
+                   "Volume of the grains over that of all spheres: 0 leaves colloids only, 1 grains only.",
+                   required),
+      "share of grains in the solid volume", "α");
   alpha.maximum = 1;
   keys.push_back(alpha);
   keys.push_back(
@@ -150,14 +152,16 @@ Keys volume_fraction_keys() {
             "liquid and of the other group stayed: it follows from alpha.");
   addition.instead_of = "volume_fraction";
   return {
-      must_be_given(
-          fraction(positive("/volume_fraction", "",
-                            "Volume of the particles over that of the box; below 0.74 without a mixture."),
-                   densest_of_two_groups)),
+      must_be_given(fraction(
+          named(positive("/volume_fraction", "",
+                         "Volume of the particles over that of the box; below 0.74 without a mixture."),
+                "volume fraction", "φ"),
+          densest_of_two_groups)),
       addition,
       must_be_given(choice("/addition/added", "Which group is added.", {"colloids", "grains"})),
-      fraction(positive("/addition/base_volume_fraction", "",
-                        "Volume fraction before, of the other group alone.", required),
+      fraction(named(positive("/addition/base_volume_fraction", "",
+                              "Volume fraction before, of the other group alone.", required),
+                     "volume fraction before the addition", "φ_0"),
                densest_of_one_size),
       block("/box", "The periodic box; absent: a cube."),
       positive(
@@ -176,10 +180,13 @@ Keys particle_keys() {
       {.pointer = "/particles/count",
        .kind = KeyKind::integer,
        .meaning = "Number of particles.",
+       .words = "number of particles",
+       .symbol = "N",
        .required = true,
        .minimum = 1,
        .maximum = most_particles},
-      positive("/particles/density", "mass / length^3", "Mass density of the particles.", required),
+      named(positive("/particles/density", "mass / length^3", "Mass density of the particles.", required),
+            "density of the particles", "ρ"),
       choice("/particles/density_rule",
              "equal-inertia: spheres of radius a_i have the density times (a / a_i)^2, a the radius of "
              "reference, so that tau_I is the same for all; absent: density is that of all that have none of "

@@ -11,23 +11,27 @@
 namespace peclet::engine {
 
 inline Keys repulsion_keys() {
-  Key force = not_negative("/repulsion/force", "force",
-                           "F, of the screened form: that of a touching pair with a = a_0.");
+  Key force = named(not_negative("/repulsion/force", "force",
+                                 "F, of the screened form: that of a touching pair with a = a_0."),
+                    "largest force of the repulsion");
   force.instead_of = "strength";
   return {
       block("/repulsion", "Repulsion of the surfaces, at distance h; absent: none."),
       must_be_given(
-          choice("/repulsion/form",
-                 "exponential: energy strength * exp(-h / kappa). screened: force F a / a_0 * "
-                 "exp(-h / debye_length), in overlap as at h = 0, with a = 2 a_i a_j / (a_i + a_j).",
-                 {"exponential", "screened"})),
-      not_negative("/repulsion/strength", "energy", "Of the exponential form: energy of a pair that touches.",
-                   required),
+          named(choice("/repulsion/form",
+                       "exponential: energy strength * exp(-h / kappa). screened: force F a / a_0 * "
+                       "exp(-h / debye_length), in overlap as at h = 0, with a = 2 a_i a_j / (a_i + a_j).",
+                       {"exponential", "screened"}),
+                "form of the repulsion")),
+      named(not_negative("/repulsion/strength", "energy",
+                         "Of the exponential form: energy of a pair that touches.", required),
+            "strength of the repulsion"),
       positive("/repulsion/relative_length", "",
                "Of the exponential form: kappa / (a_i + a_j); 0.01 unless given."),
       force,
-      positive("/repulsion/debye_length", "length",
-               "Of the screened form, which needs it: the screening length."),
+      named(positive("/repulsion/debye_length", "length",
+                     "Of the screened form, which needs it: the screening length."),
+            "Debye length", "κ^{-1}"),
       positive("/repulsion/reference_radius", "length", "Of the screened form, which needs it: a_0."),
       with_default(positive("/repulsion/cutoff_lengths", "",
                             "Distance h / kappa, or h / debye_length, beyond which there is none."),

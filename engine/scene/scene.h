@@ -39,7 +39,7 @@ inline double unit_of_stress(const Physics& physics) {
   return physics.flow.steady_rate() > 0 ? physics.viscosity * physics.flow.steady_rate() : 1;
 }
 inline const char* name_of_stress_unit(const Physics& physics) {
-  return physics.flow.steady_rate() > 0 ? "viscosity * shear_rate" : "stress";
+  return physics.flow.steady_rate() > 0 ? "η γ̇" : "stress";
 }
 
 // Why there is no equilibrium whose probabilities are known to be exp(-H / kT); empty where there is one.

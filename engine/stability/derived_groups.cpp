@@ -174,6 +174,35 @@ Json to_json(const DerivedGroups& groups) {
   return json;
 }
 
+Json names_of_groups() {
+  struct Named {
+    const char *name, *words, *symbol, *unit;
+  };
+  constexpr Named all[] = {{"volume_fraction", "", "φ", "1"},
+                           {"alpha", "share of grains as made", "α_made", "1"},
+                           {"largest_share_error", "share error", "", "1"},
+                           {"mean_radius", "", "⟨a⟩", "length"},
+                           {"relative_width", "", "", "1"},
+                           {"peclet", "Péclet number", "Pe", "1"},
+                           {"peclet_mean", "Péclet number of the mean radius", "Pe_cg", "1"},
+                           {"peclet_grains", "Péclet number of the grains", "Pe_g", "1"},
+                           {"stokes", "Stokes number", "St", "1"},
+                           {"largest_stokes", "largest Stokes number", "St_max", "1"},
+                           {"relative_stiffness", "", "k̂", "1"},
+                           {"contact_time", "", "τ_C", "time"},
+                           {"inertial_time", "", "τ_I", "time"},
+                           {"brownian_time", "Brownian time", "τ_B", "time"},
+                           {"shear_time", "", "τ_S", "time"},
+                           {"largest_inertia_over_brownian", "", "(τ_I/τ_B)_max", "1"},
+                           {"flow_over_rest", "flow/rest", "", "1"}};
+  Json names = Json::array();
+  for (const auto& [name, words, symbol, unit] : all) {
+    names.push_back({{"name", name}, {"symbol", symbol}, {"unit", unit}});
+    if (*words != '\0') names.back()["words"] = words;
+  }
+  return names;
+}
+
 namespace {
 
 bool has(const std::vector<Warning>& warnings, const std::string& code) {

@@ -52,6 +52,9 @@ bool notices_jams(const Scene& scene);
 
 DerivedGroups derived_groups(const Scene& scene);
 Json to_json(const DerivedGroups& groups);
+// What people call each member of to_json(), in the order in which they look for them: a list of objects with
+// name, symbol and unit, of some with words.
+Json names_of_groups();
 
 // What the author should know before anything runs: inertia that is not small, a step beyond the automatic
 // one, a window in which no jam is noticed.

@@ -1,7 +1,6 @@
 """The program peclet: where it is, and what it answers."""
 import ctypes
 import os
-import shlex
 import shutil
 import signal
 import subprocess
@@ -13,15 +12,6 @@ libc = ctypes.CDLL(None)
 
 class PecletError(Exception):
     """What peclet, or this package, says is wrong."""
-
-
-def cure_for(module, package):
-    """How to install a module for this Python: conda's, Debian's (`package`), or another one, which pip serves."""
-    if os.path.exists(os.path.join(sys.prefix, "conda-meta")):
-        return f"conda install -c conda-forge {module}"
-    if sys.prefix == "/usr" and os.path.exists("/etc/debian_version"):
-        return f"apt install {package}"
-    return f"{shlex.quote(sys.executable)} -m pip install {module}"
 
 
 def find_program(program=None):

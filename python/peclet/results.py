@@ -4,8 +4,9 @@ import io
 import json
 import os
 
-from peclet.program import PecletError, ask, cure_for
-from peclet.table import Table, cell_of
+from peclet.drawing import cure_for, draw_panel, legend_of, over_sweep, plain
+from peclet.program import PecletError, ask
+from peclet.table import Table, cell_of, is_same
 
 ESTIMATE = ("mean", "standard_error", "half_width")
 # Columns of the exports that are text, also where it looks like a number.
@@ -224,11 +225,50 @@ class Results:
         of its options, such as "--by=law". The fits alone are in peclet.jamming."""
         return json.loads(self._ask("jamming", "--json", *options))
 
-    def plot(self, quantity=None, **how):
-        """Draws estimates() over what was swept; see peclet.plots.plot."""
-        from peclet.plots import plot
+    def plot(self, quantity=None, x=None, by=None, axes=None, label=None, log=None, where=None):
+        """Draws an estimate of every point over one swept parameter, with intervals as bars, as `peclet plot` does, and
+        returns matplotlib's Axes.
 
-        return plot(self, quantity, **how)
+        quantity  the campaign's target unless given
+        x         the swept parameter on the axis; the one with most values unless given. If it has words, such as
+                  "auto", its values stand side by side
+        by        another one, of which each value is a curve; all others that vary unless given
+        axes      matplotlib's Axes to draw in; new ones unless given
+        label     of the curve, where it is a single one
+        log       logarithmic axes: "", "x", "y" or "xy"; those that fit unless given
+        where     values of swept parameters by name: of the points that have them
+
+        Open marks are points that have not converged; without a bar they have had no look yet. Crosses have jammed: at
+        their number, or at the edge of the frame where they have none.
+        """
+        try:
+            import matplotlib.pyplot as pyplot
+        except ImportError as missing:
+            raise PecletError(f"plots need matplotlib: {cure_for('matplotlib', 'python3-matplotlib')}") from missing
+        data = json.loads(self._ask("plot", "--json", *(["--quantity", quantity] if quantity else [])))
+        if not data["parameters"]:
+            raise PecletError("nothing is swept in this campaign: no axis to draw over")
+        pointers = {name: key for key, name in short_names([key["pointer"] for key in data["parameters"]]).items()}
+        for name in [x, by, *(where or {})]:
+            if name is not None and name not in pointers:
+                raise PecletError(f"{name}: is not swept; there are {', '.join(pointers)}")
+        for name, value in (where or {}).items():
+            data["points"] = [p for p in data["points"] if is_same(cell_value(p["settings"][pointers[name]]), value)]
+        figure = over_sweep(data | {"over": pointers.get(x, data["over"]), "by": pointers.get(by), "log": log})
+        if figure["x"]["categories"] and "x" in (log or ""):
+            raise PecletError(f"{x}: has words, and no logarithmic axis")
+        if label and not figure["legend"]:
+            figure["legend"] = [{"series": 0, "name": plain(label)}]
+        axes = axes or pyplot.subplots(figsize=(4.5, 3.4), layout="constrained")[1]
+        draw_panel(axes, figure, figure["panels"][0])
+        if not figure["x"]["categories"]:
+            axes.autoscale()  # with what else is drawn there
+        handles = legend_of(figure)
+        for handle in handles:
+            axes.add_line(handle)
+        if handles:
+            axes.legend(frameon=False)
+        return axes
 
     def __repr__(self):
         return f"peclet.open({self.path!r})"

@@ -293,7 +293,7 @@ def draw(spreads, savings):
         log="x",
         powers="x",
         y_range=(0, 1.2),
-        key="at graph 0.98, 0.75",
+        key=(0.98, 0.75),
     )
     for (number, shares), colour in zip(savings.items(), (BLUE, GREEN, RED)):
         rows = [row for row in spreads if row["peclet"] == number]

@@ -107,7 +107,7 @@ def draw():
     figure = Figure(HERE / "chart.png", columns=2, size=(1000, 420))
     for sizes in SIZES:
         panel = figure.panel("φ", "P over that of the equation of state", f"sizes {sizes}", y_range=(0.97, 1.03))
-        panel.box("graph 0", "graph 1", "first 0.99", "first 1.01", "#eef4e8")
+        panel.box(None, None, 0.99, 1.01, "#eef4e8")
         for step, colour, shift in ((1, BLUE, -0.002), (0.25, RED, 0.002)):
             rows = [
                 (r["fraction"] + shift, *number(r, "ratio")) for r in table if r["sizes"] == sizes and r["step"] == step

@@ -254,16 +254,16 @@ def draw(rows):
     ends = (0.5, 2e6), (2, 300)
     rough = [((0.5, m, 0), f"φ = 0.5, A = 0, μ = {m}", c, 7) for m, c in zip(FRICTIONS, colours)]
     panel(rough, "peclet", "Pe", *ends)
-    repelled = [((0.5, 0.5, a), f"φ = 0.5, μ = 0.5, A = {a} k_BT", c, 7) for a, c in zip(STRENGTHS, colours)]
+    repelled = [((0.5, 0.5, a), f"φ = 0.5, μ = 0.5, A = {a} k_B T", c, 7) for a, c in zip(STRENGTHS, colours)]
     panel(repelled, "peclet", "Pe", *ends)
     packed = [
-        ((f, 0.5, a), f"φ = {f:g}, μ = 0.5, A = {a} k_BT", c, mark)
+        ((f, 0.5, a), f"φ = {f:g}, μ = 0.5, A = {a} k_B T", c, mark)
         for f, mark in ((0.45, 6), (0.5, 7), (0.53, 5))
         for a, c in ((0, BLUE), (1000, RED))
     ]
     panel(packed, "peclet", "Pe", (0.5, 2e6), (1, 2000))
-    stressed = [((0.5, 1, a), f"φ = 0.5, μ = 1, A = {a} k_BT", c, 7) for a, c in zip(STRENGTHS, colours)]
-    panel(stressed, "stress", "σ a³ / k_BT (pairs)", (0.1, 1e7), (2, 300))
+    stressed = [((0.5, 1, a), f"φ = 0.5, μ = 1, A = {a} k_B T", c, 7) for a, c in zip(STRENGTHS, colours)]
+    panel(stressed, "stress", "σ a³ / k_B T (pairs)", (0.1, 1e7), (2, 300))
     figure.draw()
 
 

@@ -241,7 +241,7 @@ def draw(flow, flow_explicit, curves, thermal_explicit):
 
     figure = Figure(HERE / "chart.png", columns=2)
     name = "η_r of the pairs"
-    ends = {"x_range": (0.003, 20), "y_range": (15, 100), "y_ticks": (15, 20, 30, 50, 70, 100)}
+    ends = {"x_range": (0.003, 20), "y_range": (15, 100)}
     panel = figure.panel("τ_I / τ_S", name, "φ = 0.55, no noise", log="xy", powers="x", key="top left", **ends)
     panel.upright(FLOW_BOUND)
     panel.text("published: flat", 0.09, 17, "right")

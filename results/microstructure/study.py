@@ -241,7 +241,7 @@ def map_rows(structure):
 
 def draw(structures, radial):
     figure = Figure(HERE / "chart.png", columns=1, size=(1200, 760))
-    square = {"x_range": (-4, 4), "y_range": (-4, 4), "settings": ["unset grid", "set size ratio -1"]}
+    square = {"x_range": (-4, 4), "y_range": (-4, 4), "grid": False}
     for k, (peclet, structure) in enumerate(structures.items()):
         place = 0.05 + 0.3 * k, 0.315 + 0.3 * k, 0.52, 0.94
         gradient = "" if k else "y / a (gradient)"

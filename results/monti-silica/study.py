@@ -174,7 +174,7 @@ def draw(rows):
     panel.level(mari_fit(FRACTION, 0), "Mari fit (published), μ = 0", GREY, span=both, dash=3)
     for x, text in ((1, "γ̇_0, in the published thickening"), (1 / DRAG, "γ̇_0 with 6π")):
         panel.upright(x)
-        panel.text(text, x * 0.8, 90, "right", "rotate by 90 font ',9'")
+        panel.text(text, x * 0.8, 90, "right", rotation=90, fontsize=9)
     for length, colour in ((FREE, BLUE), (SALTED, RED)):
         points = [(r["rate"], *number(r, "viscosity")) for r in curve_of(rows, length, TABLE_RATIO)]
         panel.points(points, f"{SALTS[length]}, λ = {length} a", colour, 7, 0.8, joined=True)

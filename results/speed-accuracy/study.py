@@ -193,8 +193,8 @@ STYLES = {  # point type, colour
     "LAMMPS": (9, GREEN),
 }
 LEGEND = (
-    "numbers: explicit step over\\nthe largest stable one, implicit step\\nover the automatic one;\\n"
-    "!: flagged or seeds lost;\\nbars: 95 %; band: 2 %"
+    "numbers: explicit step over\nthe largest stable one, implicit step\nover the automatic one;\n"
+    "!: flagged or seeds lost;\nbars: 95 %; band: 2 %"
 )
 
 
@@ -244,9 +244,8 @@ def add_panel(figure, name, rows, of=""):
         x_range=(min(times) / 3, max(times) * 3),
         y_range=(-RANGE, RANGE),
         y_step=2,
-        settings=["set xlabel offset 0,0.6", "set ylabel offset 1.2", "set title offset 0,-0.6"],
     )
-    panel.box("graph 0", "graph 1", "first -2", "first 2", "#eef4e8")
+    panel.box(None, None, -2, 2, "#eef4e8")
     bars = sorted((*bar_of(r, of), style_of(r)) for r in chosen)
     for (x, y, half, text, style), row in zip(bars, rows_of_texts(bars, 9 * max(times) / min(times))):
         mark, colour = STYLES[style]
@@ -258,21 +257,16 @@ def add_legend(figure):
     """In a place of its own."""
     panel = figure.blank()
     for k, (style, (mark, colour)) in enumerate(STYLES.items()):
-        point = f"tc rgb '{colour}' point pt {mark} ps 1.1 lc rgb '{colour}' offset 1.5, 0"
-        panel.text(style, 0.12, 0.9 - 0.12 * k, style=point)
-    panel.text(LEGEND, 0.02, 0.36)
+        panel.points([(0.06, 0.9 - 0.12 * k)], None, colour, mark, 1.1)
+        panel.text(style, 0.12, 0.9 - 0.12 * k, colour=colour)
+    panel.text(LEGEND, 0.02, 0.4, va="top")
 
 
 def draw_chart(rows, picture):
     names = list(dict.fromkeys(r["panel"] for r in rows))
     with_pressure = [name for name in names if any(r["panel"] == name and r.get("pressure") for r in rows)]
     lines = -(-(len(names) + len(with_pressure) + 1) // ACROSS)
-    width, height = ACROSS * 380, lines * 310
-    layout = (
-        f"margins {70 / width}, {1 - 20 / width}, {60 / height}, {1 - 30 / height} "
-        f"spacing {75 / width}, {95 / height}"
-    )
-    figure = Figure(picture, ACROSS, lines, (width, height), layout)
+    figure = Figure(picture, ACROSS, lines, (ACROSS * 380, lines * 310))
     for name in names:
         add_panel(figure, name, [r for r in rows if r["panel"] == name])
     for name in with_pressure:

@@ -258,34 +258,30 @@ def halves(lines):
     return [lines[:half], lines[half:]]
 
 
-def write(panel, text, x, y, side="left", font="Sans,10"):
-    panel.text(text, x, y, side, f"font '{font}' noenhanced front")
-
-
 def draw_part(panel, left, columns, lines):
     for column, (method, step) in enumerate(columns):
         middle = left + LABEL + WIDTH * (column + 0.5)
-        write(panel, method, middle, HEIGHT * 0.8, "center")
-        write(panel, f"{float(step):.3g} x", middle, HEIGHT * 1.6, "center")
+        panel.text(method, middle, HEIGHT * 0.8, "center")
+        panel.text(f"{float(step):.3g} x", middle, HEIGHT * 1.6, "center")
     for k, (name, cells) in enumerate(lines):
         top = HEIGHT * (k + 2.2)
         if cells is None:
-            write(panel, name, left, top + HEIGHT / 2, font="Sans Bold,11")
+            panel.text(name, left, top + HEIGHT / 2, weight="bold")
             continue
-        write(panel, name, left + 14, top + HEIGHT / 2)
+        panel.text(name, left + 14, top + HEIGHT / 2)
         for column, key in enumerate(columns):
             x = left + LABEL + WIDTH * column
             panel.box(x, x + WIDTH, top, top + HEIGHT, COLOURS[cells[key]["verdict"]], border="white")
-            write(panel, text_of(cells[key]), x + WIDTH / 2, top + HEIGHT / 2, "center")
+            panel.text(text_of(cells[key]), x + WIDTH / 2, top + HEIGHT / 2, "center")
 
 
 def draw_legend(panel, top):
     x = 10
     for verdict, colour in COLOURS.items():
         panel.box(x, x + 30, top, top + HEIGHT * 0.8, colour, border="#888888")
-        write(panel, verdict, x + 36, top + HEIGHT * 0.4)
-        x += 105
-    write(panel, LEGEND, x + 15, top + HEIGHT * 0.4)
+        panel.text(verdict, x + 36, top + HEIGHT * 0.4)
+        x += 122
+    panel.text(LEGEND, 10, top + HEIGHT * 1.5)
 
 
 def draw():
@@ -297,11 +293,11 @@ def draw_map(rows, picture):
     parts = halves(lines_of(rows))
     width = LABEL + WIDTH * len(columns) + 20
     size = width * len(parts), HEIGHT * (max(map(len, parts)) + 5)
-    figure = Figure(picture, columns=1, size=size, font="Sans,10")
+    figure = Figure(picture, columns=1, size=size)
     panel = figure.blank((0, size[0]), (size[1], 0), place=(0, 1, 0, 1))
     for k, part in enumerate(parts):
         draw_part(panel, k * width + 10, columns, part)
-    draw_legend(panel, size[1] - HEIGHT * 1.6)
+    draw_legend(panel, size[1] - HEIGHT * 2.2)
     figure.draw()
 
 

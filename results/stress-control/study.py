@@ -205,7 +205,7 @@ def draw():
     by_rate = [(r["at"] * r["viscosity"], *number(r, "viscosity")) for r, _ in pairs_of(rows, "grains")]
     one.points(by_rate, "at a rate, 0.50", BLUE, 6)
     densest = JUMPING
-    two = figure.panel("γ̇ ηa²/F_{CL}", "σ a²/F_{CL}", f"φ = {densest:.2f}", log="xy", key="top left", powers="xy")
+    two = figure.panel("γ̇ ηa²/F_{CL}", "σ a²/F_{CL}", f"φ = {densest:.2f}", log="xy", key="top left", powers="y")
     at_densest = list(of_densest(rows))
     points = [(r["at"] / r["viscosity"], r["at"], 0) for r in at_densest if r["control"] == "stress"]
     two.points(points, "at a stress", ORANGE, joined=True)
@@ -215,7 +215,7 @@ def draw():
         if r["control"] == "rate"
     ]
     two.points(points, "at a rate", BLUE, 6)
-    three = figure.panel("Pe", "η_r", "colloids, φ = 0.45, no friction", log="x", key="top right")
+    three = figure.panel("Pe", "η_r", "colloids, φ = 0.45, no friction", log="x", key="top left")
     for place, (title, colour, mark) in enumerate((("at a rate", BLUE, 7), ("at its stress", RED, 6))):
         points = [
             (6 * math.pi * pair[0]["at"], *number(pair[place], "viscosity")) for pair in pairs_of(rows, "colloids")

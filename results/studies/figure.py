@@ -1,23 +1,33 @@
-"""Pictures: panels with axes, points with error bars, and curves, drawn by gnuplot into a png."""
-import math
-import subprocess
+"""Pictures of studies: panels with axes, points with error bars, and curves, drawn by matplotlib into a png."""
+import os
+import sys
 
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib import ticker
+from matplotlib.colors import LinearSegmentedColormap
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+# Of the source, or installed.
+sys.path += [os.path.join(ROOT, "python"), os.path.join(ROOT, "..", "..", "lib", "python3", "dist-packages")]
+from peclet.drawing import mathtext, parts_of, set_ticks
 
 BLUE, GREEN, ORANGE, RED, PURPLE = "#2060b0", "#308030", "#d08020", "#c03028", "#8040a0"
 BLACK, GREY, LIGHT_GREY = "#000000", "#a0a0a0", "#d8d8d8"
+# By number: a marker, and whether it is filled.
+MARKS = {2: ("x", True), 4: ("s", False), 5: ("s", True), 6: ("o", False), 7: ("o", True), 8: ("^", False)}
+MARKS |= {9: ("^", True), 10: ("v", False), 11: ("v", True), 12: ("D", False), 13: ("D", True)}
+DASHES = {1: "-", 2: "--", 3: ":", 4: "-."}
+POINTS, DPI = 10, 100  # size of the text; dots an inch
+STYLE = {"font.size": POINTS, "axes.labelsize": POINTS, "axes.titlesize": POINTS, "legend.fontsize": POINTS - 1}
 
 
-def quoted(text):
-    """A text of gnuplot. Its marks stay in force: _ and ^ lower and raise what follows, \\n begins a line."""
-    return '"' + str(text).replace('"', "'") + '"'
-
-
-def cell(value):
-    """A number of a data block, or a text; NaN where a number is missing."""
-    if isinstance(value, str):
-        return quoted(value)
-    return f"{value:.7g}" if math.isfinite(value) else "NaN"
+def formatted(text):
+    """A text of matplotlib. _ and ^ lower and raise what follows, as in symbols of engines."""
+    return mathtext(parts_of(str(text)))
 
 
 def shade(colours, position):
@@ -33,137 +43,167 @@ class Panel:
     log          axes that are logarithmic: "", "x", "y" or "xy"
     powers       axes whose numbers are powers of ten
     x_range, y_range    (from, to), each None where the data decide
-    x_ticks, y_ticks    where numbers stand; x_step, y_step    how far apart
-    key          place of the titles, as gnuplot has it; None for none
-    place        of the axes in the picture: left, right, bottom, top, from 0 to 1; in the next cell unless given
-    settings     what else gnuplot has to be told
+    y_step       how far apart numbers stand
+    key          place of the titles, such as "top right", or of their upper right corner, from 0 to 1; None: no titles
+    grid         lines at the numbers
     """
 
-    def __init__(self, x="", y="", title="", *, log="", powers="", key="top right", place=None, settings=(), **axes):
-        self._lines = [
-            "reset",
-            "set format '%g'",
-            f"set grid lc rgb '{LIGHT_GREY}'",
-            f"set key {key}" if key else "set key off",
-        ]
-        self._lines += [f"set xlabel {quoted(x)}", f"set ylabel {quoted(y)}", f"set title {quoted(title)}"]
-        if log:
-            self._lines.append(f"set logscale {log}")
-        self._lines += [f"set format {axis} '10^{{%L}}'" for axis in powers]
-        if place:
-            sides = zip(("lmargin", "rmargin", "bmargin", "tmargin"), place)
-            self._lines += [f"set {side} at screen {at}" for side, at in sides]
-        self._log, self._x_range = log, axes.get("x_range")
-        for name, values in axes.items():
-            axis, what = name.split("_")
-            if what == "range":
-                ends = ["*" if v is None else f"{v:.7g}" for v in values]
-                self._lines.append(f"set {axis}range [{':'.join(ends)}]")
-            elif what == "ticks":
-                self._lines.append(f"set {axis}tics ({', '.join(f'{v:g}' for v in values)})")
-            elif what == "step":
-                self._lines.append(f"set {axis}tics {values:g}")
-            else:
-                raise TypeError(f"no setting of an axis: {name}")
-        self._lines += settings
-        self._blocks, self._plots = [], []
-
-    def _plot(self, rows, how, title):
-        """Adds rows of numbers, drawn in this way."""
-        self._blocks.append([" ".join(cell(v) for v in row) for row in rows])
-        name = f"${{block}}{len(self._blocks) - 1}"
-        self._plots.append(f"{name} using {how} {f'title {quoted(title)}' if title else 'notitle'}")
+    def __init__(
+        self,
+        axes,
+        x="",
+        y="",
+        title="",
+        *,
+        log="",
+        powers="",
+        key="top right",
+        x_range=(None, None),
+        y_range=(None, None),
+        y_step=None,
+        grid=True,
+    ):
+        self.axes, self._key, self._powers = axes, key, powers
+        axes.set(xlabel=formatted(x), ylabel=formatted(y), title=formatted(title))
+        axes.set_xscale("log" if "x" in log else "linear")
+        axes.set_yscale("log" if "y" in log else "linear")
+        axes.set_axisbelow(True)
+        axes.tick_params(which="both", direction="in", top=True, right=True)
+        if grid:
+            axes.grid(color=LIGHT_GREY, linewidth=0.6)
+        self._ranges, self._step, self._titled = {"x": x_range, "y": y_range}, y_step, []
 
     def points(self, rows, title, colour, mark=7, size=1.0, joined=False, width=1.0):
         """Rows of (x, y), (x, y, half a bar) or (x, y, lower end, upper end of a bar)."""
-        rows = list(rows)
-        columns = len(rows[0]) if rows else 2
-        if columns == 2:
-            style = "linespoints" if joined else "points"
-        else:
-            style = "yerrorlines" if joined else "yerrorbars"
-        using = ":".join(str(k + 1) for k in range(columns))
-        self._plot(rows, f"{using} with {style} pt {mark} ps {size:g} lw {width:g} lc rgb '{colour}'", title)
+        columns = np.array(list(rows), float).T
+        if not columns.size:
+            return
+        x, y, *bars = columns
+        bars = bars[0] if len(bars) == 1 else np.array([y - bars[0], bars[1] - y]) if bars else None
+        marker, filled = MARKS[mark]
+        drawn = self.axes.errorbar(
+            x,
+            y,
+            bars,
+            fmt=marker + ("-" if joined else ""),
+            color=colour,
+            markerfacecolor=colour if filled else "white",
+            markersize=5.5 * size,
+            linewidth=width,
+            capsize=2,
+        )
+        self._say(drawn, title)
 
-    def texts(self, rows, colour, above=1.0, size=10):
+    def _say(self, drawn, title):
+        if title:
+            self._titled.append((drawn, formatted(title)))
+
+    def texts(self, rows, colour, above=1.0, size=POINTS):
         """Rows of (x, y, text): the text stands so many of its heights above the point."""
-        self._plot(rows, f"1:2:3 with labels offset 0,{above:g} font ',{size}' tc rgb '{colour}'", None)
+        for x, y, text in rows:
+            style = {"color": colour, "fontsize": size, "ha": "center", "va": "center"}
+            shift = (0, 1.25 * size * above)
+            self.axes.annotate(formatted(text), (x, y), shift, textcoords="offset points", **style)
 
     def line(self, rows, title, colour=BLACK, dash=1, width=1.0):
         """Straight pieces between (x, y)."""
-        self._plot(rows, f"1:2 with lines dt {dash} lw {width:g} lc rgb '{colour}'", title)
+        x, y = np.array(list(rows), float).T
+        (drawn,) = self.axes.plot(x, y, DASHES[dash], color=colour, linewidth=width)
+        self._say(drawn, title)
 
     def curve(self, function, title, colour=BLACK, span=None, samples=600, **style):
         """y = function(x), from one end of `span` to the other; of the range of x unless it is given."""
-        spaced = np.geomspace if "x" in self._log else np.linspace
-        self.line([(x, function(x)) for x in spaced(*(span or self._x_range), samples)], title, colour, **style)
+        spaced = np.geomspace if self.axes.get_xscale() == "log" else np.linspace
+        places = spaced(*(span or self._ranges["x"]), samples)
+        self.line([(x, function(x)) for x in places], title, colour, **style)
 
     def level(self, y, title=None, colour=BLACK, span=None, **style):
         """A horizontal line."""
-        self.line([(x, y) for x in span or self._x_range], title, colour, **style)
+        self.line([(x, y) for x in span or self._ranges["x"]], title, colour, **style)
 
     def upright(self, x, low=None, high=None):
         """A dotted vertical line, over the whole height unless its ends are given."""
-        ends = ["graph 0" if low is None else f"{low:g}", "graph 1" if high is None else f"{high:g}"]
-        self._lines.append(f"set arrow from {x:g}, {ends[0]} to {x:g}, {ends[1]} nohead dt 3")
+        if low is None:
+            self.axes.axvline(x, linestyle=":", color=BLACK, linewidth=1)
+        else:
+            self.axes.vlines(x, low, high, linestyles=":", color=BLACK, linewidth=1)
 
-    def text(self, text, x, y, side="left", style=""):
-        """A text with this side at a place."""
-        self._lines.append(f"set label {quoted(text)} at {x:g}, {y:g} {side} {style}".rstrip())
+    def text(self, text, x, y, side="left", colour=BLACK, **style):
+        """A text with this side at a place; `style` as matplotlib has it."""
+        self.axes.text(x, y, formatted(text), color=colour, **{"ha": side, "va": "center", **style})
 
     def box(self, left, right, bottom, top, colour, border=None):
-        """A filled rectangle behind all else; ends are numbers or, as gnuplot has it, places like "graph 0"."""
-        edge = f"border lc rgb '{border}'" if border else "noborder"
-        self._lines.append(
-            f"set object rectangle from {left}, {bottom} to {right}, {top} behind fc rgb '{colour}' fs solid {edge}"
-        )
+        """A filled rectangle behind all else, as wide as the panel where the ends are None."""
+        if left is None:
+            self.axes.axhspan(bottom, top, color=colour, linewidth=0, zorder=0)
+            return
+        corner = (min(left, right), min(bottom, top))
+        size = abs(right - left), abs(top - bottom)
+        self.axes.add_patch(plt.Rectangle(corner, *size, facecolor=colour, edgecolor=border, zorder=0))
 
     def image(self, rows, colours, label=None):
         """Rows of (x, y, value), line after line of a regular grid, in colours by value; `label` for a scale beside
         it."""
-        scale = ", ".join(f"{value:g} '{colour}'" for value, colour in colours.items())
-        self._lines.append(f"set palette defined ({scale}); set cbrange [{min(colours):g}:{max(colours):g}]")
-        self._lines.append(f"set colorbox; set cblabel {quoted(label)}" if label else "unset colorbox")
-        self._plot(rows, "1:2:3 with image", None)
+        x, y = (np.unique([row[k] for row in rows]) for k in (0, 1))
+        values = np.full((len(y), len(x)), np.nan)
+        for row in rows:
+            values[np.searchsorted(y, row[1]), np.searchsorted(x, row[0])] = row[2]
+        low, high = min(colours), max(colours)
+        scale = LinearSegmentedColormap.from_list("", [((at - low) / (high - low), c) for at, c in colours.items()])
+        drawn = self.axes.pcolormesh(x, y, values, cmap=scale, vmin=low, vmax=high, rasterized=True)
+        self.axes.set_aspect("equal")
+        if label:
+            beside = self.axes.inset_axes((1.05, 0, 0.05, 1))
+            self.axes.figure.colorbar(drawn, cax=beside, label=formatted(label))
 
-    def script(self, block):
-        """Lines for gnuplot; names of data begin with `block`."""
-        yield from self._lines
-        for k, rows in enumerate(self._blocks):
-            yield f"${block}{k} << EOD"
-            yield from rows
-            yield "EOD"
-        plots = [plot.replace("{block}", block, 1) for plot in self._plots]
-        # Without data there is nothing that gnuplot could find the ends of the axes by.
-        yield "plot " + (", ".join(plots) or "NaN notitle")
+    def finish(self):
+        """Numbers at the axes, and the titles of what is drawn."""
+        self.axes.set(xlim=self._ranges["x"], ylim=self._ranges["y"])
+        for name, axis in (("x", self.axes.xaxis), ("y", self.axes.yaxis)):
+            ends = tuple(axis.get_view_interval())
+            set_ticks(axis, axis.get_scale() == "log", ends)
+            if name in self._powers:
+                axis.set_major_locator(ticker.LogLocator())
+                axis.set_major_formatter(ticker.LogFormatterMathtext())
+        if self._step:
+            self.axes.yaxis.set_major_locator(ticker.MultipleLocator(self._step))
+        if self._key is None or not self._titled:
+            return
+        place = {"loc": "upper right", "bbox_to_anchor": self._key}
+        if isinstance(self._key, str):
+            place = {"loc": self._key.replace("top", "upper").replace("bottom", "lower")}
+        self.axes.legend(*zip(*self._titled), frameon=False, **place)
 
 
 class Figure:
     """Panels in rows of `columns`, in the order in which they are asked for; size in pixels."""
 
-    def __init__(self, path, columns, rows=1, size=(1100, 480), layout="", font="Sans,11"):
-        self._head = [
-            f"set terminal pngcairo size {size[0]}, {size[1]} font '{font}'",
-            f"set output {quoted(path)}",
-            f"set multiplot layout {rows}, {columns} {layout}".rstrip(),
-        ]
-        self._room, self._panels = rows * columns, []
+    def __init__(self, path, columns, rows=1, size=(1100, 480)):
+        self._path, self._rows, self._columns, self._panels = path, rows, columns, []
+        plt.rcParams.update(STYLE)
+        self._figure = plt.figure(figsize=(size[0] / DPI, size[1] / DPI), dpi=DPI)
 
-    def panel(self, *labels, **settings):
-        if len(self._panels) == self._room:
-            raise ValueError(f"a figure of {self._room} panels has no room for another")
-        self._panels.append(Panel(*labels, **settings))
+    def panel(self, *labels, place=None, **settings):
+        """In the next cell, or at a place in the picture: left, right, bottom, top, from 0 to 1."""
+        if len(self._panels) == self._rows * self._columns and not place:
+            raise ValueError(f"a figure of {len(self._panels)} panels has no room for another")
+        if place:
+            left, right, bottom, top = place
+            axes = self._figure.add_axes((left, bottom, right - left, top - bottom))
+        else:
+            self._figure.set_layout_engine("constrained")
+            axes = self._figure.add_subplot(self._rows, self._columns, len(self._panels) + 1)
+        self._panels.append(Panel(axes, *labels, **settings))
         return self._panels[-1]
 
     def blank(self, x_range=(0, 1), y_range=(0, 1), place=None):
         """A panel without axes, for texts and boxes."""
-        bare = ["unset grid", "unset tics", "unset border"]
-        return self.panel(key=None, x_range=x_range, y_range=y_range, place=place, settings=bare)
-
-    def script(self):
-        yield from self._head
-        for k, panel in enumerate(self._panels):
-            yield from panel.script(f"panel{k}_")
+        panel = self.panel(key=None, x_range=x_range, y_range=y_range, place=place)
+        panel.axes.set_axis_off()
+        return panel
 
     def draw(self):
-        subprocess.run(["gnuplot"], input="\n".join(self.script()) + "\n", text=True, check=True)
+        for panel in self._panels:
+            panel.finish()
+        self._figure.savefig(self._path, dpi=DPI, metadata={"Software": None})
+        plt.close(self._figure)

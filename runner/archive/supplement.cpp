@@ -8,8 +8,7 @@
 #include "contract/provenance.h"
 #include "contract/sha256.h"
 #include "runner/archive/supplement_readme.h"
-#include "runner/figure/figure_script.h"
-#include "runner/figure/svg_figure.h"
+#include "runner/figure/figure.h"
 #include "runner/page/page_html.h"
 #include "runner/reports/export.h"
 #include "runner/reports/status.h"
@@ -52,9 +51,7 @@ std::string sums(const std::vector<ArchivedFile>& files) {
 }
 
 // Requires a number of the target; refuses it where no figure has a place for one.
-Figure figure_of(Database& database) try {
-  return make_figure(database, {});
-} catch (const InputError& error) {
+Json figure_of(Database& database) try { return figure_data(database, {}); } catch (const InputError& error) {
   throw InputError("", "--bundle", error.value(), error.allowed());
 }
 
@@ -77,15 +74,14 @@ std::vector<ArchivedFile> supplement_files(Database& database, std::optional<std
                     "explain` says why",
                     campaign.target.target.observable));
   }
-  const Figure figure = figure_of(database);
+  const std::string script = figure_script(figure_of(database));
   std::vector<ArchivedFile> files{{"README.md", supplement_readme(status)},
                                   {campaign.name + ".json", campaign.document.dump(2) + '\n'},
                                   {"results.csv", export_csv(database, true)},
                                   {"numbers.csv", export_long_csv(database)},
                                   {"results.json", export_json(database, true)},
                                   {"report.html", report_html(database, owner)},
-                                  {"figure.svg", svg_figure(figure)},
-                                  {"figure.py", figure_script(figure), true},
+                                  {"figure.py", script, true},
                                   {"provenance.json", provenance_json(database, campaign).dump(2) + '\n'}};
   files.push_back({"SHA256SUMS", sums(files)});
   return files;

@@ -29,9 +29,7 @@ std::string supplement_readme(const CampaignStatus& status) {
       "| `report.html` | a page for a browser: any quantity over any swept parameter, how each mean came "
       "about "
       "|\n"
-      "| `figure.svg`, `figure.py` | the target over the sweep; the script draws it again: `python3 "
-      "figure.py "
-      "figure.pdf` |\n"
+      "| `figure.py` | the target over the sweep, drawn by matplotlib: `python3 figure.py figure.pdf` |\n"
       "| `provenance.json` | engines, versions, times |\n"
       "| `SHA256SUMS` | of each of these files: `sha256sum --check SHA256SUMS` |\n\n",
       campaign.name);
@@ -49,7 +47,7 @@ std::string supplement_readme(const CampaignStatus& status) {
       "peclet run {0}\n"
       "peclet export {0} --canonical | cmp - results.json\n"
       "peclet export {0} --csv --canonical | cmp - results.csv\n"
-      "peclet plot {0} --output figure.svg\n"
+      "peclet plot {0} --output figure.py\n"
       "```\n\n"
       "The engines of `provenance.json` give the same bytes. Those of another version, compiler or "
       "instruction set "

@@ -100,6 +100,7 @@ class Conversation {
       unsuitable("does not say hello in protocol 1");
     }
     identity_ = hello.at("engine");
+    words_ = std::make_shared<const Vocabulary>(hello);
     try {
       engine_identity(identity_);
     } catch (const ResultError& error) {
@@ -117,6 +118,7 @@ class Conversation {
   }
 
   const Json& identity() const { return identity_; }
+  const std::shared_ptr<const Vocabulary>& words() const { return words_; }
 
  private:
   Json receive() {
@@ -162,6 +164,7 @@ class Conversation {
   EngineProcess process_;
   FrameChannel channel_;
   Json identity_;
+  std::shared_ptr<const Vocabulary> words_;
 };
 
 // " of the point peclet=10"; nothing where it is the only one.
@@ -238,6 +241,7 @@ std::vector<SceneAnswer> ask_once(const Campaign& campaign, const std::filesyste
     if (answer.at("type") != "validated") throw FrameError("neither \"validated\" nor \"refused\"");
     check_observables(answer, campaign, point, campaign_file);
     answers.push_back(read_answer(answer, engine.identity()));
+    answers.back().words = engine.words();
   }
   return answers;
 }

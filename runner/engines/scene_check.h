@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "contract/json.h"
 #include "runner/campaign/campaign.h"
 #include "runner/engines/engine_process.h"
+#include "runner/store/vocabulary.h"
 
 namespace peclet::runner {
 
@@ -17,8 +19,9 @@ struct SceneAnswer {
   double steps = 0;                // estimate of the whole realisation
   std::int64_t particles = 0;
   Json derived;
-  std::vector<std::string> warnings;  // in words
-  Json identity;                      // of the engine that says so
+  std::vector<std::string> warnings;        // in words
+  Json identity;                            // of the engine that says so
+  std::shared_ptr<const Vocabulary> words;  // of the engine, the same of all scenes
 };
 
 // Asks an engine process about every point; answers in the order of the points. Writes nothing.

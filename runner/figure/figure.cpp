@@ -4,20 +4,21 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <map>
+#include <vector>
 
 #include "contract/input_error.h"
 #include "contract/nearest_name.h"
+#include "contract/sha256.h"
 #include "runner/figure/swept.h"
+#include "runner/page/page_assets.h"
+#include "runner/page/page_parts.h"
 #include "runner/reports/status.h"
-#include "runner/text/number_text.h"
+#include "runner/store/vocabulary.h"
 
 namespace peclet::runner {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr std::string_view seal = "# sha256 of all above: ";
 
 std::string bare(const std::string& path) { return path.starts_with('/') ? path.substr(1) : path; }
 
@@ -25,7 +26,7 @@ bool is_called(const Drawable& one, const std::string& name) {
   return one.path == name || (!one.element.empty() && one.name + '/' + one.element == name);
 }
 
-// Of a list its elements are meant, of which there may be many: its name, and one of them.
+// Names of all quantities; of a list, which may be long, its name and its first element.
 std::string names_of(const std::vector<Drawable>& drawables) {
   std::vector<std::string> names;
   for (const Drawable& one : drawables) {
@@ -61,134 +62,60 @@ void require_tolerance(const Target& target, const std::string& path) {
   throw InputError("", "--band", path, "has no tolerance: the campaign does not aim at it");
 }
 
-Standing standing_of(const Json& point) {
-  if (!point.at("decided").get<bool>()) return Standing::provisional;
+// "converged" of a point that has converged or is complete, "undecided" of one that has ended otherwise,
+// "provisional" of one still open.
+const char* standing_of(const Json& point) {
+  if (!point.at("decided").get<bool>()) return "provisional";
   const std::optional<Verdict> verdict = verdict_of(point.at("standing").get<std::string>());
-  return verdict && is_reached(*verdict) ? Standing::converged : Standing::undecided;
+  return verdict && is_reached(*verdict) ? "converged" : "undecided";
 }
 
-double number_or_none(const Json& value) { return value.is_number() ? value.get<double>() : none; }
-
-// Whether the point has a number of the quantity. At one that has jammed a number of half of its seeds
-// or fewer is that of those which happened to flow.
+// Whether the point has a number of the quantity. If the point has jammed, a mean over half of its seeds or
+// fewer is not its own: it is the mean of those that happened to flow.
 bool has_number(const Json& point, const Json& estimate) {
   if (estimate.is_null() || !estimate[0].is_number()) return false;
   const Json& endings = point.at("endings");
   return !endings.at("has_jammed").get<bool>() || 2 * estimate[3].get<int>() > endings.at("ended").get<int>();
 }
 
-Mark jammed_mark(const Json& point, double x) {
-  Mark mark{point.at("label").get<std::string>(), x, none, none, none};
-  mark.count = point.at("endings").at("ended").get<int>();
-  mark.standing = standing_of(point);
-  mark.jam = Jam::above;
-  return mark;
+Json point_json(const Json& point, const Json& estimate, const std::string& path) {
+  const bool is_known = has_number(point, estimate);
+  const auto number = [&](std::size_t place) { return is_known ? estimate[place] : Json(nullptr); };
+  return {{"label", point.at("label")},
+          {"settings", point.at("settings")},
+          {"mean", number(0)},
+          {"standard_error", number(1)},
+          {"half_width", number(2)},
+          {"good_enough", is_known ? point.at("good_enough").value(path, Json()) : Json(nullptr)},
+          {"count", is_known ? estimate[3] : point.at("endings").at("ended")},
+          {"standing", standing_of(point)},
+          {"jammed", point.at("endings").at("has_jammed")}};
 }
 
-Mark mark_of(const Json& point, const Json& estimate, double x, const std::string& path) {
-  Mark mark{point.at("label").get<std::string>(), x};
-  if (point.at("endings").at("has_jammed").get<bool>()) mark.jam = Jam::at_number;
-  mark.mean = estimate[0].get<double>();
-  mark.standard_error = number_or_none(estimate[1]);
-  mark.half_width = number_or_none(estimate[2]);
-  mark.count = estimate[3].get<int>();
-  mark.standing = standing_of(point);
-  if (const Json allowed = point.at("good_enough").value(path, Json()); allowed.is_number()) {
-    mark.good_enough = allowed.get<double>();
-  }
-  return mark;
-}
-
-Label curve_name(const std::vector<const Swept*>& by, std::size_t point) {
-  Label label;
-  for (const Swept* const one : by) {
-    if (!label.empty()) label.push_back({", "});
-    label.insert(label.end(), one->name.begin(), one->name.end());
-    label.push_back({" = " + one->words[point]});
-  }
-  return label;
-}
-
-// What of a mark has to be seen. Bars of numbers that are not decided may still be enormous.
-std::vector<double> ends(const Mark& mark) {
-  if (!mark.has_place()) return {};
-  if (mark.standing == Standing::provisional || !std::isfinite(mark.half_width)) return {mark.mean};
-  return {mark.mean, mark.mean - mark.half_width, mark.mean + mark.half_width};
-}
-
-// Scales, and the range of what is drawn.
-void set_ranges(Figure& figure, const FigureChoice& choice) {
-  std::vector<double> x, y, means;
-  for (const Curve& curve : figure.curves) {
-    for (const Mark& mark : curve.marks) {
-      x.push_back(mark.x);
-      if (mark.has_place()) means.push_back(mark.mean);
-      for (const double end : ends(mark)) y.push_back(end);
-    }
-  }
-  const auto asked = [&](char axis) { return choice.scale && choice.scale->find(axis) != std::string::npos; };
-  const bool numeric = figure.x.words.empty();
-  figure.x.range.log = numeric && (choice.scale ? asked('x') : is_logarithmic(x));
-  figure.y.range.log = choice.scale ? asked('y') : is_logarithmic(y);
-  const auto leaves_the_axis = [&](const Mark& mark) {
-    return figure.y.range.log && mark.has_place() && !(mark.mean > 0);
+void require_numbers(const Json& points, const Swept& axis, const FigureChoice& choice,
+                     const std::string& quantity) {
+  const auto is_log = [&](char name) {
+    return choice.scale && choice.scale->find(name) != std::string::npos;
   };
-  // What a logarithmic axis has no place for.
-  const auto is_hidden = [&](const Mark& mark) {
-    return (figure.x.range.log && !(mark.x > 0)) || (leaves_the_axis(mark) && mark.jam == Jam::none);
-  };
-  for (Curve& curve : figure.curves) {
-    for (Mark& mark : curve.marks) {
-      if (mark.jam == Jam::at_number && leaves_the_axis(mark)) mark.jam = Jam::below;
-    }
-    figure.hidden += static_cast<int>(std::erase_if(curve.marks, is_hidden));
-    if (!figure.tolerance) continue;
-    for (const Mark& mark : curve.marks) {
-      if (!mark.good_enough || mark.jam != Jam::none) continue;
-      y.push_back(mark.mean - *mark.good_enough);
-      y.push_back(mark.mean + *mark.good_enough);
-    }
+  bool has_number = false, has_jammed = false;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Json& mean = points[i].at("mean");
+    has_jammed = has_jammed || points[i].at("jammed").get<bool>();
+    if (!mean.is_number()) continue;
+    has_number = true;
+    const bool is_hidden =
+        (is_log('y') && mean.get<double>() <= 0) || (is_log('x') && axis.numeric && axis.numbers[i] <= 0);
+    if (!is_hidden) return;
   }
-  std::erase_if(figure.curves, [](const Curve& curve) { return curve.marks.empty(); });
-  const auto range_of = [](std::vector<double> numbers, bool log) {
-    std::erase_if(numbers, [&](double number) { return !std::isfinite(number) || (log && number <= 0); });
-    const auto [low, high] = std::minmax_element(numbers.begin(), numbers.end());
-    return numbers.empty() ? AxisRange{0, 1, false} : AxisRange{*low, *high, log};
-  };
-  figure.x.range = range_of(x, figure.x.range.log);
-  figure.y.range = range_of(y, figure.y.range.log);
-  figure.tolerance = figure.tolerance && figure.has_tolerance();
-  if (figure.y.range.log) {
-    // A bar that reaches almost down to zero must not squeeze all else: it is cut off.
-    const double lowest = range_of(means, true).low / 3;
-    figure.y.range.low = std::max(figure.y.range.low, lowest);
-  }
+  throw InputError("", "--quantity", quantity,
+                   has_number   ? "has no number that a logarithmic axis has a place for"
+                   : has_jammed ? "has no number at any point: those that have ended have jammed"
+                                : "has no number at any point yet");
 }
 
 }  // namespace
 
-bool Figure::has(Standing standing) const {
-  return std::any_of(curves.begin(), curves.end(), [&](const Curve& curve) {
-    return std::any_of(curve.marks.begin(), curve.marks.end(),
-                       [&](const Mark& mark) { return mark.jam == Jam::none && mark.standing == standing; });
-  });
-}
-
-bool Figure::has_jammed() const {
-  return std::any_of(curves.begin(), curves.end(), [](const Curve& curve) {
-    return std::any_of(curve.marks.begin(), curve.marks.end(),
-                       [](const Mark& mark) { return mark.jam != Jam::none; });
-  });
-}
-
-bool Figure::has_tolerance() const {
-  return std::any_of(curves.begin(), curves.end(), [](const Curve& curve) {
-    return std::any_of(curve.marks.begin(), curve.marks.end(),
-                       [](const Mark& mark) { return mark.good_enough.has_value(); });
-  });
-}
-
-Figure make_figure(Database& database, const FigureChoice& choice) {
+Json figure_data(Database& database, const FigureChoice& choice) {
   const CampaignStatus status = read_status(database);
   KnownPoints known;
   const PagePoints page = page_points(database, status, known);
@@ -197,61 +124,50 @@ Figure make_figure(Database& database, const FigureChoice& choice) {
   const std::size_t column = chosen_column(page.drawables, wanted);
   const Drawable& quantity = page.drawables[column];
   if (choice.tolerance) require_tolerance(target, quantity.path);
-  const std::vector<Swept> swept = swept_parameters(page_parameters(status), page.points);
+  const Json parameters = page_parameters(status, kept_vocabulary(database));
+  const std::vector<Swept> swept = swept_parameters(parameters, page.points);
   const Swept& axis = chosen_axis(swept, choice.over, "--over");
-  const std::vector<const Swept*> by = curves_by(swept, axis);
-
-  Figure figure{status.campaign.name, quantity.path, axis.pointer, target.confidence};
-  figure.x.title = axis.title;
-  if (!axis.numeric) figure.x.words = axis.values;
-  figure.y.title = title_of(quantity);
-  figure.tolerance = choice.tolerance;
-  std::map<std::string, std::size_t> places;
-  for (std::size_t i = 0; i < page.points.size(); ++i) {
-    const Json& point = page.points[i];
-    const Json& estimate = point.at("estimates")[column];
-    const bool has_jammed = point.at("endings").at("has_jammed").get<bool>(),
-               is_known = has_number(point, estimate);
-    if (!is_known && !has_jammed) {
-      ++figure.absent;
-      continue;
-    }
-    const Label name = curve_name(by, i);
-    const auto [place, is_new] = places.emplace(text_of(name), figure.curves.size());
-    if (is_new) figure.curves.push_back({name, {}});
-    figure.curves[place->second].marks.push_back(
-        is_known ? mark_of(point, estimate, axis.numbers[i], quantity.path)
-                 : jammed_mark(point, axis.numbers[i]));
+  Json points = Json::array();
+  for (const Json& point : page.points) {
+    points.push_back(point_json(point, point.at("estimates")[column], quantity.path));
   }
-  for (Curve& curve : figure.curves) {
-    std::stable_sort(curve.marks.begin(), curve.marks.end(),
-                     [](const Mark& a, const Mark& b) { return a.x < b.x; });
-  }
-  set_ranges(figure, choice);
-  const auto has_place = [](const Mark& mark) { return mark.has_place(); };
-  if (std::none_of(figure.curves.begin(), figure.curves.end(), [&](const Curve& curve) {
-        return std::any_of(curve.marks.begin(), curve.marks.end(), has_place);
-      })) {
-    throw InputError("", "--quantity", quantity.path,
-                     figure.hidden > 0     ? "has no number that a logarithmic axis has a place for"
-                     : figure.has_jammed() ? "has no number at any point: those that have ended have jammed"
-                                           : "has no number at any point yet");
-  }
-  return figure;
+  require_numbers(points, axis, choice, quantity.path);
+  return {{"campaign", status.campaign.name},
+          {"quantity",
+           {{"path", quantity.path},
+            {"name", quantity.name},
+            {"element", quantity.element},
+            {"symbol", quantity.symbol},
+            {"unit", quantity.unit}}},
+          {"over", axis.pointer},
+          {"confidence", target.confidence},
+          {"log", choice.scale ? Json(*choice.scale) : Json(nullptr)},
+          {"tolerance", choice.tolerance},
+          {"parameters", parameters},
+          {"points", points}};
 }
 
-std::string left_out(const Figure& figure) {
-  std::string text;
-  if (figure.absent > 0) {
-    text += fmt::format("left out: {} without a number of {} yet\n",
-                        counted(static_cast<std::size_t>(figure.absent), "point"), figure.quantity);
+std::string figure_script(const Json& data) {
+  // A line for each member and each point, so that people can read and change them. Between r""" and """
+  // nothing ends the string: JSON has a backslash before every quotation mark within a text, and never three
+  // around one.
+  std::vector<std::string> lines, points;
+  for (const auto& [name, value] : data.items()) {
+    if (name != "points") lines.push_back(fmt::format("\"{}\": {}", name, canonical_json(value)));
   }
-  if (figure.hidden > 0) {
-    text += fmt::format("left out: {} that {} not positive, for which a logarithmic axis has no place\n",
-                        counted(static_cast<std::size_t>(figure.hidden), "number"),
-                        figure.hidden == 1 ? "is" : "are");
-  }
-  return text;
+  for (const Json& point : data.at("points")) points.push_back("  " + canonical_json(point));
+  lines.push_back(fmt::format("\"points\": [\n{}]", fmt::join(points, ",\n")));
+  std::string script = drawing_script;
+  script += fmt::format(
+      "\n\nFIGURE = json.loads(r\"\"\"{{{}}}\"\"\")\n\nif __name__ == \"__main__\":\n    main(FIGURE)\n",
+      fmt::join(lines, ",\n "));
+  return script + std::string(seal) + sha256(script) + '\n';
+}
+
+bool is_own_script(std::string_view text) {
+  const std::size_t last = text.rfind(seal);
+  if (last == std::string_view::npos) return false;
+  return text.substr(last + seal.size()) == sha256(text.substr(0, last)) + '\n';
 }
 
 }  // namespace peclet::runner

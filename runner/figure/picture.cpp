@@ -10,8 +10,7 @@
 #include "contract/durable_file.h"
 #include "contract/input_error.h"
 #include "runner/engines/command.h"
-#include "runner/figure/figure_script.h"
-#include "runner/figure/svg_figure.h"
+#include "runner/figure/figure.h"
 
 namespace peclet::runner {
 namespace {
@@ -37,31 +36,6 @@ class ScratchFolder {
   fs::path path_;
 };
 
-// The script itself says what cures a lack of matplotlib.
-[[noreturn]] void refuse(const std::string& why) {
-  throw std::runtime_error(
-      fmt::format("{}; a file that ends in .svg needs neither python3 nor matplotlib", why));
-}
-
-CommandAnswer run_python(const fs::path& script, const fs::path& drawn) {
-  constexpr std::chrono::seconds patience(120);  // the first use of matplotlib looks through all fonts
-  try {
-    return run_command({"python3", script.string(), drawn.string()}, patience);
-  } catch (const std::system_error& fault) {
-    refuse(
-        fmt::format("PNG and PDF are drawn by the python3 in PATH, which cannot be run ({})", fault.what()));
-  }
-}
-
-std::string drawn_by_matplotlib(const std::string& script, const char* ending) {
-  const ScratchFolder folder;
-  const fs::path source = folder.path() / "figure.py", drawn = folder.path() / ending;
-  write_durably(source, script);
-  const CommandAnswer answer = run_python(source, drawn);
-  if (!answer.succeeded()) refuse("python3 has not drawn the figure: " + answer.complaint());
-  return read_file(drawn);
-}
-
 }  // namespace
 
 PictureForm picture_form(const fs::path& output) {
@@ -69,7 +43,8 @@ PictureForm picture_form(const fs::path& output) {
   if (ending == ".svg") return PictureForm::svg;
   if (ending == ".png") return PictureForm::png;
   if (ending == ".pdf") return PictureForm::pdf;
-  throw InputError("", "--output", output.string(), "must end in .svg, .png or .pdf");
+  if (ending == ".py") return PictureForm::script;
+  throw InputError("", "--output", output.string(), "must end in .svg, .png, .pdf or .py");
 }
 
 fs::path script_beside(const fs::path& output) {
@@ -84,9 +59,23 @@ fs::path script_beside(const fs::path& output) {
   return script;
 }
 
-std::string picture(const Figure& figure, PictureForm form, const std::string& script) {
-  if (form == PictureForm::svg) return svg_figure(figure);
-  return drawn_by_matplotlib(script, form == PictureForm::png ? "figure.png" : "figure.pdf");
+Picture drawn(const std::string& script, PictureForm form) {
+  constexpr std::chrono::seconds patience(120);  // the first use of matplotlib looks through all fonts
+  const ScratchFolder folder;
+  const fs::path source = folder.path() / "figure.py",
+                 output = folder.path() / (form == PictureForm::png   ? "figure.png"
+                                           : form == PictureForm::pdf ? "figure.pdf"
+                                                                      : "figure.svg");
+  write_durably(source, script);
+  try {
+    const CommandAnswer answer = run_command({"python3", source.string(), output.string()}, patience);
+    // The script itself says what cures a lack of matplotlib.
+    if (!answer.succeeded()) throw NotDrawn("python3 draws no picture: " + answer.complaint());
+    return {read_file(output), answer.output};
+  } catch (const std::system_error& fault) {
+    throw NotDrawn(
+        fmt::format("pictures are drawn by the python3 in PATH, which cannot be run ({})", fault.what()));
+  }
 }
 
 }  // namespace peclet::runner

@@ -2,24 +2,33 @@
 #pragma once
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
-
-#include "runner/figure/figure.h"
 
 namespace peclet::runner {
 
-enum class PictureForm { svg, png, pdf };
+enum class PictureForm { svg, png, pdf, script };
 
-// By the end of the name. Throws InputError naming those that are allowed.
+// Returns the form that the end of the name asks for. Throws InputError naming those that are allowed.
 PictureForm picture_form(const std::filesystem::path& output);
 
-// Where the script of a picture lies: beside it, with the ending .py. Throws InputError when a file is there
-// that is not a script as the program wrote it, which would be lost.
+// Returns where the script of a picture lies: beside it, with the ending .py. Throws InputError if a file is
+// there that is not a script as the program wrote it, which would be lost.
 std::filesystem::path script_beside(const std::filesystem::path& output);
 
-// The bytes of the picture: SVG by the program itself; PNG and PDF by python3 of PATH, which runs the script
-// in a folder of temporary files. Throws std::runtime_error that names the cure where there is no python3 or
-// no matplotlib.
-std::string picture(const Figure& figure, PictureForm form, const std::string& script);
+// No python3, or one without matplotlib; the message names the cure.
+class NotDrawn : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct Picture {
+  std::string bytes;
+  std::string said;  // what the picture leaves out, in lines
+};
+
+// The picture that python3 of PATH draws with matplotlib: runs the script in a folder of temporary files.
+// Throws NotDrawn.
+Picture drawn(const std::string& script, PictureForm form);
 
 }  // namespace peclet::runner

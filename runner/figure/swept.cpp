@@ -12,11 +12,13 @@
 namespace peclet::runner {
 namespace {
 
+std::string last_step(const std::string& pointer) { return pointer.substr(pointer.rfind('/') + 1); }
+
 // What is too long to be read in a figure is called by its place among the values, from 1.
 std::string word_of(const Json& value, const std::vector<Json>& distinct) {
   constexpr std::size_t longest = 26;
   if (value.is_null()) return "–";
-  if (value.is_number()) return plain_number(value.get<double>());
+  if (value.is_number()) return fmt::format("{:.6g}", value.get<double>());
   if (value.dump().size() > longest) {
     const auto place = std::find(distinct.begin(), distinct.end(), value) - distinct.begin();
     return fmt::format("#{}", place + 1);
@@ -25,7 +27,8 @@ std::string word_of(const Json& value, const std::vector<Json>& distinct) {
 }
 
 Swept column(const Json& parameter, const Json& points) {
-  Swept made{parameter.at("pointer").get<std::string>(), title_of(parameter), short_name_of(parameter)};
+  Swept made{parameter.at("pointer").get<std::string>(), parameter.at("symbol").get<std::string>()};
+  if (made.name.empty()) made.name = last_step(made.pointer);
   std::vector<Json> cells, distinct;
   for (const Json& point : points) {
     cells.push_back(point.at("settings").value(made.pointer, Json()));
@@ -43,7 +46,7 @@ Swept column(const Json& parameter, const Json& points) {
 }
 
 Swept points_themselves(const Json& points) {
-  Swept made{"", {{"point"}}, {{"point"}}};
+  Swept made{"", "point"};
   for (const Json& point : points) {
     made.numbers.push_back(static_cast<double>(made.values.size()));
     made.values.push_back(point.at("label").get<std::string>());
@@ -51,8 +54,6 @@ Swept points_themselves(const Json& points) {
   made.words = made.values;
   return made;
 }
-
-std::string last_step(const std::string& pointer) { return pointer.substr(pointer.rfind('/') + 1); }
 
 bool is_called(const Swept& one, const std::string& name) {
   return one.pointer == name || one.pointer == '/' + name || last_step(one.pointer) == name;

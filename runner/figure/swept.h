@@ -5,14 +5,12 @@
 #include <vector>
 
 #include "contract/json.h"
-#include "runner/figure/label.h"
-
 namespace peclet::runner {
 
 // One parameter: its value at each point, as a number or as a word.
 struct Swept {
   std::string pointer;  // "" of the points themselves, where nothing is swept
-  Label title, name;
+  std::string name;     // its symbol, or the last step of the pointer
   bool numeric = false;
   std::vector<double> numbers{};      // of each point; of words their places among `values`
   std::vector<std::string> words{};   // of each point, as they are read

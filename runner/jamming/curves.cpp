@@ -12,6 +12,7 @@
 #include "runner/figure/swept.h"
 #include "runner/page/page_parts.h"
 #include "runner/reports/status.h"
+#include "runner/store/vocabulary.h"
 
 namespace peclet::runner {
 namespace {
@@ -86,13 +87,13 @@ void require_fractions(const Swept& axis, const std::string& name) {
   throw InputError("", "--over", name, "must be a swept volume fraction: numbers > 0 and < 1");
 }
 
-// "friction = 0.5, peclet = 10", by which curves are told apart, and the same by pointer.
+// Sets "μ = 0.5, Pe = 10", by which curves are told apart, and the same by pointer. A key without a symbol
+// has the last step of its pointer.
 void name_curve(JammingCurve& curve, const std::vector<const Swept*>& by, const Json& point,
                 std::size_t place) {
   curve.settings = Json::object();
   for (const Swept* const one : by) {
-    curve.name +=
-        fmt::format("{}{} = {}", curve.name.empty() ? "" : ", ", text_of(one->name), one->words[place]);
+    curve.name += fmt::format("{}{} = {}", curve.name.empty() ? "" : ", ", one->name, one->words[place]);
     curve.settings[one->pointer] = point.at("settings").value(one->pointer, Json());
   }
 }
@@ -103,7 +104,8 @@ JammingCurves read_curves(Database& database, const CurveChoice& choice) {
   const CampaignStatus status = read_status(database);
   KnownPoints known;
   const PagePoints page = page_points(database, status, known);
-  const std::vector<Swept> swept = swept_parameters(page_parameters(status), page.points);
+  const std::vector<Swept> swept =
+      swept_parameters(page_parameters(status, kept_vocabulary(database)), page.points);
   const Swept& axis = chosen_axis(swept, choice.over, "--over");
   require_fractions(axis, choice.over);
   const std::vector<const Swept*> by = curves_by(swept, axis);

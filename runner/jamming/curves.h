@@ -37,7 +37,7 @@ struct JammingPoint {
 };
 
 struct JammingCurve {
-  std::string name;                  // "friction = 0.5"; "" of the only one
+  std::string name;                  // "μ = 0.5", or "friction = 0.5"; "" of the only one
   Json settings;                     // of what is swept besides, by pointer
   std::vector<JammingPoint> points;  // in ascending order
 };

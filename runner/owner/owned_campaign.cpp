@@ -11,6 +11,7 @@
 #include "runner/store/point_store.h"
 #include "runner/store/realisation_result.h"
 #include "runner/store/spool.h"
+#include "runner/store/vocabulary.h"
 #include "runner/text/quoting.h"
 
 namespace peclet::runner {
@@ -120,6 +121,7 @@ Database open_for_owner(const ClaimedCampaign& claimed, const std::function<void
     Database database = Database::open_owner(directory.database());
     refuse_older_copy(directory, database);
     PointStore(database).adopt(claimed.campaign);
+    keep_vocabulary(database, *claimed.scenes.front().words);
     tell_of_points_left_behind(database, tell);
     return database;
   } catch (const IntegrityError& error) {

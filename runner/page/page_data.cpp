@@ -8,6 +8,7 @@
 #include "runner/page/page_details.h"
 #include "runner/page/page_parts.h"
 #include "runner/reports/export.h"
+#include "runner/store/vocabulary.h"
 
 namespace peclet::runner {
 namespace {
@@ -65,6 +66,7 @@ Json PageReader::read(Database& database, std::optional<std::int64_t> owner, boo
   status_ = read_status(database);
   status_.owner = owner;
   const CampaignStatus& status = status_;
+  const Vocabulary words = kept_vocabulary(database);
   PagePoints points = page_points(database, status, known_);
   if (whole) add_details(database, status, points.points);
   const std::string results = whole ? sha256(export_csv(database, true)) : "";
@@ -72,13 +74,14 @@ Json PageReader::read(Database& database, std::optional<std::int64_t> owner, boo
           {"campaign", status.campaign.name},
           {"target", target_json(status.campaign.target)},
           {"progress", page_progress(status)},
-          {"parameters", page_parameters(status)},
+          {"parameters", page_parameters(status, words)},
           {"quantities", quantities_json(points.drawables)},
+          {"derived", words.derived()},
           {"points", std::move(points.points)},
           {"work", page_work(database, status)},
           {"meanings", page_meanings(status)},
           {"warnings", warnings_json(status, known_)},
-          {"scene", page_scene(status)},
+          {"scene", page_scene(status, words)},
           {"provenance", page_provenance(database, status, results)},
           {"commands", page_commands(status, results)},
           {"document", status.campaign.document}};

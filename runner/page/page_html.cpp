@@ -19,11 +19,6 @@ namespace {
 // 'sha256-...', as a Content-Security-Policy names an inline style or script by its content.
 std::string policy_hash(std::string_view content) { return "'sha256-" + sha256_base64(content) + '\''; }
 
-const std::string& whole_script() {
-  static const std::string script = fmt::format("{}", fmt::join(page_scripts, ""));
-  return script;
-}
-
 // JSON that may stand in a script element: nothing in it can end the element or begin another one.
 std::string inert(const Json& data) {
   std::string safe;
@@ -43,6 +38,13 @@ std::string inert(const Json& data) {
     }
   }
   return safe;
+}
+
+const std::string& whole_script() {
+  static const std::string script =
+      fmt::format("{}const drawingScript = {};\n{}", page_scripts.front(), inert(drawing_script),
+                  fmt::join(page_scripts.begin() + 1, page_scripts.end(), ""));
+  return script;
 }
 
 // The template with what belongs at each mark. What is put in is not looked through again.

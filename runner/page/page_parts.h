@@ -12,6 +12,7 @@
 #include "runner/statistics/quantity_estimates.h"
 #include "runner/store/database.h"
 #include "runner/store/number_store.h"
+#include "runner/store/vocabulary.h"
 
 namespace peclet::runner {
 
@@ -60,9 +61,9 @@ Json page_progress(const CampaignStatus& status);
 // Who works on what now, and the attempts that ended last.
 Json page_work(Database& database, const CampaignStatus& status);
 
-// What the sweep sets, and what all points share of the scene, with what the schema says of each.
-Json page_parameters(const CampaignStatus& status);
-Json page_scene(const CampaignStatus& status);
+// What the sweep sets, and what all points share of the scene, each key as of Vocabulary::key().
+Json page_parameters(const CampaignStatus& status, const Vocabulary& words);
+Json page_scene(const CampaignStatus& status, const Vocabulary& words);
 
 // What each verdict and mark that is used means.
 Json page_meanings(const CampaignStatus& status);

@@ -1,50 +1,11 @@
-// The scene in words: what the sweep sets, what all points share, and what the schema says of each key.
+// The scene in words: what the sweep sets, what all points share, and what the engine calls each key.
 #include <algorithm>
-#include <cctype>
 #include <set>
 
-#include "runner/page/key_names.h"
-#include "runner/page/page_assets.h"
 #include "runner/page/page_parts.h"
 
 namespace peclet::runner {
 namespace {
-
-const Json& schema() {
-  static const Json parsed = Json::parse(scene_schema);
-  return parsed;
-}
-
-// What the schema of the project's own scenes says of a key; "" for scenes of other engines. Units are in
-// brackets.
-std::string meaning_of(const std::string& pointer) {
-  const Json* place = &schema();
-  for (std::size_t at = 1; at <= pointer.size();) {
-    const std::size_t end = std::min(pointer.find('/', at), pointer.size());
-    const std::string step = pointer.substr(at, end - at);
-    at = end + 1;
-    if (const auto items = place->find("items"); items != place->end()) {
-      place = &*items;
-      continue;
-    }
-    const auto properties = place->find("properties");
-    if (properties == place->end()) return "";
-    const auto below = properties->find(step);
-    if (below == properties->end()) return "";
-    place = &*below;
-  }
-  return place->value("description", "");
-}
-
-// A key with what is said of it: its meaning, and words and symbol where it has some.
-Json described(const std::string& pointer) {
-  Json key{{"pointer", pointer}, {"meaning", meaning_of(pointer)}};
-  if (const KeyName* const name = key_name(pointer)) {
-    key["words"] = name->words;
-    key["symbol"] = name->symbol;
-  }
-  return key;
-}
 
 std::set<std::string> swept_pointers(const CampaignStatus& status) {
   std::set<std::string> pointers;
@@ -56,15 +17,13 @@ std::set<std::string> swept_pointers(const CampaignStatus& status) {
 
 }  // namespace
 
-Json page_parameters(const CampaignStatus& status) {
+Json page_parameters(const CampaignStatus& status, const Vocabulary& words) {
   Json list = Json::array();
-  for (const std::string& pointer : swept_pointers(status)) {
-    list.push_back(described(pointer));
-  }
+  for (const std::string& pointer : swept_pointers(status)) list.push_back(words.key(pointer));
   return list;
 }
 
-Json page_scene(const CampaignStatus& status) {
+Json page_scene(const CampaignStatus& status, const Vocabulary& words) {
   Json list = Json::array();
   if (status.points.empty()) return list;
   const std::set<std::string> swept = swept_pointers(status);
@@ -76,7 +35,7 @@ Json page_scene(const CampaignStatus& status) {
   const Json flat = status.points.front().point.scene.flatten();
   for (const auto& [pointer, value] : flat.items()) {
     if (is_swept(pointer)) continue;
-    list.push_back(described(pointer));
+    list.push_back(words.key(pointer));
     list.back()["value"] = value;
   }
   return list;

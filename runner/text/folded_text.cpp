@@ -21,8 +21,15 @@ std::string_view taken_line(std::string_view& rest, std::size_t width) {
 }  // namespace
 
 std::size_t width_of(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+  std::size_t width = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const bool is_continued = (byte & 0xC0U) == 0x80U;
+    const bool is_mark = byte == 0xCCU || (byte == 0xCDU && i + 1 < text.size() &&
+                                           static_cast<unsigned char>(text[i + 1]) < 0xB0U);
+    width += is_continued || is_mark ? 0 : 1;
+  }
+  return width;
 }
 
 std::string folded(std::string_view text, std::size_t width) {

@@ -15,31 +15,12 @@
 namespace peclet::runner {
 namespace {
 
-// Headings of the derived numbers that we know, in the order in which people look for them; an engine may
-// have others, which follow under their own names.
-const std::pair<const char*, const char*> known_numbers[] = {{"volume_fraction", "phi"},
-                                                             {"alpha", "alpha made"},
-                                                             {"largest_share_error", "share error"},
-                                                             {"mean_radius", "mean a"},
-                                                             {"relative_width", "width"},
-                                                             {"peclet", "Pe"},
-                                                             {"peclet_mean", "Pe_cg"},
-                                                             {"peclet_grains", "Pe_g"},
-                                                             {"stokes", "St"},
-                                                             {"largest_stokes", "St max"},
-                                                             {"relative_stiffness", "k_hat"},
-                                                             {"contact_time", "τ_C"},
-                                                             {"inertial_time", "τ_I"},
-                                                             {"brownian_time", "τ_B"},
-                                                             {"shear_time", "τ_S"},
-                                                             {"largest_inertia_over_brownian", "τ_I/τ_B max"},
-                                                             {"flow_over_rest", "flow/rest"}};
-
 struct Derived {
   std::string key, heading;
 };
 
-// Those that exist in at least one point.
+// Numbers that exist in at least one point: first those that the engine names, in its order, the others under
+// their own names.
 std::vector<Derived> derived_columns(const std::vector<SceneAnswer>& answers) {
   std::set<std::string> present;
   for (const SceneAnswer& answer : answers) {
@@ -48,8 +29,11 @@ std::vector<Derived> derived_columns(const std::vector<SceneAnswer>& answers) {
     }
   }
   std::vector<Derived> columns;
-  for (const auto& [key, heading] : known_numbers) {
-    if (present.erase(key) > 0) columns.push_back({key, heading});
+  for (const Json& known : answers.front().words->derived()) {
+    const auto text = [&](const char* member) { return known.at(member).get<std::string>(); };
+    if (present.erase(text("name")) == 0) continue;
+    const std::string heading = !text("symbol").empty() ? text("symbol") : text("words");
+    columns.push_back({text("name"), heading.empty() ? text("name") : heading});
   }
   for (const std::string& key : present) columns.push_back({key, key});
   return columns;

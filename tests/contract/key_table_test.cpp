@@ -159,11 +159,21 @@ TEST(KeyTable, SchemaSaysTheSameAsTheTable) {
   EXPECT_EQ(
       schema["properties"]["balls"]["items"]["properties"]["radius"],
       Json::parse(
-          R"({"type": "number", "minimum": 0, "exclusiveMaximum": 1, "description": "Radius. [length]"})"));
+          R"({"type": "number", "minimum": 0, "exclusiveMaximum": 1, "description": "Radius.", "unit": "length"})"));
   EXPECT_EQ(schema["properties"]["step"]["anyOf"],
             Json::parse(R"([{"const": "auto"}, {"type": "number", "exclusiveMinimum": 0}])"));
   EXPECT_FALSE(schema["properties"]["free"].contains("additionalProperties"));
   EXPECT_EQ(schema["properties"]["extra"], Json::parse(R"({"description": "It."})"));
+}
+
+TEST(KeyTable, SchemaSaysWhatPeopleCallAKey) {
+  const KeyTable table("T", {{.pointer = "/friction",
+                              .kind = KeyKind::number,
+                              .meaning = "Sliding.",
+                              .words = "coefficient of friction",
+                              .symbol = "μ"}});
+  EXPECT_EQ(table.json_schema("t")["properties"]["friction"], Json::parse(R"({"type": "number", "title":
+      "coefficient of friction", "symbol": "μ", "description": "Sliding."})"));
 }
 
 TEST(KeyTable, ManualHasOneRowForEachKey) {

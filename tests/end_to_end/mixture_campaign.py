@@ -73,7 +73,9 @@ def run_small(peclet, folder):
     # Of a part each of colloids and liquid 4: 1 / (1 + 4 (1 - alpha)).
     derived_agree(points, [1 / (5 - 4 * alpha) for alpha in ALPHA], "export")
     check([point["label"] for point in points] == [f"alpha={alpha:g}" for alpha in ALPHA], points)
-    check("<tspan>α</tspan>" in output_of(peclet, "plot", path), "the axis is not alpha")
+    drawn = json.loads(output_of(peclet, "plot", "--json", path))
+    symbols = {key["pointer"]: key["symbol"] for key in drawn["parameters"]}
+    check(symbols[drawn["over"]] == "α", "the axis is not alpha")
 
 
 def main():
@@ -83,7 +85,7 @@ def main():
         with open(path, "w", encoding="utf-8") as file:
             json.dump(CAMPAIGN, file)
         derived_agree(json.loads(output_of(peclet, "validate", path, "--json"))["points"], PUBLISHED, "validate")
-        check("phi" in output_of(peclet, "validate", path), "validate has no column phi")
+        check("φ" in output_of(peclet, "validate", path), "validate has no column φ")
         run_small(peclet, folder)
 
 

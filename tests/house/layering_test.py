@@ -64,9 +64,9 @@ class Layering(unittest.TestCase):
         self.assertIn("runner/verbs: is a layer of runner without a file", text)
 
     def test_a_crowded_folder(self):
-        code, text = self.said({f"runner/text/a{i}.h": "" for i in range(40)})
+        code, text = self.said({f"runner/text/a{i}.h": "" for i in range(60)})
         self.assertEqual(code, 1)
-        self.assertIn("runner/text: 41 files", text)
+        self.assertIn("runner/text: 61 files", text)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 """page_rules_test.py BIN: functions of the page of `peclet report`, against tables written by hand."""
 
 import json
+import os
 
 from page_case import PageTest, main
 
@@ -61,19 +62,10 @@ class Rules(PageTest):
 
     def test_symbols_have_parts(self):
         page = self.open()
-        for symbol, element, expected in (
-            ("eta_r", "", [["η", 0], ["r", -1]]),
-            ("N_1", "", [["N", 0], ["1", -1]]),
-            ("sigma^noise_xy", "", [["σ", 0], ["xy", -1], ["noise", 1]]),
-            ("sigma^contact_normal", "xz", [["σ", 0], ["xz", -1], ["contact normal", 1]]),
-            ("eta_r^pairs", "", [["η", 0], ["r", -1], ["pairs", 1]]),
-            ("N_1^noise", "", [["N", 0], ["1", -1], ["noise", 1]]),
-            ("P", "", [["P", 0]]),
-            ("g(r)", "", [["g(r)", 0]]),
-            ("<rate>", "", [["⟨γ̇⟩", 0]]),
-            ("P(F_n > F_CL)", "", [["P(F", 0], ["n", -1], [" > F", 0], ["CL", -1], [")", 0]]),
-            ("u_x(y) - U(y)", "", [["u", 0], ["x", -1], ["(y) - U(y)", 0]]),
-        ):
+        # tests/python/drawing_test.py holds figures to the same table.
+        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "symbols.json"), encoding="utf-8") as file:
+            symbols = json.load(file)
+        for symbol, element, expected in symbols:
             call = f"Format.symbol({json.dumps(symbol)}, {json.dumps(element)}).map(part => [part.text, part.level])"
             self.assertEqual(page.evaluate(call), expected, symbol)
 
@@ -84,7 +76,8 @@ class Rules(PageTest):
             for phi, count in ((0.4, 500), (0.5, 1000), (0.6, 2000))
             for form in ("a", "b")
         ]
-        data = {"points": points, "parameters": [{"pointer": p, "meaning": ""} for p in ("/phi", "/count", "/form")]}
+        key = {"meaning": "", "words": "", "symbol": "", "unit": ""}
+        data = {"points": points, "parameters": [{"pointer": p, **key} for p in ("/phi", "/count", "/form")]}
         names = page.evaluate(
             f"""(sweep => [sweep.usual.pointer, sweep.others(sweep.usual).map(one => one.pointer),
             sweep.parameters[2].numeric])(new Sweep({json.dumps(data)}))"""

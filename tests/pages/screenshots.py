@@ -224,31 +224,19 @@ def plot(studio, path, *words, folder=None):
     os.remove(os.path.splitext(path)[0] + ".py")
 
 
-def plot_by_peclet(studio, path, *words, folder=None):
-    """The SVG of the program itself, as a browser shows it."""
-    drawn = os.path.join(studio.place, "drawn.svg")
-    plot(studio, drawn, *words, folder=folder)
-    studio.keep_element(studio.browser.open(drawn), path, "svg")
-
-
 @picture("plot.png")
 def plot_of_the_target(studio, path):
-    plot_by_peclet(studio, path)
+    plot(studio, path)
 
 
 @picture("plot-pressure.png")
 def plot_over_the_volume_fraction(studio, path):
-    plot_by_peclet(studio, path, "--quantity", "pressure", "--over", "volume_fraction")
+    plot(studio, path, "--quantity", "pressure", "--over", "volume_fraction")
 
 
 @picture("plot-band.png")
 def plot_half_way_with_the_tolerance(studio, path):
-    plot_by_peclet(studio, path, "--band", folder=studio.begun)
-
-
-@picture("plot-matplotlib.png")
-def plot_by_matplotlib(studio, path):
-    plot(studio, path)
+    plot(studio, path, "--band", folder=studio.begun)
 
 
 def engine(folder, *words):

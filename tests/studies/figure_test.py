@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What the pictures of studies are drawn from, and that gnuplot draws it."""
+"""What the pictures of studies have in them."""
 import math
 import os
 import struct
@@ -7,55 +7,62 @@ import sys
 import tempfile
 import unittest
 
+import matplotlib
+
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(ROOT, "results"))
-from studies.figure import BLUE, RED, Figure, Panel, cell, quoted, shade
+from studies.figure import BLUE, RED, Figure, shade
 
 
-def data_of(panel):
-    """The first data block and the plot command."""
-    lines = [*panel.script("d")]
-    return lines[lines.index("$d0 << EOD") + 1 : lines.index("EOD")], lines[-1]
+class Drawn(unittest.TestCase):
+    def panel(self, **settings):
+        self.figure = Figure("unused.png", columns=1)
+        return self.figure.panel("x", "y", **settings)
 
-
-class Script(unittest.TestCase):
-    def test_missing_numbers_are_not_a_number(self):
-        self.assertEqual([cell(v) for v in (1.5, math.nan, math.inf, "a")], ["1.5", "NaN", "NaN", '"a"'])
-
-    def test_quotes_end_no_text(self):
-        self.assertEqual(quoted('a "b"'), "\"a 'b'\"")
+    def tearDown(self):
+        matplotlib.pyplot.close("all")
 
     def test_points_have_the_bars_that_their_columns_say(self):
-        for row, using in (
-            ((1, 2), "1:2 with points"),
-            ((1, 2, 3), "1:2:3 with yerrorbars"),
-            ((1, 2, 0, 4), "1:2:3:4 with yerrorbars"),
-        ):
-            panel = Panel()
+        for row, bars in (((1, 2), []), ((1, 2, 3), [(-1, 5)]), ((1, 2, 0, 4), [(0, 4)])):
+            panel = self.panel()
             panel.points([row], "title", RED)
-            data, plot = data_of(panel)
-            self.assertEqual(data, [" ".join(map(str, row))])
-            self.assertIn(f"$d0 using {using} pt 7", plot)
-            self.assertIn('title "title"', plot)
+            (drawn,) = panel.axes.containers
+            found = [tuple(end[1] for end in bar) for lines in drawn.lines[2] for bar in lines.get_segments()]
+            self.assertEqual(found, bars)
+            self.assertEqual(drawn.lines[0].get_xydata().tolist(), [[1, 2]])
+
+    def test_points_without_a_number_are_left_out(self):
+        panel = self.panel()
+        panel.points([(1, 2, 0.5), (2, 3, math.nan), (3, math.nan, 1)], "title", RED, joined=True)
+        panel.points([], "nothing", BLUE)
+        panel.finish()
+        self.assertEqual([text.get_text() for text in panel.axes.get_legend().get_texts()], ["title"])
 
     def test_a_curve_reaches_from_end_to_end_in_steps_of_the_axis(self):
         for log, middle in (("", 50.5), ("x", 10)):
-            panel = Panel(log=log, x_range=(1, 100))
+            panel = self.panel(log=log, x_range=(1, 100))
             panel.curve(lambda x: 2 * x, None, samples=3)
-            data, plot = data_of(panel)
-            rows = [[float(v) for v in line.split()] for line in data]
-            self.assertEqual(rows, [[1, 2], [middle, 2 * middle], [100, 200]])
-            self.assertTrue(plot.endswith("notitle"))
+            panel.finish()
+            found = panel.axes.lines[0].get_xydata()
+            for (x, y), expected in zip(found, (1, middle, 100)):
+                self.assertAlmostEqual(x, expected)
+                self.assertAlmostEqual(y, 2 * expected)
+            self.assertIsNone(panel.axes.get_legend())
 
-    def test_axes_are_set_anew_in_every_panel(self):
-        figure = Figure("unused.png", columns=2)
-        figure.panel("Pe", log="xy", powers="x", x_range=(0.1, None)).level(1, span=(1, 2))
-        figure.panel("phi").level(1, span=(1, 2))
-        lines = [*figure.script()]
-        second = lines[lines.index("reset", lines.index("reset") + 1) :]
-        self.assertIn("set logscale xy", lines)
-        self.assertIn("set xrange [0.1:*]", lines)
-        self.assertFalse([line for line in second if "logscale" in line or "xrange" in line])
+    def test_ends_of_an_axis_are_those_given_and_else_those_of_the_data(self):
+        panel = self.panel(log="y", x_range=(-1, None))
+        panel.points([(1, 2), (3, 50)], None, RED)
+        panel.finish()
+        left, right = panel.axes.get_xlim()
+        self.assertEqual(left, -1)
+        self.assertTrue(3 < right < 4, right)
+        low, high = panel.axes.get_ylim()
+        self.assertTrue(1 < low < 2 and 50 < high < 100, (low, high))
+
+    def test_an_image_has_each_value_at_its_place(self):
+        panel = self.panel()
+        panel.image([(x, y, x + 10 * y) for y in (0, 1) for x in (0, 1, 2)], {0: "#ffffff", 12: "#000000"})
+        self.assertEqual(panel.axes.collections[0].get_array().ravel().tolist(), [0, 1, 2, 10, 11, 12])
 
     def test_panels_never_lie_on_each_other(self):
         figure = Figure("unused.png", columns=2, rows=1)
@@ -66,7 +73,7 @@ class Script(unittest.TestCase):
 
     def test_a_misspelt_setting_is_no_setting(self):
         with self.assertRaises(TypeError):
-            Panel(x_rang=(0, 1))
+            self.panel(x_rang=(0, 1))
 
     def test_shades_lie_between_their_colours(self):
         self.assertEqual(shade(("#000000", "#ff8000"), 0), "#000000")
@@ -79,7 +86,7 @@ class Picture(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "it's a picture.png")
             figure = Figure(path, columns=3, size=(900, 300))
-            panel = figure.panel("x", "y", "title", log="xy", powers="xy", x_range=(1, 10), y_ticks=(1, 5))
+            panel = figure.panel("x", "y", "title", log="xy", powers="xy", x_range=(1, 10), y_range=(1, None))
             panel.points([(1, 2, 0.5), (2, 3, math.nan)], "points", BLUE, joined=True)
             panel.curve(lambda x: x**2, "curve", RED, dash=2, width=2)
             panel.upright(3)

@@ -6,7 +6,8 @@ import subprocess
 import tempfile
 import unittest
 
-RESULTS = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "results")
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+RESULTS = os.path.join(ROOT, "results")
 JUDGED = sorted(name for name in os.listdir(RESULTS) if os.path.exists(os.path.join(RESULTS, name, "study.json")))
 
 
@@ -22,6 +23,7 @@ class Judging(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             copy = os.path.join(folder, "results")
             shutil.copytree(RESULTS, copy, ignore=shutil.ignore_patterns("__pycache__", "*.png"))
+            shutil.copytree(os.path.join(ROOT, "python"), os.path.join(folder, "python"))
             for name in JUDGED:
                 with self.subTest(name):
                     done = again(copy, name)

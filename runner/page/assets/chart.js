@@ -54,7 +54,7 @@ class Chart {
       Saving.links(
         Saving.link('CSV', `${figure.name}.csv`, 'text/csv', Saving.csv(figure.table)),
         Saving.link('SVG', `${figure.name}.svg`, 'image/svg+xml', Svg.standalone(svg)),
-        Saving.link('matplotlib', `${figure.name}.py`, 'text/x-python', matplotlibScript(figure)),
+        Saving.link('matplotlib', `${figure.name}.py`, 'text/x-python', Saving.script(figure)),
       ),
     );
     if (hadFocus) svg.focus();

@@ -79,122 +79,55 @@ const Format = {
     return typeof value === 'string' ? value : JSON.stringify(value);
   },
 
-  greek: {
-    alpha: 'α',
-    beta: 'β',
-    gamma: 'γ',
-    delta: 'δ',
-    epsilon: 'ε',
-    eta: 'η',
-    theta: 'θ',
-    kappa: 'κ',
-    lambda: 'λ',
-    mu: 'μ',
-    nu: 'ν',
-    xi: 'ξ',
-    pi: 'π',
-    rho: 'ρ',
-    sigma: 'σ',
-    tau: 'τ',
-    phi: 'φ',
-    chi: 'χ',
-    psi: 'ψ',
-    omega: 'ω',
-    rate: 'γ̇',
-    Gamma: 'Γ',
-    Delta: 'Δ',
-    Theta: 'Θ',
-    Lambda: 'Λ',
-    Sigma: 'Σ',
-    Phi: 'Φ',
-    Psi: 'Ψ',
-    Omega: 'Ω',
-  },
-
-  // "N_1^noise" as N, "1" lowered, "noise" raised: [{text, level}] with level 0, -1 or 1. What is raised may be the
-  // name of a term, with underscores of its own; a few letters behind its last one are lowered: sigma^noise_xy. With an
-  // `element` all of it is the name, and the element is lowered. Parentheses and what follows stay: u_x(y).
+  // A symbol as engines write it, such as η_r or σ_xy^{contact normal}, as parts [{text, level}]: what follows _ is lowered
+  // (-1), what follows ^ raised (1), letters and digits or all between braces. An `element` is lowered behind the name.
   symbol(text, element = '') {
-    if (!element && /[<(|]/.test(text)) return Format.formula(text);
-    const [, whole, rest] = /^([^(]*)(.*)$/.exec(text);
-    const [, base, below, above] = /^([^_^]*)(?:_([^^]*))?(?:\^(.*))?$/.exec(whole) || [null, whole, '', ''];
-    const [, name, tail] = (element ? null : /^(.*)_(\w{1,2})$/.exec(above || '')) || [null, above, ''];
-    const parts = [
-      [base, 0],
-      [[below, tail, element].filter(Boolean).join(' '), -1],
-      [(name || '').replace(/_/g, ' '), 1],
-      [rest, 0],
-    ];
-    return parts.filter(([part]) => part).map(([part, level]) => ({ text: Format.translated(part), level }));
-  },
-
-  translated(text) {
-    return text.replace(/[A-Za-z]+/g, (word) => Format.greek[word] || word);
-  },
-
-  // A formula in words, such as "<|F_t| / (mu F_n)>": a mean, and what stands lowered behind each underscore.
-  formula(text) {
-    return text
-      .replace(/^<(.*)>$/, '⟨$1⟩')
-      .split(/(_[A-Za-z]+)/)
-      .filter(Boolean)
-      .map((part) => (part[0] === '_' ? [part.slice(1), -1] : [part, 0]))
-      .map(([part, level]) => ({ text: Format.translated(part), level }));
-  },
-
-  // The same for matplotlib.
-  mathtext(parts) {
-    const inner = (text) => text.replace(/[\\${}^_%#&~]/g, '').replace(/ /g, '\\ ');
-    return parts
-      .map(({ text, level }) =>
-        level === 0 ? text.replace(/\$/g, '\\$') : `$${level > 0 ? '^' : '_'}{\\mathrm{${inner(text)}}}$`,
+    const named = !element
+      ? text
+      : text.replace(
+          /^([^_^(]*)(?:_([\p{L}\p{N}]+|\{[^}]*\}))?/u,
+          (_, base, below = '') => `${base}_{${[below.replace(/[{}]/g, ''), element].filter(Boolean).join(' ')}}`,
+        );
+    return named
+      .split(/([_^](?:[\p{L}\p{N}]+|\{[^}]*\}))/u)
+      .map((part, i) =>
+        i % 2
+          ? { text: part.slice(1).replace(/[{}]/g, ''), level: part[0] === '_' ? -1 : 1 }
+          : { text: part, level: 0 },
       )
-      .join('');
+      .filter((part) => part.text);
   },
 
   plainText(parts) {
     return parts.map((part) => part.text).join('');
   },
 
+  // A pure number has none.
   unit(unit) {
-    if (!unit || unit === '1') return '';
-    // Made of dimensions alone, such as "stress" or "length^2 / time^2": that of the scene.
-    const dimensions = ['stress', 'energy', 'time', 'length', 'mass', 'force', 'viscosity'],
-      words = unit.match(/[A-Za-z]+/g) || [];
-    const isOfScene = words.length > 0 && words.every((word) => dimensions.includes(word));
-    if (isOfScene) return 'scene units';
-    return unit
-      .split(' * ')
-      .map((word) => ({ viscosity: 'η', shear_rate: 'γ̇' })[word] || word.replace(/_/g, ' '))
-      .join(' ');
+    return unit === '1' ? '' : unit;
   },
 
-  groups: { peclet: ['Péclet number', 'Pe'], stokes: ['Stokes number', 'St'] },
-
-  // {words, symbol: parts, unit} of a key of the scene; some come with words and symbol.
-  parameter(parameter) {
-    const { words, symbol } = parameter,
-      bracket = /\[([^\]]*)\]\s*$/.exec(parameter.meaning || '');
-    const steps = parameter.pointer.split('/').filter((step) => step !== '');
+  // {words, symbol: parts, unit} of a key of the scene. One that the engine has no words for is called by its last step,
+  // an element of a list by its last two.
+  parameter({ pointer, words, symbol, unit }) {
+    const steps = pointer.split('/').filter((step) => step !== '');
     const last = /^[0-9]+$/.test(steps[steps.length - 1]) ? steps.slice(-2) : steps.slice(-1);
-    return {
-      words: words || Format.words(last.join(' ')),
-      symbol: symbol ? Format.keySymbol(symbol) : [],
-      unit: bracket ? Format.unit(bracket[1]) : '',
-    };
+    return { words: words || Format.words(last.join(' ')), symbol: Format.symbol(symbol), unit: Format.unit(unit) };
   },
 
-  keySymbol(text) {
-    return text.endsWith(' T') ? [...Format.symbol(text.slice(0, -2)), { text: 'T', level: 0 }] : Format.symbol(text);
+  // The same of a number that follows from the scene; `known` is what the engine says of such.
+  group(name, known) {
+    const { words = '', symbol = '', unit = '' } = known.find((one) => one.name === name) || {};
+    return { words: words || Format.words(name), symbol: Format.symbol(symbol), unit: Format.unit(unit) };
   },
 
   // {words, symbol, unit} of what is measured.
   quantity(quantity) {
-    const { element, name, symbol } = quantity;
+    const { element, name, symbol, unit } = quantity;
     return {
       words: Format.words(name) + (element ? `, ${element}` : ''),
       symbol: symbol ? Format.symbol(symbol, element) : [],
-      unit: Format.unit(quantity.unit),
+      unit: Format.unit(unit),
     };
   },
 
@@ -208,7 +141,7 @@ const Format = {
   title(about) {
     const parts = [{ text: about.words, level: 0 }];
     if (about.symbol.length) parts.push({ text: ' ', level: 0 }, ...about.symbol);
-    if (about.unit) parts.push({ text: ` [${about.unit}]`, level: 0 });
+    if (about.unit) parts.push({ text: ' [', level: 0 }, ...Format.symbol(about.unit), { text: ']', level: 0 });
     return parts;
   },
 };

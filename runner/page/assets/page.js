@@ -82,10 +82,6 @@ const Page = {
       next = now.find((stop) => stop.textContent === name) || now[at];
     if (next) next.focus({ preventScroll: true });
   },
-  group(name, value) {
-    const [words, symbol] = Format.groups[name] || [Format.words(name), ''];
-    return `${words}${symbol ? ` ${symbol}` : ''} ${Format.rough(value)}`;
-  },
 };
 
 // One line that says how the campaign stands.

@@ -250,7 +250,7 @@ class PointView {
     const groups = Object.entries(point.groups || {}).filter(([, value]) => Format.isNumber(value));
     this.facts.replaceChildren(Page.paragraph(this.sentences(point)));
     if (groups.length)
-      this.facts.append(Page.paragraph(groups.map(([name, value]) => Page.group(name, value)).join(' · '), 'faint'));
+      this.facts.append(Page.paragraph(PointView.groups(groups, data.derived), 'faint'));
     const empty = point.decided ? 'Nothing to draw: no seed has a value.' : '';
     const figures = [...this.convergence(point), this.scatter(point)].map((figure) => ({ ...figure, empty }));
     this.charts.forEach((chart, i) => chart.show(figures[i]));
@@ -268,6 +268,15 @@ class PointView {
     }
     const shown = [point.hash, data.quantities, point.estimates, point.uncontrolled];
     Page.renew(this.numbers, shown, () => this.showNumbers(point));
+  }
+
+  // "Péclet number Pe 10 · Stokes number St 0.01" as parts.
+  static groups(groups, known) {
+    return groups.flatMap(([name, value], i) => [
+      { text: i ? ' · ' : '', level: 0 },
+      ...Format.title({ ...Format.group(name, known), unit: '' }),
+      { text: ` ${Format.rough(value)}`, level: 0 },
+    ]);
   }
 
   // Everything that was measured at the point.
@@ -301,7 +310,7 @@ class PointView {
           cell: (row) => Format.withError(row.numbers[0], row.numbers[2]),
           sort: (row) => row.numbers[0],
         },
-        { title: 'unit', text: true, cell: (row) => row.about.unit, sort: (row) => row.about.unit },
+        { title: 'unit', text: true, cell: (row) => Format.symbol(row.about.unit), sort: (row) => row.about.unit },
         ...(rows.some((row) => row.plain)
           ? [
               {

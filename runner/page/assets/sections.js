@@ -120,29 +120,7 @@ function inOneRow(scene) {
   return [...rows.values()];
 }
 
-// "form kim-karrila, gaps of the mean radius from 0.001 to 0.05": each force of the scene, in a line.
-function forces(scene) {
-  const of = new Map();
-  for (const key of scene) {
-    const [block, ...rest] = key.pointer.slice(1).split('/');
-    if (!['contact', 'lubrication', 'repulsion', 'attraction'].includes(block)) continue;
-    const { words, unit } = Format.parameter(key);
-    of.set(block, { ...of.get(block), [rest.join('/')]: [words, key.value, unit] });
-  }
-  return [...of].map(([block, keys]) => {
-    const said = [];
-    if (keys.inner_gap && keys.outer_gap) {
-      said.push(`gaps of ${[keys.inner_gap, keys.outer_gap].map(([, value]) => Format.plain(value)).join(' to ')} mean radii`);
-      delete keys.inner_gap;
-      delete keys.outer_gap;
-    }
-    for (const [words, value, unit] of Object.values(keys))
-      said.push(`${words} ${Format.isNumber(value) ? Format.plain(value) : Format.value(value)}${unit ? ` ${unit}` : ''}`);
-    return [`${block} force`, said.join(', ')];
-  });
-}
-
-// φ, Pe, St and others over all points, in words and units.
+// What the sweep sets, the keys that have words, and the numbers that follow, over all points.
 function sceneSummary(data, sweep) {
   const items = [],
     named = new Set();
@@ -152,17 +130,14 @@ function sceneSummary(data, sweep) {
     named.add(one.pointer.slice(1));
   }
   for (const key of data.scene) {
-    if (!key.words || key.pointer.startsWith('/contact/')) continue;
+    if (!key.words) continue;
     items.push([Format.title(Format.parameter(key)), Format.value(key.value)]);
     named.add(key.pointer.slice(1));
   }
-  items.push(...forces(data.scene));
   const groups = data.points.map((point) => point.groups).filter(Boolean);
   for (const name of groups.length ? Object.keys(groups[0]) : []) {
     const values = groups.map((group) => group[name]).filter(Format.isNumber);
-    if (!values.length || named.has(name)) continue;
-    const [words, symbol] = Format.groups[name] || [Format.words(name), ''];
-    items.push([Format.title({ words, symbol: symbol ? Format.symbol(symbol) : [], unit: '' }), range(values)]);
+    if (values.length && !named.has(name)) items.push([Format.title(Format.group(name, data.derived)), range(values)]);
   }
   return items;
 }
@@ -185,13 +160,13 @@ function writeOrigin(data, sweep, host) {
           sort: (row) => row.pointer,
         },
         { title: 'value', wrap: true, cell: (row) => Format.value(row.value), sort: (row) => row.value },
-        { title: 'unit', text: true, cell: (row) => row.about.unit, sort: (row) => row.about.unit },
+        { title: 'unit', text: true, cell: (row) => Format.symbol(row.about.unit), sort: (row) => row.about.unit },
         {
           title: 'meaning',
           text: true,
           wrap: true,
           minor: true,
-          cell: (row) => row.meaning.replace(/\s*\[[^\]]*\]$/, ''),
+          cell: (row) => row.meaning,
           sort: (row) => row.meaning,
         },
       ],

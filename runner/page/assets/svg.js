@@ -160,6 +160,12 @@ const Saving = {
     );
   },
 
+  // The script that draws the figure again; its data stand in it as one string.
+  script(figure) {
+    const data = Saving.ascii(Saving.ascii(figure));
+    return `${drawingScript}\n\nFIGURE = json.loads(${data})\n\nif __name__ == "__main__":\n    main(FIGURE)\n`;
+  },
+
   fileName(text) {
     return (
       text

@@ -54,7 +54,7 @@ TEST(Transient, IsThatOfTheReversedFlow) {
     EXPECT_NEAR(transient["pressure"][k].get<double>(), -2 * s, 1e-12);
   }
   ASSERT_EQ(all.size(), 4u);
-  EXPECT_EQ(all.front().unit, "viscosity * shear_rate");
+  EXPECT_EQ(all.front().unit, "η γ̇");
   EXPECT_EQ(all.front().axes.front().name, "strain");
   EXPECT_EQ(all.front().axes.front().values, Json::array({1, 3, 5, 7}));  // of 8
 }

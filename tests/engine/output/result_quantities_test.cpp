@@ -54,8 +54,8 @@ TEST(Result, DescribesItsQuantitiesAsTheyAre) {
     }
   }
   EXPECT_EQ(sheared.at("quantities").at("relative_viscosity"),
-            (Json{{"symbol", "eta_r"}, {"unit", "1"}, {"estimator", "mean"}}));
-  EXPECT_EQ(sheared.at("quantities").at("pressure").at("unit"), "viscosity * shear_rate");
+            (Json{{"symbol", "η_r"}, {"unit", "1"}, {"estimator", "mean"}}));
+  EXPECT_EQ(sheared.at("quantities").at("pressure").at("unit"), "η γ̇");
   EXPECT_EQ(at_rest.at("quantities").at("pressure").at("unit"), "stress");
   EXPECT_FALSE(at_rest.at("quantities").contains("relative_viscosity"));
 }

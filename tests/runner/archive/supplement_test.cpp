@@ -43,7 +43,7 @@ TEST_F(Supplement, IsUnpackedByTarAndCheckedBySha256sum) {
   const Answer sums = in_folder("cd " + name + " && sha256sum --strict --check SHA256SUMS");
   EXPECT_EQ(sums.code, 0) << sums.text;
   for (const char* const file : {"README.md", "results.csv", "numbers.csv", "results.json", "report.html",
-                                 "figure.svg", "figure.py", "provenance.json"}) {
+                                 "figure.py", "provenance.json"}) {
     EXPECT_TRUE(says(sums.text, std::string(file) + ": OK")) << file;
   }
   EXPECT_EQ(read_file(folder_.path() / name / "results.csv"), export_csv(campaign_.database(), true));

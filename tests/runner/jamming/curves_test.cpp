@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "contract/input_error.h"
+#include "runner/store/vocabulary.h"
 #include "tests/runner/jamming/jamming_campaign.h"
 
 namespace peclet::runner {
@@ -17,7 +18,7 @@ TEST(JammingCurves, AreOnePerValueOfWhatElseIsSwept) {
   const JammingCurves curves = campaign.curves();
   EXPECT_EQ(curves.over, "/volume_fraction");
   ASSERT_EQ(curves.curves.size(), 2U);
-  EXPECT_EQ(curves.curves[1].name, "μ = 1");
+  EXPECT_EQ(curves.curves[1].name, "friction = 1");
   EXPECT_EQ(curves.curves[1].settings, Json({{"/contact/friction", 1}}));
   const JammingPoint& point = curves.curves[1].points.at(1);
   EXPECT_EQ(point.fraction, 0.50);
@@ -26,6 +27,10 @@ TEST(JammingCurves, AreOnePerValueOfWhatElseIsSwept) {
   EXPECT_NEAR(point.estimate.mean, 20, 1e-12);
   EXPECT_NEAR(point.estimate.standard_error, 0.2 / std::sqrt(8), 1e-12);
   EXPECT_EQ(curves.curves[0].points.at(1).state, "open");
+  const Json hello = Json::parse(
+      R"({"scene_schema": {"properties": {"contact": {"properties": {"friction": {"symbol": "μ"}}}}}})");
+  keep_vocabulary(campaign.stored().database(), Vocabulary(hello));
+  EXPECT_EQ(campaign.curves().curves[1].name, "μ = 1");
 }
 
 TEST(JammingCurves, SayOfEachPointWhetherItFlows) {

@@ -23,6 +23,14 @@ TEST(TextTable, AlignsCharactersNotBytes) {
   EXPECT_TRUE(table.text("  ").starts_with("  point"));
 }
 
+TEST(TextTable, AMarkOnALetterTakesNoColumn) {
+  TextTable table;
+  table.add_column("γ̇");
+  table.add_column("k̂");
+  table.add_row({"10", "1"});
+  EXPECT_EQ(table.text(), " γ̇  k̂\n10  1\n");
+}
+
 TextTable three_columns() {
   TextTable table;
   table.add_column("point", TextTable::Align::left);

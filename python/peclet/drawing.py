@@ -1,0 +1,484 @@
+#!/usr/bin/env python3
+"""Draws figures with matplotlib: python3 THIS.py [FILE.pdf | FILE.png | FILE.svg]
+
+Without a file the figure is shown. This is the script that `peclet plot` leaves and the page of a campaign saves, which
+ends with the numbers of its FIGURE, and a module of the Python package peclet. `peclet plot` replaces a script only
+while it is as peclet wrote it.
+
+A figure has panels, or it has points over a sweep, of which over_sweep() makes panels:
+x, y     {about: {words, symbol, unit}, log, categories: words at 0, 1 ... in the place of numbers}
+panels   [{title, marks, lines, bands, columns, levels}]
+         marks {series, x, y, half, kind, small}; kind: decided, undecided, provisional, jammed (y may be null)
+         lines {series, style, places: [x, y]}; style: guide, line, dashed
+         bands {series, places: [x, low, high]}; columns, which are boxes {series, from, to, low, high}
+         levels {series, value, across}
+legend   [{series, name, kind}]; kinds of marks; hasBand, bandName; notes: what is left out
+Symbols, names and titles are lists of {text, level}: level -1 is lowered, 1 raised.
+"""
+import json
+import math
+import os
+import re
+import shlex
+import sys
+
+# Told apart in grey and by eyes that see few colours.
+COLOURS = ("#0072b2", "#c44e00", "#00805c", "#a8487f", "#b07700", "#3a8fc0", "#6b6b00", "#1b1b1b")
+MARKERS = "osD^vPH"
+STYLE = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["Helvetica", "Arial", "Liberation Sans", "DejaVu Sans"],
+    "font.size": 9,
+    "axes.labelsize": 10,
+    "savefig.dpi": 200,
+    "svg.hashsalt": "peclet",
+}
+DASHES = (0, (3, 2))
+
+
+def cure_for(module, package):
+    """How to install a module for this Python: conda's, Debian's (`package`), or another one, which pip serves."""
+    if os.path.exists(os.path.join(sys.prefix, "conda-meta")):
+        return f"conda install -c conda-forge {module}"
+    if sys.prefix == "/usr" and os.path.exists("/etc/debian_version"):
+        return f"apt install {package}"
+    return f"{shlex.quote(sys.executable)} -m pip install {module}"
+
+
+# Names
+
+
+def parts_of(symbol, element=""):
+    """The parts of a symbol as engines write it, such as η_r or σ_xy^{contact normal}: what follows _ is lowered, what
+    follows ^ raised, letters and digits or all between braces. An element is lowered behind the name."""
+    if element:
+
+        def named(found):
+            below = [(found[2] or "").strip("{}"), element]
+            return f"{found[1]}_{{{' '.join(filter(None, below))}}}"
+
+        symbol = re.sub(r"^([^_^(]*)(?:_([^\W_]+|\{[^}]*\}))?", named, symbol)
+    parts = re.split(r"([_^](?:[^\W_]+|\{[^}]*\}))", symbol)
+    levels = {"_": -1, "^": 1}
+    found = ((part[1:].strip("{}"), levels[part[0]]) if k % 2 else (part, 0) for k, part in enumerate(parts))
+    return [{"text": text, "level": level} for text, level in found if text]
+
+
+def plain(text):
+    return [{"text": text, "level": 0}]
+
+
+def words_of(name):
+    return name.replace("/", ", ").replace("_", " ")
+
+
+def about_quantity(quantity):
+    words = words_of(quantity["name"]) + (f", {quantity['element']}" if quantity["element"] else "")
+    symbol = parts_of(quantity["symbol"], quantity["element"]) if quantity["symbol"] else []
+    return {"words": words, "symbol": symbol, "unit": unit_of(quantity["unit"])}
+
+
+def about_key(key):
+    """A key that the engine has no words for is called by its last step, an element of a list by its last two."""
+    steps = key["pointer"].strip("/").split("/")
+    words = key["words"] or words_of(" ".join(steps[-2:] if steps[-1].isdigit() else steps[-1:]))
+    return {"words": words, "symbol": parts_of(key["symbol"]), "unit": unit_of(key["unit"])}
+
+
+def unit_of(unit):
+    return "" if unit == "1" else unit
+
+
+def title_of(about):
+    symbol = [*plain(" "), *about["symbol"]] if about["symbol"] else []
+    unit = [*plain(" ["), *parts_of(about["unit"]), *plain("]")] if about["unit"] else []
+    return plain(about["words"]) + symbol + unit
+
+
+def mathtext(parts):
+    """As matplotlib reads it."""
+    text, before = "", 0
+    for part in parts:
+        level = part["level"]
+        if level == 0:
+            text += part["text"].replace("$", r"\$")
+        else:
+            inner = re.sub(r"[\\${}^_%#&~]", "", part["text"]).replace(" ", r"\ ")
+            # What is lowered and what is raised stand above each other.
+            text = text[:-1] if before else text + "$"
+            text += ("^" if level > 0 else "_") + r"{\mathrm{" + inner + "}}$"
+        before = level
+    return text
+
+
+def plain_number(value):
+    """0.01, 2000, 5·10⁶; four digits at most."""
+    size = abs(value)
+    if value == 0 or 1e-3 <= size < 1e5:
+        digits = f"{value:.4g}"
+        return f"{float(digits):.0f}" if "e" in digits else digits
+    power = math.floor(math.log10(size) + 1e-9)
+    leading = value / 10.0**power
+    raised = str(power).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    return ("10" if abs(leading - 1) < 1e-9 else f"{leading:.4g}·10") + raised
+
+
+# A quantity over what is swept
+
+
+def is_number(value):
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def widest_gap(numbers):
+    """The part of the whole that the widest gap between neighbours takes."""
+    return max((b - a for a, b in zip(numbers, numbers[1:])), default=0) / (numbers[-1] - numbers[0])
+
+
+def is_logarithmic(values):
+    """Whether positive numbers lie more evenly on a logarithmic axis, over a factor of five or more."""
+    numbers, least_ratio = sorted(values), 5  # below, there are too few round numbers
+    if not numbers or numbers[0] <= 0 or numbers[-1] < least_ratio * numbers[0]:
+        return False
+    return widest_gap([math.log(n) for n in numbers]) < widest_gap(numbers)
+
+
+def word_of(value, distinct):
+    """What is too long to be read in a figure is called by its place among the values, from 1."""
+    longest = 26
+    if value is None:
+        return "–"
+    if is_number(value):
+        return plain_number(value)
+    text = json.dumps(value, ensure_ascii=False, separators=(",", ":"))
+    if len(text) > longest:
+        return f"#{distinct.index(value) + 1}"
+    return value if isinstance(value, str) else text
+
+
+def swept(parameter, points):
+    """A parameter: its value at each point, each of its values, as words too."""
+    cells = [point["settings"].get(parameter["pointer"]) for point in points]
+    values = [cell for k, cell in enumerate(cells) if cell not in cells[:k]]
+    about = about_key(parameter)
+    return {
+        "pointer": parameter["pointer"],
+        "about": about,
+        "name": about["symbol"] or plain(about["words"]),
+        "numeric": all(map(is_number, cells)),
+        "cells": cells,
+        "values": values,
+        "words": [word_of(cell, values) for cell in cells],
+    }
+
+
+def follows(other, axis):
+    """Whether the value of `other` follows from that of `axis` at every point."""
+    pairs = {(axis["values"].index(a), other["values"].index(o)) for a, o in zip(axis["cells"], other["cells"])}
+    return len(pairs) == len(axis["values"])
+
+
+def kind_of(point):
+    kinds = {"converged": "decided"}
+    return "jammed" if point["jammed"] else kinds.get(point["standing"], point["standing"])
+
+
+def ends(mark):
+    """What of a mark has to be seen. Bars of numbers that may still change may be enormous."""
+    if mark["y"] is None:
+        return []
+    if mark["kind"] == "provisional" or mark["half"] is None:
+        return [mark["y"]]
+    return [mark["y"], mark["y"] - mark["half"], mark["y"] + mark["half"]]
+
+
+def over_sweep(data):
+    """The figure of `peclet plot`: every point of `data` over the parameter `over`, a curve for each value of what else
+    varies and does not follow from it, or of the parameter `by` alone."""
+    points = data["points"]
+    columns = [swept(parameter, points) for parameter in data["parameters"]]
+    if not columns:
+        itself = {"pointer": "", "words": "point", "symbol": "", "unit": ""}
+        columns = [swept(itself, [{"settings": {"": point["label"]}} for point in points])]
+    axis = next(one for one in columns if one["pointer"] == data["over"])
+    others = [one for one in columns if one is not axis and len(one["values"]) > 1 and not follows(one, axis)]
+    if data.get("by"):
+        others = [one for one in columns if one["pointer"] == data["by"]]
+    series, marks, absent = {}, [], 0
+    for k, point in enumerate(points):
+        if point["mean"] is None and not point["jammed"]:
+            absent += 1
+            continue
+        names = [one["name"] + plain(" = " + one["words"][k]) for one in others]
+        name = [part for at, one in enumerate(names) for part in (plain(", ") if at else []) + one]
+        place = series.setdefault(json.dumps(name), {"series": len(series), "name": name})["series"]
+        x = axis["cells"][k] if axis["numeric"] else axis["values"].index(axis["cells"][k])
+        mark = {"series": place, "x": x, "y": point["mean"], "half": point["half_width"], "kind": kind_of(point)}
+        marks.append({**mark, "good_enough": point["good_enough"]})
+    marks.sort(key=lambda mark: mark["x"])
+    log = data["log"]
+    logs = {
+        "x": axis["numeric"] and (is_logarithmic([mark["x"] for mark in marks]) if log is None else "x" in log),
+        "y": is_logarithmic([end for mark in marks for end in ends(mark)]) if log is None else "y" in log,
+    }
+    visible = [mark for mark in marks if not is_hidden(mark, logs)]
+    panel = {"marks": visible, "lines": [], "bands": []}
+    for one in series.values():
+        flowing = [mark for mark in visible if mark["series"] == one["series"] and mark["kind"] != "jammed"]
+        places = [[mark["x"], mark["y"]] for mark in flowing]
+        panel["lines"].append({"series": one["series"], "style": "guide", "places": places})
+        banded = [mark for mark in flowing if data["tolerance"] and mark["good_enough"] is not None]
+        if banded:
+            places = [[m["x"], m["y"] - m["good_enough"], m["y"] + m["good_enough"]] for m in banded]
+            panel["bands"].append({"series": one["series"], "places": places})
+    categories = None if axis["numeric"] else list(dict.fromkeys(axis["words"]))
+    return {
+        "x": {"about": axis["about"], "log": logs["x"], "categories": categories},
+        "y": {"about": about_quantity(data["quantity"]), "log": logs["y"]},
+        "panels": [panel],
+        "legend": list(series.values()) if others else [],
+        "kinds": [mark["kind"] for mark in visible],
+        "hasBand": bool(panel["bands"]),
+        "notes": notes(absent, len(marks) - len(visible), data["quantity"]["path"]),
+    }
+
+
+def is_hidden(mark, logs):
+    """Whether a logarithmic axis has no place for a mark. That of a jam is at the edge then."""
+    below = logs["y"] and mark["kind"] != "jammed" and mark["y"] <= 0
+    return below or (logs["x"] and mark["x"] <= 0)
+
+
+def notes(absent, hidden, quantity):
+    said = []
+    if absent:
+        said.append(f"left out: {absent} point{'' if absent == 1 else 's'} without a number of {quantity} yet")
+    if hidden:
+        words = "number that is" if hidden == 1 else "numbers that are"
+        said.append(f"left out: {hidden} {words} not positive, for which a logarithmic axis has no place")
+    return said
+
+
+# Panels
+
+
+def draw(figure):
+    """The whole figure; returns matplotlib's Figure, and an Axes for each panel."""
+    import matplotlib.pyplot as plt
+
+    plt.rcParams.update(STYLE)
+    panels = figure["panels"]
+    columns = min(len(panels), 3)
+    rows = -(-len(panels) // columns)
+    size = (4.9 * columns, 3.4 * rows)
+    drawing, grid = plt.subplots(
+        rows, columns, squeeze=False, sharex=True, sharey=True, figsize=size, layout="constrained"
+    )
+    for axes, panel in zip(grid.flat, panels):
+        draw_panel(axes, figure, panel)
+    for axes in grid.flat[len(panels) :]:
+        axes.set_visible(False)
+    place_legend(grid.flat[0], figure)
+    return drawing, list(grid.flat[: len(panels)])
+
+
+def draw_panel(axes, figure, panel):
+    for band in panel.get("bands", []):
+        x, low, high = zip(*band["places"])
+        axes.fill_between(x, low, high, color=colour_of(band), alpha=0.16, linewidth=0)
+    for box in panel.get("columns", []):
+        width, height = box["to"] - box["from"], box["high"] - box["low"]
+        axes.bar(box["from"], height, width, box["low"], align="edge", color=colour_of(box), alpha=0.55)
+    for level in panel.get("levels", []):
+        line = axes.axhline if level["across"] else axes.axvline
+        line(level["value"], color=colour_of(level), linestyle="--", linewidth=1)
+    logs = {name: figure[name]["log"] for name in "xy"}
+    for line in panel.get("lines", []):
+        styles = {"guide": {"linewidth": 0.8, "alpha": 0.6}, "dashed": {"linewidth": 1, "linestyle": "--"}}
+        places = [(x, y) for x, y in line["places"] if not is_hidden({"x": x, "y": y, "kind": "line"}, logs)]
+        if len(places) > 1:
+            x, y = zip(*places)
+            axes.plot(x, y, color=colour_of(line), **styles.get(line["style"], {"linewidth": 1.2}))
+    alike = {}
+    for mark in panel["marks"]:
+        if mark["kind"] == "jammed":
+            draw_jam(axes, mark, logs["y"])
+        elif not is_hidden(mark, logs):
+            alike.setdefault((mark["series"], mark["kind"], mark.get("small")), []).append(mark)
+    for marks in alike.values():
+        draw_marks(axes, marks)
+    for name in "xy":
+        set_axis(axes, name, figure[name], span(figure, name))
+    if panel.get("title"):
+        axes.set_title(mathtext(panel["title"]), fontsize="medium")
+
+
+def colour_of(one):
+    return COLOURS[one.get("series", 0) % len(COLOURS)]
+
+
+def draw_marks(axes, marks):
+    """Marks of one series and kind with their bars: open ones have not converged, dashed bars may still change."""
+    kind, colour = marks[0]["kind"], colour_of(marks[0])
+    marker, face = MARKERS[marks[0]["series"] % len(MARKERS)], colour if kind == "decided" else "white"
+    barred = [(mark["x"], mark["y"], mark["half"]) for mark in marks if is_number(mark.get("half"))]
+    if barred:
+        bars = axes.errorbar(*zip(*barred), fmt="none", ecolor=colour, elinewidth=1, capsize=2.5, zorder=2)
+        if kind == "provisional":
+            bars[2][0].set_linestyle(DASHES)
+    size, x, y = 3.5 if marks[0].get("small") else 5, [mark["x"] for mark in marks], [mark["y"] for mark in marks]
+    axes.plot(x, y, marker, color=colour, markersize=size, markerfacecolor=face, zorder=3)
+
+
+def draw_jam(axes, mark, log):
+    """A cross at the number of what has jammed, or at the edge of the frame: the upper one without a number, the lower
+    one where a logarithmic axis has no place for it."""
+    colour, y, scale = colour_of(mark), mark["y"], {}
+    if y is None or log and y <= 0:
+        y, scale = 1 if y is None else 0, {"transform": axes.get_xaxis_transform(), "clip_on": False}
+    elif is_number(mark.get("half")):
+        axes.errorbar(mark["x"], y, mark["half"], fmt="none", ecolor=colour, elinewidth=1, capsize=2.5, zorder=2)
+    axes.plot(mark["x"], y, "x", color=colour, markersize=6, zorder=3, **scale)
+
+
+def span(figure, name):
+    """From the smallest to the largest number that is to be seen along an axis; none without a number."""
+    log, numbers, centres = figure[name]["log"], [], []
+    for panel in figure["panels"]:
+        if name == "x":
+            numbers += [mark["x"] for mark in panel["marks"]]
+        else:
+            numbers += [end for mark in panel["marks"] for end in ends(mark)]
+            centres += [mark["y"] for mark in panel["marks"] if mark["y"] is not None]
+        for line in panel.get("lines", []):
+            numbers += [place["xy".index(name)] for place in line["places"]]
+        for band in panel.get("bands", []):
+            numbers += [end for place in band["places"] for end in (place[:1] if name == "x" else place[1:])]
+        for box in panel.get("columns", []):
+            numbers += [box["from"], box["to"]] if name == "x" else [box["low"], box["high"]]
+        numbers += [level["value"] for level in panel.get("levels", []) if level["across"] == (name == "y")]
+    numbers = [number for number in numbers if is_number(number) and (number > 0 or not log)]
+    if not numbers:
+        return None
+    low, above = min(numbers), [centre for centre in centres if centre > 0]
+    # A bar that reaches almost down to zero must not squeeze all else: it is cut off.
+    if log and above:
+        low = max(low, min(above) / 3)
+    return low, max(numbers)
+
+
+def set_axis(axes, name, about, ends):
+    """Scale, limits, ticks and title of an axis."""
+    axis, words = getattr(axes, f"{name}axis"), about.get("categories")
+    limits, scale = getattr(axes, f"set_{name}lim"), getattr(axes, f"set_{name}scale")
+    scale("log" if about["log"] else "linear")
+    axes.tick_params(axis=name, which="both", direction="in", top=True, right=True)
+    getattr(axes, f"set_{name}label")(mathtext(title_of(about["about"])))
+    if words:
+        step = -(-len(words) // 8)
+        limits(-0.5, len(words) - 0.5)
+        axis.set_ticks(range(len(words)), [word if k % step == 0 else "" for k, word in enumerate(words)])
+        return
+    if ends:
+        low, high = map(math.log10, ends) if about["log"] else ends
+        margin = 0.05 * (high - low if high - low > 1e-9 * max(abs(low), abs(high)) else max(abs(low), abs(high)) or 1)
+        low, high = low - margin, high + margin
+        ends = (10**low, 10**high) if about["log"] else (low, high)
+        limits(*ends)
+    set_ticks(axis, about["log"], ends)
+
+
+def set_ticks(axis, log, ends):
+    """A few plain numbers along an axis with these ends."""
+    from matplotlib import ticker
+
+    decades = math.log10(max(ends) / min(ends)) if log and ends else 0
+    axis.set_major_locator(ticker.MaxNLocator(7, steps=[1, 2, 5, 10]))
+    if decades >= 1:
+        axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5) if decades < 2.2 else (1,)))
+    if log:
+        axis.set_minor_locator(ticker.LogLocator(subs=range(2, 10)))
+        axis.set_minor_formatter(ticker.NullFormatter())
+    axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: plain_number(value)))
+
+
+def legend_of(figure):
+    """Handles of what the marks mean."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    handles = []
+
+    def say(name, marker, **more):
+        handles.append(Line2D([], [], marker=marker, markersize=5, label=name, **{"linestyle": "none", **more}))
+
+    def say_area(name, colour, alpha):
+        handles.append(Patch(color=colour, alpha=alpha, linewidth=0, label=name))
+
+    for one in figure.get("legend", []):
+        if one.get("kind") == "column":
+            say_area(mathtext(one["name"]), colour_of(one), 0.55)
+        else:
+            say(mathtext(one["name"]), MARKERS[one["series"] % len(MARKERS)], color=colour_of(one))
+    kinds = figure.get("kinds", [])
+    for kind, name, line in (("undecided", "not converged", "none"), ("provisional", "provisional", DASHES)):
+        if kind in kinds:
+            say(name, MARKERS[0], color=COLOURS[0], markerfacecolor="white", linestyle=line, linewidth=1)
+    if "jammed" in kinds:
+        say("jammed", "x", color=COLOURS[0])
+    if figure.get("hasBand"):
+        say_area(figure.get("bandName", "tolerance"), COLOURS[0], 0.16)
+    return handles
+
+
+def place_legend(axes, figure):
+    """A legend in a corner where it covers nothing, or beside the frame where there is none."""
+    handles = legend_of(figure)
+    if not handles:
+        return
+    for corner in ("upper right", "upper left", "lower right", "lower left"):
+        legend = axes.legend(handles=handles, loc=corner, frameon=False)
+        axes.figure.draw_without_rendering()
+        box = legend.get_window_extent()
+        drawn = (axes.transData.transform(place) for place in drawn_places(figure["panels"][0]))
+        if not any(box.contains(x, y) for x, y in drawn):
+            return
+    legend = axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1, 1.02), frameon=False)
+    axes.figure.draw_without_rendering()
+    width, height = axes.figure.get_size_inches()
+    axes.figure.set_size_inches(width + legend.get_window_extent().width / axes.figure.dpi, height)
+
+
+def drawn_places(panel):
+    """Places that are close enough along all that is drawn."""
+    for mark in panel["marks"]:
+        for end in ends(mark):
+            yield mark["x"], end
+    for line in panel.get("lines", []):
+        for (x, y), (to_x, to_y) in zip(line["places"], line["places"][1:]):
+            for part in range(21):
+                yield x + part / 20 * (to_x - x), y + part / 20 * (to_y - y)
+    for box in panel.get("columns", []):
+        yield from ((x, y) for x in (box["from"], box["to"]) for y in (box["low"], box["high"]))
+
+
+def main(figure):
+    try:
+        import matplotlib
+    except ImportError as missing:
+        cure = cure_for("matplotlib", "python3-matplotlib")
+        sys.exit(f"{sys.executable} cannot import matplotlib ({missing}); install it with {cure}")
+    if len(sys.argv) > 1:
+        matplotlib.use("Agg")
+    figure = figure if "panels" in figure else over_sweep(figure)
+    drawing, _ = draw(figure)
+    for note in figure.get("notes", []):
+        print(note)
+    if len(sys.argv) < 2:
+        import matplotlib.pyplot
+
+        matplotlib.pyplot.show()
+        return
+    # Without the time of day, so that the same numbers give the same bytes.
+    dates = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
+    drawing.savefig(sys.argv[1], metadata=dates.get(sys.argv[1].rpartition(".")[2]))

@@ -1,0 +1,86 @@
+#include "runner/store/vocabulary.h"
+
+#include <algorithm>
+
+#include "contract/frames.h"
+#include "runner/text/plain_text.h"
+
+namespace peclet::runner {
+namespace {
+
+// Returns "" unless the member is text.
+std::string text_in(const Json& object, const char* member) {
+  const auto found = object.find(member);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+// A number with all of its members. Throws FrameError unless they are texts that a terminal can show.
+Json checked(const Json& number) {
+  if (!number.is_object() || text_in(number, "name").empty()) {
+    throw FrameError("\"derived\" of hello must be a list of numbers, each with its name");
+  }
+  Json made;
+  for (const char* const member : {"name", "words", "symbol", "unit"}) {
+    made[member] = text_in(number, member);
+    if (plain(text_in(number, member)) != text_in(number, member)) {
+      throw FrameError("\"derived\" of hello must be without control characters");
+    }
+  }
+  return made;
+}
+
+// The schema of what lies one step below; null unless it is described.
+const Json* below(const Json& schema, const std::string& step) {
+  if (const auto items = schema.find("items"); items != schema.end()) return &*items;
+  const auto properties = schema.find("properties");
+  if (properties == schema.end() || !properties->is_object()) return nullptr;
+  const auto found = properties->find(step);
+  return found == properties->end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+Vocabulary::Vocabulary(const Json& hello) {
+  if (const auto schema = hello.find("scene_schema"); schema != hello.end()) {
+    if (!schema->is_object()) throw FrameError("\"scene_schema\" of hello must be an object");
+    document_["scene_schema"] = *schema;
+  }
+  if (const auto derived = hello.find("derived"); derived != hello.end()) {
+    document_["derived"] = Json::array();
+    for (const Json& number : *derived) document_["derived"].push_back(checked(number));
+  }
+}
+
+Json Vocabulary::key(const std::string& pointer) const {
+  static const Json unknown = Json::object();
+  const Json* schema = document_.contains("scene_schema") ? &document_["scene_schema"] : &unknown;
+  for (std::size_t at = 1; at <= pointer.size() && schema->is_object();) {
+    const std::size_t end = std::min(pointer.find('/', at), pointer.size());
+    const Json* const next = below(*schema, pointer.substr(at, end - at));
+    schema = next == nullptr ? &unknown : next;
+    at = end + 1;
+  }
+  if (!schema->is_object()) schema = &unknown;
+  return {{"pointer", pointer},
+          {"words", text_in(*schema, "title")},
+          {"symbol", text_in(*schema, "symbol")},
+          {"unit", text_in(*schema, "unit")},
+          {"meaning", text_in(*schema, "description")}};
+}
+
+void keep_vocabulary(Database& database, const Vocabulary& vocabulary) {
+  Connection& connection = database.connection();
+  Transaction transaction(connection);
+  Statement(connection, "DELETE FROM vocabulary").run();
+  Statement(connection, "INSERT INTO vocabulary (document) VALUES (?)")
+      .bind(vocabulary.document().dump())
+      .run();
+  transaction.commit();
+}
+
+Vocabulary kept_vocabulary(Database& database) {
+  Statement kept(database.connection(), "SELECT document FROM vocabulary");
+  return kept.step() ? Vocabulary(Json::parse(kept.text(0))) : Vocabulary();
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,45 @@
+// What an engine calls things, from its hello.
+#include "runner/store/vocabulary.h"
+
+#include <gtest/gtest.h>
+
+#include "contract/frames.h"
+
+namespace peclet::runner {
+namespace {
+
+TEST(Vocabulary, FindsTheKeyOfAPointerInTheSchemaOfScenes) {
+  const Vocabulary words(Json::parse(R"({"scene_schema": {"properties": {
+      "contact": {"properties": {"friction": {"title": "coefficient of friction", "symbol": "μ"}}},
+      "balls": {"items": {"properties": {"radius": {"unit": "length", "description": "Radius."}}}}}}})"));
+  EXPECT_EQ(words.key("/contact/friction"),
+            Json::parse(R"({"pointer": "/contact/friction", "words": "coefficient of friction", "symbol": "μ",
+                            "unit": "", "meaning": ""})"));
+  EXPECT_EQ(words.key("/balls/3/radius")["unit"], "length");
+  EXPECT_EQ(words.key("/balls/3/radius")["meaning"], "Radius.");
+}
+
+TEST(Vocabulary, HasOnlyTheNameOfWhatTheEngineDoesNotDescribe) {
+  const Json nothing =
+      Json::parse(R"({"pointer": "/a/0/b", "words": "", "symbol": "", "unit": "", "meaning": ""})");
+  EXPECT_EQ(Vocabulary().key("/a/0/b"), nothing);
+  EXPECT_TRUE(Vocabulary().derived().empty());
+  for (const char* const schema :
+       {"{}", R"({"properties": 3})", R"({"properties": {"a": []}})",
+        R"({"properties": {"a": {"items": {"properties": {"b": {"title": 7}}}}}})"}) {
+    Json hello;
+    hello["scene_schema"] = Json::parse(schema);
+    EXPECT_EQ(Vocabulary(hello).key("/a/0/b"), nothing) << schema;
+  }
+}
+
+TEST(Vocabulary, TakesNothingThatATerminalCannotShow) {
+  for (const char* const hello :
+       {R"({"scene_schema": 3})", R"({"derived": [3]})", R"({"derived": [{}]})",
+        R"({"derived": [{"name": "a\u001b[2J"}]})", R"({"derived": [{"name": "a", "symbol": "\n"}]})"}) {
+    EXPECT_THROW(Vocabulary(Json::parse(hello)), FrameError) << hello;
+  }
+}
+
+}  // namespace
+}  // namespace peclet::runner
