@@ -53,8 +53,7 @@ class Board {
   // Processor seconds that the seeds which workers have are expected to cost.
   double expected_seconds() const { return scheduler_->expected_seconds(running_); }
   // `unfinished`: as Database::unfinished().
-  std::vector<PointForecast> forecasts(
-      const std::map<std::int64_t, std::vector<Unfinished>>& unfinished) const;
+  const std::vector<PointForecast>& forecasts(std::map<std::int64_t, std::vector<Unfinished>> unfinished);
 
   // What a result of one seed can change, to be put back when taking it fails.
   struct Standing {
@@ -66,17 +65,14 @@ class Board {
   void put_back(Standing&& standing) noexcept;
 
  private:
-  struct Costs {
-    Cost wall, processor;
-  };
-  void count_cost(int place, std::optional<double> wall_seconds, std::optional<double> cpu_seconds);
   void tell_cost(int place);
   void apply_bounds();
 
   std::vector<PointRecord> points_;
   std::map<std::string, int> places_;  // by hash
   std::optional<Scheduler> scheduler_;
-  std::vector<Costs> costs_;
+  std::vector<Cost> processor_;           // of the seeds of each point
+  std::vector<PointForecast> forecasts_;  // of each point, with its cost on the wall
   std::vector<int> running_;
   Bounds bounds_;
   int maximum_ = 0;  // realisations of a point

@@ -188,7 +188,7 @@ void Ledger::after_commit() {
   }
 }
 
-RunReport Ledger::report(int workers) const {
+RunReport Ledger::report(int workers) {
   RunReport report;
   report.points = board_.size();
   report.has_target = campaign_.target.has_tolerance();

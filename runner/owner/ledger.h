@@ -107,7 +107,7 @@ class Ledger {
   // A result that began in an earlier run counts with what it took in this one.
   double spent_seconds() const { return spending_.seconds(); }
   // Points, seeds and time to go with so many workers; the rest of the report is the caller's.
-  RunReport report(int workers) const;
+  RunReport report(int workers);
   // "peclet=10 seed 3", for people
   std::string name(SeedId id) const;
 

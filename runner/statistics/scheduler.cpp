@@ -71,13 +71,7 @@ void Scheduler::look_at(Point& point) {
 
 void Scheduler::count_in(Point& point, const Outcome& outcome) const {
   point.so_far.resize(observables_);
-  for (std::size_t place = 0; place < observables_; ++place) {
-    const Observation observation = outcome.of(place);
-    if (std::isnan(observation.value)) continue;
-    RunningEstimate& known = point.so_far[place];
-    if (observation.is_share && known.estimate().count == 0) known = RunningEstimate(true);
-    known.add(observation.value + observation.control);
-  }
+  for (std::size_t place = 0; place < observables_; ++place) add(point.so_far[place], outcome.of(place));
 }
 
 std::vector<Estimate> Scheduler::so_far(int point) const {
