@@ -13,6 +13,7 @@ void Board::read_points(Database& database) {
 
 void Board::read_seeds(Database& database, const Campaign& campaign) {
   std::vector<std::vector<std::optional<Outcome>>> outcomes;
+  std::vector<SeedId> out;
   processor_.assign(points_.size(), {});
   forecasts_.assign(points_.size(), {});
   running_.assign(points_.size(), 0);
@@ -23,6 +24,7 @@ void Board::read_seeds(Database& database, const Campaign& campaign) {
     for (const RealisationRecord& record : database.realisations(known.id)) {
       if (record.wall_seconds) wall.push_back(*record.wall_seconds);
       if (record.cpu_seconds) processor.push_back(*record.cpu_seconds);
+      if (record.state == SeedState::running) out.push_back({*known.place, record.seed});
     }
     const auto place = static_cast<std::size_t>(*known.place);
     forecasts_[place].cost = Cost(std::move(wall));
@@ -32,6 +34,10 @@ void Board::read_seeds(Database& database, const Campaign& campaign) {
   for (const PointRecord& known : points_) {
     scheduler_->set_priority(*known.place, known.priority);
     scheduler_->set_cancelled(*known.place, known.cancelled);
+  }
+  for (const SeedId id : out) {
+    // A seed beyond the maximum (it was larger once) has no part in the looks.
+    if (id.seed < maximum_) begin(id);
   }
   apply_bounds();
 }
@@ -72,6 +78,11 @@ void Board::add_cost(int place, std::optional<double> wall_seconds, std::optiona
   tell_cost(place);
 }
 
+void Board::begin(SeedId id) {
+  scheduler_->begin(id);
+  ++running_[static_cast<std::size_t>(id.point)];
+}
+
 // Workers are occupied for the wall time of a seed; a budget is of processor time.
 void Board::tell_cost(int place) {
   const auto number = static_cast<std::size_t>(place);
@@ -95,19 +106,6 @@ const std::vector<PointForecast>& Board::forecasts(
     known.unfinished = std::move(unfinished[point(place).id]);
   }
   return forecasts_;
-}
-
-Board::Standing Board::standing(SeedId id) const {
-  const auto place = static_cast<std::size_t>(id.point);
-  return {scheduler_->kept(id), forecasts_[place].cost.count(), processor_[place].count(), running_[place]};
-}
-
-void Board::put_back(Standing&& standing) noexcept {
-  const auto place = static_cast<std::size_t>(standing.seed.id.point);
-  scheduler_->put_back(std::move(standing.seed));
-  forecasts_[place].cost.keep_first(standing.wall);
-  processor_[place].keep_first(standing.processor);
-  running_[place] = standing.running;
 }
 
 }  // namespace peclet::runner

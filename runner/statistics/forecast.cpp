@@ -213,24 +213,16 @@ int expected_seeds(const std::vector<Look>& looks, const Target& target, int min
 
 Cost::Cost(std::vector<double> seconds) : seconds_(std::move(seconds)) {
   std::sort(seconds_.begin(), seconds_.end());
-  for (const double one : seconds_) count_in(one, 1);
-}
-
-void Cost::count_in(double seconds, int sign) {
-  sum_ += sign * seconds;
-  squares_ += sign * seconds * seconds;
+  for (const double one : seconds_) {
+    sum_ += one;
+    squares_ += one * one;
+  }
 }
 
 void Cost::add(double seconds) {
   seconds_.insert(std::upper_bound(seconds_.begin(), seconds_.end(), seconds), seconds);
-  last_ = seconds;
-  count_in(seconds, 1);
-}
-
-void Cost::keep_first(int count) {
-  if (this->count() <= count) return;
-  seconds_.erase(std::lower_bound(seconds_.begin(), seconds_.end(), last_));
-  count_in(last_, -1);
+  sum_ += seconds;
+  squares_ += seconds * seconds;
 }
 
 double mean_cost(const Cost& ended, const std::vector<Unfinished>& running) {

@@ -107,8 +107,6 @@ class Cost {
   Cost() = default;
   explicit Cost(std::vector<double> seconds);
   void add(double seconds);
-  // Forgets the cost that was added last, if there is one more than `count`.
-  void keep_first(int count);
   int count() const { return static_cast<int>(seconds_.size()); }
   double sum() const { return sum_; }
   double squares() const { return squares_; }
@@ -117,10 +115,8 @@ class Cost {
   const std::vector<double>& ascending() const { return seconds_; }
 
  private:
-  void count_in(double seconds, int sign);
-
   std::vector<double> seconds_;  // ascending
-  double last_ = 0, sum_ = 0, squares_ = 0;
+  double sum_ = 0, squares_ = 0;
 };
 
 // What is known of a seed that a worker has.

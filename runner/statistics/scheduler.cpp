@@ -221,26 +221,6 @@ void Scheduler::give_back(SeedId id) {
   --point_at(id.point).begun;
 }
 
-Scheduler::Kept Scheduler::kept(SeedId id) const {
-  const Point& point = point_at(id.point);
-  const Progress& progress = point;
-  Kept kept{id, progress, Phase::waiting, std::nullopt};
-  if (const auto seed = static_cast<std::size_t>(id.seed); seed < point.phases.size()) {
-    kept.phase = point.phases[seed];
-    kept.outcome = point.outcomes[seed];
-  }
-  return kept;
-}
-
-void Scheduler::put_back(Kept&& kept) noexcept {
-  Point& point = point_at(kept.id.point);
-  static_cast<Progress&>(point) = std::move(kept.progress);
-  if (const auto seed = static_cast<std::size_t>(kept.id.seed); seed < point.phases.size()) {
-    point.phases[seed] = kept.phase;
-    point.outcomes[seed] = std::move(kept.outcome);
-  }
-}
-
 bool Scheduler::end(SeedId id, const Outcome& outcome) {
   if (id.seed >= maximum_) return false;
   Phase& phase = phase_of(id);
