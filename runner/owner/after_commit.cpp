@@ -1,5 +1,7 @@
 #include "runner/owner/after_commit.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "contract/durable_file.h"
@@ -9,20 +11,24 @@
 
 namespace peclet::runner {
 
-AfterCommit::Mark AfterCommit::mark() const {
-  return {to_keep_.size(), to_discard_.size(), to_remove_.size(), to_reject_.size(), to_tell_.size()};
+namespace {
+
+template <typename T>
+void append(std::vector<T>& list, std::vector<T>& later) {
+  std::move(later.begin(), later.end(), std::back_inserter(list));
 }
 
-void AfterCommit::back_to(const Mark& mark) {
-  to_keep_.resize(mark.keep);
-  to_discard_.resize(mark.discard);
-  to_remove_.resize(mark.remove);
-  to_reject_.resize(mark.reject);
-  to_tell_.erase(to_tell_.begin() + static_cast<std::ptrdiff_t>(mark.tell), to_tell_.end());
+}  // namespace
+
+void AfterCommit::add(AfterCommit&& later) {
+  append(to_keep_, later.to_keep_);
+  append(to_discard_, later.to_discard_);
+  append(to_remove_, later.to_remove_);
+  append(to_reject_, later.to_reject_);
+  append(to_tell_, later.to_tell_);
 }
 
-void AfterCommit::carry_out(RunListener& listener) {
-  committed_ = mark();
+void AfterCommit::carry_out(RunListener& listener, FileRemoval& removal) {
   const auto make_way_for_file = [&listener](const std::filesystem::path& path) {
     if (const std::string text = make_way(path, "a regular file"); !text.empty()) listener.warn(text);
   };
@@ -38,14 +44,9 @@ void AfterCommit::carry_out(RunListener& listener) {
       std::filesystem::remove(file);
     }
   }
-  removal_.add(to_remove_);
+  removal.add(to_remove_);
   for (const std::filesystem::path& file : to_reject_) peclet::runner::reject(home_of_spool_file(file), file);
-  to_keep_.clear();
-  to_discard_.clear();
-  to_remove_.clear();
-  to_reject_.clear();
-  committed_ = {};
-  for (const auto& told : std::exchange(to_tell_, {})) {
+  for (const auto& told : std::exchange(*this, {}).to_tell_) {
     if (const auto* const note = std::get_if<Note>(&told)) listener.note(note->text);
     if (const auto* const warning = std::get_if<Warning>(&told)) listener.warn(warning->text);
     if (const auto* const event = std::get_if<RunEvent>(&told)) listener.happened(*event);

@@ -3,7 +3,6 @@
 // A process that is killed in between leaves the files, which the next run finds and takes for what they are.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -31,21 +30,13 @@ class AfterCommit {
   void warn(std::string text) { to_tell_.emplace_back(Warning{std::move(text)}); }
   void tell(RunEvent event) { to_tell_.emplace_back(std::move(event)); }
 
-  // How much there is to be done, and back to that.
-  struct Mark {
-    std::size_t keep = 0, discard = 0, remove = 0, reject = 0, tell = 0;
-  };
-  Mark mark() const;
-  void back_to(const Mark& mark);
-  // The transaction failed: nothing of it happens. What earlier ones have left to do stays.
-  void forget() { back_to(committed_); }
+  // Appends what is to be done later than all of this.
+  void add(AfterCommit&& later);
 
   // Does all of it, once. Requires that the transaction is committed. Throws
   // std::filesystem::filesystem_error, and std::system_error for a file that could not be moved, or one of an
   // earlier call that could not be removed; all is then left to the next call.
-  void carry_out(RunListener& listener);
-  // Returns when the files of earlier calls are removed. Throws std::system_error.
-  void finish_removals() { removal_.finish(); }
+  void carry_out(RunListener& listener, FileRemoval& removal);
 
  private:
   struct Note {
@@ -58,8 +49,6 @@ class AfterCommit {
   std::vector<std::pair<std::filesystem::path, std::filesystem::path>> to_keep_;
   std::vector<std::filesystem::path> to_discard_, to_remove_, to_reject_;
   std::vector<std::variant<RunEvent, Note, Warning>> to_tell_;
-  Mark committed_;  // what a call that threw has left to do
-  FileRemoval removal_;
 };
 
 }  // namespace peclet::runner

@@ -13,19 +13,31 @@ void Board::read_points(Database& database) {
 
 void Board::read_seeds(Database& database, const Campaign& campaign) {
   std::vector<std::vector<std::optional<Outcome>>> outcomes;
-  costs_.assign(points_.size(), {});
+  std::vector<SeedId> out;
+  processor_.assign(points_.size(), {});
+  forecasts_.assign(points_.size(), {});
   running_.assign(points_.size(), 0);
   maximum_ = campaign.maximum_realisations;
   for (const PointRecord& known : points_) {
     outcomes.push_back(database.outcomes(known.id));
+    std::vector<double> wall, processor;
     for (const RealisationRecord& record : database.realisations(known.id)) {
-      count_cost(*known.place, record.wall_seconds, record.cpu_seconds);
+      if (record.wall_seconds) wall.push_back(*record.wall_seconds);
+      if (record.cpu_seconds) processor.push_back(*record.cpu_seconds);
+      if (record.state == SeedState::running) out.push_back({*known.place, record.seed});
     }
+    const auto place = static_cast<std::size_t>(*known.place);
+    forecasts_[place].cost = Cost(std::move(wall));
+    processor_[place] = Cost(std::move(processor));
   }
   scheduler_.emplace(std::move(outcomes), campaign.target, campaign.minimum_realisations, maximum_);
   for (const PointRecord& known : points_) {
     scheduler_->set_priority(*known.place, known.priority);
     scheduler_->set_cancelled(*known.place, known.cancelled);
+  }
+  for (const SeedId id : out) {
+    // A seed beyond the maximum (it was larger once) has no part in the looks.
+    if (id.seed < maximum_) begin(id);
   }
   apply_bounds();
 }
@@ -60,54 +72,40 @@ std::optional<int> Board::place_of(std::int64_t point_id) const {
   return known == points_.end() ? std::nullopt : known->place;
 }
 
-void Board::count_cost(int place, std::optional<double> wall_seconds, std::optional<double> cpu_seconds) {
-  Costs& costs = costs_[static_cast<std::size_t>(place)];
-  if (wall_seconds) costs.wall.add(*wall_seconds);
-  if (cpu_seconds) costs.processor.add(*cpu_seconds);
+void Board::add_cost(int place, std::optional<double> wall_seconds, std::optional<double> cpu_seconds) {
+  if (wall_seconds) forecasts_[static_cast<std::size_t>(place)].cost.add(*wall_seconds);
+  if (cpu_seconds) processor_[static_cast<std::size_t>(place)].add(*cpu_seconds);
+  tell_cost(place);
 }
 
-void Board::add_cost(int place, std::optional<double> wall_seconds, std::optional<double> cpu_seconds) {
-  count_cost(place, wall_seconds, cpu_seconds);
-  tell_cost(place);
+void Board::begin(SeedId id) {
+  scheduler_->begin(id);
+  ++running_[static_cast<std::size_t>(id.point)];
 }
 
 // Workers are occupied for the wall time of a seed; a budget is of processor time.
 void Board::tell_cost(int place) {
-  const Costs& costs = costs_[static_cast<std::size_t>(place)];
-  const Cost& cost = bounds_.budget_seconds ? costs.processor : costs.wall;
+  const auto number = static_cast<std::size_t>(place);
+  const Cost& cost = bounds_.budget_seconds ? processor_[number] : forecasts_[number].cost;
   if (cost.count() > 0) scheduler_->set_cost(place, cost.mean());
 }
 
 std::optional<double> Board::wall_seconds(int place) const {
-  const Cost& cost = costs_.at(static_cast<std::size_t>(place)).wall;
+  const Cost& cost = forecasts_.at(static_cast<std::size_t>(place)).cost;
   return cost.count() > 0 ? std::optional(cost.mean()) : std::nullopt;
 }
 
-std::vector<PointForecast> Board::forecasts(
-    const std::map<std::int64_t, std::vector<Unfinished>>& unfinished) const {
-  std::vector<PointForecast> forecasts;
+const std::vector<PointForecast>& Board::forecasts(
+    std::map<std::int64_t, std::vector<Unfinished>> unfinished) {
   for (int place = 0; place < size(); ++place) {
-    const int ended = scheduler_->all_ended(place);
-    const auto running = unfinished.find(point(place).id);
-    forecasts.push_back({costs_[static_cast<std::size_t>(place)].wall, scheduler_->so_far(place), ended,
-                         scheduler_->begun(place) - ended,
-                         scheduler_->decided(place) || scheduler_->cancelled(place),
-                         running == unfinished.end() ? std::vector<Unfinished>{} : running->second});
+    PointForecast& known = forecasts_[static_cast<std::size_t>(place)];
+    known.so_far = scheduler_->so_far(place);
+    known.ended = scheduler_->all_ended(place);
+    known.running = scheduler_->begun(place) - known.ended;
+    known.decided = scheduler_->decided(place) || scheduler_->cancelled(place);
+    known.unfinished = std::move(unfinished[point(place).id]);
   }
-  return forecasts;
-}
-
-Board::Standing Board::standing(SeedId id) const {
-  const auto place = static_cast<std::size_t>(id.point);
-  return {scheduler_->kept(id), costs_[place].wall.count(), costs_[place].processor.count(), running_[place]};
-}
-
-void Board::put_back(Standing&& standing) noexcept {
-  const auto place = static_cast<std::size_t>(standing.seed.id.point);
-  scheduler_->put_back(std::move(standing.seed));
-  costs_[place].wall.keep_first(standing.wall);
-  costs_[place].processor.keep_first(standing.processor);
-  running_[place] = standing.running;
+  return forecasts_;
 }
 
 }  // namespace peclet::runner

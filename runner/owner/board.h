@@ -21,8 +21,8 @@ class Board {
  public:
   // Reads the records of the points in the sweep, without what their seeds did.
   void read_points(Database& database);
-  // Reads what the seeds did, and makes the scheduler's picture from it. Requires read_points(). Nobody has a
-  // seed: those that are out are to be marked with begin() and add_running().
+  // Reads what the seeds did and which of them workers have, and makes the scheduler's picture from it. Seeds
+  // in the hands of a batch system are then to be begun. Requires read_points().
   void read_seeds(Database& database, const Campaign& campaign);
   // Whether read_seeds() has been called.
   bool has_seeds() const { return scheduler_.has_value(); }
@@ -48,35 +48,23 @@ class Board {
   void add_cost(int place, std::optional<double> wall_seconds, std::optional<double> cpu_seconds);
   // Mean wall time of the point's seeds; nothing while there are none.
   std::optional<double> wall_seconds(int place) const;
-  // Workers have so many more seeds of the point.
-  void add_running(int place, int seeds) { running_[static_cast<std::size_t>(place)] += seeds; }
+  // A worker has the seed from now on, and then no more.
+  void begin(SeedId id);
+  void leave(SeedId id) { --running_[static_cast<std::size_t>(id.point)]; }
   // Processor seconds that the seeds which workers have are expected to cost.
   double expected_seconds() const { return scheduler_->expected_seconds(running_); }
   // `unfinished`: as Database::unfinished().
-  std::vector<PointForecast> forecasts(
-      const std::map<std::int64_t, std::vector<Unfinished>>& unfinished) const;
-
-  // What a result of one seed can change, to be put back when taking it fails.
-  struct Standing {
-    Scheduler::Kept seed;
-    int wall, processor;  // costs that are known
-    int running;
-  };
-  Standing standing(SeedId id) const;
-  void put_back(Standing&& standing) noexcept;
+  const std::vector<PointForecast>& forecasts(std::map<std::int64_t, std::vector<Unfinished>> unfinished);
 
  private:
-  struct Costs {
-    Cost wall, processor;
-  };
-  void count_cost(int place, std::optional<double> wall_seconds, std::optional<double> cpu_seconds);
   void tell_cost(int place);
   void apply_bounds();
 
   std::vector<PointRecord> points_;
   std::map<std::string, int> places_;  // by hash
   std::optional<Scheduler> scheduler_;
-  std::vector<Costs> costs_;
+  std::vector<Cost> processor_;           // of the seeds of each point
+  std::vector<PointForecast> forecasts_;  // of each point, with its cost on the wall
   std::vector<int> running_;
   Bounds bounds_;
   int maximum_ = 0;  // realisations of a point

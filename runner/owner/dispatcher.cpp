@@ -279,8 +279,8 @@ void Dispatcher::exited_without_job(int number, const ExitStatus& ending) {
   if (stopping_ != Stopping::no || watch.is_recalled()) return;
   const bool own_doing = watch.condemned() || outcome_of(ending) != AttemptOutcome::killed;
   const std::string how = watch.condemned() ? watch.condemned()->message : to_string(ending);
-  now_.warnings.push_back(fmt::format("worker {} ended {}: {}", number,
-                                      watch.is_starting() ? "before it said hello" : "without a job", how));
+  ledger_.warn(fmt::format("worker {} ended {}: {}", number,
+                           watch.is_starting() ? "before it said hello" : "without a job", how));
   now_.early_exits += own_doing ? most_early_kills / most_early_exits + 1 : 1;
   if (now_.early_exits > most_early_kills) {
     throw EngineError(

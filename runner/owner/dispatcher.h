@@ -68,12 +68,12 @@ class Dispatcher {
     std::optional<Assignment> waiting{};     // behind the assignment
     std::int64_t finished_job = 0;           // the last one; attempts are numbered from 1
   };
-  // What booking changes here, to be taken back with it.
+  // What booking changes here; a copy takes its place if booking fails.
   struct Picture {
     std::vector<Worker> workers;
     int results = 0;
-    int early_exits = 0;                  // of workers without a job, in a row
-    std::vector<std::string> warnings{};  // to be given after the commit
+    int early_exits = 0;                         // of workers without a job, in a row
+    std::vector<std::pair<int, Job>> to_send{};  // after the commit
   };
   enum class Stopping { no, finished, draining, at_once };
 
@@ -91,7 +91,6 @@ class Dispatcher {
   void listen();
   // Books what was heard. False: something is in the way, and nothing has changed.
   bool book();
-  void take_back(const Picture& before);
   // Does what follows the commit. False: something is in the way of the rest.
   bool follow_up();
   std::uint64_t bytes_of_news() const;
@@ -102,8 +101,9 @@ class Dispatcher {
   void settle_spool();
   void obey_stop_signal();
   void hear_requests();
-  // The ledger's picture is new: it hears who has which seeds, and workers with one that nobody wants leave.
-  void mark_running_seeds();
+  // Finds the seeds that workers have in the ledger's new picture, and recalls workers with one that nobody
+  // wants.
+  void find_running_seeds();
   void start_workers();
   void give_out_seeds();
   void judge_leases();
@@ -142,8 +142,7 @@ class Dispatcher {
   DispatchSettings settings_;
   Clock clock_;
   Picture now_;
-  std::vector<WorkerEvent> news_;             // and not booked yet
-  std::vector<std::pair<int, Job>> to_send_;  // after the commit
+  std::vector<WorkerEvent> news_;  // and not booked yet
   Pause pause_;
   bool unbooked_ = false;          // something is in the way
   bool uncarried_ = false;         // booked, and what follows the commit is not done

@@ -44,7 +44,7 @@ std::optional<Dispatcher::Assignment> Dispatcher::next_assignment(int number) {
   given_seed->job.checkpoint_seconds = settings_.checkpoint_seconds;
   // Several reports fit into a lease.
   given_seed->job.progress_seconds = std::min(1.0, settings_.lease.count() / 5);
-  to_send_.emplace_back(number, given_seed->job);
+  now_.to_send.emplace_back(number, given_seed->job);
   given_seed->job.scene = nullptr;  // sent once; the rest is copied at every turn
   Assignment about{std::move(*given_seed)};
   about.given = about.begun = clock_();

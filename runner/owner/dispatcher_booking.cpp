@@ -64,7 +64,7 @@ void Dispatcher::listen() {
 }
 
 bool Dispatcher::book() {
-  const Picture before = now_;
+  Picture before = now_;
   try {
     Transaction booking(database_.connection());
     for (const WorkerEvent& event : news_) {
@@ -76,7 +76,10 @@ bool Dispatcher::book() {
   } catch (const std::exception& error) {
     const std::optional<Hindrance> hindrance = hindrance_in(error, root(), bytes_of_news());
     if (!hindrance) throw;
-    take_back(before);
+    now_ = std::move(before);
+    ledger_.roll_back();
+    find_running_seeds();
+    unbooked_ = true;
     begin_pause(*hindrance);
     return false;
   }
@@ -84,16 +87,7 @@ bool Dispatcher::book() {
   return true;
 }
 
-void Dispatcher::take_back(const Picture& before) {
-  now_ = before;
-  to_send_.clear();
-  ledger_.roll_back();
-  mark_running_seeds();
-  unbooked_ = true;
-}
-
 bool Dispatcher::follow_up() {
-  for (const std::string& warning : std::exchange(now_.warnings, {})) listener_.warn(warning);
   try {
     ledger_.after_commit();  // a checkpoint that is discarded goes before its seed's next attempt begins
   } catch (const std::exception& error) {
@@ -104,8 +98,7 @@ bool Dispatcher::follow_up() {
     return false;
   }
   uncarried_ = false;
-  for (const auto& [worker, job] : to_send_) pool_.assign(worker, job);
-  to_send_.clear();
+  for (const auto& [worker, job] : std::exchange(now_.to_send, {})) pool_.assign(worker, job);
   if (!told_of_.empty() && !pause_.lasts() && !request_waits_) end_pause();
   return true;
 }

@@ -46,7 +46,7 @@ Ledger::Ledger(Database& database, const Campaign& campaign, CampaignDirectory d
 }
 
 void Ledger::load() {
-  read();
+  read_board();
   remove_late_checkpoints();
   Transaction booking(database_.connection());
   book_looks();
@@ -85,27 +85,25 @@ void Ledger::book_looks() {
   }
 }
 
-void Ledger::read() {
-  board_.read_seeds(database_, campaign_);
+void Ledger::read_board() {
+  board_.read_seeds(database_, campaign());
   for (int place = 0; place < board_.size(); ++place) leave_to_batch_system(place);
 }
 
 void Ledger::roll_back() {
-  spending_.roll_back();
-  after_.forget();
-  lacking_ = {};
-  if (former_) campaign_ = *std::exchange(former_, std::nullopt);
+  changes_ = {};
+  next_campaign_.reset();
   board_.read_points(database_);
-  read();
+  read_board();
 }
 
 // `known` looks of the point are stored already.
 void Ledger::store_looks(int place, std::size_t known) {
   const std::vector<Look>& looks = scheduler().looks(place);
   results_.store_looks(point(place).id, looks);
-  for (std::size_t i = known; i < looks.size(); ++i) after_.tell(Looked{point_name(place), looks[i]});
+  for (std::size_t i = known; i < looks.size(); ++i) changes_.after.tell(Looked{point_name(place), looks[i]});
   if (looks.size() > known && scheduler().decided(place)) {
-    after_.tell(Decided{point_name(place), looks.back()});
+    changes_.after.tell(Decided{point_name(place), looks.back()});
   }
 }
 
@@ -121,7 +119,7 @@ void Ledger::book_outcome(SeedId id, const Outcome& outcome) {
   const Look& last = scheduler().looks(id.point).back();
   const std::string message = fmt::format("{} after {} seeds", to_string(last.verdict), last.seeds);
   events_.write("decided", about.id, std::nullopt, message);
-  after_.note(fmt::format("{}: {}", about.label, message));
+  changes_.after.note(fmt::format("{}: {}", about.label, message));
 }
 
 std::optional<GivenSeed> Ledger::give_out(int worker, std::int64_t process, std::int64_t engine) {
@@ -136,23 +134,22 @@ std::optional<GivenSeed> Ledger::give_out(int worker, std::int64_t process, std:
   given_seed.job.checkpoint = directory_.checkpoint(about.hash, id->seed);
   given_seed.job.spool = directory_.spool_file(about.hash, id->seed, given_seed.job.attempt);
   given_seed.job.failures = directory_.failures();
-  board_.scheduler().begin(*id);
-  board_.add_running(id->point, 1);
+  board_.begin(*id);
   return given_seed;
 }
 
 void Ledger::end_attempt(const GivenSeed& given_seed, const AttemptEnd& end) {
   leave(given_seed);
-  spending_.add(end.held_seconds);
+  changes_.spent_seconds += end.held_seconds;
   seeds_.end_attempt(given_seed.job.attempt, end);
   const SeedFate fate = judge(seeds_.history(given_seed.point_id, given_seed.id.seed), retries_);
-  if (fate.discard_checkpoint) after_.discard(given_seed.job.checkpoint);
+  if (fate.discard_checkpoint) changes_.after.discard(given_seed.job.checkpoint);
   if (is_blamed(end.outcome)) {
-    after_.warn(fmt::format("{}: {}{}{}; {}", name_of(given_seed), to_string(end.outcome),
-                            end.message.empty() ? "" : ": ", end.message,
-                            fate.quarantine ? "it is given up" : "it is tried again"));
+    changes_.after.warn(fmt::format("{}: {}{}{}; {}", name_of(given_seed), to_string(end.outcome),
+                                    end.message.empty() ? "" : ": ", end.message,
+                                    fate.quarantine ? "it is given up" : "it is tried again"));
   }
-  after_.tell(
+  changes_.after.tell(
       AttemptFailed{point_name(given_seed), given_seed.id.seed, end.outcome, end.message, fate.quarantine});
   if (!fate.quarantine) {
     seeds_.requeue(given_seed.point_id, given_seed.id.seed);
@@ -160,12 +157,13 @@ void Ledger::end_attempt(const GivenSeed& given_seed, const AttemptEnd& end) {
     return;
   }
   seeds_.quarantine(given_seed.point_id, given_seed.id.seed, fate.cause);
-  after_.tell(SeedEnded{point_name(given_seed), given_seed.id.seed, fate.cause, std::nullopt, std::nullopt});
+  changes_.after.tell(
+      SeedEnded{point_name(given_seed), given_seed.id.seed, fate.cause, std::nullopt, std::nullopt});
   if (takes_part(given_seed.id)) book_outcome(given_seed.id, Outcome{});
 }
 
 void Ledger::leave(const GivenSeed& given_seed) {
-  if (takes_part(given_seed.id)) board_.add_running(given_seed.id.point, -1);
+  if (takes_part(given_seed.id)) board_.leave(given_seed.id);
 }
 
 void Ledger::renew_lease(const GivenSeed& given_seed, const JobProgress& progress) {
@@ -178,17 +176,23 @@ std::int64_t Ledger::admit_engine(const Json& engine) {
   return engine_row(database_, engine);
 }
 
+void Ledger::Changes::add(Changes&& later) {
+  after.add(std::move(later.after));
+  spent_seconds += later.spent_seconds;
+  if (later.lacking) lacking = std::move(later.lacking);
+}
+
 void Ledger::after_commit() {
-  former_.reset();
-  spending_.commit();
-  after_.carry_out(listener_);
-  if (const auto& [observable, names] = lacking_; !observable.empty()) {
-    throw InputError(campaign_.name, pointer_of(campaign_.target, observable), observable,
-                     "must be a number that the results have: " + plain(names, longest_list));
+  if (next_campaign_) campaign_ = *std::exchange(next_campaign_, std::nullopt);
+  committed_.add(std::exchange(changes_, {}));
+  committed_.after.carry_out(listener_, removal_);
+  if (const std::optional<Lacking>& lacking = committed_.lacking) {
+    throw InputError(campaign_.name, pointer_of(campaign_.target, lacking->observable), lacking->observable,
+                     "must be a number that the results have: " + plain(lacking->names, longest_list));
   }
 }
 
-RunReport Ledger::report(int workers) const {
+RunReport Ledger::report(int workers) {
   RunReport report;
   report.points = board_.size();
   report.has_target = campaign_.target.has_tolerance();
@@ -202,7 +206,7 @@ RunReport Ledger::report(int workers) const {
     report.seeds_ended += scheduler().ended(place);
     report.seeds_wanted += is_left_alone ? scheduler().ended(place) : scheduler().wanted(place);
   }
-  report.spent_seconds = spending_.seconds();
+  report.spent_seconds = spent_seconds();
   report.budget_seconds = board_.bounds().budget_seconds;
   // No forecast under a budget or a ceiling: not every point will be decided.
   if (board_.bounds().ceiling || report.budget_seconds) return report;

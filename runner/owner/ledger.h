@@ -1,8 +1,11 @@
 // What has become of every seed: the scheduler's picture, the database and the spool, kept in step.
 //
-// The writing functions run inside a Transaction of the caller; what must happen to files only after its
-// commit is kept until after_commit(). So whatever is killed when, database and spool together know every
-// result, once.
+// The writing functions run inside a Transaction of the caller; what must happen only after its commit is
+// kept until after_commit(). So whatever is killed when, database and spool together know every result, once.
+//
+// There is one way back from what fails: what was to follow the commit is dropped, and the picture is taken
+// from the database again, which has rolled back by itself. roll_back() does so for a transaction, and
+// take_whole() for a single result within one.
 #pragma once
 
 #include <cstdint>
@@ -60,6 +63,8 @@ class Ledger {
   std::optional<double> wall_seconds(const GivenSeed& given_seed) const;
   // Books any other end of an attempt: the seed is queued again, or given up.
   void end_attempt(const GivenSeed& given_seed, const AttemptEnd& end);
+  // Warns after the commit.
+  void warn(std::string text) { changes_.after.warn(std::move(text)); }
   void renew_lease(const GivenSeed& given_seed, const JobProgress& progress);
 
   // The seeds that the next looks need and nobody runs, with `ahead` those of the looks after them, too. They
@@ -85,29 +90,29 @@ class Ledger {
   // The campaign is another one from now on. Throws InputError when finished realisations lack its
   // observable.
   void take_over(const Campaign& campaign);
-  // Somebody else has written to the database within the transaction: takes the picture from it again, and
-  // stores the looks and seeds that follow. Throws OtherEngine as admit_engine(). The seeds that workers have
-  // are then to be marked with keep_running().
+  // Takes the picture from the database again, to which others have written within the transaction, and
+  // stores the looks and seeds that follow. Throws OtherEngine as admit_engine(). The places of the seeds
+  // that workers have are then to be found with find_place().
   void refresh();
-  // The transaction failed: forgets what was to follow it, and takes the picture from the database again, in
-  // which the seeds that workers have are then to be marked with keep_running().
+  // Drops what was to follow a transaction that failed, and takes the picture from the database again. The
+  // places of seeds are then to be found as after refresh().
   void roll_back();
-  // Finds the place of the seed's point. False: the seed is not wanted any more, because its point was
-  // cancelled or left the sweep, or the maximum is smaller now.
-  bool keep_running(GivenSeed& given_seed);
+  // Finds the place of the seed's point. Returns false if the seed is not wanted any more, because its point
+  // was cancelled or left the sweep, or the maximum is smaller now.
+  bool find_place(GivenSeed& given_seed) const;
 
   // Moves files that are no results and discards checkpoints, begins to remove the files of results that are
   // durable now, and tells what happened. Throws InputError when results lack the observable.
   void after_commit();
 
-  const Campaign& campaign() const { return campaign_; }
+  const Campaign& campaign() const { return next_campaign_ ? *next_campaign_ : campaign_; }
   const PointRecord& point(int place) const { return board_.point(place); }
   const Scheduler& scheduler() const { return board_.scheduler(); }
   // Processor time that this run's attempts took: that of results, and of others the time times the threads.
   // A result that began in an earlier run counts with what it took in this one.
-  double spent_seconds() const { return spending_.seconds(); }
+  double spent_seconds() const { return committed_.spent_seconds + changes_.spent_seconds; }
   // Points, seeds and time to go with so many workers; the rest of the report is the caller's.
-  RunReport report(int workers) const;
+  RunReport report(int workers);
   // "peclet=10 seed 3", for people
   std::string name(SeedId id) const;
 
@@ -116,10 +121,12 @@ class Ledger {
   void remove_late_checkpoints();
   // Nothing for a file that is no checkpoint of a point in the sweep.
   std::optional<SeedId> seed_of_checkpoint(const std::filesystem::path& file) const;
-  void read();
+  void read_board();
   void book_looks();
   // Whether the seed has a part in the looks.
-  bool takes_part(SeedId id) const { return id.point != nowhere && id.seed < campaign_.maximum_realisations; }
+  bool takes_part(SeedId id) const {
+    return id.point != nowhere && id.seed < campaign().maximum_realisations;
+  }
   void leave(const GivenSeed& given_seed);
   std::string name_of(const GivenSeed& given_seed) const;
   PointName point_name(int place) const;
@@ -127,7 +134,6 @@ class Ledger {
   void leave_to_batch_system(int place);
   void ingest_spool_of(const CampaignDirectory& directory);
   void ingest(const std::filesystem::path& spool);
-  class Taking;
   using Reading = std::function<RealisationResult()>;
   using Booking = std::function<void(const RealisationResult&)>;
   // Reads a result and books it, wholly or not at all. Returns why it is turned down; "" when it is not.
@@ -144,19 +150,27 @@ class Ledger {
   PointStore rows_;
   EventStore events_;
   Campaign campaign_;
-  std::optional<Campaign> former_;  // until the transaction that changed it is committed
   CampaignDirectory directory_;
   RunListener& listener_;
   int retries_;
   Board board_;
-  Spending spending_;
   EngineAdmission engine_;
-  AfterCommit after_;
   struct Lacking {
     std::string observable;  // of the target, that results do not have
     std::string names;       // what they have instead
   };
-  Lacking lacking_;             // empty as long as there is none
+  // What follows a commit, and what it makes true.
+  struct Changes {
+    AfterCommit after;
+    double spent_seconds = 0;
+    std::optional<Lacking> lacking;
+    bool are_on_board = false;  // a result has changed the board
+    void add(Changes&& later);
+  };
+  Changes changes_;                        // of the open transaction
+  std::optional<Campaign> next_campaign_;  // of the open transaction
+  Changes committed_;                      // what is left to do of earlier ones
+  FileRemoval removal_;
   int turned_down_ = 0;         // of the spool files that are looked at together
   std::set<std::string> away_;  // shared folders that are not there, as has been said
 };

@@ -14,7 +14,7 @@ std::optional<double> Ledger::wall_seconds(const GivenSeed& given_seed) const {
 std::optional<SeedId> Ledger::next() const {
   const std::optional<double> budget = board_.bounds().budget_seconds;
   if (!budget) return scheduler().next();
-  return scheduler().next_within(*budget - spending_.seconds() - board_.expected_seconds());
+  return scheduler().next_within(*budget - spent_seconds() - board_.expected_seconds());
 }
 
 }  // namespace peclet::runner

@@ -33,7 +33,7 @@ std::string listed(const std::vector<std::string>& names) {
 }  // namespace
 
 void Ledger::ingest_spool() {
-  after_.finish_removals();  // of what has been taken already
+  removal_.finish();  // of what has been taken already
   ingest_spool_of(directory_);
   const BundleStore book(database_.connection());
   std::map<std::string, Out> shared;
@@ -59,14 +59,14 @@ void Ledger::ingest_spool() {
                       listed(out.bundles), out.bundles.front()));
     }
   }
-  after_.finish_removals();
+  removal_.finish();
 }
 
 void Ledger::leave_to_batch_system(int place) {
   const BundleStore book(database_.connection());
   for (const int seed : book.seeds_out_of_point(point(place).id)) {
     // A seed beyond the maximum (it was larger once) has no part in the looks.
-    if (seed < campaign_.maximum_realisations && !has_ended({place, seed}))
+    if (seed < campaign().maximum_realisations && !has_ended({place, seed}))
       board_.scheduler().begin({place, seed});
   }
 }
@@ -94,13 +94,13 @@ void Ledger::end_handed_over(SeedId id, int task, const AttemptReport& report,
   seeds_.attempt_elsewhere(about.id, id.seed, task, report);
   if (has_ended(id)) return;
   const SeedFate fate = judge(seeds_.history(about.id, id.seed), retries_);
-  if (fate.discard_checkpoint) after_.discard(checkpoint);
+  if (fate.discard_checkpoint) changes_.after.discard(checkpoint);
   // A drain with a message is a failure that a full disk excuses.
   const bool is_excused = report.outcome == AttemptOutcome::drained && !report.message.empty();
   if (is_blamed(report.outcome) || is_excused) {
-    after_.warn(fmt::format("{} on {}: {}{}{}; {}", name(id), report.host, to_string(report.outcome),
-                            report.message.empty() ? "" : ": ", report.message,
-                            fate.quarantine ? "it is given up" : "it is tried again"));
+    changes_.after.warn(fmt::format("{} on {}: {}{}{}; {}", name(id), report.host, to_string(report.outcome),
+                                    report.message.empty() ? "" : ": ", report.message,
+                                    fate.quarantine ? "it is given up" : "it is tried again"));
   }
   if (!fate.quarantine) {
     take_back(id);
@@ -111,7 +111,7 @@ void Ledger::end_handed_over(SeedId id, int task, const AttemptReport& report,
 }
 
 void Ledger::take_back(SeedId id) {
-  if (id.seed < campaign_.maximum_realisations && !has_ended(id)) board_.scheduler().give_back(id);
+  if (id.seed < campaign().maximum_realisations && !has_ended(id)) board_.scheduler().give_back(id);
 }
 
 }  // namespace peclet::runner

@@ -11,23 +11,19 @@ namespace peclet::runner {
 
 void Ledger::take_over(const Campaign& campaign) {
   rows_.take_over(campaign);
-  if (!former_) former_ = campaign_;
-  campaign_ = campaign;
+  next_campaign_ = campaign;
 }
 
 void Ledger::refresh() {
   board_.read_points(database_);
-  read();
+  read_board();
   book_looks();
   engine_.require_no_other(board_);
 }
 
-bool Ledger::keep_running(GivenSeed& given_seed) {
+bool Ledger::find_place(GivenSeed& given_seed) const {
   given_seed.id.point = board_.place_of(given_seed.job.point).value_or(nowhere);
-  if (!takes_part(given_seed.id)) return false;
-  board_.scheduler().begin(given_seed.id);
-  board_.add_running(given_seed.id.point, 1);
-  return !scheduler().cancelled(given_seed.id.point);
+  return takes_part(given_seed.id) && !scheduler().cancelled(given_seed.id.point);
 }
 
 int Ledger::accept_engine(const std::string& identity) {
@@ -41,12 +37,13 @@ int Ledger::accept_engine(const std::string& identity) {
     if (!board_.is_to_be_run(about) || about.engine_identity.empty() || about.engine_identity == identity)
       continue;
     rows_.keep_apart(about, identity);
-    after_.note(fmt::format("{}: results of engine {} are kept apart", about.label, about.engine_identity));
+    changes_.after.note(
+        fmt::format("{}: results of engine {} are kept apart", about.label, about.engine_identity));
     ++points;
     // Another engine could not go on from where they stand.
     for (const RealisationRecord& record : database_.realisations(about.id)) {
       for (const std::string& folder : folders) {
-        after_.discard(CampaignDirectory(folder).checkpoint(about.hash, record.seed));
+        changes_.after.discard(CampaignDirectory(folder).checkpoint(about.hash, record.seed));
       }
     }
   }

@@ -42,55 +42,26 @@ bool is_of_the_result(const std::exception& error) {
 
 }  // namespace
 
-// What taking a result changes, in the database and here; taken back unless it is kept.
-class Ledger::Taking {
- public:
-  Taking(Ledger& ledger, const RealisationResult& result)
-      : ledger_(ledger),
-        changes_(ledger.database_.connection()),
-        after_(ledger.after_.mark()),
-        spent_seconds_(ledger.spending_.seconds()),
-        lacking_(ledger.lacking_) {
-    const std::optional<int> place = ledger.board_.place_of(result.point);
-    if (place && ledger.board_.has_seeds()) standing_ = ledger.board_.standing({*place, result.seed});
-  }
-  ~Taking() {
-    if (kept_) return;
-    ledger_.after_.back_to(after_);
-    ledger_.spending_.back_to(spent_seconds_);
-    ledger_.lacking_ = std::move(lacking_);
-    if (standing_) ledger_.board_.put_back(std::move(*standing_));
-  }
-  Taking(const Taking&) = delete;
-  Taking& operator=(const Taking&) = delete;
-
-  void keep() {
-    changes_.keep();
-    kept_ = true;
-  }
-
- private:
-  Ledger& ledger_;
-  Savepoint changes_;
-  AfterCommit::Mark after_;
-  double spent_seconds_;
-  Lacking lacking_;
-  std::optional<Board::Standing> standing_;
-  bool kept_ = false;
-};
-
 std::string Ledger::take_whole(const fs::path& spool, const Reading& read, const Booking& book) {
+  Changes of_others = std::exchange(changes_, {});
+  bool is_taken = false;
   std::string why;
   try {
     const RealisationResult result = read();
-    Taking taking(*this, result);
+    Savepoint booking(database_.connection());
     book(result);
-    taking.keep();
-    return "";
+    booking.keep();
+    is_taken = true;
   } catch (const std::exception& error) {
     if (!is_of_the_result(error)) throw;
     why = plain(error.what());
   }
+  Changes of_result = std::exchange(changes_, std::move(of_others));
+  if (is_taken) {
+    changes_.add(std::move(of_result));
+    return "";
+  }
+  if (of_result.are_on_board) read_board();
   turn_down(spool, why);
   return why;
 }
@@ -99,8 +70,8 @@ void Ledger::take(const RealisationResult& result, const fs::path& spool) {
   const StoredResult stored = results_.store(result, campaign_.target);
   const auto take_in = [&] {
     take_files(database_.connection(), directory_, result, spool, stored,
-               campaign_.keeps_files_of(result.seed), after_);
-    after_.remove(spool);
+               campaign_.keeps_files_of(result.seed), changes_.after);
+    changes_.after.remove(spool);
   };
   switch (stored.what) {
     case Stored::stored_apart:
@@ -112,8 +83,8 @@ void Ledger::take(const RealisationResult& result, const fs::path& spool) {
       for (const fs::path& checkpoint :
            std::set{directory_.checkpoint(result.point, result.seed),
                     home_of_spool_file(spool).checkpoint(result.point, result.seed)}) {
-        after_.remove(checkpoint);
-        after_.remove(growing_beside(checkpoint));
+        changes_.after.remove(checkpoint);
+        changes_.after.remove(growing_beside(checkpoint));
       }
       break;
     case Stored::conflict:
@@ -132,12 +103,13 @@ void Ledger::take(const RealisationResult& result, const fs::path& spool) {
   const bool is_lost = stored.outcome.is_lost();
   const std::optional<double> value = is_lost ? std::nullopt : std::optional(stored.outcome.value);
   const std::optional<double> cpu_seconds = cost_of(result, "cpu_seconds");
-  after_.tell(SeedEnded{point_name(*place), result.seed, stored.cause, value, cpu_seconds});
+  changes_.after.tell(SeedEnded{point_name(*place), result.seed, stored.cause, value, cpu_seconds});
   if (!board_.has_seeds()) return;  // load() finds it
+  changes_.are_on_board = true;
   board_.add_cost(*place, cost_of(result, "wall_seconds"), cpu_seconds);
   if (is_lost) {
-    after_.note(fmt::format("{}: ended with {}{}{}", name({*place, result.seed}), stored.cause,
-                            stored.reason.empty() ? "" : ": ", stored.reason));
+    changes_.after.note(fmt::format("{}: ended with {}{}{}", name({*place, result.seed}), stored.cause,
+                                    stored.reason.empty() ? "" : ": ", stored.reason));
   }
   book_outcome({*place, result.seed}, stored.outcome);
 }
@@ -146,7 +118,7 @@ void Ledger::note_lacking(const RealisationResult& result) {
   const std::string name = lacking_in(result.document, campaign_.target.observables());
   if (name.empty()) return;
   const std::string names = names_of_targets(result.document);
-  lacking_ = {name, names.empty() ? "none" : names};
+  changes_.lacking = {name, names.empty() ? "none" : names};
 }
 
 void Ledger::turn_down(const fs::path& spool, const std::string& why) {
@@ -154,9 +126,10 @@ void Ledger::turn_down(const fs::path& spool, const std::string& why) {
   events_.write("rejected", std::nullopt, std::nullopt, message);
   // Of a crowd nobody reads every name.
   if (++turned_down_ <= most_told) {
-    after_.warn(fmt::format("{}; it is kept in {}", message, home_of_spool_file(spool).rejected().string()));
+    changes_.after.warn(
+        fmt::format("{}; it is kept in {}", message, home_of_spool_file(spool).rejected().string()));
   }
-  if (is_there(spool)) after_.reject(spool);
+  if (is_there(spool)) changes_.after.reject(spool);
 }
 
 void Ledger::ingest_spool_of(const CampaignDirectory& directory) {
@@ -201,9 +174,9 @@ bool Ledger::take_result(const GivenSeed& given_seed, const std::string& sha256,
   };
   why = take_whole(given_seed.job.spool, read, [&](const RealisationResult& result) {
     take(result, given_seed.job.spool);
-    spending_.add(std::min(held_seconds, cost_of(result, "cpu_seconds").value_or(held_seconds)));
-    leave(given_seed);
     seeds_.end_attempt(given_seed.job.attempt, {AttemptOutcome::result, step});
+    changes_.spent_seconds += std::min(held_seconds, cost_of(result, "cpu_seconds").value_or(held_seconds));
+    leave(given_seed);
   });
   return why.empty();
 }

@@ -37,7 +37,7 @@ Values values_of(const std::vector<std::optional<Outcome>>& outcomes, int end) {
     if (!outcome || found.closed == end) break;
     ++found.closed;
     if (outcome->is_lost()) continue;
-    found.values.push_back(outcome->value + outcome->control);
+    found.values.push_back(outcome->controlled());
     found.seeds.push_back(found.closed);
     found.is_share = outcome->is_share;
   }
@@ -55,9 +55,9 @@ bool is_drawn(int seeds) {
 
 Json running_mean(const Values& found, StopRule& rule) {
   Json seeds = Json::array(), means = Json::array(), widths = Json::array();
-  RunningEstimate estimate(found.is_share);
+  RunningEstimate estimate;
   for (std::size_t i = 0; i < found.values.size(); ++i) {
-    estimate.add(found.values[i]);
+    estimate.add(found.values[i], found.is_share);
     if (!is_drawn(found.seeds[i]) && i + 1 < found.values.size()) continue;
     const Estimate now = estimate.estimate();
     seeds.push_back(found.seeds[i]);

@@ -3,70 +3,61 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runner/statistics/forecast.h"
-
 namespace peclet::runner {
 namespace {
 
-// Of one point that is decided or has a prediction, for every place in the schedule at which it may stop.
-class LooksAhead {
- public:
-  LooksAhead(const PointPlan& point, const std::vector<int>& schedule, int workers) : point_(point) {
-    int seeds = point.ended;
-    double rounds = 0;
-    for (const int look : schedule) {
-      rounds += std::ceil(std::max(0.0, static_cast<double>(look - seeds)) / workers);
-      seeds = std::max(seeds, look);
-      seeds_.push_back(seeds);
-      rounds_.push_back(rounds);
-    }
+// The degrees of freedom of what the open points cost together; NaN if nothing is open.
+double common_degrees(const Plan& plan) {
+  double sum = 0, squares = 0;
+  for (const PointPlan& point : plan.points) {
+    const Prediction& made = point.prediction;
+    if (!point.is_predicted() || made.seeds.lower == made.seeds.upper) continue;
+    const double cost = made.seeds.likely * point.cost.cpu_seconds;
+    sum += cost;
+    squares += cost * cost / (made.fewest_values() - 1);
   }
+  return sum * sum / squares;
+}
 
-  int seeds(std::size_t future) const { return point_.decided ? point_.ended : seeds_[place(future)]; }
-  int to_come(std::size_t future) const { return seeds(future) - point_.ended; }
-  double chain_seconds(std::size_t future) const {
-    return point_.decided ? 0 : rounds_[place(future)] * point_.cost.wall_seconds;
-  }
-  const MeasuredCost& cost() const { return point_.cost; }
-
- private:
-  std::size_t place(std::size_t future) const {
-    return std::min(seeds_.size() - 1, static_cast<std::size_t>(point_.places[future]));
-  }
-
-  const PointPlan& point_;
-  std::vector<int> seeds_;      // that will have ended
-  std::vector<double> rounds_;  // of all workers until then
-};
-
-Totals totals_of(const Plan& plan) {
+Totals totals_of(const Plan& plan, const Target& target) {
   Totals totals;
-  const std::vector<int> schedule = look_schedule(plan.minimum, plan.maximum);
-  std::vector<LooksAhead> points;
+  StopRule rule(target, plan.minimum, plan.maximum);
+  std::vector<const PointPlan*> points;
   for (const PointPlan& point : plan.points) {
     const bool counts = point.is_predicted() || (point.decided && std::isfinite(point.cost.cpu_seconds));
     if (!counts) continue;
-    points.emplace_back(point, schedule, plan.workers);
+    points.push_back(&point);
     totals.predicted += point.is_predicted() ? 1 : 0;
     totals.likely_capped += point.is_predicted() && point.prediction.capped > 0.5 ? 1 : 0;
   }
   totals.points = static_cast<int>(points.size());
-  std::vector<double> seeds(futures), cpu(futures), cpu_to_come(futures), wall(futures);
-  for (std::size_t future = 0; future < futures; ++future) {
+  const double degrees = common_degrees(plan);
+  const auto stop_of = [&](const PointPlan& point, double quantile) {
+    const Prediction& made = point.prediction;
+    if (point.decided) return point.ended;
+    return std::max(point.ended, stop_after(made.estimates, made.pilot, rule, truth_at(degrees, quantile)));
+  };
+  const auto sum_of = [&](const auto& of_point) {
+    return expected([&](double quantile) {
+      double sum = 0;
+      for (const PointPlan* const point : points) sum += of_point(*point, stop_of(*point, quantile));
+      return sum;
+    });
+  };
+  totals.seeds = sum_of([](const PointPlan&, int stop) { return stop; });
+  totals.cpu_seconds = sum_of([](const PointPlan& point, int stop) { return stop * point.cost.cpu_seconds; });
+  totals.cpu_seconds_to_come =
+      sum_of([](const PointPlan& point, int stop) { return (stop - point.ended) * point.cost.cpu_seconds; });
+  totals.wall_seconds_to_come = expected([&](double quantile) {
     double work = 0, longest = 0;
-    for (const LooksAhead& point : points) {
-      seeds[future] += point.seeds(future);
-      cpu[future] += point.seeds(future) * point.cost().cpu_seconds;
-      cpu_to_come[future] += point.to_come(future) * point.cost().cpu_seconds;
-      work += point.to_come(future) * point.cost().wall_seconds;
-      longest = std::max(longest, point.chain_seconds(future));
+    for (const PointPlan* const point : points) {
+      const int stop = stop_of(*point, quantile);
+      const double rounds = rounds_until(point->ended, stop, rule.schedule(), plan.workers);
+      work += (stop - point->ended) * point->cost.wall_seconds;
+      longest = std::max(longest, rounds * point->cost.wall_seconds);
     }
-    wall[future] = std::max(work / plan.workers, longest);
-  }
-  totals.seeds = middle(std::move(seeds));
-  totals.cpu_seconds = middle(std::move(cpu));
-  totals.cpu_seconds_to_come = middle(std::move(cpu_to_come));
-  totals.wall_seconds_to_come = middle(std::move(wall));
+    return std::max(work / plan.workers, longest);
+  });
   // The machine may be faster or slower than it was for the seeds that the costs come from.
   totals.wall_seconds_to_come.lower /= machine_allowance;
   totals.wall_seconds_to_come.upper *= machine_allowance;
@@ -75,7 +66,7 @@ Totals totals_of(const Plan& plan) {
 
 // Looks at what is known as a run for the campaign's target would.
 void predict_point(PointPlan& point, const Campaign& campaign,
-                   const std::vector<std::optional<Outcome>>& outcomes, std::uint64_t stream) {
+                   const std::vector<std::optional<Outcome>>& outcomes) {
   const std::vector<Look> looks =
       replay_looks(outcomes, campaign.target, campaign.minimum_realisations, campaign.maximum_realisations);
   if (!looks.empty() && looks.back().verdict != Verdict::more) {
@@ -85,25 +76,8 @@ void predict_point(PointPlan& point, const Campaign& campaign,
   }
   point.ended = static_cast<int>(std::count_if(outcomes.begin(), outcomes.end(),
                                                [](const auto& outcome) { return outcome.has_value(); }));
-  point.prediction = predict(outcomes, campaign.target, campaign.minimum_realisations,
-                             campaign.maximum_realisations, stream);
-}
-
-// Futures in which the points are predicted together.
-void draw_futures(Plan& plan, const Campaign& campaign, const std::map<std::string, PointHistory>& known) {
-  std::vector<CostShare> shares;
-  for (const PointPlan& point : plan.points) {
-    const Prediction& made = point.prediction;
-    if (!point.is_predicted() || made.seeds.lower == made.seeds.upper) continue;
-    shares.push_back({made.seeds.likely * point.cost.cpu_seconds, made.pilot - made.lost});
-  }
-  const std::vector<double> factors = common_factors(shares);
-  for (std::size_t i = 0; i < plan.points.size(); ++i) {
-    PointPlan& point = plan.points[i];
-    if (!point.is_predicted()) continue;
-    point.places = places_of_looks(known.at(campaign.points[i].hash).outcomes, campaign.target,
-                                   campaign.minimum_realisations, campaign.maximum_realisations, i, factors);
-  }
+  point.prediction =
+      predict(outcomes, campaign.target, campaign.minimum_realisations, campaign.maximum_realisations);
 }
 
 }  // namespace
@@ -113,7 +87,7 @@ bool PointPlan::is_predicted() const { return !decided && obstacle().empty(); }
 std::string PointPlan::obstacle() const {
   if (decided) return "";
   if (prediction.obstacle != Obstacle::none) return obstacle_text(prediction);
-  return cost.count > 0 ? "" : "its seeds do not say what they cost";
+  return std::isfinite(cost.cpu_seconds) ? "" : "its seeds do not say what they cost";
 }
 
 Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_steps,
@@ -130,7 +104,7 @@ Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_ste
     all.cpu_seconds += point.cost.cpu_seconds * point.cost.count;
     all.wall_seconds += point.cost.wall_seconds * point.cost.count;
     known_steps += point.particle_steps * point.cost.count;
-    predict_point(point, campaign, history.outcomes, i);
+    predict_point(point, campaign, history.outcomes);
     plan.points.push_back(std::move(point));
   }
   if (known_steps == 0 && guess && plan.points.at(guess->point).particle_steps > 0) {
@@ -143,8 +117,7 @@ Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_ste
     const double share = known_steps > 0 ? point.particle_steps / known_steps : std::nan("");
     point.cost = {0, all.cpu_seconds * share, all.wall_seconds * share};
   }
-  draw_futures(plan, campaign, known);
-  plan.totals = totals_of(plan);
+  plan.totals = totals_of(plan, campaign.target);
   return plan;
 }
 

@@ -10,7 +10,7 @@
 
 #include "contract/json.h"
 #include "runner/campaign/campaign.h"
-#include "runner/statistics/prediction.h"
+#include "runner/statistics/forecast.h"
 
 namespace peclet::runner {
 
@@ -33,8 +33,7 @@ struct PointPlan {
   MeasuredCost cost;          // cpu_seconds is NaN when nothing is known; count 0: scaled from other points
   int ended = 0;              // seeds of the looks up to the deciding one, or so far
   std::optional<Look> decided{};
-  Prediction prediction{};    // of a point that is not decided
-  std::vector<int> places{};  // of its deciding look in the schedule, in the futures of the sums
+  Prediction prediction{};  // of a point that is not decided
   // Processor time over that of the same error at rest, where the engine says so (its derived
   // flow_over_rest).
   std::optional<double> flow_over_rest{};

@@ -23,10 +23,11 @@ double total_hours(const Plan& plan, int seeds) {
   return total;
 }
 
-// Some point has seeds from which it is, or could have been, predicted.
+// Some point is, or could have been, predicted.
 bool has_values(const Plan& plan) {
-  return std::any_of(plan.points.begin(), plan.points.end(),
-                     [](const PointPlan& point) { return point.decided || point.prediction.pilot >= 2; });
+  return std::any_of(plan.points.begin(), plan.points.end(), [](const PointPlan& point) {
+    return point.decided || point.prediction.pilot >= 2 || point.is_predicted();
+  });
 }
 
 std::string cost_text(const MeasuredCost& cost) {
@@ -117,7 +118,7 @@ std::string legend(const Plan& plan, bool predicted) {
         plan.guessed_from);
   }
   for (const std::string& trial : plan.broke_off) text += fmt::format("the trial of {}\n", trial);
-  if (predicted) {
+  if (predicted && plan.minimum < plan.maximum) {
     text +=
         "seeds: of the look that will decide, expected (range that holds it 95 % of the time)\n"
         "CPU h: of these seeds; all: expected and range of the sum, which are not the sums of those above\n";

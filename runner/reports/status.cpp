@@ -70,12 +70,11 @@ CampaignStatus read_status(Database& database) {
   CampaignStatus status;
   status.campaign = database.campaign();
   status.points = summarise_points(database, status.campaign.target);
+  status.forecasts = forecasts_of(database, status.points);
   status.handed_over = BundleStore(database.connection()).handed_over();
   if (status.handed_over.empty()) {
     const TargetRecord& target = status.campaign.target;
-    std::vector<PointForecast> forecasts;
-    for (const PointSummary& point : status.points) forecasts.push_back(point.forecast);
-    status.to_go = time_to_go(forecasts, target.target, target.minimum, target.maximum,
+    status.to_go = time_to_go(status.forecasts, target.target, target.minimum, target.maximum,
                               std::max(1, database.last_workers()));
   }
   return status;

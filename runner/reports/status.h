@@ -24,8 +24,9 @@ struct StatusOptions {
 struct CampaignStatus {
   CampaignRecord campaign;
   std::vector<PointSummary> points;
-  std::vector<HandedOver> handed_over;  // seeds in the hands of a batch system, by job
-  std::optional<std::int64_t> owner;    // process that runs it now
+  std::vector<PointForecast> forecasts{};  // of each point
+  std::vector<HandedOver> handed_over;     // seeds in the hands of a batch system, by job
+  std::optional<std::int64_t> owner;       // process that runs it now
   // With the workers of the last run; nothing before a seed has ended, and where a batch system has seeds.
   std::optional<TimeToGo> to_go{};
 };

@@ -35,10 +35,11 @@ std::string farthest(const Look& look) {
 
 // Of a fixed number of realisations: each observable that is shown, over the seeds of the look or those so
 // far.
-std::vector<std::string> shown_cells(const PointSummary& point, const Target& target) {
+std::vector<std::string> shown_cells(const PointSummary& point, const std::vector<Estimate>& so_far,
+                                     const Target& target) {
   std::vector<std::string> cells{fmt::format("{}/{}", point.wanted_ended, point.wanted)};
   if (point.looks.empty()) {
-    for (const Estimate& one : point.forecast.so_far)
+    for (const Estimate& one : so_far)
       cells.push_back(with_error(one.mean, half_width(one, target.confidence)));
   } else {
     for (const ObservableLook& one : each_of(point.looks.back(), target))
@@ -49,7 +50,6 @@ std::vector<std::string> shown_cells(const PointSummary& point, const Target& ta
 }
 
 std::vector<std::string> cells(const PointSummary& point, const Target& target) {
-  if (!target.has_tolerance()) return shown_cells(point, target);
   const bool with_others = target.observables().size() > 1;
   std::vector<std::string> cells{fmt::format("{}/{}", point.wanted_ended, point.wanted),
                                  with_error(point.so_far.mean, point.so_far.standard_error)};
@@ -223,7 +223,9 @@ std::string status_table(const CampaignStatus& status, std::size_t width) {
   table.add_column("verdict", TextTable::Align::left);
   for (std::size_t i = 0; i < labels.size(); ++i) {
     std::vector<std::string> row = points.cells(i);
-    const std::vector<std::string> rest = cells(status.points[i], target);
+    const std::vector<std::string> rest =
+        target.has_tolerance() ? cells(status.points[i], target)
+                               : shown_cells(status.points[i], status.forecasts[i].so_far, target);
     row.insert(row.end(), rest.begin(), rest.end());
     table.add_row(std::move(row));
   }

@@ -32,7 +32,7 @@ class RequestHandler {
 
   // Carries out what waits, each request in a transaction of its own. One that cannot be carried out becomes
   // an event `refused` that says why; a file that is no request is set aside with a warning. True when the
-  // ledger's picture was taken again: the seeds that workers have are then to be marked. Throws
+  // ledger's picture was taken again: the seeds that workers have are then to be found again. Throws
   // DatabaseError: the request it came with waits on, and the ledger's picture was taken again.
   bool carry_out();
 

@@ -26,9 +26,15 @@ std::vector<Observation> observed_in(std::span<const std::optional<Outcome>> coh
   observed.reserve(cohort.size());
   for (const std::optional<Outcome>& outcome : cohort) {
     const Observation observation = outcome->of(place);
-    if (!std::isnan(observation.value)) observed.push_back(observation);
+    if (observation.has_value()) observed.push_back(observation);
   }
   return observed;
+}
+
+Estimate estimate_of(const std::vector<Observation>& observed, const std::vector<double>& values) {
+  const bool are_shares = std::all_of(observed.begin(), observed.end(),
+                                      [](const Observation& observation) { return observation.is_share; });
+  return estimate(values, are_shares);
 }
 
 // All but half-width, share and verdict, which are the rule's.
@@ -36,14 +42,12 @@ ObservableLook look_at(const std::vector<Observation>& observed) {
   std::vector<double> controlled;
   controlled.reserve(observed.size());
   int contrasts = 0;
-  bool is_share = !observed.empty();
   for (const Observation& observation : observed) {
-    controlled.push_back(observation.value + observation.control);
-    is_share = is_share && observation.is_share;
+    controlled.push_back(observation.controlled());
     if (std::isfinite(observation.first_half)) ++contrasts;
   }
   ObservableLook look;
-  look.estimate = estimate(controlled, is_share);
+  look.estimate = estimate_of(observed, controlled);
   look.skewness = skewness(controlled);
   look.transient = has_transient(observed);
   look.untested = lacks_blocks(look.estimate.count, contrasts);
@@ -53,12 +57,8 @@ ObservableLook look_at(const std::vector<Observation>& observed) {
 Estimate without_control(const std::vector<Observation>& observed) {
   std::vector<double> values;
   values.reserve(observed.size());
-  bool is_share = !observed.empty();
-  for (const Observation& observation : observed) {
-    values.push_back(observation.value);
-    is_share = is_share && observation.is_share;
-  }
-  return estimate(values, is_share);
+  for (const Observation& observation : observed) values.push_back(observation.value);
+  return estimate_of(observed, values);
 }
 
 Look look_at(std::span<const std::optional<Outcome>> cohort, StopRule& rule,
@@ -113,6 +113,23 @@ Outcome outcome_of(const NumberLayout& layout, std::span<const double> numbers,
                   final_state_sha256.data() + std::min(digits, final_state_sha256.size()),
                   outcome.final_state, 16);
   return outcome;
+}
+
+void add(RunningEstimate& known, const Observation& observation) {
+  if (observation.has_value()) known.add(observation.controlled(), observation.is_share);
+}
+
+std::vector<Estimate> estimates_so_far(std::span<const std::optional<Outcome>> outcomes,
+                                       std::size_t observables) {
+  std::vector<RunningEstimate> sums(observables);
+  for (const std::optional<Outcome>& outcome : outcomes) {
+    if (!outcome) continue;
+    for (std::size_t place = 0; place < observables; ++place) add(sums[place], outcome->of(place));
+  }
+  std::vector<Estimate> estimates;
+  estimates.reserve(observables);
+  for (const RunningEstimate& sum : sums) estimates.push_back(sum.estimate());
+  return estimates;
 }
 
 Observation Outcome::of(std::size_t place) const {

@@ -5,7 +5,6 @@
 // and resumed or not, give the same looks, the same deciding look and the same mean.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -26,7 +25,7 @@ struct Outcome : Observation {
   std::vector<Observation> further{};  // of the other ones of Target::observables(), in that order
   std::uint64_t final_state = 0;       // first digits of its hash; 0 where it is not known
 
-  bool is_lost() const { return std::isnan(value); }
+  bool is_lost() const { return !has_value(); }
   // The observation at that place of Target::observables(); without a value of a seed that is lost.
   Observation of(std::size_t place) const;
 };
@@ -35,6 +34,12 @@ struct Outcome : Observation {
 // known).
 Outcome outcome_of(const NumberLayout& layout, std::span<const double> numbers,
                    const std::string& final_state_sha256);
+// Counts value + control of an observation in the estimate, if it has a value.
+void add(RunningEstimate& known, const Observation& observation);
+
+// Returns the estimates of that number of observables over the seeds that have ended, in any order.
+std::vector<Estimate> estimates_so_far(std::span<const std::optional<Outcome>> outcomes,
+                                       std::size_t observables);
 
 // What a look says of one of several observables.
 struct ObservableLook {

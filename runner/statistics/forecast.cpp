@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <span>
 #include <utility>
 
 #include "runner/text/duration_text.h"
@@ -16,133 +16,213 @@ namespace {
 constexpr int fewest_costs = 3;
 constexpr double unknown_scatter = 0.5;  // over the mean
 
-struct Spread {
-  double mean = 0, deviation = 0, error = 0;
-};
+int least_count(const std::vector<Estimate>& estimates) {
+  const auto has_fewer = [](const Estimate& one, const Estimate& other) { return one.count < other.count; };
+  const auto fewest = std::min_element(estimates.begin(), estimates.end(), has_fewer);
+  return fewest == estimates.end() ? 0 : fewest->count;
+}
 
-// A cost that a seed may have, and its share; the shares of all add up to their number.
-struct SharedCost {
-  double seconds = 0;
-  bool runs = false;
-  std::optional<double> whole{};
-  double share = 1;
-};
+// Returns the true share at a quantile, counted from 0 or 1 towards 1/2.
+double share_at(const Estimate& known, double quantile) {
+  return share_quantile(known.count, known.mean, known.mean < 0.5 ? quantile : 1 - quantile);
+}
 
-std::vector<SharedCost> shared_costs(const Cost& ended, const std::vector<Unfinished>& running) {
-  std::vector<SharedCost> costs;
-  double longest = 0;
-  for (const double seconds : ended.seconds) costs.push_back({seconds});
-  for (const Unfinished& one : running) {
-    costs.push_back({one.taken, true, one.whole});
-    longest = std::max(longest, one.whole.value_or(0));
-  }
-  std::sort(costs.begin(), costs.end(), [](const SharedCost& one, const SharedCost& other) {
-    return std::pair(one.seconds, one.runs) < std::pair(other.seconds, other.runs);
-  });
-  const auto last_ended =
-      std::find_if(costs.rbegin(), costs.rend(), [](const auto& one) { return !one.runs; });
-  double handed_on = 0;  // to each of those that follow
-  auto later = static_cast<double>(costs.size());
-  for (auto one = costs.begin(); one != costs.end(); ++one) {
-    later -= 1;
-    one->share += handed_on;
-    if (!one->runs) continue;
-    if (one < last_ended.base()) {
-      handed_on += one->share / later;
-      one->share = 0;
-    } else {
-      one->seconds = std::max(one->seconds, one->whole.value_or(longest));
+// Returns the estimates that are expected of `seeds` seeds: Student's factor and the standard error both
+// fall.
+std::vector<Estimate> expected_at(const std::vector<Estimate>& so_far, int ended, int seeds,
+                                  const Truth& truth) {
+  std::vector<Estimate> expected = so_far;
+  for (Estimate& one : expected) {
+    const double growth = static_cast<double>(seeds) / ended;
+    const auto values = static_cast<int>(std::lround(one.count * growth));
+    const double share = static_cast<double>(values) / one.count;
+    if (one.values == Estimate::Values::share && truth.quantile) {
+      one.mean += (1 - 1 / share) * (share_at(one, *truth.quantile) - one.mean);
     }
-  }
-  return costs;
-}
-
-Spread spread(const Cost& ended, const std::vector<Unfinished>& running) {
-  const std::vector<SharedCost> costs = shared_costs(ended, running);
-  const auto count = static_cast<double>(costs.size());
-  double sum = 0, squares_of_shares = 0, squares = 0;
-  for (const SharedCost& one : costs) {
-    sum += one.share * one.seconds;
-    squares_of_shares += one.share * one.share / (count * count);
-  }
-  const double mean = sum / count;
-  for (const SharedCost& one : costs) squares += one.share * std::pow(one.seconds - mean, 2) / count;
-  const double known = 1 / squares_of_shares;  // costs of equal shares that would say as much
-  const double deviation = std::lround(known) < fewest_costs ? unknown_scatter * mean
-                                                             : std::sqrt(squares / (1 - squares_of_shares));
-  return {mean, deviation, deviation / std::sqrt(known)};
-}
-
-// A point of which nothing has ended is taken to cost what its running seeds are expected to, or else what
-// the others do: `of_all`, unless seeds that run have lasted longer.
-Spread spread(const PointForecast& point, const Cost& all, const Spread& of_all) {
-  const auto is_known = [](const Unfinished& one) { return one.whole.has_value(); };
-  const bool has_own =
-      point.cost.count() > 0 || std::any_of(point.unfinished.begin(), point.unfinished.end(), is_known);
-  if (!has_own && point.unfinished.empty()) return of_all;
-  return spread(has_own ? point.cost : all, point.unfinished);
-}
-
-struct SeedRange {
-  int likely = 0, low = 0, high = 0;
-};
-
-// What may be expected of so many seeds: Student's factor and the standard error both fall with them.
-std::vector<Estimate> expected_at(const PointForecast& point, int seeds, double factor) {
-  std::vector<Estimate> expected;
-  expected.reserve(point.so_far.size());
-  for (const Estimate& known : point.so_far) {
-    const double growth = static_cast<double>(seeds) / point.ended;
-    const auto values = static_cast<int>(std::lround(known.count * growth));
-    const double share = static_cast<double>(values) / known.count;
-    expected.push_back({values, known.mean, known.standard_error * std::sqrt(factor / share), known.values});
+    one.standard_error *= std::sqrt(truth.variance / share);
+    one.count = values;
   }
   return expected;
 }
 
-// The first look that decides, of those that take more seeds than have ended, if the variance is `factor`
-// times the sample's.
-int stop_of(const PointForecast& point, StopRule& rule, double factor) {
-  const std::vector<int>& schedule = rule.schedule();
-  const auto stops = [&](int seeds) { return rule.stops(seeds, expected_at(point, seeds, factor)); };
-  const auto later = std::upper_bound(schedule.begin(), schedule.end(), point.ended);
-  const auto enough = std::find_if(later, schedule.end(), stops);
-  return enough == schedule.end() ? schedule.back() : *enough;
-}
-
-SeedRange seeds_of(const PointForecast& point, StopRule& rule) {
-  const int minimum = rule.schedule().front(), maximum = rule.schedule().back();
-  if (point.fewest_values() < 2 || !rule.has_measure(point.so_far)) return {minimum, minimum, maximum};
-  constexpr double outside = 0.1;
-  const int degrees = point.fewest_values() - 1;
-  return {stop_of(point, rule, 1), stop_of(point, rule, variance_excess(degrees, 1 - outside)),
-          stop_of(point, rule, variance_excess(degrees, outside))};
-}
-
-// Rounds of all workers until the point has so many seeds: a look waits for all its seeds. Of the first one
-// `done` is over where seeds run.
-double rounds_of(const PointForecast& point, const std::vector<int>& schedule, int seeds, int workers,
-                 double done) {
-  double rounds = 0;
-  int known = point.ended;
-  for (const int look : schedule) {
-    if (look <= known || look > seeds) continue;
-    rounds += std::ceil(static_cast<double>(look - known) / workers);
-    known = look;
+Obstacle obstacle_of(const Prediction& made, const Target& target) {
+  if (made.pilot < 2) return Obstacle::too_few;
+  if (made.fewest_values() < 2) return Obstacle::lost;
+  const std::vector<std::string> observables = target.observables();
+  const auto known = [&](const std::string& name) {
+    const auto place = std::find(observables.begin(), observables.end(), name) - observables.begin();
+    return made.estimates[static_cast<std::size_t>(place)];
+  };
+  Obstacle found = Obstacle::none;
+  for (const auto& [observable, tolerance] : target.criteria()) {
+    if (known(observable).values == Estimate::Values::equal) return Obstacle::no_spread;
+    const Estimate measure = known(tolerance.relative_to.empty() ? observable : tolerance.relative_to);
+    if (tolerance.needs_a_mean() && 2 * measure.standard_error >= std::abs(measure.mean))
+      found = Obstacle::near_zero;
   }
-  return rounds - (point.running > 0 ? done : 0);
+  return found;
+}
+
+struct Spread {
+  double mean = 0, deviation = 0, error = 0;
+};
+
+// Returns the spread of costs with this mean and mean square. `shares` is the sum of the squared shares that
+// the costs have in the mean, 1 / n for n equal ones.
+Spread spread_of(double mean, double mean_square, double shares) {
+  const double known = 1 / shares;  // number of equal shares that would say as much
+  const double variance = std::max(0.0, mean_square - mean * mean) / (1 - shares);
+  const double deviation = std::lround(known) < fewest_costs ? unknown_scatter * mean : std::sqrt(variance);
+  return {mean, deviation, deviation / std::sqrt(known)};
+}
+
+Spread spread(const Cost& ended, std::vector<Unfinished> running) {
+  std::sort(running.begin(), running.end(),
+            [](const Unfinished& one, const Unfinished& other) { return one.taken < other.taken; });
+  double longest = 0;
+  for (const Unfinished& one : running) longest = std::max(longest, one.whole.value_or(0));
+  const auto count = static_cast<double>(ended.count()) + static_cast<double>(running.size());
+  double sum = 0, squares = 0, squared_shares = 0;
+  double share = 1;  // of 1 / count, with what those that run and have taken less have handed on
+  const auto count_in = [&](double seconds) {
+    sum += share * seconds;
+    squares += share * seconds * seconds;
+    squared_shares += share * share;
+  };
+  auto later = count;  // seeds that follow
+  auto next = running.begin();
+  for (const double seconds : ended.ascending()) {
+    for (; next != running.end() && next->taken < seconds; ++next) {
+      later -= 1;
+      share += share / later;
+    }
+    later -= 1;
+    count_in(seconds);
+  }
+  for (; next != running.end(); ++next) count_in(std::max(next->taken, next->whole.value_or(longest)));
+  return spread_of(sum / count, squares / count, squared_shares / (count * count));
+}
+
+Spread spread(const std::vector<PointForecast>& points) {
+  double count = 0, sum = 0, squares = 0;
+  for (const PointForecast& point : points) {
+    count += point.cost.count();
+    sum += point.cost.sum();
+    squares += point.cost.squares();
+  }
+  return spread_of(sum / count, squares / count, 1 / count);
+}
+
+// Returns what a seed of the point costs. If none has ended, it costs what the running ones are expected to,
+// or else what the others do, and no less than the running ones have taken.
+Spread spread(const PointForecast& point, const Spread& of_all) {
+  const auto is_known = [](const Unfinished& one) { return one.whole.has_value(); };
+  if (point.cost.count() > 0 || std::any_of(point.unfinished.begin(), point.unfinished.end(), is_known))
+    return spread(point.cost, point.unfinished);
+  Spread guessed = of_all;
+  for (const Unfinished& one : point.unfinished) guessed.mean = std::max(guessed.mean, one.taken);
+  return guessed;
+}
+
+// Returns the seeds at which the point stops as the sample says, and with its variance at the quantiles of 10
+// and 90 % of what is open.
+Expected<int> seeds_of(const PointForecast& point, StopRule& rule) {
+  const int minimum = rule.schedule().front(), maximum = rule.schedule().back();
+  const int values = least_count(point.so_far);
+  if (values < 2 || !rule.has_measure(point.so_far)) return {minimum, minimum, maximum};
+  const auto at = [&](const Truth& truth) { return stop_after(point.so_far, point.ended, rule, truth); };
+  constexpr double outside = 0.1;
+  return {at({}), at(truth_at(values - 1, outside)), at(truth_at(values - 1, 1 - outside))};
 }
 
 }  // namespace
 
-void Cost::add(double of_one) {
-  seconds.push_back(of_one);
-  sum += of_one;
+Truth truth_at(double degrees, double quantile) {
+  return {std::isnan(degrees) ? 1 : variance_excess(degrees, 1 - quantile), quantile};
 }
 
-void Cost::keep_first(int count) {
-  seconds.resize(static_cast<std::size_t>(count));
-  sum = std::accumulate(seconds.begin(), seconds.end(), 0.0);
+int stop_after(const std::vector<Estimate>& so_far, int ended, StopRule& rule, const Truth& truth) {
+  const std::vector<int>& schedule = rule.schedule();
+  if (!rule.has_tolerance()) return schedule.back();
+  const auto stops = [&](int seeds) { return rule.is_met(expected_at(so_far, ended, seeds, truth)); };
+  const auto later = std::upper_bound(schedule.begin(), schedule.end(), ended);
+  const auto enough = std::find_if(later, schedule.end(), stops);
+  return enough == schedule.end() ? schedule.back() : *enough;
+}
+
+double rounds_until(int ended, int seeds, const std::vector<int>& schedule, int workers) {
+  double rounds = 0;
+  for (const int look : schedule) {
+    if (look <= ended || look > seeds) continue;
+    rounds += std::ceil(static_cast<double>(look - ended) / workers);
+    ended = look;
+  }
+  return rounds;
+}
+
+Prediction predict(const std::vector<std::optional<Outcome>>& outcomes, const Target& target, int minimum,
+                   int maximum) {
+  StopRule rule(target, minimum, maximum);
+  const auto end = outcomes.begin() + std::min<std::ptrdiff_t>(std::ssize(outcomes), maximum);
+  const std::span pilot(outcomes.begin(), std::find(outcomes.begin(), end, std::nullopt));
+  Prediction made;
+  made.pilot = static_cast<int>(pilot.size());
+  made.estimates = estimates_so_far(pilot, target.observables().size());
+  made.lost = made.pilot - least_count(made.estimates);
+  if (!target.has_tolerance()) {
+    made.seeds = {maximum, maximum, maximum};
+    return made;
+  }
+  made.obstacle = obstacle_of(made, target);
+  if (made.obstacle != Obstacle::none) return made;
+  const auto at = [&](double quantile) { return truth_at(made.fewest_values() - 1, quantile); };
+  made.seeds =
+      expected([&](double quantile) { return stop_after(made.estimates, made.pilot, rule, at(quantile)); });
+  constexpr int futures = 100;
+  for (int future = 0; future < futures; ++future) {
+    const Truth truth = at((future + 0.5) / futures);
+    const int seeds = stop_after(made.estimates, made.pilot, rule, truth);
+    if (!rule.is_met(expected_at(made.estimates, made.pilot, seeds, truth))) made.capped += 1.0 / futures;
+  }
+  return made;
+}
+
+std::string obstacle_text(const Prediction& prediction) {
+  switch (prediction.obstacle) {
+    case Obstacle::none:
+      break;
+    case Obstacle::too_few:
+      return "fewer than two seeds have ended";
+    case Obstacle::lost:
+      return fmt::format("{} of {} seeds are lost", prediction.lost, prediction.pilot);
+    case Obstacle::no_spread:
+      return fmt::format("the values of {} seeds are equal", prediction.fewest_values());
+    case Obstacle::near_zero:
+      return fmt::format("the mean of {} seeds may be zero", prediction.fewest_values());
+  }
+  return "";
+}
+
+int expected_seeds(const std::vector<Look>& looks, const Target& target, int minimum, int maximum) {
+  if (looks.empty()) return minimum;
+  StopRule rule(target, minimum, maximum);
+  const std::vector<Estimate> known = estimates_of(looks.back(), target);
+  if (least_count(known) < 2 || !rule.has_measure(known)) return maximum;
+  return stop_after(known, looks.back().seeds, rule);
+}
+
+Cost::Cost(std::vector<double> seconds) : seconds_(std::move(seconds)) {
+  std::sort(seconds_.begin(), seconds_.end());
+  for (const double one : seconds_) {
+    sum_ += one;
+    squares_ += one * one;
+  }
+}
+
+void Cost::add(double seconds) {
+  seconds_.insert(std::upper_bound(seconds_.begin(), seconds_.end(), seconds), seconds);
+  sum_ += seconds;
+  squares_ += seconds * seconds;
 }
 
 double mean_cost(const Cost& ended, const std::vector<Unfinished>& running) {
@@ -151,42 +231,21 @@ double mean_cost(const Cost& ended, const std::vector<Unfinished>& running) {
 
 std::string to_string(const TimeToGo& to_go) {
   if (!(to_go.likely >= 0.5)) return "";
-  return fmt::format("{} to go ({} to {})", duration_text(to_go.likely), duration_text(to_go.low),
-                     duration_text(to_go.high));
+  return fmt::format("{} to go ({} to {})", duration_text(to_go.likely), duration_text(to_go.lower),
+                     duration_text(to_go.upper));
 }
 
 Json to_json(const std::optional<TimeToGo>& to_go) {
   if (!to_go) return nullptr;
-  return {{"likely", to_go->likely}, {"low", to_go->low}, {"high", to_go->high}};
-}
-
-int PointForecast::fewest_values() const {
-  const auto has_fewer = [](const Estimate& one, const Estimate& other) { return one.count < other.count; };
-  const auto fewest = std::min_element(so_far.begin(), so_far.end(), has_fewer);
-  return fewest == so_far.end() ? 0 : fewest->count;
-}
-
-int expected_seeds(const std::vector<Look>& looks, const Target& target, int minimum, int maximum,
-                   double factor) {
-  StopRule rule(target, minimum, maximum);
-  if (looks.empty()) return rule.schedule().front();
-  PointForecast point;
-  point.ended = looks.back().seeds;
-  point.so_far = estimates_of(looks.back(), target);
-  if (point.fewest_values() < 2 || !rule.has_measure(point.so_far)) return maximum;
-  return stop_of(point, rule, factor);
+  return {{"likely", to_go->likely}, {"low", to_go->lower}, {"high", to_go->upper}};
 }
 
 std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, const Target& target,
                                    int minimum, int maximum, int workers) {
-  Cost all;
-  for (const PointForecast& point : points) {
-    all.seconds.insert(all.seconds.end(), point.cost.seconds.begin(), point.cost.seconds.end());
-    all.sum += point.cost.sum;
-  }
-  if (all.count() == 0) return std::nullopt;
+  const auto has_cost = [](const PointForecast& point) { return point.cost.count() > 0; };
+  if (std::none_of(points.begin(), points.end(), has_cost)) return std::nullopt;
 
-  const Spread of_all = spread(all, {});
+  const Spread of_all = spread(points);
   StopRule rule(target, minimum, maximum);
   TimeToGo chains, work;
   double above = 0, below = 0;  // squares of what the work may differ by
@@ -194,29 +253,31 @@ std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, con
   for (const PointForecast& point : points) {
     if (point.decided) continue;
     any = true;
-    const Spread cost = spread(point, all, of_all);
-    const SeedRange seeds = seeds_of(point, rule);
+    const Spread cost = spread(point, of_all);
+    const Expected<int> seeds = seeds_of(point, rule);
     // Half of what runs is done, in the mean.
     const auto to_come = [&](int stop) { return std::max(0.5, stop - point.ended - 0.5 * point.running); };
     const double left = to_come(seeds.likely);
     work.likely += left * cost.mean;
     const double scatter = 4 * (left * cost.deviation * cost.deviation + std::pow(left * cost.error, 2));
-    above += scatter + std::pow((to_come(seeds.high) - left) * cost.mean, 2);
-    below += scatter + std::pow((left - to_come(seeds.low)) * cost.mean, 2);
-    const auto rounds = [&](int stop, double done) {
-      return rounds_of(point, rule.schedule(), stop, workers, done);
+    above += scatter + std::pow((to_come(seeds.upper) - left) * cost.mean, 2);
+    below += scatter + std::pow((left - to_come(seeds.lower)) * cost.mean, 2);
+    // Of the first round `done` is over where seeds run.
+    const auto chain = [&](int stop, double done) {
+      return rounds_until(point.ended, stop, rule.schedule(), workers) - (point.running > 0 ? done : 0);
     };
-    chains.likely = std::max(chains.likely, rounds(seeds.likely, 0.5) * cost.mean);
-    chains.low = std::max(chains.low, rounds(seeds.low, 0.9) * std::max(0.0, cost.mean - 2 * cost.error));
-    chains.high =
-        std::max(chains.high, rounds(seeds.high, 0) * (cost.mean + 2 * cost.error) + 2 * cost.deviation);
+    chains.likely = std::max(chains.likely, chain(seeds.likely, 0.5) * cost.mean);
+    chains.lower =
+        std::max(chains.lower, chain(seeds.lower, 0.9) * std::max(0.0, cost.mean - 2 * cost.error));
+    chains.upper =
+        std::max(chains.upper, chain(seeds.upper, 0) * (cost.mean + 2 * cost.error) + 2 * cost.deviation);
   }
   if (!any) return TimeToGo{};
-  work.low = std::max(0.0, work.likely - std::sqrt(below));
-  work.high = work.likely + std::sqrt(above);
+  work.lower = std::max(0.0, work.likely - std::sqrt(below));
+  work.upper = work.likely + std::sqrt(above);
   return TimeToGo{std::max(work.likely / workers, chains.likely),
-                  std::max(work.low / workers, std::min(chains.low, chains.likely)) / machine_allowance,
-                  std::max(work.high / workers, chains.high) * machine_allowance};
+                  std::max(work.lower / workers, std::min(chains.lower, chains.likely)) / machine_allowance,
+                  std::max(work.upper / workers, chains.upper) * machine_allowance};
 }
 
 }  // namespace peclet::runner

@@ -1,15 +1,29 @@
-// How long a campaign will still take, from what its points have cost and scattered so far. Pure.
+// How many seeds points still need, and how long a campaign will take, from what its seeds have cost and how
+// they scatter. Pure.
 //
-// Of a point with v values the true variance is not known better than (v - 1) / chi^2(v - 1) times the
-// sample's: the stop rule, carried out with its 10 % and 90 % quantiles, gives the range of the seeds to
-// come. Seeds that jam or fail early end first, so that the mean of those that have ended is too small: seeds
+// Seeds. Of n values with the sample variance s^2 the true variance is distributed as
+//   (n - 1) s^2 / chi^2(n - 1),
+// and the true share of k ones in n values as Beta(k + 1/2, n - k + 1/2). For each quantile of these the stop
+// rule, carried out with the estimates that are expected of more seeds, gives the look at which the point
+// stops: stop_after(). The median is what is expected, and two outer quantiles are the ends of the range. All
+// observables of a target have the same quantile.
+//
+// A sum over points is known better than each of them, since their errors partly cancel. There the variances
+// of all points are off by one factor, f / chi^2(f), with Satterthwaite's degrees of freedom of a sum of
+// variances,
+//   f = (sum w)^2 / sum(w^2 / (n - 1)),
+// w being what a point is expected to cost. Of one point, or one that outweighs the others, f = n - 1.
+//
+// Time. Seeds that jam or fail early end first, so that the mean of those that have ended is too small: seeds
 // that still run count as longer than they have taken (mean_cost). With the number of seeds go the scatter of
 // the costs and the error of their mean, each point's on its own, so that their squares add up. What all
 // points have in common is the machine: other work, heat and clock rates change its speed, which nothing in
-// the past tells. Both ends of a range leave room for that, see machine_allowance. results/planning has how
-// often the ranges hold the truth.
+// the past tells. Both ends of a range leave room for that, see machine_allowance.
+//
+// results/planning has how often the ranges hold the truth.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,21 +33,90 @@
 
 namespace peclet::runner {
 
-// By what the mean speed of a machine in the time to come may differ from that so far, either way. Chosen so
-// that ranges hold the time to go 93 to 98 % of the time where the speed wanders between 1 and 1/2
-// (results/planning).
+// What is expected, with the range that holds it 95 % of the time.
+template <typename Number>
+struct Expected {
+  Number likely{}, lower{}, upper{};
+};
+
+// How the truth may differ from a sample. The default is as the sample says.
+struct Truth {
+  double variance = 1;               // over the sample's
+  std::optional<double> quantile{};  // of a share, from 0 or 1 towards 1/2
+};
+// Returns the truth at a quantile for a sample with these degrees of freedom; if they are NaN, the variance
+// is known.
+Truth truth_at(double degrees, double quantile);
+
+// Returns numbers_at(quantile) at the median and at the ends of the range. These lie beyond 2.5 and 97.5 %,
+// because the estimates at the looks scatter, too (results/planning).
+template <typename Numbers>
+auto expected(const Numbers& numbers_at) {
+  constexpr double outside = 0.02;
+  const auto [lower, upper] = std::minmax({numbers_at(outside), numbers_at(1 - outside)});
+  return Expected<decltype(numbers_at(0.5))>{numbers_at(0.5), lower, upper};
+}
+
+// Returns the first look after `ended` seeds at which the point stops if it goes on as its first `ended`
+// seeds, which have these estimates, let expect; the last look if none stops it. Requires two values of each
+// observable, unless the rule has no tolerance.
+int stop_after(const std::vector<Estimate>& so_far, int ended, StopRule& rule, const Truth& truth = {});
+// Returns the rounds of all workers in which a point comes from `ended` to `seeds` ended seeds: a look waits
+// for all its seeds.
+double rounds_until(int ended, int seeds, const std::vector<int>& schedule, int workers);
+
+// Why nothing can be predicted of a point.
+enum class Obstacle {
+  none,
+  too_few,    // fewer than two seeds have ended
+  lost,       // fewer than two of them with a value
+  no_spread,  // all values of an observable are equal, and it is no share
+  near_zero   // the mean of a relative tolerance is within two standard errors of zero: it means nothing yet
+};
+
+struct Prediction {
+  Obstacle obstacle = Obstacle::none;
+  int pilot = 0;  // seeds that it was made from: 0 .. pilot - 1
+  int lost = 0;   // of them, to the observable that lacks most; later ones are taken to be lost as often
+  std::vector<Estimate> estimates{};  // of the pilot
+  Expected<int> seeds;                // of the deciding look
+  double capped = 0;                  // probability of ending at the maximum without convergence
+
+  int fewest_values() const { return pilot - lost; }
+};
+
+// Predicts the seeds of a point that is not decided from outcomes as of replay_looks(), up to the first seed
+// that has not ended. Without a tolerance there is no obstacle, and the number of seeds is sure.
+Prediction predict(const std::vector<std::optional<Outcome>>& outcomes, const Target& target, int minimum,
+                   int maximum);
+
+// "2 of 4 seeds are lost", for people; "" without an obstacle.
+std::string obstacle_text(const Prediction& prediction);
+
+// Returns the number of seeds at which a point with these looks is expected to stop if its spread stays that
+// of the last look.
+int expected_seeds(const std::vector<Look>& looks, const Target& target, int minimum, int maximum);
+
+// The factor by which the mean speed of a machine may change, either way. Chosen so that ranges hold the time
+// to go 93 to 98 % of the time if the speed wanders between 1 and 1/2 (results/planning).
 constexpr double machine_allowance = 1.3;
 
-// What realisations of a point that have ended cost, in seconds of a worker.
-struct Cost {
-  std::vector<double> seconds{};
-  double sum = 0;
-  void add(double of_one);
-  // Forgets those that were added last.
-  void keep_first(int count);
-  int count() const { return static_cast<int>(seconds.size()); }
+// The costs of realisations that have ended, in seconds of a worker.
+class Cost {
+ public:
+  Cost() = default;
+  explicit Cost(std::vector<double> seconds);
+  void add(double seconds);
+  int count() const { return static_cast<int>(seconds_.size()); }
+  double sum() const { return sum_; }
+  double squares() const { return squares_; }
   // Requires at least one.
-  double mean() const { return sum / count(); }
+  double mean() const { return sum_ / count(); }
+  const std::vector<double>& ascending() const { return seconds_; }
+
+ private:
+  std::vector<double> seconds_;  // ascending
+  double sum_ = 0, squares_ = 0;
 };
 
 // What is known of a seed that a worker has.
@@ -48,6 +131,7 @@ struct Unfinished {
 // longer. Where none of these has ended, it is expected to run to its end. Requires a seed.
 double mean_cost(const Cost& ended, const std::vector<Unfinished>& running);
 
+// What the time to go of a point depends on.
 struct PointForecast {
   Cost cost;
   std::vector<Estimate> so_far{};  // of the values that have ended, of Target::observables() in that order
@@ -55,29 +139,17 @@ struct PointForecast {
   int running = 0;                 // seeds that workers have
   bool decided = false;
   std::vector<Unfinished> unfinished{};  // of the running seeds those of which something is known
-
-  // Values of the observable that has the fewest.
-  int fewest_values() const;
 };
 
-// Seconds until every point is decided; low and high hold it some 95 % of the time.
-struct TimeToGo {
-  double likely = 0, low = 0, high = 0;
-};
+using TimeToGo = Expected<double>;  // seconds until every point is decided
 
 // "12 min to go (10 min to 18 min)"; "" below half a second.
 std::string to_string(const TimeToGo& to_go);
-// {"likely": 720, "low": 600, "high": 1080}; null for nothing.
+// {"likely": 720, "low": 600, "high": 1080}; null if nothing is known.
 Json to_json(const std::optional<TimeToGo>& to_go);
 
-// Seeds at which the point may be expected to stop by the stop rule, if its spread is what it was at the last
-// look. `factor` scales the variance.
-int expected_seeds(const std::vector<Look>& looks, const Target& target, int minimum, int maximum,
-                   double factor = 1);
-
-// The longer of what the work takes that is shared by the workers, and of the looks of a point, which come
-// one after another and wait for all of their seeds. Nothing while no realisation of any undecided point has
-// ended.
+// Returns the longer one of two times: of the work, shared by the workers, and of the looks of a point, which
+// come one after another and wait for all of their seeds. Nothing if no realisation has ended yet.
 std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, const Target& target,
                                    int minimum, int maximum, int workers);
 

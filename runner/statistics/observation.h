@@ -1,6 +1,7 @@
 // What a realisation says of one observable.
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <span>
 #include <string>
@@ -17,6 +18,9 @@ struct Observation {
   double first_quarter = std::numeric_limits<double>::quiet_NaN();
   double first_half = std::numeric_limits<double>::quiet_NaN();
   bool is_share = false;  // the value is 0 or 1 by its nature
+
+  bool has_value() const { return !std::isnan(value); }
+  double controlled() const { return value + control; }
 };
 
 // Numbers that are stored of an observation: value, control, first quarter and first half.

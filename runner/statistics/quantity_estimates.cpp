@@ -22,8 +22,8 @@ bool is_like(const Quantity& one, const Quantity& other) {
          std::equal(one.axes.begin(), one.axes.end(), other.axes.begin(), other.axes.end(), same_axis);
 }
 
-void add_number(RunningEstimate& running, double value) {
-  if (!std::isnan(value)) running.add(value);
+void add_number(RunningEstimate& running, double value, bool is_share = false) {
+  if (!std::isnan(value)) running.add(value, is_share);
 }
 
 // The list of numbers as lists over the axes from `axis` on.
@@ -82,7 +82,7 @@ QuantityEstimates::Sums& QuantityEstimates::sums_of(const Quantity& quantity) {
                        [](const Sums& sums, const std::string& name) { return sums.quantity.name < name; });
   if (place != sums_.end() && place->quantity.name == quantity.name) return *place;
   Sums sums{quantity, {}, {}, {}, {}};
-  if (!quantity.ratio) sums.plain.resize(quantity.elements(), RunningEstimate(quantity.is_share));
+  if (!quantity.ratio) sums.plain.resize(quantity.elements());
   if (quantity.control) sums.controlled.resize(quantity.elements());
   return *sums_.insert(place, std::move(sums));
 }
@@ -97,7 +97,7 @@ void QuantityEstimates::add_numbers(Sums& sums, std::span<const double> numbers,
     if (has_jammed && quantity.axes.empty() && values.front() != 0) ++sums.infinite;
     return;
   }
-  for (std::size_t k = 0; k < elements; ++k) add_number(sums.plain[k], values[k]);
+  for (std::size_t k = 0; k < elements; ++k) add_number(sums.plain[k], values[k], quantity.is_share);
   if (!quantity.control) return;
   // As in a look: a value without its control counts as it is.
   for (std::size_t k = 0; k < elements; ++k) {

@@ -71,13 +71,7 @@ void Scheduler::look_at(Point& point) {
 
 void Scheduler::count_in(Point& point, const Outcome& outcome) const {
   point.so_far.resize(observables_);
-  for (std::size_t place = 0; place < observables_; ++place) {
-    const Observation observation = outcome.of(place);
-    if (std::isnan(observation.value)) continue;
-    RunningEstimate& known = point.so_far[place];
-    if (observation.is_share && known.estimate().count == 0) known = RunningEstimate(true);
-    known.add(observation.value + observation.control);
-  }
+  for (std::size_t place = 0; place < observables_; ++place) add(point.so_far[place], outcome.of(place));
 }
 
 std::vector<Estimate> Scheduler::so_far(int point) const {
@@ -225,26 +219,6 @@ void Scheduler::give_back(SeedId id) {
   assert(phase == Phase::out);
   phase = Phase::waiting;
   --point_at(id.point).begun;
-}
-
-Scheduler::Kept Scheduler::kept(SeedId id) const {
-  const Point& point = point_at(id.point);
-  const Progress& progress = point;
-  Kept kept{id, progress, Phase::waiting, std::nullopt};
-  if (const auto seed = static_cast<std::size_t>(id.seed); seed < point.phases.size()) {
-    kept.phase = point.phases[seed];
-    kept.outcome = point.outcomes[seed];
-  }
-  return kept;
-}
-
-void Scheduler::put_back(Kept&& kept) noexcept {
-  Point& point = point_at(kept.id.point);
-  static_cast<Progress&>(point) = std::move(kept.progress);
-  if (const auto seed = static_cast<std::size_t>(kept.id.seed); seed < point.phases.size()) {
-    point.phases[seed] = kept.phase;
-    point.outcomes[seed] = std::move(kept.outcome);
-  }
 }
 
 bool Scheduler::end(SeedId id, const Outcome& outcome) {

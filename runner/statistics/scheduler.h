@@ -103,36 +103,22 @@ class Scheduler {
   const Target& target() const { return target_; }
   int points() const { return static_cast<int>(points_.size()); }
 
+ private:
   // How one seed stands; one that nothing is known of waits.
   enum class Phase : unsigned char { waiting, out, ended };
-  // What changes of a point when one of its seeds ends.
-  struct Progress {
-    std::vector<Look> looks;
+  struct Point {
+    std::vector<Look> looks{};
     int begun = 0;  // out or ended
     int all_ended = 0;
-    std::vector<RunningEstimate> so_far;  // of each observable
-    int closed = 0;                       // the seeds 0 .. closed - 1 have ended
-    int expected = 0;                     // seeds at which it may be expected to stop
+    std::vector<RunningEstimate> so_far{};  // of each observable
+    int closed = 0;                         // the seeds 0 .. closed - 1 have ended
+    int expected = 0;                       // seeds at which it may be expected to stop
     double fall = 0;  // of the half-width until the next look, as a share of the tolerance
-    std::optional<double> seconds;
-  };
-  // A point as it is now, apart from its other seeds: all that end() and set_cost() can change.
-  struct Kept {
-    SeedId id;
-    Progress progress;
-    Phase phase = Phase::waiting;
-    std::optional<Outcome> outcome;
-  };
-  Kept kept(SeedId id) const;
-  // Puts back what was kept, when what has been told of this seed since turns out not to count.
-  void put_back(Kept&& kept) noexcept;
-
- private:
-  struct Point : Progress {
+    std::optional<double> seconds{};
     // As long as the largest seed that is known asks for, because the maximum may be far beyond what the
     // point will ever need: later seeds wait, and have no outcome.
-    std::vector<std::optional<Outcome>> outcomes;
-    std::vector<Phase> phases;
+    std::vector<std::optional<Outcome>> outcomes{};
+    std::vector<Phase> phases{};
     int priority = 0;
     bool cancelled = false;
     double work = 1;

@@ -59,7 +59,8 @@ Estimate estimate(std::span<const double> values, bool is_share) {
   return result;
 }
 
-void RunningEstimate::add(double value) {
+void RunningEstimate::add(double value, bool is_share) {
+  is_share_ = is_share_ && is_share;
   low_ = count_ == 0 ? value : std::min(low_, value);
   high_ = count_ == 0 ? value : std::max(high_, value);
   are_binary_ = are_binary_ && is_binary(value);
@@ -92,7 +93,7 @@ double student_quantile(int degrees, double confidence) {
   return boost::math::quantile(boost::math::complement(distribution, (1 - confidence) / 2));
 }
 
-double variance_excess(int degrees, double probability) {
+double variance_excess(double degrees, double probability) {
   const boost::math::chi_squared distribution(degrees);
   return degrees / boost::math::quantile(distribution, probability);
 }
@@ -108,6 +109,11 @@ Interval share_interval(int count, double mean, double confidence) {
   const double outside = (1 - confidence) / 2;
   return {ones > 0 ? boost::math::quantile(Beta(ones, zeros + 1), outside) : 0,
           zeros > 0 ? boost::math::quantile(boost::math::complement(Beta(ones + 1, zeros), outside)) : 1};
+}
+
+double share_quantile(int count, double mean, double probability) {
+  const boost::math::beta_distribution<> open(count * mean + 0.5, count * (1 - mean) + 0.5);
+  return boost::math::quantile(open, probability);
 }
 
 double half_width(const Estimate& estimate, double confidence) {

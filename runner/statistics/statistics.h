@@ -27,12 +27,12 @@ Estimate estimate(std::span<const double> values, bool is_share = false);
 // The same of values that come one by one (Welford's update); NaN for a mean without any.
 class RunningEstimate {
  public:
-  explicit RunningEstimate(bool is_share = false) : is_share_(is_share) {}
-  void add(double value);
+  // Of a share are all values or none.
+  void add(double value, bool is_share = false);
   Estimate estimate() const;
 
  private:
-  bool is_share_;
+  bool is_share_ = true;
   int count_ = 0;
   double mean_ = 0, squares_ = 0;  // squares: the sum of the squared deviations from the mean
   double low_ = 0, high_ = 0;
@@ -48,7 +48,7 @@ double student_quantile(int degrees, double confidence);
 
 // By what the variance of a normal population may exceed that of a sample, but for this probability:
 // f / chi^2_p(f), f the sample's degrees of freedom and chi^2_p the quantile of p.
-double variance_excess(int degrees, double probability);
+double variance_excess(double degrees, double probability);
 
 // Half-width t(n - 1, (1 + confidence) / 2) * standard error of Student's interval; NaN for fewer than two
 // values.
@@ -62,6 +62,10 @@ struct Interval {
 // 404): the shares p for which k or more, and k or fewer, of `count` have a probability of (1 - confidence) /
 // 2 or more. It holds the true share at least as often as it says. Requires count > 0.
 Interval share_interval(int count, double mean, double confidence);
+
+// What lies below the true share with this probability, after k = count * mean of `count` values are 1 and by
+// Jeffreys' prior: the quantile of Beta(k + 1/2, count - k + 1/2).
+double share_quantile(int count, double mean, double probability);
 
 // Half-width of the interval at this confidence: Student's of values with a spread; the larger side of
 // share_interval() of a share. NaN for fewer than two values, and for equal or repeated ones, which have no

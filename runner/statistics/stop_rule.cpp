@@ -110,9 +110,9 @@ double StopRule::share(const Part& part, Estimates estimates) {
   return part.tolerance.share(half_width(estimates[part.place]), mean);
 }
 
-bool StopRule::stops(int seeds, Estimates estimates) {
-  return seeds >= maximum_ || std::all_of(parts_.begin(), parts_.end(),
-                                          [&](const Part& part) { return share(part, estimates) <= 1; });
+bool StopRule::is_met(Estimates estimates) {
+  return std::all_of(parts_.begin(), parts_.end(),
+                     [&](const Part& part) { return share(part, estimates) <= 1; });
 }
 
 StopRule::Judgement StopRule::judge(int seeds, Estimates estimates) {

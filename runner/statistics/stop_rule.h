@@ -88,8 +88,9 @@ class StopRule {
     std::vector<Finding> findings;  // of each observable
   };
   Judgement judge(int seeds, Estimates estimates);
-  // Whether the verdict would not be `more`.
-  bool stops(int seeds, Estimates estimates);
+  bool has_tolerance() const { return has_tolerance_; }
+  // Whether each criterion is within its tolerance.
+  bool is_met(Estimates estimates);
 
   // At the adjusted level; NaN where there is no interval.
   double half_width(const Estimate& estimate);

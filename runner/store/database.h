@@ -18,8 +18,6 @@
 #include "contract/integrity_error.h"
 #include "contract/json.h"
 #include "runner/campaign/campaign.h"
-#include "runner/statistics/cohorts.h"
-#include "runner/statistics/expected.h"
 #include "runner/statistics/forecast.h"
 #include "runner/store/sqlite.h"
 

@@ -23,7 +23,6 @@ struct Aggregate {
   std::vector<int> tested;        // the first few seeds with blocks, as many as a test for transients needs
   std::vector<double> seconds;    // of processor time that each of these took
   std::vector<int> jammed, lost;  // those of these that have jammed, or have no value for another reason
-  Cost cost;                      // time on the wall
 
   void count(SeedState state, int seed, const std::string& cause, double cpu_seconds) {
     switch (state) {
@@ -74,17 +73,16 @@ struct Aggregate {
 // time.
 std::map<std::int64_t, Aggregate> read_aggregates(Connection& connection) {
   Statement query(connection,
-                  "SELECT point_id, seed, state, numbers, cpu_seconds, wall_seconds, cause FROM realisation "
+                  "SELECT point_id, seed, state, numbers, cpu_seconds, cause FROM realisation "
                   "LEFT JOIN numbers USING (point_id, seed) ORDER BY point_id, seed");
   std::map<std::int64_t, Aggregate> aggregates;
   while (query.step()) {
     Aggregate& aggregate = aggregates[query.integer(0)];
     const int seed = static_cast<int>(query.integer(1));
-    aggregate.count(seed_state(query.text(2)), seed, query.text(6), query.optional_real(4).value_or(0));
-    if (const std::optional<double> seconds = query.optional_real(5)) aggregate.cost.add(*seconds);
+    aggregate.count(seed_state(query.text(2)), seed, query.text(5), query.optional_real(4).value_or(0));
     const Observation observed = leading_observation(query.text(3));
-    if (std::isnan(observed.value)) continue;
-    aggregate.so_far.add(observed.value + observed.control);
+    if (!observed.has_value()) continue;
+    add(aggregate.so_far, observed);
     if (!std::isnan(observed.first_half) && aggregate.tested.size() < fewest_contrasts)
       aggregate.tested.push_back(seed);
   }
@@ -143,25 +141,6 @@ std::map<std::int64_t, int> read_largest_earlier_looks(Connection& connection) {
   return largest;
 }
 
-// The estimates of the target's observables, whatever the order in which the seeds ended.
-std::vector<Estimate> estimates_so_far(const std::vector<std::optional<Outcome>>& outcomes,
-                                       std::size_t observables) {
-  std::vector<RunningEstimate> sums(observables);
-  for (const std::optional<Outcome>& outcome : outcomes) {
-    if (!outcome) continue;
-    for (std::size_t place = 0; place < observables; ++place) {
-      const Observation of = outcome->of(place);
-      if (std::isnan(of.value)) continue;
-      if (of.is_share && sums[place].estimate().count == 0) sums[place] = RunningEstimate(true);
-      sums[place].add(of.value + of.control);
-    }
-  }
-  std::vector<Estimate> estimates(observables);
-  std::transform(sums.begin(), sums.end(), estimates.begin(),
-                 [](const RunningEstimate& sum) { return sum.estimate(); });
-  return estimates;
-}
-
 // What is not stored of a look. Outcomes are read only where it has no interval, which is rare.
 void make_again(Database& database, const PointRecord& point, const TargetRecord& target,
                 PointSummary& summary) {
@@ -192,8 +171,6 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
   std::map<std::int64_t, std::map<std::string, std::string>> reasons = read_loss_reasons(connection);
   CountsByPoint flags = read_flags(connection);
   const bool any_apart = connection.integer("SELECT count(*) FROM point WHERE kept_apart = 1") > 0;
-  std::map<std::int64_t, std::vector<Unfinished>> unfinished = database.unfinished();
-  const std::size_t observables = target.target.observables().size();
   std::map<std::int64_t, int> earlier = read_largest_earlier_looks(connection);
   const std::map<std::int64_t, StoredPrediction> predictions = database.predictions();
   const std::vector<int> schedule = look_schedule(target.minimum, target.maximum);
@@ -228,18 +205,32 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
     summary.wanted_ended = aggregate.ended_below(summary.wanted);
     summary.wanted_cpu_seconds = aggregate.seconds_of_first(summary.wanted_ended);
     if (summary.counts.running > 0) summary.leases = database.leases(point.id);
-    summary.forecast = {std::move(aggregate.cost),          {summary.so_far},
-                        summary.counts.terminal(),          summary.counts.running,
-                        summary.decided || point.cancelled, std::move(unfinished[point.id])};
-    // Equal values may be those of a share, which only the outcomes tell.
-    const bool is_simple = observables == 1 && summary.so_far.values != Estimate::Values::equal;
-    if (!is_simple && !summary.forecast.decided)
-      summary.forecast.so_far = estimates_so_far(database.outcomes(point.id), observables);
     if (any_apart) summary.kept_apart = database.kept_apart(point.hash);
     summary.point = std::move(point);
     summaries.push_back(std::move(summary));
   }
   return summaries;
+}
+
+std::vector<PointForecast> forecasts_of(Database& database, const std::vector<PointSummary>& points) {
+  Statement query(database.connection(),
+                  "SELECT point_id, wall_seconds FROM realisation WHERE wall_seconds IS NOT NULL");
+  std::map<std::int64_t, std::vector<double>> seconds;
+  while (query.step()) seconds[query.integer(0)].push_back(query.real(1));
+  std::map<std::int64_t, std::vector<Unfinished>> unfinished = database.unfinished();
+  const std::size_t observables = database.campaign().target.target.observables().size();
+  std::vector<PointForecast> forecasts;
+  for (const PointSummary& summary : points) {
+    const std::int64_t id = summary.point.id;
+    // Equal values may be those of a share, which only the outcomes tell.
+    const bool is_simple = observables == 1 && summary.so_far.values != Estimate::Values::equal;
+    forecasts.push_back({Cost(std::move(seconds[id])),
+                         is_simple || !summary.open() ? std::vector{summary.so_far}
+                                                      : estimates_so_far(database.outcomes(id), observables),
+                         summary.counts.terminal(), summary.counts.running, !summary.open(),
+                         std::move(unfinished[id])});
+  }
+  return forecasts;
 }
 
 namespace {

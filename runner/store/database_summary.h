@@ -44,7 +44,6 @@ struct PointSummary {
   double wanted_cpu_seconds = 0;  // that these took
   std::optional<StoredPrediction> prediction{};
   std::vector<LeaseRecord> leases;
-  PointForecast forecast{};
 
   // Neither decided nor cancelled.
   bool open() const { return !decided && !point.cancelled; }
@@ -58,6 +57,8 @@ Json to_json(const Endings& endings);
 
 // The points of the sweep, in its order.
 std::vector<PointSummary> summarise_points(Database& database, const TargetRecord& target);
+// Returns what the seeds of these points have cost and said so far, for time_to_go().
+std::vector<PointForecast> forecasts_of(Database& database, const std::vector<PointSummary>& points);
 
 // The last look at a point for the present target, checked by replaying it; nothing before the first. Throws
 // IntegrityError when stored looks are not what the stored results say.

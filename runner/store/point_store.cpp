@@ -4,7 +4,6 @@
 
 #include "contract/input_error.h"
 #include "runner/statistics/observation.h"
-#include "runner/statistics/prediction.h"
 #include "runner/statistics/quantities.h"
 #include "runner/store/number_store.h"
 #include "runner/store/result_store.h"

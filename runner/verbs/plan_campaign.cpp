@@ -26,17 +26,18 @@ namespace {
 // Seeds that run meanwhile count as in a forecast: those that jam early end first.
 MeasuredCost cost_of(const std::vector<RealisationRecord>& realisations,
                      const std::vector<Unfinished>& running) {
-  Cost wall;
+  std::vector<double> wall_seconds;
   double cpu_seconds = 0;
   for (const RealisationRecord& record : realisations) {
     // A seed that was given up took time too, but nobody counted it.
     if (!record.cpu_seconds) continue;
     cpu_seconds += *record.cpu_seconds;
-    wall.add(record.wall_seconds.value_or(*record.cpu_seconds));
+    wall_seconds.push_back(record.wall_seconds.value_or(*record.cpu_seconds));
   }
+  const Cost wall(std::move(wall_seconds));
   if (wall.count() == 0) return {};
   const double seconds = mean_cost(wall, running);
-  return {wall.count(), wall.sum > 0 ? cpu_seconds * seconds / wall.sum : cpu_seconds / wall.count(),
+  return {wall.count(), wall.sum() > 0 ? cpu_seconds * seconds / wall.sum() : cpu_seconds / wall.count(),
           seconds};
 }
 

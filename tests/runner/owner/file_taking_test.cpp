@@ -68,6 +68,8 @@ class TakingFiles : public Dispatching {
     EXPECT_TRUE(fs::is_empty(directory_.left()));
   }
   std::ptrdiff_t rejected() const { return std::distance(fs::directory_iterator(directory_.rejected()), {}); }
+
+  FileRemoval removal_;
 };
 
 TEST_F(TakingFiles, BringsThemToTheirPlaces) {
@@ -273,8 +275,8 @@ TEST_F(TakingFiles, FromAnotherFileSystemTheyComeAsCopies) {
     booking.commit();
     for (const int number : {0, 1}) EXPECT_TRUE(fs::exists(left(spool, number))) << "until it has its place";
     if (!to_the_end) return;
-    after.carry_out(listener_);
-    after.finish_removals();
+    after.carry_out(listener_, removal_);
+    removal_.finish();
   };
   take_in(false);  // the owner dies after the commit
   take_in(true);
@@ -297,8 +299,8 @@ TEST_F(TakingFiles, KeepsWhatWasCheckedWhateverHasItsNameSince) {
     fs::create_directories(left(spool, 1) / "inside");
     booking.commit();
   }
-  after.carry_out(listener_);
-  EXPECT_NO_THROW(after.finish_removals());
+  after.carry_out(listener_, removal_);
+  EXPECT_NO_THROW(removal_.finish());
   expect_in_place(0);
 }
 
@@ -348,8 +350,8 @@ TEST_F(TakingFiles, ReplacesNoFolderAndMissesNoFileThatHasGone) {
   after.discard(directory_.checkpoints() / "c.checkpoint");
   fs::create_directories(directory_.checkpoints() / "c.checkpoint" / "inside");
   fs::remove_all(directory_.rejected());
-  after.carry_out(listener_);
-  after.finish_removals();
+  after.carry_out(listener_, removal_);
+  removal_.finish();
   EXPECT_EQ(read_file(place), "file");
   EXPECT_FALSE(fs::exists(result));
   EXPECT_FALSE(fs::exists(directory_.checkpoints() / "c.checkpoint"));

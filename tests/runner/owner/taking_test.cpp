@@ -191,6 +191,38 @@ TEST_F(Taking, WhatFailsForWantOfRoomIsNoFaultOfTheResult) {
   EXPECT_NE(picture(), before);
 }
 
+// A checkpoint below a file cannot be removed. Then the folder is there as it was, with checkpoints of the
+// seed whose attempt has ended and of one whose end was not booked.
+TEST_F(Taking, WhatACommitHasLeftToDoOutlivesATransactionThatFails) {
+  const auto refused = [this] {
+    const std::int64_t engine = ledger_->admit_engine(plain_engine());
+    const GivenSeed given_seed = ledger_->give_out(0, 4711, engine).value();
+    ledger_->end_attempt(given_seed, {AttemptOutcome::refused});
+    return given_seed.job.checkpoint;
+  };
+  Transaction first(database_.connection());
+  const GivenSeed other = ledger_->give_out(1, 4712, ledger_->admit_engine(plain_engine())).value();
+  const fs::path checkpoint = refused();
+  first.commit();
+  fs::remove_all(directory_.checkpoints());
+  write_durably(directory_.checkpoints(), "no folder");
+  EXPECT_THROW(ledger_->after_commit(), std::system_error);
+  EXPECT_EQ(listener_.count<AttemptFailed>(), 0);
+  {
+    const Transaction second(database_.connection());
+    ledger_->end_attempt(other, {AttemptOutcome::refused});
+  }
+  ledger_->roll_back();
+  fs::remove(directory_.checkpoints());
+  fs::create_directory(directory_.checkpoints());
+  for (const fs::path& file : {checkpoint, other.job.checkpoint}) write_durably(file, "a state");
+  for (int time = 0; time < 2; ++time) ledger_->after_commit();
+  EXPECT_FALSE(fs::exists(checkpoint));
+  EXPECT_TRUE(fs::exists(other.job.checkpoint));
+  EXPECT_EQ(listener_.count<AttemptFailed>(), 1);
+  EXPECT_EQ(ledger_->scheduler().begun(0), 1);
+}
+
 // What its shape lets through nobody may stumble over later.
 TEST_F(Dispatching, AResultWithAWarningThatIsNoneDoesNotCount) {
   for (const Json& warnings :

@@ -89,8 +89,7 @@ void simulate(const Case& about, Source& source, Tally& tally) {
     ++tally.decided;
     return;
   }
-  const int tried = tally.count + tally.none;
-  const Prediction made = predict(outcomes, target, minimum, maximum, static_cast<std::uint64_t>(tried));
+  const Prediction made = predict(outcomes, target, minimum, maximum);
   if (made.obstacle != Obstacle::none) {
     ++tally.none;
     return;
@@ -141,12 +140,16 @@ std::vector<Case> cases() {
   return all;
 }
 
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + std::ssize(values) / 2, values.end());
+  return values[values.size() / 2];
+}
+
 void print_row(const std::string& population, const Case& about, const Tally& tally) {
   const auto percent = [&](int part) { return 100.0 * part / tally.count; };
   fmt::print("{},{},{:g},{:g},{},{},{},{:.1f},{:.1f},{:.1f},{:.3f},{:.1f}\n", population, about.pilot,
              about.tolerance, about.needed, tally.count, tally.none, tally.decided, percent(tally.held),
-             percent(tally.below), percent(tally.above), middle(tally.ratios).likely,
-             middle(tally.widths).likely);
+             percent(tally.below), percent(tally.above), median(tally.ratios), median(tally.widths));
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ TEST(Status, TheForecastKnowsOfSeedsThatRun) {
       "'2026-01-01T00:02:00Z'");
   CampaignStatus status = read_status(campaign.database());
   status.owner = 4711;
-  ASSERT_EQ(status.points.at(0).forecast.unfinished.size(), 1U);
+  ASSERT_EQ(status.forecasts.at(0).unfinished.size(), 1U);
   const double mean = (4 * 4 + 1200) / 5.0;
   ASSERT_TRUE(status.to_go);
   EXPECT_NEAR(status.to_go->likely, 3.5 * mean / 2, 1e-6);  // four seeds of two workers, half of one is done
@@ -217,8 +217,8 @@ TEST(Status, ASharesIntervalIsThatOfAShare) {
   EXPECT_NEAR(look["half_width"].get<double>(), 1 - std::pow((1 - 0.95875) / 2, 1 / 8.0), 1e-9);
   const std::string text = explain(campaign.database(), campaign.directory(), "");
   // So that the forecast knows what more of them are worth.
-  ASSERT_EQ(status.points.at(0).forecast.so_far.size(), 1U);
-  EXPECT_EQ(status.points.at(0).forecast.so_far[0].values, Estimate::Values::share);
+  ASSERT_EQ(status.forecasts.at(0).so_far.size(), 1U);
+  EXPECT_EQ(status.forecasts.at(0).so_far[0].values, Estimate::Values::share);
   EXPECT_TRUE(says(text, "interval: 0.616 .. 1 of the share (Clopper and Pearson)")) << text;
   const Json exported = Json::parse(export_json(campaign.database(), true))["points"][0];
   EXPECT_EQ(exported["quantities"]["flowing"]["estimator"], "share");

@@ -130,11 +130,11 @@ struct Tally {
 
   void add(const TimeToGo& told, double actual) {
     ++count;
-    held += told.low <= actual && actual <= told.high ? 1 : 0;
-    below += actual < told.low ? 1 : 0;
-    above += actual > told.high ? 1 : 0;
+    held += told.lower <= actual && actual <= told.upper ? 1 : 0;
+    below += actual < told.lower ? 1 : 0;
+    above += actual > told.upper ? 1 : 0;
     ratios.push_back(told.likely / actual);
-    widths.push_back(told.high / std::max(told.low, 1e-9));
+    widths.push_back(told.upper / std::max(told.lower, 1e-9));
   }
 };
 

@@ -53,8 +53,8 @@ TEST(Forecast, EqualCostsShareTheWorkers) {
   const std::optional<TimeToGo> left = time_to_go({five_of_six_seconds()}, ten_percent, 10, 100, 2);
   ASSERT_TRUE(left);
   EXPECT_DOUBLE_EQ(left->likely, 3 * 6);
-  EXPECT_DOUBLE_EQ(left->low, 3 * 6 / machine_allowance);
-  EXPECT_DOUBLE_EQ(left->high, 3 * 6 * machine_allowance);
+  EXPECT_DOUBLE_EQ(left->lower, 3 * 6 / machine_allowance);
+  EXPECT_DOUBLE_EQ(left->upper, 3 * 6 * machine_allowance);
 }
 
 TEST(Forecast, ScatteredCostsWidenTheRange) {
@@ -65,8 +65,8 @@ TEST(Forecast, ScatteredCostsWidenTheRange) {
   const std::optional<TimeToGo> left = time_to_go({scattered}, ten_percent, 10, 100, 1);
   ASSERT_TRUE(left);
   EXPECT_DOUBLE_EQ(left->likely, sure->likely);
-  EXPECT_LT(left->low, sure->low);
-  EXPECT_GT(left->high, sure->high);
+  EXPECT_LT(left->lower, sure->lower);
+  EXPECT_GT(left->upper, sure->upper);
 }
 
 // Kaplan and Meier by hand: of three seeds two have ended after 2 and 4 s, one runs for 3 s. The share of
@@ -92,8 +92,8 @@ TEST(Forecast, SeedsThatEndFirstDoNotSpeakForTheOthers) {
   const std::optional<TimeToGo> left = time_to_go({point}, ten_percent, 10, 100, 6);
   ASSERT_TRUE(left);
   EXPECT_NEAR(left->likely, 1.5 * mean, 1e-9);  // eight more of six workers in two rounds, half of one done
-  EXPECT_LE(left->low, 1560);
-  EXPECT_GE(left->high, 2 * 1560);
+  EXPECT_LE(left->lower, 1560);
+  EXPECT_GE(left->upper, 2 * 1560);
 }
 
 // Where the rate is not known yet, a seed that runs takes as long as the others that run.
@@ -112,8 +112,8 @@ TEST(Forecast, SeedsThatRunAreStillToCome) {
   const std::optional<TimeToGo> left = time_to_go({point}, ten_percent, 10, 100, 4);
   ASSERT_TRUE(left);
   EXPECT_DOUBLE_EQ(left->likely, 3);
-  EXPECT_LE(left->low, 1);
-  EXPECT_GE(left->high, 6);
+  EXPECT_LE(left->lower, 1);
+  EXPECT_GE(left->upper, 6);
 }
 
 // Ten values with a half-width of some 16 % where 10 % are tolerated: 26 seeds are likely; the variance of
@@ -125,8 +125,8 @@ TEST(Forecast, TheNumberOfSeedsIsNotKnownBetterThanTheSpread) {
   point.so_far = {{10, 10, 0.7}};
   const std::optional<TimeToGo> left = time_to_go({point}, ten_percent, 10, 1000, 1);
   ASSERT_TRUE(left);
-  EXPECT_GT(left->high / left->likely, 2 * machine_allowance);
-  EXPECT_GT(left->likely / left->low, 1.5 * machine_allowance);
+  EXPECT_GT(left->upper / left->likely, 2 * machine_allowance);
+  EXPECT_GT(left->likely / left->lower, 1.5 * machine_allowance);
 }
 
 TEST(Forecast, BeforeTwoValuesAnyNumberOfSeedsMayBeNeeded) {
@@ -134,7 +134,7 @@ TEST(Forecast, BeforeTwoValuesAnyNumberOfSeedsMayBeNeeded) {
   point.cost.add(6);
   point.ended = 1;
   point.so_far = {{1, 10, std::nan("")}};
-  EXPECT_GE(time_to_go({point}, ten_percent, 10, 100, 1)->high, 99 * 6);
+  EXPECT_GE(time_to_go({point}, ten_percent, 10, 100, 1)->upper, 99 * 6);
 }
 
 TEST(Forecast, DecidedPointsCostNothing) {

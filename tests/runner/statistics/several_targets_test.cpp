@@ -6,7 +6,6 @@
 
 #include "runner/statistics/cohorts.h"
 #include "runner/statistics/forecast.h"
-#include "runner/statistics/prediction.h"
 #include "runner/statistics/scheduler.h"
 
 namespace peclet::runner {
@@ -213,8 +212,8 @@ TEST(SeveralTargets, TheHardestToKnowTellsHowManySeedsToExpect) {
   const int expected = expected_seeds(replay_looks(outcomes, target, 10, 10000), target, 10, 10000);
   EXPECT_EQ(expected, 137);
   const Target alone{"viscosity", 0.05, 0.95};
-  const Prediction together = predict(outcomes, target, 20, 10000, 0);
-  EXPECT_EQ(predict(outcomes, alone, 20, 10000, 0).seeds.likely, 20);
+  const Prediction together = predict(outcomes, target, 20, 10000);
+  EXPECT_EQ(predict(outcomes, alone, 20, 10000).seeds.likely, 20);
   EXPECT_GE(together.seeds.likely, 87);
   EXPECT_LE(together.seeds.likely, 215);
   Scheduler scheduler({outcomes}, target, 10, 10000);

@@ -99,8 +99,8 @@ TEST(Statistics, ValuesThatComeOneByOneAreOfTheSameKind) {
   const std::vector<std::vector<double>> all{{1, 1, 1}, {0, 1, 0}, {2, 2, 2}, {1, 2, 3}, {0, 0}, {1}};
   for (const bool is_share : {false, true}) {
     for (const std::vector<double>& values : all) {
-      RunningEstimate running(is_share);
-      for (const double value : values) running.add(value);
+      RunningEstimate running;
+      for (const double value : values) running.add(value, is_share);
       EXPECT_EQ(running.estimate().values, estimate(values, is_share).values);
     }
   }
