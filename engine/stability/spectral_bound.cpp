@@ -12,7 +12,7 @@ namespace peclet::engine {
 namespace {
 
 // Far more than any packing has needed.
-constexpr int most_iterations = 200;
+constexpr int most_lanczos_iterations = 200;
 constexpr int iterations_between_looks = 4;
 
 Eigen::VectorXd start_vector(Eigen::Index rows) {
@@ -43,10 +43,11 @@ Largest largest_of(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& besid
 
 SpectralBound largest_eigenvalue(const PackingMatrix& matrix, double tolerance) {
   Eigen::VectorXd vector = start_vector(matrix.rows()), before = Eigen::VectorXd::Zero(matrix.rows());
-  Eigen::VectorXd diagonal(most_iterations), beside(most_iterations);  // beside(k) couples k and k + 1
+  Eigen::VectorXd diagonal(most_lanczos_iterations),
+      beside(most_lanczos_iterations);  // beside(k) couples k and k + 1
   double length = 0;
   SpectralBound bound;
-  while (bound.iterations < most_iterations) {
+  while (bound.iterations < most_lanczos_iterations) {
     Eigen::VectorXd product = matrix * vector;
     const int k = bound.iterations++;
     diagonal(k) = vector.dot(product);
