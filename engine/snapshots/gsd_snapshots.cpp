@@ -119,9 +119,9 @@ class FrameReading {
       snapshot.radius[i] = 0.5 * double{diameters[i][0]};
     }
     if (const gsd::IndexEntry* const chunk = own_or_first("particles/types")) {
-      if (chunk->rows > most_species) {
+      if (chunk->rows > most_types) {
         refuse("particles/types", fmt::format("{} types", chunk->rows),
-               fmt::format("must be at most {}", most_species));
+               fmt::format("must be at most {}", most_types));
       }
       const auto text = file_.get<std::int8_t>(*chunk, chunk->columns);
       const std::string letters(text.begin(), text.end());

@@ -17,7 +17,7 @@
 namespace peclet::engine {
 
 // A file that says more is not believed.
-constexpr std::uint32_t most_spheres = 10'000'000, most_species = 4096;
+constexpr std::uint32_t most_spheres = 10'000'000, most_types = 4096;
 
 // Two spheres that touch, by their places in the lists of the snapshot.
 struct SnapshotContact {

@@ -208,7 +208,7 @@ class XyzReading {
     std::vector<std::string>& names = snapshot.species_names;
     const auto known = std::ranges::find(names, name);
     if (known != names.end()) return static_cast<std::uint32_t>(known - names.begin());
-    if (names.size() == most_species) refuse("species", fmt::format("must be at most {}", most_species));
+    if (names.size() == most_types) refuse("species", fmt::format("must be at most {}", most_types));
     names.emplace_back(name);
     return static_cast<std::uint32_t>(names.size() - 1);
   }
