@@ -50,6 +50,8 @@ std::optional<int> refused_by(const error_code& error) {
   return std::nullopt;
 }
 
+}  // namespace
+
 // An HTTP connection: reads the head of one request, writes one answer and waits for the other side to hang
 // up: closing a socket with unread bytes takes back what was sent.
 class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
@@ -140,8 +142,6 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   http::response_serializer<Body> serializer_{response_};
   std::array<char, 4096> drained_{};
 };
-
-}  // namespace
 
 HttpAnswer refusal(int status) {
   const auto reason = http::obsolete_reason(http::int_to_status(static_cast<unsigned>(status)));
