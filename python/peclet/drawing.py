@@ -89,10 +89,14 @@ def unit_of(unit):
     return "" if unit == "1" else unit
 
 
-def title_of(about):
+def title_of(about, longest=math.inf):
+    """Words, symbol and unit; the words have a line of their own where all has more characters than `longest`."""
     symbol = [*plain(" "), *about["symbol"]] if about["symbol"] else []
     unit = [*plain(" ["), *parts_of(about["unit"]), *plain("]")] if about["unit"] else []
-    return plain(about["words"]) + symbol + unit
+    title = plain(about["words"]) + symbol + unit
+    if len(title) > 1 and len("".join(part["text"] for part in title)) > longest:
+        title[1:2] = plain(title[1]["text"].replace(" ", "\n", 1))
+    return title
 
 
 def mathtext(parts):
@@ -373,7 +377,8 @@ def set_axis(axes, name, about, ends):
     limits, scale = getattr(axes, f"set_{name}lim"), getattr(axes, f"set_{name}scale")
     scale("log" if about["log"] else "linear")
     axes.tick_params(axis=name, which="both", direction="in", top=True, right=True)
-    getattr(axes, f"set_{name}label")(mathtext(title_of(about["about"])))
+    longest = 40 if name == "y" else math.inf  # for the height of a panel
+    getattr(axes, f"set_{name}label")(mathtext(title_of(about["about"], longest)))
     if words:
         step = -(-len(words) // 8)
         limits(-0.5, len(words) - 0.5)

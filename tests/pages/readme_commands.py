@@ -69,10 +69,12 @@ def compare(page, printed, whole):
 
 
 def shell(script, home, folder):
+    # Debian's python3, which has matplotlib, comes before any other.
+    environment = {**os.environ, "HOME": home, "PATH": f"/usr/bin:{os.environ['PATH']}"}
     done = subprocess.run(
         ["bash", "-euo", "pipefail", "-c", script],
         cwd=folder,
-        env={**os.environ, "HOME": home},
+        env=environment,
         text=True,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,

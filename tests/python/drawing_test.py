@@ -62,6 +62,16 @@ class Names(unittest.TestCase):
             about = {"name": "stress/total", "element": element, "symbol": symbol, "unit": unit}
             self.assertEqual(text_of(drawing.title_of(drawing.about_quantity(about))), expected)
 
+    def test_of_an_axis_that_is_too_long_have_two_lines(self):
+        for symbol, unit, expected in (
+            ("σ", "stress", "contact normal\nσ [stress]"),
+            ("", "stress", "contact normal\n[stress]"),
+            ("", "1", "contact normal"),
+        ):
+            about = drawing.about_quantity({"name": "contact_normal", "element": "", "symbol": symbol, "unit": unit})
+            self.assertEqual(text_of(drawing.title_of(about, 14)), expected)
+            self.assertEqual(text_of(drawing.title_of(about, 25)), expected.replace("\n", " "))
+
     def test_of_a_key_without_words_are_its_last_steps(self):
         for pointer, words in (("/particles/species/1/radius", "radius"), ("/flow/wave_vector/2", "wave vector 2")):
             key = {"pointer": pointer, "words": "", "symbol": "", "unit": ""}

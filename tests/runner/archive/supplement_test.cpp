@@ -14,8 +14,6 @@
 namespace peclet::runner {
 namespace {
 
-namespace fs = std::filesystem;
-
 class Supplement : public testing::Test {
  protected:
   void complete() {
