@@ -102,12 +102,7 @@ sanitize() {
   say "Running their tests"
   build/asan-ubsan/bin/contract_tests --gtest_brief=1
   build/asan-ubsan/bin/fuzz_spheres --runs 4000 --findings build/asan-ubsan tests/fuzz/corpus/spheres
-  local shards=2 shard runs=()
-  for ((shard = 0; shard < shards; ++shard)); do
-    GTEST_TOTAL_SHARDS=$shards GTEST_SHARD_INDEX=$shard build/asan-ubsan/bin/runner_tests --gtest_brief=1 &
-    runs+=($!)
-  done
-  for shard in "${runs[@]}"; do wait "$shard"; done
+  printf '%s\n' build/asan-ubsan/bin/runner_*_tests | xargs -P 2 -I{} {} --gtest_brief=1
 }
 
 tidy() {

@@ -1,4 +1,4 @@
-// Files that are either there whole or not there: temporary file, fsync, rename, fsync of the folder.
+// Open files, and files that are either whole or not there.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,37 @@
 
 namespace peclet {
 
+// An open file that is closed when its owner goes.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  Descriptor(Descriptor&& other) noexcept : number_(other.take()) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  Descriptor& operator=(Descriptor&&) = delete;
+  ~Descriptor();
+
+  int number() const { return number_; }
+  // Closing reports late write errors on some file systems; afterwards the destructor has nothing to do.
+  int close();
+  // Leaves it to the caller.
+  int take() { return std::exchange(number_, -1); }
+
+ private:
+  int number_;
+};
+
+// As open(2) with O_CLOEXEC, again after a signal; a number below 0 with errno when it cannot be opened.
+Descriptor open_file(const std::filesystem::path& path, int flags, unsigned mode = 0666);
+
+// Writes every byte. Throws std::system_error naming the path.
+void write_all(int descriptor, std::string_view bytes, const std::filesystem::path& path);
+
+// Throws what errno says: "cannot open /the/path: ...".
+[[noreturn]] void fail_to(const char* action, const std::filesystem::path& path);
+
+// Files that are either there whole or not there: temporary file, fsync, rename, fsync of the folder.
+//
 // The file system is full, or the user's quota of it: what could not be written may be tried again later.
 class NoRoomError : public std::system_error {
  public:

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 
 namespace peclet {
 

@@ -11,10 +11,23 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "contract/json.h"
 
 namespace peclet {
+
+// Endings of a realisation that leave a result: engines write them, the runner reads them.
+//
+// To the end, or until it jammed under a stress, after which it counts as standing still. After any other
+// ending there are no means.
+inline bool has_results(std::string_view cause) { return cause == "completed" || cause == "jammed"; }
+
+// Returns whether a realisation with this cause has jammed: it stood still under its stress, was pressed
+// together further than the guard allows, or could not be packed.
+inline bool is_jam(std::string_view cause) {
+  return cause == "jammed" || cause == "overlap" || cause == "packing";
+}
 
 constexpr std::size_t largest_frame = std::size_t{64} << 20;
 // Of what an engine says. A job may hold a scene of many particles; a result is a file.

@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <string>
 
-#include "contract/descriptor.h"
-#include "contract/input_error.h"
+#include "contract/durable_file.h"
+#include "contract/errors.h"
 
 namespace peclet {
 

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "contract/durable_file.h"
-#include "contract/input_error.h"
-#include "contract/input_file.h"
-#include "contract/printable.h"
+#include "contract/errors.h"
+#include "contract/named_files.h"
+#include "contract/text.h"
 
 namespace peclet {
 

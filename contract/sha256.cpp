@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <stdexcept>
 
-#include "contract/descriptor.h"
+#include "contract/durable_file.h"
 
 namespace peclet {
 namespace {

@@ -7,8 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "contract/nearest_name.h"
-#include "contract/printable.h"
+#include "contract/text.h"
 
 namespace peclet {
 namespace {

@@ -10,25 +10,21 @@
 #include <exception>
 #include <limits>
 
-#include "contract/endings.h"
-#include "contract/exit_codes.h"
+#include "contract/errors.h"
 #include "contract/frames.h"
-#include "contract/input_error.h"
-#include "contract/input_file.h"
-#include "contract/integrity_error.h"
-#include "contract/output_file.h"
+#include "contract/named_files.h"
 #include "contract/provenance.h"
 #include "contract/usage_fault.h"
-#include "engine/evaluation/configuration.h"
-#include "engine/jobs/job.h"
-#include "engine/jobs/serve.h"
-#include "engine/output/summary.h"
+#include "engine/forces/configuration.h"
 #include "engine/pictures/colouring.h"
 #include "engine/pictures/picture.h"
-#include "engine/scene/smallest_count.h"
-#include "engine/sizes/size_choice.h"
+#include "engine/realisation/job.h"
+#include "engine/realisation/result.h"
+#include "engine/realisation/serve.h"
+#include "engine/scene/composition.h"
+#include "engine/scene/measured_sizes.h"
 #include "engine/snapshots/conversion.h"
-#include "engine/threads/waiting_threads.h"
+#include "engine/state/threads.h"
 
 namespace {
 

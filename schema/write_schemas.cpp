@@ -8,7 +8,7 @@
 
 #include "contract/durable_file.h"
 #include "contract/key_table.h"
-#include "engine/evaluation/configuration.h"
+#include "engine/forces/configuration.h"
 #include "engine/observables/scene_reading.h"
 #include "runner/campaign/campaign.h"
 

@@ -11,10 +11,17 @@
 
 #include <cstddef>
 
-#include "engine/flow/uniform_flow.h"
 #include "engine/state/periodic_cell.h"
 
 namespace peclet::engine {
+
+// A uniform flow for the loops over particles: plain data, because it is shared with files that are compiled
+// for one processor only.
+struct alignas(32) UniformFlow {
+  double gradient[3][4];  // columns, as rows of a VectorField
+  double spin[4];
+  bool is_simple_shear;  // nothing but du_x / dy
+};
 
 // Half the vorticity, and the symmetric part, of gradient_ij = du_i / dx_j.
 inline Vector3 spin_of(const Matrix3& gradient) {

@@ -1,4 +1,4 @@
-// Simple shear at a given stress. Its rate is constant in each step; realisation/stress_control.h sets it
+// Simple shear at a given stress. Its rate is constant in each step; realisation/driver.h sets it
 // from step to step.
 #pragma once
 

@@ -7,9 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/document/keys.h"
-#include "engine/document/scene_document.h"
 #include "engine/flow/deformation.h"
+#include "engine/flow/scene_document.h"
 
 namespace peclet::engine {
 
@@ -34,5 +33,26 @@ struct FlowKind {
   std::string own_cell{};  // "a turned cube"; empty: the box of the scene, which may come from a file
   std::vector<std::string> refused_observables{};
 };
+
+// All flows: the one list of them, and what a scene may say of any.
+//
+// The first is the flow of a scene that asks for no other: shear at a rate, or a fluid at rest.
+const std::vector<FlowKind>& flow_kinds();
+
+// Returns the keys of the flows that have this unit of durations: "/flow/oscillation or /flow/cross_shear".
+std::string flows_with(const std::string& unit);
+
+// Returns the kind of flow that the scene asks for. Throws InputError where keys of another one stand beside
+// it.
+const FlowKind& flow_kind_of(const SceneDocument& scene);
+
+ImposedFlow read_flow(const FlowSource& source);
+
+// Keys of a duration, by limits that `limit` makes; some of them are known to some flows alone.
+Keys duration_keys(const std::string& pointer, const std::string& meaning,
+                   Key (*limit)(std::string, std::string, std::string, bool), bool is_required = required);
+
+// Throws InputError where the duration at this place has a limit that the flow does not know.
+void check_duration(const SceneDocument& scene, const FlowKind& flow, const std::string& pointer);
 
 }  // namespace peclet::engine

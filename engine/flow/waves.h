@@ -13,9 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/document/keys.h"
-#include "engine/document/scene_document.h"
 #include "engine/flow/background_flow.h"
+#include "engine/flow/scene_document.h"
 
 namespace peclet::engine {
 

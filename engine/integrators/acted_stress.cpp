@@ -1,7 +1,6 @@
 #include "engine/integrators/acted_stress.h"
 
-#include "engine/integrators/sum_over_particles.h"
-#include "engine/state/field_array.h"
+#include "engine/state/eigen_arrays.h"
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {

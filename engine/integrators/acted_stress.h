@@ -1,4 +1,4 @@
-// The stress that acts in a step (kernels/momentum_flux.h), of forces that act at several places.
+// The stress that acts in a step (kernels/pair_pass.h), of forces that act at several places.
 //
 // With noise an implicit step acts upon its pairs at two places: with the random forces, and what else
 // belongs to the beginning, at x_n; and with F(x', V') - A (V - V') at x', where the velocities V' have been
@@ -9,9 +9,35 @@
 // bringing forces along adds belongs to the resistance that they work against, lubrication.
 #pragma once
 
+#include <vector>
+
 #include "engine/integrators/velocity_solver.h"
+#include "engine/state/system.h"
+#include "engine/state/threads.h"
 
 namespace peclet::engine {
+
+// Sums of stresses over particles, and velocities relative to the uniform flow.
+//
+// The sum of of_particle(i) over all particles, with the same bits for any number of threads.
+template <class OfParticle>
+SymmetricTensor sum_over_particles(const System& system, int threads, OfParticle&& of_particle) {
+  const std::vector<ParticleBlock>& blocks = system.list.blocks();
+  std::vector<SymmetricTensor> sums(blocks.size());
+  for_each_range(blocks.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      for (std::size_t i = blocks[b].begin; i < blocks[b].end; ++i) sums[b] += of_particle(i);
+    }
+  });
+  SymmetricTensor total;
+  for (const SymmetricTensor& sum : sums) total += sum;
+  return total;
+}
+
+// A velocity at the place of a particle, relative to the uniform flow of the cell.
+inline Vector3 relative_to_flow(const System& system, std::size_t i, const Vector3& velocity) {
+  return velocity - system.box.velocity_gradient() * system.particles.position[i];
+}
 
 class ActedStress {
  public:

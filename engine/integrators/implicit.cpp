@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/integrators/follow_flow.h"
+#include "engine/integrators/integrator.h"
 #include "engine/integrators/midpoint.h"
 #include "engine/integrators/noisy_midpoint.h"
-#include "engine/state/field_array.h"
-#include "engine/threads/for_each_range.h"
+#include "engine/state/eigen_arrays.h"
+#include "engine/state/threads.h"
 
 namespace peclet::engine {
 namespace {

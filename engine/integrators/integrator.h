@@ -4,14 +4,13 @@
 #include <optional>
 
 #include "engine/kernels/pair_pass.h"
-#include "engine/kernels/pair_watcher.h"
 #include "engine/state/system.h"
 
 namespace peclet::engine {
 
 // What a step says about itself.
 struct StepReport {
-  PairSums sums;  // of the forces that acted, those of the noise included (kernels/momentum_flux.h)
+  PairSums sums;  // of the forces that acted, those of the noise included (kernels/pair_pass.h)
   // The stress of the motion, times the volume: -sum m sym(V V') relative to the flow. With noise it belongs
   // to the stress; without noise it is computed where it is asked for.
   SymmetricTensor motion;
@@ -92,6 +91,42 @@ class Integrator {
   bool watches_motion_ = false;
   PairWatcher* watcher_ = nullptr;
   double weight_ = 1;
+};
+
+// Spheres in a flow whose gradient changes, or stretches them with the fluid.
+//
+// The solvent at x has the acceleration (dL/dt + L L) x, and what accelerates it accelerates spheres of its
+// density as well: its pressure. A force m (dL/dt + L L) x and a torque of the changing spin stand for that.
+// Without them spheres would lag behind the flow by their inertial time, by more the farther they are from
+// the origin, which is no place of a periodic suspension; with them velocities relative to the flow follow
+// dv/dt = F / m - L v, whatever the origin. In steady shear both terms are zero.
+//
+// Whether the flow gains nothing by having this gradient, for a while, in the place of the cell's.
+bool keeps_flow(const System& system, const Matrix3& gradient);
+
+// Gives the cell this velocity gradient, and to velocities and spins what the flow has gained: by the change
+// of the gradient, and by `time` in it.
+void follow_flow(System& system, const Matrix3& gradient, double time, int threads);
+
+// The state that a step starts from, and the way back to it.
+class StepOrigin {
+ public:
+  // Copies what every step changes: places, motion, springs, cell and clock. The way back leads to them as
+  // long as the list of neighbours is the same.
+  void mark(const System& system, int threads);
+  // Copies the list as well, if it has been rebuilt since it was last copied. The way back then leads across
+  // rebuilds.
+  void mark_with_list(const System& system, int threads);
+  // Makes the system what it was at the mark, bit by bit. Requires a mark.
+  void return_to(System& system, int threads) const;
+
+  const VectorField& position() const { return marked_.particles.position; }
+  const VectorField& velocity() const { return marked_.particles.velocity; }
+  const VectorField& spin() const { return marked_.particles.angular_velocity; }
+  const SpringField& springs() const { return marked_.springs; }
+
+ private:
+  System marked_;
 };
 
 }  // namespace peclet::engine

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/integrators/sum_over_particles.h"
-#include "engine/state/field_array.h"
-#include "engine/threads/for_each_range.h"
+#include "engine/integrators/acted_stress.h"
+#include "engine/state/eigen_arrays.h"
+#include "engine/state/threads.h"
 
 namespace peclet::engine {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "engine/integrators/sum_over_particles.h"
+#include "engine/integrators/acted_stress.h"
+#include "engine/state/threads.h"
 #include "engine/terms/drag.h"
-#include "engine/terms/inertial_step.h"
-#include "engine/threads/for_each_range.h"
+#include "engine/terms/lubrication.h"
 
 namespace peclet::engine {
 namespace {

@@ -11,7 +11,7 @@
 // the pair half a step to x_n and half a step on, and between free flights a velocity of variance kT / m
 // turns into another one of that variance, whatever R_o is at x_n; no density has a bias of it. The rest of
 // R, which is continuous, is as above, at the gaps of terms/step_resistance.h. Steps too long for that, in
-// which a thermal flight is as long as the range or velocities have forgotten all (terms/inertial_step.h),
+// which a thermal flight is as long as the range or velocities have forgotten all (terms/lubrication.h),
 // are those above.
 //
 // The stress is that of the forces that act (acted_stress.h).

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/state/threads.h"
 #include "engine/terms/drag.h"
-#include "engine/threads/run_team.h"
 
 namespace peclet::engine {
 namespace {

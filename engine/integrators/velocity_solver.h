@@ -6,7 +6,6 @@
 #pragma once
 
 #include "engine/integrators/integrator.h"
-#include "engine/integrators/step_origin.h"
 #include "engine/kernels/force_field.h"
 
 namespace peclet::engine {

@@ -6,12 +6,12 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "engine/integrators/follow_flow.h"
-#include "engine/integrators/sum_over_particles.h"
-#include "engine/stability/spectral_bound.h"
-#include "engine/stability/spurious_energy.h"
+#include "engine/integrators/acted_stress.h"
+#include "engine/integrators/integrator.h"
+#include "engine/integrators/spectral_bound.h"
+#include "engine/integrators/spurious_energy.h"
+#include "engine/state/threads.h"
 #include "engine/terms/drag.h"
-#include "engine/threads/for_each_range.h"
 
 namespace peclet::engine {
 namespace {

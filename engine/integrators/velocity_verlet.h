@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "engine/integrators/integrator.h"
-#include "engine/integrators/step_origin.h"
 #include "engine/kernels/force_field.h"
 
 namespace peclet::engine {

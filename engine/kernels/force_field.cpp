@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "engine/kernels/pairs/terms.h"
+#include "engine/kernels/pair_recipes.h"
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {

@@ -3,9 +3,8 @@
 
 #include <functional>
 
-#include "engine/kernels/links/link_order.h"
+#include "engine/kernels/link_order.h"
 #include "engine/kernels/pair_pass.h"
-#include "engine/kernels/pair_watcher.h"
 #include "engine/state/system.h"
 
 namespace peclet::engine {

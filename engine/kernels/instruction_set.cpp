@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 
 namespace peclet::engine {
 namespace {

@@ -1,9 +1,9 @@
 // Which of the compiled kernels runs.
 #pragma once
 
-#include "engine/kernels/bodies/one_body_kernels.h"
-#include "engine/kernels/links/link_kernels.h"
-#include "engine/kernels/pairs/pair_kernels.h"
+#include "engine/kernels/link_kernels.h"
+#include "engine/kernels/one_body_kernels.h"
+#include "engine/kernels/pair_kernels.h"
 
 namespace peclet::engine {
 

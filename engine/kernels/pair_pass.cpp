@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "engine/threads/for_each_range.h"
+#include "engine/state/threads.h"
 
 namespace peclet::engine {
 

@@ -9,13 +9,120 @@
 #include <functional>
 #include <vector>
 
-#include "engine/kernels/flow_at_centres.h"
+#include "engine/flow/background_flow.h"
 #include "engine/kernels/instruction_set.h"
-#include "engine/kernels/pairs/pair_access.h"
-#include "engine/random/keyed_random.h"
+#include "engine/kernels/pair_access.h"
+#include "engine/kernels/pair_kernels.h"
 #include "engine/state/contact_history.h"
+#include "engine/state/particles.h"
+#include "engine/state/system.h"
+#include "engine/terms/keyed_random.h"
 
 namespace peclet::engine {
+
+// What varies of the flow within the cell, at the centres of all particles, for lubrication that is relative
+// to the flow: without Faxen's corrections, which belong to single spheres.
+class FlowAtCentres {
+ public:
+  FlowAtCentres() = default;
+  FlowAtCentres(std::size_t particles, int threads)
+      : velocity_(particles, threads),
+        spin_(particles, threads),
+        strain_along_(particles, threads),
+        strain_across_(particles, threads) {}
+
+  std::size_t size() const { return velocity_.size(); }
+
+  // Of particles [begin, end) where they are now.
+  void set(const BackgroundFlow& flow, const ParticleState& particles, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto [velocity, spin, strain] = flow.varying_at(particles.position[i]);
+      velocity_.set(i, velocity);
+      spin_.set(i, spin);
+      strain_along_.set(i, {strain.xx, strain.yy, strain.zz});
+      strain_across_.set(i, {strain.xy, strain.xz, strain.yz});
+    }
+  }
+
+  FlowRows rows() const {
+    return {velocity_.data(), spin_.data(), strain_along_.data(), strain_across_.data()};
+  }
+
+ private:
+  VectorField velocity_, spin_, strain_along_, strain_across_;
+};
+
+// What carries momentum through the cell in one step, times the volume: the stress that acts.
+//
+// A step moves particles from x_n to x_n+1 = x_n + dt V at velocities that change from V_n to V. Pairs that
+// exchange the momentum dt F at x change sum m x V by dt sum x F, whatever F is made of, so that
+//   dt J = -[sum m x V] of the step + dt sum x F_body = dt [sum over pairs of sym(r F_i) - sum m sym(V V')]
+// with x = x_n + dt V / 2 and V' = (V_n + V) / 2 in implicit steps; in velocity Verlet x is that of the
+// forces and V = V' the velocity in between. F is the force that acted: of the velocities that the step has
+// found, with its noise.
+struct MomentumFlux {
+  SymmetricTensor by_pairs;      // sum over pairs of sym(r F_i), all terms
+  SymmetricTensor by_motion;     // of the motion relative to the flow, as steps report it
+  SymmetricTensor conservative;  // contact, repulsion, attraction and the motion: even in the velocities
+  SymmetricTensor dissipative;   // lubrication and damping: odd
+
+  SymmetricTensor acted() const { return by_pairs + by_motion; }  // J
+};
+
+// The stress that results report, times the volume: with noise that of the motion is a part of it, by which
+// the pressure at rest is the one of thermodynamics; without noise it is left out.
+inline SymmetricTensor stress_of(const MomentumFlux& flux, bool has_noise) {
+  return has_noise ? flux.acted() : flux.by_pairs;
+}
+
+inline MomentumFlux flux_of(const PairSums& sums, const SymmetricTensor& motion) {
+  MomentumFlux flux;
+  flux.by_pairs = total_stress(sums);
+  flux.by_motion = motion;
+  flux.dissipative = sums.of(StressTerm::lubrication) + sums.of(StressTerm::contact_damping);
+  flux.conservative = motion + sums.of(StressTerm::contact_normal) + sums.of(StressTerm::repulsion) +
+                      sums.of(StressTerm::attraction);
+  return flux;
+}
+
+// Who looks at the single pairs of a step.
+class PairWatcher {
+ public:
+  virtual ~PairWatcher() = default;
+
+  // Of a step, or of a part of it with this weight, whose parts follow each other: where the spheres are and
+  // how fast when their forces act.
+  virtual void begin(const System& system, double weight) = 0;
+  // One of its pairs: its part of the stress, times the volume, and the force on its first sphere, noise
+  // included. Of the system of begin().
+  virtual void take(const System& system, const Pair& pair, const PairSums& sums, const Vector3& force) = 0;
+  // With noise, the part of a particle in the stress of the motion, times the volume.
+  virtual void take_motion(const System& system, std::size_t particle, const SymmetricTensor& stress) = 0;
+};
+
+// Several of them, as one.
+class PairWatchers final : public PairWatcher {
+ public:
+  void clear() { all_.clear(); }
+  bool empty() const { return all_.empty(); }
+  // Nothing of null.
+  void add(PairWatcher* watcher) {
+    if (watcher != nullptr) all_.push_back(watcher);
+  }
+
+  void begin(const System& system, double weight) override {
+    for (PairWatcher* const watcher : all_) watcher->begin(system, weight);
+  }
+  void take(const System& system, const Pair& pair, const PairSums& sums, const Vector3& force) override {
+    for (PairWatcher* const watcher : all_) watcher->take(system, pair, sums, force);
+  }
+  void take_motion(const System& system, std::size_t particle, const SymmetricTensor& stress) override {
+    for (PairWatcher* const watcher : all_) watcher->take_motion(system, particle, stress);
+  }
+
+ private:
+  std::vector<PairWatcher*> all_;
+};
 
 PairParameters pair_parameters(const Physics& physics, double timestep);
 

@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "engine/observables/observable.h"
-#include "engine/observables/touching_pairs.h"
+#include "engine/observables/structure.h"
 
 namespace peclet::engine {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "engine/observables/near_pairs.h"
 #include "engine/observables/observable.h"
+#include "engine/observables/structure.h"
 
 namespace peclet::engine {
 namespace {

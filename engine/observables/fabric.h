@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/document/keys.h"
+#include "engine/flow/scene_document.h"
 #include "engine/observables/accumulators.h"
 #include "engine/state/system.h"
 

@@ -1,7 +1,7 @@
 // The viscosity of a suspension at rest, by linear response, without an approximation but those of the step,
 // of the number of particles and of the window.
 //
-// With the flux of momentum J of every step (kernels/momentum_flux.h; V J in the sums below), in the five
+// With the flux of momentum J of every step (kernels/pair_pass.h; V J in the sums below), in the five
 // independent components xy, xz, yz, (xx - yy)/2, (xx + yy - 2 zz)/(2 sqrt 3) of its traceless part, which
 // count alike, a step response t -> eta+(t) to a shear that begins at 0 follows from Helfand's moment:
 //   B(t) = 1/(2 V eta kT) < (integral over t of V J)^2 > = integral of eta+ - 1 - 2.5 phi from 0 to t,
@@ -33,10 +33,9 @@
 #include <complex>
 #include <numbers>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "engine/observables/multiple_tau.h"
 #include "engine/observables/observable.h"
-#include "engine/observables/squared_sums.h"
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {

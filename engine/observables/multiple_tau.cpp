@@ -45,4 +45,41 @@ std::vector<std::uint64_t> MultipleTau::lags(std::size_t levels, std::uint64_t s
   return lags;
 }
 
+void SquaredSums::add(double value) {
+  sum_ += value;
+  ++entries_;
+  for (std::size_t l = 0; l < levels_.size() && entries_ % (std::uint64_t{1} << l) == 0; ++l) {
+    Level& level = levels_[l];
+    const std::uint64_t now = entries_ >> l;
+    for (std::size_t m = first_length(l); m < kept && m <= now; ++m) {
+      const double over_window = sum_ - level.last[(now - m) % kept];
+      level.squares[m] += over_window * over_window;
+      ++level.count[m];
+    }
+    level.last[now % kept] = sum_;
+  }
+}
+
+std::vector<SquaredSums::Value> SquaredSums::values() const {
+  std::vector<Value> values;
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    for (std::size_t m = first_length(l); m < kept; ++m) {
+      const Level& level = levels_[l];
+      if (level.count[m] == 0) continue;
+      values.push_back({std::uint64_t{m} << l, level.squares[m] / static_cast<double>(level.count[m])});
+    }
+  }
+  return values;
+}
+
+std::vector<std::uint64_t> SquaredSums::lengths(std::size_t levels, std::uint64_t entries) {
+  std::vector<std::uint64_t> lengths;
+  for (std::size_t l = 0; l < levels; ++l) {
+    for (std::size_t m = first_length(l); m <= std::min<std::uint64_t>(kept - 1, entries >> l); ++m) {
+      lengths.push_back(std::uint64_t{m} << l);
+    }
+  }
+  return lengths;
+}
+
 }  // namespace peclet::engine

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 
 namespace peclet::engine {
 

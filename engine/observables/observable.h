@@ -10,14 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "engine/document/keys.h"
-#include "engine/document/scene_document.h"
-#include "engine/gsd/frames.h"
-#include "engine/kernels/momentum_flux.h"
-#include "engine/kernels/pair_watcher.h"
-#include "engine/kernels/pairs/pair_kinds.h"
+#include "engine/flow/scene_document.h"
+#include "engine/kernels/pair_kinds.h"
+#include "engine/kernels/pair_pass.h"
 #include "engine/observables/accumulators.h"
 #include "engine/scene/scene.h"
+#include "engine/snapshots/gsd_file.h"
 
 namespace peclet::engine {
 

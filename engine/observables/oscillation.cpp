@@ -5,7 +5,7 @@
 //   G'_n = (2 / g T) integral of sigma_xy sin(n w t), G''_n with cos, over whole cycles of length T
 // storage_modulus and loss_modulus are those of n = 1, dynamic_viscosity is G'' / (eta w); of n = 3 there are
 // third_storage_modulus and third_loss_modulus. All in the units of the scene. The stress is the flux of
-// momentum that acted in each step (kernels/momentum_flux.h), at the moment that it belongs to: the middle of
+// momentum that acted in each step (kernels/pair_pass.h), at the moment that it belongs to: the middle of
 // an implicit step, the end of an explicit one. What solvent and stresslets add, 1 + 2.5 phi times eta w, is
 // exact. Blocks have whole cycles: 4, 8, 16 or 32 of them, as many as there are cycles for.
 #include <algorithm>
@@ -14,7 +14,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/flow/flows.h"
+#include "engine/flow/flow_kind.h"
 #include "engine/observables/observable.h"
 #include "engine/terms/drag.h"
 

@@ -19,9 +19,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "contract/input_error.h"
-#include "engine/observables/near_pairs.h"
+#include "contract/errors.h"
 #include "engine/observables/observable.h"
+#include "engine/observables/structure.h"
 
 namespace peclet::engine {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "engine/kernels/pair_pass.h"
-#include "engine/observables/blocked_mean.h"
+#include "engine/observables/accumulators.h"
 #include "engine/observables/structure.h"
 #include "engine/state/archive.h"
 

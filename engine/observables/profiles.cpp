@@ -24,7 +24,7 @@
 #include <numbers>
 #include <string>
 
-#include "engine/kernels/pairs/terms.h"
+#include "engine/kernels/pair_recipes.h"
 #include "engine/observables/observable.h"
 #include "engine/observables/velocity_variance.h"
 #include "engine/terms/drag.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "engine/flow/flows.h"
+#include "engine/flow/flow_kind.h"
 #include "engine/observables/observable.h"
 
 namespace peclet::engine {

@@ -1,11 +1,74 @@
-// What a configuration shows by itself; sampled, not accumulated at every step.
+// The structure of a configuration: its near and touching pairs, and what is sampled of them.
 #pragma once
 
-#include "engine/kernels/pairs/pair_kinds.h"
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "engine/kernels/pair_access.h"
+#include "engine/kernels/pair_kinds.h"
+#include "engine/state/cell_grid.h"
 #include "engine/state/system.h"
+#include "engine/terms/contact.h"
 
 namespace peclet::engine {
 
+// The pairs of a configuration within a distance, whatever the range of their forces is.
+//
+// Calls visit(i, j, separation) for every sphere i and each image of another sphere j that is closer than
+// `range`, and for some that are further away: every pair from both ends. `separation` leads from i to j. The
+// order depends on the configuration alone.
+template <class Visit>
+void for_each_near_pair(const System& system, double range, const Visit& visit) {
+  const LatticePlaces places = lattice_places(system.particles.position, system.box);
+  std::vector<std::uint32_t> everyone(system.particles.count());
+  std::iota(everyone.begin(), everyone.end(), 0U);
+  const CellGrid grid(places, everyone, system.box, range);
+  for (std::uint32_t i = 0; i < everyone.size(); ++i) {
+    grid.visit_near(places.fractional[i], range,
+                    [&](std::uint32_t j, LatticeShift, const Vector3& separation) {
+                      if (j != i) visit(i, j, separation);
+                    });
+  }
+}
+
+// The pairs of a configuration that touch, and what their springs do.
+//
+// A spring that is cut at each step is as long as it may be but for what the step itself changes.
+constexpr double sliding_from = 0.99;
+
+struct TouchingPair {
+  const Pair& pair;
+  double distance, overlap;  // of centres; delta = a_i + a_j - distance > 0
+  double tangential_force;   // |F_t| = k_t |s|
+  bool rough;                // whether it has friction: k_n delta above the critical load
+  double mobilised;          // |F_t| / (mu frictional_load()), 0 without friction
+  bool slides;               // as it remembers, or else by `mobilised`
+};
+
+// In the order of the list.
+template <class Visit>
+void for_each_touching_pair(const System& system, const std::vector<PairKind>& kinds,
+                            const ContactParameters& contact, const Visit& visit) {
+  const std::vector<ImageFrame> frames = image_frames(system.list, system.box);
+  const std::vector<Pair>& pairs = system.list.pairs();
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    const Pair& pair = pairs[p];
+    const double distance = norm(separation(system.particles, pair, frames[pair.image]));
+    const double overlap = kinds[pair.kind].sum_of_radii - distance;
+    if (!(overlap > 0)) continue;
+    const double load = frictional_load(contact, overlap);
+    const bool rough = contact.friction > 0 && load > 0;
+    const double force = rough ? contact.tangential_stiffness * norm(system.springs[p].tangential) : 0;
+    const double mobilised = rough ? force / (contact.friction * load) : 0;
+    const bool slides = system.springs.remembers_sliding() ? rough && system.springs[p].slides != 0
+                                                           : mobilised > sliding_from;
+    visit({pair, distance, overlap, force, rough, mobilised, slides});
+  }
+}
+
+// What a configuration shows by itself; sampled, not accumulated at every step.
+//
 // Sigma^B = -(kT / V) sum_i (a_i / Delta_i) sum_{j: h < Delta_i} n n with Delta_i = 0.05 a_i: every pair is
 // seen from both sides, overlapping ones included. Li, Royer & Ness (2023) eqs. 25, 26. Zero without
 // temperature.

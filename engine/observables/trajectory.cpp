@@ -20,10 +20,10 @@
 #include <cmath>
 #include <string>
 
-#include "contract/input_error.h"
-#include "engine/kernels/pairs/terms.h"
+#include "contract/errors.h"
+#include "engine/kernels/pair_recipes.h"
 #include "engine/observables/observable.h"
-#include "engine/observables/touching_pairs.h"
+#include "engine/observables/structure.h"
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {

@@ -2,7 +2,7 @@
 // reversed or stops. Where the rate of the window is not one and constant, over time.
 //
 // Each of a number of equal parts of the window has a mean of its own, and no blocks. The stress is the flux
-// of momentum that acted in each step (kernels/momentum_flux.h) and what solvent and stresslets add; in units
+// of momentum that acted in each step (kernels/pair_pass.h) and what solvent and stresslets add; in units
 // of viscosity times rate where that is constant, so that shear_stress is the relative viscosity.
 //
 // With a gap, `fabric` has the tensors of fabric.h in the same parts, of at least three samples in each.
@@ -12,7 +12,7 @@
 #include <array>
 #include <optional>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "engine/observables/fabric.h"
 #include "engine/observables/observable.h"
 #include "engine/terms/drag.h"

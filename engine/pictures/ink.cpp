@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/pictures/hershey.h"
-
 namespace peclet::engine {
 namespace {
 

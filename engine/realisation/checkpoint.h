@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "contract/integrity_error.h"
+#include "contract/errors.h"
 #include "engine/realisation/simulation.h"
 
 namespace peclet::engine {

@@ -4,10 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
+#include "engine/integrators/stability.h"
+#include "engine/kernels/pair_kinds.h"
+#include "engine/observables/observable.h"
 #include "engine/observables/production.h"
-#include "engine/stability/stability.h"
+#include "engine/realisation/packing.h"
+#include "engine/scene/composition.h"
 
 namespace peclet::engine {
 namespace {
@@ -60,6 +65,93 @@ Schedule make_schedule(const Scene& scene, const std::string& file) {
                                  schedule.timestep));
   }
   return schedule;
+}
+
+const char* name_of(Ending::Cause cause) {
+  switch (cause) {
+    case Ending::Cause::completed:
+      return "completed";
+    case Ending::Cause::jammed:
+      return "jammed";
+    case Ending::Cause::overlap:
+      return "overlap";
+    case Ending::Cause::displacement:
+      return "displacement";
+    case Ending::Cause::non_finite:
+      return "non-finite";
+    case Ending::Cause::packing:
+      return "packing";
+    case Ending::Cause::timestep:
+      return "timestep";
+  }
+  return "";
+}
+
+std::optional<Ending> ending_of(const StepReport& report, const System& system, const Guard& guard,
+                                double smallest_radius) {
+  const double displacement = report.largest_displacement / smallest_radius;
+  if (!std::isfinite(displacement) || !report.sums.finite) {
+    return Ending{Ending::Cause::non_finite, system.step, "a position or velocity is not finite"};
+  }
+  // Whatever the guard, spheres must not leap over each other: the integrator evaluates no forces then.
+  const double largest =
+      std::min(guard.largest_displacement, 0.5 * system.list.ranges().largest() / smallest_radius);
+  if (displacement > largest) {
+    const std::string part =
+        report.division == 0 ? "one step" : fmt::format("1/{} of a step", 1 << report.division);
+    return Ending{
+        Ending::Cause::displacement, system.step,
+        fmt::format("a particle moved {:.3g} radii in {}, more than {:.3g}", displacement, part, largest)};
+  }
+  if (report.sums.largest_overlap > guard.largest_overlap) {
+    return Ending{Ending::Cause::overlap, system.step,
+                  fmt::format("two particles overlap by {:.3g} radii, more than {:.3g}: jammed, or too soft",
+                              report.sums.largest_overlap, guard.largest_overlap)};
+  }
+  return std::nullopt;
+}
+
+namespace {
+
+// Radii of which there is a sphere; a species without one is refused unless another one has its radius.
+std::vector<double> present_radii(const Particles& particles, const std::string& file) {
+  const std::vector<std::size_t> number = species_numbers(particles);
+  std::vector<double> present;
+  for (std::size_t s = 0; s < number.size(); ++s) {
+    if (number[s] > 0) present.push_back(particles.species[s].radius);
+  }
+  present = distinct_radii(present);
+  for (std::size_t s = 0; s < number.size(); ++s) {
+    const double radius = particles.species[s].radius;
+    if (!std::binary_search(present.begin(), present.end(), radius)) {
+      const std::size_t enough = smallest_count(particles);
+      throw InputError(
+          file, "/particles/count", std::to_string(particles.count),
+          fmt::format("must be large enough for one sphere of radius {}, whose share is that of {:.2g} "
+                      "spheres; {}{}",
+                      radius, exact_numbers(particles)[s],
+                      enough > 0 ? fmt::format("{} would do for all sizes", enough)
+                                 : fmt::format("not even {} would do for all sizes", most_particles),
+                      particles.distributed ? ", and `peclet-engine sizes` merges thin ones" : ""));
+    }
+  }
+  return present;
+}
+
+}  // namespace
+
+void check_fit(const Scene& scene, const Schedule& schedule, const std::string& file) {
+  const std::vector<double> sizes = present_radii(scene.particles, file);
+  const Vector3 box = box_lengths(scene, cube_edge(scene.particles, scene.volume_fraction));
+  const double nearest = scene.physics.flow.deformation().nearest_image() * std::min({box.x, box.y, box.z});
+  const double range = range_table(make_pair_kinds(scene.physics, sizes), sizes.size()).largest();
+  if (!(nearest > range)) {
+    throw InputError(file, "/particles/count", std::to_string(scene.particles.count),
+                     fmt::format("must fill a box larger than the range of the forces, {:.4g}, at this "
+                                 "volume fraction (its nearest images would be {:.4g} apart)",
+                                 range, nearest));
+  }
+  make_observables(scene, {schedule.timestep, schedule.production, box}, file);
 }
 
 }  // namespace peclet::engine

@@ -1,12 +1,18 @@
-// How many steps a realisation takes, and of which size.
+// The steps of a realisation: how many, of which size, why they end, and whether the scene fits them.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
+#include "contract/frames.h"
+#include "engine/integrators/integrator.h"
 #include "engine/scene/scene.h"
 
 namespace peclet::engine {
 
+// How many steps a realisation takes, and of which size.
+//
 // Steps of the two phases; the step size is constant, so they are known before the first one.
 struct Schedule {
   double timestep = 0;
@@ -18,5 +24,30 @@ struct Schedule {
 // Throws InputError when the step is too large, the production window shorter than its 32 blocks, or a phase
 // longer than can be counted.
 Schedule make_schedule(const Scene& scene, const std::string& file);
+
+// Why a realisation is over.
+struct Ending {
+  enum class Cause { completed, jammed, overlap, displacement, non_finite, packing, timestep };
+  Cause cause = Cause::completed;
+  std::uint64_t step = 0;
+  std::string message;
+};
+
+// "completed", "jammed", "overlap", "displacement", "non-finite", "packing", "timestep"
+const char* name_of(Ending::Cause cause);
+
+inline bool is_measured(Ending::Cause cause) { return has_results(name_of(cause)); }
+
+// What the guard, or arithmetic, has against the step that was just made. Displacements and overlaps are in
+// units of the smallest radius of all, and of the smaller one of the pair.
+std::optional<Ending> ending_of(const StepReport& report, const System& system, const Guard& guard,
+                                double smallest_radius);
+
+// Whether spheres, box and observables of a scene go together.
+//
+// What can be known without placing a sphere, in no more time and memory than a few milliseconds and bytes
+// for the largest scene. Throws InputError where a species has no sphere, where the box is smaller than the
+// range of the forces, and where an observable does not fit.
+void check_fit(const Scene& scene, const Schedule& schedule, const std::string& file);
 
 }  // namespace peclet::engine

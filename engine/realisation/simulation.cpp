@@ -8,14 +8,13 @@
 
 #include "engine/integrators/implicit.h"
 #include "engine/integrators/velocity_verlet.h"
-#include "engine/kernels/pairs/terms.h"
+#include "engine/kernels/pair_recipes.h"
 #include "engine/observables/observable.h"
 #include "engine/observables/structure.h"
-#include "engine/random/keyed_random.h"
-#include "engine/realisation/scene_fit.h"
-#include "engine/start/packing.h"
-#include "engine/start/relaxation.h"
+#include "engine/realisation/packing.h"
+#include "engine/realisation/schedule.h"
 #include "engine/terms/drag.h"
+#include "engine/terms/keyed_random.h"
 
 namespace peclet::engine {
 namespace {

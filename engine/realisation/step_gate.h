@@ -4,7 +4,6 @@
 
 #include <optional>
 
-#include "engine/realisation/ending.h"
 #include "engine/realisation/schedule.h"
 
 namespace peclet::engine {

@@ -3,8 +3,7 @@
 
 #include <optional>
 
-#include "engine/document/keys.h"
-#include "engine/document/scene_document.h"
+#include "engine/flow/scene_document.h"
 #include "engine/terms/attraction.h"
 
 namespace peclet::engine {

@@ -1,8 +1,7 @@
 // The block contact of a scene.
 #pragma once
 
-#include "engine/document/keys.h"
-#include "engine/document/scene_document.h"
+#include "engine/flow/scene_document.h"
 #include "engine/terms/contact.h"
 
 namespace peclet::engine {

@@ -6,8 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/document/keys.h"
-#include "engine/document/scene_document.h"
+#include "engine/flow/scene_document.h"
 #include "engine/terms/lubrication.h"
 
 namespace peclet::engine {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "engine/scene/species_list.h"
+#include "engine/scene/size_distribution.h"
 
 namespace peclet::engine {
 

@@ -1,8 +1,7 @@
 // The block particles of a scene, and the volume fraction that may follow from it.
 #pragma once
 
-#include "engine/document/keys.h"
-#include "engine/document/scene_document.h"
+#include "engine/flow/scene_document.h"
 #include "engine/scene/composition.h"
 
 namespace peclet::engine {

@@ -4,8 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/document/keys.h"
-#include "engine/document/scene_document.h"
+#include "engine/flow/scene_document.h"
 #include "engine/terms/repulsion.h"
 
 namespace peclet::engine {

@@ -6,17 +6,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "engine/flow/controlled_shear.h"
-#include "engine/flow/flows.h"
-#include "engine/scene/flow_block.h"
+#include "engine/flow/flow_kind.h"
+#include "engine/flow/waves.h"
 #include "engine/scene/law_blocks.h"
 #include "engine/scene/particles_block.h"
 #include "engine/scene/start_block.h"
 
 namespace peclet::engine {
-
 namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
@@ -249,6 +250,184 @@ Physics read_physics(const Json& document, const std::string& file, const std::s
   } catch (const InputError& error) {
     throw error.within(file, pointer);
   }
+}
+
+namespace {
+
+// Keys, from `begin` of their pointers on, of the flows that a scene has in the place of a shear rate.
+std::vector<std::string> flows_without_rate(std::size_t begin) {
+  std::vector<std::string> keys;
+  for (const FlowKind& kind : flow_kinds()) {
+    if (kind.beside.empty()) keys.push_back(kind.key.substr(begin));
+  }
+  return keys;
+}
+
+// Sets the temperature and returns the shear rate: of all pairs with rate / kT = Pe / (6 pi eta a^3) within
+// the limits the one with the larger values.
+double rate_from_peclet(const SceneDocument& scene, double radius, Physics& physics) {
+  for (const char* pointer : {"/flow/shear_rate", "/fluid/thermal_energy"}) {
+    if (scene.has(pointer)) scene.refuse(pointer, "must be left out together with /peclet, which sets it");
+  }
+  if (!scene.has("/limits")) {
+    scene.miss("/limits", "must be an object with shear_rate and thermal_energy, because /peclet is given");
+  }
+  const double peclet = scene.number("/peclet");
+  const double scale = 6 * std::numbers::pi * physics.viscosity * radius * radius * radius;
+  double rate = scene.number("/limits/shear_rate");
+  const double largest_energy = scene.number("/limits/thermal_energy");
+  const double rate_at_largest_energy = peclet * largest_energy / scale;
+  if (rate_at_largest_energy <= rate) {
+    rate = rate_at_largest_energy;
+    physics.thermal_energy = largest_energy;
+  } else {
+    physics.thermal_energy = scale * rate / peclet;
+  }
+  const auto is_usable = [](double value) { return std::isnormal(value) && value > 0; };
+  if (!is_usable(rate) || !is_usable(physics.thermal_energy)) {
+    scene.refuse("/peclet", "leaves no shear rate and thermal energy above 0 within /limits");
+  }
+  return rate;
+}
+
+}  // namespace
+
+Keys flow_keys() {
+  Keys keys = {
+      block("/fluid", "The solvent.", required),
+      named(positive("/fluid/viscosity", "mass / (length time)", "Viscosity eta of the solvent.", required),
+            "viscosity of the fluid", "η"),
+      named(not_negative("/fluid/thermal_energy", "energy",
+                         "k_B T; absent (or 0): no Brownian motion. Not together with peclet."),
+            "thermal energy", "k_B T"),
+      block("/flow", fmt::format("The streaming flow (rate y, 0, 0), and waves in it. A scene has "
+                                 "flow.shear_rate, flow.{} or peclet.",
+                                 fmt::join(flows_without_rate(std::string("/flow/").size()), ", flow."))),
+  };
+  const auto append = [&](const Keys& more) { keys.insert(keys.end(), more.begin(), more.end()); };
+  for (const FlowKind& kind : flow_kinds()) append(kind.keys);
+  append(wave_keys());
+  append({
+      named(positive(
+                "/peclet", "",
+                "Pe = 6 pi eta a^3 rate / k_B T, in place of shear_rate and thermal_energy; needs limits."),
+            "Péclet number", "Pe"),
+      block("/limits",
+            "Of the scene with a given peclet: the largest rate and temperature that Pe allows are used."),
+      positive("/limits/shear_rate", "1 / time", "Shear rate that is not exceeded.", required),
+      positive("/limits/thermal_energy", "energy", "k_B T that is not exceeded.", required),
+  });
+  return keys;
+}
+
+void set_flow(const SceneDocument& scene, const Particles& particles, double volume_fraction,
+              Physics& physics) {
+  const FlowKind& flow = flow_kind_of(scene);
+  for (const char* pointer : {"/box", "/start"}) {
+    if (flow.own_cell.empty() || !scene.has(pointer)) continue;
+    scene.refuse(pointer, fmt::format("must be left out with {}, whose cell is {}", flow.key, flow.own_cell));
+  }
+  double rate = scene.number_or("/flow/shear_rate", 0);
+  if (scene.has("/peclet")) {
+    rate = rate_from_peclet(scene, particles.reference_radius, physics);
+  } else if (scene.has("/limits")) {
+    scene.refuse("/limits", "must be left out without /peclet");
+  }
+  physics.flow = read_flow({scene, rate, physics.viscosity, physics.thermal_energy, volume_fraction});
+  if (!scene.has(flow.key) && !scene.has("/peclet")) {
+    scene.miss(flow.key, fmt::format("must be a number >= 0, or {} or /peclet with /limits must be given",
+                                     fmt::join(flows_without_rate(0), ", ")));
+  }
+}
+
+// Every key of a scene: the one list behind validation, schema/scene.schema.json and the manual's page.
+
+namespace {
+
+Keys run_keys(const Keys& keys_of_observables) {
+  Keys keys = {
+      with_default(block("/integrator", "How the equations of motion are solved."), Json::object()),
+      choice("/integrator/method",
+             "explicit: velocity Verlet; implicit: steps that solve for the velocities. Unless given, "
+             "implicit with lubrication and explicit without.",
+             {"explicit", "implicit"}),
+      {.pointer = "/integrator/timestep",
+       .kind = KeyKind::number_or_auto,
+       .meaning =
+           "Time step; auto: half of the largest stable explicit one, or the implicit one whose error "
+           "has been measured, and not more than a 32nd of the production window. An oscillation has a "
+           "whole number of steps, 128 at least: the step is shortened to that.",
+       .unit = "time",
+       .default_value = "auto",
+       .minimum = 0,
+       .above_minimum = true},
+      {.pointer = "/integrator/tolerance",
+       .kind = KeyKind::number,
+       .meaning = "Residual of the equations of an implicit step, relative to the motion, in the energy "
+                  "norm; unless given 0.002, with noise 0.004.",
+       .minimum = 0,
+       .maximum = 5e-3,
+       .above_minimum = true},
+      block("/duration", "How long a realisation runs.", required),
+  };
+  const auto append = [&](const Keys& more) { keys.insert(keys.end(), more.begin(), more.end()); };
+  append(duration_keys("/duration/equilibration", "Before anything is measured; a limit of 0 skips it.",
+                       not_negative));
+  append(duration_keys("/duration/production", "The window of all means.", positive));
+  append({
+      {.pointer = "/observables",
+       .kind = KeyKind::array,
+       .meaning = "What is measured.",
+       .default_value = Json::array({"stress"}),
+       .minimum_items = 1},
+  });
+  append(keys_of_observables);
+  append({
+      block("/files", "Files that a realisation leaves beside its result; absent: none."),
+      {.pointer = "/files/final_configuration",
+       .kind = KeyKind::boolean,
+       .meaning =
+           "final.xyz: cell, centres, radii, velocities and spins at the end of a completed realisation, "
+           "as extended XYZ.",
+       .default_value = false},
+      {.pointer = "/files/final_checkpoint",
+       .kind = KeyKind::boolean,
+       .meaning =
+           "final.checkpoint: all that a completed realisation needs to go on, with `peclet-engine run "
+           "--extend`."},
+  });
+  append({
+      with_default(block("/guard", "Limits that end a realisation as failed, or flag its result."),
+                   Json::object()),
+      with_default(positive("/guard/largest_overlap", "", "Overlap over the smaller radius of the pair."),
+                   0.05),
+      positive(
+          "/guard/largest_displacement", "",
+          "Displacement in one step, or in the smallest part of a divided implicit one, relative to rate y, "
+          "over the smallest radius; 0.05 with explicit and 0.3 with implicit steps unless given."),
+      with_default(positive("/guard/energy_imbalance", "",
+                            "Energy that the finite step makes over the work of the flow; beyond it the "
+                            "result has the warning timestep."),
+                   0.3),
+      with_default(positive("/guard/half_step_difference", "",
+                            "Relative difference of the stress between steps and half steps, on samples; "
+                            "beyond it the result has the warning timestep."),
+                   0.03),
+  });
+  return keys;
+}
+
+}  // namespace
+
+KeyTable scene_keys_with(const Keys& keys_of_observables) {
+  Keys keys;
+  const auto append = [&](const Keys& more) { keys.insert(keys.end(), more.begin(), more.end()); };
+  append(particle_keys());
+  append(flow_keys());
+  for (const LawBlock& law : law_blocks) append(law.keys());
+  append(start_keys());
+  append(run_keys(keys_of_observables));
+  return KeyTable("Scene of a peclet simulation", std::move(keys));
 }
 
 }  // namespace peclet::engine

@@ -15,7 +15,7 @@
 
 #include "contract/json.h"
 #include "contract/key_table.h"
-#include "engine/document/scene_document.h"
+#include "engine/flow/scene_document.h"
 #include "engine/flow/steady_shear.h"
 #include "engine/scene/composition.h"
 #include "engine/terms/contact.h"
@@ -131,5 +131,13 @@ std::vector<std::string> blocks_of_physics();
 
 // Reads these blocks alone (a configuration's "scene").
 Physics read_physics(const Json& document, const std::string& file, const std::string& pointer);
+
+// The blocks fluid, flow and limits of a scene, and its Peclet number: how the solvent moves.
+Keys flow_keys();
+
+// Sets the flow of a scene whose fluid and laws have been read; rate and temperature where they follow from a
+// Peclet number within limits. Throws InputError where no flow is given.
+void set_flow(const SceneDocument& scene, const Particles& particles, double volume_fraction,
+              Physics& physics);
 
 }  // namespace peclet::engine

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <initializer_list>
 #include <string>
+#include <utility>
 
 namespace peclet::engine {
-
 namespace {
 
 constexpr int grid_cells = 1 << 14;
@@ -110,6 +111,195 @@ std::vector<SizeClass> size_classes(const SizeDistribution& distribution) {
     sizes.push_back({with_six_digits(std::cbrt(one.volume / one.number)), one.number / whole.number});
   }
   return sizes;
+}
+
+namespace {
+
+constexpr std::size_t usual_classes = 16;
+
+bool by_number(const SpeciesList& list) { return list.shares == Particles::Shares::number; }
+
+SizeDistribution::Form form_of(const std::string& name) {
+  if (name == "lognormal") return SizeDistribution::Form::lognormal;
+  return name == "uniform" ? SizeDistribution::Form::uniform : SizeDistribution::Form::gaussian;
+}
+
+// The sizes of one distribution or histogram.
+class DistributionReading {
+ public:
+  DistributionReading(const SceneDocument& scene, std::string pointer)
+      : scene_(scene), pointer_(std::move(pointer)), form_(scene.at(pointer_ + "/form").get<std::string>()) {}
+
+  std::vector<SizeClass> classes() const {
+    if (form_ == "histogram") {
+      leave_out({"mean_radius", "relative_width", "classes"});
+      return bins();
+    }
+    leave_out({"radii", "shares"});
+    require("mean_radius", "must be a number > 0");
+    require("relative_width", "must be a number > 0");
+    SizeDistribution distribution;
+    distribution.form = form_of(form_);
+    distribution.mean_radius = scene_.number(pointer_ + "/mean_radius");
+    distribution.relative_width = scene_.number(pointer_ + "/relative_width");
+    distribution.by_volume = by_volume();
+    distribution.classes = usual_classes;
+    if (scene_.has(pointer_ + "/classes")) {
+      distribution.classes = scene_.at(pointer_ + "/classes").get<std::size_t>();
+    }
+    if (const double most = largest_relative_width(distribution.form); distribution.relative_width > most) {
+      scene_.refuse(pointer_ + "/relative_width",
+                    fmt::format("must be at most {} with the form {}", most, form_));
+    }
+    return size_classes(distribution);
+  }
+
+ private:
+  bool by_volume() const { return scene_.at(pointer_ + "/by") == "volume"; }
+
+  void leave_out(std::initializer_list<const char*> keys) const {
+    for (const std::string key : keys) {
+      if (scene_.has(pointer_ + '/' + key)) {
+        scene_.refuse(pointer_ + '/' + key, "must be left out with the form " + form_);
+      }
+    }
+  }
+
+  void require(const std::string& key, const std::string& allowed) const {
+    if (!scene_.has(pointer_ + '/' + key)) scene_.miss(pointer_ + '/' + key, allowed);
+  }
+
+  std::vector<SizeClass> bins() const {
+    require("radii", "must be an array, because the form is histogram");
+    require("shares", "must be an array, because the form is histogram");
+    const Json &radii = scene_.at(pointer_ + "/radii"), &shares = scene_.at(pointer_ + "/shares");
+    if (shares.size() != radii.size()) {
+      scene_.refuse(pointer_ + "/shares",
+                    fmt::format("must have a share for each of the {} radii", radii.size()));
+    }
+    std::vector<SizeClass> classes;
+    for (std::size_t i = 0; i < radii.size(); ++i) {
+      const double a = radii[i].get<double>(), share = shares[i].get<double>();
+      if (share > 0) classes.push_back({a, by_volume() ? share / (a * a * a) : share});
+    }
+    if (classes.empty()) scene_.refuse(pointer_ + "/shares", "must have a share > 0");
+    return classes;
+  }
+
+  const SceneDocument& scene_;
+  std::string pointer_, form_;
+};
+
+// Adds an element with a distribution: its share is that of all its classes together.
+void add_classes(const SceneDocument& scene, const std::string& pointer, const Species& whole,
+                 SpeciesList& list) {
+  const std::vector<SizeClass> classes = DistributionReading(scene, pointer + "/distribution").classes();
+  const auto weight = [&](const SizeClass& one) {
+    return by_number(list) ? one.number : volume_weight(Particles::Shares::number, one.number, one.radius);
+  };
+  double sum = 0;
+  for (const SizeClass& one : classes) sum += weight(one);
+  for (const SizeClass& one : classes) {
+    list.species.push_back({one.radius, whole.share * weight(one) / sum, whole.density});
+    list.pointers.push_back(pointer);
+  }
+  list.distributed = true;
+}
+
+Keys distribution_keys(const std::string& pointer) {
+  Key self = block(pointer, "A distribution of radii, by a few sizes that are the same for all seeds.");
+  self.instead_of = "radius";
+  return {
+      self,
+      must_be_given(
+          choice(pointer + "/form",
+                 "lognormal, uniform, gaussian (cut off at three standard deviations): by mean radius and "
+                 "relative width. histogram: by radii and shares.",
+                 {"lognormal", "uniform", "gaussian", "histogram"})),
+      must_be_given(choice(pointer + "/by",
+                           "What mean, width or shares are of: the number of the spheres, or their volume.",
+                           {"number", "volume"})),
+      positive(pointer + "/mean_radius", "length", "Mean radius; not of a histogram."),
+      fraction_up_to(
+          positive(pointer + "/relative_width", "",
+                   "Standard deviation of the radius over its mean, at most 1 (uniform: 0.55, gaussian: "
+                   "0.32); not of a histogram."),
+          1),
+      {.pointer = pointer + "/classes",
+       .kind = KeyKind::integer,
+       .meaning = "Number of sizes; 16 unless given. Not of a histogram, which has its own.",
+       .minimum = 1,
+       .maximum = static_cast<double>(most_species)},
+      {.pointer = pointer + "/radii",
+       .kind = KeyKind::array,
+       .meaning = "Radii of a histogram.",
+       .minimum_items = 1,
+       .maximum_items = most_species},
+      positive(pointer + "/radii/*", "length", "One radius."),
+      {.pointer = pointer + "/shares",
+       .kind = KeyKind::array,
+       .meaning = "Shares of a histogram, of each radius, relative to each other.",
+       .minimum_items = 1,
+       .maximum_items = most_species},
+      not_negative(pointer + "/shares/*", "", "One share; a radius of share 0 has no sphere."),
+  };
+}
+
+}  // namespace
+
+Keys species_keys(const std::string& pointer) {
+  const std::string of = pointer + "/*";
+  Keys keys = {
+      block(of, "One size, or one distribution of sizes."),
+      positive(of + "/radius", "length", "Radius.", required),
+      positive(
+          of + "/volume_share", "",
+          "Share of the particles' volume, relative to the other species (the shares need not add up to 1)."),
+      positive(of + "/number_share", "",
+               "Share of the number of particles, relative to the other species (need not add up to 1)."),
+      positive(of + "/density", "mass / length^3",
+               "Mass density of these spheres; that of all unless given."),
+  };
+  const Keys more = distribution_keys(of + "/distribution");
+  keys.insert(keys.end(), more.begin(), more.end());
+  return keys;
+}
+
+// Shares are relative: they are divided by their sum.
+SpeciesList read_species(const SceneDocument& scene, const std::string& pointer) {
+  const Json& given = scene.at(pointer);
+  const bool of_number = given[0].contains("number_share");
+  const std::string wanted = of_number ? "number_share" : "volume_share";
+  const std::string other = of_number ? "volume_share" : "number_share";
+  SpeciesList list;
+  list.shares = of_number ? Particles::Shares::number : Particles::Shares::volume;
+  double sum = 0;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const std::string own = fmt::format("{}/{}", pointer, i);
+    if (given[i].contains(other)) {
+      scene.refuse(own + '/' + other,
+                   "must be left out: the first species has " + wanted + ", all must have the same");
+    }
+    if (!given[i].contains(wanted) && given.size() > 1) {
+      scene.miss(own + '/' + wanted, "each species must have a " + wanted + " > 0 (or each a " + other + ")");
+    }
+    Species species = {0, given[i].value(wanted, 1.0)};
+    if (given[i].contains("density")) species.density = given[i]["density"].get<double>();
+    sum += species.share;
+    if (given[i].contains("distribution")) {
+      add_classes(scene, own, species, list);
+      continue;
+    }
+    species.radius = given[i]["radius"].get<double>();
+    list.species.push_back(species);
+    list.pointers.push_back(own);
+  }
+  if (list.species.size() > most_species) {
+    scene.refuse(pointer, fmt::format("must be at most {} sizes, those of distributions counted, not {}",
+                                      most_species, list.species.size()));
+  }
+  for (Species& one : list.species) one.share /= sum;
+  return list;
 }
 
 }  // namespace peclet::engine

@@ -2,7 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
+
+#include "engine/flow/scene_document.h"
+#include "engine/scene/composition.h"
 
 namespace peclet::engine {
 
@@ -36,5 +40,23 @@ struct SizeClass {
 // rounded to six digits. The mean of a^3 of all spheres is therefore kept; those of a and a^2 are too large
 // by less than 0.5 % with 16 classes and widths up to 0.5. Requires a width in (0, largest_relative_width].
 std::vector<SizeClass> size_classes(const SizeDistribution& distribution);
+
+// A list of sizes in a scene, each a radius or a distribution of radii.
+//
+// Each pair of sizes has constants of its own.
+inline constexpr std::size_t most_species = 256;
+
+// Of the elements of the list at `pointer`.
+Keys species_keys(const std::string& pointer);
+
+struct SpeciesList {
+  Particles::Shares shares = Particles::Shares::volume;
+  std::vector<Species> species;       // shares add up to 1
+  std::vector<std::string> pointers;  // of each species, to the element that it comes from
+  bool distributed = false;           // some come from a distribution
+};
+
+// Throws InputError where elements do not go together.
+SpeciesList read_species(const SceneDocument& scene, const std::string& pointer);
 
 }  // namespace peclet::engine

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <utility>
 
-#include "engine/snapshots/snapshot_check.h"
+#include "engine/snapshots/snapshot.h"
 
 namespace peclet::engine {
 namespace {

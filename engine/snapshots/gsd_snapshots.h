@@ -1,7 +1,7 @@
 // Frames of a GSD file of the schema "hoomd", of this program or another one.
 #pragma once
 
-#include "engine/gsd/reader.h"
+#include "engine/snapshots/gsd_file.h"
 #include "engine/snapshots/snapshot.h"
 
 namespace peclet::engine {

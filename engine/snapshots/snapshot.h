@@ -5,13 +5,17 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "engine/state/basis_change.h"
+#include "engine/snapshots/gsd_file.h"
 #include "engine/state/matrix3.h"
+#include "engine/state/periodic_cell.h"
 #include "engine/state/vector3.h"
 
 namespace peclet::engine {
@@ -56,5 +60,52 @@ inline bool is_turned(const Snapshot& snapshot) {
   const auto& [a, b, c] = snapshot.lattice.column;
   return a.y != 0 || a.z != 0 || b.z != 0 || !(a.x > 0 && b.y > 0 && c.z > 0);
 }
+
+// The one place that judges what files say of spheres.
+//
+// Throws InputError naming `file` if a number of the snapshot cannot be computed with as what it is:
+//   lattice vectors: linearly independent, of lengths from 1e-30 to 1e30, none shorter across the others than
+//     a millionth of the longest one;
+//   centres and corner: within a million cells of the origin, so that a cell can be counted in an integer;
+//   radii: from a millionth of the longest edge to that edge;
+//   other numbers: finite, at most 1e30 in magnitude; a time, unless it is 0, at least 1e-30;
+//   names of stresses: letters, digits, '_', '-' and '/';
+//   contacts: between two spheres that are there, pushing apart or not at all.
+// Requires lists of as many entries as there are spheres, or none.
+void check_snapshot(const Snapshot& snapshot, const std::string& file);
+
+// A file of frames, whichever kind it is of.
+//
+// A GSD file, or extended XYZ of up to 256 MiB: what it is shows in its first bytes, not in its name.
+class SnapshotFile {
+ public:
+  // Throws InputError.
+  explicit SnapshotFile(const std::filesystem::path& path);
+
+  std::uint64_t frames() const;
+  // Counted from 0, or from the last one, -1. Throws InputError where there is no such frame.
+  std::uint64_t index_of(std::int64_t frame) const;
+  // Throws InputError.
+  Snapshot read(std::uint64_t frame) const;
+
+ private:
+  struct Text {
+    std::string text;
+    std::vector<std::string_view> frames;  // of the text
+  };
+
+  std::filesystem::path path_;
+  std::optional<gsd::Reader> gsd_;
+  std::unique_ptr<Text> text_;
+};
+
+// What a person should know of a file without sizes.
+std::string note_on_sizes(const std::string& file);
+
+// "first:last:step", of which each may be left out, or one number: the frames, at most `count`, that it
+// names. Both ends are included, and count from the last frame where they are negative. Throws InputError for
+// what is no such text (in `option`) and for frames that are not there.
+std::vector<std::uint64_t> chosen_frames(const std::string& range, const SnapshotFile& file,
+                                         const std::string& option);
 
 }  // namespace peclet::engine

@@ -9,9 +9,9 @@
 #include <set>
 #include <utility>
 
-#include "contract/input_error.h"
-#include "contract/text_lines.h"
-#include "engine/snapshots/snapshot_check.h"
+#include "contract/errors.h"
+#include "contract/text.h"
+#include "engine/snapshots/snapshot.h"
 
 namespace peclet::engine {
 namespace {

@@ -4,7 +4,7 @@
 #include <mutex>
 #include <tuple>
 
-#include "engine/threads/for_each_range.h"
+#include "engine/state/threads.h"
 
 namespace peclet::engine {
 namespace {

@@ -1,4 +1,4 @@
-// What every particle carries.
+// Particles: what each of them carries, and their order in memory.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,8 @@
 
 namespace peclet::engine {
 
+// What every particle carries.
+//
 // Spheres in the laboratory frame. Positions may lie outside the cell; position and velocity then belong to
 // the image at that place (its velocity follows the streaming flow there). `image` counts the lattice vectors
 // that wrapping has removed, in the current basis: position + image A is the unwrapped place.
@@ -37,5 +39,16 @@ void wrap_into_cell(ParticleState& particles, const PeriodicCell& box);
 
 // Total volume of the spheres.
 double solid_volume(const ParticleState& particles);
+
+// Which particles are neighbours in memory.
+//
+// Rearranges the particles along a Morton curve through the cell, so that those of one block stand close
+// together. Positions must lie in the cell. Systems of one block stay as they are. The order is a function of
+// the positions and of the order before. Rows move to new memory, which each thread fills for its own blocks.
+void arrange_along_curve(ParticleState& particles, const PeriodicCell& box, int threads = 1);
+
+// Rearranges particles that stand in order of their ids (as they are made) so that particles.id becomes `id`.
+// Throws ArchiveError when `id` is no permutation.
+void arrange_by_id(ParticleState& particles, const std::vector<std::uint32_t>& id);
 
 }  // namespace peclet::engine

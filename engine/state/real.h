@@ -1,7 +1,7 @@
 // What the formulas of a pair need of a number besides arithmetic, for a single double.
 //
 // The terms are templates on the number: `double`, or the Lanes of an instruction set, which hold several
-// pairs side by side and bring functions of the same names (kernels/lanes_*.h). A comparison gives bool or a
+// pairs side by side and bring functions of the same names (kernels/lanes.h). A comparison gives bool or a
 // mask.
 #pragma once
 
@@ -19,5 +19,12 @@ inline double larger(double a, double b) { return a < b ? b : a; }
 inline double square_root(double x) { return std::sqrt(x); }
 inline double logarithm(double x) { return std::log(x); }
 inline double exponential(double x) { return std::exp(x); }
+
+}  // namespace peclet::engine
+
+namespace peclet::engine {
+
+// A vector in memory: four doubles, the fourth always zero.
+typedef double Row __attribute__((vector_size(32)));
 
 }  // namespace peclet::engine

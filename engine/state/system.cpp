@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/state/particle_order.h"
+#include "engine/state/particles.h"
 
 namespace peclet::engine {
 namespace {

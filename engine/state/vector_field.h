@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "engine/state/row.h"
+#include "engine/state/real.h"
+#include "engine/state/threads.h"
 #include "engine/state/vector3.h"
-#include "engine/threads/for_each_range.h"
 
 namespace peclet::engine {
 

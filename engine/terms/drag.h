@@ -1,5 +1,5 @@
 // Drag of the solvent on single spheres, the noise that belongs to it, and the stress of both without pairs.
-// The drag itself, zeta (U(x) - U_i) and zeta_r (Omega - Omega_i), is in kernels/bodies/one_body.h: Li, Royer
+// The drag itself, zeta (U(x) - U_i) and zeta_r (Omega - Omega_i), is in kernels/one_body.h: Li, Royer
 // & Ness (2023) eqs. 5, 6.
 #pragma once
 

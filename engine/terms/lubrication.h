@@ -1,6 +1,10 @@
 // Lubrication forces from the resistance of a pair.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
+#include "engine/terms/drag.h"
 #include "engine/terms/pair_resistance.h"
 
 namespace peclet::engine {
@@ -50,6 +54,22 @@ PECLET_ALWAYS_INLINE SphereLoadOf<Real> load_on_second(const PairResistanceOf<Re
   const Vector3Of<Real> along = dot(U, n) * n, turned = cross(n, Omega);
   return {R.squeeze * along + R.shear * (U - along) + R.pump_first * turned,
           R.pump_second * cross(n, U) - R.twist_cross * across(Omega, n)};
+}
+
+// The longest step in which inertia holds the spheres of a pair that leaves the range of lubrication.
+//
+// Of spheres with this radius and mass (of one density the smallest ones bound the step): the least of
+// - 2 h_o / (5 sqrt(2 kT / m)), h_o the outer distance of two of them, of kim-karrila xi_o a: thermal
+//   velocities close the distance of a sphere and a third one, in five standard deviations, by no more than
+//   twice the outer gap, so that none is overlapped unseen;
+// - 4 m / zeta: the velocity's sign changes from step to step by no more than a third.
+inline double longest_inertial_step(double viscosity, double thermal_energy,
+                                    const LubricationParameters& lubrication, double radius, double mass) {
+  constexpr double deviations = 5, decay_times = 4;
+  const double drag = translational_drag(viscosity, radius);
+  return std::min(
+      2 * outer_distance(lubrication, 2 * radius) / (deviations * std::sqrt(2 * thermal_energy / mass)),
+      decay_times * mass / drag);
 }
 
 }  // namespace peclet::engine

@@ -16,7 +16,7 @@
 // the mean of two rules are fitted: they keep the density of pairs flat across the inner gap
 // (tests/physics/README.md).
 //
-// xi is the shifted gap of terms/lubricated_gap.h where the form has one.
+// xi is the shifted gap of terms/pair_resistance.h where the form has one.
 //
 // With R averaged over the way (on_the_way) the squeezing part of a pair's r F is the change of a function of
 // the gap.

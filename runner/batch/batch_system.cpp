@@ -9,10 +9,9 @@
 #include <system_error>
 
 #include "contract/durable_file.h"
-#include "contract/input_error.h"
-#include "runner/batch/batch_templates.h"
+#include "contract/errors.h"
+#include "runner/campaign/quoting.h"
 #include "runner/engines/command.h"
-#include "runner/text/quoting.h"
 
 namespace peclet::runner {
 namespace {

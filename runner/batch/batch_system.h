@@ -70,4 +70,7 @@ bool cancel_job(const std::filesystem::path& folder, const std::string& name, st
 // Tasks that a job may have; `otherwise` when the batch system does not say.
 int largest_array(const BatchTemplate& scripts, int otherwise);
 
+// The templates of templates/, compiled in.
+BatchTemplate slurm_template();
+
 }  // namespace peclet::runner

@@ -10,20 +10,17 @@
 #include <utility>
 
 #include "contract/durable_file.h"
-#include "contract/exit_codes.h"
-#include "contract/input_error.h"
-#include "contract/integrity_error.h"
+#include "contract/errors.h"
 #include "runner/batch/bundle_files.h"
-#include "runner/engines/engine_error.h"
-#include "runner/engines/job_folders.h"
+#include "runner/campaign/number_text.h"
+#include "runner/engines/engine_process.h"
+#include "runner/engines/worker_pool.h"
 #include "runner/engines/worker_process.h"
-#include "runner/engines/worker_watch.h"
 #include "runner/store/blame.h"
 #include "runner/store/disk_room.h"
+#include "runner/store/locks.h"
 #include "runner/store/result_files.h"
 #include "runner/store/spool.h"
-#include "runner/text/host_name.h"
-#include "runner/text/utc_time.h"
 
 namespace peclet::runner {
 namespace {

@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "contract/durable_file.h"
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "runner/store/blame.h"
 #include "runner/store/result_files.h"
 #include "runner/store/spool.h"

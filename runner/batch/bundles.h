@@ -17,7 +17,7 @@
 #include "runner/batch/bundle_files.h"
 #include "runner/owner/ledger.h"
 #include "runner/store/bundle_store.h"
-#include "runner/store/event_store.h"
+#include "runner/store/point_store.h"
 #include "runner/store/seed_store.h"
 
 namespace peclet::runner {

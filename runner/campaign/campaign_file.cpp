@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <stdexcept>
 #include <system_error>
 #include <vector>
 
-#include "contract/input_error.h"
-#include "contract/nearest_name.h"
-#include "runner/text/quoting.h"
+#include "contract/errors.h"
+#include "contract/text.h"
+#include "runner/campaign/quoting.h"
 
 namespace peclet::runner {
 
@@ -67,6 +69,117 @@ fs::path home_of(const fs::path& campaign_file) {
   std::error_code impossible;
   return fs::is_regular_file(campaign_file, impossible) ? fs::absolute(campaign_file).parent_path()
                                                         : fs::current_path();
+}
+
+namespace {
+
+struct Span {
+  std::size_t begin = 0, end = 0;
+};
+
+struct Member {
+  Span key, value;  // the key with its quotes
+};
+
+// Walks over a text that is known to be JSON.
+class Walker {
+ public:
+  explicit Walker(const std::string& text) : text_(text) {}
+
+  std::size_t skip_blanks(std::size_t at) const { return text_.find_first_not_of(" \t\r\n", at); }
+
+  std::size_t end_of_string(std::size_t at) const {
+    for (++at; text_.at(at) != '"'; ++at) {
+      if (text_[at] == '\\') ++at;
+    }
+    return at + 1;
+  }
+
+  std::size_t end_of_value(std::size_t at) const {
+    if (text_.at(at) == '"') return end_of_string(at);
+    if (text_[at] != '{' && text_[at] != '[')
+      return std::min(text_.find_first_of(",]} \t\r\n", at), text_.size());
+    int depth = 0;
+    do {
+      const char c = text_.at(at);
+      if (c == '"') {
+        at = end_of_string(at);
+        continue;
+      }
+      if (c == '{' || c == '[') ++depth;
+      if (c == '}' || c == ']') --depth;
+      ++at;
+    } while (depth > 0);
+    return at;
+  }
+
+  // Of the object that begins at `at`, in their order.
+  std::vector<Member> members(std::size_t at) const {
+    std::vector<Member> found;
+    at = skip_blanks(at + 1);
+    while (text_.at(at) != '}') {
+      Member member;
+      member.key = {at, end_of_string(at)};
+      const std::size_t colon = skip_blanks(member.key.end);
+      member.value.begin = skip_blanks(colon + 1);
+      member.value.end = end_of_value(member.value.begin);
+      found.push_back(member);
+      at = skip_blanks(member.value.end);
+      if (text_.at(at) == ',') at = skip_blanks(at + 1);
+    }
+    return found;
+  }
+
+  std::optional<Member> member(std::size_t object, const std::string& key) const {
+    for (const Member& known : members(object)) {
+      // A key may be spelled with escapes.
+      if (Json::parse(part(known.key.begin, known.key.end)) == key) return known;
+    }
+    return std::nullopt;
+  }
+
+  std::string part(std::size_t begin, std::size_t end) const { return text_.substr(begin, end - begin); }
+
+ private:
+  const std::string& text_;
+};
+
+std::string with_new_member(const std::string& text, std::size_t object, const std::string& key,
+                            const Json& value) {
+  const Walker walker(text);
+  const std::vector<Member> known = walker.members(object);
+  const std::string quoted = Json(key).dump();
+  if (known.empty()) {
+    std::string edited = text;
+    return edited.insert(object + 1, quoted + ": " + value.dump());
+  }
+  const std::string before_key = walker.part(object + 1, known.front().key.begin);
+  const std::string colon = walker.part(known.front().key.end, known.front().value.begin);
+  std::string edited = text;
+  // Members in one line have a blank between them, whatever stands behind the brace.
+  const bool in_lines = before_key.find('\n') != std::string::npos;
+  return edited.insert(known.back().value.end,
+                       (in_lines ? "," + before_key : ", ") + quoted + colon + value.dump());
+}
+
+}  // namespace
+
+std::string with_value(const std::string& text, const std::vector<std::string>& path, const Json& value) {
+  const Walker walker(text);
+  std::size_t object = walker.skip_blanks(0);
+  for (std::size_t depth = 0; depth < path.size(); ++depth) {
+    const std::optional<Member> member = walker.member(object, path[depth]);
+    const bool is_last = depth + 1 == path.size();
+    if (member && is_last) {
+      std::string edited = text;
+      return edited.replace(member->value.begin, member->value.end - member->value.begin, value.dump());
+    }
+    if (is_last) return with_new_member(text, object, path[depth], value);
+    if (!member || text[member->value.begin] != '{')
+      throw std::invalid_argument("no object at " + path[depth]);
+    object = member->value.begin;
+  }
+  return text;
 }
 
 }  // namespace peclet::runner

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "contract/key_table.h"
-#include "runner/text/number_text.h"
+#include "runner/campaign/number_text.h"
 
 namespace peclet::runner {
 namespace {

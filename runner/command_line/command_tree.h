@@ -2,6 +2,8 @@
 // say anything else.
 #pragma once
 
+#include <CLI/CLI.hpp>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -40,5 +42,25 @@ struct CommandTree {
 
 // Of `peclet`: all verbs and options.
 CommandTree command_tree();
+
+// The command tree of a parser, and how the parser prints its options.
+CommandTree describe(const CLI::App& app);
+
+// Prints values without the parser's own words for their checks: "--threads NUMBER=1".
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_option_opts(const CLI::Option* option) const override;
+};
+
+// The verb `peclet completion`: what bash needs to complete command lines of peclet.
+struct CompletionOptions {
+  std::string shell;             // bash
+  std::filesystem::path output;  // "": standard output
+  bool quiet = false;            // does not say where it is
+};
+
+// A script for `eval`, or for a file in bash's own folder of completions. Verbs, options, choices, and files
+// where an option takes some: campaign files (*.json), .peclet folders, any file, any folder.
+std::string bash_completion(const CommandTree& tree);
 
 }  // namespace peclet::runner

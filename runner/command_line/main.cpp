@@ -5,7 +5,6 @@
 
 #include "runner/command_line/options.h"
 #include "runner/command_line/print.h"
-#include "runner/verbs/exit_code.h"
 
 int main(int argc, char** argv) {
   using namespace peclet::runner;

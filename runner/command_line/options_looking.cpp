@@ -3,20 +3,21 @@
 
 #include <memory>
 
-#include "contract/output_file.h"
-#include "runner/archive/supplement.h"
-#include "runner/command_line/open_to_look.h"
+#include "contract/named_files.h"
+#include "runner/campaign/quoting.h"
+#include "runner/command_line/files.h"
 #include "runner/command_line/print.h"
 #include "runner/command_line/verb_set.h"
+#include "runner/command_line/watch.h"
+#include "runner/page/figure.h"
+#include "runner/page/jamming.h"
 #include "runner/page/page_html.h"
+#include "runner/page/picture.h"
+#include "runner/page/supplement.h"
 #include "runner/reports/explain.h"
 #include "runner/reports/export.h"
-#include "runner/reports/results.h"
 #include "runner/reports/status.h"
 #include "runner/store/locks.h"
-#include "runner/verbs/files.h"
-#include "runner/verbs/serve.h"
-#include "runner/verbs/watch.h"
 
 namespace peclet::runner {
 namespace {
@@ -291,6 +292,179 @@ void add_looking_verbs(VerbSet& verbs) {
   add_results(verbs);
   add_report(verbs);
   add_serve(verbs);
+}
+
+// The verb that draws a campaign.
+
+namespace {
+
+struct PlotOptions {
+  std::filesystem::path campaign;  // file or folder
+  std::filesystem::path directory;
+  FigureChoice choice;
+  std::filesystem::path output;  // "": SVG on standard output
+  bool json = false;             // the numbers, and no picture
+  bool quiet = false;            // does not say where it is, and what is left out
+};
+
+// The script is written first: it has the numbers where no picture can be drawn.
+void draw_campaign(const PlotOptions& options) {
+  const bool into_file = !options.output.empty() && !options.json;
+  const PictureForm form = into_file ? picture_form(options.output) : PictureForm::svg;
+  const std::filesystem::path beside = into_file ? script_beside(options.output) : "";
+  if (!options.output.empty()) check_output(options.output);
+  if (into_file) check_output(beside);
+  OpenCampaign open = open_to_look(options.campaign, options.directory);
+  const Json data = figure_data(open.database, options.choice);
+  if (options.json) {
+    deliver(data.dump(1) + '\n', options.output, options.quiet);
+    return;
+  }
+  const std::string script = figure_script(data);
+  if (into_file) deliver(script, beside, options.quiet);
+  if (form == PictureForm::script) return;
+  try {
+    const Picture picture = drawn(script, form);
+    deliver(picture.bytes, options.output, options.quiet);
+    if (!options.quiet) say(picture.said);
+  } catch (const NotDrawn& fault) {
+    throw NotDrawn(
+        into_file ? fmt::format("{}; {} has the numbers, and draws them where matplotlib is: python3 {} {}",
+                                fault.what(), beside.string(), shell_word(beside.string()),
+                                shell_word(options.output.string()))
+                  : fmt::format("{}; --json prints the numbers", fault.what()));
+  }
+}
+
+}  // namespace
+
+void add_drawing_verbs(VerbSet& verbs) {
+  const auto options = std::make_shared<PlotOptions>();
+  CLI::App* const verb = verbs.add(
+      "plot", "Draw a measured quantity over a swept parameter, with the script of the figure",
+      "peclet plot flow-curve.json --output flow-curve.pdf",
+      page(
+          R"(
+Draws every point with its interval at the campaign's confidence, a curve for each value of what else is
+swept. Numbers are those of `export`: the target's are the ones that decide, with the control variate where
+there is one. Open marks have not converged; those with dashed bars may still change. Crosses have jammed.
+
+The name of --output says the form. Pictures are drawn by matplotlib, through python3 of PATH. Beside a
+picture lies its script, of the same name and the ending .py, which holds the numbers and draws the figure
+again by itself. Where there is no python3 with matplotlib only the script is written, and the exit code is 1.
+A script that somebody has changed is never replaced. Axes are logarithmic where the numbers lie more evenly
+then.
+)",
+          {{"peclet plot flow-curve.json --quantity pressure --over volume_fraction --log y --output p.svg",
+            ""},
+           {"peclet plot flow-curve.json --band > flow-curve.svg", "with the tolerance around each mean"},
+           {"peclet plot flow-curve.json --quantity stress/total/xy --output xy.png",
+            "one component of the stress"},
+           {"peclet plot flow-curve.json --output xy.py", "the script alone, which needs no matplotlib yet"}},
+          {0, 1, 2, 6}));
+  add_file_or_folder(verb, options->campaign);
+  add_directory(verb, options->directory);
+  verb->add_option("--quantity", options->choice.quantity,
+                   "Number to draw, as `export` calls it; the campaign's target unless given")
+      ->type_name("NAME");
+  verb->add_option(
+          "--over", options->choice.over,
+          "Swept parameter of the axis: its pointer or the last word of it; the one with most values "
+          "unless given")
+      ->type_name("PARAMETER");
+  verb->add_option("--log", options->choice.scale, "Axes that are logarithmic; those that fit unless given")
+      ->type_name("AXES")
+      ->check(CLI::IsMember({"none", "x", "y", "xy"}));
+  verb->add_flag("--band", options->choice.tolerance, "A band around each mean as wide as the tolerance");
+  verb->add_option("--output", options->output,
+                   "File to write, ending in .svg, .png, .pdf or .py; SVG on standard output unless given")
+      ->type_name(value_name::file);
+  verb->add_flag("--json", options->json, "Print the numbers as JSON, and draw nothing");
+  verb->add_flag("--quiet", options->quiet, "Do not say on stderr where it was written");
+  verbs.choose(verb, options, draw_campaign);
+}
+
+// The verb that makes one number of the points of a curve.
+
+namespace {
+
+void show_jamming(const JammingOptions& options) {
+  const JammingAnswer answer = find_jamming(options);
+  print(answer.text);
+  if (!answer.message.empty()) say(answer.message);
+}
+
+void add_law_options(CLI::App* verb, JammingOptions& options) {
+  verb->add_option("--by", options.by, "Definition of the jamming point; both unless given")
+      ->type_name("DEFINITION")
+      ->check(CLI::IsMember({"law", "steepest"}));
+  add_number(verb, "--exponent", options.exponent, number_above(0),
+             "Exponent of the law; fitted unless given");
+  verb->add_flag("--common-exponent", options.common_exponent, "One exponent, fitted, for all curves");
+  verb->add_flag("--unit-prefactor", options.unit_prefactor,
+                 "A law that is 1 without particles, (1 - phi / phi_m)^-exponent");
+  add_number(verb, "--above", options.above, number_from(0),
+             "The law is of the points whose viscosity is above")
+      ->capture_default_str();
+  add_number(verb, "--softest", options.curves.softest, number_above(0),
+             "Mean overlap of contacts, in radii, up to which spheres are taken for hard")
+      ->capture_default_str();
+}
+
+void add_proposing_options(CLI::App* verb, JammingOptions& options) {
+  verb->add_flag("--propose", options.propose,
+                 "Say which fractions to run next, with a patch of the campaign file");
+  add_number(verb, "--budget", options.budget, number_above(0),
+             "Processor time for what is proposed; one point a curve unless given")
+      ->type_name("SECONDS");
+  verb->add_option("--write", options.write,
+                   "New campaign file with the proposed points; a file that is there is never replaced")
+      ->type_name(value_name::file);
+}
+
+}  // namespace
+
+void add_estimating_verbs(VerbSet& verbs) {
+  const auto options = std::make_shared<JammingOptions>();
+  CLI::App* const verb = verbs.add(
+      "jamming", "Estimate the volume fraction of jamming from the points of a sweep",
+      "peclet jamming friction.json",
+      page(
+          R"(
+Makes a curve of viscosity over volume fraction for each value of what else is swept, and gives its jamming
+point phi_m by two definitions: where a power law A (1 - phi / phi_m)^-beta through the flowing points above
+a viscosity of 10 diverges, and where the viscosity rises most steeply. Errors are of the seeds; where the
+points leave phi_m open it is not determined, and the reason is said.
+
+A point is jammed when half of its seeds or more ended so: the engine's causes overlap, packing and jammed.
+It is soft, and no part of the law, when its contacts overlap by more than 0.1 % of a radius in the mean; of
+results without that mean, when the largest overlap is above ten times as much.
+
+--propose says which fraction would tell most: the one that lessens the error of the law, or where there is no
+law yet the one half-way between what flows and what is jammed. Fractions go into the sweep, for all curves.
+Points are known by their scenes: what has been run is not run again.
+
+The fits are made by python3 of PATH with NumPy, and by the package peclet that is installed with this program.
+Without one of them the verb ends with 1, and says what is missing and what it would have run.
+)",
+          {{"peclet jamming friction.json --unit-prefactor --above 1", "the law that holds at all fractions"},
+           {"peclet jamming friction.json --by law --exponent 2 --json", "for programs; schema/README.md"},
+           {"peclet jamming friction.json --propose --budget 3600 --write next.json",
+            "a campaign file with points for an hour of processor time"}},
+          {0, 1, 2, 6}));
+  add_file_or_folder(verb, options->campaign);
+  add_directory(verb, options->directory);
+  verb->add_option("--over", options->curves.over,
+                   "Swept volume fraction: its pointer or the last word of it")
+      ->type_name("PARAMETER")
+      ->capture_default_str();
+  verb->add_option("--quantity", options->curves.quantity, "Viscosity, as `export` calls it")
+      ->type_name("NAME")
+      ->capture_default_str();
+  add_law_options(verb, *options);
+  add_proposing_options(verb, *options);
+  verb->add_flag("--json", options->json, "For programs");
+  verbs.choose(verb, options, show_jamming);
 }
 
 }  // namespace peclet::runner

@@ -1,12 +1,19 @@
 // Verbs that set a campaign up and run it.
 #include <memory>
 
+#include "runner/batch/batch_task.h"
+#include "runner/campaign/campaign.h"
+#include "runner/command_line/ask_owner.h"
+#include "runner/command_line/hand_over.h"
+#include "runner/command_line/plan_campaign.h"
 #include "runner/command_line/print.h"
+#include "runner/command_line/run.h"
+#include "runner/command_line/set.h"
+#include "runner/command_line/validate.h"
 #include "runner/command_line/verb_set.h"
-#include "runner/verbs/init.h"
-#include "runner/verbs/plan_campaign.h"
-#include "runner/verbs/run.h"
-#include "runner/verbs/validate.h"
+#include "runner/maintenance/backup.h"
+#include "runner/maintenance/doctor.h"
+#include "runner/maintenance/restore.h"
 
 namespace peclet::runner {
 namespace {
@@ -129,6 +136,304 @@ void add_running_verbs(VerbSet& verbs) {
   add_validate(verbs);
   add_plan(verbs);
   add_run(verbs);
+}
+
+// Verbs that change what a campaign is to do.
+
+namespace {
+
+void add_patience(CLI::App* verb, double& seconds) {
+  add_number(verb, "--wait", seconds, number_from(0),
+             "Seconds to wait for the process that runs the campaign; 0: not at all")
+      ->type_name("SECONDS")
+      ->capture_default_str();
+}
+
+int tell(const Reply& reply) {
+  print(reply.text);
+  return reply.exit_code;
+}
+
+void add_set(VerbSet& verbs) {
+  const auto options = std::make_shared<SetOptions>();
+  CLI::App* const verb =
+      verbs.add("set", "Change target, points or priorities of a campaign, also while it runs",
+                "peclet set flow-curve.json --tolerance 0.03 --maximum 2000",
+                page(R"(
+Changes target, numbers of seeds or priorities. The values are changed in the campaign's file, of which every
+other byte stays, and the campaign takes the file over as it is; without options it does only that, with
+points that you have added to the sweep, for instance. A running campaign does so within seconds, and this
+verb waits for it; points of a finished one that are no longer decided go on with `peclet run`.
+)",
+                     {{"peclet set flow-curve.json", "take over a file that was edited"},
+                      {"peclet set flow-curve.json --point peclet=10 --priority 1", "this point first"}},
+                     {0, 1, 2, 4, 6}));
+  add_file(verb, options->campaign);
+  add_directory(verb, options->directory);
+  add_number(verb, "--tolerance", options->tolerance, *campaign_keys().find("/target/relative_tolerance"),
+             "/target/relative_tolerance: 0.05 or 5%");
+  add_number(verb, "--absolute-tolerance", options->absolute_tolerance,
+             *campaign_keys().find("/target/absolute_tolerance"),
+             "/target/absolute_tolerance, where the campaign has that");
+  add_number(verb, "--confidence", options->confidence, *campaign_keys().find("/target/confidence"),
+             "/target/confidence");
+  add_number(verb, "--minimum", options->minimum, *campaign_keys().find("/realisations/minimum"),
+             "/realisations/minimum: seeds before the first look");
+  add_number(verb, "--maximum", options->maximum, *campaign_keys().find("/realisations/maximum"),
+             "/realisations/maximum: seeds after which a point is capped");
+  add_number(verb, "--realisations", options->realisations, whole_number(1, most_realisations),
+             "/realisations, where their number is fixed: seeds of every point");
+  verb->add_option("--keep-files", options->keep_files,
+                   "/keep_files: all, none, or of how many first seeds of each point files are kept");
+  verb->add_option("--point", options->points, "Point that is to have the priority; may be repeated")
+      ->allow_extra_args(false);
+  add_number(verb, "--priority", options->priority, whole_number(-1'000'000, 1'000'000),
+             "Points of a higher one are served first; 0 unless set");
+  add_patience(verb, options->patience);
+  verbs.choose(verb, options, [](const SetOptions& given) { return tell(set_campaign(given)); });
+}
+
+void add_cancel(VerbSet& verbs) {
+  const auto options = std::make_shared<CancelOptions>();
+  CLI::App* const verb = verbs.add(
+      "cancel", "Give points no more seeds, also while the campaign runs",
+      "peclet cancel flow-curve.json peclet=10",
+      page(R"(
+The points get no more seeds and hold nothing up; seeds that run are saved and put back. What has been done
+is kept and shown.
+)",
+           {{"peclet cancel flow-curve.json peclet=10 --undo", "take it up again"}}, {0, 1, 2, 4, 6}));
+  add_file_or_folder(verb, options->campaign);
+  verb->add_option("point", options->points,
+                   "Labels of points, their values alone, or 4 or more digits of their hashes")
+      ->required();
+  add_directory(verb, options->directory);
+  verb->add_flag("--undo", options->undo, "Take them up again");
+  add_patience(verb, options->patience);
+  verbs.choose(verb, options, [](const CancelOptions& given) { return tell(cancel_points(given)); });
+}
+
+void add_retry(VerbSet& verbs) {
+  const auto options = std::make_shared<RetryOptions>();
+  CLI::App* const verb = verbs.add("retry", "Queue seeds again that were given up, with a clean record",
+                                   "peclet retry flow-curve.json peclet=10 --seed 17",
+                                   page(R"(
+Seeds are given up after three failures that were their own: crashes, or no progress. What the engine itself
+called failed (an overlap, a step too large) would fail again, and is not retried.
+)",
+                                        {}, {0, 1, 2, 4, 6}));
+  add_file_or_folder(verb, options->campaign);
+  verb->add_option(
+      "point", options->points,
+      "Labels of points, their values alone, or 4 or more digits of their hashes; all unless given");
+  add_directory(verb, options->directory);
+  add_number(verb, "--seed", options->seeds, whole_number(0, 2'147'483'647),
+             "Of the one point that is named; may be repeated; all unless given")
+      ->allow_extra_args(false);
+  add_patience(verb, options->patience);
+  verbs.choose(verb, options, [](const RetryOptions& given) { return tell(retry_seeds(given)); });
+}
+
+}  // namespace
+
+void add_changing_verbs(VerbSet& verbs) {
+  add_set(verbs);
+  add_cancel(verbs);
+  add_retry(verbs);
+}
+
+// Verbs that keep a campaign safe and sound.
+
+namespace {
+
+void add_backup(VerbSet& verbs) {
+  const auto options = std::make_shared<BackupOptions>();
+  CLI::App* const verb =
+      verbs.add("backup", "Copy a campaign's database and files, checked, also while it runs",
+                "peclet backup flow-curve.json /mnt/usb/flow-curve --checkpoints",
+                page(R"(
+`peclet run` makes such backups by itself; this makes one now, or elsewhere. The copy is checked before
+it takes the place of the one before. Of the folder's path only the last part is made: where a disk is
+not mounted, there is an error and no copy on another disk. A copy that turns out to be on the campaign's
+own file system is said to be.
+)",
+                     {}, {0, 1, 2, 6}));
+  add_file_or_folder(verb, options->campaign);
+  verb->add_option("target", options->target,
+                   "Folder for backup.db, made in one that must be there; the backup there before becomes "
+                   "backup.previous.db; the campaign's own backup/ unless given")
+      ->type_name(value_name::folder);
+  add_directory(verb, options->directory);
+  verb->add_flag("--checkpoints", options->checkpoints,
+                 "With checkpoints and spool, so that seeds that run now need not start again");
+  verb->add_flag("--json", options->json, "For programs");
+  verbs.choose(verb, options, [](const BackupOptions& given) { print(backup_campaign(given)); });
+}
+
+void add_restore(VerbSet& verbs) {
+  const auto options = std::make_shared<RestoreOptions>();
+  CLI::App* const verb =
+      verbs.add("restore", "Put a backup in the place of a lost or damaged database, here or elsewhere",
+                "peclet restore /mnt/usb/flow-curve flow-curve.json",
+                page(R"(
+What was there is kept aside. The campaign then goes on with `peclet run` to the same results.
+)",
+                     {}, {0, 1, 2, 5, 6}));
+  verb->add_option("backup", options->backup, "Folder of backups, or one file")
+      ->required()
+      ->type_name(value_name::file);
+  verb->add_option("campaign", options->campaign, "Campaign file or .peclet folder; made when there is none")
+      ->required()
+      ->type_name(value_name::campaign);
+  add_directory(verb, options->directory);
+  verb->add_flag(
+      "--force", options->force,
+      "Also in the place of a sound database that is as new, or another campaign's; it is kept aside");
+  verbs.choose(verb, options, [](const RestoreOptions& given) { print(restore_campaign(given)); });
+}
+
+int diagnose(const DoctorOptions& options) {
+  const Diagnosis diagnosis = examine_campaign(options);
+  print(diagnosis.text);
+  return diagnosis.exit_code;
+}
+
+void add_doctor(VerbSet& verbs) {
+  const auto options = std::make_shared<DoctorOptions>();
+  CLI::App* const verb = verbs.add("doctor", "Examine a campaign: database, files, processes, clock and disk",
+                                   "peclet doctor flow-curve.json --repair",
+                                   page(R"(
+Says what is wrong, how bad it is and what cures it. Without --repair nothing is changed. With it, among
+other things, checkpoints of seeds that no point needs any more are removed: they cost their time again
+should the tolerance be tightened.
+)",
+                                        {}, {0, 1, 2, 5, 6}));
+  add_file_or_folder(verb, options->campaign);
+  add_directory(verb, options->directory);
+  verb->add_flag("--repair", options->repair, "Do the safe repairs that are named as cures");
+  verb->add_flag("--json", options->json, "For programs");
+  verbs.choose(verb, options, diagnose);
+}
+
+}  // namespace
+
+void add_keeping_verbs(VerbSet& verbs) {
+  add_backup(verbs);
+  add_restore(verbs);
+  add_doctor(verbs);
+}
+
+// Verbs for seeds that run elsewhere, under a batch system.
+
+namespace {
+
+void add_hand_over(VerbSet& verbs) {
+  const auto options = std::make_shared<HandOverOptions>();
+  CLI::App* const verb =
+      verbs.add("hand-over", "Give seeds to a batch system: job arrays that need no database and no daemon",
+                "peclet hand-over slurm flow-curve.json --shared /scratch/me/flow-curve --follow \\\n"
+                "           --option=--partition=short --option=--time=4:00:00",
+                page(R"(
+Turns the seeds that the next looks need into job arrays. The database stays on this machine; nodes see
+the folder --shared and the two programs. Without --follow it hands over once, and `peclet ingest` takes
+in what has been done. The answer is the same, byte for byte, as that of `peclet run`.
+
+When the batch system refuses a job, its seeds stay here and the exit code is 1. When it is not known whether it has
+taken one, the seeds are out until a job of that name has been looked for.
+)",
+                     {}, {0, 1, 2, 3, 5, 6, 75}));
+  verb->add_option("system", options->system, "slurm; with --template any name")
+      ->required()
+      ->type_name("SYSTEM");
+  add_file(verb, options->campaign);
+  add_directory(verb, options->directory);
+  verb->add_option("--shared", options->shared,
+                   "Folder that this machine and the nodes see in the same place; that of the last time "
+                   "unless given")
+      ->type_name(value_name::folder);
+  add_number(verb, "--seeds-per-task", options->seeds_per_task, whole_number(1, 100'000),
+             "Seeds that one task runs, one after another")
+      ->capture_default_str();
+  add_number(verb, "--largest-array", options->largest_array, whole_number(1, 1'000'000),
+             "Tasks of one job at most; what the batch system allows unless given");
+  add_number(verb, "--threads", options->threads, whole_number(1, 4096), "Threads of each engine")
+      ->capture_default_str();
+  verb->add_option("--option", options->options, "Word for the submit command (sbatch)")->type_name("WORD");
+  verb->add_option("--template", options->template_folder,
+                   "Folder with job.sh and the commands, for other sites")
+      ->type_name(value_name::folder)
+      ->check(CLI::ExistingDirectory);
+  verb->add_flag("--ahead", options->ahead, "Hand over the seeds of the look after the next one, too");
+  verb->add_flag("--follow", options->follow,
+                 "Take results in and hand over what the next looks need, until every point is decided");
+  add_seconds(verb, "--interval", options->interval, "Seconds between two turns of --follow");
+  add_seconds(verb, "--backup", options->backup_seconds,
+              "Seconds between backups of the database, with --follow");
+  add_seconds(verb, "--lease", options->lease_seconds,
+              "Seconds without a new step after which an engine counts as hung");
+  add_seconds(verb, "--checkpoint", options->checkpoint_seconds,
+              "Seconds between checkpoints of a realisation");
+  add_accept_engine(verb, options->accept_engine);
+  verb->add_flag("--dry-run", options->dry_run, "Say what would be handed over; submit nothing");
+  verb->add_flag("--quiet", options->quiet, "No progress on stderr");
+  verb->add_flag("--force", options->force, "Use a network file system for the database all the same");
+  verbs.choose(verb, options, hand_over_campaign);
+}
+
+void add_ingest(VerbSet& verbs) {
+  const auto options = std::make_shared<IngestOptions>();
+  CLI::App* const verb = verbs.add(
+      "ingest", "Take in what a batch system has done with the seeds it was given",
+      "peclet ingest flow-curve.json",
+      page(R"(
+Takes results, failures and preempted tasks in from the folder that is shared with the nodes, and hands
+nothing over.
+
+Seeds of which nobody knows anything (their folder is gone, the batch system does not answer) stay out, because
+they may be running. --forget gives a bundle of them up by the name that `peclet ingest` prints. The exit code is 1
+while the folder of seeds that are out is not there.
+)",
+           {{"peclet ingest flow-curve.json --cancel", "end the jobs; `peclet run` can have their seeds"},
+            {"peclet ingest flow-curve.json --forget flow-curve-1a2b3c-0001",
+             "its folder is gone, and so are its jobs"}},
+           {0, 1, 2, 5, 6}));
+  add_file(verb, options->campaign);
+  add_directory(verb, options->directory);
+  verb->add_flag("--cancel", options->cancel, "End the jobs and take their seeds back");
+  verb->add_option(
+          "--forget", options->forget,
+          "Queue the seeds of this bundle again though nobody answers for it; results that come all the "
+          "same count once")
+      ->type_name("BUNDLE")
+      ->allow_extra_args(false)  // a campaign's file may follow
+      ->excludes("--cancel");
+  verb->add_flag("--quiet", options->quiet, "No notes on stderr");
+  verb->add_flag("--force", options->force, "Use a network file system for the database all the same");
+  verbs.choose(verb, options, ingest_campaign);
+}
+
+void add_task(VerbSet& verbs) {
+  const auto options = std::make_shared<TaskOptions>();
+  CLI::App* const verb = verbs.add("task", "Run one task of a bundle; what job scripts call on a node",
+                                   "peclet task /scratch/me/flow-curve/bundles/NAME/manifest.json 7",
+                                   page(R"(
+Runs the seeds of the task one after another, those apart that have ended already. SIGTERM, SIGINT and
+SIGUSR1 make the engine save a checkpoint and leave.
+)",
+                                        {}, {0, 1, 2, 6, 75}));
+  verb->add_option("manifest", options->manifest, "The bundle's manifest.json")
+      ->required()
+      ->type_name(value_name::campaign_file);
+  add_number(verb, "index", options->index, whole_number(0, 1e9), "Number of the task, from 0")->required();
+  verbs.choose(verb, options, run_task);
+}
+
+}  // namespace
+
+void add_batch_verbs(VerbSet& verbs) {
+  add_hand_over(verbs);
+  add_ingest(verbs);
+  add_task(verbs);
 }
 
 }  // namespace peclet::runner

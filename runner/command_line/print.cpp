@@ -4,9 +4,14 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <filesystem>
 #include <system_error>
 
-#include "contract/output_file.h"
+#include "contract/errors.h"
+#include "contract/named_files.h"
+#include "contract/text.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/locks.h"
 
 namespace peclet::runner {
 
@@ -25,6 +30,30 @@ void deliver(const std::string& text, const std::filesystem::path& output, bool 
   }
   write_output(output, text);
   if (!quiet) say(fmt::format("peclet: {} is written, {} bytes\n", output.string(), text.size()));
+}
+
+int exit_code_of(const std::exception& error) {
+  if (dynamic_cast<const InputError*>(&error) != nullptr || is_impossible_name(error)) return ExitCode::usage;
+  if (dynamic_cast<const OwnedByAnother*>(&error) != nullptr) return ExitCode::owned;
+  if (dynamic_cast<const IntegrityError*>(&error) != nullptr) return ExitCode::integrity;
+  return ExitCode::error;
+}
+
+std::string message_of(const std::exception& error) {
+  if (const auto* const fault = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
+    return InputError(fault->path1().string(), "", "", fault->code().message()).what();
+  }
+  return printable_lines(error.what());
+}
+
+OpenCampaign open_to_look(const std::filesystem::path& given, const std::filesystem::path& chosen) {
+  OpenCampaign open = open_campaign(given, chosen);
+  if (is_frozen_for_us(open.directory.database())) {
+    say(fmt::format(
+        "note: {} may not be written by you: it is read as it is, as if nobody ran the campaign\n",
+        open.directory.root().string()));
+  }
+  return open;
 }
 
 }  // namespace peclet::runner

@@ -8,12 +8,33 @@
 #include <memory>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "contract/key_table.h"
 #include "runner/command_line/command_tree.h"
-#include "runner/command_line/verb_page.h"
 
 namespace peclet::runner {
+
+// What --help, and so the manual, says of verbs beyond the one line that the list of verbs has.
+struct VerbExample {
+  std::string command;
+  std::string purpose;  // may be empty
+};
+
+struct VerbPage {
+  std::vector<std::string> paragraphs;
+  std::vector<VerbExample> examples;  // after the one that the verb itself has
+  std::vector<int> exit_codes;        // that it can leave with; empty: any
+};
+
+// Paragraphs of `prose` are separated by empty lines; where its lines end means nothing.
+VerbPage page(const std::string& prose, std::vector<VerbExample> examples, std::vector<int> exit_codes);
+
+// A line for each of these exit codes, below a heading; for all of them if there are none.
+std::string exit_code_lines(const std::vector<int>& codes);
+
+// What follows the options in --help.
+std::string help_footer(const VerbPage& page, const std::string& example);
 
 // The parser, and the verb that was named once it has parsed.
 class VerbSet {

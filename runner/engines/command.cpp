@@ -13,7 +13,7 @@
 #include <cerrno>
 #include <csignal>
 
-#include "runner/engines/system_call.h"
+#include "runner/engines/engine_process.h"
 
 namespace peclet::runner {
 namespace {

@@ -8,11 +8,11 @@
 #include <system_error>
 #include <variant>
 
-#include "contract/endings.h"
+#include "contract/frames.h"
 #include "contract/json.h"
+#include "runner/campaign/quoting.h"
 #include "runner/engines/stop_signals.h"
 #include "runner/engines/worker_process.h"
-#include "runner/text/plain_text.h"
 
 namespace peclet::runner {
 namespace {

@@ -17,9 +17,8 @@
 #include <thread>
 #include <utility>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "runner/campaign/campaign_file.h"
-#include "runner/engines/system_call.h"
 #include "runner/store/own_files.h"
 
 namespace peclet::runner {

@@ -5,13 +5,30 @@
 
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "runner/campaign/campaign.h"
 #include "runner/store/blame.h"
 
 namespace peclet::runner {
+
+// An engine that is of no use.
+//
+// An engine that does not start, or does not live until it is given work. Exit code 1.
+class EngineError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// What calls of the system give back.
+//
+// Throws std::system_error, which names what was being done, unless `error` is 0.
+inline void check(int error, const char* doing) {
+  if (error != 0) throw std::system_error(error, std::generic_category(), doing);
+}
 
 struct EngineCommand {
   std::filesystem::path program;

@@ -16,14 +16,13 @@
 #include <system_error>
 #include <thread>
 
+#include "contract/errors.h"
 #include "contract/frames.h"
-#include "contract/input_error.h"
-#include "contract/nearest_name.h"
-#include "contract/printable.h"
+#include "contract/text.h"
+#include "runner/campaign/quoting.h"
 #include "runner/statistics/quantities.h"
 #include "runner/store/blame.h"
-#include "runner/store/result_shape.h"
-#include "runner/text/plain_text.h"
+#include "runner/store/realisation_result.h"
 
 namespace peclet::runner {
 namespace {

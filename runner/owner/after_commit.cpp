@@ -6,7 +6,6 @@
 
 #include "contract/durable_file.h"
 #include "runner/store/campaign_directory.h"
-#include "runner/store/intruders.h"
 #include "runner/store/spool.h"
 
 namespace peclet::runner {

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "runner/events/run_listener.h"
+#include "runner/owner/run_listener.h"
 #include "runner/store/file_removal.h"
 
 namespace peclet::runner {

@@ -8,12 +8,18 @@
 #include <vector>
 
 #include "runner/campaign/campaign.h"
-#include "runner/owner/bounds.h"
 #include "runner/statistics/forecast.h"
 #include "runner/statistics/scheduler.h"
 #include "runner/store/database.h"
 
 namespace peclet::runner {
+
+// What bounds a run beside the campaign itself.
+struct Bounds {
+  std::optional<int> ceiling{};            // only so many seeds of each point
+  std::optional<double> budget_seconds{};  // processor time
+  std::map<std::string, double> work{};    // of a realisation, in any unit, by the point's hash
+};
 
 constexpr int nowhere = -1;
 

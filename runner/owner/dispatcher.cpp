@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 #include <tuple>
 #include <utility>
 #include <variant>
 
-#include "runner/engines/engine_error.h"
+#include "runner/engines/engine_process.h"
+#include "runner/engines/worker_pool.h"
 #include "runner/store/disk_room.h"
 #include "runner/store/result_files.h"
+#include "runner/store/spool.h"
 
 namespace peclet::runner {
 namespace {
@@ -297,6 +300,321 @@ void Dispatcher::obey_stop_signal() {
   } else if (stopping_ == Stopping::no) {
     listener_.note("workers checkpoint and stop; a second signal stops at once");
     stop(Stopping::draining);
+  }
+}
+
+// What workers have in hand: the seed that each one runs, and perhaps one that waits for its end.
+
+namespace {
+
+// Mean seconds of jobs that it is worth having another one wait for. A commit takes some hundredth of a
+// second, for which a worker with longer jobs need not have one; and a seed behind a long one would make the
+// decision of its point wait, while workers become idle that could run it.
+constexpr double longest_job_to_queue_behind = 1;
+
+}  // namespace
+
+// Idle workers first: a seed waits for none that could begin it.
+void Dispatcher::give_out_seeds() {
+  if (stopping_ != Stopping::no || pause_.lasts() || ledger_.scheduler().finished()) return;
+  for (int number = 0; number < pool_.size(); ++number) {
+    Worker& worker = at(number);
+    if (!worker.watch.is_idle() || worker.watch.is_recalled()) continue;
+    worker.assignment = next_assignment(number);
+    if (!worker.assignment) return;
+    worker.watch.begin_job(awake_.awake());
+  }
+  for (int number = 0; number < pool_.size(); ++number) {
+    Worker& worker = at(number);
+    if (!takes_a_second_job(worker)) continue;
+    worker.waiting = next_assignment(number);
+    if (!worker.waiting) return;
+  }
+}
+
+// Books the next seed as this worker's, to be sent after the commit; nothing when there is none.
+std::optional<Dispatcher::Assignment> Dispatcher::next_assignment(int number) {
+  std::optional<GivenSeed> given_seed = ledger_.give_out(number, pool_.process(number), at(number).engine);
+  if (!given_seed) return std::nullopt;
+  given_seed->job.threads = settings_.threads;
+  given_seed->job.checkpoint_seconds = settings_.checkpoint_seconds;
+  // Several reports fit into a lease.
+  given_seed->job.progress_seconds = std::min(1.0, settings_.lease.count() / 5);
+  now_.to_send.emplace_back(number, given_seed->job);
+  given_seed->job.scene = nullptr;  // sent once; the rest is copied at every turn
+  Assignment about{std::move(*given_seed)};
+  about.given = about.begun = clock_();
+  return about;
+}
+
+bool Dispatcher::takes_a_second_job(const Worker& worker) const {
+  if (!worker.watch.is_busy() || !worker.takes_ahead || worker.waiting) return false;
+  if (worker.watch.condemned() || worker.watch.is_recalled()) return false;
+  const std::optional<double> seconds = ledger_.wall_seconds(worker.assignment->given_seed);
+  return seconds && *seconds < longest_job_to_queue_behind;
+}
+
+bool Dispatcher::has_job(int worker, std::int64_t job) {
+  const Worker& about = at(worker);
+  if (about.watch.condemned()) return false;
+  if (about.assignment && about.assignment->given_seed.job.attempt == job) return true;
+  if (about.finished_job == job) return false;  // said once too often, which does no harm
+  condemn(worker, {AttemptOutcome::garbled, fmt::format("spoke of job {}, which it does not have", job)});
+  return false;
+}
+
+void Dispatcher::mark_lost_folders() {
+  for (Worker& worker : now_.workers) {
+    for (std::optional<Assignment>* const about : {&worker.assignment, &worker.waiting}) {
+      if (*about) (*about)->lost_a_folder = true;
+    }
+  }
+}
+
+void Dispatcher::go_on(int number) {
+  Worker& worker = at(number);
+  worker.finished_job = worker.assignment->given_seed.job.attempt;
+  worker.assignment = std::exchange(worker.waiting, std::nullopt);
+  if (!worker.assignment) return worker.watch.rest(awake_.awake());
+  worker.assignment->begun = clock_();
+  worker.watch.begin_job(awake_.awake());
+}
+
+double Dispatcher::processor_seconds_since(Time time) const {
+  return settings_.threads * std::chrono::duration<double>(clock_() - time).count();
+}
+
+void Dispatcher::end_assignment(int number, const AttemptEnd& end) {
+  const Assignment& about = *at(number).assignment;
+  AttemptEnd complete = end;
+  complete.step = at(number).watch.progress().step;
+  complete.held_seconds = processor_seconds_since(about.begun);
+  ledger_.end_attempt(about.given_seed, complete);
+  go_on(number);
+}
+
+// A result may be durable although nobody could announce it any more; one that was turned down stays so.
+bool Dispatcher::left_result(int number, const Assignment& about, std::int64_t step) {
+  const std::optional<AttemptReason>& condemned = at(number).watch.condemned();
+  std::string why;
+  if ((condemned && condemned->outcome == AttemptOutcome::garbled) || !is_there(about.given_seed.job.spool) ||
+      !ledger_.take_result(about.given_seed, "", step, processor_seconds_since(about.given), why)) {
+    return false;
+  }
+  ++now_.results;
+  return true;
+}
+
+void Dispatcher::give_back(const Assignment& waiting) {
+  ledger_.end_attempt(waiting.given_seed, {AttemptOutcome::drained, 0, {}, "waited behind another job"});
+}
+
+// The dispatcher's transaction, and what it does when something is in the way: what was heard is kept until
+// it can be booked.
+
+namespace {
+
+// The longest that a turn waits: leases and the time limit are judged at least this often.
+constexpr std::chrono::milliseconds longest_wait{500};
+
+int worker_of(const WorkerEvent& event) {
+  return std::visit(
+      [](const auto& happened) {
+        if constexpr (requires { happened.worker; }) {
+          return happened.worker;
+        } else {
+          return -1;
+        }
+      },
+      event);
+}
+
+// The news of a worker's progress that `later` makes old, if that is what it said last; otherwise null.
+Progressed* superseded(std::vector<WorkerEvent>& news, const Progressed& later) {
+  const auto last = std::find_if(news.rbegin(), news.rend(),
+                                 [&](const WorkerEvent& event) { return worker_of(event) == later.worker; });
+  auto* const progress = last == news.rend() ? nullptr : std::get_if<Progressed>(&*last);
+  return progress != nullptr && progress->job == later.job && progress->phase == later.phase ? progress
+                                                                                             : nullptr;
+}
+
+}  // namespace
+
+// Signals are obeyed at once, whatever may become of the booking.
+void Dispatcher::listen() {
+  for (WorkerEvent& event : pool_.wait(longest_wait)) {
+    if (std::holds_alternative<StopSignal>(event)) {
+      obey_stop_signal();
+      continue;
+    }
+    if (unbooked_ && std::holds_alternative<ShortOfRoom>(event)) continue;  // it will say so again
+    // Tells a drained worker to leave now: booking may take long.
+    if (const auto* const drained = std::get_if<Drained>(&event); unbooked_ && drained != nullptr) {
+      pool_.drain(drained->worker);
+    }
+    // While nothing can be booked, this keeps what was heard short.
+    const auto* const progress = std::get_if<Progressed>(&event);
+    if (Progressed* const before = progress != nullptr ? superseded(news_, *progress) : nullptr) {
+      *before = *progress;
+    } else {
+      news_.push_back(std::move(event));
+    }
+  }
+  awake_.end_turn(clock_());
+}
+
+bool Dispatcher::book() {
+  Picture before = now_;
+  try {
+    Transaction booking(database_.connection());
+    for (const WorkerEvent& event : news_) {
+      std::visit([this](const auto& happened) { handle(happened); }, event);
+    }
+    give_out_seeds();
+    show_leases();
+    booking.commit();
+  } catch (const std::exception& error) {
+    const std::optional<Hindrance> hindrance = hindrance_in(error, root(), bytes_of_news());
+    if (!hindrance) throw;
+    now_ = std::move(before);
+    ledger_.roll_back();
+    find_running_seeds();
+    unbooked_ = true;
+    begin_pause(*hindrance);
+    return false;
+  }
+  news_.clear();
+  return true;
+}
+
+bool Dispatcher::follow_up() {
+  try {
+    ledger_.after_commit();  // a checkpoint that is discarded goes before its seed's next attempt begins
+  } catch (const std::exception& error) {
+    const std::optional<Hindrance> hindrance = hindrance_in(error, root());
+    if (!hindrance) throw;
+    uncarried_ = unbooked_ = true;
+    begin_pause(*hindrance);
+    return false;
+  }
+  uncarried_ = false;
+  for (const auto& [worker, job] : std::exchange(now_.to_send, {})) pool_.assign(worker, job);
+  if (!told_of_.empty() && !pause_.lasts() && !request_waits_) end_pause();
+  return true;
+}
+
+// What is booked of a result is about as long as its file, and goes into log and database.
+std::uint64_t Dispatcher::bytes_of_news() const {
+  std::uint64_t bytes = 1 << 20;
+  for (const WorkerEvent& event : news_) {
+    const auto* const result = std::get_if<ResultSpooled>(&event);
+    std::error_code absent;
+    const std::uintmax_t size = result == nullptr ? 0 : std::filesystem::file_size(result->spool, absent);
+    if (result != nullptr && !absent) bytes += 2 * size;
+  }
+  return bytes;
+}
+
+std::filesystem::path Dispatcher::root() const {
+  return std::filesystem::path(database_.connection().path()).parent_path();
+}
+
+// Said once, however often it turns out that it is still in the way.
+void Dispatcher::begin_pause(const Hindrance& hindrance) {
+  pause_.begin(hindrance, clock_());
+  if (!told_of_.insert(hindrance.kind()).second) return;
+  listener_.happened(ShortageBegan{hindrance.text});
+  listener_.warn(fmt::format(
+      "{}; workers keep what they have, no further seed is given out, and the campaign goes on by "
+      "itself {}",
+      hindrance.text, hindrance.end));
+}
+
+void Dispatcher::look_whether_it_is_over() {
+  if (!pause_.lasts()) return;
+  const Time now = clock_();
+  // The write-ahead log keeps its largest size, which on a small disk is most of what there is.
+  if (pause_.is_looked_at(now)) database_.connection().empty_log();
+  if (pause_.is_over(now)) {
+    unbooked_ = false;
+    return;
+  }
+  if (stopping_ != Stopping::no) return;
+  const std::string why = pause_.in_vain(root(), now);
+  if (why.empty()) return;
+  listener_.warn(why + "; workers checkpoint and stop");
+  stop(Stopping::draining);
+}
+
+void Dispatcher::end_pause() {
+  told_of_.clear();
+  listener_.note("nothing is in the way any more: the campaign goes on");
+  listener_.happened(ShortageEnded{});
+  for (Worker& worker : now_.workers) {
+    worker.watch.renew(awake_.awake());  // nobody listened meanwhile
+  }
+}
+
+// Whether a worker failed for want of room, or because folders that somebody had deleted or moved were not
+// mended yet. Begins a pause where there is no room now.
+bool Dispatcher::lacked_room(int number) {
+  const Assignment& about = *at(number).assignment;
+  if (about.lost_a_folder) return true;
+  const std::optional<std::filesystem::path> folder = unwritable_folder(about.given_seed.job);
+  if (folder && std::filesystem::exists(*folder)) {
+    if (const int error = lack_of_room(*folder, 0); error != 0)
+      begin_pause(lack_of_room_in(*folder, 0, error));
+  }
+  return folder.has_value();
+}
+
+// A worker that outlived an earlier owner may have left a result meanwhile; so may ours, when nothing could
+// be booked any more.
+void Dispatcher::settle_spool() {
+  try {
+    ledger_.ingest_spool();
+  } catch (const std::exception& error) {
+    const std::optional<Hindrance> hindrance = hindrance_in(error, root());
+    if (!hindrance) throw;
+    ledger_.roll_back();  // nothing of it counts: what is decided is what the database says
+    listener_.warn(hindrance->text + "; what workers did last is booked by the next run");
+  }
+}
+
+// The dispatcher's part in what people ask for while it runs.
+
+namespace {
+
+constexpr std::chrono::seconds request_interval{1};
+
+}  // namespace
+
+// While workers stop, requests wait for the next owner. During a pause they wait as everything does.
+void Dispatcher::hear_requests() {
+  if (stopping_ != Stopping::no || pause_.lasts() || clock_() - requests_heard_ < request_interval) return;
+  requests_heard_ = clock_();
+  try {
+    if (settings_.requests()) find_running_seeds();
+    request_waits_ = false;
+  } catch (const std::exception& error) {
+    const std::optional<Hindrance> hindrance = hindrance_in(error, root(), 1 << 20);
+    if (!hindrance) throw;
+    find_running_seeds();
+    request_waits_ = true;
+    begin_pause(*hindrance);
+  }
+}
+
+void Dispatcher::find_running_seeds() {
+  for (int number = 0; number < pool_.size(); ++number) {
+    Worker& worker = at(number);
+    bool wanted = true;
+    for (std::optional<Assignment>* const about : {&worker.assignment, &worker.waiting}) {
+      if (*about && !ledger_.find_place((*about)->given_seed)) wanted = false;
+    }
+    if (wanted || worker.watch.is_recalled()) continue;
+    worker.watch.recall();
+    pool_.drain(number);
   }
 }
 

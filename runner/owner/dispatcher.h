@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "runner/engines/worker_watch.h"
+#include "runner/engines/worker_process.h"
 #include "runner/owner/ledger.h"
 #include "runner/owner/pause.h"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "contract/integrity_error.h"
+#include "contract/errors.h"
 #include "contract/json.h"
 #include "runner/owner/board.h"
 

@@ -11,11 +11,10 @@
 #include <string>
 #include <system_error>
 
-#include "contract/descriptor.h"
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
-#include "runner/store/file_store.h"
-#include "runner/store/intruders.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/result_files.h"
 #include "runner/store/spool.h"
 
 namespace peclet::runner {

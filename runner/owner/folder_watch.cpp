@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "contract/durable_file.h"
+#include "contract/errors.h"
 #include "contract/guarded_file.h"
-#include "contract/integrity_error.h"
+#include "runner/campaign/quoting.h"
 #include "runner/store/backups.h"
 #include "runner/store/locks.h"
-#include "runner/text/quoting.h"
 
 namespace peclet::runner {
 namespace {

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <filesystem>
 
-#include "runner/events/run_listener.h"
+#include "runner/owner/run_listener.h"
 #include "runner/store/campaign_directory.h"
 #include "runner/store/database.h"
 #include "runner/store/locks.h"

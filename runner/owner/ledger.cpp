@@ -1,19 +1,28 @@
 #include "runner/owner/ledger.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
 #include <limits>
+#include <map>
+#include <set>
+#include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
+#include "runner/campaign/quoting.h"
 #include "runner/owner/file_taking.h"
-#include "runner/store/intruders.h"
+#include "runner/statistics/observation.h"
+#include "runner/statistics/quantities.h"
+#include "runner/store/blame.h"
+#include "runner/store/bundle_store.h"
+#include "runner/store/campaign_directory.h"
 #include "runner/store/result_store.h"
 #include "runner/store/spool.h"
-#include "runner/text/plain_text.h"
 
 namespace peclet::runner {
 namespace {
@@ -231,6 +240,334 @@ std::string Ledger::name_of(const GivenSeed& given_seed) const {
   if (given_seed.id.point != nowhere) return name(given_seed.id);
   return fmt::format("{} (no longer in the sweep) seed {}", given_seed.job.point.substr(0, 12),
                      given_seed.id.seed);
+}
+
+// The ledger's part in what a run may do: how many seeds, and for how much processor time.
+void Ledger::set_bounds(Bounds bounds) { board_.set_bounds(std::move(bounds)); }
+
+std::optional<double> Ledger::wall_seconds(const GivenSeed& given_seed) const {
+  return given_seed.id.point == nowhere ? std::nullopt : board_.wall_seconds(given_seed.id.point);
+}
+
+std::optional<SeedId> Ledger::next() const {
+  const std::optional<double> budget = board_.bounds().budget_seconds;
+  if (!budget) return scheduler().next();
+  return scheduler().next_within(*budget - spent_seconds() - board_.expected_seconds());
+}
+
+// The ledger's part in seeds that a batch system runs.
+
+namespace {
+
+struct Out {
+  std::size_t seeds = 0;
+  std::vector<std::string> bundles;
+};
+
+// "a-0001, a-0002 and 3 more"
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 3;
+  const std::string text = fmt::format(
+      "{}", fmt::join(names.begin(),
+                      names.begin() + static_cast<std::ptrdiff_t>(std::min(most, names.size())), ", "));
+  return names.size() > most ? fmt::format("{} and {} more", text, names.size() - most) : text;
+}
+
+}  // namespace
+
+void Ledger::ingest_spool() {
+  removal_.finish();  // of what has been taken already
+  ingest_spool_of(directory_);
+  const BundleStore book(database_.connection());
+  std::map<std::string, Out> shared;
+  for (const BundleRecord& bundle : book.open_bundles()) {
+    Out& out = shared[bundle.shared];
+    out.seeds += book.seeds_out(bundle.id).size();
+    out.bundles.push_back(bundle.name);
+  }
+  // Tasks of a bundle that was given up may have left results since.
+  for (const BundleRecord& bundle : book.forgotten_bundles()) shared[bundle.shared];
+  for (const auto& [folder, out] : shared) {
+    const CampaignDirectory there(folder);
+    std::error_code unreachable;
+    if (fs::is_directory(there.spool(), unreachable)) {
+      away_.erase(folder);
+      ingest_spool_of(there);
+    } else if (out.seeds > 0 && away_.insert(folder).second) {
+      listener_.warn(
+          fmt::format("{}: {}, and {} seeds are out in it ({}). Put it back, and `peclet ingest` takes in "
+                      "what it holds; if it is "
+                      "gone for good, `peclet ingest --forget {}` queues seeds again",
+                      folder, unreachable ? unreachable.message() : "is not there", out.seeds,
+                      listed(out.bundles), out.bundles.front()));
+    }
+  }
+  removal_.finish();
+}
+
+void Ledger::leave_to_batch_system(int place) {
+  const BundleStore book(database_.connection());
+  for (const int seed : book.seeds_out_of_point(point(place).id)) {
+    // A seed beyond the maximum (it was larger once) has no part in the looks.
+    if (seed < campaign().maximum_realisations && !has_ended({place, seed}))
+      board_.scheduler().begin({place, seed});
+  }
+}
+
+std::vector<SeedId> Ledger::draw(bool ahead) {
+  std::vector<SeedId> drawn;
+  while (const std::optional<SeedId> id = scheduler().next()) {
+    if (!ahead && id->seed >= scheduler().wanted(id->point)) break;
+    board_.scheduler().begin(*id);
+    drawn.push_back(*id);
+  }
+  return drawn;
+}
+
+std::optional<SeedId> Ledger::identify(std::int64_t point_id, int seed) const {
+  const std::optional<int> place = board_.place_of(point_id);
+  return place ? std::optional(SeedId{*place, seed}) : std::nullopt;
+}
+
+bool Ledger::has_ended(SeedId id) { return seeds_.has_ended(point(id.point).id, id.seed); }
+
+void Ledger::end_handed_over(SeedId id, int task, const AttemptReport& report,
+                             const std::filesystem::path& checkpoint) {
+  const PointRecord& about = point(id.point);
+  seeds_.attempt_elsewhere(about.id, id.seed, task, report);
+  if (has_ended(id)) return;
+  const SeedFate fate = judge(seeds_.history(about.id, id.seed), retries_);
+  if (fate.discard_checkpoint) changes_.after.discard(checkpoint);
+  // A drain with a message is a failure that a full disk excuses.
+  const bool is_excused = report.outcome == AttemptOutcome::drained && !report.message.empty();
+  if (is_blamed(report.outcome) || is_excused) {
+    changes_.after.warn(fmt::format("{} on {}: {}{}{}; {}", name(id), report.host, to_string(report.outcome),
+                                    report.message.empty() ? "" : ": ", report.message,
+                                    fate.quarantine ? "it is given up" : "it is tried again"));
+  }
+  if (!fate.quarantine) {
+    take_back(id);
+    return;
+  }
+  seeds_.quarantine(about.id, id.seed, fate.cause);
+  book_outcome(id, Outcome{});
+}
+
+void Ledger::take_back(SeedId id) {
+  if (id.seed < campaign().maximum_realisations && !has_ended(id)) board_.scheduler().give_back(id);
+}
+
+// The ledger's part in what people change while seeds run: another campaign, cancelled points, another
+// engine.
+void Ledger::take_over(const Campaign& campaign) {
+  rows_.take_over(campaign);
+  next_campaign_ = campaign;
+}
+
+void Ledger::refresh() {
+  board_.read_points(database_);
+  read_board();
+  book_looks();
+  engine_.require_no_other(board_);
+}
+
+bool Ledger::find_place(GivenSeed& given_seed) const {
+  given_seed.id.point = board_.place_of(given_seed.job.point).value_or(nowhere);
+  return takes_part(given_seed.id) && !scheduler().cancelled(given_seed.id.point);
+}
+
+int Ledger::accept_engine(const std::string& identity) {
+  int points = 0;
+  std::set<std::string> folders{directory_.root().string()};
+  const BundleStore book(database_.connection());
+  if (const std::string shared = book.last_shared(); !shared.empty()) folders.insert(shared);
+  for (const BundleRecord& bundle : book.open_bundles()) folders.insert(bundle.shared);
+  Transaction booking(database_.connection());
+  for (const PointRecord& about : board_.points()) {
+    if (!board_.is_to_be_run(about) || about.engine_identity.empty() || about.engine_identity == identity)
+      continue;
+    rows_.keep_apart(about, identity);
+    changes_.after.note(
+        fmt::format("{}: results of engine {} are kept apart", about.label, about.engine_identity));
+    ++points;
+    // Another engine could not go on from where they stand.
+    for (const RealisationRecord& record : database_.realisations(about.id)) {
+      for (const std::string& folder : folders) {
+        changes_.after.discard(CampaignDirectory(folder).checkpoint(about.hash, record.seed));
+      }
+    }
+  }
+  refresh();
+  booking.commit();
+  after_commit();
+  return points;
+}
+
+// How the ledger takes a result in: wholly or not at all.
+//
+// A result comes from outside, and what is done with it touches six tables, the scheduler's picture and what
+// is to happen after the commit. Whatever fails on the way, nothing of it may stay: what was half stored
+// would be counted.
+
+namespace {
+
+constexpr std::size_t files_at_a_time = 64;
+constexpr int most_told = 10;
+
+std::optional<double> cost_of(const RealisationResult& result, const char* which) {
+  const Json& seconds = result.document.at("cost").at(which);
+  return seconds.is_number() ? std::optional(seconds.get<double>()) : std::nullopt;
+}
+
+// Whether it is the result's own fault; what fails for want of room or of a sound disk is not.
+bool is_of_the_result(const std::exception& error) {
+  if (const auto* const database = dynamic_cast<const DatabaseError*>(&error)) {
+    return database->refuses_values();
+  }
+  return dynamic_cast<const ResultError*>(&error) != nullptr ||
+         dynamic_cast<const Json::exception*>(&error) != nullptr ||
+         dynamic_cast<const std::logic_error*>(&error) != nullptr;
+}
+
+}  // namespace
+
+std::string Ledger::take_whole(const fs::path& spool, const Reading& read, const Booking& book) {
+  Changes of_others = std::exchange(changes_, {});
+  bool is_taken = false;
+  std::string why;
+  try {
+    const RealisationResult result = read();
+    Savepoint booking(database_.connection());
+    book(result);
+    booking.keep();
+    is_taken = true;
+  } catch (const std::exception& error) {
+    if (!is_of_the_result(error)) throw;
+    why = plain(error.what());
+  }
+  Changes of_result = std::exchange(changes_, std::move(of_others));
+  if (is_taken) {
+    changes_.add(std::move(of_result));
+    return "";
+  }
+  if (of_result.are_on_board) read_board();
+  turn_down(spool, why);
+  return why;
+}
+
+void Ledger::take(const RealisationResult& result, const fs::path& spool) {
+  const StoredResult stored = results_.store(result, campaign_.target);
+  const auto take_in = [&] {
+    take_files(database_.connection(), directory_, result, spool, stored,
+               campaign_.keeps_files_of(result.seed), changes_.after);
+    changes_.after.remove(spool);
+  };
+  switch (stored.what) {
+    case Stored::stored_apart:
+      take_in();
+      return;
+    case Stored::stored:
+    case Stored::duplicate:
+      take_in();
+      for (const fs::path& checkpoint :
+           std::set{directory_.checkpoint(result.point, result.seed),
+                    home_of_spool_file(spool).checkpoint(result.point, result.seed)}) {
+        changes_.after.remove(checkpoint);
+        changes_.after.remove(growing_beside(checkpoint));
+      }
+      break;
+    case Stored::conflict:
+      turn_down(spool, "another run of the same seed gave another result");
+      return;
+    case Stored::mixed_engine:
+      turn_down(spool, "its point has results of another engine");
+      return;
+    case Stored::unknown_point:
+      turn_down(spool, "it belongs to no point of this campaign");
+      return;
+  }
+  const std::optional<int> place = board_.place_of(result.point);
+  if (stored.what == Stored::duplicate || !place) return;
+  if (result.completed()) note_lacking(result);
+  const bool is_lost = stored.outcome.is_lost();
+  const std::optional<double> value = is_lost ? std::nullopt : std::optional(stored.outcome.value);
+  const std::optional<double> cpu_seconds = cost_of(result, "cpu_seconds");
+  changes_.after.tell(SeedEnded{point_name(*place), result.seed, stored.cause, value, cpu_seconds});
+  if (!board_.has_seeds()) return;  // load() finds it
+  changes_.are_on_board = true;
+  board_.add_cost(*place, cost_of(result, "wall_seconds"), cpu_seconds);
+  if (is_lost) {
+    changes_.after.note(fmt::format("{}: ended with {}{}{}", name({*place, result.seed}), stored.cause,
+                                    stored.reason.empty() ? "" : ": ", stored.reason));
+  }
+  book_outcome({*place, result.seed}, stored.outcome);
+}
+
+void Ledger::note_lacking(const RealisationResult& result) {
+  const std::string name = lacking_in(result.document, campaign_.target.observables());
+  if (name.empty()) return;
+  const std::string names = names_of_targets(result.document);
+  changes_.lacking = {name, names.empty() ? "none" : names};
+}
+
+void Ledger::turn_down(const fs::path& spool, const std::string& why) {
+  const std::string message = fmt::format("{} is not taken: {}", plain_name(spool), why);
+  events_.write("rejected", std::nullopt, std::nullopt, message);
+  // Of a crowd nobody reads every name.
+  if (++turned_down_ <= most_told) {
+    changes_.after.warn(
+        fmt::format("{}; it is kept in {}", message, home_of_spool_file(spool).rejected().string()));
+  }
+  if (is_there(spool)) changes_.after.reject(spool);
+}
+
+void Ledger::ingest_spool_of(const CampaignDirectory& directory) {
+  turned_down_ = 0;
+  // Some at a time, because each commit waits for the disk: a crash in between finds the rest where it was.
+  const std::vector<fs::path> files = spool_files(directory);
+  for (std::size_t next = 0; next < files.size();) {
+    const std::size_t end = std::min(files.size(), next + files_at_a_time);
+    Transaction booking(database_.connection());
+    for (; next < end; ++next) ingest(files[next]);
+    booking.commit();
+    after_commit();
+  }
+  if (const int told = std::exchange(turned_down_, 0); told > most_told) {
+    listener_.warn(fmt::format("{} more files in {} are not taken: the table `event` says why",
+                               told - most_told, directory.spool().string()));
+  }
+}
+
+void Ledger::ingest(const fs::path& file) {
+  const auto read = [&file] {
+    RealisationResult result = read_spool_file(file, "");
+    // An engine that answers with another seed's result may die before it is found out.
+    if (belongs_to_another(file, result)) throw ResultError("it is named for another point or seed");
+    return result;
+  };
+  take_whole(file, read, [&](const RealisationResult& result) { take(result, file); });
+}
+
+bool Ledger::take_result(const GivenSeed& given_seed, const std::string& sha256, std::int64_t step,
+                         double held_seconds, std::string& why) {
+  turned_down_ = 0;
+  const auto read = [&] {
+    RealisationResult result = read_spool_file(given_seed.job.spool, sha256);
+    if (result.point != given_seed.job.point || result.seed != given_seed.job.seed) {
+      throw ResultError("it is of another point or seed than the job");
+    }
+    if (result.engine != engine_.identity()) {
+      throw ResultError("it names another engine than the worker's hello");
+    }
+    return result;
+  };
+  why = take_whole(given_seed.job.spool, read, [&](const RealisationResult& result) {
+    take(result, given_seed.job.spool);
+    seeds_.end_attempt(given_seed.job.attempt, {AttemptOutcome::result, step});
+    changes_.spent_seconds += std::min(held_seconds, cost_of(result, "cpu_seconds").value_or(held_seconds));
+    leave(given_seed);
+  });
+  return why.empty();
 }
 
 }  // namespace peclet::runner

@@ -16,11 +16,11 @@
 #include <string>
 #include <vector>
 
-#include "runner/engines/worker_watch.h"
-#include "runner/events/run_listener.h"
+#include "runner/engines/worker_process.h"
 #include "runner/owner/after_commit.h"
 #include "runner/owner/board.h"
 #include "runner/owner/engine_admission.h"
+#include "runner/owner/run_listener.h"
 #include "runner/store/campaign_directory.h"
 #include "runner/store/point_store.h"
 #include "runner/store/result_store.h"

@@ -4,10 +4,19 @@
 #include <filesystem>
 #include <string>
 
+#include "runner/campaign/campaign.h"
 #include "runner/store/campaign_directory.h"
 #include "runner/store/database.h"
 
 namespace peclet::runner {
+
+// A campaign file under a new name has no folder, although its results are there under the old one.
+//
+// Requires `directory` to be the one that follows from the file's name. Throws InputError when nothing has
+// been run in it, but a folder beside it has results of the campaign's points and no file of its own any
+// more.
+void refuse_renamed_file(const Campaign& campaign, const std::filesystem::path& file,
+                         const CampaignDirectory& directory);
 
 struct OpenCampaign {
   CampaignDirectory directory;

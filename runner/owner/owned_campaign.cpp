@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "contract/guarded_file.h"
-#include "runner/owner/renamed_file.h"
+#include "runner/campaign/quoting.h"
+#include "runner/owner/open_campaign.h"
 #include "runner/store/backups.h"
 #include "runner/store/point_store.h"
 #include "runner/store/realisation_result.h"
 #include "runner/store/spool.h"
 #include "runner/store/vocabulary.h"
-#include "runner/text/quoting.h"
 
 namespace peclet::runner {
 namespace {

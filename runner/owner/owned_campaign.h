@@ -7,8 +7,8 @@
 
 #include "runner/engines/engine_process.h"
 #include "runner/engines/scene_check.h"
-#include "runner/events/run_listener.h"
 #include "runner/owner/ledger.h"
+#include "runner/owner/run_listener.h"
 #include "runner/statistics/scheduler.h"
 #include "runner/store/campaign_directory.h"
 #include "runner/store/database.h"

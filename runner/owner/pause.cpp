@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "contract/durable_file.h"
+#include "runner/campaign/quoting.h"
 #include "runner/store/disk_room.h"
 #include "runner/store/sqlite.h"
-#include "runner/text/plain_text.h"
 
 namespace peclet::runner {
 namespace {

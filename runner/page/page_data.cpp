@@ -1,12 +1,16 @@
 #include "runner/page/page_data.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "contract/sha256.h"
-#include "runner/page/page_details.h"
-#include "runner/page/page_parts.h"
+#include "runner/campaign/quoting.h"
+#include "runner/page/page_points.h"
 #include "runner/reports/export.h"
 #include "runner/store/vocabulary.h"
 
@@ -104,6 +108,225 @@ Json PageReader::details(Database& database, const std::string& hash) const {
 
 Json page_data(Database& database, std::optional<std::int64_t> owner) {
   return PageReader().read(database, owner, true);
+}
+
+// What the campaign has cost and is expected to cost, and who works on it.
+Json page_progress(const CampaignStatus& status) {
+  int decided = 0, ended = 0, lost = 0, surplus = 0, running = 0;
+  std::size_t workers = 0;
+  double cpu_seconds = 0;
+  std::map<std::string, int> standings;
+  for (const PointSummary& point : status.points) {
+    ++standings[standing_word(point)];
+    decided += point.decided ? 1 : 0;
+    ended += point.counts.terminal();
+    lost += point.lost();
+    surplus += point.surplus();
+    running += point.counts.running;
+    workers += point.leases.size();
+    cpu_seconds += point.counts.cpu_seconds;
+  }
+  int handed_over = 0;
+  for (const HandedOver& bundle : status.handed_over) handed_over += bundle.seeds;
+  return {{"points", status.points.size()},
+          {"decided", decided},
+          {"standings", standings},
+          {"check", standing(status)},
+          {"seeds",
+           {{"ended", ended},
+            {"lost", lost},
+            {"surplus", surplus},
+            {"running", running},
+            {"handed_over", handed_over}}},
+          {"cpu_seconds", cpu_seconds},
+          {"seconds_to_go", to_json(status.to_go)},
+          {"owner", status.owner ? Json(*status.owner) : Json(nullptr)},
+          {"workers", status.owner ? Json(workers) : Json(nullptr)}};
+}
+
+// Who works on what, and who did last.
+
+namespace {
+
+// However long a campaign is, as many as a chart can show.
+constexpr int most_attempts = 300;
+
+using Places = std::map<std::int64_t, std::size_t>;  // in the list of points, by PointRecord::id
+
+Places places_of(const CampaignStatus& status) {
+  Places places;
+  for (std::size_t i = 0; i < status.points.size(); ++i) places[status.points[i].point.id] = i;
+  return places;
+}
+
+Json attempts_json(Database& database, const Places& places) {
+  Json list = Json::array();
+  for (const AttemptSpan& span : database.last_attempts(most_attempts)) {
+    const auto place = places.find(span.point);
+    if (place == places.end()) continue;
+    list.push_back({{"point", place->second},
+                    {"seed", span.seed},
+                    {"worker", span.worker},
+                    {"host", span.host},
+                    {"began", span.began},
+                    {"ended", span.ended},
+                    {"outcome", span.outcome}});
+  }
+  return list;
+}
+
+Json workers_json(const CampaignStatus& status) {
+  Json list = Json::array();
+  if (!status.owner) return list;
+  for (std::size_t i = 0; i < status.points.size(); ++i) {
+    for (const LeaseRecord& lease : status.points[i].leases) {
+      list.push_back({{"worker", lease.worker},
+                      {"point", i},
+                      {"seed", lease.seed},
+                      {"phase", lease.phase},
+                      {"step", lease.step},
+                      {"steps", lease.steps},
+                      {"strain", lease.strain}});
+    }
+  }
+  return list;
+}
+
+}  // namespace
+
+Json page_work(Database& database, const CampaignStatus& status) {
+  return {{"now", workers_json(status)}, {"attempts", attempts_json(database, places_of(status))}};
+}
+
+// Where the numbers come from, and how to make them again.
+
+namespace {
+
+std::string text_of(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+// Nothing is said of what is not known.
+class Items {
+ public:
+  void add(const std::string& term, const std::string& meaning) {
+    if (meaning.find_first_not_of(' ') != std::string::npos) items_.push_back({term, meaning});
+  }
+  void add_engine(const Json& origin) {
+    std::string commit = text_of(origin, "git_commit");
+    if (!commit.empty() && origin.value("git_dirty", Json()) == true) commit += ", with changes";
+    add("engine", fmt::format("version {}", text_of(origin, "version")));
+    add("commit", commit);
+    add("binary SHA-256", text_of(origin, "binary_sha256"));
+    add("instruction set", text_of(origin, "instruction_set"));
+    add("compiler", text_of(origin, "compiler") + ' ' + text_of(origin, "flags"));
+    add("processor", text_of(origin, "cpu"));
+  }
+  Json json() const { return items_; }
+
+ private:
+  Json items_ = Json::array();
+};
+
+}  // namespace
+
+Json page_provenance(Database& database, const CampaignStatus& status, const std::string& results_sha256) {
+  const CampaignRecord& campaign = status.campaign;
+  Items items;
+  for (const EngineRecord& engine : database.engines()) items.add_engine(engine.provenance);
+  items.add("machines", fmt::format("{}", fmt::join(database.hosts(), ", ")));
+  items.add("campaign begun", campaign.created_at);
+  items.add("file last taken up", campaign.updated_at);
+  items.add("last seed ended", database.last_end());
+  items.add("campaign SHA-256", sha256(canonical_json(campaign.document)));
+  if (!results_sha256.empty()) items.add("results SHA-256", results_sha256 + " (of the canonical table)");
+  return items.json();
+}
+
+std::string page_commands(const CampaignStatus& status, const std::string& results_sha256) {
+  const std::string file = shell_word(status.campaign.name + ".json");
+  return fmt::format(
+      "# with the engine above, and the campaign below as {0}\n"
+      "peclet validate {0}\n"
+      "peclet run {0}\n"
+      "peclet export {0} --csv --canonical | sha256sum\n{1}",
+      file, results_sha256.empty() ? "" : "# " + results_sha256 + '\n');
+}
+
+// What the words of the page mean.
+
+namespace {
+
+// What a mark of the table means; the marks are those of reservations() and the verdicts.
+std::string meaning(const std::string& mark) {
+  static const std::map<std::string, std::string> meanings{
+      {"converged-with-losses",
+       "the interval is within the tolerance, but the mean leaves out the seeds that were lost; if they were "
+       "lost because of what they would have given, it is biased"},
+      {"capped",
+       "all seeds that are allowed have ended, and the interval is still wider than the tolerance, or "
+       "there is none"},
+      {"complete-with-losses",
+       "all seeds that were asked for have ended, and the mean leaves out those that were lost; if they were "
+       "lost because of what they would have given, it is biased"},
+      {"failed", "too many seeds were lost to give an interval"},
+      {"open", "not decided yet: the numbers are provisional"},
+      {"cancelled", "somebody decided that it gets no more seeds: the numbers stay provisional"},
+      {"jammed",
+       "half of the seeds or more have jammed: the point has no viscosity, and under a given stress its rate "
+       "is 0"},
+      {"transient",
+       "the beginning of the measured windows differs from their end: they begin before the equilibration is "
+       "over, which more seeds do not mend"},
+      {"no-transient-test",
+       "the results have no blocks of the observable, so that nothing can tell whether the windows begin "
+       "before the equilibration is over"},
+      {"skewed",
+       "some values are far from the rest on one side, and the interval holds the mean less often than it "
+       "says"},
+      {"near-maximum",
+       "the interval is within the tolerance, but perhaps by luck: with a spread as large as the values "
+       "leave "
+       "open the point would need more seeds than are allowed, and intervals of such points hold the mean "
+       "less "
+       "often than they say"},
+      {"equal-values",
+       "all values are one and the same number, so that there is no spread to make an interval from"},
+      {"repeated-seeds",
+       "some seeds ended in the same state, so that their values are not independent and have no interval"},
+      {"earlier-look",
+       "the target was tighter before: the first look within the present one decides, as if there had been "
+       "no "
+       "other, and leaves out seeds that ended later"},
+      {"suspect", "a seed gave two different results; no number of this point can be trusted"},
+      {"flagged jammed", "seeds that stood still under the given stress; their rate 0 is part of the mean"},
+      {"flagged patience", "seeds whose window is too short to tell whether they have jammed"},
+      {"flagged timestep",
+       "seeds whose time step made too much energy, changes the stress or was often divided"},
+      {"flagged solver", "seeds whose implicit steps were solved too inaccurately"},
+      {"flagged overlap",
+       "seeds whose contacts overlapped by more than a thousandth of a radius in the mean"}};
+  const auto known = meanings.find(mark);
+  return known == meanings.end() ? "the engine's own mark; its warning says more" : known->second;
+}
+
+}  // namespace
+
+Json page_meanings(const CampaignStatus& status) {
+  Json meanings = Json::object();
+  for (const PointSummary& point : status.points) {
+    const std::string standing = standing_word(point);
+    const bool explains_itself =
+        standing == to_string(Verdict::converged) || standing == to_string(Verdict::complete);
+    if (!explains_itself) meanings[standing] = meaning(standing);
+    for (const std::string& mark : reservations(point)) {
+      const std::string code = mark.substr(mark.rfind(' ') + 1);
+      const std::string kind = code == mark ? mark : "flagged " + code;
+      meanings[kind] = meaning(kind);
+    }
+  }
+  return meanings;
 }
 
 }  // namespace peclet::runner

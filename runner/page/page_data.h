@@ -5,14 +5,78 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "contract/json.h"
-#include "runner/page/page_parts.h"
+#include "runner/reports/status.h"
+#include "runner/statistics/quantity_estimates.h"
 #include "runner/store/database.h"
+#include "runner/store/number_store.h"
+#include "runner/store/vocabulary.h"
 
 namespace peclet::runner {
+
+// The parts of the page's document.
+//
+// What the first result of a point says of it: dimensionless groups, and what the engine warns of; null
+// without one.
+struct FirstResult {
+  Json groups, warnings;
+};
+
+// A number of the results that can be drawn: a quantity, or one of its elements.
+struct Drawable {
+  std::string path;     // "pressure", "stress/total/3"
+  std::string name;     // of the quantity
+  std::string element;  // "xy"; "" of a quantity that is one number
+  std::string symbol, unit;
+};
+
+// What takes time to read of a point: all that depends on its seeds one by one. While `key` is what it was,
+// so is the rest.
+struct KnownPoint {
+  std::string key;
+  Json json = Json::object();  // members of the point
+  std::vector<Drawable> drawables;
+  std::vector<Json> estimates;  // in step with these: [mean, standard error, half-width, count]
+  FirstResult first;
+};
+using KnownPoints = std::map<std::int64_t, KnownPoint>;  // by PointRecord::id
+
+// Seeds that have ended, their values and the looks, in a few words.
+std::string key_of(const PointSummary& point, const TargetRecord& target);
+// Throws IntegrityError when stored looks are not what the stored results say.
+KnownPoint read_point(Database& database, NumberStore& book, const TargetRecord& target,
+                      const PointSummary& point);
+
+// The points with their estimates of every drawable, in step with `drawables`. What is not known yet, or has
+// changed, is read.
+struct PagePoints {
+  std::vector<Drawable> drawables;
+  Json points = Json::array();
+};
+PagePoints page_points(Database& database, const CampaignStatus& status, KnownPoints& known);
+
+// Points decided, processor time spent, time to go, workers.
+Json page_progress(const CampaignStatus& status);
+
+// Who works on what now, and the attempts that ended last.
+Json page_work(Database& database, const CampaignStatus& status);
+
+// What the sweep sets, and what all points share of the scene, each key as of Vocabulary::key().
+Json page_parameters(const CampaignStatus& status, const Vocabulary& words);
+Json page_scene(const CampaignStatus& status, const Vocabulary& words);
+
+// What each verdict and mark that is used means.
+Json page_meanings(const CampaignStatus& status);
+
+// Pairs of a term and what it is, and the commands that make the numbers again. Without the hash of the
+// results nothing is said of it.
+Json page_provenance(Database& database, const CampaignStatus& status, const std::string& results_sha256);
+std::string page_commands(const CampaignStatus& status, const std::string& results_sha256);
 
 // Reads one campaign again and again, and of its points only those anew that have changed.
 class PageReader {

@@ -9,9 +9,8 @@
 #include <utility>
 
 #include "contract/sha256.h"
-#include "runner/page/page_assets.h"
+#include "runner/campaign/quoting.h"
 #include "runner/page/page_data.h"
-#include "runner/text/html.h"
 
 namespace peclet::runner {
 namespace {

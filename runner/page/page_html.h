@@ -4,6 +4,7 @@
 // runs the campaign: the same one gives the same bytes at any time.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -13,6 +14,13 @@
 #include "runner/store/database.h"
 
 namespace peclet::runner {
+
+// The files of runner/page/assets, and the script that draws figures.
+extern const char* const page_template;  // with @STYLE@, @SCRIPT@ and others where they go
+extern const char* const page_style;
+extern const std::array<const char*, 15> page_scripts;  // in this order
+// python/peclet/drawing.py. With `FIGURE = ...` and `main(FIGURE)` behind it, it draws that figure.
+extern const char* const drawing_script;
 
 struct ReportOptions {
   std::filesystem::path campaign;  // file or folder

@@ -1,10 +1,340 @@
 // The points of the page, with the numbers of each in columns that all share.
+#include "runner/page/page_points.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
+#include <vector>
 
-#include "runner/page/page_parts.h"
+#include "runner/page/page_data.h"
+#include "runner/statistics/cohorts.h"
+#include "runner/statistics/observation.h"
+#include "runner/statistics/quantity_estimates.h"
+#include "runner/statistics/stop_rule.h"
+#include "runner/store/database_summary.h"
+#include "runner/store/number_store.h"
 
 namespace peclet::runner {
+namespace {
+
+bool is_profile(const Quantity& quantity) {
+  if (quantity.axes.size() != 1 || quantity.elements() < 2) return false;
+  const Json& values = quantity.axes.front().values;
+  return std::all_of(values.begin(), values.end(), [](const Json& value) { return value.is_number(); });
+}
+
+Json profile_json(const QuantityEstimate& found, double level) {
+  constexpr std::size_t most_values = 400;
+  const Quantity& quantity = found.quantity;
+  const QuantityAxis& axis = quantity.axes.front();
+  const std::size_t stride = 1 + (quantity.elements() - 1) / most_values;
+  Json values = Json::array(), means = Json::array(), errors = Json::array(), widths = Json::array();
+  for (std::size_t k = 0; k < quantity.elements(); k += stride) {
+    const Estimate& estimate = found.estimates[k];
+    values.push_back(axis.values[k]);
+    means.push_back(number_json(estimate.mean));
+    errors.push_back(number_json(estimate.standard_error));
+    widths.push_back(number_json(half_width(estimate, level)));
+  }
+  return {{"name", quantity.name}, {"symbol", quantity.symbol},
+          {"unit", quantity.unit}, {"axis", {{"name", axis.name}, {"unit", axis.unit}, {"values", values}}},
+          {"mean", means},         {"standard_error", errors},
+          {"half_width", widths}};
+}
+
+// Block by block over the seeds.
+class Blocks {
+ public:
+  void add(const std::vector<double>& values) {
+    if (values.empty() || (!sums_.empty() && sums_.size() != values.size())) return;
+    sums_.resize(values.size());
+    for (std::size_t block = 0; block < values.size(); ++block) {
+      if (!std::isnan(values[block])) sums_[block].add(values[block]);
+    }
+  }
+  Json json(double level) const {
+    if (sums_.empty()) return nullptr;
+    Json means = Json::array(), widths = Json::array();
+    for (const RunningEstimate& sum : sums_) {
+      means.push_back(number_json(sum.estimate().mean));
+      widths.push_back(number_json(half_width(sum.estimate(), level)));
+    }
+    return {{"mean", means}, {"half_width", widths}};
+  }
+
+ private:
+  std::vector<RunningEstimate> sums_;
+};
+
+}  // namespace
+
+Json point_details(Database& database, std::int64_t point, int end, const TargetRecord& target, int seeds) {
+  const std::vector<int> completed = database.completed(point, end);
+  // The seed after the first `seeds` that have completed.
+  const int beyond =
+      static_cast<int>(completed.size()) < seeds ? end : completed[static_cast<std::size_t>(seeds) - 1] + 1;
+  QuantityEstimates sums;
+  Blocks blocks;
+  int read = 0;
+  database.for_each_result(point, beyond, [&](int, const Json& result) {
+    if (!result.at("mean").is_object()) return;
+    ++read;
+    sums.add(result);
+    blocks.add(block_values(result, target.target.observable));
+  });
+  Json profiles = Json::array();
+  for (const QuantityEstimate& found : sums.estimates()) {
+    if (is_profile(found.quantity)) profiles.push_back(profile_json(found, target.level()));
+  }
+  return {{"seeds", read},
+          {"of", completed.size()},
+          {"blocks", blocks.json(target.level())},
+          {"profiles", profiles}};
+}
+
+// What the page shows of one point: estimates of everything that is measured there, and how its mean came
+// about.
+
+namespace {
+
+// To draw a line with.
+Json drawn(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return std::stod(fmt::format("{:.6g}", value));
+}
+
+// Values of the leading observable in the order of the seeds, and after how many seeds each came; up to the
+// first seed that has not ended.
+struct Values {
+  std::vector<double> values;
+  std::vector<int> seeds;
+  int closed = 0;
+  bool is_share = false;
+};
+
+Values values_of(const std::vector<std::optional<Outcome>>& outcomes, int end) {
+  Values found;
+  for (const std::optional<Outcome>& outcome : outcomes) {
+    if (!outcome || found.closed == end) break;
+    ++found.closed;
+    if (outcome->is_lost()) continue;
+    found.values.push_back(outcome->controlled());
+    found.seeds.push_back(found.closed);
+    found.is_share = outcome->is_share;
+  }
+  return found;
+}
+
+// Whether a line is drawn through the mean of so many seeds: some fifty do, at equal ratios.
+bool is_drawn(int seeds) {
+  constexpr int all_until = 16;
+  constexpr double ratio = 1.12;
+  if (seeds <= all_until) return true;
+  const auto step = [&](int n) { return std::floor(std::log(n) / std::log(ratio)); };
+  return step(seeds) != step(seeds - 1);
+}
+
+Json running_mean(const Values& found, StopRule& rule) {
+  Json seeds = Json::array(), means = Json::array(), widths = Json::array();
+  RunningEstimate estimate;
+  for (std::size_t i = 0; i < found.values.size(); ++i) {
+    estimate.add(found.values[i], found.is_share);
+    if (!is_drawn(found.seeds[i]) && i + 1 < found.values.size()) continue;
+    const Estimate now = estimate.estimate();
+    seeds.push_back(found.seeds[i]);
+    means.push_back(drawn(now.mean));
+    widths.push_back(drawn(rule.half_width(now)));
+  }
+  return {{"seeds", seeds}, {"mean", means}, {"half_width", widths}};
+}
+
+// The values themselves while they are few; then how many lie in each of equal parts of their range.
+Json scatter(const Values& found) {
+  constexpr std::size_t most_values = 200;
+  if (found.values.size() <= most_values) {
+    Json values = Json::array();
+    for (const double value : found.values) values.push_back(drawn(value));
+    return {{"seeds", found.seeds}, {"values", values}};
+  }
+  const auto [low, high] = std::minmax_element(found.values.begin(), found.values.end());
+  const auto bins = static_cast<std::size_t>(std::min(40.0, std::ceil(std::sqrt(found.values.size()))));
+  const double width = (*high - *low) / static_cast<double>(bins);
+  std::vector<int> counts(width > 0 ? bins : 1);
+  for (const double value : found.values) {
+    const double place = width > 0 ? (value - *low) / width : 0;
+    ++counts[std::min(counts.size() - 1, static_cast<std::size_t>(place))];
+  }
+  return {{"low", *low}, {"high", *high}, {"counts", counts}};
+}
+
+// The half-width that is good enough for a criterion, around the means of a look: what the rule allowed, or,
+// where there is no interval, what the means allow.
+Json good_enough(const Criterion& criterion, const Look& look, const Target& target) {
+  for (const ObservableLook& one : each_of(look, target)) {
+    if (one.observable == criterion.observable && one.share > 0)
+      return number_json(one.half_width / one.share);
+  }
+  const std::vector<std::string> observables = target.observables();
+  const std::vector<Estimate> estimates = estimates_of(look, target);
+  const std::string& measure =
+      criterion.tolerance.relative_to.empty() ? criterion.observable : criterion.tolerance.relative_to;
+  const auto place = std::find(observables.begin(), observables.end(), measure) - observables.begin();
+  return number_json(criterion.tolerance.half_width(estimates.at(static_cast<std::size_t>(place)).mean));
+}
+
+Json looks_json(const std::vector<Look>& looks, const Target& target) {
+  Json list = Json::array();
+  for (const Look& look : looks) {
+    list.push_back({{"seeds", look.seeds},
+                    {"mean", number_json(look.controlled.mean)},
+                    {"half_width", number_json(look.controlled_half_width)},
+                    {"good_enough", good_enough(target.criteria().front(), look, target)},
+                    {"verdict", to_string(look.verdict)}});
+  }
+  return list;
+}
+
+Json numbers(const Estimate& estimate, double half_width) {
+  return {number_json(estimate.mean), number_json(estimate.standard_error), number_json(half_width),
+          estimate.count};
+}
+
+std::vector<Drawable> drawables_of(const Quantity& quantity) {
+  std::vector<Drawable> found;
+  for (std::size_t k = 0; k < quantity.elements(); ++k) {
+    Drawable one{quantity.name, quantity.name, "", quantity.symbol, quantity.unit};
+    std::string path, element;
+    std::size_t rest = k;
+    for (std::size_t axis = quantity.axes.size(); axis-- > 0;) {
+      const Json& values = quantity.axes[axis].values;
+      const std::size_t index = rest % values.size();
+      const Json& value = values[index];
+      path = fmt::format("/{}", index) + path;
+      const std::string word = value.is_string() ? value.get<std::string>() : value.dump();
+      element = element.empty() ? word : word + ", " + element;
+      rest /= values.size();
+    }
+    one.path += path;
+    one.element = element;
+    found.push_back(std::move(one));
+  }
+  return found;
+}
+
+// The first seed with a result that has completed.
+FirstResult first_result(Database& database, const PointRecord& point) {
+  const std::vector<int> completed = database.completed(point.id, most_realisations);
+  if (completed.empty()) return {nullptr, Json::array()};
+  const std::optional<Json> result = database.result(point.id, completed.front());
+  if (!result) return {nullptr, Json::array()};
+  return {result->value("derived", Json()), result->value("warnings", Json::array())};
+}
+
+class PointPage {
+ public:
+  PointPage(Database& database, NumberStore& book, const TargetRecord& target, const PointSummary& point)
+      : database_(database),
+        book_(book),
+        target_(target),
+        point_(point),
+        look_(checked_look(database, point.point, target)) {}
+
+  KnownPoint read() {
+    const Target& target = target_.target;
+    StopRule rule(target, target_.minimum, target_.maximum);
+    const std::vector<std::optional<Outcome>> outcomes = database_.outcomes(point_.point.id);
+    const Values found = values_of(outcomes, end());
+    KnownPoint known;
+    known.key = key_of(point_, target_);
+    known.first = first_result(database_, point_.point);
+    known.json = {{"groups", known.first.groups},
+                  {"looks", looks_json(point_.looks, target)},
+                  {"running_mean", running_mean(found, rule)},
+                  {"scatter", scatter(found)}};
+    add_estimates(known);
+    return known;
+  }
+
+ private:
+  // Seeds of the look; before the first one, all that have ended.
+  int end() const { return look_ ? look_->seeds : std::numeric_limits<int>::max(); }
+
+  void add_estimates(KnownPoint& known) {
+    const double level = target_.level();
+    QuantityEstimates sums;
+    book_.for_each(point_.point.id, end(), [&](const NumberStore::Entry& seed) {
+      sums.add(seed.layout, seed.numbers, seed.has_jammed);
+    });
+    Json uncontrolled = Json::object(), allowed = Json::object();
+    for (const QuantityEstimate& found : sums.estimates()) {
+      const std::vector<Drawable> drawables = drawables_of(found.quantity);
+      for (std::size_t k = 0; k < drawables.size(); ++k) {
+        known.estimates.push_back(numbers(found.estimates[k], half_width(found.estimates[k], level)));
+        known.drawables.push_back(drawables[k]);
+        if (found.uncontrolled.empty()) continue;
+        uncontrolled[drawables[k].path] =
+            numbers(found.uncontrolled[k], half_width(found.uncontrolled[k], level));
+      }
+    }
+    if (look_) add_deciding(known, uncontrolled, allowed);
+    known.json["uncontrolled"] = std::move(uncontrolled);
+    known.json["good_enough"] = std::move(allowed);
+  }
+
+  // What the look says of the target's observables goes before: its intervals are those that decide.
+  void add_deciding(KnownPoint& known, Json& uncontrolled, Json& allowed) {
+    const Target& target = target_.target;
+    for (const ObservableLook& one : each_of(*look_, target)) {
+      const std::size_t place = place_of(known, one.observable);
+      known.estimates[place] = numbers(one.estimate, one.half_width);
+      if (one.observable == target.observable && has_control(*look_)) {
+        uncontrolled[known.drawables[place].path] = numbers(look_->estimate, look_->half_width);
+      }
+    }
+    for (const Criterion& criterion : target.criteria()) {
+      allowed[known.drawables[place_of(known, criterion.observable)].path] =
+          good_enough(criterion, *look_, target);
+    }
+  }
+
+  // An observable that is named as a quantity or an element; one that the results do not describe is one
+  // without unit.
+  static std::size_t place_of(KnownPoint& known, const std::string& observable) {
+    const std::string path = observable.starts_with('/') ? observable.substr(1) : observable;
+    for (std::size_t place = 0; place < known.drawables.size(); ++place) {
+      if (known.drawables[place].path == path) return place;
+    }
+    known.drawables.push_back({path, path, "", "", ""});
+    known.estimates.emplace_back(nullptr);
+    return known.drawables.size() - 1;
+  }
+
+  Database& database_;
+  NumberStore& book_;
+  const TargetRecord& target_;
+  const PointSummary& point_;
+  std::optional<Look> look_;
+};
+
+}  // namespace
+
+std::string key_of(const PointSummary& point, const TargetRecord& target) {
+  const StateCounts& counts = point.counts;
+  return fmt::format("{} {} {} {} {:a} {} {:a} {:a} {} {}", target.id, counts.done, counts.failed,
+                     counts.quarantined, counts.cpu_seconds, point.so_far.count, point.so_far.mean,
+                     point.so_far.standard_error, point.looks.size(),
+                     point.looks.empty() ? 0 : point.looks.back().seeds);
+}
+
+KnownPoint read_point(Database& database, NumberStore& book, const TargetRecord& target,
+                      const PointSummary& point) {
+  return PointPage(database, book, target, point).read();
+}
+
 namespace {
 
 // Columns by path and unit, in the order in which they are first met.

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <set>
 
-#include "runner/page/page_parts.h"
+#include "runner/page/page_data.h"
 
 namespace peclet::runner {
 namespace {

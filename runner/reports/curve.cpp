@@ -10,7 +10,7 @@
 #include <set>
 #include <vector>
 
-#include "runner/text/number_text.h"
+#include "runner/campaign/number_text.h"
 
 namespace peclet::runner {
 namespace {

@@ -7,16 +7,15 @@
 #include <cmath>
 #include <map>
 
-#include "runner/reports/explain_attempts.h"
+#include "runner/campaign/number_text.h"
+#include "runner/campaign/text_table.h"
+#include "runner/owner/retry_plan.h"
 #include "runner/reports/explain_estimate.h"
 #include "runner/reports/prediction_text.h"
 #include "runner/reports/status.h"
-#include "runner/requests/point_name.h"
+#include "runner/statistics/cohorts.h"
 #include "runner/statistics/forecast.h"
-#include "runner/statistics/look_json.h"
-#include "runner/store/file_store.h"
-#include "runner/text/number_text.h"
-#include "runner/text/text_table.h"
+#include "runner/store/result_files.h"
 
 namespace peclet::runner {
 namespace {

@@ -2,16 +2,66 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
+#include <vector>
 
-#include "runner/statistics/look_json.h"
+#include "contract/errors.h"
+#include "runner/campaign/quoting.h"
+#include "runner/owner/retry_plan.h"
+#include "runner/reports/point_estimates.h"
+#include "runner/statistics/cohorts.h"
 #include "runner/statistics/quantity_estimates.h"
 #include "runner/store/database_summary.h"
-#include "runner/store/file_store.h"
+#include "runner/store/result_files.h"
 
 namespace peclet::runner {
+namespace {
+
+// Seeds that the last look counts.
+int seeds_of_last_look(Database& database, const PointRecord& point) {
+  const std::vector<LookRecord> looks = database.looks(point.id);
+  return looks.empty() ? 0 : looks.back().look.seeds;
+}
+
+std::string line_of(const PointRecord& point, int seed, int looked_at, const Json& result) {
+  return canonical_json({{"label", point.label},
+                         {"hash", point.hash},
+                         {"settings", point.settings},
+                         {"seed", seed},
+                         {"deciding", seed < looked_at},
+                         {"result", result}});
+}
+
+}  // namespace
+
+void for_each_result_line(Database& database, const std::string& name, std::optional<int> seed,
+                          const std::function<void(const std::string& line)>& take) {
+  std::vector<PointRecord> points = database.points();
+  if (!name.empty()) points = {points[find_point(points, name)]};
+  bool any = false;
+  for (const PointRecord& point : points) {
+    const int looked_at = seeds_of_last_look(database, point);
+    if (seed) {
+      const std::optional<Json> result = database.result(point.id, *seed);
+      if (!result) continue;
+      any = true;
+      take(line_of(point, *seed, looked_at, *result));
+      continue;
+    }
+    database.for_each_result(point.id, std::numeric_limits<int>::max(), [&](int number, const Json& result) {
+      take(line_of(point, number, looked_at, result));
+    });
+  }
+  if (seed && !any) {
+    throw InputError("", "--seed", std::to_string(*seed),
+                     fmt::format("must be a seed that has a result{}", name.empty() ? "" : " at " + name));
+  }
+}
+
 namespace {
 
 // What of a result depends on scene, seed and engine alone. Blocks stay in the database.
@@ -189,6 +239,210 @@ std::string export_json(Database& database, bool canonical) {
     text += "\n]";
   }
   return text + "}\n";
+}
+
+// `peclet export --csv`: one row per point.
+
+namespace {
+
+std::vector<std::string> look_fields(const std::optional<Look>& look) {
+  if (!look) return std::vector<std::string>(10);
+  return {look->verdict == Verdict::more ? "" : to_string(look->verdict),
+          fmt::format("{}", look->seeds),
+          fmt::format("{}", look->lost),
+          fmt::format("{}", look->estimate.count),
+          csv_number(look->controlled.mean),
+          csv_number(look->controlled.standard_error),
+          csv_number(look->controlled_half_width),
+          csv_number(look->estimate.mean),
+          csv_number(look->estimate.standard_error),
+          csv_number(look->half_width)};
+}
+
+std::vector<std::string> full_fields(const PointSummary& point) {
+  return {fmt::format("{}", point.so_far.count),   csv_number(point.so_far.mean),
+          csv_number(point.so_far.standard_error), fmt::format("{}", point.surplus()),
+          csv_number(point.counts.cpu_seconds),    point.point.suspect ? "1" : "0",
+          point.endings.has_jammed() ? "1" : "0"};
+}
+
+void append(std::vector<std::string>& fields, const std::vector<std::string>& more) {
+  fields.insert(fields.end(), more.begin(), more.end());
+}
+
+// Three columns for each scalar quantity of any point; one that has another unit elsewhere has others there.
+class ScalarColumns {
+ public:
+  void add(std::size_t row, const std::vector<QuantityEstimate>& estimates) {
+    for (const QuantityEstimate& found : estimates) {
+      // What is not described has no unit, and shares its column with what is described as a number.
+      const std::string unit = found.quantity.unit.empty() ? "1" : found.quantity.unit;
+      columns_[{found.quantity.name, unit}][row] = found.estimates.front();
+    }
+  }
+  // `others` are the titles of the columns before these.
+  std::vector<std::string> titles(const std::vector<std::string>& others) const {
+    std::vector<std::string> titles;
+    for (const auto& [quantity, rows] : columns_) {
+      const std::string title = title_of(quantity.first, quantity.second, others);
+      append(titles, {title, title + " standard_error", title + " count"});
+    }
+    return titles;
+  }
+  std::vector<std::string> fields(std::size_t row) const {
+    std::vector<std::string> fields;
+    for (const auto& [quantity, rows] : columns_) {
+      const auto found = rows.find(row);
+      if (found == rows.end()) {
+        append(fields, {"", "", ""});
+      } else {
+        const Estimate& estimate = found->second;
+        append(fields, {csv_number(estimate.mean), csv_number(estimate.standard_error),
+                        fmt::format("{}", estimate.count)});
+      }
+    }
+    return fields;
+  }
+
+ private:
+  static std::string title_of(const std::string& name, const std::string& unit,
+                              const std::vector<std::string>& others) {
+    const bool is_taken = std::find(others.begin(), others.end(), name) != others.end();
+    const std::string unambiguous = is_taken ? "quantity " + name : name;
+    return csv_text(unit == "1" ? unambiguous : fmt::format("{} [{}]", unambiguous, unit));
+  }
+
+  std::map<std::pair<std::string, std::string>, std::map<std::size_t, Estimate>>
+      columns_;  // by name and unit
+};
+
+}  // namespace
+
+std::string export_csv(Database& database, bool canonical) {
+  const TargetRecord target = database.campaign().target;
+  const std::vector<PointRecord> points = database.points();
+  std::vector<PointSummary> summaries;
+  if (!canonical) summaries = summarise_points(database, target);
+  const SettingColumns settings(points);
+  std::vector<std::string> titles{"label", "hash"};
+  append(titles, settings.titles());
+  append(titles, {"verdict", "seeds", "lost", "count", "mean", "standard_error", "half_width",
+                  "uncontrolled_mean", "uncontrolled_standard_error", "uncontrolled_half_width"});
+  if (!canonical) {
+    append(titles, {"so_far_count", "so_far_mean", "so_far_standard_error", "surplus", "cpu_seconds",
+                    "suspect", "jammed"});
+  }
+  std::vector<std::vector<std::string>> rows;
+  ScalarColumns scalars;
+  NumberStore numbers(database.connection());
+  for (const PointRecord& point : points) {
+    std::vector<std::string> fields{csv_text(point.label), point.hash};
+    append(fields, settings.fields(point));
+    const std::optional<Look> look = checked_look(database, point, target);
+    append(fields, look_fields(look));
+    if (!canonical) append(fields, full_fields(summaries[rows.size()]));
+    scalars.add(rows.size(), scalar_estimates(numbers, point, look));
+    rows.push_back(std::move(fields));
+  }
+  append(titles, scalars.titles(titles));
+  std::string text = csv_line(titles);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    append(rows[row], scalars.fields(row));
+    text += csv_line(rows[row]);
+  }
+  return text;
+}
+
+// `peclet export --long`: one row per point, quantity and element.
+
+namespace {
+
+using Fields = std::vector<std::string>;
+
+struct Point {
+  Fields which;  // label, hash, settings
+  std::vector<QuantityEstimate> estimates;
+};
+
+std::string value_field(const Json& value) {
+  return value.is_string() ? csv_text(value.get<std::string>()) : canonical_json(value);
+}
+
+// Name, unit and value of each axis at an element, the last axis running fastest; empty beyond the last axis.
+Fields place_fields(const Quantity& quantity, std::size_t element, std::size_t most_axes) {
+  Fields fields(3 * most_axes);
+  for (std::size_t axis = quantity.axes.size(); axis-- > 0;) {
+    const QuantityAxis& along = quantity.axes[axis];
+    fields[3 * axis] = csv_text(along.name);
+    fields[3 * axis + 1] = csv_text(along.unit);
+    fields[3 * axis + 2] = value_field(along.values[element % along.values.size()]);
+    element /= along.values.size();
+  }
+  return fields;
+}
+
+Fields number_fields(const QuantityEstimate& found, std::size_t element, double confidence) {
+  const Estimate& estimate = found.estimates[element];
+  Fields fields{fmt::format("{}", estimate.count), csv_number(estimate.mean),
+                csv_number(estimate.standard_error), csv_number(half_width(estimate, confidence))};
+  if (found.uncontrolled.empty()) {
+    fields.insert(fields.end(), {"", ""});
+  } else {
+    fields.push_back(csv_number(found.uncontrolled[element].mean));
+    fields.push_back(csv_number(found.uncontrolled[element].standard_error));
+  }
+  return fields;
+}
+
+std::string row(const Fields& which, const Fields& quantity, const Fields& place, const Fields& numbers) {
+  Fields fields = which;
+  for (const Fields* more : {&quantity, &place, &numbers}) {
+    fields.insert(fields.end(), more->begin(), more->end());
+  }
+  return csv_line(fields);
+}
+
+}  // namespace
+
+std::string export_long_csv(Database& database) {
+  const TargetRecord target = database.campaign().target;
+  const std::vector<PointRecord> records = database.points();
+  const SettingColumns settings(records);
+  std::vector<Point> points;
+  std::size_t most_axes = 1;
+  for (const PointRecord& record : records) {
+    Point point{{csv_text(record.label), record.hash}, {}};
+    const Fields set = settings.fields(record);
+    point.which.insert(point.which.end(), set.begin(), set.end());
+    point.estimates = point_estimates(database, record, checked_look(database, record, target));
+    for (const QuantityEstimate& found : point.estimates) {
+      most_axes = std::max(most_axes, found.quantity.axes.size());
+    }
+    points.push_back(std::move(point));
+  }
+  Fields titles{"label", "hash"}, axes;
+  const Fields set = settings.titles();
+  titles.insert(titles.end(), set.begin(), set.end());
+  for (std::size_t axis = 1; axis <= most_axes; ++axis) {
+    for (const char* const what : {"axis_{}", "axis_{}_unit", "axis_{}_value"}) {
+      axes.push_back(fmt::format(fmt::runtime(what), axis));
+    }
+  }
+  std::string text = row(
+      titles, {"quantity", "symbol", "unit", "estimator"}, axes,
+      {"count", "mean", "standard_error", "half_width", "uncontrolled_mean", "uncontrolled_standard_error"});
+  for (const Point& point : points) {
+    for (const QuantityEstimate& found : point.estimates) {
+      const Quantity& quantity = found.quantity;
+      const Fields what{csv_text(quantity.name), csv_text(quantity.symbol), csv_text(quantity.unit),
+                        estimator_of(quantity)};
+      for (std::size_t k = 0; k < found.estimates.size(); ++k) {
+        text += row(point.which, what, place_fields(quantity, k, most_axes),
+                    number_fields(found, k, target.level()));
+      }
+    }
+  }
+  return text;
 }
 
 }  // namespace peclet::runner

@@ -1,6 +1,6 @@
 #include "runner/reports/point_estimates.h"
 
-#include "runner/text/csv_line.h"
+#include "runner/campaign/quoting.h"
 
 namespace peclet::runner {
 

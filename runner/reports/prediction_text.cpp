@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "runner/text/duration_text.h"
+#include "runner/campaign/number_text.h"
 
 namespace peclet::runner {
 namespace {

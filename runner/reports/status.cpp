@@ -1,13 +1,16 @@
 #include "runner/reports/status.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "contract/exit_codes.h"
+#include "contract/errors.h"
+#include "runner/campaign/number_text.h"
+#include "runner/campaign/text_table.h"
 #include "runner/reports/prediction_text.h"
-#include "runner/statistics/look_json.h"
+#include "runner/statistics/cohorts.h"
 
 namespace peclet::runner {
 namespace {
@@ -150,6 +153,269 @@ Json status_json(const CampaignStatus& status) {
           {"seconds_to_go", to_json(status.to_go)},
           {"handed_over", bundles_json(status.handed_over)},
           {"points", points}};
+}
+
+// How `status` looks to a person.
+
+namespace {
+
+// With its share of the mean, where the tolerance is one.
+std::string interval(const Look& look, const Tolerance& tolerance) {
+  const bool has_interval = std::isfinite(look.controlled_half_width);
+  if (!has_interval && look.controlled.count < 2) return "-";
+  const std::string text = with_error(look.controlled.mean, look.controlled_half_width);
+  return tolerance.is_relative() && has_interval ? fmt::format("{} ({})", text, percent(relative_width(look)))
+                                                 : text;
+}
+
+// "pressure 2.6 x": the observable whose half-width is the largest multiple of what is good enough.
+std::string farthest(const Look& look) {
+  const ObservableLook* found = nullptr;
+  for (const ObservableLook& one : look.each) {
+    if (one.verdict && (found == nullptr || !(one.share <= found->share))) found = &one;
+  }
+  return fmt::format("{} {} x", found->observable, rough(found->share));
+}
+
+// Of a fixed number of realisations: each observable that is shown, over the seeds of the look or those so
+// far.
+std::vector<std::string> shown_cells(const PointSummary& point, const std::vector<Estimate>& so_far,
+                                     const Target& target) {
+  std::vector<std::string> cells{fmt::format("{}/{}", point.wanted_ended, point.wanted)};
+  if (point.looks.empty()) {
+    for (const Estimate& one : so_far)
+      cells.push_back(with_error(one.mean, half_width(one, target.confidence)));
+  } else {
+    for (const ObservableLook& one : each_of(point.looks.back(), target))
+      cells.push_back(with_error(one.estimate.mean, one.half_width));
+  }
+  cells.push_back(verdict_text(point));
+  return cells;
+}
+
+std::vector<std::string> cells(const PointSummary& point, const Target& target) {
+  const bool with_others = target.observables().size() > 1;
+  std::vector<std::string> cells{fmt::format("{}/{}", point.wanted_ended, point.wanted),
+                                 with_error(point.so_far.mean, point.so_far.standard_error)};
+  if (point.looks.empty()) {
+    cells.emplace_back("-");
+    if (with_others) cells.emplace_back("-");
+  } else {
+    const Look& look = point.looks.back();
+    cells.push_back(interval(look, target.tolerance));
+    if (with_others) cells.push_back(farthest(look));
+  }
+  cells.push_back(verdict_text(point));
+  return cells;
+}
+
+std::string heading(const CampaignStatus& status) {
+  const TargetRecord& target = status.campaign.target;
+  const std::string confidence = target.target.has_tolerance()
+                                     ? fmt::format(" at {:g} % confidence", 100 * target.target.confidence)
+                                     : "";
+  return fmt::format("{}: {}{}, {} seeds a point\n\n", status.campaign.name, to_string(target.target),
+                     confidence, range_text(target.minimum, target.maximum));
+}
+
+// Columns as a narrow terminal does without them; which point and which verdict are always there.
+namespace importance {
+constexpr int so_far = 1, seeds = 2, look = 3, farthest = 4;
+}
+
+// Of the columns that are shown.
+std::string legend(const CampaignStatus& status, const std::vector<std::string>& left_out,
+                   std::size_t width) {
+  // Where both lines of it fit, it is broken so that neither is much longer.
+  const char* const blank = width >= 100 ? "\n" : " ";
+  const auto shows = [&](const char* title) {
+    return std::find(left_out.begin(), left_out.end(), title) == left_out.end();
+  };
+  std::vector<std::string> parts;
+  const Target& target = status.campaign.target.target;
+  if (!target.has_tolerance()) {
+    parts.push_back(fmt::format("mean ± half-width of the {:g} % interval of the seeds that have ended",
+                                100 * target.confidence));
+  } else {
+    if (shows("so far")) parts.emplace_back("so far: mean ± standard error of all seeds that have ended");
+    if (shows("look")) {
+      parts.push_back(fmt::format("look: mean ± half-width of the{}{:g} % interval at the last look", blank,
+                                  100 * target.confidence));
+    }
+    if (shows("farthest") && target.observables().size() > 1) {
+      parts.emplace_back("farthest: the largest half-width, as a multiple of its tolerance");
+    }
+  }
+  std::string text = fmt::format("{}\n", fmt::join(parts, "; "));
+  if (!left_out.empty()) text += fmt::format("too narrow for: {}\n", fmt::join(left_out, ", "));
+  return folded(text, width);
+}
+
+// A loosened target is met by the look by which it would have been met from the beginning: whoever could
+// choose the look afterwards could choose the answer.
+std::string earlier_looks_text(const CampaignStatus& status) {
+  std::string text;
+  for (const PointSummary& point : status.points) {
+    if (point.earlier_look == 0) continue;
+    text += fmt::format(
+        "{}: the look at {} seeds decides, the first within the present target; all {} that "
+        "have ended are in \"so far\"\n",
+        point.point.label, point.looks.back().seeds, point.counts.terminal());
+  }
+  return text;
+}
+
+// "3 capped, 2 open"
+std::string listed(const std::map<std::string, int>& counts) {
+  std::string text;
+  for (const auto& [name, count] : counts)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name);
+  return text;
+}
+
+// "; 40 handed over (jobs 12, 17)"
+std::string handed_over_text(const CampaignStatus& status) {
+  constexpr std::size_t most_jobs = 4;
+  int seeds = 0;
+  std::string jobs;
+  for (std::size_t i = 0; i < status.handed_over.size(); ++i) {
+    const HandedOver& bundle = status.handed_over[i];
+    seeds += bundle.seeds;
+    if (i < most_jobs) jobs += (i > 0 ? ", " : "") + (bundle.job.empty() ? "not confirmed" : bundle.job);
+  }
+  if (seeds == 0) return "";
+  const std::size_t more = status.handed_over.size() - std::min(most_jobs, status.handed_over.size());
+  if (more > 0) jobs += fmt::format(" and {} more", more);
+  return fmt::format("; {} handed over (job{} {})", seeds, status.handed_over.size() == 1 ? "" : "s", jobs);
+}
+
+std::string kept_apart_text(const CampaignStatus& status) {
+  std::string text;
+  for (const PointSummary& point : status.points) {
+    for (const KeptApart& kept : point.kept_apart) {
+      text += fmt::format("{}: {} results of engine {} are kept apart\n", point.point.label, kept.results,
+                          kept.engine);
+    }
+  }
+  return text;
+}
+
+std::string seed_totals(const CampaignStatus& status) {
+  int ended = 0, running = 0, surplus = 0, lost = 0;
+  double cpu_seconds = 0;
+  std::map<std::string, int> losses;
+  for (const PointSummary& point : status.points) {
+    ended += point.counts.terminal();
+    running += point.counts.running;
+    surplus += point.surplus();
+    lost += point.lost();
+    cpu_seconds += point.counts.cpu_seconds;
+    for (const auto& [cause, count] : point.losses) losses[cause] += count;
+  }
+  std::string text = fmt::format("{} seeds ended", ended);
+  if (lost > 0) text += fmt::format(", {} of them lost ({})", lost, listed(losses));
+  if (surplus > 0) text += fmt::format(", {} surplus", surplus);
+  if (running > 0) {
+    text +=
+        fmt::format("; {} {}", running, status.owner ? "running" : "were running when the run was killed");
+  }
+  text += handed_over_text(status);
+  return text + fmt::format("; processor time {}\n", duration_text(cpu_seconds));
+}
+
+// Why seeds were lost: one line for each cause at each point.
+std::string losses_text(const CampaignStatus& status) {
+  constexpr int most_lines = 10;
+  std::string text;
+  int lines = 0;
+  for (const PointSummary& point : status.points) {
+    for (const auto& [cause, reason] : point.loss_reasons) {
+      if (++lines > most_lines) continue;
+      text += fmt::format("{}: {} lost, {}: {}\n", point.point.label, point.losses.at(cause), cause, reason);
+    }
+  }
+  if (lines > most_lines) text += fmt::format("and {} more: `peclet explain` has them\n", lines - most_lines);
+  return text;
+}
+
+}  // namespace
+
+std::string point_totals(const CampaignStatus& status) {
+  std::map<std::string, int> verdicts;
+  for (const PointSummary& point : status.points) ++verdicts[standing_word(point)];
+  return fmt::format("{}: {}", counted(status.points.size(), "point"), listed(verdicts));
+}
+
+std::string status_table(const CampaignStatus& status, std::size_t width) {
+  std::vector<std::string> labels;
+  for (const PointSummary& point : status.points) labels.push_back(point.point.label);
+  const PointColumns points(labels);
+  TextTable table;
+  points.add_to(table);
+  table.add_column("seeds", TextTable::Align::right, importance::seeds);
+  const Target& target = status.campaign.target.target;
+  const std::vector<std::string> observables = target.observables();
+  if (target.has_tolerance()) {
+    table.add_column("so far", TextTable::Align::right, importance::so_far);
+    table.add_column("look", TextTable::Align::right, importance::look);
+    if (observables.size() > 1) table.add_column("farthest", TextTable::Align::left, importance::farthest);
+  } else {
+    for (const std::string& name : observables)
+      table.add_column(name, TextTable::Align::right,
+                       name == target.observable ? importance::look : importance::so_far);
+  }
+  table.add_column("verdict", TextTable::Align::left);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    std::vector<std::string> row = points.cells(i);
+    const std::vector<std::string> rest =
+        target.has_tolerance() ? cells(status.points[i], target)
+                               : shown_cells(status.points[i], status.forecasts[i].so_far, target);
+    row.insert(row.end(), rest.begin(), rest.end());
+    table.add_row(std::move(row));
+  }
+  const std::string totals = point_totals(status) + '\n' + seed_totals(status) + losses_text(status) +
+                             earlier_looks_text(status) + kept_apart_text(status) +
+                             predictions_text(status.points);
+  return folded(heading(status), width) + table.text_within(width) + '\n' +
+         legend(status, table.left_out(width), width) + '\n' + folded(totals, width);
+}
+
+std::string status_table(Database& database, std::int64_t owner) {
+  CampaignStatus status = read_status(database);
+  status.owner = owner;
+  return status_table(status);
+}
+
+std::string workers_text(const CampaignStatus& status, std::size_t width) {
+  constexpr std::size_t most_lines = 16;
+  std::string to_go = status.to_go ? to_string(*status.to_go) : "";
+  if (!to_go.empty()) to_go = ": " + to_go;
+  if (!status.owner) {
+    if (standing(status) != 4) return "";
+    return status.handed_over.empty() ? fmt::format("\nnobody runs it now; `peclet run` goes on{}\n", to_go)
+                                      : "\nnobody takes results in now; `peclet ingest` does\n";
+  }
+  TextTable table;
+  table.add_column("worker", TextTable::Align::right, 2);
+  table.add_column("point and seed", TextTable::Align::left);
+  table.add_column("phase", TextTable::Align::left, 3);
+  table.add_column("done", TextTable::Align::right, 4);
+  table.add_column("strain", TextTable::Align::right, 1);
+  std::size_t workers = 0;
+  for (const PointSummary& point : status.points) {
+    for (const LeaseRecord& lease : point.leases) {
+      if (++workers > most_lines) continue;
+      const double done =
+          lease.steps > 0 ? static_cast<double>(lease.step) / static_cast<double>(lease.steps) : std::nan("");
+      table.add_row({fmt::format("{}", lease.worker),
+                     fmt::format("{} seed {}", point.point.label, lease.seed), lease.phase,
+                     std::isnan(done) ? "-" : fmt::format("{:.0f} %", 100 * done), rough(lease.strain)});
+    }
+  }
+  std::string text = fmt::format("\nprocess {} runs it{}\n", *status.owner, to_go);
+  if (workers > 0) text += table.text_within(width);
+  if (workers > most_lines) text += fmt::format("and {} more\n", workers - most_lines);
+  return text;
 }
 
 }  // namespace peclet::runner

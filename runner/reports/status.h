@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "contract/json.h"
+#include "runner/campaign/text_table.h"
 #include "runner/store/bundle_store.h"
 #include "runner/store/database_summary.h"
-#include "runner/text/folded_text.h"
 
 namespace peclet::runner {
 

@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-#include "runner/text/duration_text.h"
-#include "runner/text/number_text.h"
+#include "runner/campaign/number_text.h"
 
 namespace peclet::runner {
 namespace {

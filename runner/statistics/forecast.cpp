@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "runner/text/duration_text.h"
+#include "runner/campaign/number_text.h"
 
 namespace peclet::runner {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "contract/integrity_error.h"
+#include "contract/errors.h"
 
 namespace peclet::runner {
 namespace {

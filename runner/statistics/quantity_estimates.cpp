@@ -6,8 +6,8 @@
 #include <numeric>
 #include <utility>
 
-#include "contract/endings.h"
-#include "runner/statistics/look_json.h"
+#include "contract/frames.h"
+#include "runner/statistics/cohorts.h"
 
 namespace peclet::runner {
 namespace {

@@ -1,6 +1,7 @@
 // What a finite number of realisations says about a mean, and how sure it is.
 #pragma once
 
+#include <optional>
 #include <span>
 
 namespace peclet::runner {
@@ -71,5 +72,14 @@ double share_quantile(int count, double mean, double probability);
 // share_interval() of a share. NaN for fewer than two values, and for equal or repeated ones, which have no
 // spread to judge by.
 double half_width(const Estimate& estimate, double confidence);
+
+// Bootstrap-t: an interval that follows the skewness of the values.
+//
+// The two-sided interval m - t*(1 - a/2) s .. m - t*(a/2) s, a = 1 - confidence, of the mean m with standard
+// error s, t* being quantiles of (m* - m) / s* over 4000 resamples of the values with replacement (B. Efron
+// and R. Tibshirani, An Introduction to the Bootstrap, 1993, 12.5). Resamples without spread are drawn again.
+// The random numbers are always the same, so the same values give the same interval. Nothing for fewer than
+// five values, values without spread, and where next to no resample has a finite one.
+std::optional<Interval> bootstrap_t(std::span<const double> values, double confidence);
 
 }  // namespace peclet::runner

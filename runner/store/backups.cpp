@@ -14,10 +14,10 @@
 #include <thread>
 
 #include "contract/durable_file.h"
+#include "contract/errors.h"
 #include "contract/guarded_file.h"
-#include "contract/integrity_error.h"
+#include "runner/campaign/quoting.h"
 #include "runner/store/database.h"
-#include "runner/text/quoting.h"
 
 namespace peclet::runner {
 namespace {

@@ -5,7 +5,7 @@
 #include <csignal>
 #include <utility>
 
-#include "contract/integrity_error.h"
+#include "contract/errors.h"
 
 namespace peclet::runner {
 namespace {

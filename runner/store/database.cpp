@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -16,8 +17,10 @@
 #include <utility>
 
 #include "contract/guarded_file.h"
-#include "runner/store/campaign_sql.h"
-#include "runner/text/plain_text.h"
+#include "runner/campaign/quoting.h"
+#include "runner/statistics/cohorts.h"
+#include "runner/store/number_store.h"
+#include "runner/store/result_store.h"
 
 namespace peclet::runner {
 namespace {
@@ -223,6 +226,406 @@ Database Database::open_reader(const std::filesystem::path& path) {
   check_kind(database.connection());
   if (!holds_anything(database.connection())) throw BeingSetUp(path.string());
   return database;
+}
+
+// The read-only half of database.h: rows into records.
+
+namespace {
+
+constexpr const char* point_columns =
+    "SELECT point_id, place, hash, scene, settings, label, engine_identity, suspect, priority, "
+    "cancelled, kept_apart FROM point ";
+
+Target stored_target(const std::string& observable, const std::string& criterion, double confidence) {
+  try {
+    return target_of(observable, Json::parse(criterion), confidence);
+  } catch (const std::exception&) {
+    throw IntegrityError("the database holds a target that is none: " + plain(criterion));
+  }
+}
+
+Verdict stored_verdict(const std::string& word) {
+  const std::optional<Verdict> known = verdict_of(word);
+  if (!known) throw IntegrityError("the database holds an unknown verdict: " + word);
+  return *known;
+}
+
+std::vector<PointRecord> read_points(Connection& connection, const std::string& which) {
+  Statement query(connection, point_columns + which);
+  std::vector<PointRecord> points;
+  while (query.step()) {
+    PointRecord point;
+    point.id = query.integer(0);
+    if (!query.is_null(1)) point.place = static_cast<int>(query.integer(1));
+    point.hash = query.text(2);
+    point.scene = Json::parse(query.text(3));
+    point.settings = Json::parse(query.text(4));
+    point.label = query.text(5);
+    point.engine_identity = query.text(6);
+    point.suspect = query.integer(7) != 0;
+    point.priority = static_cast<int>(query.integer(8));
+    point.cancelled = query.integer(9) != 0;
+    point.kept_apart = query.integer(10) != 0;
+    points.push_back(std::move(point));
+  }
+  return points;
+}
+
+TargetRecord read_target(const Statement& query, int column) {
+  TargetRecord record;
+  record.id = query.integer(column);
+  record.target = stored_target(query.text(column + 1), query.text(column + 2), query.real(column + 3));
+  record.minimum = static_cast<int>(query.integer(column + 4));
+  record.maximum = static_cast<int>(query.integer(column + 5));
+  return record;
+}
+
+std::vector<ObservableLook> stored_observables(const std::string& text) {
+  if (text.empty()) return {};
+  try {
+    return observables_of(Json::parse(text));
+  } catch (const std::exception&) {
+    throw IntegrityError("the database holds a look that is none: " + plain(text));
+  }
+}
+
+constexpr const char* look_columns =
+    "seeds, lost, count, mean, standard_error, half_width, uncontrolled_mean, uncontrolled_standard_error, "
+    "uncontrolled_half_width, verdict, skewness, transient, observables ";
+
+// Of a query of look_columns.
+Look read_look(const Statement& query) {
+  Look look;
+  look.seeds = static_cast<int>(query.integer(0));
+  look.lost = static_cast<int>(query.integer(1));
+  const int count = static_cast<int>(query.integer(2));
+  look.controlled = {count, query.real(3), query.real(4)};
+  look.controlled_half_width = query.real(5);
+  look.estimate = {count, query.real(6), query.real(7)};
+  look.half_width = query.real(8);
+  look.controlled.values = stored_values(look.controlled, look.controlled_half_width);
+  look.estimate.values = stored_values(look.estimate, look.half_width);
+  look.verdict = stored_verdict(query.text(9));
+  look.skewness = query.real(10);
+  look.transient = query.integer(11) != 0;
+  look.each = stored_observables(query.text(12));
+  look.untested =
+      std::any_of(look.each.begin(), look.each.end(), [](const ObservableLook& one) { return one.untested; });
+  return look;
+}
+
+std::vector<LookRecord> read_looks(Connection& connection, std::int64_t point) {
+  Statement query(
+      connection,
+      std::string("SELECT ") + look_columns +
+          ", made_at, target_id, observable, criterion, confidence, minimum, maximum FROM look JOIN "
+          "target USING (target_id) WHERE point_id = ? AND target_id = (SELECT target_id FROM campaign) "
+          "ORDER BY seeds");
+  query.bind(point);
+  std::vector<LookRecord> looks;
+  while (query.step()) looks.push_back({read_target(query, 14), read_look(query), query.text(13)});
+  return looks;
+}
+
+// Of a query of result_columns.
+std::string read_text(const Statement& query) {
+  try {
+    return result_text(query, 1, 2);
+  } catch (const IntegrityError& error) {
+    throw IntegrityError(
+        fmt::format("the stored result of seed {} {}; see `peclet doctor`", query.integer(0), error.what()));
+  }
+}
+
+EventRecord read_event(const Statement& query) {
+  EventRecord record{query.text(0), query.text(1), query.optional_integer(2), std::nullopt, query.text(4)};
+  if (!query.is_null(3)) record.seed = static_cast<int>(query.integer(3));
+  return record;
+}
+
+constexpr const char* result_columns =
+    "SELECT seed, document, text FROM result LEFT JOIN dictionary USING (point_id) WHERE point_id = ? ";
+
+}  // namespace
+
+CampaignRecord Database::campaign() {
+  Statement query(*connection_,
+                  "SELECT target_id, observable, criterion, confidence, minimum, maximum, name, "
+                  "document, created_at, updated_at FROM campaign JOIN target USING (target_id)");
+  if (!query.step()) throw IntegrityError(connection_->path() + ": holds no campaign");
+  CampaignRecord record;
+  record.target = read_target(query, 0);
+  record.name = query.text(6);
+  record.document = Json::parse(query.text(7));
+  record.created_at = query.text(8);
+  record.updated_at = query.text(9);
+  return record;
+}
+
+std::map<std::int64_t, std::vector<Look>> Database::looks_by_point() {
+  Statement query(*connection_, std::string("SELECT ") + look_columns +
+                                    ", point_id FROM look WHERE target_id = (SELECT target_id FROM campaign) "
+                                    "ORDER BY point_id, seeds");
+  std::map<std::int64_t, std::vector<Look>> looks;
+  while (query.step()) looks[query.integer(13)].push_back(read_look(query));
+  return looks;
+}
+
+std::vector<PointRecord> Database::points() {
+  return read_points(*connection_, "WHERE place IS NOT NULL ORDER BY place");
+}
+
+std::vector<PointRecord> Database::inactive_points() {
+  return read_points(*connection_, "WHERE place IS NULL ORDER BY point_id");
+}
+
+StateCounts Database::counts(std::int64_t point) {
+  Statement query(*connection_,
+                  "SELECT state, count(*), total(cpu_seconds) FROM realisation WHERE point_id = ? "
+                  "GROUP BY state");
+  query.bind(point);
+  StateCounts counts;
+  while (query.step()) {
+    const int count = static_cast<int>(query.integer(1));
+    counts.cpu_seconds += query.real(2);
+    switch (seed_state(query.text(0))) {
+      case SeedState::queued:
+        counts.queued = count;
+        break;
+      case SeedState::running:
+        counts.running = count;
+        break;
+      case SeedState::done:
+        counts.done = count;
+        break;
+      case SeedState::failed:
+        counts.failed = count;
+        break;
+      case SeedState::quarantined:
+        counts.quarantined = count;
+        break;
+    }
+  }
+  return counts;
+}
+
+std::vector<RealisationRecord> Database::realisations(std::int64_t point) {
+  Statement query(
+      *connection_,
+      "SELECT seed, state, cause, statistical_inefficiency, largest_overlap, cpu_seconds, wall_seconds, "
+      "final_state_sha256, content_sha256, engine_id FROM realisation WHERE point_id = ? ORDER BY seed");
+  query.bind(point);
+  std::vector<RealisationRecord> realisations;
+  while (query.step()) {
+    RealisationRecord record;
+    record.seed = static_cast<int>(query.integer(0));
+    record.state = seed_state(query.text(1));
+    record.cause = query.text(2);
+    record.statistical_inefficiency = query.optional_real(3);
+    record.largest_overlap = query.optional_real(4);
+    record.cpu_seconds = query.optional_real(5);
+    record.wall_seconds = query.optional_real(6);
+    record.final_state_sha256 = query.text(7);
+    record.content_sha256 = query.text(8);
+    record.engine = query.optional_integer(9);
+    realisations.push_back(std::move(record));
+  }
+  return realisations;
+}
+
+std::vector<std::optional<Outcome>> Database::outcomes(std::int64_t point) {
+  return NumberStore(*connection_).outcomes(point);
+}
+
+std::optional<std::string> Database::result_text(std::int64_t point, int seed) {
+  Statement query(*connection_, std::string(result_columns) + "AND seed = ?");
+  query.bind(point).bind(seed);
+  if (!query.step()) return std::nullopt;
+  return read_text(query);
+}
+
+std::optional<Json> Database::result(std::int64_t point, int seed) {
+  const std::optional<std::string> text = result_text(point, seed);
+  if (!text) return std::nullopt;
+  return Json::parse(*text);
+}
+
+void Database::for_each_result(std::int64_t point, int end,
+                               const std::function<void(int seed, const Json&)>& visit) {
+  Statement query(*connection_, std::string(result_columns) + "AND seed < ? ORDER BY seed");
+  query.bind(point).bind(end);
+  while (query.step()) visit(static_cast<int>(query.integer(0)), Json::parse(read_text(query)));
+}
+
+std::vector<AttemptRecord> Database::attempts(std::int64_t point) {
+  Statement query(
+      *connection_,
+      "SELECT seed, worker, process, host, started_at, ended_at, outcome, blamed, step, exit_status, signal,"
+      " message, pardoned FROM attempt WHERE point_id = ? ORDER BY seed, attempt_id");
+  query.bind(point);
+  std::vector<AttemptRecord> attempts;
+  while (query.step()) {
+    AttemptRecord record;
+    record.seed = static_cast<int>(query.integer(0));
+    record.worker = static_cast<int>(query.integer(1));
+    record.process = query.integer(2);
+    record.host = query.text(3);
+    record.started_at = query.text(4);
+    record.ended_at = query.text(5);
+    record.outcome = query.text(6);
+    record.blamed = query.integer(7) != 0;
+    record.step = query.integer(8);
+    record.exit_status = query.optional_integer(9);
+    record.signal = query.optional_integer(10);
+    record.message = query.text(11);
+    record.pardoned = query.integer(12) != 0;
+    attempts.push_back(std::move(record));
+  }
+  return attempts;
+}
+
+std::optional<std::int64_t> Database::process_of(std::int64_t attempt) {
+  Statement query(*connection_, "SELECT process FROM attempt WHERE attempt_id = ?");
+  if (!query.bind(attempt).step()) return std::nullopt;
+  return query.integer(0);
+}
+
+std::vector<AttemptSpan> Database::last_attempts(int limit) {
+  Statement query(
+      *connection_,
+      "SELECT a.point_id, a.seed, a.worker, a.host, a.started_at, coalesce(a.ended_at, l.renewed_at, "
+      "a.started_at), a.outcome FROM attempt a LEFT JOIN lease l USING (attempt_id) ORDER BY a.attempt_id "
+      "DESC "
+      "LIMIT ?");
+  query.bind(limit);
+  std::vector<AttemptSpan> spans;
+  while (query.step()) {
+    spans.push_back({query.integer(0), static_cast<int>(query.integer(1)), static_cast<int>(query.integer(2)),
+                     query.text(3), query.text(4), query.text(5), query.text(6)});
+  }
+  std::reverse(spans.begin(), spans.end());
+  return spans;
+}
+
+std::vector<std::string> Database::hosts() {
+  Statement query(*connection_, "SELECT DISTINCT host FROM attempt WHERE host != '' ORDER BY host");
+  std::vector<std::string> hosts;
+  while (query.step()) hosts.push_back(query.text(0));
+  return hosts;
+}
+
+std::string Database::last_end() {
+  return connection_->text("SELECT coalesce(max(ended_at), '') FROM attempt");
+}
+
+std::vector<int> Database::completed(std::int64_t point, int end) {
+  Statement query(*connection_, "SELECT seed FROM numbers WHERE point_id = ? AND seed < ? ORDER BY seed");
+  query.bind(point).bind(end);
+  std::vector<int> seeds;
+  while (query.step()) seeds.push_back(static_cast<int>(query.integer(0)));
+  return seeds;
+}
+
+MeanSteps Database::mean_steps(std::int64_t point) {
+  Statement query(
+      *connection_,
+      "SELECT avg(equilibration_steps), avg(production_steps) FROM realisation WHERE point_id = ? "
+      "AND state = 'done'");
+  query.bind(point).step();
+  return {query.real(0), query.real(1)};
+}
+
+std::vector<LeaseRecord> Database::leases(std::int64_t point) {
+  Statement query(*connection_,
+                  "SELECT seed, worker, phase, step, steps, strain, renewed_at FROM lease "
+                  "WHERE point_id = ? ORDER BY seed");
+  query.bind(point);
+  std::vector<LeaseRecord> leases;
+  while (query.step()) {
+    leases.push_back({static_cast<int>(query.integer(0)), static_cast<int>(query.integer(1)), query.text(2),
+                      query.integer(3), query.integer(4), query.real(5), query.text(6)});
+  }
+  return leases;
+}
+
+std::map<std::int64_t, std::vector<Unfinished>> Database::unfinished() {
+  constexpr double shortest = 0.1;  // share of the steps before which their rate says little
+  // A seed that was recalled goes on from the step at which it left. After any other end of an attempt its
+  // first step is not known.
+  Statement query(*connection_,
+                  "SELECT l.point_id, strftime('%s', l.renewed_at) - strftime('%s', a.started_at), l.step, "
+                  "l.steps, l.phase, (SELECT CASE WHEN total(b.outcome != 'drained' AND b.step > 0) = 0 THEN "
+                  "coalesce(max(b.step), 0) END FROM attempt b WHERE b.point_id = l.point_id AND b.seed = "
+                  "l.seed AND b.attempt_id < l.attempt_id) FROM lease l JOIN attempt a USING (attempt_id)");
+  std::map<std::int64_t, std::vector<Unfinished>> running;
+  while (query.step()) {
+    const double seconds = query.real(1), step = query.real(2), steps = query.real(3);
+    const double made = step - query.real(5);
+    Unfinished one{seconds};
+    if (query.text(4) != "packing" && seconds > 0 && steps > 0 && made >= shortest * steps) {
+      one.whole = seconds * steps / made;
+      one.taken = *one.whole * step / steps;
+    }
+    running[query.integer(0)].push_back(one);
+  }
+  return running;
+}
+
+int Database::last_workers() {
+  return static_cast<int>(connection_->integer(
+      "WITH last AS (SELECT host, started_at FROM attempt ORDER BY attempt_id DESC LIMIT 1) "
+      "SELECT count(DISTINCT a.worker) FROM attempt a JOIN last l USING (host) "
+      "WHERE a.ended_at IS NULL OR a.ended_at >= l.started_at"));
+}
+
+std::map<std::int64_t, StoredPrediction> Database::predictions() {
+  Statement query(*connection_,
+                  "SELECT point_id, pilot, seeds, lower, upper, cpu_seconds, made_at FROM prediction WHERE "
+                  "target_id = (SELECT target_id FROM campaign)");
+  std::map<std::int64_t, StoredPrediction> stored;
+  while (query.step()) {
+    const auto number = [&](int column) { return static_cast<int>(query.integer(column)); };
+    stored[query.integer(0)] = {number(1), {number(2), number(3), number(4)}, query.real(5), query.text(6)};
+  }
+  return stored;
+}
+
+std::vector<LookRecord> Database::looks(std::int64_t point) { return read_looks(*connection_, point); }
+
+std::vector<EventRecord> Database::events(int limit) {
+  Statement query(*connection_,
+                  "SELECT at, kind, point_id, seed, message FROM (SELECT * FROM event ORDER BY event_id "
+                  "DESC LIMIT ?) ORDER BY event_id");
+  query.bind(limit);
+  std::vector<EventRecord> events;
+  while (query.step()) events.push_back(read_event(query));
+  return events;
+}
+
+std::optional<EventRecord> Database::event_of(const std::string& request) {
+  Statement query(*connection_, "SELECT at, kind, point_id, seed, message FROM event WHERE request = ?");
+  query.bind(request);
+  if (!query.step()) return std::nullopt;
+  return read_event(query);
+}
+
+std::vector<EngineRecord> Database::engines() {
+  Statement query(*connection_, "SELECT engine_id, identity, provenance FROM engine ORDER BY engine_id");
+  std::vector<EngineRecord> engines;
+  while (query.step()) engines.push_back({query.integer(0), query.text(1), Json::parse(query.text(2))});
+  return engines;
+}
+
+std::vector<KeptApart> Database::kept_apart(const std::string& hash) {
+  Statement query(
+      *connection_,
+      "SELECT engine_identity, count(content_sha256) FROM point LEFT JOIN realisation USING (point_id) "
+      "WHERE hash = ? AND kept_apart = 1 GROUP BY point_id HAVING count(content_sha256) > 0 ORDER BY "
+      "point_id");
+  query.bind(hash);
+  std::vector<KeptApart> kept;
+  while (query.step()) kept.push_back({query.text(0), static_cast<int>(query.integer(1))});
+  return kept;
 }
 
 }  // namespace peclet::runner

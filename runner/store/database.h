@@ -14,14 +14,17 @@
 #include <string>
 #include <vector>
 
-#include "contract/input_error.h"
-#include "contract/integrity_error.h"
+#include "contract/errors.h"
 #include "contract/json.h"
 #include "runner/campaign/campaign.h"
 #include "runner/statistics/forecast.h"
 #include "runner/store/sqlite.h"
 
 namespace peclet::runner {
+
+// The texts of schema/*.sql.
+extern const char* const campaign_sql;  // the tables
+extern const char* const views_sql;     // what people read
 
 enum class SeedState { queued, running, done, failed, quarantined };
 const char* to_string(SeedState state);

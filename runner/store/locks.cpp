@@ -18,13 +18,18 @@
 #include <thread>
 #include <utility>
 
-#include "contract/descriptor.h"
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
-#include "contract/text_lines.h"
-#include "runner/text/quoting.h"
+#include "contract/text.h"
+#include "runner/campaign/quoting.h"
 
 namespace peclet::runner {
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
 // "1: POSIX  ADVISORY  WRITE 4711 fe:01:1234 120 120", "2: FLOCK  ADVISORY  WRITE 4711 fe:01:1234 0 EOF".
 std::int64_t process_that_locks(std::uint64_t inode, const std::string& kind, std::uint64_t at) {
   const std::string place_ends = fmt::format(":{}", inode);

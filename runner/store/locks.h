@@ -11,6 +11,11 @@
 
 namespace peclet::runner {
 
+// What this machine calls itself.
+//
+// "unknown" where it has no name.
+std::string host_name();
+
 // Returns the process that holds a write lock of this kind ("FLOCK", "POSIX") on the file with this inode, on
 // the byte `at`; 0 if the list names none. Nothing is opened: closing a file takes a process's own locks
 // away.

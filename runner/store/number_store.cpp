@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "contract/endings.h"
-#include "contract/integrity_error.h"
+#include "contract/errors.h"
+#include "contract/frames.h"
 #include "runner/campaign/campaign.h"
 
 namespace peclet::runner {

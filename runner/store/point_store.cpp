@@ -2,16 +2,34 @@
 
 #include <fmt/format.h>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
+#include "runner/campaign/number_text.h"
+#include "runner/campaign/quoting.h"
 #include "runner/statistics/observation.h"
 #include "runner/statistics/quantities.h"
 #include "runner/store/number_store.h"
 #include "runner/store/result_store.h"
-#include "runner/store/result_text.h"
-#include "runner/text/number_text.h"
-#include "runner/text/plain_text.h"
 
 namespace peclet::runner {
+
+void EventStore::write(const std::string& kind, std::optional<std::int64_t> point, std::optional<int> seed,
+                       const std::string& message, const std::string& request) {
+  Statement(connection_,
+            "INSERT INTO event (at, kind, point_id, seed, message, request) VALUES (?, ?, ?, ?, ?, ?)")
+      .bind(utc_now())
+      .bind(kind)
+      .bind(point)
+      .bind(seed)
+      .bind(message)
+      .bind(request.empty() ? std::nullopt : std::optional<std::string>(request))
+      .run();
+}
+
+bool EventStore::has_answered(const std::string& request) {
+  Statement query(connection_, "SELECT 1 FROM event WHERE request = ?");
+  return query.bind(request).step();
+}
+
 namespace {
 
 constexpr std::size_t longest_list = 350;

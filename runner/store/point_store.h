@@ -1,15 +1,34 @@
-// The campaign and its points: what a campaign file means for a database that may have seen earlier versions
-// of it.
+// The campaign, its points and its events in the database.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "runner/store/database.h"
-#include "runner/store/event_store.h"
+#include "runner/store/sqlite.h"
 
 namespace peclet::runner {
 
+// What happened to a campaign, for good.
+class EventStore {
+ public:
+  // Requires a connection that may write, which must outlive it. write() is for use inside a Transaction of
+  // the caller.
+  explicit EventStore(Connection& connection) : connection_(connection) {}
+
+  // `request`: the name of the request that caused it, "" when none did.
+  void write(const std::string& kind, std::optional<std::int64_t> point, std::optional<int> seed,
+             const std::string& message, const std::string& request = "");
+  // Whether the request has been carried out, or refused.
+  bool has_answered(const std::string& request);
+
+ private:
+  Connection& connection_;
+};
+
+// The campaign and its points: what a campaign file means for a database that may have seen earlier versions
+// of it.
 struct Prediction;
 
 class PointStore {

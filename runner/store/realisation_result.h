@@ -1,14 +1,53 @@
 // The result of one realisation as an engine wrote it: checked, and what the runner takes from it.
 #pragma once
 
+#include <cstddef>
 #include <set>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 
-#include "contract/endings.h"
+#include "contract/frames.h"
 #include "contract/json.h"
-#include "runner/store/result_shape.h"
 
 namespace peclet::runner {
+
+// How large the text of a result may be: judged before it is read as JSON, which takes memory in proportion.
+//
+// Of a result's text. Most have some ten thousand bytes and a few thousand values; a pair distribution in the
+// plane of shear may have four million numbers. Lists, objects and keys take more memory than numbers do.
+constexpr std::size_t largest_result = std::size_t{64} << 20;
+constexpr std::size_t most_values = std::size_t{1} << 22;
+constexpr std::size_t most_structures = std::size_t{1} << 19;
+constexpr int deepest_result = 200;
+
+// "" when the text keeps within these bounds, otherwise what it exceeds. It need not be JSON.
+std::string excess_of(std::string_view text);
+
+// What a result must be before anything of it is stored: schema/result.schema.json, as far as the runner
+// reads it.
+//
+// Results come from outside: an engine may lie, and a file may have been put where results are looked for.
+// Whatever is wrong with one is found here, in one go and without a trace; who takes a result that has passed
+// need not ask again.
+//
+// A text that is no result. What it says is one short line, whatever the text holds.
+class ResultError : public std::runtime_error {
+ public:
+  explicit ResultError(const std::string& message);
+};
+
+// No number of a result is larger: so no sum, square or cube of a campaign's values overflows.
+constexpr double largest_number = 1e100;
+
+// Throws ResultError naming the first value that is not as it must be, and what is allowed. Realisations
+// with results have means, others none. Members that engines did not always write may be absent. Returns
+// engine_identity().
+std::string check_shape(const Json& document);
+
+// Engine version, instruction set and hash of the binary: results of one point share it.
+// Throws ResultError when one of the three is missing or none.
+std::string engine_identity(const Json& engine);
 
 struct RealisationResult {
   std::string text;  // as the engine wrote it, but for white space

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "runner/campaign/number_text.h"
 #include "runner/store/blame.h"
+#include "runner/store/locks.h"
 #include "runner/store/result_store.h"
-#include "runner/text/host_name.h"
-#include "runner/text/utc_time.h"
 
 namespace peclet::runner {
 

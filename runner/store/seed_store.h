@@ -7,7 +7,7 @@
 
 #include "runner/store/blame.h"
 #include "runner/store/database.h"
-#include "runner/store/event_store.h"
+#include "runner/store/point_store.h"
 
 namespace peclet::runner {
 

@@ -13,10 +13,10 @@
 #include <system_error>
 
 #include "contract/durable_file.h"
+#include "contract/errors.h"
 #include "contract/guarded_file.h"
-#include "contract/integrity_error.h"
+#include "runner/campaign/quoting.h"
 #include "runner/store/locks.h"
-#include "runner/text/plain_text.h"
 
 namespace peclet::runner {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "contract/frames.h"
-#include "runner/text/plain_text.h"
+#include "runner/campaign/quoting.h"
 
 namespace peclet::runner {
 namespace {

@@ -1,5 +1,3 @@
-#include "contract/input_file.h"
-
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -10,7 +8,8 @@
 #include <string>
 #include <thread>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
+#include "contract/named_files.h"
 #include "tests/contract/temporary_folder.h"
 
 namespace peclet {

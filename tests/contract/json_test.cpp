@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 
 namespace peclet {
 namespace {

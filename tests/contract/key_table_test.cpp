@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 
 namespace peclet {
 namespace {

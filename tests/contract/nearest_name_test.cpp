@@ -1,6 +1,6 @@
-#include "contract/nearest_name.h"
-
 #include <gtest/gtest.h>
+
+#include "contract/text.h"
 
 namespace peclet {
 namespace {

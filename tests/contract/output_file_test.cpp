@@ -1,5 +1,3 @@
-#include "contract/output_file.h"
-
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -8,9 +6,9 @@
 
 #include <thread>
 
-#include "contract/descriptor.h"
 #include "contract/durable_file.h"
-#include "contract/input_error.h"
+#include "contract/errors.h"
+#include "contract/named_files.h"
 #include "tests/contract/temporary_folder.h"
 
 namespace peclet {

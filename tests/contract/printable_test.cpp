@@ -1,9 +1,8 @@
-#include "contract/printable.h"
-
 #include <gtest/gtest.h>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "contract/json.h"
+#include "contract/text.h"
 
 namespace peclet {
 namespace {

@@ -1,8 +1,8 @@
-#include "contract/text_lines.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdint>
+
+#include "contract/text.h"
 
 namespace peclet {
 namespace {

@@ -1,8 +1,8 @@
 #include "tests/engine/dense_suspension.h"
 
+#include "engine/kernels/pair_access.h"
 #include "engine/kernels/pair_pass.h"
-#include "engine/kernels/pairs/pair_access.h"
-#include "engine/start/packing.h"
+#include "engine/realisation/packing.h"
 #include "engine/terms/drag.h"
 #include "tests/engine/draws.h"
 

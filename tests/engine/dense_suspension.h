@@ -2,8 +2,8 @@
 // evaluate terms on.
 #pragma once
 
-#include "engine/evaluation/configuration.h"
-#include "engine/kernels/pairs/terms.h"
+#include "engine/forces/configuration.h"
+#include "engine/kernels/pair_recipes.h"
 #include "engine/state/system.h"
 
 namespace peclet::engine {

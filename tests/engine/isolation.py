@@ -53,7 +53,7 @@ def includes_of_eigen(root):
             names = [str(step.relative_to(root)) if isinstance(step, Path) else step for step in way]
             faults.append(" includes ".join(names))
             seen -= set(way)  # others may get there as well
-    if len(sources) < 30:
+    if len(sources) < 25:
         faults.append(f"only {len(sources)} sources were found below {root}")
     return faults
 

@@ -1,7 +1,7 @@
 // Eigen's vectors and matrices in the sizes of the tests.
 #pragma once
 
-#include "engine/state/eigen_vector.h"
+#include "engine/state/eigen_arrays.h"
 
 namespace peclet::engine {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/kernels/force_field.h"
-#include "engine/kernels/pairs/recipes.h"
+#include "engine/kernels/pair_recipes.h"
 #include "engine/state/system.h"
 
 namespace peclet::engine {

@@ -7,12 +7,12 @@
 #include <span>
 #include <stdexcept>
 
-#include "contract/input_error.h"
-#include "engine/gsd/frames.h"
+#include "contract/errors.h"
 #include "engine/pictures/colouring.h"
 #include "engine/pictures/picture.h"
-#include "engine/snapshots/snapshot_file.h"
-#include "engine/snapshots/snapshot_text.h"
+#include "engine/snapshots/conversion.h"
+#include "engine/snapshots/gsd_file.h"
+#include "engine/snapshots/snapshot.h"
 #include "engine/snapshots/xyz_snapshots.h"
 #include "tests/fuzz/fuzz_target.h"
 

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""layering.py [--picture FILE.svg]      may every folder include what it includes?
+"""layering.py [--picture FILE.svg]      may every room include what it includes?
 
-A folder may include those before it in its list below, and itself. An include that runs upward is an error; so are a
-folder of the lists that has no file, a file of more than 600 lines and a folder of more than 60 files, which hide a
-second subject. Lines and files count in tests, too, in Python as in C++. SQL stands in runner/store alone. --picture
-draws the folders and their includes (needs graphviz).
+A room is a folder of engine/ or runner/. It may include the rooms before it in add_rooms() of their CMakeLists.txt, and
+contract/. An include that runs upward is an error, a circle of headers too. A class has its functions in one file. SQL
+stands in runner/store alone. --picture draws the rooms and their includes (needs graphviz); a file of more than 600
+lines is named on standard error, because it may hide a second subject.
 """
 import argparse
 import collections
@@ -14,149 +14,121 @@ import subprocess
 import sys
 
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
-
-# From below to above.
-RUNNER = [
-    "contract",
-    *(
-        "runner/" + room
-        for room in (
-            "text",
-            "campaign",
-            "statistics",
-            "store",
-            "engines",
-            "events",
-            "owner",
-            "requests",
-            "batch",
-            "care",
-            "reports",
-            "page",
-            "live",
-            "figure",
-            "jamming",
-            "archive",
-            "verbs",
-            "command_line",
-        )
-    ),
-]
-ENGINE = [
-    "contract",
-    *(
-        "engine/" + room
-        for room in (
-            "document",
-            "threads",
-            "state",
-            "gsd",
-            "snapshots",
-            "pictures",
-            "flow",
-            "random",
-            "terms",
-            "scene",
-            "sizes",
-            "kernels/lanes",
-            "kernels/bodies",
-            "kernels/pairs",
-            "kernels/links",
-            "kernels",
-            "stability",
-            "integrators",
-            "start",
-            "observables",
-            "realisation",
-            "output",
-            "jobs",
-            "evaluation",
-        )
-    ),
-    "engine",
-]
-LAYERS = {"engine": ENGINE, "runner": RUNNER}
-MOST_LINES, MOST_FILES = 600, 60
-CXX, WRITTEN_BY_HAND = (".h", ".cpp", ".in"), (".h", ".cpp", ".in", ".py")
+PROGRAMS = ("engine", "runner")
+LONG = 600
+CXX = (".h", ".cpp", ".in")
+ROOMS = re.compile(r'^add_rooms\(\w+\s+"[^"]*"\s+([^)]*)\)', re.MULTILINE)
 SQL = re.compile(r'"(?:SELECT|INSERT|REPLACE|UPDATE|DELETE FROM|PRAGMA|CREATE) ')
 INCLUDE = re.compile(r'\s*#\s*include\s+"((?:contract|engine|runner)/[^"]+)"')
+MEMBER = re.compile(r"^(?=\w)(?!using |namespace |static |return )[\w:<>,&*\[\] ]*?\b([A-Z]\w*)::~?\w+\(", re.MULTILINE)
 
 
-def sources(source, top, endings=CXX):
-    """Paths of files below a folder, unless told otherwise of C++."""
+def read(source, path):
+    with open(os.path.join(source, path), encoding="utf-8") as f:
+        return f.read()
+
+
+def layers(source, program):
+    """The folders that a program's files lie in, from below to above."""
+    rooms = ROOMS.search(read(source, f"{program}/CMakeLists.txt"))[1].split()
+    return ["contract", *(f"{program}/{room}" for room in rooms), program]
+
+
+def sources(source, top):
+    """Paths of the C++ files below a folder."""
     for folder, _, names in os.walk(os.path.join(source, top)):
         for name in sorted(names):
-            if name.endswith(endings):
+            if name.endswith(CXX):
                 yield os.path.relpath(os.path.join(folder, name), source)
 
 
 def includes(source, top):
-    """Of every file below a folder: path, line number, path that it includes."""
+    """Each include of our own below a folder: path, line number, path that it includes."""
     for path in sources(source, top):
-        with open(os.path.join(source, path), encoding="utf-8") as f:
-            for number, line in enumerate(f, 1):
-                found = INCLUDE.match(line)
-                if found:
-                    yield path, number, found[1]
+        for number, line in enumerate(read(source, path).splitlines(), 1):
+            found = INCLUDE.match(line)
+            if found:
+                yield path, number, found[1]
 
 
 def upward(source):
-    for top, layers in LAYERS.items():
-        place = {layer: i for i, layer in enumerate(layers)}
-        for path, number, included in includes(source, top):
+    for program in PROGRAMS:
+        place = {layer: i for i, layer in enumerate(layers(source, program))}
+        for path, number, included in includes(source, program):
             here, there = os.path.dirname(path), os.path.dirname(included)
             if here not in place:
-                yield f"{path}: its folder has no place in the list of layers"
+                yield f"{path}: its folder is no room of {program}/CMakeLists.txt"
             elif there not in place:
-                yield f"{path}:{number}: {included}: {there} is no layer that {top} may include"
+                yield f"{path}:{number}: {included}: {there} is no layer that {program} may include"
             elif place[there] > place[here]:
                 yield f"{path}:{number}: {included}: {here} may not include {there}, which is above it"
 
 
 def absent(source):
-    """Else a check of another place, or of a folder that was renamed, would find nothing to say."""
-    for top, layers in LAYERS.items():
-        for layer in layers:
+    """Without this a check of an empty folder would find nothing to say."""
+    for program in PROGRAMS:
+        for layer in layers(source, program)[:-1]:
             if not any(os.path.dirname(path) == layer for path in sources(source, layer)):
-                yield f"{layer}: is a layer of {top} without a file"
+                yield f"{layer}: is a room without a file"
 
 
-def too_large(source):
-    for top in ("contract", "engine", "runner", "tests"):
-        files = collections.Counter()
-        for path in sources(source, top, WRITTEN_BY_HAND):
-            files[os.path.dirname(path)] += 1
-            with open(os.path.join(source, path), encoding="utf-8") as f:
-                lines = sum(1 for _ in f)
-            if lines > MOST_LINES:
-                yield f"{path}: {lines} lines; at most {MOST_LINES}"
-        for folder, count in files.items():
-            if count > MOST_FILES:
-                yield f"{folder}: {count} files; at most {MOST_FILES}"
+def circles(source):
+    """Headers that include each other: all that remain when those without an include of the others are taken away."""
+    below = collections.defaultdict(set)
+    for top in ("contract", *PROGRAMS):
+        for path, _, included in includes(source, top):
+            if path.endswith(".h"):
+                below[path].add(included)
+    while free := [path for path, headers in below.items() if not headers & below.keys()]:
+        for path in free:
+            del below[path]
+    while ends := [path for path in below if not any(path in headers for headers in below.values())]:
+        for path in ends:
+            del below[path]
+    for path in sorted(below):
+        yield f"{path}: is in a circle of includes"
+
+
+def scattered(source):
+    """Classes whose functions stand in several files."""
+    for top in ("contract", *PROGRAMS):
+        files = collections.defaultdict(set)
+        for path in sources(source, top):
+            if path.endswith(".cpp"):
+                for name in MEMBER.findall(read(source, path)):
+                    files[os.path.dirname(path), name].add(path)
+        for (_, name), paths in sorted(files.items()):
+            if len(paths) > 1:
+                yield f"{name}: has functions in {', '.join(sorted(paths))}"
 
 
 def sql_elsewhere(source):
-    """Statements outside of the folder that knows the tables."""
     for path in sources(source, "runner"):
-        if os.path.dirname(path) == "runner/store":
-            continue
-        with open(os.path.join(source, path), encoding="utf-8") as f:
-            for number, line in enumerate(f, 1):
+        if os.path.dirname(path) != "runner/store":
+            for number, line in enumerate(read(source, path).splitlines(), 1):
                 if SQL.search(line):
                     yield f"{path}:{number}: SQL outside of runner/store"
 
 
+def long_files(source):
+    for top in ("contract", *PROGRAMS):
+        for path in sources(source, top):
+            lines = read(source, path).count("\n")
+            if lines > LONG:
+                yield f"{path}: {lines} lines: is there a second subject in it?"
+
+
 def picture(source):
-    """The folders from below to above and their includes, for dot."""
+    """The rooms from below to above and their includes, for dot."""
     text = (
-        'digraph layers {\n  node [shape=box, style=filled, fillcolor="#eef3f8", fontname="sans"]; '
+        'digraph rooms {\n  node [shape=box, style=filled, fillcolor="#eef3f8", fontname="sans"]; '
         'edge [color="#7090b0"];\n'
     )
-    for top, layers in LAYERS.items():
+    for program in PROGRAMS:
         between = collections.Counter(
-            (os.path.dirname(path), os.path.dirname(included)) for path, _, included in includes(source, top)
+            (os.path.dirname(path), os.path.dirname(included)) for path, _, included in includes(source, program)
         )
-        for folder in layers:
+        for folder in layers(source, program):
             count = sum(1 for path in sources(source, folder) if os.path.dirname(path) == folder)
             text += f'  "{folder}" [label="{folder}\\n{count} files"];\n'
         for (here, there), count in sorted(between.items()):
@@ -175,7 +147,9 @@ def main():
         subprocess.run(
             ["dot", f"-T{kind}", "-o", arguments.picture], input=picture(arguments.source), text=True, check=True
         )
-    checks = (absent, upward, too_large, sql_elsewhere)
+    for remark in long_files(arguments.source):
+        print(remark, file=sys.stderr)
+    checks = (absent, upward, circles, scattered, sql_elsewhere)
     faults = [fault for check in checks for fault in check(arguments.source)]
     for fault in faults:
         print(fault)

@@ -9,7 +9,14 @@ import unittest
 import layering
 
 SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "layering.py")
-EVERY_LAYER = {f"{layer}/here.h": "" for layers in layering.LAYERS.values() for layer in layers}
+LISTS = {
+    f"{program}/CMakeLists.txt": layering.read(layering.SOURCE, f"{program}/CMakeLists.txt")
+    for program in layering.PROGRAMS
+}
+EVERY_LAYER = {
+    **LISTS,
+    **{f"{layer}/here.h": "" for program in layering.PROGRAMS for layer in layering.layers(layering.SOURCE, program)},
+}
 
 
 class Layering(unittest.TestCase):
@@ -26,47 +33,49 @@ class Layering(unittest.TestCase):
 
     def test_downward_is_allowed(self):
         self.assertEqual(
-            self.said({"runner/owner/a.cpp": '#include "runner/text/b.h"\n#include "contract/json.h"\n'}), (0, "")
+            self.said({"runner/owner/a.cpp": '#include "runner/campaign/b.h"\n#include "contract/json.h"\n'}), (0, "")
         )
 
     def test_upward_is_not(self):
-        code, text = self.said({"runner/text/a.cpp": '\n#include "runner/owner/b.h"\n'})
+        code, text = self.said({"runner/campaign/a.cpp": '\n#include "runner/owner/b.h"\n'})
         self.assertEqual(code, 1)
-        self.assertIn("runner/text/a.cpp:2: runner/owner/b.h: runner/text may not include runner/owner", text)
+        self.assertIn("runner/campaign/a.cpp:2: runner/owner/b.h: runner/campaign may not include runner/owner", text)
 
     def test_the_runner_knows_no_engine(self):
-        self.assertEqual(self.said({"runner/verbs/a.cpp": '#include "engine/scene.h"\n'})[0], 1)
+        self.assertEqual(self.said({"runner/command_line/a.cpp": '#include "engine/scene.h"\n'})[0], 1)
 
     def test_a_folder_without_a_place(self):
         code, text = self.said({"runner/attic/a.cpp": '#include "contract/json.h"\n'})
         self.assertEqual(code, 1)
-        self.assertIn("runner/attic/a.cpp: its folder has no place", text)
-
-    def test_a_long_file(self):
-        code, text = self.said({"runner/text/a.cpp": "\n" * 601})
-        self.assertEqual(code, 1)
-        self.assertIn("runner/text/a.cpp: 601 lines", text)
-
-    def test_a_long_file_of_tests(self):
-        for path in ("tests/runner/text/a.cpp", "tests/end_to_end/a.py"):
-            self.assertEqual(self.said({path: "\n" * 600}), (0, ""))
-            code, text = self.said({path: "\n" * 601})
-            self.assertEqual(code, 1)
-            self.assertIn(f"{path}: 601 lines", text)
+        self.assertIn("runner/attic/a.cpp: its folder is no room", text)
 
     def test_a_layer_without_files(self):
-        code, text = self.said({}, {path: text for path, text in EVERY_LAYER.items() if "random" not in path})
-        self.assertEqual((code, text), (1, "engine/random: is a layer of engine without a file\n"))
+        code, text = self.said({}, {path: text for path, text in EVERY_LAYER.items() if "terms" not in path})
+        self.assertEqual((code, text), (1, "engine/terms: is a room without a file\n"))
 
     def test_an_empty_tree(self):
-        code, text = self.said({}, {})
+        code, text = self.said({}, LISTS)
         self.assertEqual(code, 1)
-        self.assertIn("runner/verbs: is a layer of runner without a file", text)
+        self.assertIn("runner/command_line: is a room without a file", text)
 
-    def test_a_crowded_folder(self):
-        code, text = self.said({f"runner/text/a{i}.h": "" for i in range(60)})
+    def test_a_circle_of_headers(self):
+        code, text = self.said(
+            {
+                "runner/owner/a.h": '#include "runner/owner/b.h"\n#include "runner/store/c.h"\n',
+                "runner/owner/b.h": '#include "runner/owner/a.h"\n',
+                "runner/store/c.h": '#include "contract/json.h"\n',
+            }
+        )
         self.assertEqual(code, 1)
-        self.assertIn("runner/text: 61 files", text)
+        self.assertIn("runner/owner/a.h: is in a circle of includes\nrunner/owner/b.h: is in a circle", text)
+        self.assertNotIn("c.h", text)
+
+    def test_a_class_in_two_files(self):
+        one, other = "int Board::count() const {\n  return 1;\n}\n", "Board::~Board() {}\n"
+        code, text = self.said({"runner/owner/a.cpp": one, "runner/owner/b.cpp": other})
+        self.assertEqual(code, 1)
+        self.assertIn("Board: has functions in runner/owner/a.cpp, runner/owner/b.cpp", text)
+        self.assertEqual(self.said({"runner/owner/a.cpp": one, "runner/store/b.cpp": other}), (0, ""))
 
 
 if __name__ == "__main__":

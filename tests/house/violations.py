@@ -48,8 +48,8 @@ VIOLATIONS = {
         "bugprone-use-after-move",
     ),
     "form": (FORM, "contract/sha256.cpp", "int   badly_spaced;\n", "clang-format-violations"),
-    "layers": (LAYERS, "runner/text/quoting.cpp", '#include "runner/owner/ledger.h"\n', "may not include"),
-    "sql": (LAYERS, "runner/text/quoting.cpp", 'const char* rows = "SELECT 1";\n', "SQL outside of runner/store"),
+    "layers": (LAYERS, "runner/campaign/quoting.cpp", '#include "runner/owner/ledger.h"\n', "may not include"),
+    "sql": (LAYERS, "runner/campaign/quoting.cpp", 'const char* rows = "SELECT 1";\n', "SQL outside of runner/store"),
 }
 
 

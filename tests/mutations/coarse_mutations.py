@@ -6,7 +6,7 @@ What is broken; file, text in it that occurs once, and what takes its place.
 COARSE = [
     (
         "plus sign in the second Brownian torque",
-        "engine/terms/pair_noise.h",
+        "engine/terms/pair_resistance.h",
         "root.pump_second * turned - root.spin_second * spun",
         "root.pump_second * turned + root.spin_second * spun",
     ),

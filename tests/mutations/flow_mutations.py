@@ -3,7 +3,7 @@
 FLOW = [
     (
         "heavy spheres taken along by an accelerating flow without its own acceleration",
-        "engine/integrators/follow_flow.cpp",
+        "engine/integrators/integrator.cpp",
         "const Matrix3 gain = change + time * (gradient * gradient);",
         "const Matrix3 gain = change + 0 * time * (gradient * gradient);",
         "engine_tests:Deformation.IsFollowedByHeavySpheresWhereverTheyAre",
@@ -17,14 +17,14 @@ FLOW = [
     ),
     (
         "noise of the solvent upon the strain of half its variance",
-        "engine/realisation/stress_control.cpp",
+        "engine/realisation/driver.cpp",
         "std::sqrt(2 * thermal_energy_ * solvent_ / (volume * timestep_))",
         "std::sqrt(thermal_energy_ * solvent_ / (volume * timestep_))",
         "engine_tests:StressControl.GivesTheStrainItsShareOfTheTemperature",
     ),
     (
         "a stress whose deficit nobody makes up for",
-        "engine/realisation/stress_control.cpp",
+        "engine/realisation/driver.cpp",
         "deficit_ += stress_ - stress;",
         "deficit_ += 0 * (stress_ - stress);",
         "engine_tests:EitherMethod/StressControlled.HoldsItsStress/implicit",

@@ -13,6 +13,7 @@ where the first one was stopped, if the source has the same commit and no change
 import argparse
 import concurrent.futures
 import datetime
+import glob
 import hashlib
 import json
 import os
@@ -115,16 +116,23 @@ def build(folder, jobs, targets=("peclet", "peclet-engine", "engine_tests", "phy
         sys.exit(f"{folder}: does not build\n{done.stdout[-3000:]}")
 
 
-def failed_tests(folder, program, arguments):
+def programs(folder, name):
+    """The programs that have these tests: one of that name, or of engine_tests one for each room."""
+    binaries = os.path.join(folder, "build/release/bin")
+    if name != "engine_tests":
+        return [os.path.join(binaries, name)]
+    found = glob.glob(os.path.join(binaries, "engine_*_tests"))
+    return sorted(path for path in found if not path.endswith("engine_bench_tests"))
+
+
+def failed_tests(folder, name, arguments):
     """Names of the tests that fail; what ended them otherwise."""
+    return sorted(set().union(*(failed_in(folder, program, arguments) for program in programs(folder, name))))
+
+
+def failed_in(folder, program, arguments):
     try:
-        done = subprocess.run(
-            [os.path.join(folder, "build/release/bin", program), *arguments],
-            cwd=folder,
-            capture_output=True,
-            text=True,
-            timeout=1800,
-        )
+        done = subprocess.run([program, *arguments], cwd=folder, capture_output=True, text=True, timeout=1800)
     except subprocess.TimeoutExpired:
         return ["does not end"]
     if done.returncode < 0:
@@ -162,13 +170,13 @@ def who_of_the_named(folder, names):
     for program in sorted({name.split(":")[0] for name in names}):
         tests = [name.split(":")[1] for name in names if name.startswith(program + ":")]
         for test in tests:
-            listed = subprocess.run(
-                [os.path.join(folder, "build/release/bin", program), f"--gtest_filter={test}", "--gtest_list_tests"],
-                capture_output=True,
-                text=True,
-                check=True,
-            )
-            if "\n  " not in listed.stdout:
+            listed = [
+                subprocess.run(
+                    [path, f"--gtest_filter={test}", "--gtest_list_tests"], capture_output=True, text=True, check=True
+                ).stdout
+                for path in programs(folder, program)
+            ]
+            if not any("\n  " in text for text in listed):
                 sys.exit(f"{program} has no {test}")
         chosen = [f"--gtest_filter={':'.join(tests)}"]
         noticed += [f"{program}: {name}" for name in failed_tests(folder, program, chosen)]

@@ -10,7 +10,7 @@ from response_mutations import RESPONSE
 from strained_mutations import STRAINED
 
 IMPLICIT, NOISY = "engine/integrators/implicit.cpp", "engine/integrators/noisy_midpoint.cpp"
-SIMULATION, STRESS = "engine/realisation/simulation.cpp", "engine/output/stress_means.cpp"
+SIMULATION, STRESS = "engine/realisation/simulation.cpp", "engine/realisation/stress_means.cpp"
 LINE = "engine_tests:NoisyStep.OfTwoSpheresOnALineIsThatOfItsEquations"
 
 NAMED = [
@@ -59,7 +59,7 @@ NAMED = [
     ),
     (
         "packings that overlap by 1 %",
-        "engine/start/packing.cpp",
+        "engine/realisation/packing.cpp",
         "if (!(closest > 1)) {",
         "if (!(closest > 0.99)) {",
         "engine_tests:Packing.AcceptsNoOverlapHoweverSmall",
@@ -123,14 +123,14 @@ NAMED = [
     ),
     (
         "torques of pairs across blocks on the other sphere",
-        "engine/kernels/pairs/pair_loads.h",
+        "engine/kernels/pair_kernel.h",
         "row_of(out.crossing, 2 * c + 1) = torque_first.row[k];",
         "row_of(out.crossing, 2 * c + 1) = torque_second.row[k];",
         "engine_tests:PairPass.DependsOnNoOrderOfTheParticlesInMemory",
     ),
     (
         "repulsion beside links left out",
-        "engine/kernels/links/link_assembly.h",
+        "engine/kernels/link_assembly.h",
         "            sums.add_stress(part, shape_, force);\n            load.force += force;",
         "            sums.add_stress(part, shape_, force);",
         "engine_tests:*LinkLoadsOf.AreThoseOfAnEvaluation*",
@@ -256,7 +256,7 @@ NAMED = [
     ),
     (
         "friction mobilised without its coefficient",
-        "engine/observables/touching_pairs.h",
+        "engine/observables/structure.h",
         "force / (contact.friction * load)",
         "force / load",
         "engine_tests:ContactNetwork.CountsContactsAndTheirMobilisation",
@@ -270,7 +270,7 @@ NAMED = [
     ),
     (
         "structural shell of the larger sphere not listed",
-        "engine/kernels/pairs/pair_kinds.cpp",
+        "engine/kernels/pair_kinds.cpp",
         "structural_shell * std::max(first, second)",
         "structural_shell * std::min(first, second)",
         "engine_tests:StructuralBrownianStress.SeesTheWholeShellOfTheLargerSphere",
@@ -284,56 +284,56 @@ NAMED = [
     ),
     (
         "relaxation before the start with noise",
-        "engine/start/relaxation.cpp",
+        "engine/realisation/packing.cpp",
         "  still.thermal_energy = 0;\n",
         "",
         "engine_tests:Relaxation.LeavesAPackingWithoutForcesWhereItIs",
     ),
     (
         "relaxation before the start in a flow",
-        "engine/start/relaxation.cpp",
+        "engine/realisation/packing.cpp",
         "  still.flow = {};\n",
         "",
         "engine_tests:Relaxation.LeavesAPackingWithoutForcesWhereItIs",
     ),
     (
         "implicit steps that leap out of the range of lubrication",
-        "engine/stability/stability.cpp",
+        "engine/integrators/stability.cpp",
         "leaps = 5;",
         "leaps = 0.5;",
         "engine_tests:ImplicitTimestep.LetsNoLightSphereLeapIntoAnother",
     ),
     (
         "leaps without inertia",
-        "engine/stability/stability.cpp",
+        "engine/integrators/stability.cpp",
         "const double inertia = mass + timestep * drag;",
         "const double inertia = 0 * mass + timestep * drag;",
         "engine_tests:ImplicitTimestep.IsBoundByLeapsOutOfTheRangeOfLubrication",
     ),
     (
         "z of the image missing from the key of the noise",
-        "engine/random/keyed_random.h",
+        "engine/terms/keyed_random.h",
         "(static_cast<std::uint64_t>(image.z) & mask) << 40",
         "(static_cast<std::uint64_t>(image.z) & 0) << 40",
         "engine_tests:KeyedRandom.EveryImageOfAPairHasItsOwnNoise",
     ),
     (
         "drag against the laboratory",
-        "engine/kernels/bodies/one_body.h",
+        "engine/kernels/one_body.h",
         "drag.translational * (streaming - velocity)",
         "drag.translational * (0.0 * streaming - velocity)",
         "engine_tests:ReferenceForces.EveryTermOfEveryMixtureEqualsTheIndependentEvaluation",
     ),
     (
         "overlaps of unlike spheres over the larger radius",
-        "engine/kernels/pairs/pair_kinds.cpp",
+        "engine/kernels/pair_kinds.cpp",
         "kind.smaller_radius = std::min(first, second);",
         "kind.smaller_radius = std::max(first, second);",
         "engine_tests:Result.MeansAreTakenOverEveryStepOfTheProductionWindow",
     ),
     (
         "gaps counted as negative overlaps",
-        "engine/kernels/pairs/lane_sums.h",
+        "engine/kernels/pair_kernel.h",
         "overlaps += larger(Real{}, relative);",
         "overlaps += relative;",
         "engine_tests:Result.MeansAreTakenOverEveryStepOfTheProductionWindow",

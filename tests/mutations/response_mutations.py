@@ -19,7 +19,7 @@ RESPONSE = [
     ),
     (
         "random forces missing from the flux of momentum",
-        "engine/kernels/momentum_flux.h",
+        "engine/kernels/pair_pass.h",
         "flux.by_pairs = total_stress(sums);",
         "flux.by_pairs = total_stress(sums) + -1.0 * sums.of(StressTerm::brownian_lubrication);",
         "engine_tests:MomentumFlux.HasConservativeAndDissipativeParts",

@@ -17,7 +17,7 @@ STRAINED = [
     ),
     (
         "rates of strain of the other sphere",
-        "engine/kernels/pairs/pair_kernel.h",
+        "engine/kernels/pair_kernel.h",
         "const auto strain = [&](const std::uint32_t* index) PECLET_INLINE_LAMBDA {",
         "const auto strain = [&](const std::uint32_t* index) PECLET_INLINE_LAMBDA {\n    index = first;",
         "engine_tests:ReferenceForces.EveryTermOfEveryMixtureEqualsTheIndependentEvaluation",
@@ -31,7 +31,7 @@ STRAINED = [
     ),
     (
         "regularisation that moves no gap",
-        "engine/terms/lubricated_gap.h",
+        "engine/terms/pair_resistance.h",
         ".shift = is_mari ? inner : 0",
         ".shift = 0",
         "engine_tests:StrainedLubrication.EqualSpheresHaveThePublishedCoefficients",
@@ -45,7 +45,7 @@ STRAINED = [
     ),
     (
         "levers of lubrication relative to the flow",
-        "engine/terms/lubricated_gap.h",
+        "engine/terms/pair_resistance.h",
         ".lever_at_distance_0 = is_mari ? 1.0 : 0.0",
         ".lever_at_distance_0 = is_mari ? 1.02 : 0.0",
         "engine_tests:StrainedLubrication.EqualSpheresHaveThePublishedCoefficients",

@@ -10,8 +10,8 @@
 // item 6.
 #include <gtest/gtest.h>
 
-#include "engine/stability/spurious_energy.h"
-#include "engine/start/packing.h"
+#include "engine/integrators/spurious_energy.h"
+#include "engine/realisation/packing.h"
 #include "engine/terms/drag.h"
 #include "tests/physics/laboratory.h"
 #include "tests/physics/reference_resistance.h"

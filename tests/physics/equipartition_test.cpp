@@ -6,8 +6,8 @@
 // comparisons, were the seeds drawn anew.
 #include <gtest/gtest.h>
 
-#include "engine/stability/stability.h"
-#include "engine/start/packing.h"
+#include "engine/integrators/stability.h"
+#include "engine/realisation/packing.h"
 #include "tests/physics/estimates.h"
 #include "tests/physics/laboratory.h"
 

@@ -4,7 +4,7 @@
 // grows slowly along trajectories; 1e-9 leaves it room over a few hundred steps.
 #include <gtest/gtest.h>
 
-#include "engine/start/packing.h"
+#include "engine/realisation/packing.h"
 #include "tests/physics/laboratory.h"
 
 namespace peclet::engine {

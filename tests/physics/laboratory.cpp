@@ -1,6 +1,6 @@
 #include "tests/physics/laboratory.h"
 
-#include "engine/start/packing.h"
+#include "engine/realisation/packing.h"
 
 namespace peclet::engine {
 namespace {

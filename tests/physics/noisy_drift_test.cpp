@@ -6,7 +6,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "engine/random/keyed_random.h"
+#include "engine/terms/keyed_random.h"
 #include "tests/physics/laboratory.h"
 #include "tests/physics/reference_resistance.h"
 

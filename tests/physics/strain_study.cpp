@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "engine/observables/scene_reading.h"
+#include "engine/realisation/driver.h"
 #include "engine/realisation/simulation.h"
-#include "engine/realisation/stress_control.h"
 
 namespace {
 

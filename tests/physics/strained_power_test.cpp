@@ -17,7 +17,7 @@
 #include <Eigen/Geometry>
 
 #include "engine/flow/waves.h"
-#include "engine/start/packing.h"
+#include "engine/realisation/packing.h"
 #include "engine/terms/drag.h"
 #include "tests/physics/laboratory.h"
 #include "tests/physics/reference_resistance.h"

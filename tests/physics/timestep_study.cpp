@@ -10,7 +10,7 @@
 #include <cstdlib>
 
 #include "engine/integrators/velocity_verlet.h"
-#include "engine/start/packing.h"
+#include "engine/realisation/packing.h"
 
 namespace {
 

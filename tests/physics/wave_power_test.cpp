@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/flow/waves.h"
-#include "engine/start/packing.h"
+#include "engine/realisation/packing.h"
 #include "tests/physics/laboratory.h"
 #include "tests/physics/reference_resistance.h"
 

@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "contract/durable_file.h"
-#include "runner/verbs/exit_code.h"
-#include "runner/verbs/plan_campaign.h"
+#include "runner/command_line/plan_campaign.h"
+#include "runner/command_line/print.h"
 
 namespace peclet::runner {
 namespace {

@@ -11,8 +11,8 @@
 #include <string>
 
 #include "contract/json.h"
+#include "runner/command_line/run.h"
 #include "runner/store/database.h"
-#include "runner/verbs/run.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {

@@ -10,7 +10,7 @@
 
 #include "contract/json.h"
 #include "runner/campaign/campaign.h"
-#include "runner/events/run_listener.h"
+#include "runner/owner/run_listener.h"
 #include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {

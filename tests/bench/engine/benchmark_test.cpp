@@ -4,7 +4,7 @@
 #include <bit>
 #include <numbers>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "tests/bench/engine/catalogue.h"
 #include "tests/bench/engine/operations.h"
 #include "tests/bench/engine/tiling.h"

@@ -2,7 +2,7 @@
 // operations a pair takes.
 #pragma once
 
-#include "engine/kernels/lanes/single_access.h"
+#include "engine/kernels/lane_access.h"
 #include "tests/bench/engine/operation_counts.h"
 
 namespace peclet::engine {

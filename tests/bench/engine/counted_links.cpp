@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/threads/team.h"
+#include "engine/state/threads.h"
 
 namespace peclet::counting_engine {
 
@@ -112,8 +112,8 @@ using engine::Team;
 #define __builtin_shufflevector of_lanes
 #define __builtin_convertvector(numbers, To) converted<To>(numbers)
 // NOLINTEND(bugprone-reserved-identifier)
-#include "engine/kernels/links/link_pivots.h"
-#include "engine/kernels/links/link_solver.h"
+#include "engine/kernels/link_pivots.h"
+#include "engine/kernels/link_solver.h"
 #undef __builtin_shufflevector
 #undef __builtin_convertvector
 #undef engine

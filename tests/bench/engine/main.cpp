@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "contract/exit_codes.h"
-#include "contract/input_error.h"
-#include "engine/threads/waiting_threads.h"
+#include "contract/errors.h"
+#include "engine/state/threads.h"
 #include "tests/bench/engine/benchmark.h"
 
 int main(int argc, char** argv) {

@@ -1,7 +1,7 @@
 #include "tests/bench/engine/operations.h"
 
-#include "engine/kernels/pairs/pair_kernel.h"
-#include "engine/kernels/pairs/terms.h"
+#include "engine/kernels/pair_kernel.h"
+#include "engine/kernels/pair_recipes.h"
 
 namespace peclet::engine {
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "engine/kernels/lanes/single_access.h"
+#include "engine/kernels/lane_access.h"
 
 namespace peclet::engine {
 

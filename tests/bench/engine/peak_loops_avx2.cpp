@@ -1,4 +1,4 @@
-#include "engine/kernels/lanes/lane_access.h"
+#include "engine/kernels/lane_access.h"
 #include "tests/bench/engine/peak_loops.h"
 
 namespace peclet::engine {

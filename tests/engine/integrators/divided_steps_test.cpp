@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/integrators/midpoint.h"
-#include "engine/realisation/ending.h"
+#include "engine/realisation/schedule.h"
 #include "tests/engine/dense_suspension.h"
 #include "tests/engine/pair_evaluation.h"
 

@@ -5,10 +5,10 @@
 #include "engine/flow/waves.h"
 #include "engine/integrators/midpoint.h"
 #include "engine/integrators/noisy_midpoint.h"
+#include "engine/integrators/stability.h"
 #include "engine/integrators/velocity_verlet.h"
 #include "engine/observables/scene_reading.h"
 #include "engine/realisation/simulation.h"
-#include "engine/stability/stability.h"
 #include "tests/engine/dense_suspension.h"
 #include "tests/engine/small_scene.h"
 

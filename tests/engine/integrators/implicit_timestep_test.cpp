@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
+#include "engine/integrators/derived_groups.h"
+#include "engine/integrators/stability.h"
 #include "engine/observables/scene_reading.h"
 #include "engine/realisation/simulation.h"
-#include "engine/stability/derived_groups.h"
-#include "engine/stability/stability.h"
 #include "tests/engine/small_scene.h"
 
 namespace peclet::engine {

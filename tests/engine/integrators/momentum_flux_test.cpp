@@ -5,8 +5,6 @@
 //   V J = sum sym(x F_body) - (change of sum m sym(x V)) / dt:
 // no force of a pair is in it, and so no account of which forces acted. x is where F_body has no mean of its
 // own: x_n for the noise, the middle of its way for the drag on a velocity.
-#include "engine/kernels/momentum_flux.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,6 +13,7 @@
 
 #include "engine/integrators/implicit.h"
 #include "engine/integrators/velocity_verlet.h"
+#include "engine/kernels/pair_pass.h"
 #include "tests/engine/available_sets.h"
 #include "tests/engine/draws.h"
 

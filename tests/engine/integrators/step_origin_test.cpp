@@ -1,9 +1,8 @@
 // The way back to the beginning of a step, across steps that rebuild the list of neighbours.
-#include "engine/integrators/step_origin.h"
-
 #include <gtest/gtest.h>
 
 #include "engine/integrators/implicit.h"
+#include "engine/integrators/integrator.h"
 #include "engine/integrators/velocity_verlet.h"
 #include "tests/engine/dense_suspension.h"
 

@@ -6,7 +6,7 @@
 
 #include "engine/integrators/midpoint.h"
 #include "engine/integrators/velocity_verlet.h"
-#include "engine/kernels/pairs/pair_kinds.h"
+#include "engine/kernels/pair_kinds.h"
 
 namespace peclet::engine {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "engine/flow/waves.h"
-#include "engine/start/packing.h"
+#include "engine/realisation/packing.h"
 #include "tests/engine/available_sets.h"
 #include "tests/engine/dense_suspension.h"
 #include "tests/engine/draws.h"

@@ -1,7 +1,7 @@
 // Contacts and their mobilisation, in chains with springs of known length.
 #include <gtest/gtest.h>
 
-#include "engine/kernels/pairs/pair_kinds.h"
+#include "engine/kernels/pair_kinds.h"
 #include "tests/engine/observables/loose_spheres.h"
 
 namespace peclet::engine {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/engine/observables/loose_spheres.h"
-#include "tests/engine/output/small_result.h"
+#include "tests/engine/realisation/small_result.h"
 
 namespace peclet::engine {
 namespace {

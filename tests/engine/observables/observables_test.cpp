@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "tests/engine/observables/loose_spheres.h"
 
 namespace peclet::engine {

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "engine/observables/scene_reading.h"
-#include "engine/output/stress_means.h"
 #include "engine/realisation/simulation.h"
+#include "engine/realisation/stress_means.h"
 #include "tests/engine/observables/loose_spheres.h"
 
 namespace peclet::engine {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "tests/engine/observables/loose_spheres.h"
 
 namespace peclet::engine {

@@ -1,11 +1,10 @@
 // Mean squares of sums over windows of a widening grid, against plain sums.
-#include "engine/observables/squared_sums.h"
-
 #include <gtest/gtest.h>
 
 #include <numeric>
 #include <set>
 
+#include "engine/observables/multiple_tau.h"
 #include "tests/engine/draws.h"
 
 namespace peclet::engine {

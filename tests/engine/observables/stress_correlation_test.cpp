@@ -1,7 +1,7 @@
 // The correlation of the structural stress, of pairs that stand still or come and go.
 #include <gtest/gtest.h>
 
-#include "engine/kernels/pairs/pair_kinds.h"
+#include "engine/kernels/pair_kinds.h"
 #include "tests/engine/observables/loose_spheres.h"
 
 namespace peclet::engine {

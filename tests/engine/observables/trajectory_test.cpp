@@ -6,13 +6,13 @@
 #include <optional>
 #include <set>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "engine/observables/observable.h"
 #include "engine/observables/scene_reading.h"
 #include "engine/realisation/simulation.h"
 #include "engine/terms/drag.h"
-#include "tests/engine/gsd/gsd_reader.h"
 #include "tests/engine/small_scene.h"
+#include "tests/engine/snapshots/gsd_reader.h"
 
 namespace peclet::engine {
 namespace {

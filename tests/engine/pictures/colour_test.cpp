@@ -1,5 +1,3 @@
-#include "engine/pictures/colour.h"
-
 #include <gtest/gtest.h>
 
 #include <array>

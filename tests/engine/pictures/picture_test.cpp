@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <chrono>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "engine/pictures/colouring.h"
-#include "engine/random/keyed_random.h"
+#include "engine/terms/keyed_random.h"
 
 namespace peclet::engine {
 namespace {

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/pictures/occlusion.h"
-
 namespace peclet::engine {
 namespace {
 

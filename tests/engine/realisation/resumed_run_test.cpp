@@ -4,9 +4,9 @@
 #include <map>
 #include <memory>
 
-#include "engine/jobs/job.h"
 #include "engine/observables/scene_reading.h"
 #include "engine/realisation/checkpoint.h"
+#include "engine/realisation/job.h"
 #include "tests/engine/small_scene.h"
 #include "tests/engine/temporary_folder.h"
 

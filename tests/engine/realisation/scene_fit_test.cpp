@@ -1,6 +1,4 @@
 // What is checked before a sphere is placed, and the names that are promised before anything is measured.
-#include "engine/realisation/scene_fit.h"
-
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -9,10 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "contract/input_error.h"
-#include "engine/jobs/job.h"
+#include "contract/errors.h"
 #include "engine/observables/scene_reading.h"
-#include "engine/start/packing.h"
+#include "engine/realisation/job.h"
+#include "engine/realisation/packing.h"
+#include "engine/realisation/schedule.h"
 #include "tests/engine/small_scene.h"
 
 namespace peclet::engine {

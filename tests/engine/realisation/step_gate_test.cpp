@@ -2,10 +2,10 @@
 // step.
 #include <gtest/gtest.h>
 
+#include "engine/integrators/stability.h"
 #include "engine/integrators/velocity_verlet.h"
-#include "engine/jobs/job.h"
 #include "engine/observables/scene_reading.h"
-#include "engine/stability/stability.h"
+#include "engine/realisation/job.h"
 #include "tests/engine/small_scene.h"
 
 namespace peclet::engine {

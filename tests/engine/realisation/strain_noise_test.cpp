@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "engine/integrators/step_origin.h"
+#include "engine/integrators/integrator.h"
 #include "engine/observables/scene_reading.h"
-#include "engine/random/keyed_random.h"
-#include "engine/realisation/stress_control.h"
+#include "engine/realisation/driver.h"
+#include "engine/terms/keyed_random.h"
 #include "tests/engine/small_scene.h"
 
 namespace peclet::engine::strain_noise {

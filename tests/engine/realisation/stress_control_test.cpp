@@ -1,13 +1,11 @@
 // Flow at a given stress: the stress that is held, the rate that it leads to, and what noise makes of it.
-#include "engine/realisation/stress_control.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "engine/observables/scene_reading.h"
-#include "engine/output/result.h"
-#include "engine/output/summary.h"
+#include "engine/realisation/driver.h"
+#include "engine/realisation/result.h"
 #include "engine/realisation/simulation.h"
 #include "tests/engine/small_scene.h"
 

@@ -1,7 +1,7 @@
 // Sizes that do not go together are refused by name.
 #include <gtest/gtest.h>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "engine/observables/scene_reading.h"
 #include "engine/scene/scene.h"
 

@@ -7,10 +7,10 @@
 #include <numbers>
 #include <numeric>
 
+#include "engine/integrators/derived_groups.h"
 #include "engine/observables/scene_reading.h"
+#include "engine/realisation/packing.h"
 #include "engine/scene/scene.h"
-#include "engine/stability/derived_groups.h"
-#include "engine/start/packing.h"
 
 namespace peclet::engine {
 namespace {

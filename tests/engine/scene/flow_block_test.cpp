@@ -1,14 +1,13 @@
 // What scenes say of their flow, and what they must not.
-#include "engine/scene/flow_block.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "engine/flow/controlled_shear.h"
+#include "engine/integrators/derived_groups.h"
 #include "engine/observables/scene_reading.h"
 #include "engine/realisation/schedule.h"
-#include "engine/stability/derived_groups.h"
+#include "engine/scene/scene.h"
 #include "tests/engine/small_scene.h"
 
 namespace peclet::engine {

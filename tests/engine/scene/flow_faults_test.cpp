@@ -3,8 +3,8 @@
 
 #include <set>
 
-#include "contract/input_error.h"
-#include "engine/flow/flows.h"
+#include "contract/errors.h"
+#include "engine/flow/flow_kind.h"
 #include "engine/observables/scene_reading.h"
 #include "engine/scene/scene.h"
 #include "tests/engine/small_scene.h"

@@ -1,7 +1,7 @@
 // Every fault of a scene has one message: where, what, and what is allowed.
 #include <gtest/gtest.h>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "engine/observables/scene_reading.h"
 #include "engine/scene/scene.h"
 

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "contract/durable_file.h"
-#include "contract/input_error.h"
-#include "engine/evaluation/configuration.h"
+#include "contract/errors.h"
+#include "engine/forces/configuration.h"
 #include "engine/observables/scene_reading.h"
 #include "engine/scene/scene.h"
 

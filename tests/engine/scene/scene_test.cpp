@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "engine/observables/scene_reading.h"
 
 namespace peclet::engine {

@@ -8,10 +8,10 @@
 #include <limits>
 
 #include "contract/durable_file.h"
-#include "contract/input_error.h"
-#include "engine/gsd/frames.h"
-#include "engine/snapshots/snapshot_file.h"
-#include "tests/engine/gsd/gsd_reader.h"
+#include "contract/errors.h"
+#include "engine/snapshots/gsd_file.h"
+#include "engine/snapshots/snapshot.h"
+#include "tests/engine/snapshots/gsd_reader.h"
 #include "tests/engine/temporary_folder.h"
 
 namespace peclet::engine {

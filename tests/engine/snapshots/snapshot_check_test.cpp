@@ -1,12 +1,11 @@
 // What files may say of spheres, and what cannot be computed with.
-#include "engine/snapshots/snapshot_check.h"
-
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <limits>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
+#include "engine/snapshots/snapshot.h"
 
 namespace peclet::engine {
 namespace {

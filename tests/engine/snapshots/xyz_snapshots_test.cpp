@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "contract/input_error.h"
-#include "engine/snapshots/snapshot_text.h"
+#include "contract/errors.h"
+#include "engine/snapshots/conversion.h"
 
 namespace peclet::engine {
 namespace {

@@ -1,8 +1,7 @@
 // Fluctuation and dissipation of a pair, exactly: B B^T = R, B the loads of unit random vectors.
-#include "engine/terms/pair_noise.h"
-
 #include <gtest/gtest.h>
 
+#include "engine/terms/pair_resistance.h"
 #include "tests/engine/two_spheres.h"
 
 namespace peclet::engine {

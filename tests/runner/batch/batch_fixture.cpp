@@ -10,8 +10,8 @@
 
 #include "contract/durable_file.h"
 #include "runner/batch/batch_task.h"
+#include "runner/command_line/run.h"
 #include "runner/reports/export.h"
-#include "runner/verbs/run.h"
 
 namespace peclet::runner {
 namespace {

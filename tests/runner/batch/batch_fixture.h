@@ -6,8 +6,8 @@
 #include <string>
 
 #include "contract/json.h"
+#include "runner/command_line/hand_over.h"
 #include "runner/store/database.h"
-#include "runner/verbs/hand_over.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {

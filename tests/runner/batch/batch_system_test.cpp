@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "runner/engines/command.h"
 #include "tests/runner/runner_fixture.h"
 

@@ -9,8 +9,7 @@
 #include <functional>
 
 #include "contract/durable_file.h"
-#include "contract/input_error.h"
-#include "contract/integrity_error.h"
+#include "contract/errors.h"
 #include "runner/batch/bundle_files.h"
 #include "tests/runner/batch/batch_fixture.h"
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <fstream>
 
-#include "contract/input_error.h"
-#include "runner/care/doctor.h"
-#include "runner/verbs/cancel.h"
+#include "contract/errors.h"
+#include "runner/command_line/ask_owner.h"
+#include "runner/maintenance/doctor.h"
 #include "tests/runner/batch/batch_fixture.h"
 
 namespace peclet::runner {

@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "runner/campaign/campaign.h"
 #include "tests/runner/runner_fixture.h"
 

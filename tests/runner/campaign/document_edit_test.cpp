@@ -1,7 +1,7 @@
 // One value changes, and not a blank of the rest.
-#include "runner/campaign/document_edit.h"
-
 #include <gtest/gtest.h>
+
+#include "runner/campaign/campaign_file.h"
 
 namespace peclet::runner {
 namespace {

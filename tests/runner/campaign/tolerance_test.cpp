@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 
 namespace peclet::runner {
 namespace {

@@ -1,9 +1,9 @@
-#include "runner/engines/worker_watch.h"
-
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <csignal>
+
+#include "runner/engines/worker_process.h"
 
 namespace peclet::runner {
 namespace {

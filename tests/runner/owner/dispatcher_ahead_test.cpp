@@ -4,7 +4,7 @@
 #include <set>
 
 #include "contract/sha256.h"
-#include "runner/requests/request_handler.h"
+#include "runner/owner/request_handler.h"
 #include "runner/store/point_store.h"
 #include "runner/store/result_store.h"
 #include "tests/runner/owner/dispatcher_fixture.h"

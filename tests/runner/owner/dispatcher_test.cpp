@@ -2,8 +2,8 @@
 #include <filesystem>
 
 #include "contract/durable_file.h"
-#include "contract/input_error.h"
-#include "runner/engines/engine_error.h"
+#include "contract/errors.h"
+#include "runner/engines/engine_process.h"
 #include "runner/store/point_store.h"
 #include "runner/store/result_store.h"
 #include "runner/store/spool.h"

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "contract/durable_file.h"
-#include "contract/integrity_error.h"
+#include "contract/errors.h"
 #include "contract/sha256.h"
-#include "runner/store/file_store.h"
+#include "runner/store/result_files.h"
 #include "runner/store/spool.h"
 #include "tests/runner/owner/dispatcher_fixture.h"
 

@@ -6,8 +6,8 @@
 #include <csignal>
 #include <filesystem>
 
-#include "runner/care/backup.h"
-#include "runner/care/restore.h"
+#include "runner/maintenance/backup.h"
+#include "runner/maintenance/restore.h"
 #include "runner/store/backups.h"
 #include "runner/store/locks.h"
 #include "tests/runner/campaign_process.h"

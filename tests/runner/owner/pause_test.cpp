@@ -9,6 +9,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <fstream>
 #include <system_error>
 
 #include "contract/durable_file.h"
@@ -119,13 +120,15 @@ TEST(LockText, NamesTheProgramThatHasLockedTheDatabase) {
   }
   char signal = 0;
   ASSERT_EQ(read(ready[0], &signal, 1), 1);
+  std::string own_name;
+  std::getline(std::ifstream("/proc/self/comm"), own_name);
   try {
     Connection(path, Connection::Access::read_write, 0).execute("BEGIN IMMEDIATE");
     ADD_FAILURE() << "the lock excludes nobody";
   } catch (const DatabaseError& error) {
     EXPECT_TRUE(error.is_locked());
     EXPECT_TRUE(
-        says(error.what(), path + ": is locked by runner_tests (process " + std::to_string(child) + ")"))
+        says(error.what(), path + ": is locked by " + own_name + " (process " + std::to_string(child) + ")"))
         << error.what();
   }
   kill(child, SIGKILL);

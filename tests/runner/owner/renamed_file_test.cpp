@@ -1,11 +1,10 @@
-#include "runner/owner/renamed_file.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "runner/campaign/campaign_file.h"
+#include "runner/owner/open_campaign.h"
 #include "tests/runner/campaign_process.h"
 
 namespace peclet::runner {

@@ -5,13 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "contract/sha256.h"
-#include "runner/page/page_assets.h"
+#include "runner/campaign/number_text.h"
+#include "runner/campaign/quoting.h"
 #include "runner/page/page_data.h"
 #include "runner/page/page_html.h"
 #include "runner/reports/export.h"
 #include "runner/store/vocabulary.h"
-#include "runner/text/html.h"
-#include "runner/text/utc_time.h"
 #include "tests/runner/stored_campaign.h"
 
 namespace peclet::runner {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runner/text/folded_text.h"
+#include "runner/campaign/text_table.h"
 
 namespace peclet::runner {
 namespace {

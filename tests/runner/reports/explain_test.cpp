@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "runner/reports/export.h"
 #include "runner/reports/status.h"
 #include "tests/runner/stored_campaign.h"

@@ -1,9 +1,8 @@
 // Results as lines for other programs.
-#include "runner/reports/results.h"
-
 #include <gtest/gtest.h>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
+#include "runner/reports/export.h"
 #include "tests/runner/stored_campaign.h"
 
 namespace peclet::runner {

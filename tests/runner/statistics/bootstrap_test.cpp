@@ -1,5 +1,3 @@
-#include "runner/statistics/bootstrap.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

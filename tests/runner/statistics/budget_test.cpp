@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <random>
 
+#include "runner/campaign/number_text.h"
 #include "runner/store/database_summary.h"
-#include "runner/text/duration_text.h"
 #include "tests/runner/campaign_process.h"
 
 namespace peclet::runner {

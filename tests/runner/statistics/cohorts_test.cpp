@@ -9,8 +9,6 @@
 #include <cstdint>
 #include <random>
 
-#include "runner/statistics/look_json.h"
-
 namespace peclet::runner {
 namespace {
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "runner/events/progress.h"
-#include "runner/text/duration_text.h"
+#include "runner/campaign/number_text.h"
+#include "runner/owner/progress.h"
 
 namespace peclet::runner {
 namespace {

@@ -1,8 +1,8 @@
-#include "runner/statistics/transient.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
+
+#include "runner/statistics/window_advice.h"
 
 namespace peclet::runner {
 namespace {

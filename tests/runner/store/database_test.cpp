@@ -6,7 +6,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "contract/sha256.h"
 #include "runner/store/backups.h"
 #include "runner/store/point_store.h"

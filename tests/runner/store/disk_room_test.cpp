@@ -9,7 +9,7 @@
 
 #include "contract/durable_file.h"
 #include "runner/owner/dispatcher.h"
-#include "runner/requests/request_handler.h"
+#include "runner/owner/request_handler.h"
 #include "runner/store/point_store.h"
 #include "runner/store/spool.h"
 #include "tests/runner/owner/scripted_pool.h"

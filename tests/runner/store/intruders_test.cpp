@@ -1,11 +1,10 @@
-#include "runner/store/intruders.h"
-
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <vector>
 
 #include "contract/durable_file.h"
+#include "runner/store/campaign_directory.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "contract/integrity_error.h"
+#include "contract/errors.h"
 #include "runner/statistics/quantity_estimates.h"
 #include "tests/runner/stored_campaign.h"
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "contract/input_error.h"
+#include "contract/errors.h"
 #include "runner/store/point_store.h"
 #include "runner/store/seed_store.h"
 #include "tests/runner/runner_fixture.h"

@@ -1,11 +1,10 @@
-#include "runner/store/result_text.h"
-
 #include <gtest/gtest.h>
 
 #include <thread>
 
-#include "contract/integrity_error.h"
+#include "contract/errors.h"
 #include "runner/store/point_store.h"
+#include "runner/store/result_store.h"
 #include "runner/store/seed_store.h"
 #include "tests/runner/runner_fixture.h"
 

@@ -1,0 +1,86 @@
+#include "engine/flow/flow_kind.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "engine/flow/controlled_shear.h"
+#include "engine/flow/oscillatory_shear.h"
+#include "engine/flow/planar_extension.h"
+#include "engine/flow/segments.h"
+#include "engine/flow/steady_shear.h"
+#include "engine/flow/uniaxial_extension.h"
+#include "engine/flow/waves.h"
+
+namespace peclet::engine {
+
+const std::vector<FlowKind>& flow_kinds() {
+  static const std::vector<FlowKind> all = {
+      steady_shear_flow(),       oscillation_flow(), cross_shear_flow(), planar_extension_flow(),
+      uniaxial_extension_flow(), segments_flow(),    stress_flow()};
+  return all;
+}
+
+std::string flows_with(const std::string& unit) {
+  std::vector<std::string> keys;
+  for (const FlowKind& kind : flow_kinds()) {
+    if (kind.unit == unit) keys.push_back(kind.key);
+  }
+  return fmt::format("{}", fmt::join(keys, " or "));
+}
+
+const FlowKind& flow_kind_of(const SceneDocument& scene) {
+  const std::vector<FlowKind>& all = flow_kinds();
+  const auto other =
+      std::find_if(all.begin() + 1, all.end(), [&](const FlowKind& kind) { return scene.has(kind.key); });
+  const FlowKind& flow = other == all.end() ? all.front() : *other;
+  const auto refuse = [&](const std::string& key) {
+    if (key == flow.key || !scene.has(key) || std::ranges::count(flow.beside, key) > 0) return;
+    scene.refuse(key, "must be left out together with " + flow.key);
+  };
+  for (const FlowKind& kind : all) refuse(kind.key);
+  for (const char* key : {"/flow/waves", "/peclet"}) refuse(key);
+  for (const FlowKind& kind : all) {
+    if (scene.has(kind.key)) continue;
+    for (const Key& key : kind.keys) {
+      const bool is_of_a_list = key.pointer.find('*') != std::string::npos;
+      if (!is_of_a_list && scene.has(key.pointer))
+        scene.refuse(key.pointer, "must be left out without " + kind.key);
+    }
+  }
+  return flow;
+}
+
+ImposedFlow read_flow(const FlowSource& source) {
+  return ImposedFlow(flow_kind_of(source.scene).read(source), read_waves(source.scene));
+}
+
+Keys duration_keys(const std::string& pointer, const std::string& meaning,
+                   Key (*limit)(std::string, std::string, std::string, bool), bool is_required) {
+  return {
+      block(pointer, meaning + " Ends with the first of its limits that is reached; one at least.",
+            is_required),
+      limit(pointer + "/strain", "", "Strain: shear rate times time.", false),
+      limit(pointer + "/brownian_times", "eta a^3 / k_B T", "Time in units of the Brownian time.", false),
+      limit(pointer + "/time", "time", "Time.", false),
+      limit(pointer + "/cycles", "", fmt::format("Cycles of {}, at least.", flows_with("cycles")), false),
+      limit(pointer + "/stress_times", "eta / stress",
+            fmt::format("Time in units of viscosity over {}.", flows_with("stress_times")), false),
+  };
+}
+
+void check_duration(const SceneDocument& scene, const FlowKind& flow, const std::string& pointer) {
+  const Json& limits = scene.at(pointer);
+  for (const char* unit : {"cycles", "stress_times"}) {
+    if (limits.contains(unit) && flow.unit != unit) {
+      scene.refuse(pointer + '/' + unit, "must be left out without " + flows_with(unit));
+    }
+  }
+  if (limits.contains("strain") && !flow.without_strain.empty()) {
+    scene.refuse(pointer + "/strain",
+                 fmt::format("must be left out with {}, {}", flow.key, flow.without_strain));
+  }
+}
+
+}  // namespace peclet::engine

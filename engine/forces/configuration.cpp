@@ -1,0 +1,529 @@
+#include "engine/forces/configuration.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+#include <tuple>
+
+#include "contract/errors.h"
+#include "engine/kernels/force_field.h"
+#include "engine/kernels/pair_access.h"
+#include "engine/kernels/pair_recipes.h"
+#include "engine/observables/structure.h"
+#include "engine/scene/lubrication_block.h"
+#include "engine/terms/drag.h"
+
+namespace peclet::engine {
+namespace {
+
+std::vector<Key> vector_keys(const std::string& pointer, const std::string& meaning, const std::string& unit,
+                             bool required) {
+  return {
+      {.pointer = pointer, .kind = KeyKind::array, .meaning = meaning, .unit = unit, .required = required},
+      {.pointer = pointer + "/*",
+       .kind = KeyKind::array,
+       .meaning = "components x, y, z",
+       .minimum_items = 3},
+      {.pointer = pointer + "/*/*", .kind = KeyKind::number, .meaning = "component"}};
+}
+
+std::vector<Key> single_vector_keys(const std::string& pointer, const std::string& meaning, KeyKind kind) {
+  return {
+      {.pointer = pointer, .kind = KeyKind::array, .meaning = meaning, .required = true, .minimum_items = 3},
+      {.pointer = pointer + "/*", .kind = kind, .meaning = "component"}};
+}
+
+std::vector<Key> pair_keys(const std::string& pointer, const std::string& meaning,
+                           const std::vector<std::pair<std::string, std::string>>& vectors) {
+  std::vector<Key> keys = {{.pointer = pointer, .kind = KeyKind::array, .meaning = meaning},
+                           {.pointer = pointer + "/*", .kind = KeyKind::object, .meaning = "one pair"},
+                           {.pointer = pointer + "/*/i",
+                            .kind = KeyKind::integer,
+                            .meaning = "first particle",
+                            .required = true,
+                            .minimum = 0},
+                           {.pointer = pointer + "/*/j",
+                            .kind = KeyKind::integer,
+                            .meaning = "second particle, above i",
+                            .required = true,
+                            .minimum = 0}};
+  const auto append = [&keys](const std::vector<Key>& more) {
+    keys.insert(keys.end(), more.begin(), more.end());
+  };
+  append(single_vector_keys(pointer + "/*/image",
+                            "lattice vectors added to the second particle's position as given",
+                            KeyKind::integer));
+  for (const auto& [name, text] : vectors) {
+    append(single_vector_keys(pointer + "/*/" + name, text, KeyKind::number));
+  }
+  return keys;
+}
+
+Vector3 vector_from(const Json& array) {
+  return {array.at(0).get<double>(), array.at(1).get<double>(), array.at(2).get<double>()};
+}
+
+class Reader {
+ public:
+  Reader(const Json& document, std::string file) : document_(document), file_(std::move(file)) {}
+
+  Configuration read() {
+    const Json& state = document_.at("state");
+    Configuration configuration;
+    configuration.physics = read_physics(document_.at("scene"), file_, "/scene");
+    const auto radius = state.at("radius").get<std::vector<double>>();
+    check_lubrication(configuration.physics, radius);
+    configuration.particles = make_particles(radius, 1);
+    ParticleState& particles = configuration.particles;
+    particles.position = field("/state/position", radius.size());
+    particles.velocity = field("/state/velocity", radius.size());
+    particles.angular_velocity = field("/state/angular_velocity", radius.size());
+    check_three("/state/box/lengths");
+    configuration.box = PeriodicCell(vector_from(state.at("box").at("lengths")),
+                                     configuration.physics.flow.deformation().velocity_gradient(0),
+                                     state.at("box").at("tilt").get<double>());
+    for (std::size_t k = 0; k < state.value("springs", Json::array()).size(); ++k) {
+      const std::string at = fmt::format("/state/springs/{}", k);
+      const PairName name = pair_name(at, radius.size());
+      const double slides = this->at(at).at("slides").get<bool>() ? 1 : 0;
+      configuration.springs.push_back({name.first,
+                                       name.second,
+                                       name.image,
+                                       {vector(at + "/tangential"), vector(at + "/rolling"), slides}});
+    }
+    if (state.contains("noise")) {
+      configuration.noise = noise(radius.size());
+    }
+    if (document_.contains("advance")) {
+      configuration.advance = document_.at("advance").get<double>();
+    }
+    return configuration;
+  }
+
+ private:
+  struct PairName {
+    std::uint32_t first, second;
+    LatticeShift image;
+  };
+
+  const Json& at(const std::string& pointer) const { return document_.at(Json::json_pointer(pointer)); }
+
+  [[noreturn]] void refuse(const std::string& pointer, const std::string& value,
+                           const std::string& allowed) const {
+    throw InputError(file_, pointer, value, allowed);
+  }
+
+  void check_lubrication(const Physics& physics, const std::vector<double>& radius) const {
+    if (!physics.lubrication || radius.empty()) return;
+    const std::optional<std::string> fault =
+        fault_of_outer_distance(*physics.lubrication, *std::ranges::min_element(radius));
+    if (fault) {
+      const std::string pointer = "/scene/lubrication/outer_distance";
+      refuse(pointer, shortened(at(pointer)), *fault);
+    }
+  }
+
+  void check_three(const std::string& pointer) const {
+    if (at(pointer).size() != 3) {
+      refuse(pointer, at(pointer).dump(), "must have three components");
+    }
+  }
+
+  Vector3 vector(const std::string& pointer) const {
+    check_three(pointer);
+    return vector_from(at(pointer));
+  }
+
+  VectorField field(const std::string& pointer, std::size_t count) const {
+    if (at(pointer).size() != count) {
+      refuse(pointer, fmt::format("{} vectors", at(pointer).size()),
+             fmt::format("must have {}, as many as radii", count));
+    }
+    VectorField field(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      field.set(i, vector(fmt::format("{}/{}", pointer, i)));
+    }
+    return field;
+  }
+
+  PairName pair_name(const std::string& pointer, std::size_t count) const {
+    const Json& entry = at(pointer);
+    const auto i = entry.at("i").get<std::uint64_t>(), j = entry.at("j").get<std::uint64_t>();
+    if (i >= j || j >= count) {
+      refuse(pointer + "/j", std::to_string(j), fmt::format("must be above i = {} and below {}", i, count));
+    }
+    check_three(pointer + "/image");
+    const auto image = entry.at("image").get<std::vector<std::int32_t>>();
+    return {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), {image[0], image[1], image[2]}};
+  }
+
+  GivenNoise noise(std::size_t count) const {
+    GivenNoise noise;
+    noise.timestep = at("/state/noise/timestep").get<double>();
+    noise.force = field("/state/noise/force", count);
+    noise.torque = field("/state/noise/torque", count);
+    for (std::size_t k = 0; k < at("/state/noise").value("pairs", Json::array()).size(); ++k) {
+      const std::string pointer = fmt::format("/state/noise/pairs/{}", k);
+      const PairName name = pair_name(pointer, count);
+      noise.pairs.push_back(
+          {name.first, name.second, name.image, {vector(pointer + "/theta"), vector(pointer + "/chi")}});
+    }
+    return noise;
+  }
+
+  const Json& document_;
+  std::string file_;
+};
+
+}  // namespace
+
+const KeyTable& configuration_keys() {
+  static const KeyTable table = [] {
+    std::vector<Key> keys = {
+        {.pointer = "/scene",
+         .kind = KeyKind::any,
+         .meaning = fmt::format("the blocks {} of a scene", fmt::join(blocks_of_physics(), ", ")),
+         .required = true},
+        {.pointer = "/advance",
+         .kind = KeyKind::number,
+         .meaning = "time by which the springs are advanced",
+         .unit = "time",
+         .minimum = 0},
+        {.pointer = "/state", .kind = KeyKind::object, .meaning = "the configuration", .required = true},
+        {.pointer = "/state/box", .kind = KeyKind::object, .meaning = "the periodic cell", .required = true}};
+    const auto append = [&keys](const std::vector<Key>& more) {
+      keys.insert(keys.end(), more.begin(), more.end());
+    };
+    keys.push_back({.pointer = "/state/box/lengths",
+                    .kind = KeyKind::array,
+                    .meaning = "Lx, Ly, Lz",
+                    .unit = "length",
+                    .required = true,
+                    .minimum_items = 3});
+    keys.push_back({.pointer = "/state/box/lengths/*",
+                    .kind = KeyKind::number,
+                    .meaning = "edge",
+                    .minimum = 0,
+                    .above_minimum = true});
+    keys.push_back({.pointer = "/state/box/tilt",
+                    .kind = KeyKind::number,
+                    .meaning = "x component of the second lattice vector",
+                    .unit = "length",
+                    .default_value = 0.0});
+    keys.push_back({.pointer = "/state/radius",
+                    .kind = KeyKind::array,
+                    .meaning = "radii",
+                    .unit = "length",
+                    .required = true,
+                    .minimum_items = 1});
+    keys.push_back({.pointer = "/state/radius/*",
+                    .kind = KeyKind::number,
+                    .meaning = "radius",
+                    .minimum = 0,
+                    .above_minimum = true});
+    append(vector_keys("/state/position", "centres", "length", true));
+    append(vector_keys("/state/velocity", "velocities in the laboratory frame", "length / time", true));
+    append(vector_keys("/state/angular_velocity", "angular velocities", "1 / time", true));
+    append(pair_keys("/state/springs", "contact springs",
+                     {{"tangential", "sliding spring"}, {"rolling", "rolling spring"}}));
+    keys.push_back({.pointer = "/state/springs/*/slides",
+                    .kind = KeyKind::boolean,
+                    .meaning = "whether the contact slides, with kinetic friction",
+                    .default_value = false});
+    keys.push_back({.pointer = "/state/noise", .kind = KeyKind::object, .meaning = "random vectors to use"});
+    keys.push_back({.pointer = "/state/noise/timestep",
+                    .kind = KeyKind::number,
+                    .meaning = "dt of the amplitude sqrt(2 kT / dt)",
+                    .unit = "time",
+                    .required = true,
+                    .minimum = 0,
+                    .above_minimum = true});
+    append(vector_keys("/state/noise/force", "normal vectors of the forces", "", true));
+    append(vector_keys("/state/noise/torque", "normal vectors of the torques", "", true));
+    append(pair_keys("/state/noise/pairs", "normal vectors of pairs",
+                     {{"theta", "of force and turning"}, {"chi", "of the spins"}}));
+    return KeyTable("configuration", keys);
+  }();
+  return table;
+}
+
+Configuration read_configuration(const Json& document, const std::string& file) {
+  return Reader(configuration_keys().validate(document, file), file).read();
+}
+
+// The answer to `peclet-engine forces`: the kernels of the time loop, term by term.
+
+namespace {
+
+using PairName = std::tuple<std::uint32_t, std::uint32_t, LatticeShift>;
+
+Json to_json(const Vector3& v) { return {v.x, v.y, v.z}; }
+
+Json to_json(const VectorField& field) {
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    rows.push_back(to_json(field[i]));
+  }
+  return rows;
+}
+
+Json to_json(const SymmetricTensor& t) {
+  return {{t.xx, t.xy, t.xz}, {t.xy, t.yy, t.yz}, {t.xz, t.yz, t.zz}};
+}
+
+// Forces, torques and stress of each term that occurs.
+class ByTerm {
+ public:
+  explicit ByTerm(const Configuration& configuration) : configuration_(configuration) {}
+
+  void add_single(const char* term, std::size_t i, const Vector3& force, const Vector3& torque) {
+    Sums& sums = of(term);
+    sums.force.set(i, sums.force[i] + force);
+    sums.torque.set(i, sums.torque[i] + torque);
+  }
+
+  void add_stress(const char* term, const SymmetricTensor& stress) { of(term).stress += stress; }
+
+  Json json() const {
+    Json answer = {{"force", Json::object()}, {"torque", Json::object()}, {"stress", Json::object()}};
+    for (const auto& [term, sums] : sums_) {
+      answer["force"][term] = to_json(sums.force);
+      answer["torque"][term] = to_json(sums.torque);
+      answer["stress"][term] = to_json(sums.stress);
+    }
+    return answer;
+  }
+
+ private:
+  struct Sums {
+    VectorField force, torque;
+    SymmetricTensor stress;
+  };
+
+  Sums& of(const char* term) {
+    const std::size_t count = configuration_.particles.count();
+    return sums_.try_emplace(term, Sums{VectorField(count), VectorField(count), {}}).first->second;
+  }
+
+  const Configuration& configuration_;
+  std::map<std::string, Sums> sums_;
+};
+
+// A term is what the pairs of this physics do with it less what they do without it.
+struct TermRecipe {
+  const char* name;
+  Terms with, without;
+  Physics physics;
+};
+
+// With one conservative law alone.
+Physics without_others(Physics physics, StressTerm kept) {
+  for_each_conservative_law(
+      [&](StressTerm part, auto& law) {
+        if (part != kept) law.reset();
+      },
+      physics);
+  return physics;
+}
+
+std::vector<TermRecipe> recipes_of(const Physics& physics) {
+  std::vector<TermRecipe> recipes;
+  const Terms terms = required_terms(physics), touching = {.contact = true};
+  const Terms sliding = {.contact = true, .friction = true, .kinetic = terms.kinetic};
+  Terms turning = sliding;
+  turning.rolling = true;
+  const auto add = [&](bool present, const char* name, const Terms& with, const Terms& without) {
+    if (present) {
+      recipes.push_back({name, with, without, physics});
+    }
+  };
+  const Terms lubricated = {.lubrication = true, .strained = terms.strained};
+  const Terms noisy = {.lubrication = true, .noise = true, .strained = terms.strained};
+  add(terms.lubrication, "lubrication", lubricated, {});
+  add(terms.noise, "brownian_lubrication", noisy, lubricated);
+  add(terms.contact, "contact_normal", touching, {});
+  if (terms.damping) {
+    // Without the normal force, beside which it would lose its digits.
+    recipes.push_back({"contact_damping", {.contact = true, .damping = true}, touching, physics});
+    recipes.back().physics.contact->normal_stiffness = 0;
+  }
+  add(terms.friction, "friction", sliding, touching);
+  add(terms.rolling, "rolling", turning, sliding);
+  for_each_conservative_law(
+      [&](StressTerm part, const auto& law) {
+        if (law)
+          recipes.push_back({name_of(part), {.conservative = true}, {}, without_others(physics, part)});
+      },
+      physics);
+  return recipes;
+}
+
+class Evaluation {
+ public:
+  explicit Evaluation(const Configuration& configuration)
+      : configuration_(configuration),
+        terms_(required_terms(configuration.physics)),
+        set_(chosen_instruction_set()),
+        by_term_(configuration) {
+    const ParticleState& particles = configuration.particles;
+    const std::vector<double> sizes = distinct_radii(particles.radius);
+    kinds_ = make_pair_kinds(configuration.physics, sizes);
+    list_ = NeighbourList(range_table(kinds_, sizes.size()), 0);
+    list_.build(particles, configuration.box);
+    std::vector<HeldContact> held = configuration.springs;
+    sort_contacts(held);
+    springs_ = placed_contacts(list_, particles, held, spring_kinds(terms_));
+    noise_.resize(list_.pairs().size());
+    varying_ = FlowAtCentres(particles.count(), /*threads=*/1);
+    varying_.set(configuration.physics.flow.at(configuration.box), particles, 0, particles.count());
+    if (configuration.noise) {
+      find_noise(*configuration.noise);
+    }
+  }
+
+  Json run() {
+    for (const TermRecipe& recipe : recipes_of(configuration_.physics)) {
+      add_pairs(recipe);
+    }
+    add_one_body();
+    add_uniform_flow();
+    Json answer = by_term_.json();
+    answer["springs"] = configuration_.advance ? advanced_springs() : Json::array();
+    return answer;
+  }
+
+ private:
+  struct Loads {
+    VectorField force, torque;
+    PairSums sums;
+  };
+
+  void find_noise(const GivenNoise& noise) {
+    std::map<PairName, NormalPair> given;
+    for (const GivenPairNoise& pair : noise.pairs) {
+      given[{pair.first, pair.second, pair.image}] = pair.normals;
+    }
+    for (std::size_t p = 0; p < noise_.size(); ++p) {
+      const auto found = given.find(name_of(list_.pairs()[p]));
+      noise_[p] = found == given.end() ? NormalPair{} : found->second;
+    }
+  }
+
+  PairName name_of(const Pair& pair) const { return {pair.first, pair.second, list_.images()[pair.image]}; }
+
+  Loads evaluate(const Terms& terms, const Physics& physics, double spring_timestep,
+                 SpringField& springs) const {
+    const std::size_t count = configuration_.particles.count();
+    Loads loads = {VectorField(count), VectorField(count), {}};
+    PairParameters parameters =
+        pair_parameters(physics, configuration_.noise ? configuration_.noise->timestep : 0);
+    parameters.spring_timestep = spring_timestep;
+    const std::vector<PairKind> kinds =
+        make_pair_kinds(physics, distinct_radii(configuration_.particles.radius));
+    const PairPassInput input = {
+        .particles = configuration_.particles,
+        .list = list_,
+        .box = configuration_.box,
+        .kinds = kinds,
+        .parameters = parameters,
+        .noise = {},
+        .given_noise = &noise_,
+        .varying = feels_varying_flow(physics) ? &varying_ : nullptr,
+    };
+    if (!list_.pairs().empty()) {
+      loads.sums = PairPass(terms, set_).evaluate(input, springs, loads.force, loads.torque);
+    }
+    return loads;
+  }
+
+  void add_pairs(const TermRecipe& recipe) {
+    SpringField springs = springs_, untouched = springs_;
+    const Loads with = evaluate(recipe.with, recipe.physics, 0, springs),
+                without = evaluate(recipe.without, recipe.physics, 0, untouched);
+    for (std::size_t i = 0; i < configuration_.particles.count(); ++i) {
+      by_term_.add_single(recipe.name, i, with.force[i] - without.force[i],
+                          with.torque[i] - without.torque[i]);
+    }
+    for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
+      if (recipe.name == std::string_view(engine::name_of(static_cast<StressTerm>(t)))) {
+        by_term_.add_stress(recipe.name, (1 / configuration_.box.volume()) * with.sums.stress[t]);
+      }
+    }
+  }
+
+  Json advanced_springs() const {
+    Json advanced = Json::array();
+    if (!terms_.friction) {
+      return advanced;
+    }
+    SpringField springs = springs_;
+    evaluate(terms_, configuration_.physics, *configuration_.advance, springs);
+    const std::vector<ImageFrame> frames = image_frames(list_, configuration_.box);
+    for (std::size_t p = 0; p < list_.pairs().size(); ++p) {
+      const Pair& pair = list_.pairs()[p];
+      const PairGeometry shape =
+          geometry(separation(configuration_.particles, pair, frames[pair.image]), kinds_[pair.kind]);
+      if (!(shape.overlap() > 0)) {
+        continue;
+      }
+      const LatticeShift image = list_.images()[pair.image];
+      advanced.push_back({{"i", pair.first},
+                          {"j", pair.second},
+                          {"image", {image.x, image.y, image.z}},
+                          {"tangential", to_json(springs[p].tangential)},
+                          {"rolling", to_json(springs[p].rolling)}});
+      if (springs.remembers_sliding()) advanced.back()["slides"] = springs[p].slides != 0;
+    }
+    return advanced;
+  }
+
+  void add_one_body() {
+    System system;
+    system.particles = configuration_.particles;
+    system.box = configuration_.box;
+    const std::size_t count = system.particles.count();
+    const ForceField field(configuration_.physics, system.particles,
+                           configuration_.noise ? configuration_.noise->timestep : 0, /*seed=*/0,
+                           /*threads=*/1, set_);
+    VectorField force(count), torque(count), noise_force(count), noise_torque(count);
+    field.one_body().set_drag(field.one_body_input(system, force, torque), 0, count);
+    field.add_varying_drag(system, 0, count, force, torque);
+    for (std::size_t i = 0; i < count; ++i) {
+      by_term_.add_single("drag", i, force[i], torque[i]);
+      if (configuration_.noise) {
+        const NormalPair normals = {configuration_.noise->force[i], configuration_.noise->torque[i]};
+        field.add_drag_noise(system, i, normals, noise_force, noise_torque);
+        by_term_.add_single("brownian_drag", i, noise_force[i], noise_torque[i]);
+      }
+    }
+  }
+
+  void add_uniform_flow() {
+    const Physics& physics = configuration_.physics;
+    const SymmetricTensor solvent = solvent_stress(physics.viscosity, configuration_.box.velocity_gradient());
+    by_term_.add_stress("solvent", solvent);
+    by_term_.add_stress(
+        "stresslet",
+        stresslet(solid_volume(configuration_.particles) / configuration_.box.volume(), solvent) +
+            varying_stresslet(configuration_.particles, configuration_.box, physics));
+  }
+
+  const Configuration& configuration_;
+  Terms terms_;
+  InstructionSet set_;
+  ByTerm by_term_;
+  std::vector<PairKind> kinds_;
+  NeighbourList list_;
+  SpringField springs_;
+  std::vector<NormalPair> noise_;  // of each pair
+  FlowAtCentres varying_;
+};
+
+}  // namespace
+
+Json evaluate_configuration(const Configuration& configuration) { return Evaluation(configuration).run(); }
+
+}  // namespace peclet::engine

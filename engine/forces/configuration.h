@@ -1,0 +1,46 @@
+// A single configuration to be evaluated: positions, velocities, springs and random vectors as given.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "contract/json.h"
+#include "contract/key_table.h"
+#include "engine/scene/scene.h"
+#include "engine/state/contact_history.h"
+#include "engine/terms/keyed_random.h"
+
+namespace peclet::engine {
+
+struct GivenPairNoise {
+  std::uint32_t first, second;
+  LatticeShift image;
+  NormalPair normals;  // theta, chi
+};
+
+struct GivenNoise {
+  double timestep = 0;
+  VectorField force, torque;  // unit normal vectors psi and phi of each particle
+  std::vector<GivenPairNoise> pairs;
+};
+
+struct Configuration {
+  Physics physics;
+  ParticleState particles;  // of unit density: masses do not enter forces
+  PeriodicCell box;
+  std::vector<HeldContact> springs;  // image: the shift added to the second particle's position as given
+  std::optional<GivenNoise> noise;
+  std::optional<double> advance;  // time by which the springs are to be advanced
+};
+
+const KeyTable& configuration_keys();
+
+// Throws InputError.
+Configuration read_configuration(const Json& document, const std::string& file);
+
+// Forces, torques and stress by term, and the advanced springs where asked for; schema/README.md describes
+// both documents. Throws std::invalid_argument when a particle interacts with its own image.
+Json evaluate_configuration(const Configuration& configuration);
+
+}  // namespace peclet::engine

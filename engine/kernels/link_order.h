@@ -1,0 +1,56 @@
+// The order of the rows of a system of links, in which no two rows of a level are coupled.
+//
+// Rows belong to the blocks of the list, block after block. Those of particles that have listed neighbours in
+// their own block only come first: the interior, which is eliminated block by block. The others, the
+// boundary, come after the interior of all blocks, level by level. Levels are colours, given one particle
+// after the other: the first that no listed neighbour has. Some six to ten serve any suspension, whatever its
+// size. Particles keep their order within a level.
+//
+// A link between two blocks has a place of its own, whether its pair is near or not: so threads put links
+// there without waiting for each other.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/kernels/link_kernels.h"
+#include "engine/state/neighbour_list.h"
+
+namespace peclet::engine {
+
+class LinkOrder {
+ public:
+  // Of all pairs of the list.
+  void arrange(const NeighbourList& list, std::size_t particles, int threads = 1);
+
+  LinkPlaces places() { return {row_.data(), level_.data(), levels_.data(), next_.data(), crossing_.data()}; }
+  const std::vector<LinkBlock>& blocks() const { return blocks_; }
+  const std::vector<LinkLevel>& levels() const { return levels_; }
+  std::uint32_t boundary_levels() const { return boundary_levels_; }
+  const std::vector<IncomingLink>& incoming() const { return incoming_; }
+  const std::vector<std::uint32_t>& row() const { return row_; }      // of each particle
+  std::uint32_t inner_groups() const { return inner_groups_; }        // room for so many
+  std::uint32_t crossing_groups() const { return crossing_groups_; }  // after those
+
+ private:
+  using Colour = std::uint16_t;
+
+  void find_boundary(const NeighbourList& list, std::size_t particles);
+  Colour colour(std::span<const Pair> pairs, bool boundary, std::uint32_t begin, std::uint32_t end);
+  void number_rows(const NeighbourList& list, const std::vector<Colour>& interior_levels, int threads);
+  void number_rows(const LinkBlock& block);
+  void make_room(const NeighbourList& list, int threads);
+  void place_crossing_links(const NeighbourList& list);
+
+  std::vector<std::uint8_t> in_boundary_;  // of each particle
+  std::vector<Colour> colour_;             // within interior or boundary
+  std::vector<std::uint32_t> row_, level_, next_;
+  std::vector<LinkBlock> blocks_;
+  std::vector<LinkLevel> levels_;
+  std::uint32_t boundary_levels_ = 0, inner_groups_ = 0, crossing_groups_ = 0;
+  std::vector<CrossingLink> crossing_;
+  std::vector<IncomingLink> incoming_;
+};
+
+}  // namespace peclet::engine

@@ -1,0 +1,260 @@
+// All terms of one pair, or of several side by side, each on its own: the physics of the pair loop as a pure
+// function.
+#pragma once
+
+#include "engine/terms/conservative.h"
+#include "engine/terms/contact.h"
+#include "engine/terms/friction.h"
+#include "engine/terms/laws.h"
+#include "engine/terms/pair_resistance.h"
+#include "engine/terms/rolling.h"
+#include "engine/terms/step_resistance.h"
+#include "engine/terms/strained_lubrication.h"
+
+namespace peclet::engine {
+
+// Everything that is the same for all pairs of two radii.
+struct PairKind {
+  double radius_first, radius_second, sum_of_radii;
+  double range;              // centre distance beyond which every term is zero
+  double listed_range;       // up to which observables want to see the pair too
+  double lubrication_range;  // of the centres; 0 without lubrication
+  double smaller_radius;
+  double reduced_diameter;  // 2 a_i a_j / (a_i + a_j)
+  LubricatedGap gap;        // where there is lubrication
+  ResistanceConstants resistance;
+  RootConstants roots;
+  StrainLengths strain;
+  ConservativeLaws conservative;
+};
+
+// What is the same for all pairs of one evaluation.
+struct PairParameters {
+  ContactParameters contact;
+  double spring_timestep = 0;  // by which the springs advance; 0: the springs are taken as they are
+  // Forces that depend on the distance are those at the distance that the present motion leads to in this
+  // time; their direction stays.
+  double approach_time = 0;
+  double felt_share = 1;       // of the springs' advance, after which they push
+  double noise_amplitude = 0;  // sqrt(2 kT / dt)
+  StepResistance step_resistance = {};
+  FlowFrame flow = {};
+};
+
+// How much farther than its range a pair of this kind may be and still feel something.
+inline double kind_reach(const PairParameters& parameters, const PairKind& kind) {
+  return parameters.step_resistance.reach(kind.gap);
+}
+
+template <class Real>
+struct PairSpringsOf {
+  Vector3Of<Real> tangential, rolling;
+  Real slides{};  // 1 or 0
+};
+
+template <class Real>
+struct PairNormalsOf {
+  Vector3Of<Real> theta, chi;
+};
+
+// Absent terms stay zero and cost nothing: a sum over a zero constant is folded away by the compiler.
+template <class Real>
+struct TermLoadsOf {
+  PairLoadOf<Real> lubrication, noise, friction, rolling;
+  Vector3Of<Real> contact_normal, contact_damping;
+  Vector3Of<Real> conservative;  // of all conservative laws
+  Real overlap{};                // that contact forces belong to
+};
+
+// Advances a spring where spheres touch, else forgets it. Returns the one that pushes, on its way between the
+// two.
+template <class Real, class Mask>
+PECLET_ALWAYS_INLINE Vector3Of<Real> advance_spring(const PairParameters& parameters, const Mask& touching,
+                                                    const Vector3Of<Real>& normal,
+                                                    const Vector3Of<Real>& stretch, const Real& longest,
+                                                    Vector3Of<Real>& spring) {
+  const Vector3Of<Real> before = spring;
+  spring = where(touching, advanced_spring(before, normal, stretch, longest));
+  if (parameters.felt_share == 1) {
+    return spring;
+  }
+  const Vector3Of<Real> part = Real{parameters.felt_share} * stretch;
+  return where(touching, advanced_spring(before, normal, part, longest));
+}
+
+// The same for the spring of friction that is less while contacts slide.
+template <class Real, class Mask>
+PECLET_ALWAYS_INLINE Vector3Of<Real> advance_sliding_spring(const PairParameters& parameters,
+                                                            const Mask& touching, const Real& overlap,
+                                                            const Vector3Of<Real>& normal,
+                                                            const Vector3Of<Real>& stretch,
+                                                            PairSpringsOf<Real>& springs) {
+  const ContactParameters& contact = parameters.contact;
+  const Vector3Of<Real> before = springs.tangential;
+  const SpringLimitsOf<Real> limits = sliding_limits(contact, overlap, springs.slides);
+  Real length;
+  springs.tangential = where(touching, advanced_spring(before, normal, stretch, limits, length));
+  springs.slides = select(touching, slides_after(contact, overlap, length, limits), Real{0.0});
+  if (parameters.felt_share == 1) {
+    return springs.tangential;
+  }
+  const Vector3Of<Real> part = Real{parameters.felt_share} * stretch;
+  return where(touching, advanced_spring(before, normal, part, limits, length));
+}
+
+template <Terms terms, class Real>
+PECLET_ALWAYS_INLINE void add_contact_terms(const PairParameters& parameters, const PairKind& kind,
+                                            const PairGeometryOf<Real>& pair,
+                                            const PairMotionOf<Real>& motion, PairSpringsOf<Real>& springs,
+                                            TermLoadsOf<Real>& loads) {
+  const ContactParameters& contact = parameters.contact;
+  const auto touching = pair.overlap() > 0.0;
+  loads.contact_normal = where(touching, contact_normal_force(contact.normal_stiffness, pair));
+  if constexpr (terms.damping) {
+    loads.contact_damping = where(touching, contact_damping_force(contact.normal_damping, pair, motion));
+  }
+  if constexpr (terms.friction) {
+    const ContactLeversOf<Real> lever = contact_levers(kind.radius_first, kind.radius_second, pair);
+    const Vector3Of<Real> slip = Real{parameters.spring_timestep} * slip_velocity(lever, pair, motion);
+    Vector3Of<Real> felt;
+    if constexpr (terms.kinetic) {
+      felt = advance_sliding_spring(parameters, touching, pair.overlap(), pair.normal, slip, springs);
+    } else {
+      const Real longest = longest_spring(contact, pair.overlap());
+      felt = advance_spring(parameters, touching, pair.normal, slip, longest, springs.tangential);
+    }
+    loads.friction = friction_load(contact.tangential_stiffness, felt, lever, pair);
+    if constexpr (terms.rolling) {
+      const Vector3Of<Real> turn =
+          Real{parameters.spring_timestep} * rolling_velocity(kind.reduced_diameter, pair, motion);
+      const Real longest_turn = longest_rolling_spring(contact, pair.overlap());
+      const Vector3Of<Real> felt_turn =
+          advance_spring(parameters, touching, pair.normal, turn, longest_turn, springs.rolling);
+      loads.rolling = rolling_load(contact.rolling_stiffness, felt_turn, kind.reduced_diameter, pair);
+    }
+  }
+}
+
+template <class Real>
+struct NoVariation {
+  PairVariationOf<Real> operator()() const { return {}; }
+};
+
+// Every pair lies within kind.range. `normals()` returns theta and chi and is called only where a pair is
+// lubricated and there is noise. `of_law(part, force)` is told the force of each conservative law that acts
+// on any of the pairs. `variation()` returns what varies of the flow at the spheres, where any of it is asked
+// for. The springs advance with the motion and are forgotten when the contact opens.
+template <Terms terms, class Real, class Normals, class OfLaw, class Variation = NoVariation<Real>>
+PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& parameters, const PairKind& kind,
+                                                  const PairGeometryOf<Real>& pair,
+                                                  const PairMotionOf<Real>& motion,
+                                                  PairSpringsOf<Real>& springs, Normals&& normals,
+                                                  OfLaw&& of_law, Variation&& variation = {}) {
+  TermLoadsOf<Real> loads;
+  PairGeometryOf<Real> ahead = pair;
+  if constexpr (terms.contact || terms.conservative) {
+    ahead.distance += parameters.approach_time * dot(motion.velocity, pair.normal);
+  }
+  if constexpr (terms.lubrication) {
+    if (any(pair.distance <= kind.lubrication_range + kind_reach(parameters, kind))) {
+      // Noise belongs to the resistance as it is.
+      const ResistanceModesOf<Real> modes = resistance_modes<terms.strained>(
+          terms.noise ? StepResistance{} : parameters.step_resistance, kind.gap, kind.lubrication_range, pair,
+          dot(motion.velocity, pair.normal));
+      const PairResistanceOf<Real> whole = pair_resistance(kind.resistance, modes);
+      PairResistanceOf<Real> resistance = whole;
+      if constexpr (terms.noise) {
+        resistance = resistance_beside_noise<terms.strained>(kind.resistance, parameters.step_resistance,
+                                                             kind.gap, kind.lubrication_range, pair, whole);
+      }
+      if constexpr (terms.strained) {
+        loads.lubrication =
+            strained_lubrication_load(resistance, parameters.flow, kind.strain, pair, motion,
+                                      parameters.flow.varies ? variation() : PairVariationOf<Real>{});
+      } else {
+        loads.lubrication = lubrication_load(resistance, pair, motion);
+      }
+      if constexpr (terms.noise) {
+        const PairNormalsOf<Real> drawn = normals();
+        loads.noise =
+            pair_noise_load(parameters.noise_amplitude, resistance_roots(kind.roots, whole.squeeze, modes),
+                            pair, drawn.theta, drawn.chi);
+      }
+    }
+  }
+  if constexpr (terms.conservative) {
+    for_each_conservative_law(
+        [&](StressTerm part, const auto& law) PECLET_INLINE_LAMBDA {
+          // The same for all pairs of a run. Laws after the first one are placed out of the way of kernels
+          // that have it alone.
+          if (part != StressTerm::repulsion) {
+            if (__builtin_expect(!(law.range > 0), 1)) return;
+          }
+          const auto within = ahead.distance < law.range;
+          if (!any(within)) [[unlikely]]
+            return;
+          const Vector3Of<Real> force = where(within, conservative_force(law, ahead));
+          loads.conservative += force;
+          of_law(part, force);
+        },
+        kind.conservative);
+  }
+  if constexpr (terms.contact) {
+    loads.overlap = ahead.overlap();
+    if (any(ahead.overlap() > 0.0)) {
+      add_contact_terms<terms>(parameters, kind, ahead, motion, springs, loads);
+    } else if constexpr (terms.friction) {
+      springs = {};
+    }
+  }
+  return loads;
+}
+
+// How conservative laws and contacts couple the motions of a pair, in the form of a resistance.
+//
+// By what the parts are multiplied: resistances, stiffnesses along n, those of tangential and rolling
+// springs.
+struct CouplingWeights {
+  double resistance, normal, tangential;
+};
+
+// The part of tangential and rolling springs that holds; the rest slides.
+template <class Real>
+struct HeldSprings {
+  Real tangential, rolling;
+};
+
+// Adds the springs of friction where spheres touch, times `weight`.
+template <class Real>
+PECLET_ALWAYS_INLINE void add_springs(PairResistanceOf<Real>& sum, const Terms& terms,
+                                      const ContactParameters& contact, const PairKind& kind,
+                                      const PairGeometryOf<Real>& pair, double weight,
+                                      const HeldSprings<Real>& part) {
+  const double turning = rolling_coupling(contact.rolling_stiffness, kind.reduced_diameter);
+  const Real sliding = contact.tangential_stiffness * part.tangential;
+  const Real rolling = terms.rolling ? turning * part.rolling : Real{0.0};
+  add_scaled(
+      sum, select(pair.overlap() > 0.0, Real{weight}, Real{0.0}),
+      tangential_coupling(contact_levers(kind.radius_first, kind.radius_second, pair), sliding, rolling));
+}
+
+// Adds to `sum`, which has the resistance of lubrication times its weight. The distance is the one that
+// forces are evaluated at. `held()` is called where spheres touch and have friction.
+template <class Real, class Held>
+PECLET_ALWAYS_INLINE void add_stiffness(PairResistanceOf<Real>& sum, const Terms& terms,
+                                        const ContactParameters& contact, const PairKind& kind,
+                                        const PairGeometryOf<Real>& pair, const CouplingWeights& weights,
+                                        Held&& held) {
+  if (terms.conservative) {
+    sum.squeeze += positive_stiffness(kind.conservative, pair, weights.normal);
+  }
+  const auto touching = pair.overlap() > 0.0;
+  if (!terms.contact || !any(touching)) {
+    return;
+  }
+  sum.squeeze +=
+      select(touching, Real{contact_coupling(contact, weights.normal, weights.resistance)}, Real{0.0});
+  if (terms.friction) add_springs(sum, terms, contact, kind, pair, weights.tangential, held());
+}
+
+}  // namespace peclet::engine

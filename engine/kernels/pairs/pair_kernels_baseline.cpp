@@ -1,7 +1,0 @@
-#include "engine/kernels/pairs/pair_kernel_table.h"
-
-namespace peclet::engine {
-
-constinit const PairKernelTable baseline_pair_kernels = pair_kernels_of<double>();
-
-}  // namespace peclet::engine

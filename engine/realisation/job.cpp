@@ -1,0 +1,332 @@
+#include "engine/realisation/job.h"
+
+#include <fmt/format.h>
+#include <omp.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+
+#include "contract/durable_file.h"
+#include "contract/errors.h"
+#include "contract/guarded_file.h"
+#include "contract/key_table.h"
+#include "contract/provenance.h"
+#include "contract/sha256.h"
+#include "engine/observables/scene_reading.h"
+#include "engine/realisation/growing_file.h"
+#include "engine/realisation/packing.h"
+#include "engine/realisation/placed_spheres.h"
+
+namespace peclet::engine {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Clock = std::chrono::steady_clock;
+
+// Fewer particles per thread than this lose more by waiting for each other than they gain; so do more threads
+// than processors. The result is the same.
+constexpr std::size_t fewest_particles_per_thread = 4000;
+
+// How soon a checkpoint is tried again that did not fit onto the disk.
+constexpr std::chrono::duration<double> when_full{5};
+
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// What this realisation has cost, in this process and in those before it.
+class Meter {
+ public:
+  explicit Meter(Spent before) : before_(before), processor_(processor_seconds()), start_(Clock::now()) {}
+
+  Spent spent() const {
+    return {before_.processor_seconds + processor_seconds() - processor_,
+            before_.wall_seconds + std::chrono::duration<double>(Clock::now() - start_).count()};
+  }
+  void start_after(const Spent& earlier) { before_ = earlier; }
+
+ private:
+  Spent before_;
+  double processor_;
+  Clock::time_point start_;
+};
+
+Progress progress_of(const Simulation& simulation) {
+  const std::uint64_t step = simulation.system().step;
+  return {step < simulation.schedule().equilibration ? "equilibration" : "production", step,
+          simulation.schedule().total(), simulation.system().box.net_strain()};
+}
+
+class Job {
+ public:
+  Job(const JobSpecification& job, const JobEvents& events)
+      : job_(job),
+        events_(events),
+        meter_(Spent{}),
+        scene_(read_scene(job.scene, job.scene_name)),
+        schedule_(make_schedule(scene_, job.scene_name)),
+        identity_{sha256(canonical_json(scene_.document)), job.header.seed,
+                  provenance().at("binary_sha256").get<std::string>(), motion_of(scene_, schedule_)} {
+    if (!job.extended.empty()) plan_extension();
+  }
+
+  std::optional<Json> run() {
+    if (job_.files.empty()) {
+      if (scene_.final_configuration || scene_.final_checkpoint) refuse_files("/files", "must be left out");
+      if (scene_.observables.contains("trajectory")) refuse_files("/observables", "must not list trajectory");
+    }
+    std::optional<Ending> ending;
+    try {
+      begin();
+      ending = loop();
+    } catch (const PackingError& error) {
+      return make_unpacked_result(job_.header, scene_, schedule_, error.what(), meter_.spent());
+    }
+    if (!ending) {
+      if (!save(job_.checkpoint))
+        events_.remark("no room for a checkpoint: what came after the last one is lost");
+      return std::nullopt;
+    }
+    std::string state;
+    if (!save_state(*ending, state)) return std::nullopt;
+    Json result = make_result(job_.header, scene_, *simulation_, *ending, state, meter_.spent());
+    const auto leave_final = [&](const fs::path& path) {
+      write_durably(path, extended_xyz(simulation_->system()));
+    };
+    const auto leave_trajectory = [&](const fs::path& path) {
+      frames_file_->take(*simulation_->frames());
+      frames_file_->finish(*simulation_->frames(), path);
+    };
+    if (scene_.final_configuration && is_measured(ending->cause)) {
+      if (!leave("final.xyz", leave_final, result)) return std::nullopt;
+    }
+    const auto leave_checkpoint = [&](const fs::path& path) {
+      write_checkpoint(path, identity_, meter_.spent(), *simulation_);
+    };
+    if (scene_.final_checkpoint && ending->cause == Ending::Cause::completed) {
+      if (!leave("final.checkpoint", leave_checkpoint, result)) return std::nullopt;
+    }
+    if (frames_file_ && !leave("trajectory.gsd", leave_trajectory, result)) return std::nullopt;
+    return result;
+  }
+
+ private:
+  [[noreturn]] void refuse_files(const char* pointer, const char* rule) const {
+    throw InputError(job_.scene_name, pointer, shortened(scene_.document.at(Json::json_pointer(pointer))),
+                     std::string(rule) +
+                         " where files cannot be left: `peclet-engine run` needs --output with the name of a "
+                         "file, beside which they are put");
+  }
+
+  // Tries until there is room. False: nobody wants to wait for it. Without a checkpoint, from which the job
+  // could go on another time, that is an error.
+  template <class Write>
+  bool write_patiently(const Write& write) const {
+    while (true) {
+      try {
+        write();
+        return true;
+      } catch (const NoRoomError& error) {
+        if (events_.wait_for_room(error)) continue;
+        if (job_.checkpoint.empty()) throw;
+        return false;
+      }
+    }
+  }
+
+  // A file beside the result, which lists it: `write` puts it there, durably. False: there was no room.
+  template <class Write>
+  bool leave(const std::string& name, const Write& write, Json& result) const {
+    const fs::path path = job_.files + name;
+    if (!write_patiently([&] { write(path); })) return false;
+    result["files"].push_back(
+        {{"name", name}, {"bytes", fs::file_size(path)}, {"sha256", sha256_of_file(path)}});
+    return true;
+  }
+
+  void construct() {
+    const std::size_t useful = std::max<std::size_t>(1, scene_.particles.count / fewest_particles_per_thread);
+    const int allowed = std::min(job_.threads, omp_get_num_procs());
+    const int threads = static_cast<int>(std::min(useful, static_cast<std::size_t>(allowed)));
+    simulation_ = std::make_unique<Simulation>(scene_, schedule_, job_.header.seed, threads, job_.scene_name);
+  }
+
+  // Where its frames go, as far as it has come.
+  void open_frames_file() {
+    const gsd::Frames* const frames = simulation_->frames();
+    if (frames == nullptr) return;
+    frames_file_.reset();
+    if (job_.checkpoint.empty()) {
+      frames_file_.emplace(fmt::format("{}trajectory.gsd.{}.tmp", job_.files, ::getpid()),
+                           /*has_name=*/false);
+    } else {
+      frames_file_.emplace(job_.checkpoint.string() + "@growing");
+    }
+    frames_file_->go_on(*frames);
+  }
+
+  void begin() {
+    construct();
+    if (!job_.checkpoint.empty() && !kind_of(job_.checkpoint).empty() && resume()) {
+      return;
+    }
+    open_frames_file();
+    if (!job_.extended.empty()) {
+      extend_checkpoint(job_.extended, identity_, *simulation_);
+      return;
+    }
+    std::uint64_t made = 0;
+    events_.progress({"packing", made, 0, 0});
+    if (scene_.start) {
+      const PlacedSpheres placed = placed_spheres(scene_, job_.header.seed, job_.scene_name);
+      simulation_->start(placed.system, placed.in_motion);
+    } else {
+      simulation_->start([&] { events_.progress({"packing", ++made, 0, 0}); });
+    }
+  }
+
+  // The window begins where the checkpoint is, if not later. A run whose window is another one than its scene
+  // says is not resumed as one of the scene.
+  void plan_extension() {
+    const auto progressed = [&] {
+      try {
+        return read_progress(job_.extended, identity_, scene_.particles.count);
+      } catch (const CheckpointError& error) {
+        throw InputError("--extend", "", "", error.what());
+      }
+    }();
+    const std::uint64_t total = schedule_.total();
+    if (progressed.step + count_of_blocks > total) {
+      throw InputError(
+          job_.scene_name, "/duration", fmt::format("{} steps", total),
+          fmt::format("must be {} steps at least: {} that the checkpoint has made, and one for each "
+                      "block of a window",
+                      progressed.step + count_of_blocks, progressed.step));
+    }
+    if (progressed.step > schedule_.equilibration) {
+      refuse_part_of_cycle(progressed.step);
+      schedule_.equilibration = progressed.step;
+      schedule_.production = total - progressed.step;
+      identity_.scene_sha256 += fmt::format(" from step {}", progressed.step);
+    }
+    meter_.start_after(progressed.spent);
+  }
+
+  // Moduli are those of whole cycles.
+  void refuse_part_of_cycle(std::uint64_t step) const {
+    const std::optional<double> period = scene_.physics.flow.period();
+    if (!period || !scene_.observables.contains("oscillation")) return;
+    const auto of_cycle = static_cast<std::uint64_t>(std::llround(*period / schedule_.timestep));
+    if (step % of_cycle == 0) return;
+    throw InputError(
+        "--extend", "", "",
+        fmt::format("{}: stands within a cycle, after {} of its {} steps; must be a checkpoint of "
+                    "whole cycles, such as final.checkpoint",
+                    job_.extended.string(), step % of_cycle, of_cycle));
+  }
+
+  bool resume() {
+    try {
+      const Spent spent = read_checkpoint(job_.checkpoint, identity_, *simulation_);
+      open_frames_file();
+      meter_.start_after(spent);
+      return true;
+    } catch (const CheckpointError& error) {
+      if (!job_.restart_on_bad_checkpoint) {
+        throw;
+      }
+      // Results depend on scene, seed and binary alone, so starting again only costs time.
+      events_.remark(std::string(error.what()) + ": set aside, the realisation starts again");
+      fs::rename(job_.checkpoint, free_name(job_.checkpoint.string() + ".rejected"));
+      construct();
+      return false;
+    }
+  }
+
+  // Until the end, or until a drain is requested.
+  std::optional<Ending> loop() {
+    // Some 65 000 particle-steps are about ten milliseconds.
+    const std::uint64_t stride = std::max<std::uint64_t>(1, 65536 / scene_.particles.count);
+    Clock::time_point next_checkpoint =
+        Clock::now() +
+        std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(job_.checkpoint_seconds));
+    while (true) {
+      if (std::optional<Ending> ending = simulation_->advance(stride)) {
+        return ending;
+      }
+      events_.progress(progress_of(*simulation_));
+      if (!relieve_memory()) return std::nullopt;
+      if (job_.checkpoint.empty()) {
+        continue;
+      }
+      if (events_.drain_requested()) {
+        return std::nullopt;
+      }
+      if (Clock::now() > next_checkpoint) next_checkpoint = Clock::now() + checkpoint_on_the_way();
+    }
+  }
+
+  // Frames that have come together go to their file. False: there is no room, and nobody wants to wait.
+  bool relieve_memory() {
+    constexpr std::size_t many = std::size_t{8} << 20;
+    if (!frames_file_ || simulation_->frames()->pending().size() < many) return true;
+    return write_patiently([this] { frames_file_->take(*simulation_->frames()); });
+  }
+
+  // Frames are on disk before the checkpoint that knows of them.
+  void put_checkpoint(const fs::path& path) {
+    if (frames_file_) {
+      frames_file_->take(*simulation_->frames());
+      frames_file_->synchronise();
+    }
+    write_checkpoint(path, identity_, meter_.spent(), *simulation_);
+  }
+
+  // Returns when the next one is due. Want of room is no reason to give up work that is in memory.
+  Clock::duration checkpoint_on_the_way() {
+    const std::chrono::duration<double> interval(job_.checkpoint_seconds);
+    try {
+      put_checkpoint(job_.checkpoint);
+      return std::chrono::duration_cast<Clock::duration>(interval);
+    } catch (const NoRoomError& error) {
+      events_.skipped(error);
+      return std::chrono::duration_cast<Clock::duration>(std::min(interval, when_full));
+    }
+  }
+
+  // False: there is no room, and nobody wants to wait for it.
+  bool save(const fs::path& path) {
+    return write_patiently([&] { put_checkpoint(path); });
+  }
+
+  // A realisation that broke off leaves its last state where people can look at it: `name` in the folder of
+  // failures. False: there was no room.
+  bool save_state(const Ending& ending, std::string& name) {
+    if (is_measured(ending.cause) || job_.failures.empty()) return true;
+    name = job_.header.point.substr(0, 12) + "-" + std::to_string(job_.header.seed) + ".state";
+    return save(job_.failures / name);
+  }
+
+  const JobSpecification& job_;
+  const JobEvents& events_;
+  Meter meter_;
+  Scene scene_;
+  Schedule schedule_;
+  CheckpointIdentity identity_;
+  std::unique_ptr<Simulation> simulation_;
+  std::optional<GrowingFile> frames_file_;  // where there are frames
+};
+
+}  // namespace
+
+std::optional<Json> run_job(const JobSpecification& job, const JobEvents& events) {
+  return Job(job, events).run();
+}
+
+}  // namespace peclet::engine

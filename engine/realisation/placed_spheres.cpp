@@ -1,0 +1,202 @@
+#include "engine/realisation/placed_spheres.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <numbers>
+#include <system_error>
+#include <vector>
+
+#include "contract/errors.h"
+#include "contract/named_files.h"
+#include "contract/sha256.h"
+#include "contract/text.h"
+#include "engine/realisation/packing.h"
+#include "engine/scene/start_block.h"
+#include "engine/snapshots/snapshot.h"
+
+namespace peclet::engine {
+namespace {
+
+// Half of the sixth digit of a length that begins with 1: files of other programs have no more digits.
+constexpr double rounding = 5e-6;
+
+bool is_near(double a, double b, double scale) { return std::abs(a - b) <= rounding * scale; }
+
+// Whether the radii are alike in some order.
+bool are_the_same(std::vector<double> found, std::vector<double> wanted) {
+  std::ranges::sort(found);
+  std::ranges::sort(wanted);
+  return std::ranges::equal(found, wanted, [](double a, double b) { return is_near(a, b, b); });
+}
+
+class Placing {
+ public:
+  Placing(const Scene& scene, std::string file)
+      : scene_(scene), start_(*scene.start), file_(std::move(file)) {}
+
+  PlacedSpheres place(std::uint64_t seed) const {
+    const std::string path = start_.is_list ? listed(seed) : start_.path;
+    if (!start_.is_list) require_hash(path, start_.sha256, "/start/sha256");
+    const SnapshotFile frames(path);
+    const Snapshot snapshot = frames.read(frames.index_of(start_.frame));
+    PlacedSpheres placed;
+    placed.system.particles = make_particles(radii_of(snapshot), species_densities(scene_.particles));
+    placed.system.box = box_of(snapshot);
+    placed.in_motion = !snapshot.velocity.empty() && !snapshot.spin.empty();
+    ParticleState& particles = placed.system.particles;
+    for (std::size_t i = 0; i < snapshot.count(); ++i) {
+      particles.position.set(i, snapshot.position[i]);
+      if (!placed.in_motion) continue;
+      particles.velocity.set(i, snapshot.velocity[i]);
+      particles.angular_velocity.set(i, snapshot.spin[i]);
+    }
+    return placed;
+  }
+
+  // Throws InputError if the list has fewer lines than `seeds`.
+  void require_lines(std::int64_t seeds) const {
+    if (!start_.is_list) return;
+    const auto lines = static_cast<std::int64_t>(lines_of_list().size());
+    if (lines >= seeds) return;
+    refuse(
+        "/start/list", start_.path,
+        fmt::format("must have a line for each of the {} seeds that /realisations/maximum allows; it has {}",
+                    seeds, lines));
+  }
+
+  // Throws InputError if two lines of the list have one hash.
+  void require_different_files() const {
+    std::map<std::string, std::size_t> seeds;
+    const std::vector<std::string> lines = lines_of_list();
+    for (std::size_t seed = 0; seed < lines.size(); ++seed) {
+      const auto [first, is_new] = seeds.emplace(lines[seed].substr(0, 64), seed);
+      if (is_new || !is_sha256(first->first)) continue;
+      refuse(
+          "/start/list", lines[seed],
+          fmt::format("must have another file for each seed without noise, but seed {} begins at a file of "
+                      "the same hash as seed {}: both would be one realisation",
+                      seed, first->second));
+    }
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& pointer, const std::string& value,
+                           const std::string& rule) const {
+    throw InputError(file_, pointer, value, rule);
+  }
+
+  void require_hash(const std::string& path, const std::string& expected, const std::string& pointer) const {
+    std::error_code impossible;  // such a name is not there either
+    if (!std::filesystem::is_regular_file(path, impossible))
+      refuse(start_.pointer(), path, "must be a file that is there");
+    const std::string found = sha256_of_file(path);
+    if (found != expected) {
+      refuse(pointer, expected, fmt::format("must be that of {}, which is now {}", path, found));
+    }
+  }
+
+  // Returns the lines of the list, which has to have its hash, without blank ones at its end.
+  std::vector<std::string> lines_of_list() const {
+    require_hash(start_.path, start_.sha256, "/start/sha256");
+    const std::string text = read_input(start_.path);
+    std::string_view rest = without_byte_order_mark(text);
+    std::vector<std::string> lines;
+    while (!is_blank(rest)) lines.emplace_back(take_line(rest));
+    return lines;
+  }
+
+  // Returns the file of a line, "HASH  PATH" or "HASH *PATH", which has to have this hash.
+  std::string listed(std::uint64_t seed) const {
+    const std::vector<std::string> lines = lines_of_list();
+    if (seed >= lines.size()) {
+      refuse("/start/list", start_.path,
+             fmt::format("must have a line for seed {}, the {}th", seed, seed + 1));
+    }
+    const std::string& line = lines[seed];
+    const bool is_good = line.size() > 67 && is_sha256(line.substr(0, 64)) && line[64] == ' ' &&
+                         (line[65] == ' ' || line[65] == '*') && line[66] == '/';
+    if (!is_good) {
+      refuse("/start/list", line, "must be lines of sha256sum, each with an absolute path");
+    }
+    const std::string path = line.substr(66);
+    require_hash(path, line.substr(0, 64), "/start/list");
+    return path;
+  }
+
+  PeriodicCell box_of(const Snapshot& snapshot) const {
+    const Vector3 box = box_lengths(scene_, cube_edge(scene_.particles, scene_.volume_fraction));
+    const auto& [a, b, c] = snapshot.lattice.column;
+    const std::string pointer = scene_.document.contains("addition") ? "/addition" : "/volume_fraction";
+    const std::string fraction = Json(scene_.volume_fraction).dump();
+    const auto is_zero = [&](double x) { return is_near(x, 0, box.x); };
+    if (!(is_zero(a.y) && is_zero(a.z) && is_zero(b.z) && is_zero(c.x) && is_zero(c.y))) {
+      refuse(pointer, fraction,
+             fmt::format("must be of a box sheared along x, and the start has a cell with the edges ({:.6g}, "
+                         "{:.6g}, {:.6g}), ({:.6g}, {:.6g}, {:.6g}) and ({:.6g}, {:.6g}, {:.6g})",
+                         a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z));
+    }
+    if (!is_near(a.x, box.x, box.x) || !is_near(b.y, box.y, box.y) || !is_near(c.z, box.z, box.z)) {
+      double solid = 0;
+      for (const double radius : species_radii(scene_.particles)) {
+        solid += 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+      }
+      refuse(pointer, fraction,
+             fmt::format("makes a box of {:.9g} by {:.9g} by {:.9g}, and the cell of the start is {:.9g} by "
+                         "{:.9g} by {:.9g}: must be as long within {:g} of each; in that cell the volume "
+                         "fraction is {:.8g}",
+                         box.x, box.y, box.z, a.x, b.y, c.z, rounding, solid / (a.x * b.y * c.z)));
+    }
+    return PeriodicCell(box, scene_.physics.flow.deformation().velocity_gradient(0), b.x);
+  }
+
+  std::vector<double> radii_of(const Snapshot& snapshot) const {
+    const std::vector<double> radius = species_radii(scene_.particles);
+    if (snapshot.count() != radius.size()) {
+      refuse("/particles/count", std::to_string(radius.size()),
+             fmt::format("must be {}, the number of spheres of the start", snapshot.count()));
+    }
+    if (!snapshot.has_sizes) {
+      refuse(start_.pointer(), start_.path,
+             "must have particles/diameter, and has none: HOOMD-blue 4 writes diameters if its "
+             "GSD.write_diameter is True");
+    }
+    for (std::size_t i = 0; i < radius.size(); ++i) {
+      if (is_near(snapshot.radius[i], radius[i], radius[i])) continue;
+      refuse("/particles/species", fmt::format("sphere {} of radius {}", i, radius[i]),
+             fmt::format("must be as in the start, where its radius is {:.8g}{}", snapshot.radius[i],
+                         are_the_same(snapshot.radius, radius)
+                             ? ": the start has the same radii in another order, and they must follow each "
+                               "other as the species do, from the first one on"
+                             : ""));
+    }
+    return radius;
+  }
+
+  const Scene& scene_;
+  const Start& start_;
+  std::string file_;
+};
+
+}  // namespace
+
+PlacedSpheres placed_spheres(const Scene& scene, std::uint64_t seed, const std::string& file) {
+  return Placing(scene, file).place(seed);
+}
+
+void check_start_of_campaign(const Scene& scene, const std::string& file, std::int64_t seeds) {
+  if (!scene.start->is_list && !(scene.physics.thermal_energy > 0)) {
+    throw InputError(
+        file, "/start/file", scene.start->path,
+        "must be a /start/list without noise: every seed of a campaign would be the same realisation");
+  }
+  const Placing placing(scene, file);
+  placing.require_lines(seeds);
+  placing.place(0);
+  if (scene.start->is_list && !(scene.physics.thermal_energy > 0)) placing.require_different_files();
+}
+
+}  // namespace peclet::engine

@@ -1,0 +1,267 @@
+#include "engine/realisation/serve.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "contract/durable_file.h"
+#include "contract/errors.h"
+#include "contract/frames.h"
+#include "contract/key_table.h"
+#include "contract/sha256.h"
+#include "engine/integrators/derived_groups.h"
+#include "engine/observables/scene_reading.h"
+#include "engine/realisation/job.h"
+#include "engine/realisation/placed_spheres.h"
+#include "engine/realisation/result.h"
+#include "engine/realisation/schedule.h"
+
+namespace peclet::engine {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// How often a running job looks at the socket.
+constexpr std::chrono::milliseconds attention{100};
+
+// How soon a file is tried again that did not fit onto the disk, and how often when the engine is to leave.
+constexpr std::chrono::seconds until_next_try{1};
+constexpr int last_tries = 5;
+
+// A log that cannot be written harms no job.
+void log_line(const std::string& text) {
+  std::fputs((text + "\n").c_str(), stderr);
+  std::fflush(stderr);
+}
+
+class Worker {
+ public:
+  explicit Worker(int descriptor) : channel_(descriptor) {}
+
+  int run() {
+    channel_.send({{"type", "hello"},
+                   {"protocol", 1},
+                   {"program", "peclet-engine"},
+                   {"engine", engine_identity()},
+                   {"ahead", true},
+                   {"scene_schema", scene_keys().json_schema("scene.schema.json")},
+                   {"derived", names_of_groups()}});
+    Json message;
+    while (!leave_) {
+      if (waiting_job_) {
+        message = *std::exchange(waiting_job_, std::nullopt);
+      } else if (channel_.receive(message, std::chrono::milliseconds(-1)) == FrameChannel::Status::closed) {
+        return 0;
+      }
+      try {
+        handle(message);
+      } catch (const Json::exception& error) {
+        throw FrameError(fmt::format("the message {} is incomplete: {}", shortened(message), error.what()));
+      }
+    }
+    return 0;
+  }
+
+ private:
+  // A peer that is gone is no error: what is finished lies in the spool, what is not goes to a checkpoint.
+  void tell(const Json& message) {
+    if (abandoned_) {
+      return;
+    }
+    try {
+      channel_.send(message);
+    } catch (const std::system_error&) {
+      abandoned_ = true;
+    }
+  }
+
+  void handle(const Json& message) {
+    const auto type = message.at("type").get<std::string>();
+    if (type == "validate") {
+      validate(message);
+    } else if (type == "job") {
+      run(message);
+    } else if (type == "drain" || type == "stop") {
+      leave_ = true;  // nothing is running
+    } else {
+      throw FrameError("a message of type \"" + type + "\" is none that this engine knows");
+    }
+  }
+
+  void validate(const Json& message) {
+    Json answer = {{"request", message.at("request")}};
+    try {
+      const Scene scene = read_scene(message.at("scene"), "scene");
+      const Schedule schedule = make_schedule(scene, "scene");
+      check_fit(scene, schedule, "scene");
+      if (scene.start) check_start_of_campaign(scene, "scene", message.value("seeds", std::int64_t{1}));
+      answer["type"] = "validated";
+      answer["timestep"] = schedule.timestep;
+      answer["steps"] = schedule.total();
+      answer["particles"] = scene.particles.count;
+      answer["derived"] = to_json(derived_groups(scene));
+      answer["observables"] = names_of_targets(scene, schedule);
+      answer["hints"] = target_hints(scene);
+      answer["warnings"] = Json::array();
+      for (const std::vector<Warning>& warnings : {scene_warnings(scene), warnings_before_run(scene)}) {
+        for (const Warning& warning : warnings)
+          answer["warnings"].push_back({{"code", warning.code}, {"message", warning.message}});
+      }
+    } catch (const InputError& error) {
+      answer["type"] = "refused";
+      answer["pointer"] = error.pointer();
+      answer["value"] = error.value();
+      answer["allowed"] = error.allowed();
+    }
+    tell(answer);
+  }
+
+  void run(const Json& message) {
+    const Json& id = message.at("job");
+    JobSpecification job;
+    job.header = {message.at("point").get<std::string>(), message.at("seed").get<std::uint64_t>()};
+    job.scene = message.at("scene");
+    job.scene_name = "scene";
+    job.threads = message.value("threads", 1);
+    job.checkpoint = message.at("checkpoint").get<std::string>();
+    job.checkpoint_seconds = message.value("checkpoint_seconds", job.checkpoint_seconds);
+    job.files = message.value("files", "");
+    job.failures = message.value("failures", "");
+    job.restart_on_bad_checkpoint = true;
+    told_to_leave_ = false;
+    tries_left_ = last_tries;
+    try {
+      const std::optional<Json> result = run_job(job, events(id, message.value("progress_seconds", 1.0)));
+      if (result && deliver(id, *result, message.at("spool").get<std::string>())) {
+        leave_ = told_to_leave_;  // nobody says it twice, except after "drained"
+      } else {
+        tell({{"type", "drained"}, {"job", id}, {"step", last_step_}});
+      }
+    } catch (const std::exception& error) {
+      log_line(error.what());
+      tell({{"type", "failed"}, {"job", id}, {"message", error.what()}});
+      leave_ = told_to_leave_;
+    }
+    leave_ = leave_ || abandoned_;
+  }
+
+  // False: there was no room for the result before the engine had to leave. Its seed will be run again.
+  bool deliver(const Json& id, const Json& result, const std::string& spool) {
+    const std::string text = result_text(result);
+    for (;;) {
+      try {
+        write_durably(spool, text);
+        break;
+      } catch (const NoRoomError& error) {
+        if (!wait_for_room(id, error)) return false;
+      }
+    }
+    tell({{"type", "result"}, {"job", id}, {"spool", spool}, {"sha256", sha256(text)}});
+    return true;
+  }
+
+  void say_no_room(const Json& id, const NoRoomError& error) {
+    tell({{"type", "no-room"}, {"job", id}, {"path", error.path().string()}, {"bytes", error.bytes()}});
+  }
+
+  // What is done stays in memory for as long as the runner wants to wait; only leaving has to end some time.
+  bool wait_for_room(const Json& id, const NoRoomError& error) {
+    if (told_to_leave_ || abandoned_) {
+      if (tries_left_-- == 0) {
+        log_line(error.what());
+        return false;
+      }
+      std::this_thread::sleep_for(until_next_try);
+      return true;
+    }
+    say_no_room(id, error);
+    hear(until_next_try);
+    return true;
+  }
+
+  JobEvents events(const Json& id, double progress_seconds) {
+    JobEvents events;
+    events.drain_requested = [this] { return drain_requested(); };
+    events.remark = log_line;
+    events.skipped = [this, id](const NoRoomError& error) { say_no_room(id, error); };
+    events.wait_for_room = [this, id](const NoRoomError& error) { return wait_for_room(id, error); };
+    events.progress = [this, id, progress_seconds](const Progress& progress) {
+      last_step_ = progress.phase == std::string_view("packing") ? 0 : progress.step;
+      const Clock::time_point now = Clock::now();
+      if (std::chrono::duration<double>(now - last_progress_).count() < progress_seconds) {
+        return;
+      }
+      last_progress_ = now;
+      tell({{"type", "progress"},
+            {"job", id},
+            {"phase", progress.phase},
+            {"step", progress.step},
+            {"steps", progress.steps},
+            {"strain", progress.strain}});
+    };
+    return events;
+  }
+
+  // Asked at every turn of the time loop; looks at the socket only now and then.
+  bool drain_requested() {
+    const Clock::time_point now = Clock::now();
+    if (now - last_look_ < attention) {
+      return told_to_leave_ || abandoned_;
+    }
+    last_look_ = now;
+    hear(std::chrono::milliseconds(0));
+    return told_to_leave_ || abandoned_;
+  }
+
+  // What the runner may have to say while a job is running.
+  void hear(std::chrono::milliseconds patience) {
+    Json message;
+    switch (channel_.receive(message, patience)) {
+      case FrameChannel::Status::nothing:
+        return;
+      case FrameChannel::Status::closed:
+        abandoned_ = true;  // the owner is gone: keep the work
+        return;
+      case FrameChannel::Status::message:
+        break;
+    }
+    const auto type = message.at("type").get<std::string>();
+    if (type == "stop") {
+      std::exit(0);
+    }
+    if (type == "job" && !waiting_job_ && !told_to_leave_) {
+      waiting_job_ = message;
+      hear(std::chrono::milliseconds(0));  // a drain may be behind it
+      return;
+    }
+    if (type != "drain") {
+      throw FrameError("a message of type \"" + type + "\" while a job is running" +
+                       (waiting_job_ ? " and another one waits" : ""));
+    }
+    told_to_leave_ = true;
+    waiting_job_.reset();  // the runner gives it to somebody else
+  }
+
+  FrameChannel channel_;
+  std::optional<Json> waiting_job_;  // came while another one ran
+  bool leave_ = false;
+  bool abandoned_ = false;
+  bool told_to_leave_ = false;  // by a drain during the present job
+  int tries_left_ = 0;          // to write something before leaving
+  std::uint64_t last_step_ = 0;
+  Clock::time_point last_progress_{}, last_look_{};
+};
+
+}  // namespace
+
+int serve(int descriptor) { return Worker(descriptor).run(); }
+
+}  // namespace peclet::engine

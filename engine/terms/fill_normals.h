@@ -1,0 +1,183 @@
+// The body of fill_normals(), compiled once for each instruction set inside a namespace of its own.
+//
+// Loops over eight identities that the compiler turns into vectors. Everything is static: nothing that is
+// compiled for one processor may be linked into a program that runs on another.
+#pragma once
+
+#include <Random123/threefry.h>
+
+#include <cstdint>
+
+namespace peclet::engine {
+
+// Standard normal numbers for eight particles or pairs at once: the one source of every noise.
+//
+// Of each identity six independent normals, a pure function of (key, step, identity, image): Threefry-2x64-20
+// (Salmon et al. 2011) gives 128 bits, three Box-Muller transforms of 21-bit uniforms in single precision
+// turn them into normals. Every operation is exact or rounded on its own (products are never fused with
+// sums), so the bits are the same on every instruction set.
+//
+// The noise of a divided step is refined: of a part with the normal z, and y another one that is keyed by
+// that part, the halves have (z + y)/sqrt 2 and (z - y)/sqrt 2. Both are standard normal and independent, and
+// sqrt(dt/2) times their sum is sqrt(dt) z: the same Wiener path, however a step is divided (Levy 1948).
+constexpr int identities_per_block = 8;
+
+struct NoiseKey {
+  std::uint64_t seed = 0, purpose = 0, step = 0;
+  std::uint64_t part = 1;  // of the step: 1 is all of it, 2 p and 2 p + 1 are the halves of p
+};
+
+// What keys the noise of a pair besides its step. `first` < `second` fixes the sign of the pair's forces.
+[[gnu::always_inline]] inline std::uint64_t pair_identity(std::uint32_t first, std::uint32_t second) {
+  return std::uint64_t{second} << 32 | first;
+}
+
+struct NormalBlock {
+  alignas(64) float value[6][identities_per_block];
+};
+
+// Fills a block for eight identities. `image` may be null: all zero.
+using FillNormals = void (*)(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
+                             NormalBlock& block);
+
+namespace baseline {
+void fill_normals(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
+                  NormalBlock& block);
+}
+namespace avx2 {
+void fill_normals(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
+                  NormalBlock& block);
+}
+namespace avx512 {
+void fill_normals(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
+                  NormalBlock& block);
+}
+
+namespace {
+
+constexpr int width = identities_per_block;
+
+inline void draw_words(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
+                       std::uint64_t (&low)[width], std::uint64_t (&high)[width]) {
+  for (int k = 0; k < width; ++k) {
+    const threefry2x64_ctr_t counter = {{key.step, identity[k]}};
+    const threefry2x64_key_t threefry_key = {{key.seed, key.purpose << 60 ^ image[k]}};
+    const threefry2x64_ctr_t words = threefry2x64_R(20, counter, threefry_key);
+    low[k] = words.v[0];
+    high[k] = words.v[1];
+  }
+}
+
+// ln(u) for u = (bits + 1/2) / 2^21, by ln u = e ln 2 + ln(1 + t) with |t| < 0.42 and
+// ln(1 + t) = t - t^2/2 + t^3 P(t). P is the polynomial of degree 6 with the smallest largest error on that
+// interval (3e-8 of the logarithm), found by least squares with weights until the errors were level.
+inline float logarithm_of_uniform(std::uint32_t bits) {
+  const float u = (static_cast<float>(static_cast<std::int32_t>(bits)) + 0.5F) * 0x1p-21F;
+  const std::int32_t image = __builtin_bit_cast(std::int32_t, u);
+  // Splits off the power of two such that the rest lies in [sqrt(1/2), sqrt(2)).
+  const std::int32_t power = (image - 0x3f3504f3) >> 23;
+  const float t = __builtin_bit_cast(float, image - power * 0x800000) - 1.0F;
+  float p = 0.08700361F;
+  p = p * t - 0.14267476F;
+  p = p * t + 0.14914787F;
+  p = p * t - 0.16577587F;
+  p = p * t + 0.19963062F;
+  p = p * t - 0.25001338F;
+  p = p * t + 0.3333391F;
+  const float square = t * t;
+  return static_cast<float>(power) * 0.6931472F + (t - 0.5F * square + square * t * p);
+}
+
+// Cosine and sine of 2 pi bits / 2^21. The angle is a whole number of quarter turns plus r turns, |r| <= 1/8;
+// polynomials in r^2 of degree 3 found like the one above (3e-9 and 3e-8).
+inline void circle(std::uint32_t bits, float& cosine, float& sine) {
+  const std::uint32_t angle = bits << 11;  // 2^32 is a turn
+  const std::uint32_t quarters = (angle + 0x20000000U) >> 30;
+  const float r = static_cast<float>(static_cast<std::int32_t>(angle - (quarters << 30))) * 0x1p-32F;
+  const float z = r * r;
+  float s = -75.40207F;
+  s = s * z + 81.59255F;
+  s = s * z - 41.341663F;
+  s = (s * z + 6.2831855F) * r;
+  float c = -83.59261F;
+  c = c * z + 64.92125F;
+  c = c * z - 19.739153F;
+  c = c * z + 1.0F;
+  const bool swap = (quarters & 1U) != 0;
+  const float x = swap ? s : c, y = swap ? c : s;
+  // A sign for each half of the circle.
+  cosine = ((quarters + 1U) & 2U) != 0 ? -x : x;
+  sine = (quarters & 2U) != 0 ? -y : y;
+}
+
+inline void box_muller(const std::uint32_t (&radius_bits)[width], const std::uint32_t (&angle_bits)[width],
+                       float* first, float* second) {
+  for (int k = 0; k < width; ++k) {
+    const float radius = __builtin_sqrtf(-2.0F * logarithm_of_uniform(radius_bits[k]));
+    float cosine = 0, sine = 0;
+    circle(angle_bits[k], cosine, sine);
+    first[k] = radius * cosine;
+    second[k] = radius * sine;
+  }
+}
+
+// The six uniforms are bits 0-20, 21-41 and 42-62 of both words: radii from the low one, angles from the high
+// one. A loop for each width of number: only such loops become vectors.
+inline void split_words(const std::uint64_t (&words)[width], std::uint32_t (&uniform)[3][width]) {
+  for (int j = 0; j < 3; ++j) {
+    std::uint64_t shifted[width];
+    for (int k = 0; k < width; ++k) {
+      shifted[k] = words[k] >> (21 * j);
+    }
+    for (int k = 0; k < width; ++k) {
+      uniform[j][k] = static_cast<std::uint32_t>(shifted[k]) & 0x1fffffU;
+    }
+  }
+}
+
+inline void fill_whole(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
+                       NormalBlock& block) {
+  static constexpr std::uint64_t no_image[width] = {};
+  std::uint64_t low[width], high[width];
+  draw_words(key, identity, image != nullptr ? image : no_image, low, high);
+  std::uint32_t radius_bits[3][width], angle_bits[3][width];
+  split_words(low, radius_bits);
+  split_words(high, angle_bits);
+  for (std::size_t j = 0; j < 3; ++j) {
+    box_muller(radius_bits[j], angle_bits[j], block.value[2 * j], block.value[2 * j + 1]);
+  }
+}
+
+// Turns the normals of a whole step into those of a part. Seldom needed: apart.
+[[gnu::noinline]] inline void refine(const NoiseKey& key, const std::uint64_t* identity,
+                                     const std::uint64_t* image, NormalBlock& block) {
+  int divisions = 0;
+  while (key.part >> (divisions + 1) != 0) {
+    ++divisions;
+  }
+  while (divisions > 0) {
+    const std::uint64_t whole = key.part >> divisions;
+    --divisions;
+    const float sign = (key.part >> divisions & 1U) == 0 ? 1.0F : -1.0F;
+    // No run has 2^48 steps.
+    const NoiseKey of_whole = {key.seed, key.purpose, key.step ^ whole << 48};
+    NormalBlock other;
+    fill_whole(of_whole, identity, image, other);
+    for (int c = 0; c < 6; ++c) {
+      for (int k = 0; k < width; ++k) {
+        block.value[c][k] = 0.70710678F * (block.value[c][k] + sign * other.value[c][k]);
+      }
+    }
+  }
+}
+
+inline void fill_block(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
+                       NormalBlock& block) {
+  fill_whole(key, identity, image, block);
+  if (key.part != 1) [[unlikely]] {
+    refine(key, identity, image, block);
+  }
+}
+
+}  // namespace
+}  // namespace peclet::engine

@@ -1,0 +1,58 @@
+// Random numbers keyed by what they are for, never drawn from a stream.
+//
+// A number is a pure function of (seed, purpose, step, identity): see normal_block.h. So results depend on no
+// order of particles or pairs, on no number of threads and on no checkpoint, and two seeds share nothing.
+#pragma once
+
+#include <cstdint>
+
+#include "engine/state/periodic_cell.h"
+#include "engine/state/vector3.h"
+#include "engine/terms/fill_normals.h"
+
+namespace peclet::engine {
+
+enum class Purpose : std::uint64_t {
+  packing = 1,
+  initial_velocity = 2,
+  one_body_noise = 3,
+  pair_noise = 4,
+  strain_noise = 5
+};
+
+// Two independent vectors of standard normal components.
+struct NormalPair {
+  Vector3 first, second;
+};
+
+// Shifts between neighbours are a few lattice vectors; 20 bits hold each.
+inline std::uint64_t image_identity(LatticeShift image) {
+  constexpr std::uint64_t mask = (1U << 20) - 1;
+  return (static_cast<std::uint64_t>(image.x) & mask) | (static_cast<std::uint64_t>(image.y) & mask) << 20 |
+         (static_cast<std::uint64_t>(image.z) & mask) << 40;
+}
+
+class KeyedRandom {
+ public:
+  KeyedRandom() = default;
+  KeyedRandom(std::uint64_t seed, Purpose purpose)
+      : seed_(seed), purpose_(static_cast<std::uint64_t>(purpose)) {}
+
+  NoiseKey key(std::uint64_t step, std::uint64_t part = 1) const { return {seed_, purpose_, step, part}; }
+
+  // Of a particle at a step. 21-bit uniforms: largest value 5.5, variance exact to 1e-6
+  // (tests/engine/kernels/keyed_random_test.cpp).
+  NormalPair normals(std::uint64_t step, std::uint32_t particle) const;
+
+  // Of a pair at a step.
+  NormalPair normals(std::uint64_t step, std::uint32_t first, std::uint32_t second, LatticeShift image) const;
+
+  // Three uniform numbers in (0, 1), multiples of 2^-43.
+  Vector3 uniforms(std::uint64_t step, std::uint32_t particle) const;
+
+ private:
+  std::uint64_t seed_ = 0;
+  std::uint64_t purpose_ = 0;
+};
+
+}  // namespace peclet::engine

@@ -1,0 +1,58 @@
+// The verbs that ask a campaign's owner, `peclet cancel` and `peclet retry`, and how they wait.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "runner/owner/request.h"
+#include "runner/store/campaign_directory.h"
+
+namespace peclet::runner {
+
+// The verbs' side of requests: wait for the campaign's owner, or be the owner for as long as it takes.
+//
+// How a verb ends: what it prints and its exit code.
+struct Reply {
+  std::string text;
+  int exit_code = 0;
+};
+
+// Seconds that a verb waits for a running owner unless told otherwise.
+constexpr double usual_patience = 60;
+
+// Sees to it that a request that has been written is carried out: by the process that owns the campaign,
+// which is waited for as long as `patience` seconds (0: not at all), or by this one when nobody owns it. The
+// text says what was done and what comes next, in commands that name the campaign by `words`; exit code 4
+// when the owner has not come to it in time, 0 otherwise. Throws InputError with the reason when it is
+// refused.
+Reply await_reply(const CampaignDirectory& directory, const Request& request, const std::string& words,
+                  double patience);
+
+// The verb `peclet cancel`: points that get no more seeds.
+struct CancelOptions {
+  std::filesystem::path campaign;  // file or folder
+  std::filesystem::path directory;
+  std::vector<std::string> points;  // labels, or at least 4 digits of the hash
+  bool undo = false;
+  double patience = usual_patience;
+};
+
+// The points' running seeds checkpoint and stop, what they have stays, and they hold nothing up; with `undo`
+// they go on where they were. Throws InputError for a campaign that has not been run; as await_reply().
+Reply cancel_points(const CancelOptions& options);
+
+// The verb `peclet retry`: seeds that were given up get another chance.
+struct RetryOptions {
+  std::filesystem::path campaign;  // file or folder
+  std::filesystem::path directory;
+  std::vector<std::string> points;  // labels, or at least 4 digits of the hash; none: all
+  std::vector<int> seeds;           // of one point; none: all that were given up
+  double patience = usual_patience;
+};
+
+// Queues them again; their earlier attempts are kept, but no longer count against them. Throws InputError for
+// a campaign that has not been run; as await_reply() and plan_retry().
+Reply retry_seeds(const RetryOptions& options);
+
+}  // namespace peclet::runner

@@ -1,0 +1,173 @@
+#include "runner/command_line/plan_campaign.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "contract/errors.h"
+#include "runner/campaign/campaign_file.h"
+#include "runner/engines/cost_trial.h"
+#include "runner/engines/scene_check.h"
+#include "runner/reports/plan.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/point_store.h"
+
+namespace peclet::runner {
+namespace {
+
+// Seeds that run meanwhile count as in a forecast: those that jam early end first.
+MeasuredCost cost_of(const std::vector<RealisationRecord>& realisations,
+                     const std::vector<Unfinished>& running) {
+  std::vector<double> wall_seconds;
+  double cpu_seconds = 0;
+  for (const RealisationRecord& record : realisations) {
+    // A seed that was given up took time too, but nobody counted it.
+    if (!record.cpu_seconds) continue;
+    cpu_seconds += *record.cpu_seconds;
+    wall_seconds.push_back(record.wall_seconds.value_or(*record.cpu_seconds));
+  }
+  const Cost wall(std::move(wall_seconds));
+  if (wall.count() == 0) return {};
+  const double seconds = mean_cost(wall, running);
+  return {wall.count(), wall.sum() > 0 ? cpu_seconds * seconds / wall.sum() : cpu_seconds / wall.count(),
+          seconds};
+}
+
+std::map<std::string, PointHistory> history(Database& database, const Campaign& campaign) {
+  const bool sees_the_same = database.campaign().target.target.observables() == campaign.target.observables();
+  std::map<std::string, PointHistory> known;
+  std::map<std::int64_t, std::vector<Unfinished>> unfinished = database.unfinished();
+  for (const PointRecord& point : database.points()) {
+    PointHistory& of = known[point.hash];
+    of.cost = cost_of(database.realisations(point.id), unfinished[point.id]);
+    if (sees_the_same) of.outcomes = database.outcomes(point.id);
+  }
+  return known;
+}
+
+// Whether the database still is about the points and the target of this campaign: while a pilot runs, people
+// may change both.
+bool is_of(Database& database, const Campaign& campaign) {
+  if (database.campaign().target.target != campaign.target) return false;
+  const std::vector<PointRecord> points = database.points();
+  return std::equal(points.begin(), points.end(), campaign.points.begin(), campaign.points.end(),
+                    [](const PointRecord& stored, const auto& point) { return stored.hash == point.hash; });
+}
+
+void store_predictions(const Plan& plan, Database& database) {
+  Transaction booking(database.connection());
+  const std::vector<PointRecord> points = database.points();
+  for (std::size_t place = 0; place < points.size(); ++place) {
+    const PointPlan& point = plan.points.at(place);
+    if (!point.is_predicted()) continue;
+    PointStore(database).store_prediction(points[place].id, point.prediction, point.cost.cpu_seconds);
+  }
+  booking.commit();
+}
+
+void print(const Plan& plan, bool json) {
+  const std::string text = json ? plan_json(plan).dump(2) + '\n' : plan_text(plan);
+  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
+    throw std::system_error(errno, std::generic_category(), "standard output");
+  }
+}
+
+std::vector<double> work_of(const std::vector<SceneAnswer>& scenes) {
+  std::vector<double> work;
+  work.reserve(scenes.size());
+  for (const SceneAnswer& answer : scenes)
+    work.push_back(answer.steps * static_cast<double>(answer.particles));
+  return work;
+}
+
+// Of the point with the median of the work, from which the others are least far; of one with less or more
+// where that one jams, which `broke_off` then says.
+std::optional<CostGuess> guess_cost(const Campaign& campaign, const std::vector<double>& work,
+                                    const EngineCommand& command, std::vector<std::string>& broke_off) {
+  std::vector<std::size_t> order(work.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return std::pair(work[a], a) < std::pair(work[b], b); });
+  const auto last = static_cast<double>(order.size() - 1);
+  std::set<std::size_t> tried;
+  for (const double share : {0.5, 0.25, 0.0, 0.75, 1.0}) {
+    const std::size_t place = order[static_cast<std::size_t>(std::lround(share * last))];
+    if (!tried.insert(place).second) continue;
+    const StatePoint& point = campaign.points.at(place);
+    const CostTrial trial = try_cost(point.scene, command);
+    if (trial.seconds) return CostGuess{place, *trial.seconds};
+    if (!trial.broke_off.empty()) broke_off.push_back(point.label + " broke off: " + trial.broke_off);
+  }
+  return std::nullopt;
+}
+
+bool any_cost(const std::map<std::string, PointHistory>& known) {
+  return std::any_of(known.begin(), known.end(),
+                     [](const auto& point) { return point.second.cost.count > 0; });
+}
+
+Plan plan_of(const Campaign& campaign, const std::vector<SceneAnswer>& scenes,
+             const std::map<std::string, PointHistory>& known, const RunOptions& options,
+             const std::optional<CostGuess>& guess = {}) {
+  Plan plan = make_plan(campaign, work_of(scenes), known, worker_count(options).workers, guess);
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const Json found = scenes[i].derived.value("flow_over_rest", Json());
+    if (found.is_number()) plan.points.at(i).flow_over_rest = found.get<double>();
+  }
+  plan.made_at = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  return plan;
+}
+
+}  // namespace
+
+int plan_campaign(const PlanOptions& options) {
+  const std::filesystem::path& file = options.run.campaign;
+  const Campaign campaign = read_campaign(file);
+  if (options.pilot && (*options.pilot < 2 || *options.pilot > campaign.minimum_realisations)) {
+    throw InputError("--pilot", "", fmt::format("{}", *options.pilot),
+                     fmt::format("must be an integer from 2 to /realisations{} of {}, {}",
+                                 campaign.target.has_tolerance() ? "/minimum" : "", file.string(),
+                                 campaign.minimum_realisations));
+  }
+  if (options.pilot) {
+    return run_pilot(options.run, *options.pilot, [&](const ClaimedCampaign& claimed, Database& database) {
+      if (!is_of(database, claimed.campaign)) {
+        fmt::print(
+            stderr,
+            "peclet: {0}: the campaign was changed while the pilot ran: its results are stored, but no "
+            "prediction is; `peclet plan {1}` predicts from what is there\n",
+            file.string(), words_for(file, options.run.directory));
+        return;
+      }
+      const Plan plan =
+          plan_of(claimed.campaign, claimed.scenes, history(database, claimed.campaign), options.run);
+      store_predictions(plan, database);
+      print(plan, options.json);
+    });
+  }
+  const CampaignDirectory directory = campaign_directory(file, options.run.directory);
+  std::map<std::string, PointHistory> known;
+  if (std::filesystem::exists(directory.database())) {
+    Database database = Database::open_reader(directory.database());
+    known = history(database, campaign);
+  }
+  const EngineCommand command = resolve_engine(campaign, file);
+  const std::vector<SceneAnswer> scenes = check_scenes(campaign, file, command);
+  std::optional<CostGuess> guess;
+  std::vector<std::string> broke_off;
+  if (!any_cost(known)) guess = guess_cost(campaign, work_of(scenes), command, broke_off);
+  Plan plan = plan_of(campaign, scenes, known, options.run, guess);
+  plan.broke_off = std::move(broke_off);
+  print(plan, options.json);
+  return 0;
+}
+
+}  // namespace peclet::runner

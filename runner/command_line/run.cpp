@@ -1,0 +1,295 @@
+#include "runner/command_line/run.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "contract/errors.h"
+#include "contract/text.h"
+#include "runner/batch/bundle_files.h"
+#include "runner/campaign/campaign_file.h"
+#include "runner/campaign/number_text.h"
+#include "runner/command_line/print.h"
+#include "runner/engines/command.h"
+#include "runner/engines/usable_cores.h"
+#include "runner/engines/worker_process.h"
+#include "runner/maintenance/backup.h"
+#include "runner/owner/dispatcher.h"
+#include "runner/owner/event_stream.h"
+#include "runner/owner/folder_watch.h"
+#include "runner/owner/pause.h"
+#include "runner/owner/progress.h"
+#include "runner/owner/request_handler.h"
+#include "runner/owner/run_log.h"
+#include "runner/reports/status.h"
+#include "runner/statistics/budget.h"
+#include "runner/store/disk_room.h"
+#include "runner/store/sqlite.h"
+
+namespace peclet::runner {
+namespace {
+
+std::string failure(const std::string& command, const std::string& why) {
+  return printable_lines(fmt::format("--notify: {}: {}", command, why));
+}
+
+}  // namespace
+
+std::string notify(const std::string& command, const RunOutcome& outcome) {
+  namespace fs = std::filesystem;
+  try {
+    const CommandAnswer answer =
+        run_command({"env", "PECLET_CAMPAIGN=" + fs::absolute(outcome.campaign).string(),
+                     "PECLET_DIRECTORY=" + fs::absolute(outcome.directory).string(),
+                     fmt::format("PECLET_EXIT_CODE={}", outcome.code),
+                     "PECLET_SUMMARY=" + printable(outcome.summary), "/bin/sh", "-c", command},
+                    std::chrono::minutes(1));
+    if (!answer.succeeded()) return failure(command, answer.complaint());
+    std::fputs((answer.output + answer.errors).c_str(), stderr);
+    return "";
+  } catch (const std::exception& error) {
+    return failure(command, error.what());
+  }
+}
+
+namespace {
+
+// More workers than seeds that may still run have nothing to do.
+WorkerCount useful_worker_count(const RunOptions& options, const Campaign& campaign) {
+  WorkerCount size = worker_count(options);
+  const auto seeds = static_cast<std::int64_t>(campaign.points.size()) * campaign.maximum_realisations;
+  size.workers = static_cast<int>(std::min<std::int64_t>(seeds, size.workers));
+  return size;
+}
+
+// What a person should know who asked for more than the machine has.
+void judge_worker_count(const WorkerCount& size, RunListener& listener) {
+  constexpr int tolerable = 4;
+  const int cores = usable_cores();
+  if (size.workers * std::int64_t{size.threads} <= std::int64_t{tolerable} * cores) return;
+  listener.warn(
+      fmt::format("{} workers of {} threads share {} cores: that is slower than --workers {}, and takes "
+                  "more memory",
+                  size.workers, size.threads, cores, std::max(1, cores / size.threads)));
+}
+
+// A run's database and picture, ready to be dispatched from: what an earlier owner left undone is done.
+struct OpenedRun {
+  OpenedRun(const ClaimedCampaign& claimed, const RunOptions& options, RunListener& listener)
+      : database(open_for_owner(claimed, [&](const std::string& text) { listener.note(text); })),
+        ledger(database, claimed.campaign, claimed.directory, listener, retries),
+        requests(database, ledger, claimed.directory, listener) {
+    requests.carry_out();
+    if (!options.accept_engine.empty()) accept_engine(ledger, claimed.engine, listener);
+  }
+
+  Database database;
+  Ledger ledger;
+  RequestHandler requests;
+  SummedError before;  // the run
+};
+
+// Waits while something is in the way: the disk is full, or another program has locked the database. Nothing:
+// a signal came first, or there never will be room.
+std::unique_ptr<OpenedRun> open_when_it_is_possible(const ClaimedCampaign& claimed, const RunOptions& options,
+                                                    RunListener& listener, StopSignals& signals) {
+  const std::filesystem::path& root = claimed.directory.root();
+  std::set<std::string> told;
+  while (true) {
+    try {
+      auto opened = std::make_unique<OpenedRun>(claimed, options, listener);
+      if (!told.empty()) listener.happened(ShortageEnded{});
+      return opened;
+    } catch (const std::exception& error) {
+      const std::optional<Hindrance> hindrance = hindrance_in(error, root);
+      if (!hindrance) throw;
+      const bool lacks_room = !hindrance->folder.empty();
+      if (const std::string why = lacks_room ? why_in_vain(root, root, 0) : ""; !why.empty()) {
+        listener.warn(why);
+        return nullptr;
+      }
+      if (told.insert(hindrance->kind()).second) {
+        listener.happened(ShortageBegan{hindrance->text});
+        listener.warn(fmt::format("{}; the campaign begins {}", hindrance->text, hindrance->end));
+      }
+    }
+    if (signals.wait(std::chrono::seconds(3))) return nullptr;
+  }
+}
+
+RunBegan beginning(const ClaimedCampaign& claimed, const RunOptions& options) {
+  const WorkerCount size = useful_worker_count(options, claimed.campaign);
+  return {claimed.campaign.name,
+          claimed.directory.root(),
+          getpid(),
+          static_cast<int>(claimed.campaign.points.size()),
+          size.workers,
+          size.threads};
+}
+
+// The result is the exit code.
+int dispatch(OpenedRun& opened, const RunOptions& options, const ClaimedCampaign& claimed, RunLog& log,
+             StopSignals& signals) {
+  using std::chrono::steady_clock;
+  const CampaignDirectory& directory = claimed.directory;
+  const WorkerCount size = useful_worker_count(options, claimed.campaign);
+  judge_worker_count(size, log);
+  allow_open_files(size.workers);
+  PeriodicBackup backup(directory, std::chrono::duration<double>(options.backup_seconds), log,
+                        steady_clock::now());
+  FolderWatch watch(directory, claimed.lock, opened.database, log);
+  DispatchSettings settings;
+  settings.threads = size.threads;
+  settings.lease = std::chrono::duration<double>(options.lease_seconds);
+  settings.checkpoint_seconds = options.checkpoint_seconds;
+  if (options.time_limit) settings.time_limit = std::chrono::duration<double>(*options.time_limit);
+  settings.chore = [&backup, &watch] {
+    // The folder is looked at before the backup, which must not begin in a folder that has been moved.
+    const bool mended = watch.attend(steady_clock::now());
+    backup.attend(steady_clock::now());
+    return mended;
+  };
+  settings.requests = [&opened] { return opened.requests.carry_out(); };
+  log.record(fmt::format("{} begins: process {}, {} workers of {} threads, engine {}",
+                         directory.root().string(), getpid(), size.workers, size.threads,
+                         claimed.command.program.string()));
+  ProcessPool pool(size.workers, claimed.command, directory, signals);
+  Dispatcher dispatcher(opened.database, opened.ledger, pool, log, settings, steady_clock::now);
+  const bool finished = dispatcher.run() == Dispatcher::Ending::finished;
+  backup.finish();
+  return ending(read_status(opened.database), finished);
+}
+
+// What failed before it had begun is no part of the campaign's history: nothing is written.
+void tell_of_failure(RunLog& log, bool had_begun, const std::exception& error) {
+  if (had_begun) log.record(fmt::format("ends with an error: {}", error.what()));
+  log.happened(RunEnded{exit_code_of(error), error.what()});
+}
+
+std::string how_to_go_on(const RunOptions& options, const CampaignStatus& status) {
+  if (!status.handed_over.empty())
+    return handed_over_advice(status.handed_over, words_for(options.campaign, options.directory));
+  return fmt::format("\nstopped; all that was done is kept, and `peclet run {}` goes on from there\n",
+                     words_for(options.campaign, options.directory));
+}
+
+Bounds bounds_of(const RunOptions& options, const ClaimedCampaign& claimed, std::optional<int> ceiling) {
+  Bounds bounds{ceiling, {}, {}};
+  const std::vector<double> work = particle_steps(claimed.scenes);
+  for (std::size_t i = 0; i < work.size(); ++i) bounds.work[claimed.campaign.points[i].hash] = work[i];
+  if (options.budget_hours) bounds.budget_seconds = seconds_per_hour * *options.budget_hours;
+  return bounds;
+}
+
+// What the person is told on standard output in the end.
+using Conclusion = std::function<void(const ClaimedCampaign&, OpenedRun&, int code)>;
+
+int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion& conclude) {
+  const ClaimedCampaign claimed(options.campaign, options.directory, options.force, options.accept_engine);
+  StopSignals signals;
+  std::unique_ptr<OpenedRun> opened;
+  int code = ExitCode::stopped;
+  {
+    Progress progress(Progress::style_of_stderr(options.quiet));
+    std::optional<EventStream> events;
+    if (options.jsonl) events.emplace(STDOUT_FILENO, progress);
+    RunLog log(claimed.directory.run_log(), events ? static_cast<RunListener&>(*events) : progress);
+    log.happened(beginning(claimed, options));
+    if (const std::string doubt = doubt_about_file_system(claimed.directory.root()); !doubt.empty())
+      log.warn(doubt);
+    try {
+      opened = open_when_it_is_possible(claimed, options, log, signals);
+      if (opened) {
+        opened->ledger.set_bounds(bounds_of(options, claimed, ceiling));
+        opened->before = summed_error(opened->ledger.scheduler());
+        code = dispatch(*opened, options, claimed, log, signals);
+      }
+    } catch (const OtherEngine& error) {
+      const OtherEngine advised(
+          error.what() +
+          acceptance_hint("run " + words_for(options.campaign, options.directory), claimed.engine));
+      tell_of_failure(log, opened != nullptr, advised);
+      throw advised;
+    } catch (const std::exception& error) {
+      tell_of_failure(log, opened != nullptr, error);
+      throw;
+    }
+    log.record(fmt::format("ends with exit code {}", code));
+    log.happened(RunEnded{code, ""});
+  }
+  if (opened) conclude(claimed, *opened, code);
+  return code;
+}
+
+}  // namespace
+
+WorkerCount worker_count(const RunOptions& options) {
+  const int cores = usable_cores();
+  if (options.workers > 0 && options.threads > 0) return {options.workers, options.threads};
+  if (options.workers > 0) return {options.workers, std::max(1, cores / options.workers)};
+  const int threads = std::max(1, options.threads);
+  return {std::max(1, cores / threads), threads};
+}
+
+namespace {
+
+// With the table at the end, and its totals on one line.
+int run_and_conclude(const RunOptions& options, std::string& summary) {
+  return run(options, std::nullopt, [&](const ClaimedCampaign&, OpenedRun& opened, int code) {
+    CampaignStatus status = read_status(opened.database);
+    summary = fmt::format("{}: {}{}", status.campaign.name, code == ExitCode::stopped ? "stopped; " : "",
+                          point_totals(status));
+    if (options.jsonl) return;
+    status.owner = getpid();
+    std::string text = status_table(status);
+    if (options.budget_hours) {
+      text += budget_text(opened.ledger.spent_seconds(), seconds_per_hour * *options.budget_hours,
+                          opened.before, summed_error(opened.ledger.scheduler()));
+    }
+    if (code == ExitCode::stopped) text += how_to_go_on(options, status);
+    std::fputs(text.c_str(), stdout);
+  });
+}
+
+// A faulty file and another owner are answered at once, to whom has asked.
+bool is_answered_at_once(int code) { return code == ExitCode::usage || code == ExitCode::owned; }
+
+void notify_of(const RunOptions& options, int code, const std::string& summary) {
+  if (options.notify.empty() || is_answered_at_once(code)) return;
+  const CampaignDirectory directory = campaign_directory(options.campaign, options.directory);
+  const std::string failure = notify(options.notify, {options.campaign, directory.root(), code, summary});
+  if (!failure.empty()) std::fputs(fmt::format("peclet: {}\n", failure).c_str(), stderr);
+}
+
+}  // namespace
+
+int run_campaign(const RunOptions& options) {
+  std::string summary;
+  try {
+    const int code = run_and_conclude(options, summary);
+    notify_of(options, code, summary);
+    return code;
+  } catch (const std::exception& error) {
+    notify_of(options, exit_code_of(error), message_of(error));
+    throw;
+  }
+}
+
+int run_pilot(const RunOptions& options, int seeds,
+              const std::function<void(const ClaimedCampaign&, Database&)>& conclude) {
+  const int code =
+      run(options, seeds, [&](const ClaimedCampaign& claimed, OpenedRun& opened, int ended_with) {
+        if (ended_with != ExitCode::stopped) conclude(claimed, opened.database);
+      });
+  // That points are not decided yet is what a pilot is for.
+  return code == ExitCode::integrity || code == ExitCode::stopped ? code : 0;
+}
+
+}  // namespace peclet::runner

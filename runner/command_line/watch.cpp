@@ -1,0 +1,190 @@
+#include "runner/command_line/watch.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <optional>
+#include <system_error>
+#include <vector>
+
+#include "contract/errors.h"
+#include "contract/text.h"
+#include "runner/campaign/campaign_file.h"
+#include "runner/campaign/text_table.h"
+#include "runner/engines/stop_signals.h"
+#include "runner/owner/open_campaign.h"
+#include "runner/page/live_campaign.h"
+#include "runner/page/loopback_server.h"
+#include "runner/reports/curve.h"
+#include "runner/reports/status.h"
+#include "runner/store/database.h"
+#include "runner/store/locks.h"
+
+namespace peclet::runner {
+namespace {
+
+struct Size {
+  int rows = 24, columns = 80;
+};
+
+// Asked anew each time, so that a window may change its size.
+Size terminal_size() {
+  winsize size{};
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_row == 0 || size.ws_col == 0) return {};
+  return {size.ws_row, size.ws_col};
+}
+
+// Keeps the terminal from showing what is typed, which would stand within the table. Reads nothing.
+class SilentKeys {
+ public:
+  SilentKeys() : is_ours_(tcgetpgrp(STDIN_FILENO) == getpgrp() && tcgetattr(STDIN_FILENO, &before_) == 0) {
+    if (!is_ours_) return;
+    termios silent = before_;
+    silent.c_lflag &= ~static_cast<tcflag_t>(ECHO);
+    tcsetattr(STDIN_FILENO, TCSANOW, &silent);
+  }
+  ~SilentKeys() {
+    if (is_ours_) tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_);  // the shell is not to read them either
+  }
+  SilentKeys(const SilentKeys&) = delete;
+  SilentKeys& operator=(const SilentKeys&) = delete;
+
+ private:
+  termios before_{};
+  bool is_ours_;
+};
+
+struct Sight {
+  std::string text;
+  int standing = 0;
+  std::string curve{};  // where there is room for it
+};
+
+// A reader of its own each time: one that stayed open would hold back the owner's write-ahead log.
+Sight look(const WatchOptions& options, std::size_t width) {
+  OpenCampaign open = open_campaign(options.campaign, options.directory);
+  CampaignStatus status = read_status(open.database);
+  status.owner = current_owner(open.directory);
+  return {status_table(status, width) + workers_text(status, width), standing(status),
+          curve_text(status, width)};
+}
+
+// Throws InputError for a campaign with a fault, because `run` would refuse it.
+Sight look_for_beginning(const WatchOptions& options, std::size_t width) {
+  const std::string text = fmt::format("{}: nothing has been run yet; waiting for `peclet run {}`\n",
+                                       read_new_campaign(options.campaign, options.directory).name,
+                                       words_for(options.campaign, options.directory));
+  return {folded(text, width), ExitCode::unfinished};
+}
+
+bool is_continuation(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
+
+std::string fitted_line(std::string_view line, int columns) {
+  int characters = 0;
+  std::size_t end = 0, last_start = 0;
+  for (; end < line.size(); ++end) {
+    if (is_continuation(line[end])) continue;
+    if (characters == columns) return std::string(line.substr(0, last_start)) + "…";
+    last_start = end;
+    ++characters;
+  }
+  return std::string(line);
+}
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    lines.push_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+Sight sight_of(const WatchOptions& options, std::size_t width) {
+  if (awaits_its_first_run(options.campaign, options.directory)) return look_for_beginning(options, width);
+  try {
+    return look(options, width);
+  } catch (const BeingSetUp& error) {
+    return {folded(std::string(error.what()) + '\n', width), ExitCode::unfinished};
+  }
+}
+
+// The table goes first: a curve is drawn only where all of it is to be seen.
+std::string with_curve(const Sight& sight, const Size& size) {
+  const std::size_t needed = lines_of(sight.text).size() + 1 + lines_of(sight.curve).size();
+  const bool fits = !sight.curve.empty() && needed < static_cast<std::size_t>(size.rows);
+  return fits ? sight.text + '\n' + sight.curve : sight.text;
+}
+
+void show(const std::string& text, const Size& size) {
+  // Home, then line by line with what was there before erased, then everything below: no flicker.
+  std::string screen = "\x1b[H";
+  const std::string visible = fitted(text, size.rows - 1, size.columns);
+  for (const std::string_view line : lines_of(visible)) {
+    screen += std::string(line) + "\x1b[K\n";
+  }
+  std::fputs((screen + "\x1b[J").c_str(), stdout);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+std::string fitted(std::string_view text, int rows, int columns) {
+  const std::vector<std::string_view> lines = lines_of(text);
+  const auto most = static_cast<std::size_t>(std::max(rows, 1));
+  const bool cut = lines.size() > most;
+  std::string shown;
+  for (std::size_t i = 0; i < (cut ? most - 1 : lines.size()); ++i) {
+    shown += fitted_line(lines[i], std::max(columns, 1)) + '\n';
+  }
+  if (cut) {
+    shown += fitted_line(fmt::format("and {} more lines: `peclet status` has them", lines.size() - most + 1),
+                         std::max(columns, 1)) +
+             '\n';
+  }
+  return shown;
+}
+
+int watch_campaign(const WatchOptions& options) {
+  StopSignals signals;
+  const bool terminal = isatty(STDOUT_FILENO) != 0;
+  std::optional<SilentKeys> silent;
+  if (terminal) silent.emplace();
+  const std::chrono::milliseconds interval(static_cast<int>(1000 * options.interval_seconds));
+  std::string before;
+  for (;;) {
+    const Size size = terminal_size();
+    const std::size_t width = terminal ? static_cast<std::size_t>(size.columns) : unlimited_width;
+    const Sight sight = sight_of(options, width);
+    if (terminal) {
+      show(with_curve(sight, size), size);
+    } else if (sight.text != before) {
+      fmt::print("{}{}", before.empty() ? "" : "\n", sight.text);
+      std::fflush(stdout);
+      before = sight.text;
+    }
+    if (sight.standing != ExitCode::unfinished || signals.wait(interval)) return sight.standing;
+  }
+}
+
+int serve_campaign(const ServeOptions& options) {
+  StopSignals signals;
+  LiveCampaign campaign(options.campaign, options.directory);
+  LoopbackServer server(options.port);
+  fmt::print("http://127.0.0.1:{}/\n", server.port());
+  if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category(), "standard output");
+  fmt::print(stderr, "peclet: the page of {} is there; Ctrl-C ends it, and does nothing to the campaign\n",
+             printable(campaign.name()));
+  server.serve(signals.descriptor(), [&](const HttpRequest& request) { return answer(campaign, request); });
+  campaign.look();
+  return campaign.standing();
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,342 @@
+// Do the files of a campaign belong to it, and are there backups?
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "contract/guarded_file.h"
+#include "runner/campaign/number_text.h"
+#include "runner/campaign/quoting.h"
+#include "runner/maintenance/backup.h"
+#include "runner/maintenance/doctor.h"
+#include "runner/owner/request.h"
+#include "runner/store/backups.h"
+#include "runner/store/result_files.h"
+#include "runner/store/spool.h"
+
+namespace peclet::runner {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 14> known_names{"campaign.db",
+                                                  "campaign.db-wal",
+                                                  "campaign.db-shm",
+                                                  "campaign.db-journal",
+                                                  "campaign.lock",
+                                                  "spool",
+                                                  "checkpoints",
+                                                  "failures",
+                                                  "logs",
+                                                  "backup",
+                                                  "aside",
+                                                  "campaign.json",
+                                                  "requests",
+                                                  "files"};
+
+// A campaign that works makes one every ten minutes.
+constexpr double old_backup_hours = 24;
+
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (kind_of(folder) != "a folder") return files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string listed(const std::vector<fs::path>& files) {
+  constexpr std::size_t most = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, files.size()); ++i) {
+    text += (i == 0 ? "" : ", ") + plain_name(files[i]);
+  }
+  return files.size() > most ? fmt::format("{} and {} more", text, files.size() - most) : text;
+}
+
+double megabytes(const std::vector<fs::path>& files) {
+  double bytes = 0;
+  for (const fs::path& file : files) {
+    std::error_code gone;
+    const std::uintmax_t size = fs::file_size(file, gone);
+    if (!gone) bytes += static_cast<double>(size);
+  }
+  return 1e-6 * bytes;
+}
+
+void remove_all_of(const std::vector<fs::path>& files) {
+  for (const fs::path& file : files) fs::remove(file);
+}
+
+enum class Need {
+  open,     // its seed may be wanted
+  surplus,  // its seed lies beyond the look that has decided the point
+  none      // its seed has ended
+};
+
+// The seeds below the look all have ended, unless one is to be run again.
+bool is_surplus(const RealisationRecord& record, const std::vector<LookRecord>& looks) {
+  return !looks.empty() && looks.back().look.verdict != Verdict::more &&
+         record.seed >= looks.back().look.seeds;
+}
+
+// What each checkpoint is good for, by its name.
+std::map<std::string, Need> checkpoint_names(Database& database, const CampaignDirectory& directory) {
+  std::map<std::string, Need> names;
+  for (const auto& points : {database.points(), database.inactive_points()}) {
+    for (const PointRecord& point : points) {
+      if (point.kept_apart) continue;  // a checkpoint of its scene is of the engine that is used now
+      const std::vector<LookRecord> looks = database.looks(point.id);
+      for (const RealisationRecord& record : database.realisations(point.id)) {
+        const Need need = !record.cause.empty()       ? Need::none
+                          : is_surplus(record, looks) ? Need::surplus
+                                                      : Need::open;
+        names[directory.checkpoint(point.hash, record.seed).filename().string()] = need;
+      }
+    }
+  }
+  return names;
+}
+
+void examine_checkpoints(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
+  const std::map<std::string, Need> names = checkpoint_names(database, examined.directory);
+  std::vector<fs::path> ended, surplus, rejected, strays;
+  for (const fs::path& file : files_in(examined.directory.checkpoints())) {
+    const auto seed = names.find(checkpoint_of(file).filename().string());
+    if (seed != names.end()) {
+      if (seed->second == Need::none) ended.push_back(file);
+      if (seed->second == Need::surplus) surplus.push_back(file);
+    } else if (file.filename().string().find(".checkpoint.rejected") != std::string::npos) {
+      rejected.push_back(file);
+    } else if (file.extension() != ".tmp") {
+      strays.push_back(file);
+    }
+  }
+  // A worker may be about to remove, or to leave, one while the campaign runs.
+  if (!ended.empty() && !examined.owner) {
+    findings.push_back(
+        {"checkpoint-left", Severity::note,
+         fmt::format("{} checkpoints are of seeds that have ended: {}", ended.size(), listed(ended)),
+         "`peclet run` and `peclet doctor --repair` remove them",
+         [ended](Database&) { remove_all_of(ended); }});
+  }
+  if (!surplus.empty() && !examined.owner) {
+    findings.push_back(
+        {"checkpoint-surplus", Severity::note,
+         fmt::format("{} checkpoints ({:.1f} MB) are of seeds that their points, which are decided, did not "
+                     "need: {}",
+                     surplus.size(), megabytes(surplus), listed(surplus)),
+         "`peclet doctor --repair` removes them; kept, they save these seeds' time should a tolerance be "
+         "tightened",
+         [surplus](Database&) { remove_all_of(surplus); }});
+  }
+  if (!rejected.empty()) {
+    findings.push_back({"checkpoint-rejected", Severity::note,
+                        fmt::format("{} checkpoints could not be used and were set aside: {}",
+                                    rejected.size(), listed(rejected)),
+                        "their seeds started again; `peclet doctor --repair` removes them",
+                        [rejected](Database&) { remove_all_of(rejected); }});
+  }
+  if (!strays.empty()) {
+    findings.push_back({"stray-checkpoint", Severity::note,
+                        fmt::format("{} files in checkpoints/ are of no seed of this campaign: {}",
+                                    strays.size(), listed(strays)),
+                        "move them away if nothing else needs them"});
+  }
+}
+
+void examine_spool(const CampaignUnderExamination& examined, Findings& findings) {
+  const CampaignDirectory& directory = examined.directory;
+  if (!fs::is_directory(directory.spool())) return;
+  const std::vector<fs::path> waiting = spool_files(directory);
+  if (!waiting.empty() && !examined.owner) {
+    findings.push_back({"spool-waiting", Severity::note,
+                        fmt::format("{} results wait in spool/: {}", waiting.size(), listed(waiting)),
+                        "the next `peclet run` takes them in"});
+  }
+  const std::vector<fs::path> rejected = files_in(directory.rejected());
+  if (!rejected.empty()) {
+    findings.push_back({"rejected-results", Severity::warning,
+                        fmt::format("{} files were turned down: {}", rejected.size(), listed(rejected)),
+                        "the table `event` says why; remove them from spool/rejected/ when you know"});
+  }
+}
+
+void examine_requests(const CampaignUnderExamination& examined, Findings& findings) {
+  const std::vector<fs::path> waiting = waiting_requests(examined.directory);
+  if (!waiting.empty() && !examined.owner) {
+    findings.push_back({"request-waiting", Severity::note,
+                        fmt::format("{} requests wait in requests/: {}", waiting.size(), listed(waiting)),
+                        "the next `peclet run` carries them out"});
+  }
+}
+
+void examine_unfinished(const CampaignUnderExamination& examined, Findings& findings) {
+  std::vector<fs::path> folders, unfinished;
+  for (const fs::path& folder :
+       {examined.directory.root(), examined.directory.spool(), examined.directory.left(),
+        examined.directory.checkpoints(), examined.directory.failures(), examined.directory.backup(),
+        examined.directory.requests()}) {
+    if (!fs::is_directory(folder)) continue;
+    folders.push_back(folder);
+    for (const fs::path& file : unfinished_files(folder)) unfinished.push_back(file);
+  }
+  if (unfinished.empty()) return;
+  findings.push_back({"unfinished-file", Severity::note,
+                      fmt::format("{} files were left unfinished by processes that died: {}",
+                                  unfinished.size(), listed(unfinished)),
+                      "`peclet run` and `peclet doctor --repair` remove them", [folders](Database&) {
+                        for (const fs::path& folder : folders) remove_unfinished_files(folder);
+                      }});
+}
+
+void examine_strays(const CampaignUnderExamination& examined, Findings& findings) {
+  std::vector<fs::path> strays;
+  for (const fs::path& file : files_in(examined.directory.root())) {
+    const std::string name = file.filename().string();
+    const bool known = std::find(known_names.begin(), known_names.end(), name) != known_names.end();
+    if (!known && file.extension() != ".tmp") strays.push_back(file);
+  }
+  if (strays.empty()) return;
+  findings.push_back({"stray-file", Severity::note, "files that belong to nobody: " + listed(strays),
+                      "move them away if nothing else needs them"});
+}
+
+}  // namespace
+
+void examine_files(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
+  examine_spool(examined, findings);
+  examine_checkpoints(database, examined, findings);
+  examine_requests(examined, findings);
+  examine_unfinished(examined, findings);
+  examine_strays(examined, findings);
+}
+
+void examine_backups(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
+  const std::int64_t results = extent_of(database.connection()).results;
+  if (results == 0) return;
+  const fs::path newest = newest_backup(examined.directory.backup());
+  const auto find = [&](const std::string& code, const std::string& message) {
+    findings.push_back(
+        {code, Severity::warning, message, "`peclet backup` and `peclet doctor --repair` make one",
+         [directory = examined.directory](Database&) { make_backup(directory, directory.backup(), false); }});
+  };
+  if (kind_of(newest).empty())
+    return find("no-backup", fmt::format("there is no backup of {} results", results));
+  try {
+    const Contents contents = examine(newest);
+    const double hours =
+        static_cast<double>(seconds_of_utc(examined.now) - seconds_of_utc(contents.backed_up_at)) / 3600;
+    if (contents.results < results && hours > old_backup_hours) {
+      find("old-backup", fmt::format("the last backup is {:.0f} hours old and lacks {} results", hours,
+                                     results - contents.results));
+    }
+  } catch (const UnsuitableFile& error) {
+    findings.push_back({"backup-damaged", Severity::warning, error.what(),
+                        "move it away; `peclet backup` makes another one"});
+  } catch (const IntegrityError& error) {
+    find("backup-damaged", fmt::format("the last backup is damaged: {}", error.what()));
+  }
+}
+
+// Are the files that realisations have left where the database says, and are they what it says?
+
+namespace {
+
+class Places {
+ public:
+  explicit Places(const fs::path& root) : root_(root) {}
+  void add(const fs::path& path) {
+    constexpr std::size_t most = 3;
+    if (++count_ <= most) text_ += (count_ == 1 ? "" : ", ") + plain(path.lexically_relative(root_).string());
+    if (count_ == most + 1) text_ += " ...";
+  }
+  std::size_t count() const { return count_; }
+  const std::string& text() const { return text_; }
+
+ private:
+  const fs::path& root_;
+  std::size_t count_ = 0;
+  std::string text_;
+};
+
+// Files that are not what their rows say, for whatever reason.
+class Faulty {
+ public:
+  explicit Faulty(const CampaignDirectory& directory) : directory_(directory), places_(directory.root()) {}
+  void add(const FileRecord& record) {
+    places_.add(record.place(directory_));
+    have_copies_ = have_copies_ && has_copy(record, directory_.backup());
+  }
+  void report(const char* code, const char* how, Findings& findings) const {
+    if (places_.count() == 0) return;
+    Finding finding{
+        code, Severity::warning,
+        fmt::format("{} files that realisations left {}: {}", places_.count(), how, places_.text()),
+        "backups made elsewhere have them in files/, by their SHA-256 (view `files`)"};
+    if (have_copies_) {
+      finding.cure = "`peclet doctor --repair` brings them back from the campaign's own backups";
+      finding.repair = [directory = directory_](Database& owner) {
+        bring_files_back(files_in(owner.connection()), directory, directory.backup());
+      };
+    }
+    findings.push_back(std::move(finding));
+  }
+
+ private:
+  const CampaignDirectory& directory_;
+  Places places_;
+  bool have_copies_ = true;
+};
+
+void examine_places(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
+  const CampaignDirectory& directory = examined.directory;
+  Faulty missing(directory), damaged(directory);
+  std::set<fs::path> known;
+  for (const FileRecord& record : files_in(database.connection())) {
+    if (!record.kept) continue;
+    const fs::path place = record.place(directory);
+    known.insert(place);
+    if (is_there(place)) {
+      if (!is_sound(record, directory)) damaged.add(record);
+    } else if (!examined.owner) {  // those of a result that has just been committed are on their way
+      missing.add(record);
+    }
+  }
+  missing.report("file-missing", "are not there", findings);
+  damaged.report("file-damaged", "are not what they were", findings);
+  if (examined.owner || kind_of(directory.files()) != "a folder") return;
+  Places orphans(directory.root());
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(directory.files())) {
+    const bool is_folder = entry.symlink_status().type() == fs::file_type::directory;
+    if (!is_folder && !known.contains(entry.path())) orphans.add(entry.path());
+  }
+  if (orphans.count() == 0) return;
+  findings.push_back(
+      {"file-orphan", Severity::note,
+       fmt::format("{} files in files/ are of no result: {}", orphans.count(), orphans.text()),
+       "their seeds bring them again if the database is an older one; move them away otherwise"});
+}
+
+}  // namespace
+
+void examine_left_files(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
+  examine_places(database, examined, findings);
+  if (examined.owner || kind_of(examined.directory.left()) != "a folder") return;
+  Places waiting(examined.directory.root());
+  for (const fs::path& file : whole_files(examined.directory.left())) {
+    const std::string name = file.filename().string();
+    const fs::path result = examined.directory.spool() / (name.substr(0, name.rfind('@')) + ".json");
+    if (!is_there(result)) waiting.add(file);
+  }
+  if (waiting.count() == 0) return;
+  findings.push_back(
+      {"file-left", Severity::note,
+       fmt::format("{} files are of attempts that gave no result: {}", waiting.count(), waiting.text()),
+       "the next `peclet run` removes them"});
+}
+
+}  // namespace peclet::runner

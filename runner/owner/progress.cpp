@@ -1,0 +1,105 @@
+#include "runner/owner/progress.h"
+
+#include <fmt/format.h>
+#include <spdlog/sinks/ansicolor_sink.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "runner/campaign/number_text.h"
+
+namespace peclet::runner {
+namespace {
+
+// Off a terminal somebody reads a file: one line in so many seconds is enough.
+constexpr double seconds_between_lines = 30;
+
+bool colour_wanted() {
+  const char* const no_colour = std::getenv("NO_COLOR");
+  return isatty(STDERR_FILENO) != 0 && (no_colour == nullptr || *no_colour == '\0');
+}
+
+spdlog::sink_ptr stderr_sink() {
+  if (colour_wanted()) return std::make_shared<spdlog::sinks::ansicolor_stderr_sink_st>();
+  return std::make_shared<spdlog::sinks::stderr_sink_st>();
+}
+
+std::size_t terminal_width() {
+  winsize size{};
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 80;
+  return size.ws_col;
+}
+
+}  // namespace
+
+std::string progress_line(const RunReport& report) {
+  std::string line = fmt::format("points {}/{} {}", report.converged, report.points,
+                                 report.has_target ? "converged" : "complete");
+  if (report.decided > report.converged) line += fmt::format(", {} not", report.decided - report.converged);
+  if (report.cancelled > 0) line += fmt::format(", {} cancelled", report.cancelled);
+  line += fmt::format(" | seeds {}/{}", report.seeds_ended, report.seeds_wanted);
+  if (report.results > 0) line += fmt::format(" | {:.3g}/min", 60 * report.results / report.elapsed);
+  if (const std::string to_go = report.to_go ? to_string(*report.to_go) : ""; !to_go.empty()) {
+    line += " | " + to_go;
+  }
+  if (report.budget_seconds) {
+    line += fmt::format(" | budget {} of {} h", rough(report.spent_seconds / seconds_per_hour),
+                        rough(*report.budget_seconds / seconds_per_hour));
+  }
+  if (report.workers > 0) line += fmt::format(" | workers {}/{}", report.busy, report.workers);
+  return line;
+}
+
+Progress::Style Progress::style_of_stderr(bool quiet) {
+  if (quiet) return Style::quiet;
+  return isatty(STDERR_FILENO) != 0 ? Style::terminal : Style::lines;
+}
+
+Progress::Progress(Style style)
+    : style_(style), log_(std::make_shared<spdlog::logger>("run", stderr_sink())) {
+  log_->set_pattern("%H:%M:%S %^%l%$ %v");
+}
+
+Progress::~Progress() { erase_line(); }
+
+void Progress::erase_line() {
+  if (line_.empty()) return;
+  std::fputs("\r\x1b[K", stderr);
+  std::fflush(stderr);
+}
+
+void Progress::draw_line() {
+  if (line_.empty()) return;
+  std::fputs(line_.substr(0, terminal_width() - 1).c_str(), stderr);
+  std::fflush(stderr);
+}
+
+void Progress::note(const std::string& message) {
+  if (style_ == Style::quiet) return;
+  erase_line();
+  log_->info(message);
+  draw_line();
+}
+
+void Progress::warn(const std::string& message) {
+  erase_line();
+  log_->warn(message);
+  draw_line();
+}
+
+void Progress::report(const RunReport& report) {
+  if (style_ == Style::terminal) {
+    erase_line();
+    line_ = progress_line(report);
+    draw_line();
+  } else if (style_ == Style::lines && report.elapsed >= next_line_) {
+    log_->info(progress_line(report));
+    next_line_ = report.elapsed + seconds_between_lines;
+  }
+}
+
+}  // namespace peclet::runner

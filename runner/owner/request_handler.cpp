@@ -1,0 +1,206 @@
+#include "runner/owner/request_handler.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "contract/guarded_file.h"
+#include "contract/sha256.h"
+#include "runner/campaign/number_text.h"
+#include "runner/campaign/quoting.h"
+#include "runner/owner/retry_plan.h"
+
+namespace peclet::runner {
+namespace {
+
+void compare(std::vector<std::string>& changes, const char* what, const std::string& before,
+             const std::string& after) {
+  if (before != after) changes.push_back(fmt::format("{} {} -> {}", what, before, after));
+}
+
+std::string also_text(const Target& target) { return target.also.empty() ? "none" : to_string(target.also); }
+
+// "minimum 10 -> 20"; where one of both is fixed, "realisations 8 to 100 -> 16".
+void compare_realisations(std::vector<std::string>& changes, const TargetRecord& before,
+                          const Campaign& after) {
+  const int minimum = after.minimum_realisations, maximum = after.maximum_realisations;
+  if (!before.target.has_tolerance() || !after.target.has_tolerance()) {
+    compare(changes, "realisations", range_text(before.minimum, before.maximum),
+            range_text(minimum, maximum));
+    return;
+  }
+  compare(changes, "minimum", std::to_string(before.minimum), std::to_string(minimum));
+  compare(changes, "maximum", std::to_string(before.maximum), std::to_string(maximum));
+}
+
+std::string exact_percent(double share) { return fmt::format("{:.6g} %", 100 * share); }
+
+std::string points_text(std::ptrdiff_t count, const char* what) {
+  return fmt::format("{} point{} {}", count, count == 1 ? "" : "s", what);
+}
+
+void compare_points(std::vector<std::string>& changes, Database& database, const Campaign& campaign) {
+  std::set<std::string> before, after;
+  for (const PointRecord& point : database.points()) before.insert(point.hash);
+  for (const StatePoint& point : campaign.points) after.insert(point.hash);
+  const auto missing_in = [](const std::set<std::string>& those, const std::set<std::string>& these) {
+    return std::count_if(these.begin(), these.end(),
+                         [&](const std::string& hash) { return !those.contains(hash); });
+  };
+  if (const auto added = missing_in(before, after); added > 0) changes.push_back(points_text(added, "added"));
+  if (const auto left = missing_in(after, before); left > 0) changes.push_back(points_text(left, "left out"));
+}
+
+}  // namespace
+
+std::string describe_changes(Database& database, const Campaign& campaign) {
+  const CampaignRecord known = database.campaign();
+  const Target& before = known.target.target;
+  const Target& after = campaign.target;
+  std::vector<std::string> changes;
+  compare(changes, "observable", before.observable, after.observable);
+  compare(changes, "tolerance", to_string(before.tolerance), to_string(after.tolerance));
+  compare(changes, after.has_tolerance() ? "further targets" : "also shown", also_text(before),
+          also_text(after));
+  compare(changes, "confidence", exact_percent(before.confidence), exact_percent(after.confidence));
+  compare_realisations(changes, known.target, campaign);
+  const auto kept = [](const Json& document) { return document.value("keep_files", Json("all")).dump(); };
+  compare(changes, "files kept", kept(known.document), kept(campaign.document));
+  compare_points(changes, database, campaign);
+  if (!changes.empty()) return fmt::format("{}", fmt::join(changes, "; "));
+  return known.document == campaign.document ? "nothing differs" : "the file, in nothing that decides";
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// One that is larger is not taken over while the campaign runs; `peclet run` reads it.
+constexpr std::uint64_t largest_campaign_file = 64 << 20;
+
+std::vector<PointRecord> named(const std::vector<PointRecord>& points,
+                               const std::vector<std::string>& names) {
+  std::set<std::size_t> found;
+  for (const std::string& name : names) found.insert(find_point(points, name));
+  std::vector<PointRecord> chosen;
+  chosen.reserve(found.size());
+  for (const std::size_t i : found) chosen.push_back(points[i]);
+  return chosen;
+}
+
+std::string labels(const std::vector<PointRecord>& points) {
+  constexpr std::size_t most = 12;
+  std::vector<std::string> labels;
+  for (std::size_t i = 0; i < std::min(most, points.size()); ++i) labels.push_back(points[i].label);
+  if (points.size() > most) labels.push_back(fmt::format("and {} more", points.size() - most));
+  return fmt::format("{}", fmt::join(labels, ", "));
+}
+
+std::optional<std::int64_t> only(const std::vector<PointRecord>& points) {
+  return points.size() == 1 ? std::optional(points.front().id) : std::nullopt;
+}
+
+}  // namespace
+
+bool RequestHandler::carry_out() {
+  bool any = false;
+  for (const fs::path& file : waiting_requests(directory_)) {
+    if (left_alone_.contains(file)) continue;
+    try {
+      const Request request = read_request(file);
+      if (!events_.has_answered(request.name)) {
+        carry_out(request);
+        any = true;
+      }
+      fs::remove(file);
+    } catch (const RequestError& error) {
+      const std::optional<fs::path> aside = set_request_aside(file);
+      if (!aside) left_alone_.insert(file);
+      const std::string now = aside ? "set aside as " + plain_name(*aside) : "left alone";
+      listener_.warn(fmt::format("requests/{}: is no request: {}; it is {}", plain_name(file),
+                                 plain(error.what()), now));
+    } catch (const DatabaseError&) {
+      ledger_.roll_back();
+      throw;
+    }
+  }
+  return any;
+}
+
+void RequestHandler::carry_out(const Request& request) {
+  std::string why;
+  try {
+    Transaction booking(database_.connection());
+    Done done = std::visit([&](const auto& wish) { return apply(wish); }, request.wish);
+    ledger_.refresh();
+    events_.write(done.kind, done.point, std::nullopt, done.message, request.name);
+    booking.commit();
+    ledger_.after_commit();
+    listener_.note(fmt::format("{}: {}", done.kind, done.message));
+    return;
+  } catch (const InputError& error) {
+    why = error.what();
+  } catch (const OtherEngine& error) {
+    why = fmt::format("{}: stop the run first, then `peclet run` says how to accept it", error.what());
+  }
+  ledger_.roll_back();
+  refuse(request, why);
+}
+
+void RequestHandler::refuse(const Request& request, const std::string& why) {
+  Transaction booking(database_.connection());
+  events_.write("refused", std::nullopt, std::nullopt, why, request.name);
+  booking.commit();
+  listener_.note("a request is refused: " + why);
+}
+
+RequestHandler::Done RequestHandler::apply(const TakeOver& wish) {
+  std::string text;
+  try {
+    text = read_regular(wish.file, largest_campaign_file);
+  } catch (const std::system_error& error) {
+    throw InputError(wish.file.string(), "", "", error.what());
+  }
+  // Whoever changed it since asks for that to be taken over, or is yet to do so: what was checked is no more.
+  if (sha256(text) != wish.sha256) {
+    return {"set", fmt::format("left to what {} says since; `peclet set` or `peclet run` takes that over",
+                               wish.file.string())};
+  }
+  const Campaign campaign = parse_campaign(parse_json(text, wish.file.string()), wish.file.string());
+  if (ledger_.has_engine() && campaign.engine != ledger_.campaign().engine) {
+    throw InputError(wish.file.string(), "/engine", Json(campaign.engine).dump(),
+                     "cannot be changed while the campaign runs: stop it, and start it again");
+  }
+  const std::string changes = describe_changes(database_, campaign);
+  ledger_.take_over(campaign);
+  return {"set", changes};
+}
+
+RequestHandler::Done RequestHandler::apply(const Prioritise& wish) {
+  const std::vector<PointRecord> points = named(database_.points(), wish.points);
+  for (const PointRecord& point : points) rows_.set_priority(point.id, wish.priority);
+  return {"set", fmt::format("priority {}: {}", wish.priority, labels(points)), only(points)};
+}
+
+RequestHandler::Done RequestHandler::apply(const Cancel& wish) {
+  const std::vector<PointRecord> points = named(database_.points(), wish.points);
+  for (const PointRecord& point : points) rows_.set_cancelled(point.id, !wish.undo);
+  return {"cancel", fmt::format("{}: {}", wish.undo ? "taken up again" : "no more seeds", labels(points)),
+          only(points)};
+}
+
+RequestHandler::Done RequestHandler::apply(const Retry& wish) {
+  const std::vector<PointRecord> all = database_.points();
+  const std::vector<PointRecord> points = wish.points.empty() ? all : named(all, wish.points);
+  const RetryPlan plan = plan_retry(database_, points, wish.seeds);
+  for (const auto& [point, seeds] : plan.seeds) {
+    for (const int seed : seeds) seeds_.retry(point, seed);
+  }
+  return {"retry", plan.message, only(points)};
+}
+
+}  // namespace peclet::runner

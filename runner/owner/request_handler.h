@@ -1,0 +1,68 @@
+// What people ask for, carried out by the campaign's owner: once each, whatever is killed when, because the
+// event that says what was done names its request and is committed together with it.
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "runner/owner/ledger.h"
+#include "runner/owner/request.h"
+#include "runner/owner/run_listener.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/database.h"
+#include "runner/store/point_store.h"
+#include "runner/store/seed_store.h"
+
+namespace peclet::runner {
+
+// In words, what a campaign file changes in a campaign that has been run.
+//
+// "tolerance 5 % -> 3 %; 2 points added, 1 left out"; "nothing differs". Requires that the database holds a
+// campaign and has not taken this one over yet.
+std::string describe_changes(Database& database, const Campaign& campaign);
+
+class RequestHandler {
+ public:
+  // All references must outlive it.
+  RequestHandler(Database& database, Ledger& ledger, CampaignDirectory directory, RunListener& listener)
+      : database_(database),
+        seeds_(database),
+        rows_(database),
+        events_(database.connection()),
+        ledger_(ledger),
+        directory_(std::move(directory)),
+        listener_(listener) {}
+
+  bool any_waits() const { return !waiting_requests(directory_).empty(); }
+
+  // Carries out what waits, each request in a transaction of its own. One that cannot be carried out becomes
+  // an event `refused` that says why; a file that is no request is set aside with a warning. True when the
+  // ledger's picture was taken again: the seeds that workers have are then to be found again. Throws
+  // DatabaseError: the request it came with waits on, and the ledger's picture was taken again.
+  bool carry_out();
+
+ private:
+  void carry_out(const Request& request);
+  // The kind of event that says so, the point when it is a single one, and in words what was done.
+  struct Done {
+    std::string kind, message;
+    std::optional<std::int64_t> point{};
+  };
+  Done apply(const TakeOver& wish);
+  Done apply(const Prioritise& wish);
+  Done apply(const Cancel& wish);
+  Done apply(const Retry& wish);
+  void refuse(const Request& request, const std::string& why);
+
+  Database& database_;
+  SeedStore seeds_;
+  PointStore rows_;
+  EventStore events_;
+  Ledger& ledger_;
+  CampaignDirectory directory_;
+  RunListener& listener_;
+  std::set<std::filesystem::path> left_alone_;  // no requests, and could not be set aside
+};
+
+}  // namespace peclet::runner

@@ -1,0 +1,34 @@
+// `peclet export --bundle`: all that a reader of a paper needs of a campaign, in one file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/page/tar_gz.h"
+#include "runner/reports/status.h"
+#include "runner/store/database.h"
+
+namespace peclet::runner {
+
+// What a reader finds first in a supplement.
+//
+// README.md: the table of results, what each file is, which number is the one, how to check and to redo it.
+std::string supplement_readme(const CampaignStatus& status);
+
+// Throws InputError at --bundle unless the name ends in .tar.gz or .tgz.
+void check_supplement_name(const std::filesystem::path& output);
+
+// The files, README.md first and SHA256SUMS last: campaign file, exports as JSON, CSV and long CSV, the page,
+// the figure with its script, provenance. All are of the one snapshot that the reader has. They depend on the
+// database alone, and on who runs the campaign (`owner`), which the page says.
+// Throws InputError where nothing has been measured yet, IntegrityError.
+std::vector<ArchivedFile> supplement_files(Database& database, std::optional<std::int64_t> owner);
+
+// The same as a compressed archive with a folder of the campaign's name in it, last changed when the last
+// seed ended. The same state gives the same bytes.
+std::string supplement(Database& database, std::optional<std::int64_t> owner);
+
+}  // namespace peclet::runner

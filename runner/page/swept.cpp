@@ -1,0 +1,111 @@
+#include "runner/page/swept.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+
+#include "contract/errors.h"
+#include "contract/text.h"
+
+namespace peclet::runner {
+namespace {
+
+std::string last_step(const std::string& pointer) { return pointer.substr(pointer.rfind('/') + 1); }
+
+// What is too long to be read in a figure is called by its place among the values, from 1.
+std::string word_of(const Json& value, const std::vector<Json>& distinct) {
+  constexpr std::size_t longest = 26;
+  if (value.is_null()) return "–";
+  if (value.is_number()) return fmt::format("{:.6g}", value.get<double>());
+  if (value.dump().size() > longest) {
+    const auto place = std::find(distinct.begin(), distinct.end(), value) - distinct.begin();
+    return fmt::format("#{}", place + 1);
+  }
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+Swept column(const Json& parameter, const Json& points) {
+  Swept made{parameter.at("pointer").get<std::string>(), parameter.at("symbol").get<std::string>()};
+  if (made.name.empty()) made.name = last_step(made.pointer);
+  std::vector<Json> cells, distinct;
+  for (const Json& point : points) {
+    cells.push_back(point.at("settings").value(made.pointer, Json()));
+    if (std::find(distinct.begin(), distinct.end(), cells.back()) == distinct.end())
+      distinct.push_back(cells.back());
+  }
+  made.numeric = std::all_of(cells.begin(), cells.end(), [](const Json& cell) { return cell.is_number(); });
+  for (const Json& cell : cells) {
+    const auto place = std::find(distinct.begin(), distinct.end(), cell) - distinct.begin();
+    made.numbers.push_back(made.numeric ? cell.get<double>() : static_cast<double>(place));
+    made.words.push_back(word_of(cell, distinct));
+  }
+  for (const Json& value : distinct) made.values.push_back(word_of(value, distinct));
+  return made;
+}
+
+Swept points_themselves(const Json& points) {
+  Swept made{"", "point"};
+  for (const Json& point : points) {
+    made.numbers.push_back(static_cast<double>(made.values.size()));
+    made.values.push_back(point.at("label").get<std::string>());
+  }
+  made.words = made.values;
+  return made;
+}
+
+bool is_called(const Swept& one, const std::string& name) {
+  return one.pointer == name || one.pointer == '/' + name || last_step(one.pointer) == name;
+}
+
+// Whether the value of `other` follows from that of `axis`.
+bool in_step(const Swept& other, const Swept& axis) {
+  std::map<double, double> partner;
+  for (std::size_t i = 0; i < axis.numbers.size(); ++i) {
+    if (partner.emplace(axis.numbers[i], other.numbers[i]).first->second != other.numbers[i]) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<Swept> swept_parameters(const Json& parameters, const Json& points) {
+  std::vector<Swept> swept;
+  for (const Json& parameter : parameters) swept.push_back(column(parameter, points));
+  if (swept.empty()) swept.push_back(points_themselves(points));
+  return swept;
+}
+
+const Swept& chosen_axis(const std::vector<Swept>& swept, const std::string& name,
+                         const std::string& option) {
+  if (name.empty()) {
+    const auto rank = [](const Swept& one) {
+      return one.distinct() < 2 ? 0 : (one.numeric ? 1'000'000 : 0) + one.distinct();
+    };
+    return *std::max_element(swept.begin(), swept.end(),
+                             [&](const Swept& a, const Swept& b) { return rank(a) < rank(b); });
+  }
+  std::vector<std::string> names;
+  std::vector<const Swept*> found;
+  for (const Swept& one : swept) {
+    if (one.pointer.empty()) continue;
+    names.push_back(one.pointer);
+    if (is_called(one, name)) found.push_back(&one);
+  }
+  if (found.size() == 1) return *found.front();
+  if (names.empty()) throw InputError("", option, name, "must not be given: the campaign sweeps nothing");
+  const std::string allowed = fmt::format("must be what one thing is called that is swept: {}{}",
+                                          fmt::join(names, ", "), suggestion('/' + name, names));
+  throw InputError("", option, name, allowed);
+}
+
+std::vector<const Swept*> curves_by(const std::vector<Swept>& swept, const Swept& axis) {
+  std::vector<const Swept*> others;
+  for (const Swept& one : swept) {
+    if (&one != &axis && one.distinct() > 1 && !in_step(one, axis)) others.push_back(&one);
+  }
+  return others;
+}
+
+}  // namespace peclet::runner

@@ -1,0 +1,165 @@
+// Time scales and groups against the figures that were published with Table 4.1 of Li (2023).
+#include "engine/integrators/derived_groups.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/flow/oscillatory_shear.h"
+#include "engine/observables/scene_reading.h"
+#include "engine/scene/scene.h"
+#include "tests/engine/small_scene.h"
+
+namespace peclet::engine {
+namespace {
+
+Scene scene_of(double shear_rate, double thermal_energy) {
+  Scene scene;
+  scene.particles.density = 0.1;
+  scene.particles.reference_radius = 1;
+  scene.physics.viscosity = 0.1;
+  scene.physics.flow = steady_shear(shear_rate);
+  scene.physics.thermal_energy = thermal_energy;
+  scene.physics.contact = ContactParameters{.normal_stiffness = 1e4};
+  return scene;
+}
+
+std::vector<std::string> warning_codes(const Scene& scene) {
+  std::vector<std::string> codes;
+  for (const Warning& warning : scene_warnings(scene)) codes.push_back(warning.code);
+  return codes;
+}
+
+TEST(DerivedGroups, ReproduceThePublishedTable) {
+  const struct {
+    double peclet, shear_rate, thermal_energy;
+  } rows[] = {{0.01, 9e-5, 0.017},  {0.046, 4.2e-4, 0.017}, {0.22, 1.9e-3, 0.017}, {1, 9e-3, 0.017},
+              {4.6, 9e-3, 3.7e-3},  {22, 9e-3, 7.9e-4},     {100, 9e-3, 1.7e-4},   {460, 9e-3, 3.7e-5},
+              {2200, 9e-3, 7.9e-6}, {1e4, 9e-3, 1.7e-6}};
+  for (const auto& row : rows) {
+    const DerivedGroups groups = derived_groups(scene_of(row.shear_rate, row.thermal_energy));
+    EXPECT_NEAR(*groups.peclet / row.peclet, 1, 0.045) << row.peclet;  // the table has two digits
+    EXPECT_NEAR(*groups.contact_time, 0.0032, 0.00005);
+    EXPECT_NEAR(*groups.inertial_time, 1, 1e-12);
+    EXPECT_NEAR(*groups.brownian_time * row.thermal_energy, 0.1, 1e-12);
+    EXPECT_NEAR(*groups.shear_time * row.shear_rate, 1, 1e-12);
+    EXPECT_NEAR(*groups.stokes, row.shear_rate, 1e-12);
+    EXPECT_NEAR(*groups.relative_stiffness * row.shear_rate, 1e5, 1e-6);
+  }
+}
+
+TEST(DerivedGroups, ScaleWithTheReferenceRadius) {
+  Scene scene = scene_of(0.5, 0.2);
+  scene.particles.reference_radius = 2;
+  const DerivedGroups groups = derived_groups(scene);
+  EXPECT_NEAR(*groups.inertial_time, 4, 1e-12);
+  EXPECT_NEAR(*groups.brownian_time, 4, 1e-12);
+  EXPECT_NEAR(*groups.contact_time, std::sqrt(8e-5), 1e-12);
+  EXPECT_NEAR(*groups.relative_stiffness, 1e5, 1e-6);
+  EXPECT_NEAR(*groups.peclet, 37.699111843077517, 1e-12);  // 12 pi
+}
+
+TEST(DerivedGroups, WhatHasNoMeaningIsNull) {
+  Scene scene = scene_of(0, 0);
+  scene.physics.contact.reset();
+  EXPECT_EQ(to_json(derived_groups(scene)), (Json{{"peclet", nullptr},
+                                                  {"stokes", 0.0},
+                                                  {"relative_stiffness", nullptr},
+                                                  {"contact_time", nullptr},
+                                                  {"inertial_time", 1.0},
+                                                  {"brownian_time", nullptr},
+                                                  {"shear_time", nullptr},
+                                                  {"flow_over_rest", nullptr},
+                                                  {"largest_stokes", nullptr},
+                                                  {"largest_inertia_over_brownian", nullptr}}));
+}
+
+// Of the published system at Pe = 0.01: (600 pi)^2 phi / (300 v eta_r (eta_r - 1 - 2.5 phi)), v = 4 pi / 3
+// over (0.5 + 0.5 / 1.4^3) = 6.1400, eta_r = 17.526 at phi = 0.5 and 2.9251 at 0.3. As 1 / Pe^2.
+TEST(DerivedGroups, NearRestTheFlowIsComparedWithRest) {
+  Scene scene = scene_of(1, 1);
+  scene.particles.species = {{1, 0.5}, {1.4, 0.5}};
+  scene.physics.contact = ContactParameters{.normal_stiffness = 1e4};
+  const auto compared = [&](double peclet, double fraction) {
+    Scene near = scene;
+    near.volume_fraction = fraction;
+    near.physics.flow = steady_shear(peclet / (6 * std::numbers::pi * 0.1));
+    return derived_groups(near).flow_over_rest;
+  };
+  EXPECT_NEAR(compared(0.01, 0.5).value(), 3.6025, 5e-4);
+  EXPECT_NEAR(compared(0.01, 0.3).value(), 168.361, 5e-3);
+  EXPECT_NEAR(compared(0.001, 0.5).value() / compared(0.01, 0.5).value(), 100, 1e-6);
+  EXPECT_FALSE(compared(0.1001, 0.5));
+  EXPECT_FALSE(compared(0.01, 0.6));
+  Scene oscillating = scene;
+  oscillating.volume_fraction = 0.5;
+  oscillating.physics.flow = ImposedFlow(std::make_shared<OscillatoryShear>(0.001, 1));
+  EXPECT_FALSE(derived_groups(oscillating).flow_over_rest);
+  scene.physics.contact->friction = 0.1;
+  EXPECT_FALSE(compared(0.01, 0.5));
+}
+
+// rho a^2 w / eta = 0.3, whatever the amplitude.
+TEST(SceneWarnings, InertiaBesideAnOscillationGoesByItsFrequency) {
+  const auto codes = [](double density) {
+    Json document = small_scene();
+    document["particles"]["density"] = density;
+    document["particles"]["species"] = Json::array({{{"radius", 1}}});
+    document["fluid"]["thermal_energy"] = 0;
+    document["flow"] = {{"oscillation", {{"amplitude", 1e-3}, {"frequency", 3}}}};
+    document["integrator"] = {{"method", "implicit"}};
+    document["duration"] = {{"equilibration", {{"cycles", 1}}}, {"production", {{"cycles", 1}}}};
+    std::vector<std::string> found;
+    for (const Warning& warning : scene_warnings(read_scene(document, "scene.json")))
+      found.push_back(warning.code);
+    return found;
+  };
+  EXPECT_EQ(codes(0.01), std::vector<std::string>{"inertia-shear"});
+  EXPECT_EQ(codes(0.003), std::vector<std::string>{});
+}
+
+TEST(SceneWarnings, InertiaIsReportedFromTheBoundOn) {
+  using Codes = std::vector<std::string>;
+  EXPECT_EQ(warning_codes(scene_of(0.009, 0.0169)), Codes{});
+  EXPECT_EQ(warning_codes(scene_of(0.009, 0.017)), Codes{"inertia-thermal"});  // 0.17, as published
+  EXPECT_EQ(warning_codes(scene_of(0.0999, 0)), Codes{});
+  EXPECT_EQ(warning_codes(scene_of(0.1, 0)), Codes{"inertia-shear"});
+  EXPECT_EQ(warning_codes(scene_of(1, 1)), (Codes{"inertia-shear", "inertia-thermal"}));
+  EXPECT_EQ(warning_codes(scene_of(0, 0)), Codes{});
+}
+
+// By Desmond & Weeks (2014) 0.634 + 0.0658 d + 0.0857 S d^2, of radii 1 : 1.4 in equal volumes, 1000 : 364 in
+// number: d = 0.160 and S = 1.05, 0.634 + 0.0105 + 0.0023.
+TEST(WarningsBeforeRun, DenserThanARandomPackingIsSaid) {
+  const auto text = [](double fraction) {
+    const std::vector<Warning> found =
+        warnings_before_run(read_scene(small_scene({{"volume_fraction", fraction}}), "scene.json"));
+    return found.empty() ? "" : found.front().code + ": " + found.front().message;
+  };
+  EXPECT_EQ(text(0.63), "");
+  EXPECT_NE(
+      text(0.66).find("packing: random packings of these spheres reach a volume fraction of about 0.647"),
+      std::string::npos)
+      << text(0.66);
+}
+
+TEST(WarningsBeforeRun, SoftSpheresAreSaid) {
+  const auto codes = [](double stiffness) {  // viscosity times radius times rate is 0.2
+    std::vector<std::string> found;
+    const Json scene = small_scene({{"contact", {{"normal_stiffness", stiffness}}}});
+    for (const Warning& warning : warnings_before_run(read_scene(scene, "scene.json")))
+      found.push_back(warning.code);
+    return found;
+  };
+  EXPECT_EQ(codes(40), std::vector<std::string>{"soft"});
+  EXPECT_EQ(codes(2e3), std::vector<std::string>{});
+}
+
+TEST(SceneWarnings, MessagesGiveTheNumbers) {
+  const std::string message = scene_warnings(scene_of(0.25, 0)).at(0).message;
+  EXPECT_NE(message.find("tau_I / tau_S = 0.25 (tau_I = 1, tau_S = 4)"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace peclet::engine

@@ -1,0 +1,54 @@
+// What a job tells on its way.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "engine/realisation/job.h"
+#include "tests/engine/small_scene.h"
+
+namespace peclet::engine {
+namespace {
+
+std::vector<Progress> told_of(const Json& scene) {
+  std::vector<Progress> told;
+  JobSpecification job;
+  job.header = {"point", 2};
+  job.scene = scene;
+  job.scene_name = "scene.json";
+  JobEvents events;
+  events.progress = [&](const Progress& progress) { told.push_back(progress); };
+  run_job(job, events);
+  return told;
+}
+
+std::vector<std::uint64_t> packing_steps(const std::vector<Progress>& told) {
+  std::vector<std::uint64_t> steps;
+  for (const Progress& progress : told) {
+    if (progress.phase != std::string("packing")) break;
+    EXPECT_EQ(progress.steps, 0U) << "nobody knows how many";
+    steps.push_back(progress.step);
+  }
+  return steps;
+}
+
+// Whoever waits for a step of a long packing hears of one.
+TEST(JobProgress, HasEveryStepOfThePacking) {
+  const std::vector<std::uint64_t> loose = packing_steps(told_of(small_scene({{"volume_fraction", 0.3}})));
+  const std::vector<std::uint64_t> dense = packing_steps(told_of(small_scene({{"volume_fraction", 0.55}})));
+  for (const std::vector<std::uint64_t>& steps : {loose, dense}) {
+    for (std::size_t k = 0; k < steps.size(); ++k) EXPECT_EQ(steps[k], k);
+  }
+  EXPECT_GT(loose.size(), 3U);
+  EXPECT_GT(dense.size(), 2 * loose.size());
+}
+
+// A packing that nobody can make is looked for at smaller and smaller fractions: that takes longest.
+TEST(JobProgress, GoesOnWhileTheDensestPackingIsLookedFor) {
+  const std::vector<std::uint64_t> steps = packing_steps(told_of(small_scene({{"volume_fraction", 0.72}})));
+  for (std::size_t k = 0; k < steps.size(); ++k) EXPECT_EQ(steps[k], k);
+  EXPECT_GT(steps.size(), 500U);
+}
+
+}  // namespace
+}  // namespace peclet::engine

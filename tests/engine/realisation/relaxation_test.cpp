@@ -1,0 +1,90 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "engine/integrators/stability.h"
+#include "engine/kernels/pair_recipes.h"
+#include "engine/observables/scene_reading.h"
+#include "engine/realisation/packing.h"
+#include "engine/realisation/simulation.h"
+#include "tests/engine/small_scene.h"
+
+namespace peclet::engine {
+namespace {
+
+// A packing whose spheres repel each other much more than the flow presses them together: from places as they
+// were packed, four of seeds 0 to 7 leap over their neighbours in the second step.
+Scene repulsive_scene() {
+  return read_scene(Json::parse(R"({
+    "particles": {"count": 100, "density": 0.1,
+                  "species": [{"radius": 1, "volume_share": 0.5}, {"radius": 1.4, "volume_share": 0.5}]},
+    "volume_fraction": 0.5,
+    "fluid": {"viscosity": 0.1},
+    "flow": {"shear_rate": 0.045},
+    "contact": {"normal_stiffness": 1e4},
+    "lubrication": {"form": "kim-karrila"},
+    "repulsion": {"form": "exponential", "strength": 1, "relative_length": 0.01, "cutoff_lengths": 5},
+    "duration": {"equilibration": {"strain": 0}, "production": {"strain": 0.75}}})"),
+                    "scene.json");
+}
+
+System packed(const Scene& scene) {
+  System system;
+  const std::vector<double> radius = species_radii(scene.particles);
+  system.particles = make_particles(radius, scene.particles.density);
+  const double edge = cube_edge(radius, scene.volume_fraction);
+  system.box = PeriodicCell({edge, edge, edge}, simple_shear(scene.physics.flow.rate()));
+  const std::vector<double> sizes = distinct_radii(radius);
+  system.list = NeighbourList(range_table(make_pair_kinds(scene.physics, sizes), sizes.size()), 0.1);
+  system.springs = SpringField(spring_kinds(required_terms(scene.physics)), 0);
+  place_randomly(system.particles, system.box, 1);
+  return system;
+}
+
+TEST(Relaxation, MovesSpheresAndNothingElse) {
+  const Scene scene = repulsive_scene();
+  System system = packed(scene);
+  const System before = system;
+  relax(system, scene, 1);
+  EXPECT_FALSE(system.particles.position == before.particles.position);
+  EXPECT_EQ(system.step, 0u);
+  EXPECT_EQ(system.box.strain(), 0);
+  EXPECT_EQ(system.box.velocity_gradient(), simple_shear(scene.physics.flow.rate()));
+  std::vector<std::uint32_t> id = system.particles.id;
+  std::sort(id.begin(), id.end());
+  for (std::uint32_t i = 0; i < id.size(); ++i) {
+    EXPECT_EQ(id[i], i);
+  }
+}
+
+// Neither flow nor noise is a force here.
+TEST(Relaxation, LeavesAPackingWithoutForcesWhereItIs) {
+  Scene scene = repulsive_scene();
+  scene.physics.repulsion.reset();
+  scene.physics.thermal_energy = 0.02;
+  System system = packed(scene);
+  std::vector<Vector3> before(system.particles.count());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    before[system.particles.id[i]] = system.particles.position[i];
+  }
+  relax(system, scene, 1);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const Vector3 r = system.particles.position[i] + system.box.displacement(system.particles.image[i]) -
+                      before[system.particles.id[i]];
+    EXPECT_NEAR(norm(r), 0, 1e-12);
+  }
+}
+
+TEST(Relaxation, LetsStronglyRepulsivePackingsStart) {
+  const Scene scene = repulsive_scene();
+  for (const std::uint64_t seed : {0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U}) {
+    Simulation simulation(scene, {automatic_timestep(scene), 0, 40}, seed, 1, "scene.json");
+    simulation.start();
+    const std::optional<Ending> ending = simulation.advance(40);
+    ASSERT_TRUE(ending.has_value());
+    EXPECT_EQ(ending->cause, Ending::Cause::completed) << ending->message;
+  }
+}
+
+}  // namespace
+}  // namespace peclet::engine

@@ -1,0 +1,113 @@
+// From a measured table to the species of a scene.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+#include "contract/durable_file.h"
+#include "contract/errors.h"
+#include "contract/json.h"
+#include "engine/observables/scene_reading.h"
+#include "engine/realisation/schedule.h"
+#include "engine/scene/measured_sizes.h"
+#include "tests/engine/small_scene.h"
+#include "tests/engine/temporary_folder.h"
+
+namespace peclet::engine {
+namespace {
+
+// Fourteen sieves with tails of less than a percent of the volume.
+const char* const sieves =
+    "0.5 0.05\n0.6 0.3\n0.7 1.2\n0.8 4\n0.9 9.5\n1.0 16\n1.1 20.5\n1.2 19.3\n1.3 14\n"
+    "1.4 8.3\n1.5 4.2\n1.6 1.8\n1.7 0.6\n1.8 0.25\n";
+
+class SizeChoice : public testing::Test {
+ protected:
+  SizesAnswer answer(std::size_t count, const char* text = sieves, const char* sizes = "radius") const {
+    write_durably(folder_ / "s.txt", text);
+    return choose_sizes({.file = (folder_ / "s.txt").string(),
+                         .sizes = sizes,
+                         .shares = "volume",
+                         .columns = "",
+                         .count = count});
+  }
+  static Json distribution(const SizesAnswer& answer) {
+    return Json::parse("{" + answer.block + "}").at("species")[0].at("distribution");
+  }
+  // "": a scene with these species and as many spheres fits.
+  static std::string fault_of(const SizesAnswer& answer, std::size_t count) {
+    Json scene = small_scene();
+    scene["particles"]["species"] = Json::parse("{" + answer.block + "}").at("species");
+    scene["particles"]["count"] = count;
+    scene["integrator"] = {{"method", "implicit"}};  // of any sizes
+    try {
+      const Scene read = read_scene(scene, "scene.json");
+      check_fit(read, make_schedule(read, "scene.json"), "scene.json");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(SizeChoice, OfAllSizesSaysTheCountThatAScenePasses) {
+  const SizesAnswer all = answer(0);
+  EXPECT_EQ(distribution(all).at("radii").size(), 14U);
+  std::size_t size = 0, spheres = 0;
+  std::sscanf(all.remarks.c_str() + all.remarks.find('\n'), "%zu %zu", &size, &spheres);
+  EXPECT_EQ(size, 14U) << all.remarks;
+  // The fewest spheres of a size are one: those of the largest radius.
+  double sum = 0;
+  std::istringstream table(sieves);
+  for (double radius = 0, share = 0; table >> radius >> share;) sum += share / std::pow(radius, 3);
+  EXPECT_NEAR(static_cast<double>(spheres), sum * std::pow(1.8, 3) / 0.25, 1);
+  for (const std::size_t count : {spheres, spheres + 1, spheres + 100, 2 * spheres})
+    EXPECT_EQ(fault_of(all, count), "");
+  const std::string fault = fault_of(all, 60);
+  EXPECT_NE(fault.find(std::to_string(spheres) + " would do for all sizes"), std::string::npos) << fault;
+}
+
+TEST_F(SizeChoice, MergesThinSizesUntilEachHasASphere) {
+  for (const std::size_t count : {1U, 20U, 300U, 1000U}) {
+    const SizesAnswer some = answer(count);
+    // A box of few spheres is too small for a scene; one size is there at any count.
+    EXPECT_EQ(fault_of(some, count == 1 ? 60 : count), "") << some.block;
+    // Number and volume of all spheres are those of the table: 1 / mean of a^-3 over volume.
+    double number = 0, volume = 0, expected = 0, whole = 0;
+    const Json found = distribution(some);
+    for (std::size_t i = 0; i < found["radii"].size(); ++i) {
+      volume += found["shares"][i].get<double>();
+      number += found["shares"][i].get<double>() / std::pow(found["radii"][i].get<double>(), 3);
+    }
+    std::istringstream table(sieves);
+    for (double radius = 0, share = 0; table >> radius >> share;) {
+      whole += share;
+      expected += share / std::pow(radius, 3);
+    }
+    EXPECT_NEAR(number / volume, expected / whole, 1e-5 * expected / whole);
+  }
+  EXPECT_EQ(distribution(answer(1)).at("radii").size(), 1U);
+  EXPECT_LT(distribution(answer(300)).at("radii").size(), distribution(answer(1000)).at("radii").size());
+}
+
+TEST_F(SizeChoice, KnowsDiameters) {
+  EXPECT_EQ(
+      distribution(answer(0, "2;30\n2,8;70\n", "diameter")),
+      Json::parse(R"({"form": "histogram", "by": "volume", "radii": [1.0, 1.4], "shares": [30.0, 70.0]})"));
+}
+
+TEST(SizeClasses, OfTheThinnestAreMergedWithTheThinnerNeighbour) {
+  const std::vector<SizeClass> merged = with_one_size_less({{1, 0.6}, {2, 0.1}, {3, 0.3}});
+  ASSERT_EQ(merged.size(), 2U);
+  EXPECT_EQ(merged[0].radius, 1);
+  EXPECT_DOUBLE_EQ(merged[1].number, 0.4);
+  EXPECT_DOUBLE_EQ(std::pow(merged[1].radius, 3), (0.1 * 8 + 0.3 * 27) / 0.4);
+  EXPECT_DOUBLE_EQ(with_one_size_less({{1, 0.1}, {2, 0.9}})[0].number, 1);
+  EXPECT_DOUBLE_EQ(with_one_size_less({{1, 0.9}, {2, 0.1}})[0].number, 1);
+}
+
+}  // namespace
+}  // namespace peclet::engine

@@ -1,0 +1,103 @@
+// From the seeds of a campaign to its curves, and to whether each point flows.
+#include <gtest/gtest.h>
+
+#include "contract/errors.h"
+#include "runner/page/jamming.h"
+#include "runner/store/vocabulary.h"
+#include "tests/runner/page/jamming_campaign.h"
+
+namespace peclet::runner {
+namespace {
+
+const std::vector<double> fractions{0.45, 0.50, 0.54, 0.57, 0.60, 0.62, 0.66};
+
+TEST(JammingCurves, AreOnePerValueOfWhatElseIsSwept) {
+  JammingCampaign campaign(jamming_document(fractions, {{{"set", "/contact/friction"}, {"values", {0, 1}}}}));
+  campaign.complete(8, 20);
+  const JammingCurves curves = campaign.curves();
+  EXPECT_EQ(curves.over, "/volume_fraction");
+  ASSERT_EQ(curves.curves.size(), 2U);
+  EXPECT_EQ(curves.curves[1].name, "friction = 1");
+  EXPECT_EQ(curves.curves[1].settings, Json({{"/contact/friction", 1}}));
+  const JammingPoint& point = curves.curves[1].points.at(1);
+  EXPECT_EQ(point.fraction, 0.50);
+  EXPECT_EQ(point.state, "flowing");
+  EXPECT_EQ(point.estimate.count, 8);
+  EXPECT_NEAR(point.estimate.mean, 20, 1e-12);
+  EXPECT_NEAR(point.estimate.standard_error, 0.2 / std::sqrt(8), 1e-12);
+  EXPECT_EQ(curves.curves[0].points.at(1).state, "open");
+  const Json hello = Json::parse(
+      R"({"scene_schema": {"properties": {"contact": {"properties": {"friction": {"symbol": "μ"}}}}}})");
+  keep_vocabulary(campaign.stored().database(), Vocabulary(hello));
+  EXPECT_EQ(campaign.curves().curves[1].name, "μ = 1");
+}
+
+TEST(JammingCurves, SayOfEachPointWhetherItFlows) {
+  JammingCampaign campaign(jamming_document(fractions));
+  const TrueLaw law;
+  campaign.complete(0, law.at(0.45));
+  campaign.complete(1, law.at(0.50), 0.01, 0.00099);
+  campaign.complete(2, 1000, 0.01, 0.0011);
+  campaign.jam(3, 8, "packing");
+  campaign.jam(4, 1);  // 1 of 8: more than a tenth, less than half
+  for (int seed = 1; seed < 8; ++seed) campaign.stored().complete(4, seed, 50);
+  for (int seed = 0; seed < 8; ++seed) campaign.stored().crash(5, seed);
+  const std::vector<JammingPoint> points = campaign.points();
+  const char* const states[] = {"flowing", "flowing", "soft", "jammed", "partly jammed", "lost", "open"};
+  for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(points.at(i).state, states[i]) << i;
+  EXPECT_EQ(points[2].overlap, 0.0011);
+  EXPECT_EQ(points[4].jammed, 1);
+  EXPECT_EQ(points[4].ended, 8);
+}
+
+// A result with a rate, and so a value of what the campaign aims at: it ends as `jammed`, not as lost.
+TEST(JammingCurves, WhatStandsStillUnderItsStressHasJammed) {
+  JammingCampaign campaign(jamming_document(fractions));
+  for (int seed = 0; seed < 4; ++seed) {
+    campaign.stored().complete_with(5, seed, 1e8 + seed, [&](Json& result) {
+      if (seed > 0) result["ending"]["cause"] = "jammed";
+    });
+  }
+  const JammingPoint still = campaign.points().at(5);
+  EXPECT_EQ(still.state, "jammed");
+  EXPECT_EQ(still.ended, 4);
+  EXPECT_EQ(still.jammed, 3);
+}
+
+TEST(JammingCurves, WithoutMeanOverlapsTheLargestDecide) {
+  JammingCampaign campaign(jamming_document(fractions));
+  for (int point = 0; point < 2; ++point) {
+    for (int seed = 0; seed < 4; ++seed) {
+      campaign.stored().complete_with(point, seed, 20 + seed, [&](Json& result) {
+        result["mean"].erase("mean_overlap");
+        result["largest_overlap"] = point == 0 ? 0.0099 : 0.0101;  // ten times 0.001
+      });
+    }
+  }
+  const std::vector<JammingPoint> points = campaign.points();
+  EXPECT_EQ(points.at(0).state, "flowing");
+  EXPECT_EQ(points.at(1).state, "soft");
+  EXPECT_FALSE(points[1].overlap);
+  EXPECT_NEAR(points[1].largest_overlap.value_or(0), 0.0101, 1e-12);
+}
+
+TEST(JammingCurves, RefuseWhatIsNotAVolumeFractionOrNotAQuantity) {
+  const auto refusal = [](JammingCampaign& campaign, const CurveChoice& choice) -> std::string {
+    try {
+      campaign.curves(choice);
+    } catch (const InputError& fault) {
+      return fault.what();
+    }
+    return "";
+  };
+  JammingCampaign campaign(jamming_document(fractions, {{{"set", "/contact/friction"}, {"values", {0, 1}}}}));
+  campaign.complete(0, 10);
+  EXPECT_EQ(refusal(campaign, {.over = "friction"}),
+            "--over: friction: must be a swept volume fraction: numbers > 0 and < 1");
+  EXPECT_TRUE(
+      says(refusal(campaign, {.over = "peclet"}), "--over: peclet: must be what one thing is called"));
+  EXPECT_TRUE(says(refusal(campaign, {.quantity = "presure"}), "must be a number that is measured"));
+}
+
+}  // namespace
+}  // namespace peclet::runner

@@ -1,0 +1,158 @@
+// Figures of a campaign: which numbers they have, and the script that is made of them. What is drawn of them:
+// tests/python/drawing_test.py.
+#include "runner/page/figure.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "contract/errors.h"
+#include "runner/page/picture.h"
+#include "tests/runner/stored_campaign.h"
+
+namespace peclet::runner {
+namespace {
+
+// The string between r""" and """ behind the mark, which a reader of Python takes from a script.
+std::string raw_string(const std::string& script) {
+  const std::string mark = "FIGURE = json.loads(r\"\"\"";
+  const std::size_t begin = script.find(mark) + mark.size();
+  std::size_t end = begin;
+  while (script.compare(end, 3, "\"\"\"") != 0) end += script[end] == '\\' ? 2 : 1;
+  return script.substr(begin, end - begin);
+}
+
+class CampaignFigure : public testing::Test {
+ protected:
+  // 10.05 ± 0.41 with a control of 0.25, far from the tolerance of 5 %: capped.
+  void complete_widely(int point) {
+    const double values[] = {9.05, 10.05, 11.05, 10.05};
+    for (int seed = 0; seed < 4; ++seed) campaign_.complete(point, seed, values[seed]);
+  }
+  Json figure(const FigureChoice& choice = {}) { return figure_data(campaign_.database(), choice); }
+  std::string refusal(const FigureChoice& choice) {
+    try {
+      figure(choice);
+    } catch (const InputError& fault) {
+      return fault.what();
+    }
+    return "";
+  }
+
+  StoredCampaign campaign_{3, 4, 4};
+};
+
+TEST_F(CampaignFigure, HasTheEstimateThatDecides) {
+  complete_widely(0);
+  for (int seed = 0; seed < 4; ++seed) campaign_.complete(1, seed, 20 + 0.01 * seed);
+  campaign_.complete(2, 0, 29.75);
+  const Json drawn = figure();
+  ASSERT_EQ(drawn["points"].size(), 3U);
+  EXPECT_EQ(drawn["over"], "/point");
+  EXPECT_EQ(drawn["quantity"]["path"], "relative_viscosity");
+  const Json& capped = drawn["points"][0];
+  EXPECT_EQ(capped["settings"]["/point"], 0);
+  EXPECT_NEAR(capped["mean"].get<double>(), 10.3, 1e-12);
+  EXPECT_NEAR(capped["half_width"].get<double>(), 3.18244630528 * std::sqrt(2.0 / 3) / 2,
+              1e-9);  // Student's t, 3 degrees
+  EXPECT_NEAR(capped["good_enough"].get<double>(), 0.05 * 10.3, 1e-12);
+  EXPECT_EQ(capped["count"], 4);
+  EXPECT_EQ(capped["standing"], "undecided");
+  EXPECT_EQ(drawn["points"][1]["standing"], "converged");
+  EXPECT_EQ(drawn["points"][2]["standing"], "provisional");
+  EXPECT_EQ(drawn["points"][2]["mean"], 30);
+  EXPECT_TRUE(drawn["points"][2]["half_width"].is_null());
+}
+
+TEST_F(CampaignFigure, HasAnyQuantityThatIsMeasured) {
+  complete_widely(0);
+  const Json drawn = figure({.quantity = "/pressure", .over = "point", .scale = {}, .tolerance = false});
+  EXPECT_EQ(drawn["quantity"]["path"], "pressure");
+  EXPECT_NEAR(drawn["points"][0]["mean"].get<double>(), 20.1, 1e-12);
+  EXPECT_TRUE(drawn["points"][1]["mean"].is_null());
+}
+
+TEST_F(CampaignFigure, RefusesWhatIsNotThere) {
+  EXPECT_EQ(refusal({}), "--quantity: relative_viscosity: nothing has been measured yet");
+  complete_widely(0);
+  EXPECT_EQ(refusal({.quantity = "presure", .over = {}, .scale = {}, .tolerance = false}),
+            "--quantity: presure: must be a number that is measured; did you mean pressure?");
+  EXPECT_EQ(refusal({.quantity = {}, .over = "peclet", .scale = {}, .tolerance = false}),
+            "--over: peclet: must be what one thing is called that is swept: /point");
+  EXPECT_EQ(refusal({.quantity = "pressure", .over = {}, .scale = {}, .tolerance = true}),
+            "--band: pressure: has no tolerance: the campaign does not aim at it");
+}
+
+// Points at x = 0, 1 and 2, of which the second one has jammed.
+TEST_F(CampaignFigure, HasNoNumberOfThoseThatHappenedToFlowWhereThePointHasJammed) {
+  complete_widely(0);
+  for (int seed = 0; seed < 3; ++seed) campaign_.blow_up(1, seed, "overlap");
+  campaign_.complete(1, 3, 11);
+  complete_widely(2);
+  const Json point = figure()["points"][1];
+  EXPECT_EQ(point["jammed"], true);
+  EXPECT_TRUE(point["mean"].is_null());
+  EXPECT_EQ(point["count"], 4);
+}
+
+// A rate of 0 is a number of a point that has jammed.
+TEST_F(CampaignFigure, HasTheNumberOfAJamThatAllSeedsHave) {
+  complete_widely(0);
+  const auto stand_still = [](Json& result) { result["ending"]["cause"] = "jammed"; };
+  for (int seed = 0; seed < 4; ++seed)
+    campaign_.complete_with(1, seed, -0.25, stand_still);  // with its control 0
+  EXPECT_EQ(figure()["points"][1]["mean"], 0);
+  EXPECT_EQ(figure()["points"][1]["jammed"], true);
+}
+
+TEST_F(CampaignFigure, IsRefusedWhereALogarithmicAxisHasAPlaceForNoNumber) {
+  complete_widely(0);  // at x = 0
+  EXPECT_EQ(refusal({.quantity = {}, .over = {}, .scale = "x", .tolerance = false}),
+            "--quantity: relative_viscosity: has no number that a logarithmic axis has a place for");
+  complete_widely(1);
+  EXPECT_EQ(refusal({.quantity = {}, .over = {}, .scale = "x", .tolerance = false}), "");
+}
+
+TEST_F(CampaignFigure, ObeysNothingThatANameSays) {
+  complete_widely(0);
+  Connection& tables = campaign_.database().connection();
+  Statement(tables, "UPDATE campaign SET name = '</svg><script>1</script>\"\"\"'").step();
+  Statement(tables, "UPDATE point SET label = '\"\"\"+exit(1)+r\"\"\"\\' || place").step();
+  const Json data = Json::parse(raw_string(figure_script(figure())));
+  EXPECT_EQ(data["campaign"], "</svg><script>1</script>\"\"\"");
+  EXPECT_EQ(data["points"][0]["label"], "\"\"\"+exit(1)+r\"\"\"\\0");
+}
+
+TEST_F(CampaignFigure, HasAScriptThatKnowsWhetherItWasChanged) {
+  complete_widely(0);
+  std::string script = figure_script(figure());
+  EXPECT_EQ(script, figure_script(figure()));
+  EXPECT_TRUE(is_own_script(script));
+  script.insert(script.find("import"), "# mine\n");
+  EXPECT_FALSE(is_own_script(script));
+  EXPECT_FALSE(is_own_script(""));
+  EXPECT_FALSE(is_own_script("print('mine')\n"));
+}
+
+TEST(FigurePicture, HasItsFormFromItsName) {
+  EXPECT_EQ(picture_form("a.svg"), PictureForm::svg);
+  EXPECT_EQ(picture_form("b.c/a.png"), PictureForm::png);
+  EXPECT_EQ(picture_form("a.b.pdf"), PictureForm::pdf);
+  EXPECT_EQ(picture_form("a.py"), PictureForm::script);
+  for (const char* const name : {"a.jpg", "a", "svg", "a.svg.gz", ".svg"}) {
+    EXPECT_THROW(picture_form(name), InputError) << name;
+  }
+}
+
+TEST(FigurePicture, TakesNoScriptOfAnothersAway) {
+  const TemporaryFolder folder;
+  const std::filesystem::path picture = folder.path() / "curve.svg";
+  EXPECT_EQ(script_beside(picture), folder.path() / "curve.py");
+  std::ofstream(folder.path() / "curve.py") << "print('mine')\n";
+  EXPECT_THROW(script_beside(picture), InputError);
+}
+
+}  // namespace
+}  // namespace peclet::runner
