@@ -6,18 +6,6 @@
 
 namespace peclet::engine {
 
-// Each is a file of this folder.
-ObservableKind mean_squared_displacement();
-ObservableKind stress_correlation();
-ObservableKind pair_distribution();
-ObservableKind contact_network();
-ObservableKind fabric();
-ObservableKind profiles();
-ObservableKind linear_response();
-ObservableKind oscillation();
-ObservableKind transient();
-ObservableKind trajectory();
-
 const std::vector<ObservableKind>& observable_kinds() {
   static const std::vector<ObservableKind> all{mean_squared_displacement(),
                                                stress_correlation(),

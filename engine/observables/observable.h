@@ -90,6 +90,18 @@ struct ObservableKind {
   bool has_settings() const { return sampling != Sampling::of_every_step || !settings.empty(); }
 };
 
+// The kinds of observables, each in a file of this folder.
+ObservableKind mean_squared_displacement();
+ObservableKind stress_correlation();
+ObservableKind pair_distribution();
+ObservableKind contact_network();
+ObservableKind fabric();
+ObservableKind profiles();
+ObservableKind linear_response();
+ObservableKind oscillation();
+ObservableKind transient();
+ObservableKind trajectory();
+
 const std::vector<ObservableKind>& observable_kinds();
 
 // Makes the observables that the scene lists. Throws InputError where box or window are too small for one.

@@ -220,9 +220,10 @@ class LoopbackServer::Listener {
     acceptor_.bind(here, error);
     if (!error) acceptor_.listen(tcp::acceptor::max_listen_connections, error);
     const bool is_denied = error == asio::error::access_denied;
-    if (is_denied || error == asio::error::address_in_use)
+    if (is_denied || error == asio::error::address_in_use) {
       throw std::runtime_error(fmt::format("port {} {}; `--port 0` takes one that is free", port,
                                            is_denied ? "may not be used by you" : "is in use"));
+    }
     if (error) throw std::system_error(error, "bind");
   }
 

@@ -360,9 +360,10 @@ std::string status_table(const CampaignStatus& status, std::size_t width) {
     table.add_column("look", TextTable::Align::right, importance::look);
     if (observables.size() > 1) table.add_column("farthest", TextTable::Align::left, importance::farthest);
   } else {
-    for (const std::string& name : observables)
+    for (const std::string& name : observables) {
       table.add_column(name, TextTable::Align::right,
                        name == target.observable ? importance::look : importance::so_far);
+    }
   }
   table.add_column("verdict", TextTable::Align::left);
   for (std::size_t i = 0; i < labels.size(); ++i) {
