@@ -102,7 +102,7 @@ sanitize() {
   say "Running their tests"
   build/asan-ubsan/bin/contract_tests --gtest_brief=1
   build/asan-ubsan/bin/fuzz_spheres --runs 4000 --findings build/asan-ubsan tests/fuzz/corpus/spheres
-  printf '%s\n' build/asan-ubsan/bin/runner_*_tests | xargs -P 2 -I{} {} --gtest_brief=1
+  printf '%s\n' build/asan-ubsan/bin/runner_*_tests | xargs -P 2 -I TESTS env TESTS --gtest_brief=1
 }
 
 tidy() {
