@@ -3,7 +3,7 @@
 #
 #   ./bootstrap.sh demo     install what building needs, build, run the demonstration campaign, print its table
 #   ./bootstrap.sh package  the same, and make a .tar.gz for any Linux and a .deb of it
-#   ./bootstrap.sh test     install the packages, build, run every test
+#   ./bootstrap.sh test     install the packages, build, run every test but the slow ones
 #   ./bootstrap.sh sanitize run the tests of contract/ and runner/, and what reads files of spheres, with sanitizers
 #   ./bootstrap.sh tidy     look through the whole source with clang-tidy; with --programs leave out the tests
 #   ./bootstrap.sh lint     the same, after the form of C++ and Python
@@ -88,8 +88,8 @@ package() {
 
 run_tests() {
   build ON
-  say "Running every test"
-  ctest --preset release --parallel 2
+  say "Running every test but those that take a minute or more each (ctest --preset release -L slow)"
+  ctest --preset release --parallel 2 -LE slow
 }
 
 # Sanitizers see what release builds do not. The engine's loops would take hours with a check at each access.

@@ -1,11 +1,10 @@
 #!/usr/bin/python3
-"""live_pages.py BIN [--pages 10] [--seconds 5] [--rounds 5] [--browser] [--limit RATIO]
+"""live_pages.py BIN [--pages 10] [--seconds 5] [--rounds 5] [--browser]
 
 Whether open live pages slow the owner of a campaign: it takes in results of jobs that take no time (BIN/fake_engine),
 in turn with no page and with so many that ask once a second as a page does (--browser: real ones), within one run.
 Says what a result costs the owner, in processor time, how many it takes in a second, and what the server takes; the
-median and extremes of the rounds, and of the ratios within a round. With --limit a median ratio of the owner's
-processor time above it is an error.
+median and extremes of the rounds, and of the ratios within a round.
 """
 import argparse
 import contextlib
@@ -116,8 +115,6 @@ def measure(options, place, browser):
     said("ratio of the two in a round", ratios, "")
     said("results a second, ratio", [b[1] / a[1] for a, b in zip(alone, open_pages)], "")
     said("the server takes", [100 * share for share in server_share], "% of a core")
-    if options.limit and statistics.median(ratios) > options.limit:
-        raise SystemExit(f"the owner is slower by more than a factor of {options.limit}")
 
 
 def main():
@@ -127,7 +124,6 @@ def main():
     parser.add_argument("--seconds", type=float, default=5)
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--browser", action="store_true")
-    parser.add_argument("--limit", type=float)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="peclet-live-") as place, contextlib.ExitStack() as leaving:
         measure(options, place, leaving.enter_context(Browser()) if options.browser else None)
