@@ -28,7 +28,7 @@ const char* name_of(InstructionSet set) {
 }
 
 bool is_available(InstructionSet set) {
-#ifdef __x86_64__
+#ifdef PECLET_NEWER_SETS
   // What engine/CMakeLists.txt allows the compiler to use.
   const bool has_fma = __builtin_cpu_supports("fma") != 0;
   switch (set) {
@@ -68,7 +68,7 @@ InstructionSet chosen_instruction_set() {
 PairKernel pair_kernel(InstructionSet set, const Terms& terms) {
   const unsigned code = code_of(compiled_terms(terms));
   const PairKernelTable* table = &baseline_pair_kernels;
-#ifdef __x86_64__
+#ifdef PECLET_NEWER_SETS
   if (set != InstructionSet::baseline) {
     table = set == InstructionSet::avx2 ? &avx2_pair_kernels : &avx512_pair_kernels;
   }
@@ -79,8 +79,8 @@ PairKernel pair_kernel(InstructionSet set, const Terms& terms) {
   return table->kernel[code];
 }
 
-FillNormals fill_normals(InstructionSet set) {
-#ifdef __x86_64__
+FillNormals fill_normals([[maybe_unused]] InstructionSet set) {
+#ifdef PECLET_NEWER_SETS
   switch (set) {
     case InstructionSet::avx2:
       return &avx2::fill_normals;
@@ -94,7 +94,7 @@ FillNormals fill_normals(InstructionSet set) {
 }
 
 const LinkKernels& link_kernels([[maybe_unused]] InstructionSet set) {
-#ifdef __x86_64__
+#ifdef PECLET_NEWER_SETS
   if (set != InstructionSet::baseline) {
     return set == InstructionSet::avx2 ? avx2_link_kernels : avx512_link_kernels;
   }
@@ -103,7 +103,7 @@ const LinkKernels& link_kernels([[maybe_unused]] InstructionSet set) {
 }
 
 const OneBodyKernels& one_body_kernels([[maybe_unused]] InstructionSet set) {
-#ifdef __x86_64__
+#ifdef PECLET_NEWER_SETS
   if (set != InstructionSet::baseline) {
     return avx2_one_body_kernels;
   }

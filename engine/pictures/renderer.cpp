@@ -110,7 +110,7 @@ double Light::veil(double cosine) {
 namespace {
 
 // Gaps over the larger radius beyond which a neighbour's cap is too small to be seen.
-constexpr double reach = 1.2;
+constexpr double listed_within = 1.2;
 
 using Box = std::array<std::int64_t, 3>;
 
@@ -119,7 +119,7 @@ using Box = std::array<std::int64_t, 3>;
 Occlusion::Occlusion(const std::vector<Ball>& balls) {
   double largest = 0;
   for (const Ball& ball : balls) largest = std::max(largest, ball.radius);
-  const double edge = (2 + reach) * largest;
+  const double edge = (2 + listed_within) * largest;
   const auto box_of = [edge](const Vector3& c) {
     const auto part = [edge](double x) { return static_cast<std::int64_t>(std::floor(x / edge)); };
     return Box{part(c.x), part(c.y), part(c.z)};
@@ -136,7 +136,7 @@ Occlusion::Occlusion(const std::vector<Ball>& balls) {
       if (found == boxes.end()) continue;
       for (const std::uint32_t j : found->second) {
         const double gap = norm(balls[j].centre - ball.centre) - ball.radius - balls[j].radius;
-        if (j == i || gap > reach * std::max(ball.radius, balls[j].radius)) continue;
+        if (j == i || gap > listed_within * std::max(ball.radius, balls[j].radius)) continue;
         neighbours_.push_back({balls[j].centre, balls[j].radius * balls[j].radius});
       }
     }

@@ -26,7 +26,7 @@ double fastest(Work&& work) {
 }
 
 const PeakLoops& loops_of([[maybe_unused]] InstructionSet set) {
-#ifdef __x86_64__
+#ifdef PECLET_NEWER_SETS
   if (set == InstructionSet::avx2) {
     return avx2_peak_loops;
   }
