@@ -9,13 +9,6 @@
 
 namespace peclet::runner {
 
-struct ExplainOptions {
-  std::filesystem::path campaign;  // file or folder
-  std::filesystem::path directory;
-  std::string point;  // label, or at least 4 digits of the hash; "": all points
-  bool json = false;
-};
-
 // Throws InputError for a name that no point, or more than one, has.
 std::string explain(Database& database, const CampaignDirectory& directory, const std::string& point);
 // The same as schema/README.md describes it.

@@ -14,13 +14,6 @@
 
 namespace peclet::runner {
 
-struct StatusOptions {
-  std::filesystem::path campaign;  // file or folder
-  std::filesystem::path directory;
-  bool json = false;
-  bool check = false;  // the exit code says how the campaign stands
-};
-
 struct CampaignStatus {
   CampaignRecord campaign;
   std::vector<PointSummary> points;
