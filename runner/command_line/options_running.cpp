@@ -6,7 +6,6 @@
 #include "runner/command_line/plan_campaign.h"
 #include "runner/command_line/print.h"
 #include "runner/command_line/run.h"
-#include "runner/command_line/set.h"
 #include "runner/command_line/validate.h"
 #include "runner/command_line/verb_set.h"
 #include "runner/maintenance/backup.h"
@@ -67,8 +66,8 @@ that its times are a guess.
 )");
   add_campaign_file(verb, options->run);
   add_number(verb, "--pilot", options->pilot, whole_number(2, 1'000'000),
-             "Run the first seeds of every point, 4 unless given, which count later as any others; "
-             "predict from them, and store that for `status` to judge")
+             "Run the first seeds of every point, 4 unless given, which count later as any others; predict "
+             "from them, and store that for `status` to judge")
       ->expected(0, 1)
       ->default_str("4");
   add_team(verb, options->run);
@@ -102,9 +101,9 @@ end to standard output; with --jsonl events take its place, which schema/README.
   add_number(verb, "--time-limit", options->time_limit, number_above(0),
              "Seconds after which workers checkpoint and stop")
       ->type_name("SECONDS");
-  add_number(verb, "--budget", options->budget_hours, number_above(0),
-             "Hours of processor time that this run may spend, where they lower the summed relative "
-             "error most");
+  add_number(
+      verb, "--budget", options->budget_hours, number_above(0),
+      "Hours of processor time that this run may spend, where they lower the summed relative error most");
   add_seconds(verb, "--lease", options->lease_seconds,
               "Seconds without a new step after which a worker counts as hung");
   add_seconds(verb, "--checkpoint", options->checkpoint_seconds,
@@ -315,9 +314,9 @@ taken one, the seeds are out until a job of that name has been looked for.
       ->required()
       ->type_name("SYSTEM");
   add_campaign_file(verb, *options);
-  verb->add_option("--shared", options->shared,
-                   "Folder that this machine and the nodes see in the same place; that of the last time "
-                   "unless given")
+  verb->add_option(
+          "--shared", options->shared,
+          "Folder that this machine and the nodes see in the same place; that of the last time unless given")
       ->type_name(value_name::folder);
   add_number(verb, "--seeds-per-task", options->seeds_per_task, whole_number(1, 100'000),
              "Seeds that one task runs, one after another")
@@ -366,10 +365,9 @@ while the folder of seeds that are out is not there.
 )");
   add_campaign_file(verb, *options);
   verb->add_flag("--cancel", options->cancel, "End the jobs and take their seeds back");
-  verb->add_option(
-          "--forget", options->forget,
-          "Queue the seeds of this bundle again though nobody answers for it; results that come all the "
-          "same count once")
+  verb->add_option("--forget", options->forget,
+                   "Queue the seeds of this bundle again though nobody answers for it; results that come all "
+                   "the same count once")
       ->type_name("BUNDLE")
       ->allow_extra_args(false)  // a campaign's file may follow
       ->excludes("--cancel");

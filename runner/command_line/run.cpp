@@ -74,10 +74,9 @@ void judge_worker_count(const WorkerCount& size, RunListener& listener) {
   constexpr int tolerable = 4;
   const int cores = usable_cores();
   if (size.workers * std::int64_t{size.threads} <= std::int64_t{tolerable} * cores) return;
-  listener.warn(
-      fmt::format("{} workers of {} threads share {} cores: that is slower than --workers {}, and takes "
-                  "more memory",
-                  size.workers, size.threads, cores, std::max(1, cores / size.threads)));
+  listener.warn(fmt::format(
+      "{} workers of {} threads share {} cores: that is slower than --workers {}, and takes more memory",
+      size.workers, size.threads, cores, std::max(1, cores / size.threads)));
 }
 
 // A run's database and picture, ready to be dispatched from: what an earlier owner left undone is done.

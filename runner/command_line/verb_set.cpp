@@ -124,9 +124,9 @@ void add_file_or_folder(CLI::App* verb, std::filesystem::path& path) {
 }
 
 void add_directory(CLI::App* verb, std::filesystem::path& path) {
-  verb->add_option("--directory", path,
-                   "Folder of the campaign's database and checkpoints; NAME.peclet beside "
-                   "NAME.json unless given")
+  verb->add_option(
+          "--directory", path,
+          "Folder of the campaign's database and checkpoints; NAME.peclet beside NAME.json unless given")
       ->type_name(value_name::folder);
 }
 
