@@ -5,7 +5,6 @@
 
 #include "contract/named_files.h"
 #include "runner/campaign/quoting.h"
-#include "runner/command_line/files.h"
 #include "runner/command_line/print.h"
 #include "runner/command_line/verb_set.h"
 #include "runner/command_line/watch.h"
@@ -29,6 +28,7 @@ struct LookOptions {
   std::string point;  // label, or at least 4 digits of the hash; "": all points
   std::optional<int> seed;
   bool json = false;
+  bool paths = false;  // of files, and nothing else
   bool check = false;  // the exit code says how the campaign stands
   bool csv = false, in_long = false, canonical = false;
   std::filesystem::path output;  // "": standard output
@@ -60,10 +60,9 @@ and the verdict of every point. It only reads, and may be used at any time.
 )");
   add_campaign(verb, *options);
   add_json(verb, options->json);
-  verb->add_flag(
-      "--check", options->check,
-      "Leave with 0 (every point converged or complete), 3 (decided, but not so), 4 (not finished) or "
-      "6 (suspect)");
+  verb->add_flag("--check", options->check,
+                 "Leave with 0 (every point converged or complete), 3 (decided, but not so), 4 (not "
+                 "finished) or 6 (suspect)");
 }
 
 void add_watch(VerbSet& verbs) {
@@ -108,13 +107,13 @@ said last, whether the window is long enough, and what would bring the point fur
   add_json(verb, options->json);
 }
 
-std::string files(const FilesOptions& options) {
+std::string files(const LookOptions& options) {
   OpenCampaign open = open_to_look(options.campaign, options.directory);
-  return list_files(open.database, open.directory, options);
+  return list_files(open.database, open.directory, {options.point, options.paths, options.json});
 }
 
 void add_files(VerbSet& verbs) {
-  const auto [verb, options] = verbs.add<FilesOptions>(
+  const auto [verb, options] = verbs.add<LookOptions>(
       files, "files", "List the files that realisations have left beside their results", {0, 1, 2, 6},
       R"(
 A scene may ask its engine for files beside the numbers, as final.xyz of "files": {"final_configuration":
@@ -184,10 +183,10 @@ rest gives the same bytes at any time.
       verb->add_flag("--canonical", options->canonical,
                      "Only what depends on campaign, seeds and engine: equal runs give equal bytes");
   CLI::Option* const output = add_output(verb, options->output);
-  CLI::Option* const bundle = verb->add_option("--bundle", options->bundle,
-                                               "All of it in one archive, for a paper's supplement: a file "
-                                               "that ends in .tar.gz")
-                                  ->type_name(value_name::file);
+  CLI::Option* const bundle =
+      verb->add_option("--bundle", options->bundle,
+                       "All of it in one archive, for a paper's supplement: a file that ends in .tar.gz")
+          ->type_name(value_name::file);
   for (CLI::Option* const other : {json, csv, in_long, canonical, output}) bundle->excludes(other);
   add_quiet(verb, options->quiet);
 }
@@ -345,10 +344,9 @@ then.
   verb->add_option("--quantity", options->choice.quantity,
                    "Number to draw, as `export` calls it; the campaign's target unless given")
       ->type_name("NAME");
-  verb->add_option(
-          "--over", options->choice.over,
-          "Swept parameter of the axis: its pointer or the last word of it; the one with most values "
-          "unless given")
+  verb->add_option("--over", options->choice.over,
+                   "Swept parameter of the axis: its pointer or the last word of it; the one with most "
+                   "values unless given")
       ->type_name("PARAMETER");
   verb->add_option("--log", options->choice.scale, "Axes that are logarithmic; those that fit unless given")
       ->type_name("AXES")

@@ -21,7 +21,6 @@
 #include "runner/owner/open_campaign.h"
 #include "runner/page/live_campaign.h"
 #include "runner/page/loopback_server.h"
-#include "runner/reports/curve.h"
 #include "runner/reports/status.h"
 #include "runner/store/database.h"
 #include "runner/store/locks.h"
@@ -99,11 +98,7 @@ std::string fitted_line(std::string_view line, int columns) {
 
 std::vector<std::string_view> lines_of(std::string_view text) {
   std::vector<std::string_view> lines;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    lines.push_back(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
+  while (!text.empty()) lines.push_back(take_line(text));
   return lines;
 }
 

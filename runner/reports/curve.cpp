@@ -1,5 +1,3 @@
-#include "runner/reports/curve.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "runner/campaign/number_text.h"
+#include "runner/reports/status.h"
 
 namespace peclet::runner {
 namespace {

@@ -1,5 +1,3 @@
-#include "runner/reports/explain_estimate.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,6 +9,7 @@
 
 #include "runner/campaign/number_text.h"
 #include "runner/engines/engine_process.h"
+#include "runner/reports/explain.h"
 #include "runner/statistics/statistics.h"
 #include "runner/statistics/window_advice.h"
 
@@ -142,8 +141,7 @@ std::string window_text(Database& database, const PointSummary& point, const std
   return fmt::format(
       "  window: {}; its halves correlate by {:.2f} ({:.2f} .. {:.2f}), equilibration is {:.0f} % of a "
       "realisation;\n"
-      "    for the same error half the window takes {:.2f} times the processor time, twice the window "
-      "{}\n",
+      "    for the same error half the window takes {:.2f} times the processor time, twice the window {}\n",
       conclusion, advice->correlation, advice->low, advice->high,
       100 * cost.equilibration / (cost.equilibration + cost.production), advice->half_as_long, longer);
 }
@@ -177,15 +175,19 @@ std::string line(const AttemptRecord& attempt) {
 
 }  // namespace
 
-std::string losses_text(Database& database, const PointSummary& point) {
-  constexpr std::size_t most_seeds = 10;
+std::map<std::string, std::vector<int>> lost_seeds(Database& database, std::int64_t point) {
   std::map<std::string, std::vector<int>> seeds;
-  for (const RealisationRecord& record : database.realisations(point.point.id)) {
+  for (const RealisationRecord& record : database.realisations(point)) {
     const bool is_lost = record.state == SeedState::failed || record.state == SeedState::quarantined;
     if (is_lost) seeds[record.cause].push_back(record.seed);
   }
+  return seeds;
+}
+
+std::string losses_text(Database& database, const PointSummary& point) {
+  constexpr std::size_t most_seeds = 10;
   std::string text;
-  for (auto& [cause, of_cause] : seeds) {
+  for (auto [cause, of_cause] : lost_seeds(database, point.point.id)) {
     const std::size_t count = of_cause.size();
     if (count > most_seeds) of_cause.resize(most_seeds);
     text += fmt::format("  lost: {} {} (seed{} {}{})\n", count, cause, count == 1 ? "" : "s",

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "runner/store/campaign_directory.h"
 #include "runner/store/database.h"
 
 namespace peclet::runner {
@@ -21,6 +22,17 @@ namespace peclet::runner {
 // `result`. Throws InputError for a point that is not there, or when there is no result of `seed`.
 void for_each_result_line(Database& database, const std::string& point, std::optional<int> seed,
                           const std::function<void(const std::string& line)>& take);
+
+// The verb `peclet files`: what realisations have left beside their results.
+struct FileChoice {
+  std::string point;  // as find_point() names it; "" for all
+  bool paths = false, json = false;
+};
+
+// A table; with `paths` the paths of the files that are kept, a line each; with `json` an array of point,
+// hash, seed, name, bytes, sha256 and path, which is null of a file that was thrown away. Throws InputError
+// for a point that there is not.
+std::string list_files(Database& database, const CampaignDirectory& directory, const FileChoice& options);
 
 // Documents as schema/README.md describes them. Throw IntegrityError when stored looks are not what the
 // stored results say.

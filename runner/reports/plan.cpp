@@ -230,8 +230,7 @@ std::string legend(const Plan& plan, bool predicted) {
   if (!plan.guessed_from.empty()) {
     text = fmt::format(
         "~: a guess, from the first two seconds of one realisation of {} and the particle-steps of the "
-        "others; "
-        "--pilot measures\n",
+        "others; --pilot measures\n",
         plan.guessed_from);
   }
   for (const std::string& trial : plan.broke_off) text += fmt::format("the trial of {}\n", trial);
@@ -282,23 +281,18 @@ std::string rest_text(const Plan& plan) {
          text;
 }
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 template <typename Number>
 Json range_json(const Expected<Number>& value, double unit) {
-  return {{"expected", number(value.likely / unit)},
-          {"lower", number(value.lower / unit)},
-          {"upper", number(value.upper / unit)}};
+  return {{"expected", number_json(value.likely / unit)},
+          {"lower", number_json(value.lower / unit)},
+          {"upper", number_json(value.upper / unit)}};
 }
 
 Json prediction_json(const PointPlan& point) {
   if (!point.is_predicted()) return nullptr;
   const Prediction& prediction = point.prediction;
   return {{"pilot", prediction.pilot},
-          {"seeds",
-           {{"expected", prediction.seeds.likely},
-            {"lower", prediction.seeds.lower},
-            {"upper", prediction.seeds.upper}}},
+          {"seeds", range_json(prediction.seeds)},
           {"cpu_hours", range_json(prediction.seeds, seconds_per_hour / point.cost.cpu_seconds)},
           {"capped_probability", prediction.capped}};
 }
@@ -335,21 +329,21 @@ Json plan_json(const Plan& plan) {
     points.push_back({{"label", point.label},
                       {"particle_steps", point.particle_steps},
                       {"measured_seeds", point.cost.count},
-                      {"cpu_seconds_per_seed", number(point.cost.cpu_seconds)},
-                      {"cpu_hours_minimum", number(hours(point, plan.minimum))},
-                      {"cpu_hours_maximum", number(hours(point, plan.maximum))},
+                      {"cpu_seconds_per_seed", number_json(point.cost.cpu_seconds)},
+                      {"cpu_hours_minimum", number_json(hours(point, plan.minimum))},
+                      {"cpu_hours_maximum", number_json(hours(point, plan.maximum))},
                       {"verdict", point.decided ? Json(to_string(point.decided->verdict)) : Json(nullptr)},
                       {"seeds_ended", point.ended},
                       {"prediction", prediction_json(point)},
-                      {"flow_over_rest", number(point.flow_over_rest.value_or(std::nan("")))},
+                      {"flow_over_rest", number_json(point.flow_over_rest.value_or(std::nan("")))},
                       {"obstacle", obstacle.empty() ? Json(nullptr) : Json(obstacle)}});
   }
   return {{"schema_version", 1},
           {"campaign", plan.campaign},
           {"realisations", {{"minimum", plan.minimum}, {"maximum", plan.maximum}}},
           {"points", points},
-          {"cpu_hours_minimum", number(total_hours(plan, plan.minimum))},
-          {"cpu_hours_maximum", number(total_hours(plan, plan.maximum))},
+          {"cpu_hours_minimum", number_json(total_hours(plan, plan.minimum))},
+          {"cpu_hours_maximum", number_json(total_hours(plan, plan.maximum))},
           {"trials_broken_off", plan.broke_off},
           {"guessed_from", plan.guessed_from.empty() ? Json(nullptr) : Json(plan.guessed_from)},
           {"prediction", totals_json(plan)}};
