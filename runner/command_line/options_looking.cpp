@@ -11,7 +11,6 @@
 #include "runner/page/figure.h"
 #include "runner/page/jamming.h"
 #include "runner/page/page_html.h"
-#include "runner/page/picture.h"
 #include "runner/page/supplement.h"
 #include "runner/reports/explain.h"
 #include "runner/reports/export.h"

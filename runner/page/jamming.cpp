@@ -13,18 +13,14 @@
 #include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "contract/named_files.h"
-#include "contract/text.h"
 #include "runner/campaign/campaign.h"
 #include "runner/campaign/campaign_file.h"
 #include "runner/campaign/quoting.h"
 #include "runner/engines/command.h"
 #include "runner/owner/open_campaign.h"
-#include "runner/page/page_data.h"
 #include "runner/page/swept.h"
-#include "runner/reports/status.h"
 #include "runner/statistics/cohorts.h"
 #include "runner/store/own_files.h"
-#include "runner/store/vocabulary.h"
 
 namespace peclet::runner {
 namespace {
@@ -65,24 +61,6 @@ void judge(JammingPoint& made, Database& database, const PointSummary& point, do
   }
 }
 
-std::optional<std::size_t> place_of(const std::vector<Drawable>& drawables, const std::string& path) {
-  for (std::size_t column = 0; column < drawables.size(); ++column) {
-    if (drawables[column].path == path) return column;
-  }
-  return std::nullopt;
-}
-
-// The place of the quantity among what has been measured; none where nothing has.
-std::optional<std::size_t> column_of(const std::vector<Drawable>& drawables, const std::string& quantity) {
-  if (drawables.empty()) return std::nullopt;
-  const std::string path = quantity.starts_with('/') ? quantity.substr(1) : quantity;
-  if (const std::optional<std::size_t> place = place_of(drawables, path)) return place;
-  std::vector<std::string> names;
-  names.reserve(drawables.size());
-  for (const Drawable& one : drawables) names.push_back(one.path);
-  throw InputError("", "--quantity", quantity, "must be a number that is measured" + suggestion(path, names));
-}
-
 Estimate estimate_of(const Json& point, const std::optional<std::size_t>& column) {
   const Json numbers = column ? point.at("estimates").at(*column) : Json();
   if (numbers.is_null()) return {0, not_known, not_known};
@@ -113,31 +91,33 @@ void name_curve(JammingCurve& curve, const std::vector<const Swept*>& by, const 
 }  // namespace
 
 JammingCurves read_curves(Database& database, const CurveChoice& choice) {
-  const CampaignStatus status = read_status(database);
-  KnownPoints known;
-  const PagePoints page = page_points(database, status, known);
-  const std::vector<Swept> swept =
-      swept_parameters(page_parameters(status, kept_vocabulary(database)), page.points);
-  const Swept& axis = chosen_axis(swept, choice.over, "--over");
+  const MeasuredSweep sweep = read_sweep(database);
+  const Swept& axis = chosen_axis(sweep.swept, choice.over, "--over");
   require_fractions(axis, choice.over);
-  const std::vector<const Swept*> by = curves_by(swept, axis);
-  const std::optional<std::size_t> column = column_of(page.drawables, choice.quantity);
-  const std::optional<std::size_t> overlaps = place_of(page.drawables, "mean_overlap");
-  JammingCurves made{status.campaign.name, choice.quantity, axis.pointer, {}};
+  const std::vector<const Swept*> by = curves_by(sweep.swept, axis);
+  const std::vector<Drawable>& drawables = sweep.page.drawables;
+  std::optional<std::size_t> column, overlaps;
+  if (!drawables.empty()) column = chosen_column(drawables, bare(choice.quantity));
+  for (std::size_t place = 0; place < drawables.size(); ++place) {
+    if (drawables[place].path == "mean_overlap") overlaps = place;
+  }
+  JammingCurves made{sweep.status.campaign.name, choice.quantity, axis.pointer, {}};
   std::map<std::string, std::size_t> places;  // of curves, by their settings
-  for (std::size_t i = 0; i < page.points.size(); ++i) {
+  for (std::size_t i = 0; i < sweep.status.points.size(); ++i) {
+    const PointSummary& summary = sweep.status.points[i];
+    const Json& json = sweep.page.points[i];
     JammingCurve named;
-    name_curve(named, by, page.points[i], i);
+    name_curve(named, by, json, i);
     const auto [place, is_new] = places.emplace(named.settings.dump(), made.curves.size());
     if (is_new) made.curves.push_back(std::move(named));
     JammingPoint point;
-    point.label = status.points[i].point.label;
+    point.label = summary.point.label;
     point.fraction = axis.numbers[i];
-    point.estimate = estimate_of(page.points[i], column);
-    if (const Estimate overlap = estimate_of(page.points[i], overlaps); overlap.count > 0) {
+    point.estimate = estimate_of(json, column);
+    if (const Estimate overlap = estimate_of(json, overlaps); overlap.count > 0) {
       point.overlap = overlap.mean;
     }
-    judge(point, database, status.points[i], choice.softest);
+    judge(point, database, summary, choice.softest);
     made.curves[place->second].points.push_back(std::move(point));
   }
   for (JammingCurve& curve : made.curves) {

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "contract/sha256.h"
 #include "runner/campaign/quoting.h"
-#include "runner/page/page_points.h"
 #include "runner/reports/export.h"
 #include "runner/store/vocabulary.h"
 
@@ -25,22 +25,10 @@ Json target_json(const TargetRecord& target) {
   return json;
 }
 
-Json quantities_json(const std::vector<Drawable>& drawables) {
-  Json list = Json::array();
-  for (const Drawable& one : drawables) {
-    list.push_back({{"path", one.path},
-                    {"name", one.name},
-                    {"element", one.element},
-                    {"symbol", one.symbol},
-                    {"unit", one.unit}});
-  }
-  return list;
-}
-
 Json warnings_json(const CampaignStatus& status, const KnownPoints& known) {
   Json list = Json::array();
   for (const PointSummary& point : status.points) {
-    for (const Json& warning : known.at(point.point.id).first.warnings) {
+    for (const Json& warning : known.at(point.point.id).warnings) {
       list.push_back({{"point", point.point.label},
                       {"code", warning.value("code", "")},
                       {"message", warning.value("message", "")}});
@@ -73,13 +61,15 @@ Json PageReader::read(Database& database, std::optional<std::int64_t> owner, boo
   const Vocabulary words = kept_vocabulary(database);
   PagePoints points = page_points(database, status, known_);
   if (whole) add_details(database, status, points.points);
+  Json quantities = Json::array();
+  for (const Drawable& one : points.drawables) quantities.push_back(to_json(one));
   const std::string results = whole ? sha256(export_csv(database, true)) : "";
   return {{"schema_version", 1},
           {"campaign", status.campaign.name},
           {"target", target_json(status.campaign.target)},
           {"progress", page_progress(status)},
           {"parameters", page_parameters(status, words)},
-          {"quantities", quantities_json(points.drawables)},
+          {"quantities", std::move(quantities)},
           {"derived", words.derived()},
           {"points", std::move(points.points)},
           {"work", page_work(database, status)},
@@ -112,36 +102,21 @@ Json page_data(Database& database, std::optional<std::int64_t> owner) {
 
 // What the campaign has cost and is expected to cost, and who works on it.
 Json page_progress(const CampaignStatus& status) {
-  int decided = 0, ended = 0, lost = 0, surplus = 0, running = 0;
-  std::size_t workers = 0;
-  double cpu_seconds = 0;
-  std::map<std::string, int> standings;
-  for (const PointSummary& point : status.points) {
-    ++standings[standing_word(point)];
-    decided += point.decided ? 1 : 0;
-    ended += point.counts.terminal();
-    lost += point.lost();
-    surplus += point.surplus();
-    running += point.counts.running;
-    workers += point.leases.size();
-    cpu_seconds += point.counts.cpu_seconds;
-  }
-  int handed_over = 0;
-  for (const HandedOver& bundle : status.handed_over) handed_over += bundle.seeds;
+  const CampaignTotals totals = totals_of(status);
   return {{"points", status.points.size()},
-          {"decided", decided},
-          {"standings", standings},
+          {"decided", totals.decided},
+          {"standings", totals.standings},
           {"check", standing(status)},
           {"seeds",
-           {{"ended", ended},
-            {"lost", lost},
-            {"surplus", surplus},
-            {"running", running},
-            {"handed_over", handed_over}}},
-          {"cpu_seconds", cpu_seconds},
+           {{"ended", totals.ended},
+            {"lost", totals.lost},
+            {"surplus", totals.surplus},
+            {"running", totals.running},
+            {"handed_over", totals.handed_over}}},
+          {"cpu_seconds", totals.cpu_seconds},
           {"seconds_to_go", to_json(status.to_go)},
           {"owner", status.owner ? Json(*status.owner) : Json(nullptr)},
-          {"workers", status.owner ? Json(workers) : Json(nullptr)}};
+          {"workers", status.owner ? Json(totals.workers) : Json(nullptr)}};
 }
 
 // Who works on what, and who did last.
@@ -254,6 +229,44 @@ std::string page_commands(const CampaignStatus& status, const std::string& resul
       file, results_sha256.empty() ? "" : "# " + results_sha256 + '\n');
 }
 
+// The scene in words: what the sweep sets, what all points share, and what the engine calls each key.
+
+namespace {
+
+std::set<std::string> swept_pointers(const CampaignStatus& status) {
+  std::set<std::string> pointers;
+  for (const PointSummary& point : status.points) {
+    for (const auto& [pointer, value] : point.point.settings.items()) pointers.insert(pointer);
+  }
+  return pointers;
+}
+
+}  // namespace
+
+Json page_parameters(const CampaignStatus& status, const Vocabulary& words) {
+  Json list = Json::array();
+  for (const std::string& pointer : swept_pointers(status)) list.push_back(words.key(pointer));
+  return list;
+}
+
+Json page_scene(const CampaignStatus& status, const Vocabulary& words) {
+  Json list = Json::array();
+  if (status.points.empty()) return list;
+  const std::set<std::string> swept = swept_pointers(status);
+  const auto is_swept = [&](const std::string& pointer) {
+    return std::any_of(swept.begin(), swept.end(), [&](const std::string& set) {
+      return pointer == set || pointer.starts_with(set + '/');
+    });
+  };
+  const Json flat = status.points.front().point.scene.flatten();
+  for (const auto& [pointer, value] : flat.items()) {
+    if (is_swept(pointer)) continue;
+    list.push_back(words.key(pointer));
+    list.back()["value"] = value;
+  }
+  return list;
+}
+
 // What the words of the page mean.
 
 namespace {
@@ -265,8 +278,8 @@ std::string meaning(const std::string& mark) {
        "the interval is within the tolerance, but the mean leaves out the seeds that were lost; if they were "
        "lost because of what they would have given, it is biased"},
       {"capped",
-       "all seeds that are allowed have ended, and the interval is still wider than the tolerance, or "
-       "there is none"},
+       "all seeds that are allowed have ended, and the interval is still wider than the tolerance, or there "
+       "is none"},
       {"complete-with-losses",
        "all seeds that were asked for have ended, and the mean leaves out those that were lost; if they were "
        "lost because of what they would have given, it is biased"},
@@ -287,18 +300,15 @@ std::string meaning(const std::string& mark) {
        "says"},
       {"near-maximum",
        "the interval is within the tolerance, but perhaps by luck: with a spread as large as the values "
-       "leave "
-       "open the point would need more seeds than are allowed, and intervals of such points hold the mean "
-       "less "
-       "often than they say"},
+       "leave open the point would need more seeds than are allowed, and intervals of such points hold the "
+       "mean less often than they say"},
       {"equal-values",
        "all values are one and the same number, so that there is no spread to make an interval from"},
       {"repeated-seeds",
        "some seeds ended in the same state, so that their values are not independent and have no interval"},
       {"earlier-look",
        "the target was tighter before: the first look within the present one decides, as if there had been "
-       "no "
-       "other, and leaves out seeds that ended later"},
+       "no other, and leaves out seeds that ended later"},
       {"suspect", "a seed gave two different results; no number of this point can be trusted"},
       {"flagged jammed", "seeds that stood still under the given stress; their rate 0 is part of the mean"},
       {"flagged patience", "seeds whose window is too short to tell whether they have jammed"},

@@ -1,6 +1,4 @@
 // The points of the page, with the numbers of each in columns that all share.
-#include "runner/page/page_points.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,6 +17,19 @@
 #include "runner/store/number_store.h"
 
 namespace peclet::runner {
+
+Json to_json(const Drawable& one) {
+  return {{"path", one.path},
+          {"name", one.name},
+          {"element", one.element},
+          {"symbol", one.symbol},
+          {"unit", one.unit}};
+}
+
+std::string bare(const std::string& observable) {
+  return observable.starts_with('/') ? observable.substr(1) : observable;
+}
+
 namespace {
 
 bool is_profile(const Quantity& quantity) {
@@ -225,13 +236,20 @@ std::vector<Drawable> drawables_of(const Quantity& quantity) {
   return found;
 }
 
-// The first seed with a result that has completed.
-FirstResult first_result(Database& database, const PointRecord& point) {
+// The first result that has completed; null where none has.
+Json first_result(Database& database, const PointRecord& point) {
   const std::vector<int> completed = database.completed(point.id, most_realisations);
-  if (completed.empty()) return {nullptr, Json::array()};
-  const std::optional<Json> result = database.result(point.id, completed.front());
-  if (!result) return {nullptr, Json::array()};
-  return {result->value("derived", Json()), result->value("warnings", Json::array())};
+  if (completed.empty()) return nullptr;
+  return database.result(point.id, completed.front()).value_or(Json());
+}
+
+// Seeds that have ended, their values and the looks, in a few words.
+std::string key_of(const PointSummary& point, const TargetRecord& target) {
+  const StateCounts& counts = point.counts;
+  return fmt::format("{} {} {} {} {:a} {} {:a} {:a} {} {}", target.id, counts.done, counts.failed,
+                     counts.quarantined, counts.cpu_seconds, point.so_far.count, point.so_far.mean,
+                     point.so_far.standard_error, point.looks.size(),
+                     point.looks.empty() ? 0 : point.looks.back().seeds);
 }
 
 class PointPage {
@@ -250,8 +268,9 @@ class PointPage {
     const Values found = values_of(outcomes, end());
     KnownPoint known;
     known.key = key_of(point_, target_);
-    known.first = first_result(database_, point_.point);
-    known.json = {{"groups", known.first.groups},
+    const Json first = first_result(database_, point_.point);
+    known.warnings = first.is_null() ? Json::array() : first.value("warnings", Json::array());
+    known.json = {{"groups", first.is_null() ? Json() : first.value("derived", Json())},
                   {"looks", looks_json(point_.looks, target)},
                   {"running_mean", running_mean(found, rule)},
                   {"scatter", scatter(found)}};
@@ -304,7 +323,7 @@ class PointPage {
   // An observable that is named as a quantity or an element; one that the results do not describe is one
   // without unit.
   static std::size_t place_of(KnownPoint& known, const std::string& observable) {
-    const std::string path = observable.starts_with('/') ? observable.substr(1) : observable;
+    const std::string path = bare(observable);
     for (std::size_t place = 0; place < known.drawables.size(); ++place) {
       if (known.drawables[place].path == path) return place;
     }
@@ -319,23 +338,6 @@ class PointPage {
   const PointSummary& point_;
   std::optional<Look> look_;
 };
-
-}  // namespace
-
-std::string key_of(const PointSummary& point, const TargetRecord& target) {
-  const StateCounts& counts = point.counts;
-  return fmt::format("{} {} {} {} {:a} {} {:a} {:a} {} {}", target.id, counts.done, counts.failed,
-                     counts.quarantined, counts.cpu_seconds, point.so_far.count, point.so_far.mean,
-                     point.so_far.standard_error, point.looks.size(),
-                     point.looks.empty() ? 0 : point.looks.back().seeds);
-}
-
-KnownPoint read_point(Database& database, NumberStore& book, const TargetRecord& target,
-                      const PointSummary& point) {
-  return PointPage(database, book, target, point).read();
-}
-
-namespace {
 
 // Columns by path and unit, in the order in which they are first met.
 class Columns {
@@ -397,7 +399,7 @@ PagePoints page_points(Database& database, const CampaignStatus& status, KnownPo
   for (const PointSummary& point : status.points) {
     KnownPoint& of_point = known[point.point.id];
     if (of_point.key != key_of(point, status.campaign.target)) {
-      of_point = read_point(database, book, status.campaign.target, point);
+      of_point = PointPage(database, book, status.campaign.target, point).read();
     }
     Json json = point_json(point, seeds_looked_at(point));
     json.update(of_point.json);

@@ -8,8 +8,46 @@
 
 #include "contract/errors.h"
 #include "contract/text.h"
+#include "runner/store/vocabulary.h"
 
 namespace peclet::runner {
+namespace {
+
+bool is_called(const Drawable& one, const std::string& name) {
+  return one.path == name || (!one.element.empty() && one.name + '/' + one.element == name);
+}
+
+// Names of all quantities; of a list, which may be long, its name and its first element.
+std::string names_of(const std::vector<Drawable>& drawables) {
+  std::vector<std::string> names;
+  for (const Drawable& one : drawables) {
+    if (one.element.empty()) {
+      names.push_back(one.path);
+    } else if (one.path == one.name + "/0" || one.path == one.name + "/0/0") {
+      names.push_back(one.name + '/' + one.element + " ...");
+    }
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+std::size_t chosen_column(const std::vector<Drawable>& drawables, const std::string& name) {
+  if (drawables.empty()) throw InputError("", "--quantity", name, "nothing has been measured yet");
+  for (std::size_t column = 0; column < drawables.size(); ++column) {
+    if (is_called(drawables[column], name)) return column;
+  }
+  std::vector<std::string> names;
+  names.reserve(drawables.size());
+  for (const Drawable& one : drawables) {
+    names.push_back(one.element.empty() ? one.path : one.name + '/' + one.element);
+  }
+  const std::string meant = suggestion(name, names);
+  throw InputError("", "--quantity", name,
+                   meant.empty() ? "must be a number that is measured: " + names_of(drawables)
+                                 : "must be a number that is measured" + meant);
+}
+
 namespace {
 
 std::string last_step(const std::string& pointer) { return pointer.substr(pointer.rfind('/') + 1); }
@@ -70,11 +108,15 @@ bool in_step(const Swept& other, const Swept& axis) {
 
 }  // namespace
 
-std::vector<Swept> swept_parameters(const Json& parameters, const Json& points) {
-  std::vector<Swept> swept;
-  for (const Json& parameter : parameters) swept.push_back(column(parameter, points));
-  if (swept.empty()) swept.push_back(points_themselves(points));
-  return swept;
+MeasuredSweep read_sweep(Database& database) {
+  MeasuredSweep sweep;
+  sweep.status = read_status(database);
+  KnownPoints known;
+  sweep.page = page_points(database, sweep.status, known);
+  sweep.parameters = page_parameters(sweep.status, kept_vocabulary(database));
+  for (const Json& parameter : sweep.parameters) sweep.swept.push_back(column(parameter, sweep.page.points));
+  if (sweep.swept.empty()) sweep.swept.push_back(points_themselves(sweep.page.points));
+  return sweep;
 }
 
 const Swept& chosen_axis(const std::vector<Swept>& swept, const std::string& name,

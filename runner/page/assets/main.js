@@ -26,7 +26,7 @@ class Campaign {
     Page.renew(this.part('results'), resultsShown(data), (host) => {
       this.table = resultsTable(data, sweep, host, pick);
     });
-    this.pick(Math.max(0, data.points.findIndex((point) => point.hash === this.chosen)));
+    this.pick(Math.max(0, this.place()));
     Page.renew(this.part('doubts'), doubtsShown(data), (host) => writeDoubts(data, host));
     this.writeWork(data);
     Page.renew(this.part('cost'), costShown(data), (host) => writeCost(data, host, pick));
@@ -47,6 +47,11 @@ class Campaign {
     return seen || document.body;
   }
 
+  // The place of the chosen point; -1 where there is none.
+  place() {
+    return this.data.points.findIndex((point) => point.hash === this.chosen);
+  }
+
   pick(index) {
     const point = this.data.points[index];
     if (!point) return;
@@ -58,7 +63,7 @@ class Campaign {
 
   writeWork(data) {
     if (!data.work.attempts.length) return;
-    if (!this.work) this.work = new WorkView(this.part('work'));
+    this.work = this.work || new WorkView(this.part('work'));
     this.work.show(data);
   }
 }

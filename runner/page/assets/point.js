@@ -117,51 +117,35 @@ class PointView {
   }
 
   scatter(point) {
-    const { scatter } = point,
+    const { scatter, running_mean: running } = point,
       last = PointView.last(point),
-      levels = [];
-    const mean = last ? last.mean : point.running_mean.mean[point.running_mean.mean.length - 1];
-    const figure = { name: this.title(point, 'seeds'), height: 260, panels: [{ marks: [], levels }] },
-      [panel] = figure.panels;
+      mean = last ? last.mean : running.mean[running.mean.length - 1];
+    const level = (across) => (Format.isNumber(mean) ? [{ value: mean, across, series: 1 }] : []),
+      axis = (about) => ({ about, log: false });
+    const figure = (panel, x, y, table, caption) => ({
+      name: this.title(point, 'seeds'),
+      height: 260,
+      panels: [panel],
+      x: axis(x),
+      y: axis(y),
+      table,
+      caption,
+    });
     if (scatter.counts) {
-      const width = (scatter.high - scatter.low) / scatter.counts.length || 1;
-      if (Format.isNumber(mean)) levels.push({ value: mean, across: false, series: 1 });
-      panel.columns = scatter.counts.map((height, i) => ({
-        from: scatter.low + i * width,
-        to: scatter.low + (i + 1) * width,
-        low: 0,
-        high: height,
-        series: 0,
-      }));
-      return {
-        ...figure,
-        x: { about: this.about, log: false },
-        y: { about: Format.about('seeds'), log: false },
-        table: {
-          columns: ['from', 'to', 'seeds'],
-          rows: panel.columns.map((column) => [column.from, column.to, column.high]),
-        },
-        caption: 'How many seeds gave which value. Dashed: their mean.',
-      };
+      const width = (scatter.high - scatter.low) / scatter.counts.length || 1,
+        edge = (i) => scatter.low + i * width;
+      const columns = scatter.counts.map((high, i) => ({ from: edge(i), to: edge(i + 1), low: 0, high, series: 0 })),
+        table = { columns: ['from', 'to', 'seeds'], rows: columns.map(({ from, to, high }) => [from, to, high]) },
+        panel = { marks: [], levels: level(false), columns };
+      return figure(panel, this.about, Format.about('seeds'), table, 'How many seeds gave which value. Dashed: their mean.');
     }
-    if (Format.isNumber(mean)) levels.push({ value: mean, across: true, series: 1 });
-    panel.marks = scatter.values.map((y, i) => ({
-      series: 0,
-      x: scatter.seeds[i] - 1,
-      y,
-      half: null,
-      kind: 'decided',
-      small: true,
-      point: 0,
-      text: `seed ${scatter.seeds[i] - 1}: ${Format.plain(y)}`,
-    }));
-    return {
-      ...figure,
-      x: { about: Format.about('seed'), log: false },
-      y: { about: this.about, log: false },
-      table: { columns: ['seed', 'value'], rows: scatter.values.map((y, i) => [scatter.seeds[i] - 1, y]) },
-      caption: 'The value of each seed. Dashed: their mean.',
-    };
+    const rows = scatter.values.map((y, i) => [scatter.seeds[i] - 1, y]),
+      text = (seed, y) => `seed ${seed}: ${Format.plain(y)}`,
+      like = { half: null, kind: 'decided', small: true, point: 0 };
+    const marks = rows.map(([x, y]) => ({ series: 0, x, y, ...like, text: text(x, y) })),
+      table = { columns: ['seed', 'value'], rows },
+      panel = { marks, levels: level(true) };
+    return figure(panel, Format.about('seed'), this.about, table, 'The value of each seed. Dashed: their mean.');
   }
 
   // In sentences.
