@@ -58,7 +58,12 @@ class Chart {
   // What of a mark has to be seen. Bars of numbers that are not decided may still be enormous.
   static ends({ y, half, kind }) {
     if (!Format.isNumber(y)) return [];
-    return kind !== 'provisional' && Format.isNumber(half) ? [y, y - half, y + half] : [y];
+    return kind !== 'provisional' && Format.isNumber(half) ? [y - half, y + half] : [y];
+  }
+
+  // A logarithmic axis has no place for what is not positive; what has jammed stands at its edge.
+  static isVisible({ x, y, kind }, isLogX, isLogY) {
+    return (!isLogY || y > 0 || kind === 'jammed') && (!isLogX || x > 0);
   }
 
   // The least and the largest of the numbers that are to be seen along x or y.
@@ -66,7 +71,7 @@ class Chart {
     const { log } = this.figure[direction],
       isX = direction === 'x';
     const numbers = this.panels.flatMap(({ marks, lines, bands, columns, levels }) => [
-      ...marks.flatMap((mark) => (isX ? mark.x : Chart.ends(mark))),
+      ...marks.flatMap((mark) => (isX ? mark.x : [mark.y, ...Chart.ends(mark)])),
       ...lines.flatMap((line) => line.places.map(([x, y]) => (isX ? x : y))),
       ...bands.flatMap((band) => band.places.flatMap(([x, low, high]) => (isX ? x : [low, high]))),
       ...columns.flatMap((column) => (isX ? [column.from, column.to] : [column.low, column.high])),
@@ -124,8 +129,7 @@ class Chart {
     frame.left = left + Math.max(66, 32 + widest);
     const x = this.axis('x', ranges.x, frame.left, frame.right, 58);
     this.frame(group, frame, x, y, panel, left, height, top);
-    const visible = (mark) =>
-      (!figure.y.log || mark.y > 0 || mark.kind === 'jammed') && (!figure.x.log || mark.x > 0);
+    const visible = (mark) => Chart.isVisible(mark, figure.x.log, figure.y.log);
     for (const band of panel.bands) group.append(Chart.band(band, x, y));
     for (const column of panel.columns) group.append(Chart.box(column, x, y));
     for (const level of panel.levels) group.append(Chart.level(level, frame, x, y));
@@ -144,7 +148,8 @@ class Chart {
       width = frame.right - frame.left,
       length = frame.bottom - frame.top;
     // Every so many words there is room for one.
-    const every = (axis, room, size) => (axis.categories ? Math.max(1, Math.ceil((axis.categories.length * size) / room)) : 1);
+    const every = ({ categories }, room, size) =>
+      categories ? Math.max(1, Math.ceil((categories.length * size) / room)) : 1;
     x.ticks().forEach((tick, i) => {
       const place = x.place(tick.value);
       group.append(Svg.line('grid', place, frame.top, place, frame.bottom));

@@ -1,8 +1,6 @@
 // The page: its parts, which stay, and the campaign, which may become another one while somebody looks.
 class Campaign {
-  constructor() {
-    this.chosen = null; // hash of the point
-  }
+  chosen = null; // hash of the point
 
   part(id) {
     return document.getElementById(id);
@@ -28,7 +26,10 @@ class Campaign {
     });
     this.pick(Math.max(0, this.place()));
     Page.renew(this.part('doubts'), doubtsShown(data), (host) => writeDoubts(data, host));
-    this.writeWork(data);
+    if (data.work.attempts.length) {
+      this.work = this.work || new WorkView(this.part('work'));
+      this.work.show(data);
+    }
     Page.renew(this.part('cost'), costShown(data), (host) => writeCost(data, host, pick));
     Page.renew(this.part('origin'), originShown(data), (host) => writeOrigin(data, sweep, host));
     const now = anchor.isConnected ? anchor : document.activeElement;
@@ -59,12 +60,6 @@ class Campaign {
     this.point.show(this.data, index);
     this.sweep.chart.choose(index);
     this.table.choose(index);
-  }
-
-  writeWork(data) {
-    if (!data.work.attempts.length) return;
-    this.work = this.work || new WorkView(this.part('work'));
-    this.work.show(data);
   }
 }
 

@@ -74,7 +74,8 @@ class PointView {
     const x = PointView.seedsAxis(seeds),
       table = PointView.lookTable(point),
       legend = point.looks.length ? [{ series: 1, name: Format.parts('looks') }] : [];
-    const width = (look) => look.half_width;
+    const width = (look) => look.half_width,
+      means = PointView.lookMarks(point, (look) => look.mean, width);
     return [
       {
         name: this.title(point, 'running mean'),
@@ -82,14 +83,7 @@ class PointView {
         y: { about: this.about, log: false },
         table,
         legend,
-        panels: [
-          {
-            marks: PointView.lookMarks(point, (look) => look.mean, width),
-            levels: levels.map(level),
-            lines,
-            bands,
-          },
-        ],
+        panels: [{ marks: means, levels: levels.map(level), lines, bands }],
         hasBand: bands.length > 0,
         bandName: 'its interval',
         height: 260,
@@ -176,10 +170,9 @@ class PointView {
     if (hasJammed) said.push(`It has jammed: ${jammed} of ${Format.counted(ended, 'seed')}.`);
     if (!point.decided) said.push(`${seeds.wanted_ended} of the ${seeds.wanted} seeds of the next look have ended.`);
     const each = seeds.ended ? `, ${Format.duration(point.cpu_seconds / seeds.ended)} each` : '';
+    const surplus = seeds.surplus ? `; ${seeds.surplus} of them surplus, which do not count` : '';
     said.push(
-      `Processor time ${Format.duration(point.cpu_seconds)} for ${Format.counted(seeds.ended, 'seed')}${each}${
-        seeds.surplus ? `; ${seeds.surplus} of them surplus, which do not count` : ''
-      }.`,
+      `Processor time ${Format.duration(point.cpu_seconds)} for ${Format.counted(seeds.ended, 'seed')}${each}${surplus}.`,
     );
     return said.join(' ');
   }
@@ -224,6 +217,8 @@ class PointView {
         plain: point.uncontrolled[quantity.path],
       }))
       .filter((row) => Format.isNumber(row.numbers[0]));
+    const symbol = (row) => Format.plainText(row.about.symbol),
+      mean = (row) => Format.withError(row.numbers[0], row.numbers[2]);
     const plain = {
       title: 'without control variate',
       minor: true,
@@ -236,18 +231,8 @@ class PointView {
       details,
       [
         { title: 'quantity', text: true, wrap: true, value: (row) => row.about.words },
-        {
-          title: 'symbol',
-          text: true,
-          minor: true,
-          value: (row) => Format.plainText(row.about.symbol),
-          shown: (row) => row.about.symbol,
-        },
-        {
-          title: 'mean ± half-width',
-          value: (row) => row.numbers[0],
-          shown: (row) => Format.withError(row.numbers[0], row.numbers[2]),
-        },
+        { title: 'symbol', text: true, minor: true, value: symbol, shown: (row) => row.about.symbol },
+        { title: 'mean ± half-width', value: (row) => row.numbers[0], shown: mean },
         { title: 'unit', text: true, value: (row) => row.about.unit, shown: (row) => Format.symbol(row.about.unit) },
         ...(rows.some((row) => row.plain) ? [plain] : []),
         { title: 'seeds', value: (row) => row.numbers[3] },

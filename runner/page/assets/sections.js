@@ -159,18 +159,16 @@ class WorkView {
 
 // What may be doubted: lost seeds by cause, what each mark means, what engines warn of.
 function writeDoubts(data, host) {
-  const lost = data.points.flatMap((point) =>
-    Object.entries(point.losses).map(([cause, count]) => ({ point: point.label, cause, count, reason: point.loss_reasons[cause] || '' })),
-  );
+  const losses = ({ label, losses: causes, loss_reasons: reasons }) =>
+    Object.entries(causes).map(([cause, count]) => ({ point: label, cause, count, reason: reasons[cause] || '' }));
+  const lost = data.points.flatMap(losses);
   const meanings = Object.entries(data.meanings);
   if (!lost.length && !meanings.length && !data.warnings.length) return;
   host.append(Page.heading('h2', 'What to know before using the numbers'));
   if (meanings.length) host.append(Page.list(meanings));
   if (lost.length) {
-    host.append(
-      Page.heading('h3', 'Lost seeds'),
-      Page.paragraph('Seeds that ended without a value. Means leave them out.', 'faint'),
-    );
+    const about = 'Seeds that ended without a value. Means leave them out.';
+    host.append(Page.heading('h3', 'Lost seeds'), Page.paragraph(about, 'faint'));
     new SortedTable(
       host,
       [

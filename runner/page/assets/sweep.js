@@ -148,17 +148,17 @@ class Sweep {
         const [y, error, half, count] = known ? point.estimates[index] : [null, null, null, endings.ended],
           kind = Sweep.kind(point),
           { path } = quantities[index];
+        const number = known ? Format.withError(y, half) : 'no number',
+          state = point.standing + (endings.has_jammed ? `, ${endings.jammed} of ${endings.ended} jammed` : '');
         const order = panelBy.map((one) => one.values.indexOf(one.cells[i])),
           key = JSON.stringify(order);
         if (!panels.has(key)) {
           const title = joined(panelBy.map((one) => this.nameOf(one, i)));
           panels.set(key, { title, order, marks: [] });
         }
-        const name = joined([
-          ...(terms ? [Format.parts(term(index))] : []),
-          ...others.map((one) => this.nameOf(one, i)),
-        ]);
-        const id = JSON.stringify(name);
+        const named = others.map((one) => this.nameOf(one, i)),
+          name = joined(terms ? [Format.parts(term(index)), ...named] : named),
+          id = JSON.stringify(name);
         if (!series.has(id)) series.set(id, { series: series.size, name });
         const x = axis.numeric ? axis.cells[i] : axis.values.indexOf(axis.cells[i]);
         panels.get(key).marks.push({
@@ -169,11 +169,7 @@ class Sweep {
           allowed: point.good_enough[path],
           kind,
           point: i,
-          text: `${point.label}${terms ? `, ${term(index)}` : ''}: ${
-            known ? Format.withError(y, half) : 'no number'
-          } (${Format.counted(count, 'seed')}, ${point.standing}${
-            endings.has_jammed ? `, ${endings.jammed} of ${endings.ended} jammed` : ''
-          })`,
+          text: `${point.label}${terms ? `, ${term(index)}` : ''}: ${number} (${Format.counted(count, 'seed')}, ${state})`,
         });
         kinds.add(kind);
         const standing = endings.has_jammed ? `${point.standing}, jammed` : point.standing;
@@ -194,9 +190,7 @@ class Sweep {
       if (stacked) Sweep.stack(panel, total, scales.x);
       else Sweep.connect(panel, series.size);
     }
-    const hidden = marks.filter(
-      (mark) => (scales.y && !(mark.y > 0) && mark.kind !== 'jammed') || (scales.x && !(mark.x > 0)),
-    ).length;
+    const hidden = marks.filter((mark) => !Chart.isVisible(mark, scales.x, scales.y)).length;
     const notes = [];
     if (hidden)
       notes.push(`Left out, because a logarithmic axis has no place for them: ${hidden} that are not positive.`);
