@@ -295,7 +295,7 @@ int hand_over_campaign(const HandOverOptions& options) {
     finished = Follower(ledger, bundles, requests, progress, owned.directory, options).run(settings);
     code = ending(read_status(owned.database), finished);
   }
-  std::fputs(status_table(owned.database, getpid()).c_str(), stdout);
+  std::fputs(status_table(read_status(owned.database, getpid())).c_str(), stdout);
   return code;
 }
 

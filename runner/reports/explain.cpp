@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "runner/campaign/number_text.h"
 #include "runner/campaign/text_table.h"
@@ -315,43 +314,29 @@ Json blamed_attempts_json(Database& database, std::int64_t point) {
 }
 
 // What the realisations of a point have left.
-struct Files {
+Json files_json(Database& database, const CampaignDirectory& directory, std::int64_t point) {
   int kept = 0, thrown_away = 0;
   std::uint64_t bytes = 0;  // of those that are kept
-  std::string folder;
-};
-
-Files files_of(Database& database, const CampaignDirectory& directory, std::int64_t point) {
-  Files files;
+  Json folder;
   for (const FileRecord& record : files_of_point(database.connection(), point)) {
-    ++(record.kept ? files.kept : files.thrown_away);
+    ++(record.kept ? kept : thrown_away);
     if (!record.kept) continue;
-    files.bytes += record.file.bytes;
-    files.folder = record.place(directory).parent_path().parent_path().string();
+    bytes += record.file.bytes;
+    folder = record.place(directory).parent_path().parent_path().string();
   }
-  return files;
+  return {{"kept", kept}, {"bytes", bytes}, {"thrown_away", thrown_away}, {"folder", folder}};
 }
 
-std::string files_text(Database& database, const CampaignDirectory& directory, std::int64_t point) {
-  const Files files = files_of(database, directory, point);
-  std::string text;
-  if (files.kept > 0) {
-    text = fmt::format("  files: {} ({:.1f} MB) in {}", files.kept, 1e-6 * static_cast<double>(files.bytes),
-                       files.folder);
+std::string files_text(const Json& files) {
+  std::vector<std::string> parts;
+  if (files["kept"] > 0) {
+    parts.push_back(fmt::format("{} ({:.1f} MB) in {}", files["kept"].get<int>(),
+                                1e-6 * files["bytes"].get<double>(), files["folder"].get<std::string>()));
   }
-  if (files.thrown_away > 0) {
-    text +=
-        fmt::format("{}{} thrown away (/keep_files)", text.empty() ? "  files: " : "; ", files.thrown_away);
+  if (files["thrown_away"] > 0) {
+    parts.push_back(fmt::format("{} thrown away (/keep_files)", files["thrown_away"].get<int>()));
   }
-  return text.empty() ? "" : text + '\n';
-}
-
-Json files_json(Database& database, const CampaignDirectory& directory, std::int64_t point) {
-  const Files files = files_of(database, directory, point);
-  return {{"kept", files.kept},
-          {"bytes", files.bytes},
-          {"thrown_away", files.thrown_away},
-          {"folder", files.folder.empty() ? Json(nullptr) : Json(files.folder)}};
+  return parts.empty() ? "" : fmt::format("  files: {}\n", fmt::join(parts, "; "));
 }
 
 }  // namespace
@@ -391,7 +376,7 @@ std::string explain(Database& database, const CampaignDirectory& directory, cons
     text += estimate_text(database, summary, target);
     text += losses_text(database, summary);
     text += attempts_text(database, summary.point.id);
-    text += files_text(database, directory, summary.point.id);
+    text += files_text(files_json(database, directory, summary.point.id));
     for (const KeptApart& kept : summary.kept_apart)
       text += fmt::format("  kept apart: {} results of engine {}\n", kept.results, kept.engine);
     text += fmt::format("  next: {}\n", next_step(summary, target, directory));

@@ -27,17 +27,9 @@ std::vector<Outcome> completed(Database& database, const PointSummary& point) {
   return found;
 }
 
-std::vector<double> controlled(const std::vector<Outcome>& outcomes) {
-  std::vector<double> values;
-  values.reserve(outcomes.size());
-  for (const Outcome& outcome : outcomes) values.push_back(outcome.value + outcome.control);
-  return values;
-}
-
 std::string interval_text(const Look& look, const std::vector<Outcome>& outcomes,
                           const TargetRecord& target) {
   const double level = target.level();
-  const std::vector<double> values = controlled(outcomes);
   if (!std::isfinite(look.controlled_half_width)) return "";
   if (look.controlled.values == Estimate::Values::share) {
     const Interval interval = share_interval(look.controlled.count, look.controlled.mean, level);
@@ -45,6 +37,8 @@ std::string interval_text(const Look& look, const std::vector<Outcome>& outcomes
         "  interval: {} .. {} of the share (Clopper and Pearson); the half-width is its larger side\n",
         rough(interval.low), rough(interval.high));
   }
+  std::vector<double> values;
+  for (const Outcome& outcome : outcomes) values.push_back(outcome.controlled());
   std::string text;
   if (const std::optional<Interval> interval = bootstrap_t(values, level)) {
     text = fmt::format("  interval of {:.3g} %: Student {} .. {}, bootstrap-t {} .. {}; skewness {}\n",
@@ -53,12 +47,10 @@ std::string interval_text(const Look& look, const std::vector<Outcome>& outcomes
                        rough(interval->high), rough(look.skewness));
   }
   if (is_skewed(look, target.target.confidence)) {
-    text +=
+    text += fmt::format(
         "  skewed: some values are far from the rest on one side, and Student's interval holds the mean less "
-        "often\n"
-        "    than it says; trust the bootstrap interval more, and ask for ";
-    text +=
-        target.target.has_tolerance() ? "a smaller tolerance or a larger minimum\n" : "more realisations\n";
+        "often\n    than it says; trust the bootstrap interval more, and ask for {}\n",
+        target.target.has_tolerance() ? "a smaller tolerance or a larger minimum" : "more realisations");
   }
   return text;
 }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
@@ -14,6 +13,7 @@
 #include "runner/campaign/quoting.h"
 #include "runner/campaign/text_table.h"
 #include "runner/owner/retry_plan.h"
+#include "runner/reports/status.h"
 #include "runner/statistics/cohorts.h"
 #include "runner/statistics/quantity_estimates.h"
 #include "runner/store/database_summary.h"
@@ -71,11 +71,9 @@ void for_each_result_line(Database& database, const std::string& name, std::opti
 
 namespace {
 
-Json listed_file(const PointRecord& point, const FileRecord& record, const CampaignDirectory& directory) {
-  return {{"point", point.label},
-          {"hash", point.hash},
-          {"seed", record.seed},
-          {"name", record.file.name},
+// The path is null where the file was thrown away.
+Json file_json(const FileRecord& record, const CampaignDirectory& directory) {
+  return {{"name", record.file.name},
           {"bytes", record.file.bytes},
           {"sha256", record.file.sha256},
           {"path", record.kept ? Json(record.place(directory).string()) : Json(nullptr)}};
@@ -96,7 +94,8 @@ std::string list_files(Database& database, const CampaignDirectory& directory, c
     for (const FileRecord& record : files_of_point(database.connection(), point.id)) {
       const std::string path = record.place(directory).string();
       if (record.kept) paths += path + '\n';
-      all.push_back(listed_file(point, record, directory));
+      all.push_back(file_json(record, directory));
+      all.back().update({{"point", point.label}, {"hash", point.hash}, {"seed", record.seed}});
       table.add_row({point.label, fmt::format("{}", record.seed), record.file.name,
                      fmt::format("{}", record.file.bytes), record.kept ? path : "thrown away"});
     }
@@ -141,15 +140,6 @@ Json attempt_json(const AttemptRecord& attempt) {
           {"message", attempt.message}};
 }
 
-// Where it is below the campaign's folder; null where it was thrown away.
-Json file_json(const FileRecord& record) {
-  const Json place = record.kept ? Json(record.place(CampaignDirectory("")).string()) : Json(nullptr);
-  return {{"name", record.file.name},
-          {"bytes", record.file.bytes},
-          {"sha256", record.file.sha256},
-          {"path", place}};
-}
-
 // The seeds of one point as they go into the document.
 class PointExport {
  public:
@@ -163,8 +153,9 @@ class PointExport {
       for (const AttemptRecord& attempt : database.attempts(point.id)) {
         attempts_[attempt.seed].push_back(attempt_json(attempt));
       }
+      const CampaignDirectory below("");  // paths are those below the campaign's folder
       for (const FileRecord& record : files_of_point(database.connection(), point.id)) {
-        files_[record.seed].push_back(file_json(record));
+        files_[record.seed].push_back(file_json(record, below));
       }
     }
     read_results();
@@ -187,9 +178,7 @@ class PointExport {
     if (!canonical_) {
       json["suspect"] = point_.suspect;
       json["cancelled"] = point_.cancelled;
-      json["kept_apart"] = Json::array();
-      for (const KeptApart& kept : database_.kept_apart(point_.hash))
-        json["kept_apart"].push_back({{"engine", kept.engine}, {"results", kept.results}});
+      json["kept_apart"] = to_json(database_.kept_apart(point_.hash));
       json["surplus"] = surplus_;
     }
     return json;

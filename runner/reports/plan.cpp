@@ -178,10 +178,6 @@ std::vector<std::string> predicted_cells(const PointPlan& point) {
           with_range(prediction.seeds, seconds_per_hour / point.cost.cpu_seconds), remark};
 }
 
-std::vector<std::string> bare_cells(const Plan& plan, const PointPlan& point) {
-  return {rough(hours(point, plan.minimum)), rough(hours(point, plan.maximum))};
-}
-
 std::string table_text(const Plan& plan, bool predicted) {
   std::vector<std::string> labels;
   double steps = 0;
@@ -205,18 +201,21 @@ std::string table_text(const Plan& plan, bool predicted) {
     const PointPlan& point = plan.points[i];
     std::vector<std::string> row = columns.cells(i);
     row.insert(row.end(), {rough(point.particle_steps), cost_text(point.cost)});
-    add_row(std::move(row), predicted ? predicted_cells(point) : bare_cells(plan, point));
+    add_row(std::move(row),
+            predicted ? predicted_cells(point)
+                      : std::vector{rough(hours(point, plan.minimum)), rough(hours(point, plan.maximum))});
   }
   std::vector<std::string> all(columns.count());
   all.front() = "all";
   all.insert(all.end(), {rough(steps), ""});
-  if (predicted) {
-    const Totals& totals = plan.totals;
-    const bool known = totals.points > 0;
-    add_row(std::move(all), {known ? with_range(totals.seeds, 1) : "-",
-                             known ? with_range(totals.cpu_seconds, seconds_per_hour) : "-", ""});
-  } else {
+  const Totals& totals = plan.totals;
+  if (!predicted) {
     add_row(std::move(all), {rough(total_hours(plan, plan.minimum)), rough(total_hours(plan, plan.maximum))});
+  } else if (totals.points == 0) {
+    add_row(std::move(all), {"-", "-", ""});
+  } else {
+    add_row(std::move(all),
+            {with_range(totals.seeds, 1), with_range(totals.cpu_seconds, seconds_per_hour), ""});
   }
   return table.text();
 }

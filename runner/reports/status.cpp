@@ -8,7 +8,6 @@
 
 #include "contract/errors.h"
 #include "runner/campaign/number_text.h"
-#include "runner/campaign/text_table.h"
 #include "runner/statistics/cohorts.h"
 
 namespace peclet::runner {
@@ -33,9 +32,6 @@ Json bundles_json(const std::vector<HandedOver>& bundles) {
 Json point_json(const PointSummary& point) {
   Json workers = Json::array();
   for (const LeaseRecord& lease : point.leases) workers.push_back(lease_json(lease));
-  Json kept_apart = Json::array();
-  for (const KeptApart& kept : point.kept_apart)
-    kept_apart.push_back({{"engine", kept.engine}, {"results", kept.results}});
   const StateCounts& counts = point.counts;
   return {{"label", point.point.label},
           {"hash", point.point.hash},
@@ -44,7 +40,7 @@ Json point_json(const PointSummary& point) {
           {"suspect", point.point.suspect},
           {"cancelled", point.point.cancelled},
           {"priority", point.point.priority},
-          {"kept_apart", kept_apart},
+          {"kept_apart", to_json(point.kept_apart)},
           {"seeds",
            {{"wanted", point.wanted},
             {"wanted_ended", point.wanted_ended},
@@ -68,8 +64,15 @@ Json point_json(const PointSummary& point) {
 
 }  // namespace
 
-CampaignStatus read_status(Database& database) {
+Json to_json(const std::vector<KeptApart>& results) {
+  Json list = Json::array();
+  for (const KeptApart& kept : results) list.push_back({{"engine", kept.engine}, {"results", kept.results}});
+  return list;
+}
+
+CampaignStatus read_status(Database& database, std::optional<std::int64_t> owner) {
   CampaignStatus status;
+  status.owner = owner;
   status.campaign = database.campaign();
   status.points = summarise_points(database, status.campaign.target);
   status.forecasts = forecasts_of(database, status.points);
@@ -382,12 +385,6 @@ std::string status_table(const CampaignStatus& status, std::size_t width) {
                              predictions_text(status.points);
   return folded(heading(status), width) + table.text_within(width) + '\n' +
          legend(status, table.left_out(width), width) + '\n' + folded(totals, width);
-}
-
-std::string status_table(Database& database, std::int64_t owner) {
-  CampaignStatus status = read_status(database);
-  status.owner = owner;
-  return status_table(status);
 }
 
 std::string workers_text(const CampaignStatus& status, std::size_t width) {

@@ -24,7 +24,8 @@ struct CampaignStatus {
   std::optional<TimeToGo> to_go{};
 };
 
-CampaignStatus read_status(Database& database);
+// `owner`: the process that runs it now.
+CampaignStatus read_status(Database& database, std::optional<std::int64_t> owner = std::nullopt);
 
 // What all points have together.
 struct CampaignTotals {
@@ -58,11 +59,12 @@ std::vector<std::string> reservations(const PointSummary& point);
 
 // The table and its totals; as the process that owns the campaign prints them at the end. In few columns of a
 // terminal it does without what matters least; the verdict is always whole.
-std::string status_table(Database& database, std::int64_t owner);
 std::string status_table(const CampaignStatus& status, std::size_t width = unlimited_width);
 // Who runs it and how far the workers are; nothing when the campaign is decided and nobody runs it.
 std::string workers_text(const CampaignStatus& status, std::size_t width = unlimited_width);
 Json status_json(const CampaignStatus& status);
+// [{"engine", "results"}]
+Json to_json(const std::vector<KeptApart>& results);
 
 // How good the predictions of `peclet plan --pilot` were.
 //
